@@ -1,0 +1,1 @@
+//! Wine-barrel stacks in earthquakes: scenario, run, outcome, report.

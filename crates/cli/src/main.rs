@@ -1,0 +1,3 @@
+//! The `barrelstack` command.
+
+fn main() {}

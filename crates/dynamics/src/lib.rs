@@ -1,0 +1,1 @@
+//! Rigid bodies joined by penalty contact, integrated in time.

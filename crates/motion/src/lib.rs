@@ -1,0 +1,1 @@
+//! Strong ground motion: read, process, scale, synthesise and measure.

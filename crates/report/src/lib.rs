@@ -1,0 +1,1 @@
+//! Documents, figures and a player for moving rigid bodies.
