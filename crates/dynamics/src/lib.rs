@@ -1,1 +1,53 @@
 //! Rigid bodies joined by penalty contact, integrated in time.
+//!
+//! This crate knows bodies, boundaries and contact; it does no input or output, reads no clock,
+//! starts no thread, and logs nothing.
+//!
+//! # A step
+//!
+//! 1. The ground, and all that is fixed to it, is placed where its motion says.
+//! 2. For each pair of boundaries that are near, and each node of the contactor: how far is it from
+//!    the target's surface, and which way is out?
+//! 3. The normal law turns penetration and its rate into a compressive force.
+//! 4. The friction law turns slip rate and stick into a tangential force.
+//! 5. Both bodies feel the force at one point, the companion point on the target.
+//! 6. Contact, gravity and viscous damping are summed: accelerations ([`evaluate`]).
+//! 7. The integrator repeats 1 to 6 as its method asks and advances poses, twists and sticks.
+//! 8. Once the step is accepted, every stick is cut back to what friction can hold.
+//! 9. The energy ledger and the observers look at the accepted state.
+//!
+//! # Signs
+//!
+//! - `x` points right, `z` up, angles grow from `x` toward `z`; all units are SI, angles radians.
+//! - A gap's distance is negative when penetrating; penetration is never negative.
+//! - Penetration rate is positive while approaching.
+//! - Normals point out of the target.
+//! - Slip is that of the contactor relative to the target; on a level floor, positive to the right.
+//! - A friction force is given along the slip; the contactor feels its opposite.
+
+pub mod body;
+pub mod contact;
+pub mod elements;
+pub mod energy;
+pub mod forces;
+pub mod integrate;
+pub mod math;
+pub mod model;
+pub mod real;
+pub mod settle;
+pub mod shape;
+pub mod simulate;
+pub mod space;
+pub mod state;
+
+pub use body::{Body, BodyId, Motion, Node, Nodes, Placed};
+pub use contact::{Basis, FrictionLaw, Interface, NormalLaw};
+pub use energy::{EnergyLedger, EnergySummary};
+pub use forces::{Contact, Scratch, evaluate};
+pub use integrate::{Drive, Method, Still};
+pub use model::{ContactPair, InterfaceId, Model, ModelError};
+pub use settle::{SettleError, Settled, settle};
+pub use shape::Shape;
+pub use simulate::{Finish, Observer, RunError, Simulation, simulate};
+pub use space::{Planar, Pose, Space, Twist, Vec2};
+pub use state::State;

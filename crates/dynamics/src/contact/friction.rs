@@ -1,0 +1,170 @@
+//! Friction force as a function of normal force, slip rate and the memory of the stick.
+
+use crate::real::Real;
+use crate::space::{Linear, Space};
+
+/// A law for the friction force of one node.
+///
+/// The force of a node in the direction opposite to its slip is returned with the sign of the slip;
+/// the contact loop applies it to the contactor with a minus.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FrictionLaw<R = f64> {
+    /// No friction.
+    Frictionless,
+    /// Coulomb's dry friction with an elastic stick.
+    ///
+    /// ```text
+    /// spring  = k_t s            held within ± μ fₙ
+    /// f_t     = spring + c_t v_t held within ± μ fₙ
+    /// ```
+    ///
+    /// `s` is the stick displacement: it grows with the slip rate like any other coordinate of the
+    /// state, and only an accepted step cuts it back to what the spring may carry
+    /// ([`Stick::commit`]), so a body at rest on a slope stays there for ever.
+    /// The paper's `f_t = μ fₙ` is the sliding part of this law.
+    /// μ is the static coefficient until the force first exceeds it, and the kinetic one until the
+    /// slip turns back.
+    Coulomb {
+        /// `μ_s` (1), at least the kinetic one.
+        static_coefficient: R,
+        /// `μ_k` (1).
+        kinetic_coefficient: R,
+        /// `k_t` (N/m).
+        tangential_stiffness: R,
+        /// `c_t` (N·s/m): without it a stopped body rings on its stick for ever.
+        tangential_damping: R,
+    },
+    /// Coulomb's dry friction made smooth: `f_t = μ fₙ v_t / √(v_t² + v_r²)`.
+    ///
+    /// It has no memory and cannot hold: under a steady tangential force `T < μ fₙ` a body creeps at
+    /// `v_r T / √((μ fₙ)² − T²)`, see [`FrictionLaw::creep_speed`].
+    Regularized {
+        /// `μ` (1).
+        coefficient: R,
+        /// `v_r` (m/s): the speed at which 71 % of the friction is reached.
+        velocity: R,
+    },
+}
+
+/// What a node remembers of its stick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stick<S: Space> {
+    /// Elastic tangential displacement of the contactor relative to the target (m).
+    pub displacement: S::Tangent,
+    /// Whether the node was slipping when the last step was accepted.
+    pub slipping: <S::Real as Real>::Mask,
+}
+
+/// A friction force and what of it can be got back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction<S: Space> {
+    /// Force (N) along the slip; the contactor feels its opposite.
+    pub force: S::Tangent,
+    /// Energy stored in the stick (J).
+    pub energy: S::Real,
+}
+
+impl<R: Real> FrictionLaw<R> {
+    /// The friction of a node that slips at `slip_rate` (m/s) under a normal force (N).
+    ///
+    /// `weight` multiplies the tangential constants: 1 for constants per node, the tributary length
+    /// (m) for constants per length.
+    #[inline]
+    pub fn force<S: Space<Real = R>>(
+        &self,
+        stick: Stick<S>,
+        slip_rate: S::Tangent,
+        normal_force: R,
+        weight: R,
+    ) -> Friction<S> {
+        match *self {
+            Self::Frictionless => Friction { force: S::Tangent::default(), energy: R::zero() },
+            Self::Coulomb {
+                static_coefficient,
+                kinetic_coefficient,
+                tangential_stiffness,
+                tangential_damping,
+            } => {
+                let coefficient =
+                    R::select(stick.slipping, kinetic_coefficient, static_coefficient);
+                let limit = coefficient * normal_force;
+                let stiffness = tangential_stiffness * weight;
+                let spring = within::<S>(stick.displacement * stiffness, limit);
+                let energy = R::splat(0.5) * spring.dot(spring) / stiffness;
+                let force = within::<S>(spring + slip_rate * (tangential_damping * weight), limit);
+                Friction { force, energy }
+            }
+            Self::Regularized { coefficient, velocity } => {
+                let speed = (slip_rate.dot(slip_rate) + velocity * velocity).sqrt();
+                Friction {
+                    force: slip_rate * (coefficient * normal_force / speed),
+                    energy: R::zero(),
+                }
+            }
+        }
+    }
+
+    /// The speed (m/s) at which a body creeps under a steady tangential force that is `share` of the
+    /// friction limit (0 ≤ share < 1); zero for laws that hold.
+    pub fn creep_speed(&self, share: f64) -> R {
+        match *self {
+            Self::Frictionless | Self::Coulomb { .. } => R::zero(),
+            Self::Regularized { velocity, .. } => {
+                velocity * R::splat(share / (1.0 - share * share).sqrt())
+            }
+        }
+    }
+}
+
+impl<S: Space> Stick<S> {
+    /// What is remembered of a stick once a step is accepted: no more displacement than friction can
+    /// hold, and whether the node slips.
+    ///
+    /// `self` carries the displacement reached by the step, `weight` is that of
+    /// [`FrictionLaw::force`].
+    #[inline]
+    #[must_use]
+    pub fn commit(
+        self,
+        law: &FrictionLaw<S::Real>,
+        slip_rate: S::Tangent,
+        normal_force: S::Real,
+        weight: S::Real,
+    ) -> Self {
+        let FrictionLaw::Coulomb {
+            static_coefficient,
+            kinetic_coefficient,
+            tangential_stiffness,
+            tangential_damping,
+        } = *law
+        else {
+            return Self::default();
+        };
+        let stiffness = tangential_stiffness * weight;
+        let spring = self.displacement * stiffness;
+        let trial = spring + slip_rate * (tangential_damping * weight);
+        let kinetic = kinetic_coefficient * normal_force;
+        let limit = static_coefficient * normal_force;
+        let limit = S::Real::select(self.slipping, kinetic, limit);
+        let broken = (limit * limit).lt(trial.dot(trial));
+        // A slipping node sticks again when the slip turns against the stretched spring.
+        let follows = S::Real::zero().le(spring.dot(slip_rate));
+        let slipping = broken | (self.slipping & follows);
+        let held = S::Real::select(slipping, kinetic, limit);
+        let spring = within::<S>(spring, held);
+        Self { displacement: spring * (S::Real::splat(1.0) / stiffness), slipping }
+    }
+}
+
+/// The tangent, shortened to a length where it is longer.
+#[inline]
+fn within<S: Space>(tangent: S::Tangent, limit: S::Real) -> S::Tangent {
+    let squared = tangent.dot(tangent);
+    let longer = (limit * limit).lt(squared);
+    if !crate::real::Mask::any(longer) {
+        return tangent;
+    }
+    let one = S::Real::splat(1.0);
+    let safe = S::Real::select(longer, squared, one);
+    tangent * S::Real::select(longer, limit / safe.sqrt(), one)
+}

@@ -1,0 +1,46 @@
+//! What a contact pushes back with: the normal law and the friction law of an interface.
+
+mod friction;
+mod normal;
+pub mod restitution;
+
+use crate::space::Space;
+
+pub use friction::{Friction, FrictionLaw, Stick};
+pub use normal::{NormalForce, NormalLaw};
+
+/// What the stiffness and damping of an interface are stated for.
+///
+/// With constants per node, refining the nodes of a boundary stiffens the interface, so the number
+/// of nodes is then part of the physics (the paper states its constants this way).
+/// With constants per length, each node acts for its tributary length and refinement converges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Basis {
+    /// Constants of one node (N/m, N·s/m).
+    Node,
+    /// Constants of one meter of boundary (N/m², N·s/m²).
+    Length,
+}
+
+impl Basis {
+    /// The word used in files and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Node => "node",
+            Self::Length => "length",
+        }
+    }
+}
+
+/// How two kinds of surfaces push on each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Interface<S: Space> {
+    /// The name, such as "rack-ground".
+    pub name: String,
+    /// Penetration and its rate to compressive force.
+    pub normal: NormalLaw<S::Real>,
+    /// Slip to friction force.
+    pub friction: FrictionLaw<S::Real>,
+    /// What the constants are stated for.
+    pub basis: Basis,
+}

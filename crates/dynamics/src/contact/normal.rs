@@ -1,0 +1,122 @@
+//! Normal contact force as a function of penetration and penetration rate.
+
+use crate::real::Real;
+
+/// A law for the compressive force of one node, δ its penetration (m) and δ̇ the rate (m/s,
+/// positive while approaching). No law ever pulls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NormalLaw<R = f64> {
+    /// Linear spring in parallel with a damper that acts only while the penetration grows:
+    ///
+    /// ```text
+    /// fₙ = k δ + c δ̇   if δ̇ > 0
+    /// fₙ = k δ         if δ̇ ≤ 0
+    /// ```
+    ///
+    /// The rebound is elastic, so all dissipation happens on approach
+    /// (Candia, de la Llera and Almazán 2008, eq. 2.6).
+    /// At touch-down the force jumps to `c δ̇`.
+    SpeedGap {
+        /// `k` (N/m).
+        stiffness: R,
+        /// `c` (N·s/m).
+        damping: R,
+    },
+    /// Linear spring and damper in both directions, cut where it would pull:
+    /// `fₙ = max(0, k δ + c δ̇)`.
+    KelvinVoigt {
+        /// `k` (N/m).
+        stiffness: R,
+        /// `c` (N·s/m).
+        damping: R,
+    },
+    /// `fₙ = max(0, k δ^(3/2) (1 + d δ̇))`: the force starts and ends at zero
+    /// (Hunt and Crossley 1975).
+    HuntCrossley {
+        /// `k` (N/m^1.5).
+        stiffness: R,
+        /// `d` (s/m).
+        dissipation: R,
+    },
+    /// `fₙ = k δ^(3/2)`, elastic (Hertz 1882; for spheres `k = 4/3 E* √r`).
+    Hertz {
+        /// `k` (N/m^1.5).
+        stiffness: R,
+    },
+}
+
+/// A normal force and what of it can be got back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NormalForce<R> {
+    /// Compressive force (N), never negative.
+    pub total: R,
+    /// The part that does not depend on the rate (N); the rest is dissipated.
+    pub elastic: R,
+    /// Energy stored in the spring (J).
+    pub energy: R,
+}
+
+impl<R: Real> NormalLaw<R> {
+    /// The force of a node with penetration `depth` (m, positive) and penetration rate `rate`
+    /// (m/s, positive while approaching).
+    #[inline]
+    pub fn force(&self, depth: R, rate: R) -> NormalForce<R> {
+        let zero = R::zero();
+        match *self {
+            Self::SpeedGap { stiffness, damping } => {
+                let elastic = stiffness * depth;
+                NormalForce {
+                    total: elastic + damping * rate.max(zero),
+                    elastic,
+                    energy: R::splat(0.5) * elastic * depth,
+                }
+            }
+            Self::KelvinVoigt { stiffness, damping } => {
+                let elastic = stiffness * depth;
+                NormalForce {
+                    total: (elastic + damping * rate).max(zero),
+                    elastic,
+                    energy: R::splat(0.5) * elastic * depth,
+                }
+            }
+            Self::HuntCrossley { stiffness, dissipation } => {
+                let elastic = stiffness * depth * depth.sqrt();
+                NormalForce {
+                    total: (elastic * (R::splat(1.0) + dissipation * rate)).max(zero),
+                    elastic,
+                    energy: R::splat(0.4) * elastic * depth,
+                }
+            }
+            Self::Hertz { stiffness } => {
+                let elastic = stiffness * depth * depth.sqrt();
+                NormalForce {
+                    total: elastic,
+                    elastic,
+                    energy: R::splat(0.4) * elastic * depth,
+                }
+            }
+        }
+    }
+
+    /// The tangent stiffness `∂fₙ/∂δ` (N/m) at a penetration (m), rates left out.
+    pub fn tangent_stiffness(&self, depth: R) -> R {
+        match *self {
+            Self::SpeedGap { stiffness, .. } | Self::KelvinVoigt { stiffness, .. } => stiffness,
+            Self::HuntCrossley { stiffness, .. } | Self::Hertz { stiffness } => {
+                R::splat(1.5) * stiffness * depth.max(R::zero()).sqrt()
+            }
+        }
+    }
+
+    /// The damping `∂fₙ/∂δ̇` (N·s/m) at a penetration (m), while approaching.
+    pub fn tangent_damping(&self, depth: R) -> R {
+        match *self {
+            Self::SpeedGap { damping, .. } | Self::KelvinVoigt { damping, .. } => damping,
+            Self::HuntCrossley { stiffness, dissipation } => {
+                let depth = depth.max(R::zero());
+                stiffness * depth * depth.sqrt() * dissipation
+            }
+            Self::Hertz { .. } => R::zero(),
+        }
+    }
+}

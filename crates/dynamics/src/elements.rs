@@ -1,0 +1,235 @@
+//! The contact elements that could touch soon, and what they remember.
+//!
+//! A contact element is a node of a contactor and the surface of a target.
+//! Of all elements of a model only those within a margin are kept in the list; the list is built
+//! anew before any body can have moved so far that a missing element touches.
+//! It is therefore a matter of speed alone: the forces are those of testing every node in every step,
+//! in the same order, with the same bits.
+
+use crate::body::{Motion, Nodes};
+use crate::contact::Stick;
+use crate::model::{ContactPair, Model};
+use crate::real::Real;
+use crate::shape::Surface;
+use crate::space::{Linear, Pose, Space, Twist};
+
+/// Elements closer than this (m) to touching are kept in the list.
+const MARGIN: f64 = 0.012;
+
+/// The elements of one contact pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Group {
+    /// Index of the pair in its model.
+    pub(crate) pair: usize,
+    /// Its first element.
+    pub(crate) first: usize,
+    /// One past its last element.
+    pub(crate) end: usize,
+}
+
+/// The contact elements within reach, in the order in which their forces are summed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Elements<S: Space> {
+    pub(crate) groups: Vec<Group>,
+    /// Index of every element's node in its node set.
+    pub(crate) nodes: Vec<u32>,
+    /// Memory of every element.
+    pub(crate) sticks: Vec<Stick<S>>,
+    /// The poses for which the list was built.
+    built_for: Vec<Pose<S>>,
+    /// Whether the list holds every element there is.
+    exhaustive: bool,
+}
+
+impl<S: Space> Default for Elements<S> {
+    fn default() -> Self {
+        Self {
+            groups: Vec::new(),
+            nodes: Vec::new(),
+            sticks: Vec::new(),
+            built_for: Vec::new(),
+            exhaustive: false,
+        }
+    }
+}
+
+impl<S: Space> Elements<S> {
+    /// How many elements are in the list.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Whether no node is near any surface.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// What an element remembers; elements are numbered as in
+    /// [`Contact::element`](crate::forces::Contact::element).
+    pub fn stick(&self, element: usize) -> Stick<S> {
+        self.sticks[element]
+    }
+
+    /// Keeps every element in the list from now on: the plain path that the list is proved against.
+    pub fn make_exhaustive(&mut self, model: &Model<S>, poses: &[Pose<S>]) {
+        self.exhaustive = true;
+        self.rebuild(model, poses);
+    }
+
+    /// Builds the list anew where a body may have moved so far, or may move so far within `dt` (s),
+    /// that an element outside the list could touch. Returns whether it did.
+    pub(crate) fn refresh(
+        &mut self,
+        model: &Model<S>,
+        poses: &[Pose<S>],
+        twists: &[Twist<S>],
+        dt: f64,
+    ) -> bool {
+        let stale = !self.exhaustive && self.is_stale(model, poses, twists, dt);
+        if stale {
+            self.rebuild(model, poses);
+        }
+        stale
+    }
+
+    fn is_stale(
+        &self,
+        model: &Model<S>,
+        poses: &[Pose<S>],
+        twists: &[Twist<S>],
+        dt: f64,
+    ) -> bool {
+        // Bodies are followed relative to the ground, which moves all of them together.
+        let ground = model.bodies.iter().position(|b| b.motion == Motion::Prescribed);
+        let (carried, carrier) = ground.map_or_else(Default::default, |g| {
+            (poses[g].position - self.built_for[g].position, twists[g].linear)
+        });
+        let half_margin = S::Real::splat(0.5 * MARGIN);
+        // Twice the way of one step, since velocities change within it.
+        let ahead = S::Real::splat(2.0 * dt);
+        let mut stale = <S::Real as Real>::Mask::default();
+        for (i, body) in model.bodies.iter().enumerate() {
+            if body.motion == Motion::Prescribed {
+                continue;
+            }
+            let reach = S::Real::splat(model.reach[i]);
+            let moved = poses[i].position - self.built_for[i].position - carried;
+            let turned = S::angle_between(poses[i].orientation, self.built_for[i].orientation);
+            let velocity = twists[i].linear - carrier;
+            let speed = velocity.dot(velocity).sqrt()
+                + twists[i].angular.dot(twists[i].angular).sqrt() * reach;
+            let way = moved.dot(moved).sqrt() + turned * reach + speed * ahead;
+            stale = stale | !way.lt(half_margin);
+        }
+        crate::real::Mask::any(stale)
+    }
+
+    /// Lists the elements within the margin and hands their memory over.
+    pub(crate) fn rebuild(&mut self, model: &Model<S>, poses: &[Pose<S>]) {
+        let old = std::mem::replace(self, Self { exhaustive: self.exhaustive, ..Self::default() });
+        self.built_for = poses.to_vec();
+        let rotations: Vec<S::Rotation> =
+            poses.iter().map(|p| S::rotation(p.orientation)).collect();
+        let mut remembered = Remembered { old: &old, group: 0 };
+        for (index, pair) in model.pairs.iter().enumerate() {
+            let frame = PairFrame::new(model, pair, poses, &rotations);
+            let first = self.nodes.len();
+            self.list_pair(model, pair, &frame);
+            let end = self.nodes.len();
+            if end > first {
+                self.groups.push(Group { pair: index, first, end });
+                for element in first..end {
+                    self.sticks.push(remembered.stick(index, self.nodes[element]));
+                }
+            }
+        }
+    }
+
+    fn list_pair(&mut self, model: &Model<S>, pair: &ContactPair, frame: &PairFrame<S>) {
+        let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
+        let near = |point: S::Vector, radius: S::Real| {
+            let distance = surface.gap(point).distance - radius;
+            self.exhaustive || crate::real::Mask::any(!S::Real::splat(MARGIN).lt(distance))
+        };
+        match model.pair_nodes(pair) {
+            Nodes::Fixed(nodes) => {
+                if !near(frame.contactor, S::Real::splat(model.reach[pair.contactor])) {
+                    return;
+                }
+                for (index, node) in nodes.iter().enumerate() {
+                    if near(frame.to_surface(node.position), S::Real::zero()) {
+                        self.nodes.push(u32::try_from(index).unwrap_or(u32::MAX));
+                    }
+                }
+            }
+            Nodes::Rolling { center, radius, .. } => {
+                if near(frame.to_surface(*center), *radius) {
+                    self.nodes.push(0);
+                }
+            }
+        }
+    }
+}
+
+/// Walks an old list in step with a new one; both are sorted by pair and node.
+struct Remembered<'a, S: Space> {
+    old: &'a Elements<S>,
+    group: usize,
+}
+
+impl<S: Space> Remembered<'_, S> {
+    fn stick(&mut self, pair: usize, node: u32) -> Stick<S> {
+        let groups = &self.old.groups;
+        while self.group < groups.len() && groups[self.group].pair < pair {
+            self.group += 1;
+        }
+        match groups.get(self.group) {
+            Some(group) if group.pair == pair => self.old.nodes[group.first..group.end]
+                .binary_search(&node)
+                .map_or_else(|_| Stick::default(), |at| self.old.sticks[group.first + at]),
+            _ => Stick::default(),
+        }
+    }
+}
+
+/// Where two bodies are, seen from the frame of the target's surface.
+///
+/// Contacts of a pair are computed in this frame and their sum is turned back once.
+pub(crate) struct PairFrame<S: Space> {
+    /// From the surface's frame to the inertial frame.
+    pub(crate) rotation: S::Rotation,
+    /// From the contactor's body frame to the surface's frame.
+    relative: S::Rotation,
+    /// Center of mass of the contactor (m) in the surface's frame.
+    pub(crate) contactor: S::Vector,
+    /// Center of mass of the target (m) in the surface's frame.
+    pub(crate) target: S::Vector,
+}
+
+impl<S: Space> PairFrame<S> {
+    #[inline]
+    pub(crate) fn new(
+        model: &Model<S>,
+        pair: &ContactPair,
+        poses: &[Pose<S>],
+        rotations: &[S::Rotation],
+    ) -> Self {
+        let placed = &model.bodies[pair.target].surfaces[pair.surface];
+        let target_rotation = rotations[pair.target];
+        let rotation = S::compose(target_rotation, placed.rotation);
+        let origin = poses[pair.target].position + S::rotate(target_rotation, placed.offset);
+        let apart = poses[pair.contactor].position - origin;
+        Self {
+            rotation,
+            relative: S::relative(rotation, rotations[pair.contactor]),
+            contactor: S::unrotate(rotation, apart),
+            target: -S::unrotate(placed.rotation, placed.offset),
+        }
+    }
+
+    /// A point of the contactor's body frame, in the surface's frame.
+    #[inline]
+    pub(crate) fn to_surface(&self, position: S::Vector) -> S::Vector {
+        self.contactor + S::rotate(self.relative, position)
+    }
+}

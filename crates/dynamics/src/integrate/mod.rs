@@ -1,0 +1,168 @@
+//! Time integration: from one accepted state to the next.
+//!
+//! Every method finds in `scratch` the forces at the state it starts from, and leaves there the
+//! forces at the state it accepts.
+//! Sticks are advanced like every other coordinate, by their rates; their memory is committed only
+//! with the accepted state.
+
+mod runge_kutta;
+mod verlet;
+
+use crate::body::Motion;
+use crate::forces::{self, Scratch, evaluate};
+use crate::model::Model;
+use crate::real::Real;
+use crate::space::{Pose, Space, Twist};
+use crate::state::State;
+
+/// How the ground moves.
+pub trait Drive<S: Space> {
+    /// Displacement (m) and velocity (m/s) of the ground at a time (s); one the derivative of the other.
+    fn at(&self, time: f64) -> (S::Vector, S::Vector);
+}
+
+/// Ground that does not move.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Still;
+
+impl<S: Space> Drive<S> for Still {
+    fn at(&self, _time: f64) -> (S::Vector, S::Vector) {
+        (S::Vector::default(), S::Vector::default())
+    }
+}
+
+/// The user's choice of time integration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    /// Symplectic Euler: one evaluation a step, first order.
+    SemiImplicitEuler,
+    /// Velocity Verlet with predicted velocities (Groot and Warren 1997): one evaluation a step,
+    /// second order where the motion is smooth.
+    VelocityVerlet,
+    /// The classical Runge–Kutta method: four evaluations a step, fourth order where smooth.
+    RungeKutta4,
+    /// Bogacki–Shampine 3(2) with step control: three evaluations a step.
+    BogackiShampine {
+        /// Largest local error of a position (m), and of a velocity over one time step of the
+        /// stiffest contact.
+        tolerance: f64,
+    },
+}
+
+impl Method {
+    /// The name used in files and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SemiImplicitEuler => "semi-implicit-euler",
+            Self::VelocityVerlet => "velocity-verlet",
+            Self::RungeKutta4 => "runge-kutta-4",
+            Self::BogackiShampine { .. } => "bogacki-shampine",
+        }
+    }
+
+    /// Whether the method chooses its own steps.
+    pub fn is_adaptive(self) -> bool {
+        matches!(self, Self::BogackiShampine { .. })
+    }
+}
+
+/// Advances states by a method; holds only working memory.
+#[derive(Debug)]
+pub struct Integrator<S: Space> {
+    method: Method,
+    stages: runge_kutta::Stages<S>,
+}
+
+impl<S: Space> Integrator<S> {
+    /// An integrator of a method.
+    pub fn new(method: Method) -> Self {
+        Self { method, stages: runge_kutta::Stages::default() }
+    }
+
+    /// Places what the ground carries and evaluates the forces: what every method starts from.
+    pub fn start(
+        model: &Model<S>,
+        drive: &impl Drive<S>,
+        state: &mut State<S>,
+        scratch: &mut Scratch<S>,
+    ) {
+        place_prescribed(model, drive, state);
+        state.elements.rebuild(model, &state.poses);
+        evaluate(model, state, scratch);
+    }
+
+    /// Advances `state` to the time `until` (s) in one step, or by less where the method wants less.
+    ///
+    /// Returns the step (s) to try next.
+    pub fn step(
+        &mut self,
+        model: &Model<S>,
+        drive: &impl Drive<S>,
+        state: &mut State<S>,
+        scratch: &mut Scratch<S>,
+        until: f64,
+    ) -> f64 {
+        let dt = until - state.time;
+        refresh(model, state, scratch, dt);
+        match self.method {
+            Method::SemiImplicitEuler => {
+                verlet::semi_implicit_euler(model, drive, state, scratch, until);
+                dt
+            }
+            Method::VelocityVerlet => {
+                verlet::velocity_verlet(model, drive, state, scratch, until);
+                dt
+            }
+            Method::RungeKutta4 => {
+                let tableau = &runge_kutta::CLASSICAL;
+                self.stages.fixed(tableau, model, drive, state, scratch, until);
+                dt
+            }
+            Method::BogackiShampine { tolerance } => {
+                let tableau = &runge_kutta::BOGACKI_SHAMPINE;
+                self.stages.adaptive(tableau, tolerance, model, drive, state, scratch, until)
+            }
+        }
+    }
+}
+
+/// Brings the element list up to date; where it changed, so do the element numbers in `scratch`.
+fn refresh<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &mut Scratch<S>, dt: f64) {
+    let rebuilt = state.elements.refresh(model, &state.poses, &state.twists, dt);
+    if rebuilt {
+        evaluate(model, state, scratch);
+    }
+}
+
+/// Puts every prescribed body where the ground carries it at the time of the state.
+fn place_prescribed<S: Space>(model: &Model<S>, drive: &impl Drive<S>, state: &mut State<S>) {
+    let (displacement, velocity) = drive.at(state.time);
+    for (i, body) in model.bodies.iter().enumerate() {
+        if body.motion == Motion::Prescribed {
+            state.poses[i] = Pose {
+                position: body.pose.position + displacement,
+                orientation: body.pose.orientation,
+            };
+            state.twists[i] = Twist { linear: velocity, angular: S::Spin::default() };
+        }
+    }
+}
+
+/// The bodies that forces move.
+fn free<S: Space>(model: &Model<S>) -> impl Iterator<Item = usize> + '_ {
+    model.bodies.iter().enumerate().filter(|(_, b)| b.motion == Motion::Free).map(|(i, _)| i)
+}
+
+/// Ends a step: the state that `scratch` was evaluated at is accepted.
+fn accept<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &mut Scratch<S>) {
+    forces::commit(model, state, scratch);
+}
+
+/// Adds a multiple of the slip rates to the stick displacements.
+#[inline]
+fn advance_sticks<S: Space>(state: &mut State<S>, slip_rates: &[S::Tangent], time: f64) {
+    let time = S::Real::splat(time);
+    for (stick, rate) in state.elements.sticks.iter_mut().zip(slip_rates) {
+        stick.displacement += *rate * time;
+    }
+}

@@ -1,0 +1,70 @@
+//! The one-evaluation methods: symplectic Euler and velocity Verlet.
+
+use super::{Drive, accept, advance_sticks, free, place_prescribed};
+use crate::forces::{Scratch, evaluate};
+use crate::model::Model;
+use crate::real::Real;
+use crate::space::Space;
+use crate::state::State;
+
+/// `v ← v + a dt`, then `q ← q + v dt` and `s ← s + ṡ dt`.
+pub(super) fn semi_implicit_euler<S: Space>(
+    model: &Model<S>,
+    drive: &impl Drive<S>,
+    state: &mut State<S>,
+    scratch: &mut Scratch<S>,
+    until: f64,
+) {
+    let dt = until - state.time;
+    let step = S::Real::splat(dt);
+    for i in free(model) {
+        state.twists[i] = state.twists[i].plus(scratch.accelerations[i], step);
+        state.poses[i] = state.poses[i].moved(state.twists[i], step);
+    }
+    advance_sticks(state, &scratch.slip_rates, dt);
+    state.time = until;
+    place_prescribed(model, drive, state);
+    evaluate(model, state, scratch);
+    accept(model, state, scratch);
+}
+
+/// Half a kick, a drift, and the other half of the kick with the forces of the new place.
+///
+/// Those forces depend on the velocity, which is predicted from the old acceleration and corrected
+/// afterwards; sticks likewise, from the old slip rate.
+/// Prediction errors are of second order and do not add up, since the corrected values are kept.
+pub(super) fn velocity_verlet<S: Space>(
+    model: &Model<S>,
+    drive: &impl Drive<S>,
+    state: &mut State<S>,
+    scratch: &mut Scratch<S>,
+    until: f64,
+) {
+    let dt = until - state.time;
+    let (step, half) = (S::Real::splat(dt), S::Real::splat(0.5 * dt));
+    for i in free(model) {
+        let kick = scratch.accelerations[i];
+        let middle = state.twists[i].plus(kick, half);
+        state.poses[i] = state.poses[i].moved(middle, step);
+        state.twists[i] = middle.plus(kick, half);
+        // Until the new forces are known, the old acceleration waits here for the correction.
+        scratch.old_accelerations[i] = kick;
+    }
+    advance_sticks(state, &scratch.slip_rates, dt);
+    scratch.old_slip_rates.clone_from(&scratch.slip_rates);
+    state.time = until;
+    place_prescribed(model, drive, state);
+    evaluate(model, state, scratch);
+
+    for i in free(model) {
+        let new = scratch.accelerations[i];
+        let old = scratch.old_accelerations[i];
+        state.twists[i] = state.twists[i].plus(new, half).plus(old, -half);
+    }
+    for ((stick, new), old) in
+        state.elements.sticks.iter_mut().zip(&scratch.slip_rates).zip(&scratch.old_slip_rates)
+    {
+        stick.displacement += (*new - *old) * half;
+    }
+    accept(model, state, scratch);
+}

@@ -1,0 +1,152 @@
+//! What does not change during a run: bodies, interfaces, and which boundaries may meet.
+
+use crate::body::{Body, BodyId, Motion, Nodes};
+use crate::contact::Interface;
+use crate::real::Real;
+use crate::shape::Surface;
+use crate::space::Space;
+
+/// Index of an interface in its model.
+pub type InterfaceId = usize;
+
+/// Nodes of the contactor are tested against a surface of the target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ContactPair {
+    /// The body that carries the nodes.
+    pub contactor: BodyId,
+    /// Which of its node sets.
+    pub nodes: usize,
+    /// The body that carries the surface.
+    pub target: BodyId,
+    /// Which of its surfaces.
+    pub surface: usize,
+    /// The law between them.
+    pub interface: InterfaceId,
+}
+
+/// Bodies, interfaces and pairs; constant during a run and shared between threads.
+#[derive(Clone, Debug)]
+pub struct Model<S: Space> {
+    pub(crate) bodies: Vec<Body<S>>,
+    pub(crate) interfaces: Vec<Interface<S>>,
+    pub(crate) pairs: Vec<ContactPair>,
+    pub(crate) gravity: S::Vector,
+    pub(crate) reach: Vec<f64>,
+}
+
+/// Why bodies and pairs do not make a model.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ModelError {
+    /// Two bodies of one name.
+    #[error("two bodies are named \"{name}\": give each its own name")]
+    DuplicateName {
+        /// The name.
+        name: String,
+    },
+    /// A free body without mass.
+    #[error("body \"{name}\" has mass {mass} kg: a free body needs a positive, finite mass")]
+    Mass {
+        /// The body.
+        name: String,
+        /// Its mass (kg).
+        mass: f64,
+    },
+    /// A free body with a surface that has no end.
+    #[error("body \"{name}\" carries an unbounded surface: only bodies fixed to the ground may")]
+    Unbounded {
+        /// The body.
+        name: String,
+    },
+    /// A pair that names something that is not there.
+    #[error("contact pair {pair} names {what} {index}, but there are only {count}")]
+    Dangling {
+        /// Which pair, counted from 0.
+        pair: usize,
+        /// What it names.
+        what: &'static str,
+        /// The index it gives.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
+}
+
+impl<S: Space> Model<S> {
+    /// Checks bodies, interfaces and pairs, and puts the pairs in their lasting order.
+    ///
+    /// `gravity` is the acceleration of free fall (m/s²).
+    ///
+    /// # Errors
+    /// When names repeat, a free body has no mass or an unbounded surface, or a pair dangles.
+    pub fn new(
+        bodies: Vec<Body<S>>,
+        interfaces: Vec<Interface<S>>,
+        mut pairs: Vec<ContactPair>,
+        gravity: S::Vector,
+    ) -> Result<Self, ModelError> {
+        let mut names: Vec<&str> = bodies.iter().map(|b| b.name.as_str()).collect();
+        names.sort_unstable();
+        if let Some(two) = names.windows(2).find(|two| two[0] == two[1]) {
+            return Err(ModelError::DuplicateName { name: two[0].to_owned() });
+        }
+        for body in bodies.iter().filter(|b| b.motion == Motion::Free) {
+            for lane in 0..S::Real::LANES {
+                let mass = body.mass.lane(lane);
+                if !(mass > 0.0 && mass.is_finite()) {
+                    return Err(ModelError::Mass { name: body.name.clone(), mass });
+                }
+            }
+            if body.surfaces.iter().any(|placed| placed.surface.reach().is_infinite()) {
+                return Err(ModelError::Unbounded { name: body.name.clone() });
+            }
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        for (pair, p) in pairs.iter().enumerate() {
+            let check = |what, index, count| {
+                if index < count {
+                    Ok(())
+                } else {
+                    Err(ModelError::Dangling { pair, what, index, count })
+                }
+            };
+            check("body", p.contactor, bodies.len())?;
+            check("body", p.target, bodies.len())?;
+            check("node set", p.nodes, bodies[p.contactor].nodes.len())?;
+            check("surface", p.surface, bodies[p.target].surfaces.len())?;
+            check("interface", p.interface, interfaces.len())?;
+        }
+        let reach = bodies.iter().map(Body::reach).collect();
+        Ok(Self { bodies, interfaces, pairs, gravity, reach })
+    }
+
+    /// The bodies, in the order of their ids.
+    pub fn bodies(&self) -> &[Body<S>] {
+        &self.bodies
+    }
+
+    /// The interfaces, in the order of their ids.
+    pub fn interfaces(&self) -> &[Interface<S>] {
+        &self.interfaces
+    }
+
+    /// The contact pairs, in the order in which their forces are summed.
+    pub fn pairs(&self) -> &[ContactPair] {
+        &self.pairs
+    }
+
+    /// Acceleration of free fall (m/s²).
+    pub fn gravity(&self) -> S::Vector {
+        self.gravity
+    }
+
+    /// The body of a name.
+    pub fn body_named(&self, name: &str) -> Option<BodyId> {
+        self.bodies.iter().position(|b| b.name == name)
+    }
+
+    /// The nodes that a pair tests.
+    pub(crate) fn pair_nodes(&self, pair: &ContactPair) -> &Nodes<S> {
+        &self.bodies[pair.contactor].nodes[pair.nodes]
+    }
+}

@@ -1,0 +1,17 @@
+//! All that lies below the line `z = 0`: the floor.
+
+use super::Gap;
+use crate::real::Real;
+use crate::space::{Planar, Vec2};
+
+/// Matter everywhere below `z = 0` of its own frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HalfPlane;
+
+impl HalfPlane {
+    #[inline]
+    #[expect(clippy::unused_self, reason = "every shape answers through a method")]
+    pub(super) fn gap<R: Real>(&self, point: Vec2<R>) -> Gap<Planar<R>> {
+        Gap { distance: point.z, normal: Vec2::new(R::zero(), R::splat(1.0)) }
+    }
+}

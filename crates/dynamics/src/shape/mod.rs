@@ -1,0 +1,184 @@
+//! Boundaries: the surface Φ = 0 of a target, and the nodes of a contactor.
+//!
+//! A shape answers in its own frame: how far a point is from its surface and which way is out
+//! ([`Surface::gap`]), where its boundary nodes are, how its outline is drawn and how its section
+//! is distributed.
+//! One file holds one shape; [`Shape`] is the table.
+
+mod circle;
+mod cradle;
+mod half_plane;
+mod polygon;
+mod profile;
+
+use crate::real::Real;
+use crate::space::{Planar, Space, Vec2};
+
+pub use circle::Circle;
+pub use cradle::Cradle;
+pub use half_plane::HalfPlane;
+pub use polygon::{Polygon, PolygonError};
+pub use profile::BarrelProfile;
+
+/// How far a point is from a surface, and which way is out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap<S: Space> {
+    /// Distance (m) from the surface to the point along `normal`; **negative when penetrating**.
+    pub distance: S::Real,
+    /// Unit normal at the companion point, out of the target.
+    pub normal: S::Vector,
+}
+
+/// A surface that nodes can touch; all points are in its own frame.
+pub trait Surface<S: Space>: Clone + std::fmt::Debug + Send + Sync + 'static {
+    /// Signed distance and outward normal at a point (m).
+    fn gap(&self, point: S::Vector) -> Gap<S>;
+
+    /// A cheap test that holds wherever `gap(point).distance < 0`, and may hold elsewhere.
+    fn may_touch(&self, point: S::Vector) -> <S::Real as Real>::Mask {
+        self.gap(point).distance.lt(S::Real::zero())
+    }
+
+    /// Radius (m) of a ball about the origin that holds the surface; infinite for a half-plane.
+    fn reach(&self) -> f64;
+}
+
+/// A node of a discretized boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundaryNode {
+    /// Position (m) in the frame of the shape.
+    pub position: Vec2,
+    /// Length of boundary (m) that the node stands for.
+    pub tributary_length: f64,
+}
+
+/// How the matter of a uniform section is distributed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Section {
+    /// Area (m²) of a solid section, or length (m) of a thin one.
+    pub measure: f64,
+    /// Centroid (m) in the frame of the shape.
+    pub centroid: Vec2,
+    /// Square of the radius of gyration about the centroid (m²).
+    pub gyration_squared: f64,
+}
+
+/// Every shape of the plane.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape<R = f64> {
+    /// A barrel in transverse section, a disc.
+    Circle(Circle<R>),
+    /// The floor.
+    HalfPlane(HalfPlane),
+    /// A rack beam, a block.
+    Polygon(Polygon<R>),
+    /// A concave arc that holds a barrel.
+    Cradle(Cradle<R>),
+    /// A barrel in longitudinal section.
+    BarrelProfile(BarrelProfile<R>),
+}
+
+impl<R: Real> Surface<Planar<R>> for Shape<R> {
+    #[inline]
+    fn gap(&self, point: Vec2<R>) -> Gap<Planar<R>> {
+        match self {
+            Self::Circle(shape) => shape.gap(point),
+            Self::HalfPlane(shape) => shape.gap(point),
+            Self::Polygon(shape) => shape.gap(point),
+            Self::Cradle(shape) => shape.gap(point),
+            Self::BarrelProfile(shape) => shape.gap(point),
+        }
+    }
+
+    #[inline]
+    fn may_touch(&self, point: Vec2<R>) -> R::Mask {
+        match self {
+            Self::Circle(shape) => shape.may_touch(point),
+            Self::HalfPlane(_) => point.z.lt(R::zero()),
+            Self::Polygon(_) | Self::Cradle(_) | Self::BarrelProfile(_) => {
+                self.gap(point).distance.lt(R::zero())
+            }
+        }
+    }
+
+    fn reach(&self) -> f64 {
+        match self {
+            Self::Circle(shape) => shape.radius.largest_lane(),
+            Self::HalfPlane(_) => f64::INFINITY,
+            Self::Polygon(shape) => shape.reach(),
+            Self::Cradle(shape) => shape.radius.largest_lane(),
+            Self::BarrelProfile(shape) => shape.reach(),
+        }
+    }
+}
+
+impl Shape {
+    /// Nodes along the whole boundary, no further apart than `spacing` (m).
+    /// Their tributary lengths add up to the length of the boundary; a half-plane has none.
+    pub fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {
+        match self {
+            Self::Circle(shape) => shape.nodes(spacing),
+            Self::HalfPlane(_) => Vec::new(),
+            Self::Polygon(shape) => shape.nodes(spacing),
+            Self::Cradle(shape) => shape.nodes(spacing),
+            Self::BarrelProfile(shape) => shape.nodes(spacing),
+        }
+    }
+
+    /// The boundary as a chain of points (m) for drawing, and whether it closes on itself.
+    pub fn outline(&self) -> (Vec<Vec2>, bool) {
+        match self {
+            Self::Circle(shape) => (shape.outline(), true),
+            Self::HalfPlane(_) => (vec![Vec2::new(-1.0, 0.0), Vec2::new(1.0, 0.0)], false),
+            Self::Polygon(shape) => (shape.outline(), true),
+            Self::Cradle(shape) => (shape.outline(), false),
+            Self::BarrelProfile(shape) => (shape.outline(), true),
+        }
+    }
+
+    /// The section of uniform matter inside the boundary (along it, for a cradle);
+    /// none for a half-plane, which has no end.
+    pub fn section(&self) -> Option<Section> {
+        match self {
+            Self::Circle(shape) => Some(shape.section()),
+            Self::HalfPlane(_) => None,
+            Self::Polygon(shape) => Some(shape.section()),
+            Self::Cradle(shape) => Some(shape.section()),
+            Self::BarrelProfile(shape) => Some(shape.section()),
+        }
+    }
+}
+
+/// Nodes along an open or closed chain of straight sides, each side cut into equal parts no longer
+/// than `spacing`.
+pub(crate) fn nodes_along(chain: &[Vec2], closed: bool, spacing: f64) -> Vec<BoundaryNode> {
+    let mut nodes: Vec<BoundaryNode> = Vec::new();
+    let sides = if closed { chain.len() } else { chain.len() - 1 };
+    for i in 0..sides {
+        let (from, to) = (chain[i], chain[(i + 1) % chain.len()]);
+        let length = (to - from).length();
+        let parts = parts_of(length, spacing);
+        let part = length / parts as f64;
+        if i == 0 {
+            nodes.push(BoundaryNode { position: from, tributary_length: 0.0 });
+        }
+        for k in 1..=parts {
+            if let Some(last) = nodes.last_mut() {
+                last.tributary_length += 0.5 * part;
+            }
+            let position = from + (to - from) * (k as f64 / parts as f64);
+            if closed && i + 1 == sides && k == parts {
+                nodes[0].tributary_length += 0.5 * part;
+            } else {
+                nodes.push(BoundaryNode { position, tributary_length: 0.5 * part });
+            }
+        }
+    }
+    nodes
+}
+
+/// Into how many equal parts no longer than `spacing` a length is cut.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
+pub(crate) fn parts_of(length: f64, spacing: f64) -> usize {
+    ((length / spacing - 1e-9).ceil().max(1.0)).min(1e6) as usize
+}

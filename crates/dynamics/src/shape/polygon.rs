@@ -1,0 +1,211 @@
+//! A convex polygon, its corners sharp or rounded: a rack beam, a block, a brick.
+
+use super::{BoundaryNode, Gap, Section, nodes_along};
+use crate::math;
+use crate::real::Real;
+use crate::space::{Linear, Planar, Vec2};
+
+/// A convex polygon whose corners may be rounded.
+///
+/// It is held as the core polygon whose points lie `corner_radius` inside every side;
+/// the boundary is the core grown by that radius, so signed distance stays exact at the corners.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polygon<R = f64> {
+    /// Corners of the core (m), counterclockwise (from `x` toward `z`).
+    pub core: Vec<Vec2<R>>,
+    /// Radius of the corners (m); zero for sharp ones.
+    pub corner_radius: R,
+}
+
+/// Why corners do not make a convex polygon.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PolygonError {
+    /// Fewer than three corners.
+    #[error("a polygon needs at least 3 corners, found {found}")]
+    TooFew {
+        /// How many were given.
+        found: usize,
+    },
+    /// A corner that turns inward, or three corners in a line.
+    #[error(
+        "corner {corner} at ({x:.6} m, {z:.6} m) does not turn left: give the corners of a convex \
+         polygon counterclockwise, none of them in line with its neighbors"
+    )]
+    NotConvex {
+        /// Which corner, counted from 1.
+        corner: usize,
+        /// Its abscissa (m).
+        x: f64,
+        /// Its height (m).
+        z: f64,
+    },
+    /// Corners rounded by more than the polygon can hold.
+    #[error("the corner radius {radius} m leaves nothing of the polygon: make it smaller")]
+    RadiusTooLarge {
+        /// The radius given (m).
+        radius: f64,
+    },
+}
+
+impl<R: Real> Polygon<R> {
+    /// Sides of the core as (start, unit direction, length).
+    #[inline]
+    fn sides(&self) -> impl Iterator<Item = (Vec2<R>, Vec2<R>)> + '_ {
+        let count = self.core.len();
+        (0..count).map(move |i| (self.core[i], self.core[if i + 1 == count { 0 } else { i + 1 }]))
+    }
+
+    pub(super) fn gap(&self, point: Vec2<R>) -> Gap<Planar<R>> {
+        let (zero, one) = (R::zero(), R::splat(1.0));
+        // Inside: the side that is nearest decides. Outside: the nearest point of any side.
+        let mut deepest = R::splat(f64::NEG_INFINITY);
+        let mut deepest_normal = Vec2::new(zero, one);
+        let mut nearest_squared = R::splat(f64::INFINITY);
+        let mut nearest = Vec2::new(zero, zero);
+        for (from, to) in self.sides() {
+            let side = to - from;
+            let length_squared = side.dot(side);
+            let inverse_length = one / length_squared.sqrt();
+            let outward = -side.quarter_turn() * inverse_length;
+            let offset = point - from;
+            let height = offset.dot(outward);
+            let higher = deepest.lt(height);
+            deepest = R::select(higher, height, deepest);
+            deepest_normal = Vec2::select(higher, outward, deepest_normal);
+
+            let along = (offset.dot(side) / length_squared).max(zero).min(one);
+            let apart = offset - side * along;
+            let apart_squared = apart.dot(apart);
+            let closer = apart_squared.lt(nearest_squared);
+            nearest_squared = R::select(closer, apart_squared, nearest_squared);
+            nearest = Vec2::select(closer, apart, nearest);
+        }
+        let distance = nearest_squared.sqrt();
+        let outside = zero.lt(deepest) & zero.lt(distance);
+        let safe = R::select(outside, distance, one);
+        Gap {
+            distance: R::select(outside, distance, deepest) - self.corner_radius,
+            normal: Vec2::select(outside, nearest * (one / safe), deepest_normal),
+        }
+    }
+
+    pub(super) fn reach(&self) -> f64 {
+        let farthest = self.core.iter().map(|c| c.length().largest_lane()).fold(0.0, f64::max);
+        farthest + self.corner_radius.largest_lane()
+    }
+}
+
+impl Polygon {
+    /// A convex polygon from its sharp corners (m), counterclockwise, and a corner radius (m).
+    ///
+    /// # Errors
+    /// When the corners are fewer than three, do not all turn left, or leave no core.
+    pub fn new(corners: &[Vec2], corner_radius: f64) -> Result<Self, PolygonError> {
+        let count = corners.len();
+        if count < 3 {
+            return Err(PolygonError::TooFew { found: count });
+        }
+        for i in 0..count {
+            let (before, here, after) =
+                (corners[(i + count - 1) % count], corners[i], corners[(i + 1) % count]);
+            let (a, b) = (here - before, after - here);
+            let turn = a.x * b.z - a.z * b.x;
+            if turn.is_nan() || turn <= 1e-12 * a.length() * b.length() {
+                return Err(PolygonError::NotConvex { corner: i + 1, x: here.x, z: here.z });
+            }
+        }
+        if corner_radius == 0.0 {
+            return Ok(Self { core: corners.to_vec(), corner_radius });
+        }
+        let core: Vec<Vec2> = (0..count)
+            .map(|i| {
+                let (before, here, after) =
+                    (corners[(i + count - 1) % count], corners[i], corners[(i + 1) % count]);
+                let (a, b) = (unit(here - before), unit(after - here));
+                // Move along the bisector until the point is `corner_radius` from both sides.
+                let inward = (a.quarter_turn() + b.quarter_turn()) * (1.0 / (1.0 + a.dot(b)));
+                here + inward * corner_radius
+            })
+            .collect();
+        let flipped = (0..count).any(|i| {
+            let side = corners[(i + 1) % count] - corners[i];
+            let core_side = core[(i + 1) % count] - core[i];
+            core_side.dot(side) <= 0.0
+        });
+        if flipped || corner_radius < 0.0 {
+            return Err(PolygonError::RadiusTooLarge { radius: corner_radius });
+        }
+        Ok(Self { core, corner_radius })
+    }
+
+    /// A rectangle about the origin.
+    ///
+    /// # Errors
+    /// When a side is not positive, or the corner radius leaves no core.
+    pub fn rectangle(width: f64, height: f64, corner_radius: f64) -> Result<Self, PolygonError> {
+        let (a, b) = (0.5 * width, 0.5 * height);
+        Self::new(
+            &[Vec2::new(-a, -b), Vec2::new(a, -b), Vec2::new(a, b), Vec2::new(-a, b)],
+            corner_radius,
+        )
+    }
+
+    /// The boundary as a chain of points, corners rounded with steps of at most 15 degrees.
+    pub(super) fn outline(&self) -> Vec<Vec2> {
+        if self.corner_radius == 0.0 {
+            return self.core.clone();
+        }
+        let count = self.core.len();
+        let mut chain = Vec::new();
+        for i in 0..count {
+            let here = self.core[i];
+            let a = unit(here - self.core[(i + count - 1) % count]);
+            let b = unit(self.core[(i + 1) % count] - here);
+            let from = math::atan2(-a.x, a.z);
+            let turn = math::atan2(a.x * b.z - a.z * b.x, a.dot(b));
+            let steps = super::parts_of(turn, 15.0_f64.to_radians());
+            for k in 0..=steps {
+                let (sin, cos) = math::sin_cos(from + turn * k as f64 / steps as f64);
+                chain.push(here + Vec2::new(cos, sin) * self.corner_radius);
+            }
+        }
+        chain
+    }
+
+    pub(super) fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {
+        nodes_along(&self.outline(), true, spacing)
+    }
+
+    /// The corners themselves as nodes, each standing for half of both its sides.
+    pub fn corner_nodes(&self) -> Vec<BoundaryNode> {
+        nodes_along(&self.outline(), true, f64::INFINITY)
+    }
+
+    pub(super) fn section(&self) -> Section {
+        section_of(&self.outline())
+    }
+}
+
+/// Area, centroid and radius of gyration of a closed polygon (Green's theorem).
+pub(crate) fn section_of(corners: &[Vec2]) -> Section {
+    let origin = corners[0];
+    let (mut area, mut first, mut second) = (0.0, Vec2::default(), 0.0);
+    for i in 0..corners.len() {
+        let p = corners[i] - origin;
+        let q = corners[(i + 1) % corners.len()] - origin;
+        let cross = p.x * q.z - p.z * q.x;
+        area += 0.5 * cross;
+        first += (p + q) * (cross / 6.0);
+        second += cross * (p.dot(p) + p.dot(q) + q.dot(q)) / 12.0;
+    }
+    let centroid = first * (1.0 / area);
+    Section {
+        measure: area,
+        centroid: centroid + origin,
+        gyration_squared: second / area - centroid.dot(centroid),
+    }
+}
+
+fn unit(v: Vec2) -> Vec2 {
+    v * (1.0 / v.length())
+}

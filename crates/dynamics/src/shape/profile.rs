@@ -1,0 +1,123 @@
+//! A barrel in longitudinal section: two bulged staves closed by the two heads.
+
+use super::{BoundaryNode, Gap, Section, nodes_along, parts_of};
+use crate::math;
+use crate::real::Real;
+use crate::space::{Planar, Vec2};
+
+/// The longitudinal outline of a barrel about its center, its axis along `x`.
+///
+/// The staves are circular arcs through the bilge and both heads; a parabola would differ by less
+/// than 0.15 % in volume.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BarrelProfile<R = f64> {
+    /// Half the length between the heads (m).
+    pub half_length: R,
+    /// Radius at the heads (m).
+    pub head_radius: R,
+    /// Radius at the bilge (m).
+    pub bilge_radius: R,
+    /// Radius of the stave's arc (m): `((L/2)² + s²) / 2s` with `s` the bulge.
+    pub stave_radius: R,
+}
+
+impl<R: Real> BarrelProfile<R> {
+    pub(super) fn gap(&self, point: Vec2<R>) -> Gap<Planar<R>> {
+        let (zero, one) = (R::zero(), R::splat(1.0));
+        // By symmetry only the quarter of positive x and z is looked at.
+        let (left, below) = (point.x.lt(zero), point.z.lt(zero));
+        let p = Vec2::new(point.x.abs(), point.z.abs());
+        let arc_center = Vec2::new(zero, self.bilge_radius - self.stave_radius);
+        let corner = Vec2::new(self.half_length, self.head_radius);
+
+        let from_center = p - arc_center;
+        let arc_length = from_center.length();
+        let arc_distance = arc_length - self.stave_radius;
+        let arc_normal = from_center * (one / arc_length);
+        let head_distance = p.x - self.half_length;
+
+        // Past the corner, seen from the arc's center or along the head: the corner is nearest.
+        let beyond_arc =
+            (from_center.z * (corner.x - arc_center.x)).lt(from_center.x * (corner.z - arc_center.z));
+        let beyond_head = self.head_radius.lt(p.z);
+        let outside = zero.lt(arc_distance.max(head_distance));
+        let by_corner = outside & beyond_arc & beyond_head;
+        let from_corner = p - corner;
+        let corner_distance = from_corner.length();
+        let safe = R::select(corner_distance.le(zero), one, corner_distance);
+
+        // Inside: the nearer of stave and head. Outside: the one whose own extent is faced.
+        let inside_by_head = arc_distance.lt(head_distance);
+        let by_head = (outside & beyond_arc) | (!outside & inside_by_head);
+        let flat = Vec2::new(one, zero);
+        let face_distance = R::select(by_head, head_distance, arc_distance);
+        let face_normal = Vec2::select(by_head, flat, arc_normal);
+        let normal = Vec2::select(by_corner, from_corner * (one / safe), face_normal);
+        Gap {
+            distance: R::select(by_corner, corner_distance, face_distance),
+            normal: Vec2::new(
+                R::select(left, -normal.x, normal.x),
+                R::select(below, -normal.z, normal.z),
+            ),
+        }
+    }
+
+    pub(super) fn reach(&self) -> f64 {
+        let (a, b) = (self.half_length.largest_lane(), self.bilge_radius.largest_lane());
+        (a * a + b * b).sqrt()
+    }
+}
+
+impl BarrelProfile {
+    /// A profile from the length between the heads and the two diameters (m).
+    ///
+    /// Returns none unless `0 < head diameter < bilge diameter` and the length is positive.
+    pub fn new(length: f64, head_diameter: f64, bilge_diameter: f64) -> Option<Self> {
+        let bulge = 0.5 * (bilge_diameter - head_diameter);
+        let half_length = 0.5 * length;
+        let ordered = head_diameter > 0.0 && bulge > 0.0 && length > 0.0;
+        ordered.then(|| Self {
+            half_length,
+            head_radius: 0.5 * head_diameter,
+            bilge_radius: 0.5 * bilge_diameter,
+            stave_radius: (half_length * half_length + bulge * bulge) / (2.0 * bulge),
+        })
+    }
+
+    /// Radius (m) of the barrel at a distance (m) along its axis from the bilge.
+    pub fn radius_at(&self, x: f64) -> f64 {
+        self.bilge_radius - self.stave_radius
+            + (self.stave_radius * self.stave_radius - x * x).max(0.0).sqrt()
+    }
+
+    /// The chain from the right head over the top, the left head and the bottom.
+    fn chain(&self, parts: usize) -> Vec<Vec2> {
+        let half = math::atan2(
+            self.half_length,
+            self.stave_radius - self.bilge_radius + self.head_radius,
+        );
+        let arc: Vec<Vec2> = (0..=parts)
+            .map(|i| {
+                let (sin, cos) = math::sin_cos(half * (1.0 - 2.0 * i as f64 / parts as f64));
+                Vec2::new(
+                    self.stave_radius * sin,
+                    self.bilge_radius - self.stave_radius + self.stave_radius * cos,
+                )
+            })
+            .collect();
+        arc.iter().copied().chain(arc.iter().map(|p| -*p)).collect()
+    }
+
+    pub(super) fn outline(&self) -> Vec<Vec2> {
+        self.chain(24)
+    }
+
+    pub(super) fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {
+        nodes_along(&self.chain(parts_of(2.0 * self.half_length, spacing)), true, spacing)
+    }
+
+    /// The flat section inside the outline (a barrel's own inertia is not that of a plate).
+    pub(super) fn section(&self) -> Section {
+        super::polygon::section_of(&self.chain(2000))
+    }
+}

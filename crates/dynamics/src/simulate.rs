@@ -1,0 +1,147 @@
+//! The run loop: steps, energy books, observers, and what ends a run.
+
+use std::ops::ControlFlow;
+
+use crate::energy::EnergyLedger;
+use crate::forces::Scratch;
+use crate::integrate::{Drive, Integrator, Method};
+use crate::model::Model;
+use crate::real::Real;
+use crate::space::{Linear, Space};
+use crate::state::State;
+
+/// Sees every accepted step; may ask to stop.
+pub trait Observer<S: Space> {
+    /// Looks at an accepted state and the forces at it.
+    fn observe(
+        &mut self,
+        model: &Model<S>,
+        state: &State<S>,
+        scratch: &Scratch<S>,
+        energy: &EnergyLedger<S>,
+    ) -> ControlFlow<()>;
+}
+
+/// How a run is integrated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Simulation {
+    /// The method.
+    pub method: Method,
+    /// The time step (s); for an adaptive method, the first and the longest.
+    pub time_step: f64,
+    /// When the run ends (s).
+    pub end_time: f64,
+}
+
+/// How a run came to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Finish {
+    /// The end time was reached.
+    EndTime,
+    /// The observer asked to stop.
+    Stopped,
+}
+
+/// Why a run broke down.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RunError {
+    /// A number was lost.
+    #[error(
+        "the step failed at t = {time:.6} s: body \"{body}\" left the finite numbers; try a step \
+         below {time_step:e} s"
+    )]
+    NotFinite {
+        /// When (s).
+        time: f64,
+        /// Which body.
+        body: String,
+        /// The step that was used (s).
+        time_step: f64,
+    },
+}
+
+/// What a run leaves behind.
+#[derive(Clone, Debug)]
+pub struct RunTotals<S: Space> {
+    /// How it ended.
+    pub finish: Finish,
+    /// Accepted steps.
+    pub steps: u64,
+    /// The energy books.
+    pub energy: EnergyLedger<S>,
+}
+
+/// Runs `state` to the end time, or until the observer stops it.
+///
+/// The observer also sees the state at the start.
+/// With a fixed step the times are whole multiples of it, counted from the start, so that no rounding
+/// adds up; the last step is shortened to end on time.
+///
+/// # Errors
+/// When a pose or twist leaves the finite numbers; `state` is then the state it happened in.
+pub fn simulate<S: Space>(
+    model: &Model<S>,
+    drive: &impl Drive<S>,
+    state: &mut State<S>,
+    scratch: &mut Scratch<S>,
+    simulation: &Simulation,
+    observer: &mut impl Observer<S>,
+) -> Result<RunTotals<S>, RunError> {
+    let mut integrator = Integrator::new(simulation.method);
+    Integrator::start(model, drive, state, scratch);
+    let mut energy = EnergyLedger::new(model, state, scratch);
+    let start = state.time;
+    let mut steps = 0_u64;
+    let mut next_step = simulation.time_step;
+    // A remainder below this is rounding, not a step.
+    let sliver = 1e-9 * simulation.time_step;
+    let mut finish = Finish::EndTime;
+    if observer.observe(model, state, scratch, &energy).is_break() {
+        finish = Finish::Stopped;
+    }
+    while finish == Finish::EndTime && state.time < simulation.end_time - sliver {
+        let target = if simulation.method.is_adaptive() {
+            state.time + next_step.min(simulation.time_step)
+        } else {
+            start + (steps + 1) as f64 * simulation.time_step
+        };
+        let until =
+            if target < simulation.end_time - sliver { target } else { simulation.end_time };
+        next_step = integrator.step(model, drive, state, scratch, until);
+        steps += 1;
+        check_finite(model, state, simulation.time_step)?;
+        energy.enter(model, state, scratch);
+        if observer.observe(model, state, scratch, &energy).is_break() {
+            finish = Finish::Stopped;
+        }
+    }
+    Ok(RunTotals { finish, steps, energy })
+}
+
+fn check_finite<S: Space>(
+    model: &Model<S>,
+    state: &State<S>,
+    time_step: f64,
+) -> Result<(), RunError> {
+    let size = |i: usize| {
+        let (pose, twist) = (state.poses[i], state.twists[i]);
+        // Anything not finite makes the sum not finite.
+        pose.position.dot(pose.position)
+            + twist.linear.dot(twist.linear)
+            + twist.angular.dot(twist.angular)
+    };
+    let mut sum = S::Real::zero();
+    for i in 0..model.bodies.len() {
+        sum += size(i);
+    }
+    let lost = |value: S::Real| (0..S::Real::LANES).any(|lane| !value.lane(lane).is_finite());
+    if !lost(sum) {
+        return Ok(());
+    }
+    let body = (0..model.bodies.len()).find(|i| lost(size(*i))).unwrap_or(0);
+    Err(RunError::NotFinite {
+        time: state.time,
+        body: model.bodies[body].name.clone(),
+        time_step,
+    })
+}

@@ -1,0 +1,153 @@
+//! The kinematics of rigid motion, in as many dimensions as a space has.
+//!
+//! Contact laws, the contact loop, the integrators, the energy ledger and the run loop are written
+//! against [`Space`] and never name a dimension.
+//! [`Planar`] is the vertical plane of the paper.
+
+mod planar;
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+
+use crate::real::Real;
+
+pub use planar::{Planar, Rotation2, Vec2};
+
+/// What vectors, spins and tangents have in common: they add and scale.
+pub trait Linear<R>:
+    Copy
+    + Debug
+    + Default
+    + PartialEq
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + Mul<R, Output = Self>
+{
+    /// The scalar product with another of its kind.
+    fn dot(self, other: Self) -> R;
+}
+
+/// Rigid motion in a number of dimensions.
+pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
+    /// The scalar.
+    type Real: Real;
+    /// Positions (m), velocities (m/s) and forces (N).
+    type Vector: Linear<Self::Real>;
+    /// Angular velocities (rad/s) and moments (N·m).
+    type Spin: Linear<Self::Real>;
+    /// What is integrated to know how a body is turned.
+    type Orientation: Copy + Debug + PartialEq + Send + Sync + 'static;
+    /// What turns a vector; computed once from an orientation.
+    type Rotation: Copy + Debug + PartialEq + Send + Sync + 'static;
+    /// Moment of inertia about the center of mass (kg·m²).
+    type Inertia: Copy + Debug + PartialEq + Send + Sync + 'static;
+    /// A displacement (m), velocity (m/s) or force (N) in the plane tangent to a contact.
+    type Tangent: Linear<Self::Real>;
+    /// Viscous damping matrix of a body.
+    type Damping: Copy + Debug + PartialEq + Send + Sync + 'static;
+    /// The shapes whose surface can be a contact target.
+    type Surface: crate::shape::Surface<Self>;
+
+    /// The rotation that an orientation stands for.
+    fn rotation(orientation: Self::Orientation) -> Self::Rotation;
+    /// From the turned frame to the outer frame.
+    fn rotate(rotation: Self::Rotation, vector: Self::Vector) -> Self::Vector;
+    /// From the outer frame to the turned frame.
+    fn unrotate(rotation: Self::Rotation, vector: Self::Vector) -> Self::Vector;
+    /// First `inner`, then `outer`.
+    fn compose(outer: Self::Rotation, inner: Self::Rotation) -> Self::Rotation;
+    /// The rotation from the frame of `inner` to the frame of `outer`.
+    fn relative(outer: Self::Rotation, inner: Self::Rotation) -> Self::Rotation;
+    /// A spin or moment, from the outer frame to the turned frame.
+    fn unrotate_spin(rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
+    /// A spin or moment, from the turned frame to the outer frame.
+    fn rotate_spin(rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
+    /// Velocity that a spin gives to a point at `arm` from the axis.
+    fn velocity_at(spin: Self::Spin, arm: Self::Vector) -> Self::Vector;
+    /// Moment of a force that acts at `arm`.
+    fn moment(arm: Self::Vector, force: Self::Vector) -> Self::Spin;
+    /// The orientation after turning at a spin for a time.
+    fn turn(orientation: Self::Orientation, spin: Self::Spin, time: Self::Real) -> Self::Orientation;
+    /// How far apart two orientations are (rad); an upper bound will do.
+    fn angle_between(a: Self::Orientation, b: Self::Orientation) -> Self::Real;
+    /// Angular acceleration under a moment.
+    fn spin_rate(
+        inertia: Self::Inertia,
+        rotation: Self::Rotation,
+        spin: Self::Spin,
+        moment: Self::Spin,
+    ) -> Self::Spin;
+    /// Rotational kinetic energy (J).
+    fn spin_energy(
+        inertia: Self::Inertia,
+        rotation: Self::Rotation,
+        spin: Self::Spin,
+    ) -> Self::Real;
+    /// The part of a vector that is tangent to a surface with this unit normal.
+    fn tangential(vector: Self::Vector, normal: Self::Vector) -> Self::Tangent;
+    /// A tangent as a vector.
+    fn along(tangent: Self::Tangent, normal: Self::Vector) -> Self::Vector;
+    /// The force and moment of viscous damping at a velocity: minus matrix times velocity.
+    fn damp(
+        damping: Self::Damping,
+        linear: Self::Vector,
+        spin: Self::Spin,
+    ) -> (Self::Vector, Self::Spin);
+}
+
+/// Where a body is: its center of mass (m) and how it is turned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose<S: Space> {
+    /// Position of the center of mass (m) in the inertial frame.
+    pub position: S::Vector,
+    /// How the body frame is turned.
+    pub orientation: S::Orientation,
+}
+
+/// How a body moves: velocity of its center of mass (m/s) and angular velocity (rad/s).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Twist<S: Space> {
+    /// Velocity of the center of mass (m/s).
+    pub linear: S::Vector,
+    /// Angular velocity (rad/s).
+    pub angular: S::Spin,
+}
+
+impl<S: Space> Twist<S> {
+    /// `self + other · factor`.
+    #[inline]
+    #[must_use]
+    pub fn plus(self, other: Self, factor: S::Real) -> Self {
+        Self {
+            linear: self.linear + other.linear * factor,
+            angular: self.angular + other.angular * factor,
+        }
+    }
+}
+
+impl<S: Space> Pose<S> {
+    /// The pose after moving with a twist for a time (s).
+    #[inline]
+    #[must_use]
+    pub fn moved(self, twist: Twist<S>, time: S::Real) -> Self {
+        Self {
+            position: self.position + twist.linear * time,
+            orientation: S::turn(self.orientation, twist.angular, time),
+        }
+    }
+}
+
+/// Force (N) and moment about the center of mass (N·m).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrench<S: Space> {
+    /// Force (N).
+    pub force: S::Vector,
+    /// Moment about the center of mass (N·m).
+    pub moment: S::Spin,
+}

@@ -1,0 +1,220 @@
+//! Motion in the vertical plane: `x` to the right, `z` up, angles from `x` toward `z`.
+
+use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+
+use super::{Linear, Space};
+use crate::math;
+use crate::real::Real;
+
+/// A vector of the plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Vec2<R = f64> {
+    /// To the right.
+    pub x: R,
+    /// Up.
+    pub z: R,
+}
+
+impl<R: Real> Vec2<R> {
+    /// The vector `(x, z)`.
+    #[inline]
+    pub const fn new(x: R, z: R) -> Self {
+        Self { x, z }
+    }
+    /// The same vector in every lane.
+    pub fn splat(vector: Vec2<f64>) -> Self {
+        Self::new(R::splat(vector.x), R::splat(vector.z))
+    }
+    /// Its length.
+    #[inline]
+    pub fn length(self) -> R {
+        self.dot(self).sqrt()
+    }
+    /// Turned by a quarter turn from `x` toward `z`.
+    #[inline]
+    #[must_use]
+    pub fn quarter_turn(self) -> Self {
+        Self::new(-self.z, self.x)
+    }
+    /// `yes` where the mask holds, `no` elsewhere.
+    #[inline]
+    pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
+        Self::new(R::select(mask, yes.x, no.x), R::select(mask, yes.z, no.z))
+    }
+}
+
+impl<R: Real> Add for Vec2<R> {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self::new(self.x + other.x, self.z + other.z)
+    }
+}
+impl<R: Real> Sub for Vec2<R> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.x - other.x, self.z - other.z)
+    }
+}
+impl<R: Real> Neg for Vec2<R> {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.z)
+    }
+}
+impl<R: Real> AddAssign for Vec2<R> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+impl<R: Real> SubAssign for Vec2<R> {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+impl<R: Real> Mul<R> for Vec2<R> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, factor: R) -> Self {
+        Self::new(self.x * factor, self.z * factor)
+    }
+}
+impl<R: Real> Linear<R> for Vec2<R> {
+    #[inline]
+    fn dot(self, other: Self) -> R {
+        self.x * other.x + self.z * other.z
+    }
+}
+impl<R: Real> Linear<R> for R {
+    #[inline]
+    fn dot(self, other: Self) -> R {
+        self * other
+    }
+}
+
+/// Cosine and sine of an angle: what turns a vector of the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rotation2<R = f64> {
+    /// Cosine.
+    pub cos: R,
+    /// Sine.
+    pub sin: R,
+}
+
+impl<R: Real> Rotation2<R> {
+    /// The rotation by an angle (rad).
+    #[inline]
+    pub fn new(angle: R) -> Self {
+        let (sin, cos) = math::sin_cos(angle);
+        Self { cos, sin }
+    }
+    /// No rotation.
+    pub fn identity() -> Self {
+        Self { cos: R::splat(1.0), sin: R::zero() }
+    }
+    /// The turned vector.
+    #[inline]
+    pub fn apply(self, v: Vec2<R>) -> Vec2<R> {
+        Vec2::new(self.cos * v.x - self.sin * v.z, self.sin * v.x + self.cos * v.z)
+    }
+    /// The vector turned back.
+    #[inline]
+    pub fn unapply(self, v: Vec2<R>) -> Vec2<R> {
+        Vec2::new(self.cos * v.x + self.sin * v.z, self.cos * v.z - self.sin * v.x)
+    }
+}
+
+/// The vertical plane of the paper, with one number or a bundle of lanes as its scalar.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Planar<R = f64>(std::marker::PhantomData<R>);
+
+impl<R: Real> Space for Planar<R> {
+    type Real = R;
+    type Vector = Vec2<R>;
+    type Spin = R;
+    type Orientation = R;
+    type Rotation = Rotation2<R>;
+    type Inertia = R;
+    type Tangent = R;
+    /// Rows of the symmetric matrix of eq. 2.8, acting on `(ẋ, ż, θ̇)`:
+    /// N·s/m in the upper left block, N·m·s in the last entry.
+    type Damping = [[R; 3]; 3];
+    type Surface = crate::shape::Shape<R>;
+
+    #[inline]
+    fn rotation(orientation: R) -> Rotation2<R> {
+        Rotation2::new(orientation)
+    }
+    #[inline]
+    fn rotate(rotation: Rotation2<R>, vector: Vec2<R>) -> Vec2<R> {
+        rotation.apply(vector)
+    }
+    #[inline]
+    fn unrotate(rotation: Rotation2<R>, vector: Vec2<R>) -> Vec2<R> {
+        rotation.unapply(vector)
+    }
+    #[inline]
+    fn compose(outer: Rotation2<R>, inner: Rotation2<R>) -> Rotation2<R> {
+        Rotation2 {
+            cos: outer.cos * inner.cos - outer.sin * inner.sin,
+            sin: outer.sin * inner.cos + outer.cos * inner.sin,
+        }
+    }
+    #[inline]
+    fn relative(outer: Rotation2<R>, inner: Rotation2<R>) -> Rotation2<R> {
+        Rotation2 {
+            cos: outer.cos * inner.cos + outer.sin * inner.sin,
+            sin: outer.cos * inner.sin - outer.sin * inner.cos,
+        }
+    }
+    #[inline]
+    fn unrotate_spin(_rotation: Rotation2<R>, spin: R) -> R {
+        spin
+    }
+    #[inline]
+    fn rotate_spin(_rotation: Rotation2<R>, spin: R) -> R {
+        spin
+    }
+    #[inline]
+    fn velocity_at(spin: R, arm: Vec2<R>) -> Vec2<R> {
+        Vec2::new(-(spin * arm.z), spin * arm.x)
+    }
+    #[inline]
+    fn moment(arm: Vec2<R>, force: Vec2<R>) -> R {
+        arm.x * force.z - arm.z * force.x
+    }
+    #[inline]
+    fn turn(orientation: R, spin: R, time: R) -> R {
+        orientation + spin * time
+    }
+    #[inline]
+    fn angle_between(a: R, b: R) -> R {
+        (a - b).abs()
+    }
+    #[inline]
+    fn spin_rate(inertia: R, _rotation: Rotation2<R>, _spin: R, moment: R) -> R {
+        moment / inertia
+    }
+    #[inline]
+    fn spin_energy(inertia: R, _rotation: Rotation2<R>, spin: R) -> R {
+        R::splat(0.5) * inertia * spin * spin
+    }
+    /// Positive along the normal turned by a quarter turn from `z` toward `x`: to the right on a floor.
+    #[inline]
+    fn tangential(vector: Vec2<R>, normal: Vec2<R>) -> R {
+        vector.x * normal.z - vector.z * normal.x
+    }
+    #[inline]
+    fn along(tangent: R, normal: Vec2<R>) -> Vec2<R> {
+        Vec2::new(normal.z * tangent, -(normal.x * tangent))
+    }
+    #[inline]
+    fn damp(c: [[R; 3]; 3], linear: Vec2<R>, spin: R) -> (Vec2<R>, R) {
+        let row = |r: [R; 3]| -(r[0] * linear.x + r[1] * linear.z + r[2] * spin);
+        (Vec2::new(row(c[0]), row(c[1])), row(c[2]))
+    }
+}

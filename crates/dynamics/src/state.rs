@@ -1,0 +1,32 @@
+//! All that must be saved to continue a run.
+
+use crate::elements::Elements;
+use crate::model::Model;
+use crate::space::{Pose, Space, Twist};
+
+/// Where everything is, how it moves, and what the contacts remember.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State<S: Space> {
+    /// Time (s).
+    pub time: f64,
+    /// Pose of every body.
+    pub poses: Vec<Pose<S>>,
+    /// Twist of every body.
+    pub twists: Vec<Twist<S>>,
+    /// The contact elements within reach, with the memory of their sticks.
+    pub elements: Elements<S>,
+}
+
+impl<S: Space> State<S> {
+    /// The state in which a model starts, at time zero.
+    pub fn initial(model: &Model<S>) -> Self {
+        let mut state = Self {
+            time: 0.0,
+            poses: model.bodies.iter().map(|b| b.pose).collect(),
+            twists: model.bodies.iter().map(|b| b.twist).collect(),
+            elements: Elements::default(),
+        };
+        state.elements.rebuild(model, &state.poses);
+        state
+    }
+}
