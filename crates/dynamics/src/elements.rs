@@ -7,14 +7,14 @@
 //! in the same order, with the same bits.
 
 use crate::body::{Motion, Nodes};
-use crate::contact::Stick;
+use crate::contact::{Basis, Stick};
 use crate::model::{ContactPair, Model};
-use crate::real::Real;
+use crate::real::{Mask, Real};
 use crate::shape::Surface;
 use crate::space::{Linear, Pose, Space, Twist};
 
 /// Elements closer than this (m) to touching are kept in the list.
-const MARGIN: f64 = 0.012;
+const MARGIN: f64 = 0.03;
 
 /// The elements of one contact pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +33,11 @@ pub struct Elements<S: Space> {
     pub(crate) groups: Vec<Group>,
     /// Index of every element's node in its node set.
     pub(crate) nodes: Vec<u32>,
+    /// Position (m) of every element's node in the body frame of its contactor.
+    pub(crate) positions: Vec<S::Vector>,
+    /// What the constants of its law are multiplied by: 1 for constants per node, the tributary
+    /// length (m) for constants per length.
+    pub(crate) weights: Vec<S::Real>,
     /// Memory of every element.
     pub(crate) sticks: Vec<Stick<S>>,
     /// The poses for which the list was built.
@@ -46,6 +51,8 @@ impl<S: Space> Default for Elements<S> {
         Self {
             groups: Vec::new(),
             nodes: Vec::new(),
+            positions: Vec::new(),
+            weights: Vec::new(),
             sticks: Vec::new(),
             built_for: Vec::new(),
             exhaustive: false,
@@ -92,21 +99,16 @@ impl<S: Space> Elements<S> {
         stale
     }
 
-    fn is_stale(
-        &self,
-        model: &Model<S>,
-        poses: &[Pose<S>],
-        twists: &[Twist<S>],
-        dt: f64,
-    ) -> bool {
+    fn is_stale(&self, model: &Model<S>, poses: &[Pose<S>], twists: &[Twist<S>], dt: f64) -> bool {
         // Bodies are followed relative to the ground, which moves all of them together.
         let ground = model.bodies.iter().position(|b| b.motion == Motion::Prescribed);
         let (carried, carrier) = ground.map_or_else(Default::default, |g| {
             (poses[g].position - self.built_for[g].position, twists[g].linear)
         });
-        let half_margin = S::Real::splat(0.5 * MARGIN);
-        // Twice the way of one step, since velocities change within it.
-        let ahead = S::Real::splat(2.0 * dt);
+        // The way of one step is counted too, half as long again since velocities change within it.
+        // Squares bound sums: (a + b + c)² ≤ 3 (a² + b² + c²).
+        let limit = S::Real::splat(MARGIN * MARGIN / 12.0);
+        let ahead = S::Real::splat(2.25 * dt * dt);
         let mut stale = <S::Real as Real>::Mask::default();
         for (i, body) in model.bodies.iter().enumerate() {
             if body.motion == Motion::Prescribed {
@@ -116,12 +118,14 @@ impl<S: Space> Elements<S> {
             let moved = poses[i].position - self.built_for[i].position - carried;
             let turned = S::angle_between(poses[i].orientation, self.built_for[i].orientation);
             let velocity = twists[i].linear - carrier;
-            let speed = velocity.dot(velocity).sqrt()
-                + twists[i].angular.dot(twists[i].angular).sqrt() * reach;
-            let way = moved.dot(moved).sqrt() + turned * reach + speed * ahead;
-            stale = stale | !way.lt(half_margin);
+            let spin = twists[i].angular * reach;
+            let speed = velocity.dot(velocity) + spin.dot(spin);
+            let turned = turned * reach;
+            // Velocity and spin add up like the ways: 2 (v² + ω² r²) bounds (v + ω r)².
+            let way = moved.dot(moved) + turned * turned + (speed + speed) * ahead;
+            stale = stale | !way.lt(limit);
         }
-        crate::real::Mask::any(stale)
+        stale.any()
     }
 
     /// Lists the elements within the margin and hands their memory over.
@@ -147,9 +151,25 @@ impl<S: Space> Elements<S> {
 
     fn list_pair(&mut self, model: &Model<S>, pair: &ContactPair, frame: &PairFrame<S>) {
         let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
+        let margin = S::Real::splat(MARGIN);
         let near = |point: S::Vector, radius: S::Real| {
             let distance = surface.gap(point).distance - radius;
-            self.exhaustive || crate::real::Mask::any(!S::Real::splat(MARGIN).lt(distance))
+            self.exhaustive || (!margin.lt(distance)).any()
+        };
+        // Balls about the bodies first: most pairs are far apart.
+        let apart = frame.contactor - frame.target;
+        let touch = model.reach[pair.contactor]
+            + surface.reach()
+            + MARGIN
+            + frame.target.dot(frame.target).sqrt().largest_lane();
+        let far = S::Real::splat(touch * touch).lt(apart.dot(apart));
+        if !self.exhaustive && !(!far).any() {
+            return;
+        }
+        let basis = model.interfaces[pair.interface].basis;
+        let weight = |tributary_length| match basis {
+            Basis::Node => S::Real::splat(1.0),
+            Basis::Length => tributary_length,
         };
         match model.pair_nodes(pair) {
             Nodes::Fixed(nodes) => {
@@ -159,12 +179,16 @@ impl<S: Space> Elements<S> {
                 for (index, node) in nodes.iter().enumerate() {
                     if near(frame.to_surface(node.position), S::Real::zero()) {
                         self.nodes.push(u32::try_from(index).unwrap_or(u32::MAX));
+                        self.positions.push(node.position);
+                        self.weights.push(weight(node.tributary_length));
                     }
                 }
             }
-            Nodes::Rolling { center, radius, .. } => {
+            Nodes::Rolling { center, radius, tributary_length } => {
                 if near(frame.to_surface(*center), *radius) {
                     self.nodes.push(0);
+                    self.positions.push(*center);
+                    self.weights.push(weight(*tributary_length));
                 }
             }
         }

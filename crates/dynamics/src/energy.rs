@@ -3,7 +3,7 @@
 use crate::body::Motion;
 use crate::forces::Scratch;
 use crate::model::Model;
-use crate::real::{Mask, Real};
+use crate::real::Real;
 use crate::space::{Linear, Space};
 use crate::state::State;
 
@@ -46,6 +46,7 @@ impl EnergySummary {
 pub struct EnergyLedger<S: Space> {
     initial: S::Real,
     potential_start: S::Real,
+    stick_start: S::Real,
     works: Works<S::Real>,
     powers: Works<S::Real>,
     stored: Stored<S::Real>,
@@ -78,8 +79,9 @@ impl<S: Space> EnergyLedger<S> {
     pub fn new(model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) -> Self {
         let stored = stored(model, state, scratch);
         Self {
-            initial: stored.kinetic + stored.potential + stored.elastic + stored.stick,
+            initial: stored.kinetic + stored.potential + stored.elastic,
             potential_start: stored.potential,
+            stick_start: stored.stick,
             works: Works::default(),
             powers: powers(model, state, scratch),
             stored,
@@ -106,12 +108,18 @@ impl<S: Space> EnergyLedger<S> {
         self.time = state.time;
     }
 
+    /// Whether every body's kinetic and potential energy is a finite number.
+    pub(crate) fn is_finite(&self) -> bool {
+        let sum = self.stored.kinetic + self.stored.potential;
+        (0..S::Real::LANES).all(|lane| sum.lane(lane).is_finite())
+    }
+
     /// The books of one lane.
     pub fn summary(&self, lane: usize) -> EnergySummary {
         let Stored { kinetic, potential, elastic, stick } = self.stored;
         let now = kinetic + potential + elastic;
         let lost = self.works.damped + self.works.friction + self.works.viscous;
-        // The friction work is what bodies gave to sticks and to sliding; the stick holds part of it.
+        // The work of friction is what bodies gave to sticks and to sliding together: sticks are in it.
         let residual = now + lost - self.works.ground - self.initial;
         let throughput = self.ground_flow + (self.potential_start - self.deepest);
         EnergySummary {
@@ -120,7 +128,7 @@ impl<S: Space> EnergyLedger<S> {
             elastic: elastic.lane(lane),
             stick: stick.lane(lane),
             damped: self.works.damped.lane(lane),
-            friction: (self.works.friction - stick).lane(lane),
+            friction: (self.works.friction - (stick - self.stick_start)).lane(lane),
             viscous: self.works.viscous.lane(lane),
             ground_work: self.works.ground.lane(lane),
             residual: residual.lane(lane),
@@ -140,23 +148,18 @@ fn stored<S: Space>(model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) ->
             + S::spin_energy(body.inertia, scratch.rotations[i], twist.angular);
         stored.potential -= body.mass * model.gravity.dot(state.poses[i].position);
     }
-    for contact in &scratch.contacts {
-        stored.elastic += contact.elastic_energy;
-        stored.stick += contact.stick_energy;
-    }
+    stored.elastic = scratch.totals.elastic;
+    stored.stick = scratch.totals.stick;
     stored
 }
 
 fn powers<S: Space>(model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) -> Works<S::Real> {
-    let mut powers = Works::default();
-    for contact in &scratch.contacts {
-        if !contact.touching.any() {
-            continue;
-        }
-        powers.damped +=
-            (contact.normal_force - contact.elastic_force) * contact.penetration_rate;
-        powers.friction += contact.friction_force.dot(contact.slip_rate);
-    }
+    let mut powers = Works {
+        damped: scratch.totals.damped,
+        friction: scratch.totals.friction,
+        viscous: S::Real::zero(),
+        ground: S::Real::zero(),
+    };
     for (i, body) in model.bodies.iter().enumerate() {
         let twist = state.twists[i];
         if body.motion == Motion::Prescribed {

@@ -1,11 +1,11 @@
 //! From a state to contact forces and accelerations.
 
-use crate::body::{BodyId, Motion, Nodes};
-use crate::contact::{Basis, Stick};
+use crate::body::{Motion, Nodes};
+use crate::contact::{Interface, Stick};
 use crate::elements::{Group, PairFrame};
 use crate::model::{ContactPair, Model};
 use crate::real::{Mask, Real};
-use crate::shape::Surface;
+use crate::shape::{Gap, Surface};
 use crate::space::{Linear, Space, Twist, Wrench};
 use crate::state::State;
 
@@ -16,8 +16,6 @@ pub struct Contact<S: Space> {
     pub element: usize,
     /// Which pair of the model.
     pub pair: usize,
-    /// Which node of the contactor's node set.
-    pub node: usize,
     /// Where it touches; always true in a single run.
     pub touching: <S::Real as Real>::Mask,
     /// The companion point (m), in the frame of the target's surface: both bodies feel the force there.
@@ -30,16 +28,23 @@ pub struct Contact<S: Space> {
     pub penetration_rate: S::Real,
     /// Compressive force (N), never negative.
     pub normal_force: S::Real,
-    /// Part of the normal force that can be got back (N).
-    pub elastic_force: S::Real,
     /// Tangential velocity of the contactor relative to the target (m/s).
     pub slip_rate: S::Tangent,
     /// Friction force (N) along the slip; the contactor feels its opposite.
     pub friction_force: S::Tangent,
-    /// Energy stored in the normal spring (J).
-    pub elastic_energy: S::Real,
-    /// Energy stored in the stick (J).
-    pub stick_energy: S::Real,
+}
+
+/// Energies (J) and powers (W) of all contacts together.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ContactTotals<R> {
+    /// Energy stored in normal springs (J).
+    pub elastic: R,
+    /// Energy stored in sticks (J).
+    pub stick: R,
+    /// Power lost in contact dampers (W).
+    pub damped: R,
+    /// Power that bodies lose to friction, sticks included (W).
+    pub friction: R,
 }
 
 /// What can be computed anew from a state; may be dropped at any time.
@@ -47,6 +52,8 @@ pub struct Contact<S: Space> {
 pub struct Scratch<S: Space> {
     /// The contacts of the last evaluation, in the order of their elements.
     pub contacts: Vec<Contact<S>>,
+    /// Their energies and powers.
+    pub totals: ContactTotals<S::Real>,
     /// Contact forces on every body and their moments about its center of mass.
     pub wrenches: Vec<Wrench<S>>,
     /// Acceleration of every body; zero for prescribed ones.
@@ -59,8 +66,9 @@ pub struct Scratch<S: Space> {
     pub evaluations: u64,
     /// How many contact elements have been tested in all evaluations.
     pub contact_evaluations: u64,
-    /// Accelerations and slip rates of the state a step started from, for methods that correct.
+    /// Accelerations of the state a step started from, for methods that correct.
     pub(crate) old_accelerations: Vec<Twist<S>>,
+    /// Slip rates of that state.
     pub(crate) old_slip_rates: Vec<S::Tangent>,
     /// Sticks of the next accepted state, while it is made.
     committed: Vec<Stick<S>>,
@@ -72,6 +80,7 @@ impl<S: Space> Scratch<S> {
         let count = model.bodies.len();
         Self {
             contacts: Vec::new(),
+            totals: ContactTotals::default(),
             wrenches: vec![Wrench::default(); count],
             accelerations: vec![Twist::default(); count],
             rotations: model.bodies.iter().map(|b| S::rotation(b.pose.orientation)).collect(),
@@ -91,6 +100,7 @@ pub fn evaluate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scra
         *rotation = S::rotation(pose.orientation);
     }
     scratch.wrenches.fill(Wrench::default());
+    scratch.totals = ContactTotals::default();
     scratch.contacts.clear();
     scratch.slip_rates.clear();
     scratch.slip_rates.resize(state.elements.len(), S::Tangent::default());
@@ -104,51 +114,50 @@ pub fn evaluate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scra
 }
 
 /// The contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
-fn touch<S: Space>(
-    model: &Model<S>,
-    state: &State<S>,
-    group: &Group,
-    scratch: &mut Scratch<S>,
-) {
+fn touch<S: Space>(model: &Model<S>, state: &State<S>, group: &Group, scratch: &mut Scratch<S>) {
     let pair = &model.pairs[group.pair];
     let frame = PairFrame::new(model, pair, &state.poses, &scratch.rotations);
     let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
+    let (contactor, target) = (state.twists[pair.contactor], state.twists[pair.target]);
+    let meeting = Meeting {
+        interface: &model.interfaces[pair.interface],
+        pair: group.pair,
+        linear: S::unrotate(frame.rotation, contactor.linear - target.linear),
+        contactor_spin: S::unrotate_spin(frame.rotation, contactor.angular),
+        target_spin: S::unrotate_spin(frame.rotation, target.angular),
+        frame,
+    };
     let before = scratch.contacts.len();
     let mut total = PairWrench::default();
 
     match model.pair_nodes(pair) {
-        Nodes::Fixed(nodes) => {
-            let meeting = Meeting::new(model, state, pair, group.pair, &frame);
+        Nodes::Fixed(_) => {
             for element in group.first..group.end {
-                let index = state.elements.nodes[element] as usize;
-                let node = &nodes[index];
-                let point = frame.to_surface(node.position);
-                if !surface.may_touch(point).any() {
-                    continue;
+                let node = meeting.frame.to_surface(state.elements.positions[element]);
+                if surface.may_touch(node).any() {
+                    let gap = surface.gap(node);
+                    meeting.contact(state, element, node, gap, scratch, &mut total);
                 }
-                let gap = surface.gap(point);
-                let id = (element, index);
-                meeting.contact(id, point, gap, node.tributary_length, scratch, &mut total);
             }
         }
-        Nodes::Rolling { center, radius, tributary_length } => {
-            let meeting = Meeting::new(model, state, pair, group.pair, &frame);
-            let center = frame.to_surface(*center);
+        Nodes::Rolling { center, radius, .. } => {
+            let center = meeting.frame.to_surface(*center);
             let mut gap = surface.gap(center);
             gap.distance = gap.distance - *radius;
-            let point = center - gap.normal * *radius;
-            meeting.contact((group.first, 0), point, gap, *tributary_length, scratch, &mut total);
+            let node = center - gap.normal * *radius;
+            meeting.contact(state, group.first, node, gap, scratch, &mut total);
         }
     }
 
     if scratch.contacts.len() > before {
-        let force = S::rotate(frame.rotation, total.force);
+        let rotation = meeting.frame.rotation;
+        let force = S::rotate(rotation, total.force);
         let on_contactor = &mut scratch.wrenches[pair.contactor];
         on_contactor.force += force;
-        on_contactor.moment += S::rotate_spin(frame.rotation, total.contactor_moment);
+        on_contactor.moment += S::rotate_spin(rotation, total.contactor_moment);
         let on_target = &mut scratch.wrenches[pair.target];
         on_target.force -= force;
-        on_target.moment -= S::rotate_spin(frame.rotation, total.target_moment);
+        on_target.moment -= S::rotate_spin(rotation, total.target_moment);
     }
 }
 
@@ -165,47 +174,24 @@ struct PairWrench<S: Space> {
 
 /// Two bodies at their contact, seen from the target's surface.
 struct Meeting<'a, S: Space> {
-    model: &'a Model<S>,
-    state: &'a State<S>,
-    pair: &'a ContactPair,
-    pair_index: usize,
-    frame: &'a PairFrame<S>,
+    interface: &'a Interface<S>,
+    pair: usize,
+    frame: PairFrame<S>,
     /// Velocity of the contactor's center of mass less that of the target's (m/s).
     linear: S::Vector,
     contactor_spin: S::Spin,
     target_spin: S::Spin,
 }
 
-impl<'a, S: Space> Meeting<'a, S> {
-    #[inline]
-    fn new(
-        model: &'a Model<S>,
-        state: &'a State<S>,
-        pair: &'a ContactPair,
-        pair_index: usize,
-        frame: &'a PairFrame<S>,
-    ) -> Self {
-        let (contactor, target) = (state.twists[pair.contactor], state.twists[pair.target]);
-        Self {
-            model,
-            state,
-            pair,
-            pair_index,
-            frame,
-            linear: S::unrotate(frame.rotation, contactor.linear - target.linear),
-            contactor_spin: S::unrotate_spin(frame.rotation, contactor.angular),
-            target_spin: S::unrotate_spin(frame.rotation, target.angular),
-        }
-    }
-
-    /// One element: `id` is (element, node), `node` its position (m) in the surface's frame.
+impl<S: Space> Meeting<'_, S> {
+    /// One element; `node` is its position (m) in the surface's frame.
     #[inline]
     fn contact(
         &self,
-        (element, index): (usize, usize),
+        state: &State<S>,
+        element: usize,
         node: S::Vector,
-        gap: crate::shape::Gap<S>,
-        tributary_length: S::Real,
+        gap: Gap<S>,
         scratch: &mut Scratch<S>,
         total: &mut PairWrench<S>,
     ) {
@@ -214,11 +200,7 @@ impl<'a, S: Space> Meeting<'a, S> {
         if !touching.any() {
             return;
         }
-        let interface = &self.model.interfaces[self.pair.interface];
-        let weight = match interface.basis {
-            Basis::Node => S::Real::splat(1.0),
-            Basis::Length => tributary_length,
-        };
+        let weight = S::Real::select(touching, state.elements.weights[element], zero);
 
         // Both bodies feel the force at the companion point, and both velocities are taken there:
         // so the pair conserves momentum, and force times relative velocity is the power it loses.
@@ -231,32 +213,35 @@ impl<'a, S: Space> Meeting<'a, S> {
         let penetration_rate = -velocity.dot(gap.normal);
         let slip_rate = S::tangential(velocity, gap.normal);
 
-        let normal = interface.normal.force(penetration, penetration_rate);
-        let normal_force = S::Real::select(touching, normal.total * weight, zero);
-        let stick = self.state.elements.sticks[element];
-        let friction = interface.friction.force::<S>(stick, slip_rate, normal_force, weight);
+        let normal = self.interface.normal.force(penetration, penetration_rate);
+        let normal_force = normal.total * weight;
+        let stick = state.elements.sticks[element];
+        let friction = self.interface.friction.force::<S>(stick, slip_rate, normal_force, weight);
 
         let force = gap.normal * normal_force - S::along(friction.force, gap.normal);
         total.force += force;
         total.contactor_moment += S::moment(contactor_arm, force);
         total.target_moment += S::moment(target_arm, force);
+
+        let totals = &mut scratch.totals;
+        totals.elastic += normal.energy * weight;
+        totals.stick += friction.energy;
+        totals.damped += (normal_force - normal.elastic * weight) * penetration_rate;
+        totals.friction += friction.force.dot(slip_rate);
+
         let counted = S::Real::select(touching, S::Real::splat(1.0), zero);
         scratch.slip_rates[element] = slip_rate * counted;
         scratch.contacts.push(Contact {
             element,
-            pair: self.pair_index,
-            node: index,
+            pair: self.pair,
             touching,
             point,
             normal: gap.normal,
             penetration,
             penetration_rate,
             normal_force,
-            elastic_force: S::Real::select(touching, normal.elastic * weight, zero),
             slip_rate,
             friction_force: friction.force,
-            elastic_energy: S::Real::select(touching, normal.energy * weight, zero),
-            stick_energy: friction.energy * counted,
         });
     }
 }
@@ -292,26 +277,22 @@ fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratc
 pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &mut Scratch<S>) {
     scratch.committed.clear();
     scratch.committed.resize(state.elements.len(), Stick::default());
+    let elements = &mut state.elements;
     for contact in &scratch.contacts {
-        let pair = &model.pairs[contact.pair];
-        let interface = &model.interfaces[pair.interface];
-        let weight = match interface.basis {
-            Basis::Node => S::Real::splat(1.0),
-            Basis::Length => tributary_length(model, pair, contact.node),
-        };
-        let mut stick = state.elements.sticks[contact.element].commit(
-            &interface.friction,
+        let element = contact.element;
+        let law = &model.interfaces[model.pairs[contact.pair].interface].friction;
+        let mut stick = elements.sticks[element].commit(
+            law,
             contact.slip_rate,
             contact.normal_force,
-            weight,
+            elements.weights[element],
         );
-        let counted =
-            S::Real::select(contact.touching, S::Real::splat(1.0), S::Real::zero());
+        let counted = S::Real::select(contact.touching, S::Real::splat(1.0), S::Real::zero());
         stick.displacement = stick.displacement * counted;
         stick.slipping = stick.slipping & contact.touching;
-        scratch.committed[contact.element] = stick;
+        scratch.committed[element] = stick;
     }
-    std::mem::swap(&mut state.elements.sticks, &mut scratch.committed);
+    std::mem::swap(&mut elements.sticks, &mut scratch.committed);
 }
 
 /// The length of boundary (m) that a node of a pair stands for.
@@ -322,19 +303,19 @@ pub fn tributary_length<S: Space>(model: &Model<S>, pair: &ContactPair, node: us
     }
 }
 
-/// The force (N) of a contact on its contactor, in the inertial frame, and the point (m) where it acts.
+/// The force (N) of a contact on its contactor and the point (m) where it acts, in the inertial frame.
 pub fn contact_force<S: Space>(
     model: &Model<S>,
     state: &State<S>,
+    scratch: &Scratch<S>,
     contact: &Contact<S>,
 ) -> (S::Vector, S::Vector) {
     let pair = &model.pairs[contact.pair];
-    let rotation_of = |body: BodyId| S::rotation(state.poses[body].orientation);
     let placed = &model.bodies[pair.target].surfaces[pair.surface];
-    let target = rotation_of(pair.target);
+    let target = scratch.rotations[pair.target];
     let rotation = S::compose(target, placed.rotation);
     let origin = state.poses[pair.target].position + S::rotate(target, placed.offset);
-    let force = contact.normal * contact.normal_force
-        - S::along(contact.friction_force, contact.normal);
+    let force =
+        contact.normal * contact.normal_force - S::along(contact.friction_force, contact.normal);
     (S::rotate(rotation, force), origin + S::rotate(rotation, contact.point))
 }

@@ -14,14 +14,15 @@ pub use libm::{acos, acosh, atan, atan2, cos, exp, log, pow, sin, tan};
 pub fn sin_cos<R: Real>(angle: R) -> (R, R) {
     // Adding and subtracting 1.5·2^52 rounds to the nearest integer without a rounding instruction.
     const ROUNDER: f64 = 6_755_399_441_055_744.0;
-    let quarters = (angle * R::splat(std::f64::consts::FRAC_2_PI) + R::splat(ROUNDER))
-        - R::splat(ROUNDER);
+    let quarters =
+        (angle * R::splat(std::f64::consts::FRAC_2_PI) + R::splat(ROUNDER)) - R::splat(ROUNDER);
     let r = angle - quarters * R::splat(1.570_796_251_296_997_1);
     let r = r - quarters * R::splat(7.549_789_415_861_596e-8);
     let r = r - quarters * R::splat(5.390_302_858_158_119e-15);
     let z = r * r;
 
-    let sine = r + r * z
+    let sine = r + r
+        * z
         * (R::splat(-1.666_666_666_666_663_2e-1)
             + z * (R::splat(8.333_333_333_322_49e-3)
                 + z * (R::splat(-1.984_126_982_985_795e-4)

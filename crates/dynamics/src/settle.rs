@@ -126,11 +126,7 @@ fn moved<S: Space>(state: &State<S>, start: &[crate::space::Pose<S>], body: usiz
 }
 
 /// Whether a body went further than any sinking explains.
-fn has_left<S: Space>(
-    model: &Model<S>,
-    state: &State<S>,
-    start: &[crate::space::Pose<S>],
-) -> bool {
+fn has_left<S: Space>(model: &Model<S>, state: &State<S>, start: &[crate::space::Pose<S>]) -> bool {
     (0..model.bodies.len()).any(|i| {
         let way = moved(state, start, i);
         !way.is_finite() || way > 0.5 * model.reach[i].max(0.1)

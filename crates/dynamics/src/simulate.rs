@@ -109,8 +109,10 @@ pub fn simulate<S: Space>(
             if target < simulation.end_time - sliver { target } else { simulation.end_time };
         next_step = integrator.step(model, drive, state, scratch, until);
         steps += 1;
-        check_finite(model, state, simulation.time_step)?;
         energy.enter(model, state, scratch);
+        if !energy.is_finite() {
+            return Err(lost_body(model, state, simulation.time_step));
+        }
         if observer.observe(model, state, scratch, &energy).is_break() {
             finish = Finish::Stopped;
         }
@@ -118,30 +120,15 @@ pub fn simulate<S: Space>(
     Ok(RunTotals { finish, steps, energy })
 }
 
-fn check_finite<S: Space>(
-    model: &Model<S>,
-    state: &State<S>,
-    time_step: f64,
-) -> Result<(), RunError> {
-    let size = |i: usize| {
-        let (pose, twist) = (state.poses[i], state.twists[i]);
-        // Anything not finite makes the sum not finite.
-        pose.position.dot(pose.position)
+/// Names the first body that is not where a finite number says.
+fn lost_body<S: Space>(model: &Model<S>, state: &State<S>, time_step: f64) -> RunError {
+    let lost = |i: &usize| {
+        let (pose, twist) = (state.poses[*i], state.twists[*i]);
+        let size = pose.position.dot(pose.position)
             + twist.linear.dot(twist.linear)
-            + twist.angular.dot(twist.angular)
+            + twist.angular.dot(twist.angular);
+        (0..S::Real::LANES).any(|lane| !size.lane(lane).is_finite())
     };
-    let mut sum = S::Real::zero();
-    for i in 0..model.bodies.len() {
-        sum += size(i);
-    }
-    let lost = |value: S::Real| (0..S::Real::LANES).any(|lane| !value.lane(lane).is_finite());
-    if !lost(sum) {
-        return Ok(());
-    }
-    let body = (0..model.bodies.len()).find(|i| lost(size(*i))).unwrap_or(0);
-    Err(RunError::NotFinite {
-        time: state.time,
-        body: model.bodies[body].name.clone(),
-        time_step,
-    })
+    let body = (0..model.bodies.len()).find(lost).unwrap_or(0);
+    RunError::NotFinite { time: state.time, body: model.bodies[body].name.clone(), time_step }
 }

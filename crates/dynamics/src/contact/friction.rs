@@ -1,6 +1,6 @@
 //! Friction force as a function of normal force, slip rate and the memory of the stick.
 
-use crate::real::Real;
+use crate::real::{Mask, Real};
 use crate::space::{Linear, Space};
 
 /// A law for the friction force of one node.
@@ -89,9 +89,9 @@ impl<R: Real> FrictionLaw<R> {
                     R::select(stick.slipping, kinetic_coefficient, static_coefficient);
                 let limit = coefficient * normal_force;
                 let stiffness = tangential_stiffness * weight;
-                let spring = within::<S>(stick.displacement * stiffness, limit);
-                let energy = R::splat(0.5) * spring.dot(spring) / stiffness;
-                let force = within::<S>(spring + slip_rate * (tangential_damping * weight), limit);
+                let spring = S::shorten(stick.displacement * stiffness, limit);
+                let energy = R::splat(0.5) * spring.dot(stick.displacement);
+                let force = S::shorten(spring + slip_rate * (tangential_damping * weight), limit);
                 Friction { force, energy }
             }
             Self::Regularized { coefficient, velocity } => {
@@ -151,20 +151,13 @@ impl<S: Space> Stick<S> {
         let follows = S::Real::zero().le(spring.dot(slip_rate));
         let slipping = broken | (self.slipping & follows);
         let held = S::Real::select(slipping, kinetic, limit);
-        let spring = within::<S>(spring, held);
-        Self { displacement: spring * (S::Real::splat(1.0) / stiffness), slipping }
+        let overstretched = (held * held).lt(spring.dot(spring));
+        if !overstretched.any() {
+            return Self { displacement: self.displacement, slipping };
+        }
+        // Where the weight is zero nothing touches, and the stick forgets anyway.
+        let safe = S::Real::select(overstretched, stiffness, S::Real::splat(1.0));
+        let cut = S::shorten(spring, held) * (S::Real::splat(1.0) / safe);
+        Self { displacement: S::choose(overstretched, cut, self.displacement), slipping }
     }
-}
-
-/// The tangent, shortened to a length where it is longer.
-#[inline]
-fn within<S: Space>(tangent: S::Tangent, limit: S::Real) -> S::Tangent {
-    let squared = tangent.dot(tangent);
-    let longer = (limit * limit).lt(squared);
-    if !crate::real::Mask::any(longer) {
-        return tangent;
-    }
-    let one = S::Real::splat(1.0);
-    let safe = S::Real::select(longer, squared, one);
-    tangent * S::Real::select(longer, limit / safe.sqrt(), one)
 }

@@ -89,11 +89,7 @@ impl<R: Real> NormalLaw<R> {
             }
             Self::Hertz { stiffness } => {
                 let elastic = stiffness * depth * depth.sqrt();
-                NormalForce {
-                    total: elastic,
-                    elastic,
-                    energy: R::splat(0.4) * elastic * depth,
-                }
+                NormalForce { total: elastic, elastic, energy: R::splat(0.4) * elastic * depth }
             }
         }
     }

@@ -21,10 +21,7 @@ impl<R: Real> Circle<R> {
         let at_center = length.le(R::zero());
         let inverse = R::splat(1.0) / R::select(at_center, R::splat(1.0), length);
         let up = Vec2::new(R::zero(), R::splat(1.0));
-        Gap {
-            distance: length - self.radius,
-            normal: Vec2::select(at_center, up, point * inverse),
-        }
+        Gap { distance: length - self.radius, normal: Vec2::select(at_center, up, point * inverse) }
     }
 
     #[inline]

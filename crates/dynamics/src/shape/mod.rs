@@ -95,9 +95,8 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
         match self {
             Self::Circle(shape) => shape.may_touch(point),
             Self::HalfPlane(_) => point.z.lt(R::zero()),
-            Self::Polygon(_) | Self::Cradle(_) | Self::BarrelProfile(_) => {
-                self.gap(point).distance.lt(R::zero())
-            }
+            Self::Polygon(shape) => shape.may_touch(point),
+            Self::Cradle(_) | Self::BarrelProfile(_) => self.gap(point).distance.lt(R::zero()),
         }
     }
 

@@ -11,10 +11,23 @@ use crate::space::{Linear, Planar, Vec2};
 /// the boundary is the core grown by that radius, so signed distance stays exact at the corners.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon<R = f64> {
-    /// Corners of the core (m), counterclockwise (from `x` toward `z`).
-    pub core: Vec<Vec2<R>>,
+    /// Sides of the core, counterclockwise (from `x` toward `z`).
+    sides: Vec<Side<R>>,
     /// Radius of the corners (m); zero for sharp ones.
-    pub corner_radius: R,
+    corner_radius: R,
+}
+
+/// A side of the core.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Side<R> {
+    /// Where it starts (m).
+    start: Vec2<R>,
+    /// Unit vector along it.
+    along: Vec2<R>,
+    /// Unit vector out of the polygon.
+    outward: Vec2<R>,
+    /// Its length (m).
+    length: R,
 }
 
 /// Why corners do not make a convex polygon.
@@ -48,13 +61,6 @@ pub enum PolygonError {
 }
 
 impl<R: Real> Polygon<R> {
-    /// Sides of the core as (start, unit direction, length).
-    #[inline]
-    fn sides(&self) -> impl Iterator<Item = (Vec2<R>, Vec2<R>)> + '_ {
-        let count = self.core.len();
-        (0..count).map(move |i| (self.core[i], self.core[if i + 1 == count { 0 } else { i + 1 }]))
-    }
-
     pub(super) fn gap(&self, point: Vec2<R>) -> Gap<Planar<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
         // Inside: the side that is nearest decides. Outside: the nearest point of any side.
@@ -62,19 +68,15 @@ impl<R: Real> Polygon<R> {
         let mut deepest_normal = Vec2::new(zero, one);
         let mut nearest_squared = R::splat(f64::INFINITY);
         let mut nearest = Vec2::new(zero, zero);
-        for (from, to) in self.sides() {
-            let side = to - from;
-            let length_squared = side.dot(side);
-            let inverse_length = one / length_squared.sqrt();
-            let outward = -side.quarter_turn() * inverse_length;
-            let offset = point - from;
-            let height = offset.dot(outward);
+        for side in &self.sides {
+            let offset = point - side.start;
+            let height = offset.dot(side.outward);
             let higher = deepest.lt(height);
             deepest = R::select(higher, height, deepest);
-            deepest_normal = Vec2::select(higher, outward, deepest_normal);
+            deepest_normal = Vec2::select(higher, side.outward, deepest_normal);
 
-            let along = (offset.dot(side) / length_squared).max(zero).min(one);
-            let apart = offset - side * along;
+            let reached = offset.dot(side.along).max(zero).min(side.length);
+            let apart = offset - side.along * reached;
             let apart_squared = apart.dot(apart);
             let closer = apart_squared.lt(nearest_squared);
             nearest_squared = R::select(closer, apart_squared, nearest_squared);
@@ -89,8 +91,18 @@ impl<R: Real> Polygon<R> {
         }
     }
 
+    #[inline]
+    pub(super) fn may_touch(&self, point: Vec2<R>) -> R::Mask {
+        let mut highest = R::splat(f64::NEG_INFINITY);
+        for side in &self.sides {
+            highest = highest.max((point - side.start).dot(side.outward));
+        }
+        highest.lt(self.corner_radius)
+    }
+
     pub(super) fn reach(&self) -> f64 {
-        let farthest = self.core.iter().map(|c| c.length().largest_lane()).fold(0.0, f64::max);
+        let farthest =
+            self.sides.iter().map(|side| side.start.length().largest_lane()).fold(0.0, f64::max);
         farthest + self.corner_radius.largest_lane()
     }
 }
@@ -115,7 +127,7 @@ impl Polygon {
             }
         }
         if corner_radius == 0.0 {
-            return Ok(Self { core: corners.to_vec(), corner_radius });
+            return Ok(Self::grown(corners, corner_radius));
         }
         let core: Vec<Vec2> = (0..count)
             .map(|i| {
@@ -135,7 +147,19 @@ impl Polygon {
         if flipped || corner_radius < 0.0 {
             return Err(PolygonError::RadiusTooLarge { radius: corner_radius });
         }
-        Ok(Self { core, corner_radius })
+        Ok(Self::grown(&core, corner_radius))
+    }
+
+    fn grown(core: &[Vec2], corner_radius: f64) -> Self {
+        let sides = (0..core.len())
+            .map(|i| {
+                let (start, end) = (core[i], core[(i + 1) % core.len()]);
+                let along = unit(end - start);
+                let length = (end - start).length();
+                Side { start, along, outward: -along.quarter_turn(), length }
+            })
+            .collect();
+        Self { sides, corner_radius }
     }
 
     /// A rectangle about the origin.
@@ -153,14 +177,13 @@ impl Polygon {
     /// The boundary as a chain of points, corners rounded with steps of at most 15 degrees.
     pub(super) fn outline(&self) -> Vec<Vec2> {
         if self.corner_radius == 0.0 {
-            return self.core.clone();
+            return self.sides.iter().map(|side| side.start).collect();
         }
-        let count = self.core.len();
+        let count = self.sides.len();
         let mut chain = Vec::new();
         for i in 0..count {
-            let here = self.core[i];
-            let a = unit(here - self.core[(i + count - 1) % count]);
-            let b = unit(self.core[(i + 1) % count] - here);
+            let here = self.sides[i].start;
+            let (a, b) = (self.sides[(i + count - 1) % count].along, self.sides[i].along);
             let from = math::atan2(-a.x, a.z);
             let turn = math::atan2(a.x * b.z - a.z * b.x, a.dot(b));
             let steps = super::parts_of(turn, 15.0_f64.to_radians());

@@ -37,8 +37,8 @@ impl<R: Real> BarrelProfile<R> {
         let head_distance = p.x - self.half_length;
 
         // Past the corner, seen from the arc's center or along the head: the corner is nearest.
-        let beyond_arc =
-            (from_center.z * (corner.x - arc_center.x)).lt(from_center.x * (corner.z - arc_center.z));
+        let beyond_arc = (from_center.z * (corner.x - arc_center.x))
+            .lt(from_center.x * (corner.z - arc_center.z));
         let beyond_head = self.head_radius.lt(p.z);
         let outside = zero.lt(arc_distance.max(head_distance));
         let by_corner = outside & beyond_arc & beyond_head;
@@ -92,10 +92,8 @@ impl BarrelProfile {
 
     /// The chain from the right head over the top, the left head and the bottom.
     fn chain(&self, parts: usize) -> Vec<Vec2> {
-        let half = math::atan2(
-            self.half_length,
-            self.stave_radius - self.bilge_radius + self.head_radius,
-        );
+        let half =
+            math::atan2(self.half_length, self.stave_radius - self.bilge_radius + self.head_radius);
         let arc: Vec<Vec2> = (0..=parts)
             .map(|i| {
                 let (sin, cos) = math::sin_cos(half * (1.0 - 2.0 * i as f64 / parts as f64));

@@ -73,7 +73,11 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// Moment of a force that acts at `arm`.
     fn moment(arm: Self::Vector, force: Self::Vector) -> Self::Spin;
     /// The orientation after turning at a spin for a time.
-    fn turn(orientation: Self::Orientation, spin: Self::Spin, time: Self::Real) -> Self::Orientation;
+    fn turn(
+        orientation: Self::Orientation,
+        spin: Self::Spin,
+        time: Self::Real,
+    ) -> Self::Orientation;
     /// How far apart two orientations are (rad); an upper bound will do.
     fn angle_between(a: Self::Orientation, b: Self::Orientation) -> Self::Real;
     /// Angular acceleration under a moment.
@@ -93,6 +97,14 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn tangential(vector: Self::Vector, normal: Self::Vector) -> Self::Tangent;
     /// A tangent as a vector.
     fn along(tangent: Self::Tangent, normal: Self::Vector) -> Self::Vector;
+    /// A tangent, no longer than `limit` (not negative).
+    fn shorten(tangent: Self::Tangent, limit: Self::Real) -> Self::Tangent;
+    /// `yes` where the mask holds, `no` elsewhere.
+    fn choose(
+        mask: <Self::Real as Real>::Mask,
+        yes: Self::Tangent,
+        no: Self::Tangent,
+    ) -> Self::Tangent;
     /// The force and moment of viscous damping at a velocity: minus matrix times velocity.
     fn damp(
         damping: Self::Damping,

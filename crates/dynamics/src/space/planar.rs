@@ -213,6 +213,14 @@ impl<R: Real> Space for Planar<R> {
         Vec2::new(normal.z * tangent, -(normal.x * tangent))
     }
     #[inline]
+    fn shorten(tangent: R, limit: R) -> R {
+        tangent.clamp_magnitude(limit)
+    }
+    #[inline]
+    fn choose(mask: R::Mask, yes: R, no: R) -> R {
+        R::select(mask, yes, no)
+    }
+    #[inline]
     fn damp(c: [[R; 3]; 3], linear: Vec2<R>, spin: R) -> (Vec2<R>, R) {
         let row = |r: [R; 3]| -(r[0] * linear.x + r[1] * linear.z + r[2] * spin);
         (Vec2::new(row(c[0]), row(c[1])), row(c[2]))
