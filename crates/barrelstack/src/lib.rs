@@ -1,1 +1,3 @@
 //! Wine-barrel stacks in earthquakes: scenario, run, outcome, report.
+
+pub mod scenario;
