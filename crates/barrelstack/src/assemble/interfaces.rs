@@ -1,6 +1,6 @@
 //! From the laws of a scenario to the laws of the model.
 
-use barrelstack_dynamics::contact::restitution;
+use barrelstack_dynamics::contact::{Exponent, restitution};
 use barrelstack_dynamics::{Basis, FrictionLaw, Interface, NormalLaw, Planar};
 
 use super::Similitude;
@@ -47,10 +47,13 @@ fn normal(law: &scenario::NormalLaw, basis: Basis, scale: Similitude) -> NormalL
             stiffness: stiff(*stiffness, 1.0),
             damping: damp(*stiffness, damping, restitution::kelvin_voigt_damping_ratio),
         },
-        scenario::NormalLaw::HuntCrossley { stiffness, damping } => NormalLaw::HuntCrossley {
-            stiffness: stiff(*stiffness, 1.5),
-            dissipation: damping / scale.time(),
-        },
+        scenario::NormalLaw::HuntCrossley { stiffness, exponent, damping } => {
+            NormalLaw::HuntCrossley {
+                stiffness: stiff(*stiffness, *exponent),
+                dissipation: damping / scale.time(),
+                exponent: if *exponent == 1.0 { Exponent::Linear } else { Exponent::Hertzian },
+            }
+        }
         scenario::NormalLaw::Hertz { stiffness } => {
             NormalLaw::Hertz { stiffness: stiff(*stiffness, 1.5) }
         }
