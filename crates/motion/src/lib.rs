@@ -11,6 +11,7 @@ mod fourier;
 mod ground_motion;
 mod history;
 mod intensity;
+mod join;
 mod math;
 mod process;
 mod pulse;

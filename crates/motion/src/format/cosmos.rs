@@ -202,7 +202,12 @@ fn read_channel(
         record.station = source.text(first + 4);
     }
     let name = channel_name(source, first);
-    let direction = direction(header.integer(54), &name);
+    let mut direction = direction(header.integer(54), &name);
+    if direction == Direction::default()
+        && let Some(code) = seed_code(source, first, line)
+    {
+        direction = Direction::parse(&code);
+    }
     let mut channel = Channel::new(name, direction, time_step, values);
     if let Some(peak) = header.real(64) {
         channel.peaks.push(StatedPeak {
@@ -256,8 +261,20 @@ fn counts_to_si(
 /// `Sta Chan   1: 90 Deg (Rcrdr Chan  ?) Location:...`
 fn channel_name(source: &Source<'_>, first: usize) -> String {
     let text = source.text(first + 8);
-    let after = text.split_once(':').map_or("", |(_, rest)| rest);
-    after.split('(').next().unwrap_or("").trim().to_owned()
+    let name = text.split('(').next().unwrap_or("");
+    let name = name.strip_prefix("Sta").map_or(name, str::trim);
+    let name = name.strip_prefix("Chan").or_else(|| name.strip_prefix("Cha")).unwrap_or(name);
+    // "Sta Cha:  1: 340 deg" and "Sta Chan   1: 90 Deg".
+    name.rsplit(':').next().unwrap_or("").trim().to_owned()
+}
+
+/// The channel code in a comment such as `|<SCNL>BMR.BNZ.AK.--`.
+fn seed_code(source: &Source<'_>, from: usize, to: usize) -> Option<String> {
+    (from..to).find_map(|line| {
+        let text = source.text(line);
+        let (_, code) = text.split_once("<SCNL>")?;
+        code.split('.').nth(1).map(|code| code.trim().to_owned())
+    })
 }
 
 /// Integer 54: azimuth, 400 to 600 vertical, 700 and above horizontal relative to a structure.

@@ -53,6 +53,16 @@ pub(crate) fn even_steps(
     if let Some(step) = candidates(mean, resolution / (last - first)).find(|&step| fits(step)) {
         return Ok((step, values));
     }
+    if let Some(step) = jittered(&time, mean, resolution) {
+        record.warn(
+            first_line + 1,
+            format!(
+                "channel {label}: the times jitter about an even step of {step} s by their last \
+                 digits; the even step is used"
+            ),
+        );
+        return Ok((step, values));
+    }
     // An even step throughout with a hole is a lost line, not a digitized trace.
     let (mut shortest, mut longest, mut hole) = (f64::INFINITY, 0.0_f64, 1);
     for row in 1..time.len() {
@@ -100,6 +110,19 @@ pub(crate) fn even_steps(
         ),
     );
     Ok((step, columns))
+}
+
+/// A round step that the mean keeps within 0.1 % and nine of ten single steps within their digits.
+fn jittered(time: &[f64], mean: f64, resolution: f64) -> Option<f64> {
+    let step = 1.0 / (1.0 / mean).round();
+    let close = time
+        .windows(2)
+        .filter(|pair| (pair[1] - pair[0] - step).abs() <= 1.01 * resolution)
+        .count();
+    // Times coarser than the step would say nothing about evenness.
+    let fine = resolution < 0.5 * step;
+    (fine && (mean / step - 1.0).abs() <= 1e-3 && 10 * close >= 9 * (time.len() - 1))
+        .then_some(step)
 }
 
 /// Round steps near the mean, then the mean itself.

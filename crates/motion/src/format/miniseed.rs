@@ -86,7 +86,8 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
     for (id, trace) in traces {
         record.station.clone_from(&id);
-        let values = trace.values.iter().map(|count| count / sensitivity).collect();
+        let mut values: Vec<f64> = trace.values.iter().map(|count| count / sensitivity).collect();
+        super::remove_offset(&mut record, &trace.channel, &mut values);
         let direction = Direction::parse(&trace.channel);
         record.channels.push(Channel::new(trace.channel, direction, 1.0 / trace.rate, values));
     }

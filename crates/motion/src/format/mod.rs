@@ -345,3 +345,15 @@ fn drop_dead_channels(source: &Source<'_>, record: &mut Record) -> Result<(), Re
     }
     Ok(())
 }
+
+/// Takes off the mean of a raw digital channel, whose zero is arbitrary, and notes it.
+fn remove_offset(record: &mut Record, name: &str, values: &mut [f64]) {
+    let offset = crate::math::mean(values);
+    for value in values.iter_mut() {
+        *value -= offset;
+    }
+    record.notes.push(format!(
+        "channel {name}: offset of {offset:.4e} m/s2, the mean of the whole record, removed because \
+         the digitizer's zero is arbitrary"
+    ));
+}

@@ -154,6 +154,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     } else {
         name
     };
+    super::remove_offset(&mut record, &name, &mut values);
     record.channels.push(Channel::new(name, direction, time_step, values));
     Ok(record)
 }
