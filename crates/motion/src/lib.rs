@@ -3,6 +3,7 @@
 //! Inside, every number is SI: m, m/s, m/s², s, rad; azimuths alone are degrees clockwise from north.
 //! Vertical components are positive upward.
 
+mod bundled;
 mod direction;
 mod error;
 mod format;
@@ -10,6 +11,7 @@ mod fourier;
 mod ground_motion;
 mod history;
 mod intensity;
+mod join;
 mod math;
 mod process;
 mod pulse;
@@ -19,9 +21,10 @@ mod sampled;
 mod select;
 mod units;
 
+pub use bundled::{BUNDLED, bundled};
 pub use direction::{Direction, Orientation};
 pub use error::{MotionError, ReadError, Refusal};
-pub use format::{FORMATS, Format, ReadOptions, read};
+pub use format::{FORMATS, Format, ReadOptions, read, slammer_step, station_xml_sensitivities};
 pub use fourier::FourierSpectrum;
 pub use ground_motion::GroundMotion;
 pub use history::{Delayed, History};

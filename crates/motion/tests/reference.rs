@@ -5,12 +5,13 @@
 
 use std::path::PathBuf;
 
-use barrelstack_motion::{IntensityMeasure, ReadOptions, STANDARD_GRAVITY, Sampled, read, response};
+use barrelstack_motion::{
+    IntensityMeasure, ReadOptions, STANDARD_GRAVITY, Sampled, read, response,
+};
 
 fn shared(path: &str) -> Option<PathBuf> {
-    let full = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("../../../shared/ground-motions")
-        .join(path);
+    let full =
+        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions").join(path);
     if full.exists() {
         Some(full)
     } else {

@@ -1,7 +1,31 @@
 //! Readers of strong-motion files: each format in a file of its own, chosen from the bytes.
 
+mod afad;
+mod bhrc;
+mod cdmg;
+mod columns;
+mod cosmos;
+mod csmip_v1;
+mod csmip_v2;
+mod cwa;
+mod esm;
+mod even;
+mod geonet;
+mod knet;
+mod miniseed;
+mod native;
 mod peer;
+mod refused;
+mod renadic;
+mod sac;
+mod slammer;
+mod smc;
 mod source;
+mod unam;
+mod usc;
+
+pub use refused::station_xml_sensitivities;
+pub use slammer::slammer_step;
 
 use crate::error::{ReadError, Refusal};
 use crate::math::STANDARD_GRAVITY;
@@ -41,7 +65,29 @@ impl std::fmt::Debug for Format {
 }
 
 /// Every format, in the order in which they are tried.
-pub const FORMATS: &[Format] = &[peer::FORMAT];
+pub const FORMATS: &[Format] = &[
+    sac::FORMAT,
+    miniseed::FORMAT,
+    native::FORMAT,
+    smc::FORMAT,
+    geonet::FORMAT,
+    renadic::FORMAT,
+    usc::FORMAT,
+    csmip_v1::FORMAT,
+    csmip_v2::FORMAT,
+    bhrc::FORMAT,
+    cosmos::FORMAT,
+    knet::FORMAT,
+    esm::FORMAT,
+    afad::FORMAT,
+    cwa::FORMAT,
+    unam::FORMAT,
+    peer::FORMAT,
+    columns::FORMAT,
+];
+
+/// Files that are known and refused, tried first.
+const KNOWN_OTHERS: &[Format] = &[refused::HDF5, refused::ARCHIVE, refused::XML, slammer::FORMAT];
 
 /// Reads a strong-motion file of any format; `name` is used in messages only.
 ///
@@ -70,7 +116,8 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
         ));
     }
     check_options(&source, options)?;
-    let Some(format) = FORMATS.iter().find(|format| (format.sniff)(&source)) else {
+    let Some(format) = KNOWN_OTHERS.iter().chain(FORMATS).find(|format| (format.sniff)(&source))
+    else {
         source.require_text()?;
         return Err(source.error(
             (),
@@ -122,6 +169,7 @@ fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
             "give the file that holds the accelerations",
         ));
     }
+    drop_dead_channels(source, record)?;
     for index in 0..record.channels.len() {
         let channel = &mut record.channels[index];
         let label = channel.name.clone();
@@ -231,4 +279,81 @@ fn check_count(
 pub(crate) fn file_stem(name: &str) -> String {
     let base = name.rsplit(['/', '\\']).next().unwrap_or(name);
     base.rsplit_once('.').map_or(base, |(stem, _)| stem).to_owned()
+}
+
+/// Rows of `width` numbers separated by blanks, as columns.
+fn rows(
+    source: &Source<'_>,
+    from: usize,
+    to: usize,
+    width: usize,
+    limit: f64,
+) -> Result<Vec<Vec<f64>>, ReadError> {
+    let mut columns = vec![Vec::with_capacity(to.saturating_sub(from)); width];
+    let mut row = Vec::with_capacity(width);
+    for line in from..to {
+        row.clear();
+        source.tokens(line, limit, &mut row)?;
+        if row.len() != width {
+            return Err(source.error(
+                line,
+                Refusal::Damaged,
+                format!("{width} numbers"),
+                format!("{} numbers", row.len()),
+                "the file is cut or a line was lost; get it again from its source",
+            ));
+        }
+        for (column, value) in columns.iter_mut().zip(&row) {
+            column.push(*value);
+        }
+    }
+    Ok(columns)
+}
+
+/// Leaves out channels that never change: clocks and unused inputs.
+fn drop_dead_channels(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
+    let dead: Vec<String> = record
+        .channels
+        .iter()
+        .filter(|channel| {
+            channel.acceleration.len() > 1
+                && channel.acceleration.iter().all(|value| *value == channel.acceleration[0])
+        })
+        .map(|channel| channel.name.clone())
+        .collect();
+    if dead.is_empty() {
+        return Ok(());
+    }
+    if dead.len() == record.channels.len() {
+        return Err(source.error(
+            (),
+            Refusal::NotAcceleration,
+            "a channel that moves",
+            "one value throughout",
+            "give the file that holds the accelerations",
+        ));
+    }
+    record.channels.retain(|channel| {
+        channel.acceleration.len() < 2
+            || channel.acceleration.iter().any(|value| *value != channel.acceleration[0])
+    });
+    for name in dead {
+        record.warn(
+            None,
+            format!("channel {name} holds one value throughout (a clock or an unused input) and was left out"),
+        );
+    }
+    Ok(())
+}
+
+/// Takes off the mean of a raw digital channel, whose zero is arbitrary, and notes it.
+fn remove_offset(record: &mut Record, name: &str, values: &mut [f64]) {
+    let offset = crate::math::mean(values);
+    for value in values.iter_mut() {
+        *value -= offset;
+    }
+    record.notes.push(format!(
+        "channel {name}: offset of {offset:.4e} m/s2, the mean of the whole record, removed because \
+         the digitizer's zero is arbitrary"
+    ));
 }

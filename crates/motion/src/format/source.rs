@@ -333,6 +333,12 @@ impl From<usize> for Place {
     }
 }
 
+impl From<Option<usize>> for Place {
+    fn from(line: Option<usize>) -> Self {
+        Self { line, column: None }
+    }
+}
+
 impl From<(usize, usize)> for Place {
     fn from((line, column): (usize, usize)) -> Self {
         Self { line: Some(line), column: Some(column) }
