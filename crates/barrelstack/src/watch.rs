@@ -11,7 +11,7 @@ use barrelstack_dynamics::{EnergyLedger, Model, Observer, Planar, Scratch, State
 use crate::assemble::Assembly;
 use crate::ground::Ground;
 
-pub use fate::{Fate, Fates, Thresholds};
+pub use fate::{Fate, Fates, Loss, Thresholds};
 pub use recording::{Channel, Frames, JointForces, Recording};
 pub use stress::{BoundaryPoint, StressEnvelope, Stresses};
 
