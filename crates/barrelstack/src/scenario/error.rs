@@ -280,7 +280,7 @@ impl ScenarioError {
 
     /// The error on one line: place, then problem.
     pub fn sentence(&self) -> String {
-        format!("{}: {}", self.place(), self.problem())
+        printable(&format!("{}: {}", self.place(), self.problem()))
     }
 }
 
@@ -288,7 +288,7 @@ impl std::error::Error for ScenarioError {}
 
 impl fmt::Display for ScenarioError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.problem())?;
+        f.write_str(&printable(&self.problem().to_string()))?;
         let margin = match self.place() {
             Place::File { line, column, width, text, .. } => {
                 let number = line.to_string();
@@ -304,7 +304,7 @@ impl fmt::Display for ScenarioError {
                 margin
             }
             Place::Override { .. } | Place::Whole { .. } => {
-                write!(f, "\n --> {}", self.place())?;
+                write!(f, "\n --> {}", printable(&self.place().to_string()))?;
                 " ".to_owned()
             }
             Place::Unknown => " ".to_owned(),
@@ -314,6 +314,11 @@ impl fmt::Display for ScenarioError {
         }
         Ok(())
     }
+}
+
+/// Text that cannot disturb a terminal.
+fn printable(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
 /// The part of a line around the column that fits a terminal, tabs and controls shown as spaces.

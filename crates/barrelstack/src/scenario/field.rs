@@ -184,8 +184,8 @@ impl Field {
     /// The field with a good value, as a user would write it.
     pub fn example(&self) -> String {
         match self.kind {
-            Kind::Table(_) => format!("a table [{}]", self.name),
-            Kind::Tables(_) => format!("a table [[{}]]", self.name),
+            Kind::Table(_) => format!("a table `{}`", self.name),
+            Kind::Tables(_) => format!("a table `[[{}]]`", self.name),
             _ => format!("`{} = {}`", self.name, self.kind.example()),
         }
     }
@@ -233,6 +233,7 @@ impl fmt::Display for Kind {
             Self::Text => f.write_str("text"),
             Self::Label => f.write_str("text or an integer"),
             Self::Flag => f.write_str("true or false"),
+            Self::Integer(least, greatest) if least == greatest => write!(f, "the integer {least}"),
             Self::Integer(least, greatest) => write!(f, "an integer from {least} to {greatest}"),
             Self::Number(_) => f.write_str("a number"),
             Self::Quantity(dimensions, _) => write!(f, "{} with its unit", list(dimensions)),

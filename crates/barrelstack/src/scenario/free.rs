@@ -341,27 +341,28 @@ fn read_nodes(reader: &Reader<'_>, shape: &Shape) -> Result<Nodes, ScenarioError
         .or(spacing.map(Nodes::Spacing))
         .or(count.map(Nodes::Count))
         .ok_or_else(|| nodes.one_of(&["rule", "spacing", "count"]))?;
-    nodes.finish();
     let circle = matches!(shape, Shape::Circle { .. });
     match rule {
         Nodes::Rolling if !circle => {
             let message =
                 "only a circle rolls on one node; write `nodes = \"corners\"` or a spacing";
-            Err(reader.inconsistent("nodes", message.to_owned()))
+            return Err(nodes.inconsistent("rule", message.to_owned()));
         }
         Nodes::Corners if circle => {
             let message = "a circle has no corners; write `nodes = \"rolling\"` or a spacing";
-            Err(reader.inconsistent("nodes", message.to_owned()))
+            return Err(nodes.inconsistent("rule", message.to_owned()));
         }
         Nodes::Spacing(spacing) if shape.perimeter() / spacing > MOST_NODES => {
             let message = format!(
                 "a spacing of {spacing} m puts more than {MOST_NODES} nodes on a boundary of {} m; take a wider one",
                 shape.perimeter()
             );
-            Err(reader.inconsistent("nodes", message))
+            return Err(nodes.inconsistent("spacing", message));
         }
-        Nodes::Rolling | Nodes::Corners | Nodes::Spacing(_) | Nodes::Count(_) => Ok(rule),
+        Nodes::Rolling | Nodes::Corners | Nodes::Spacing(_) | Nodes::Count(_) => {}
     }
+    nodes.finish();
+    Ok(rule)
 }
 
 fn read_interfaces(

@@ -16,8 +16,9 @@ pub(super) fn overlay(base: &mut Table, over: Table, section: Option<&'static Se
     if let Some(variants) = section.and_then(|s| s.variants.as_ref()) {
         entries.sort_by_key(|entry| entry.key != variants.tag);
     }
+    let keys: Vec<String> = entries.iter().map(|entry| entry.key.clone()).collect();
     for entry in entries {
-        let inner = place_for(base, section, &entry.key, &entry.node.value);
+        let inner = place_for(base, section, &entry.key, &entry.node.value, &keys);
         match (base.get_mut(&entry.key), entry.node.value) {
             (
                 Some(Entry { node: Node { value: Value::Table(below), .. }, .. }),
@@ -39,10 +40,14 @@ fn place_for(
     section: Option<&'static Section>,
     key: &str,
     value: &Value,
+    together: &[String],
 ) -> Option<&'static Section> {
     let section = section?;
     for rival in section.rivals(key) {
-        base.remove(rival);
+        // Rivals laid over together are the user's contradiction, to be told and not resolved.
+        if !together.iter().any(|key| key == rival) {
+            base.remove(rival);
+        }
     }
     if let (Some(variants), Value::Text(new)) = (&section.variants, value)
         && variants.tag == key
@@ -166,7 +171,7 @@ fn set(
         return Ok(());
     }
     let empty = || Value::Table(Table::default());
-    let inner = place_for(table, section, key, &empty());
+    let inner = place_for(table, section, key, &empty(), &[]);
     if table.get(key).is_none() {
         let node = Node { origin, value: empty() };
         table.set(Entry { key: (*key).to_owned(), origin, node });

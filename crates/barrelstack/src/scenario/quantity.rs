@@ -37,7 +37,7 @@ pub enum QuantityError {
         text: String,
     },
     /// A word that is no unit.
-    #[error("unknown unit `{unit}` in `{text}`{}", nearest.as_ref().map_or_else(String::new, |n| format!("; did you mean `{n}`?")))]
+    #[error("unknown unit `{unit}` in `{text}`")]
     UnknownUnit {
         /// The word.
         unit: String,
@@ -135,6 +135,11 @@ pub(super) fn plain(value: f64) -> String {
     } else {
         format!("{value}")
     }
+}
+
+/// A computed number for an error message: at most five significant digits.
+pub(super) fn rounded(value: f64) -> f64 {
+    format!("{value:.4e}").parse().unwrap_or(value)
 }
 
 /// A text cut to a length that fits an error message.

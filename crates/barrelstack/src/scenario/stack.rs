@@ -6,6 +6,7 @@ use super::dimension::Dimension;
 use super::error::ScenarioError;
 use super::field::{Default, Field, Kind, Named, Range, Section, names};
 use super::interface::{self, INTERFACE, Interface};
+use super::quantity::rounded;
 use super::rack::{self, RACK, Rack};
 use super::reader::Reader;
 use super::tree::Table;
@@ -271,7 +272,8 @@ fn check_geometry(reader: &Reader<'_>, stack: &StackSpec) -> Result<(), Scenario
     if rack.barrels > 1 && barrel.section_diameter > rack.pitch {
         let message = format!(
             "barrels of {} m overlap on a rack pitch of {} m; set `stack.rack.pitch` and `stack.rack.width`",
-            barrel.section_diameter, rack.pitch
+            rounded(barrel.section_diameter),
+            rack.pitch
         );
         return Err(reader.inconsistent("barrel", message));
     }

@@ -131,8 +131,11 @@ impl Sources {
     pub(super) fn parse(&self, file: usize) -> Result<Table, ScenarioError> {
         let text = &self.files[file].text;
         let document = DeTable::parse(text).map_err(|error| {
-            let span = error.span().unwrap_or(0..0);
-            let origin = Origin::File { file, start: span.start, end: span.end };
+            let origin = error.span().map_or(Origin::Whole(file), |span| Origin::File {
+                file,
+                start: span.start,
+                end: span.end,
+            });
             self.error(origin, Problem::Syntax { message: error.message().replace('\n', ", ") })
         })?;
         Ok(convert_table(document.get_ref(), file))
