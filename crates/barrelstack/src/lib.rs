@@ -10,6 +10,7 @@
 //! ```
 
 pub mod assemble;
+pub mod check;
 pub mod export;
 pub mod ground;
 pub mod outcome;
@@ -20,6 +21,7 @@ pub mod step;
 pub mod summary;
 pub mod watch;
 
+pub use check::check;
 pub use run::{Run, RunFailure, run};
 pub use scenario::Scenario;
 pub use summary::Summary;

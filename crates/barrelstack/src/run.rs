@@ -77,7 +77,7 @@ pub enum RunFailure {
 }
 
 /// Largest share of gravity that may be left unbalanced at rest.
-const SETTLE_TOLERANCE: f64 = 1e-10;
+pub(crate) const SETTLE_TOLERANCE: f64 = 1e-10;
 
 /// Deepest overlap (m) of two bodies at the start that sinking under weight can explain.
 const OVERLAP_ALLOWED: f64 = 2e-3;
@@ -103,10 +103,7 @@ pub fn run(
     let mut state = State::initial(model);
     let mut scratch = Scratch::new(model);
     check_overlap(&assembly, &state, &mut scratch, scenario.run.similitude)?;
-    let step = match scenario.run.step {
-        Some(step) => step * time_scale,
-        None => default_step(&assembly),
-    };
+    let step = time_step(scenario, &assembly);
     let settled = if scenario.run.settle {
         Some(settle(model, &mut state, &mut scratch, step, SETTLE_TOLERANCE)?)
     } else {
@@ -181,6 +178,14 @@ pub fn run(
     })
 }
 
+/// The step (s) that a scenario asks for, or the one its stiffest contact suggests.
+pub(crate) fn time_step(scenario: &Scenario, assembly: &Assembly) -> f64 {
+    match scenario.run.step {
+        Some(step) => step * scenario.run.similitude.sqrt(),
+        None => default_step(assembly),
+    }
+}
+
 fn method(scenario: &Scenario) -> Method {
     match scenario.run.method {
         scenario::Method::SemiImplicitEuler => Method::SemiImplicitEuler,
@@ -219,7 +224,7 @@ fn end_time(scenario: &Scenario, ground: &Ground, time_scale: f64) -> Result<f64
 }
 
 /// Refuses bodies that stand in each other before anything has moved.
-fn check_overlap(
+pub(crate) fn check_overlap(
     assembly: &Assembly,
     state: &State<Planar>,
     scratch: &mut Scratch<Planar>,

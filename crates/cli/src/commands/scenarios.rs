@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use barrelstack::Scenario;
-use barrelstack::scenario::{builtin, fields, schema};
+use barrelstack::scenario::{builtin, reference, schema};
 
 use crate::args::{ScenariosAction, ScenariosArgs};
 use crate::printer;
@@ -26,9 +26,9 @@ pub(crate) fn scenarios(args: &ScenariosArgs) -> anyhow::Result<ExitCode> {
         Some(ScenariosAction::Show { name, resolved: true }) => {
             printer::text(&Scenario::builtin(name, &[])?.to_resolved_toml());
         }
-        Some(ScenariosAction::Fields) => printer::text(&fields()),
+        Some(ScenariosAction::Fields) => printer::text(&reference::markdown()),
         Some(ScenariosAction::Schema) => {
-            printer::line(&serde_json::to_string_pretty(&schema())?);
+            printer::line(&serde_json::to_string_pretty(&schema::json_schema())?);
         }
     }
     Ok(ExitCode::SUCCESS)
