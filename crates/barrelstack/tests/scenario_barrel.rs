@@ -1,5 +1,7 @@
 //! Mass and moments of inertia of catalogue barrels.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
 use barrelstack::scenario::{Barrel, Fill, Scenario, View, catalog};
 
 fn barrel(name: &str, fill: &str) -> Barrel {

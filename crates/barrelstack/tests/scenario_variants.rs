@@ -1,5 +1,7 @@
 //! Every variant of every table is read, written and read back.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
 use barrelstack::scenario::{
     Amplitude, Basis, BodyOverride, Cradle, Damping, Fill, Friction, Method, MotionSource, Nodes,
     NormalLaw, PulseKind, RackKind, Scale, Scenario, Scene, Shape, StackBody, Vertical, Viscous,

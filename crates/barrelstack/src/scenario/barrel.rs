@@ -214,6 +214,7 @@ const SIZE: Kind =
 
 /// A barrel.
 pub static BARREL: Section = Section {
+    name: "barrel",
     help: "A barrel of the catalogue, with what differs.",
     fields: &[
         Field::new(

@@ -231,28 +231,28 @@ fn suggestion(nearest: Option<&str>) -> String {
 impl Problem {
     /// The list of valid names, when that helps.
     fn help(&self) -> Option<String> {
-        match self {
-            Self::UnknownKey { valid, .. }
-            | Self::ForeignKey { valid, .. }
-            | Self::UnknownName { valid, .. }
-                if !valid.is_empty() =>
-            {
-                Some(format!("valid here: {}", valid.join(", ")))
-            }
-            Self::Quantity { reason: QuantityError::UnknownUnit { .. }, .. } => {
-                let units: Vec<&str> = super::unit::names().filter(|unit| *unit != "1").collect();
-                Some(format!(
-                    "units: {}, and their products, quotients and powers",
-                    units.join(" ")
-                ))
-            }
-            Self::Quantity {
-                reason: QuantityError::WrongDimension { text, found, .. }, ..
-            } if found.starts_with("an acceleration") && text.ends_with('g') => {
-                Some("`g` is the acceleration of gravity; grams are written `gram`".to_owned())
-            }
-            _ => None,
+        if let Self::UnknownKey { valid, .. }
+        | Self::ForeignKey { valid, .. }
+        | Self::UnknownName { valid, .. } = self
+            && !valid.is_empty()
+        {
+            return Some(format!("valid here: {}", valid.join(", ")));
         }
+        let Self::Quantity { reason, .. } = self else { return None };
+        if let QuantityError::UnknownUnit { .. } = reason {
+            let units: Vec<&str> = super::unit::names().filter(|unit| *unit != "1").collect();
+            return Some(format!(
+                "units: {}, and their products, quotients and powers",
+                units.join(" ")
+            ));
+        }
+        if let QuantityError::WrongDimension { text, found, .. } = reason
+            && found.starts_with("an acceleration")
+            && text.ends_with('g')
+        {
+            return Some("`g` is the acceleration of gravity; grams are written `gram`".to_owned());
+        }
+        None
     }
 }
 

@@ -9,6 +9,8 @@ use super::dimension::Dimension;
 /// A table of a scenario file.
 #[derive(Debug)]
 pub struct Section {
+    /// Name in the reference and the schema, unique.
+    pub name: &'static str,
     /// What it describes, one sentence.
     pub help: &'static str,
     /// Fields that it always has.
@@ -183,15 +185,39 @@ impl Field {
 
     /// The field with a good value, as a user would write it.
     pub fn example(&self) -> String {
-        match self.kind {
-            Kind::Table(_) => format!("a table `{}`", self.name),
-            Kind::Tables(_) => format!("a table `[[{}]]`", self.name),
-            _ => format!("`{} = {}`", self.name, self.kind.example()),
+        if let Kind::Table(_) = self.kind {
+            format!("a table `{}`", self.name)
+        } else if let Kind::Tables(_) = self.kind {
+            format!("a table `[[{}]]`", self.name)
+        } else {
+            format!("`{} = {}`", self.name, self.kind.example())
         }
     }
 }
 
 impl Kind {
+    /// The table inside a field, or that each item of its list is.
+    pub fn section(&self) -> Option<&'static Section> {
+        match self {
+            Self::Table(section) | Self::Tables(section) | Self::ChoiceOrTable(_, _, section) => {
+                Some(section)
+            }
+            Self::Text
+            | Self::Label
+            | Self::Flag
+            | Self::Integer(..)
+            | Self::Number(_)
+            | Self::Quantity(..)
+            | Self::WordOr(..)
+            | Self::Unit(_)
+            | Self::Point(_)
+            | Self::Points(_)
+            | Self::Pair
+            | Self::TextOrFalse
+            | Self::Choice(_) => None,
+        }
+    }
+
     /// A good value as TOML.
     pub fn example(&self) -> String {
         match self {

@@ -57,6 +57,7 @@ pub struct Scenario {
 
 /// What stands.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a scenario has one scene and is seldom copied")]
 pub enum Scene {
     /// A stack of barrels on racks.
     Stack {

@@ -114,6 +114,7 @@ const CRADLE_ANGLE: Kind = Kind::Quantity(&[Dimension::ANGLE], Range::up_to(1.5)
 
 /// A cradle.
 pub static CRADLE: Section = Section {
+    name: "cradle",
     help: "How a rack holds a barrel in the transverse view.",
     fields: &[Field::new(
         "type",
@@ -159,6 +160,7 @@ pub static CRADLE: Section = Section {
 
 /// A rack.
 pub static RACK: Section = Section {
+    name: "rack",
     help: "A rack of the catalogue, with what differs.",
     fields: &[
         Field::new(

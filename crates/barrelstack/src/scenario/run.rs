@@ -93,6 +93,7 @@ const MOST_STEPS: f64 = 1e9;
 
 /// How it is run.
 pub static RUN: Section = Section {
+    name: "run",
     help: "How the scenario is run.",
     fields: &[
         Field::new(
@@ -165,6 +166,7 @@ pub static RUN: Section = Section {
 
 /// What is kept.
 pub static RECORD: Section = Section {
+    name: "record",
     help: "What is kept of the run.",
     fields: &[
         Field::new(
@@ -192,6 +194,7 @@ pub static RECORD: Section = Section {
 
 /// Thresholds that tell a collapse.
 pub static OUTCOME: Section = Section {
+    name: "outcome",
     help: "Thresholds that tell a collapse; every default is an assumption to be varied.",
     fields: &[
         Field::new(

@@ -178,6 +178,7 @@ const MOST_CORNERS: usize = 200;
 
 /// An outline.
 pub static SHAPE: Section = Section {
+    name: "shape",
     help: "Outline of a body, about its reference point.",
     fields: &[Field::new(
         "type",

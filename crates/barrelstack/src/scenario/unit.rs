@@ -235,6 +235,40 @@ fn halves(power: &str) -> Result<i8, UnitError> {
     Ok(halves as i8)
 }
 
+/// Words that users write for units.
+const SYNONYMS: &[(&str, &str)] = &[
+    ("grams", "gram"),
+    ("sec", "s"),
+    ("secs", "s"),
+    ("second", "s"),
+    ("seconds", "s"),
+    ("msec", "ms"),
+    ("meter", "m"),
+    ("meters", "m"),
+    ("metre", "m"),
+    ("metres", "m"),
+    ("inch", "in"),
+    ("inches", "in"),
+    ("\"", "in"),
+    ("feet", "ft"),
+    ("'", "ft"),
+    ("lbs", "lb"),
+    ("pound", "lb"),
+    ("pounds", "lb"),
+    ("degree", "deg"),
+    ("degrees", "deg"),
+    ("newton", "N"),
+    ("kgf", "kg"),
+    ("tonne", "t"),
+    ("ton", "t"),
+    ("l", "L"),
+    ("liter", "L"),
+    ("litre", "L"),
+    ("liters", "L"),
+    ("gal", "Gal"),
+    ("hz", "Hz"),
+];
+
 fn named(name: &str) -> Result<Unit, UnitError> {
     if let Some(&(_, numerator, denominator, ten, pi, dimension)) =
         UNITS.iter().find(|unit| unit.0 == name)
@@ -242,38 +276,6 @@ fn named(name: &str) -> Result<Unit, UnitError> {
         let scale = Scale { numerator, denominator, ten, pi, factor: 1.0 };
         return Ok(Unit { scale, dimension });
     }
-    const SYNONYMS: &[(&str, &str)] = &[
-        ("grams", "gram"),
-        ("sec", "s"),
-        ("secs", "s"),
-        ("second", "s"),
-        ("seconds", "s"),
-        ("msec", "ms"),
-        ("meter", "m"),
-        ("meters", "m"),
-        ("metre", "m"),
-        ("metres", "m"),
-        ("inch", "in"),
-        ("inches", "in"),
-        ("\"", "in"),
-        ("feet", "ft"),
-        ("'", "ft"),
-        ("lbs", "lb"),
-        ("pound", "lb"),
-        ("pounds", "lb"),
-        ("degree", "deg"),
-        ("degrees", "deg"),
-        ("newton", "N"),
-        ("kgf", "kg"),
-        ("tonne", "t"),
-        ("ton", "t"),
-        ("l", "L"),
-        ("liter", "L"),
-        ("litre", "L"),
-        ("liters", "L"),
-        ("gal", "Gal"),
-        ("hz", "Hz"),
-    ];
     let nearest = SYNONYMS
         .iter()
         .find(|(word, _)| word.eq_ignore_ascii_case(name))

@@ -178,12 +178,12 @@ impl<'a> Reader<'a> {
         };
         let path = self.path_of(name);
         match self.entry(name) {
-            Some(node) => match &node.value {
-                Value::Table(table) => {
-                    Self::open(self.sources, section, path, Some(table), node.origin)
-                }
-                _ => Err(self.wrong_type(name, field.kind, node)),
-            },
+            Some(node) => {
+                let Value::Table(table) = &node.value else {
+                    return Err(self.wrong_type(name, field.kind, node));
+                };
+                Self::open(self.sources, section, path, Some(table), node.origin)
+            }
             None if matches!(field.default, Default::Required) => Err(self.missing(name)),
             None => Self::open(self.sources, section, path, None, self.origin),
         }
