@@ -6,7 +6,8 @@ use barrelstack::scenario::field::{Default, Field, Kind, Section};
 use barrelstack::scenario::{ROOT, Scenario, builtin, reference, schema};
 use serde_json::{Value, json};
 
-/// Checks a value against the part of JSON Schema that the generator uses; a keyword it does not know fails.
+/// Checks a value against the part of JSON Schema that the generator uses; a keyword it does not
+/// know fails.
 fn check(root: &Value, schema: &Value, value: &Value, path: &str) -> Result<(), String> {
     let fail = |what: &str| Err(format!("{path}: {value} breaks {what}"));
     for (keyword, rule) in schema.as_object().unwrap() {
@@ -99,7 +100,8 @@ fn check(root: &Value, schema: &Value, value: &Value, path: &str) -> Result<(), 
     Ok(())
 }
 
-/// What the one pattern of the schema says, by hand: a number, then something that starts no number.
+/// What the one pattern of the schema says, by hand: a number, then something that starts no
+/// number.
 fn is_quantity(text: &str) -> bool {
     fn digits(text: &str) -> &str {
         text.trim_start_matches(|c: char| c.is_ascii_digit())

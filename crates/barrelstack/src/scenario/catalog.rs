@@ -114,7 +114,8 @@ pub struct CatalogRack {
     pub source: &'static str,
 }
 
-/// Two barrels side by side on two rails: racks of type 2 across the barrels and of type 1 along them.
+/// Two barrels side by side on two rails: racks of type 2 across the barrels and of type 1 along
+/// them.
 const TWO_BARREL: CatalogRack = CatalogRack {
     name: "two-barrel",
     kind: RackKind::OnBarrels,
@@ -157,10 +158,12 @@ pub const RACKS: &[CatalogRack] = &[
     },
 ];
 
-/// Stiffness of one contact node in a stack (N/m), calibrated by Candia, de la Llera and Almazán (2008).
+/// Stiffness of one contact node in a stack (N/m), calibrated by Candia, de la Llera and Almazán
+/// (2008).
 const STIFFNESS: f64 = 980_000.0;
 
-/// Damping of one contact node in a stack (N·s/m), calibrated by Candia, de la Llera and Almazán (2008).
+/// Damping of one contact node in a stack (N·s/m), calibrated by Candia, de la Llera and Almazán
+/// (2008).
 const DAMPING: f64 = 2200.0;
 
 /// A pair of bodies in a stack with the friction it takes when a scenario leaves it out.

@@ -66,7 +66,9 @@ impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File { file, line, column, .. } => write!(f, "{file}:{line}:{column}"),
-            Self::Override { text } => write!(f, "override `{text}`"),
+            Self::Override { text } => {
+                write!(f, "override `{}`", super::quantity::shorten(text))
+            }
             Self::Whole { file } => f.write_str(file),
             Self::Unknown => f.write_str("default value"),
         }
@@ -258,8 +260,8 @@ impl Problem {
 
 /// Why a scenario cannot be used: one problem at one place.
 ///
-/// `Display` writes the sentence, the place, the line with a caret under what is wrong, and the valid names when there
-/// are any. [`ScenarioError::sentence`] is the same on one line.
+/// `Display` writes the sentence, the place, the line with a caret under what is wrong, and the
+/// valid names when there are any. [`ScenarioError::sentence`] is the same on one line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScenarioError(Box<(Problem, Place)>);
 

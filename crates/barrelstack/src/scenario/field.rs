@@ -1,6 +1,7 @@
 //! The one definition of every field of a scenario: name, kind, default and help.
 //!
-//! The reader, the writer, the reference and the JSON Schema all look here, so that they cannot disagree.
+//! The reader, the writer, the reference and the JSON Schema all look here, so that they cannot
+//! disagree.
 
 use std::fmt;
 

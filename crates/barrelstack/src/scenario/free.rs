@@ -33,7 +33,8 @@ pub enum Nodes {
     Rolling,
 }
 
-/// Viscous drag on a body, relative to the ground at rest (Candia, de la Llera and Almazán 2008, eq. 2.8).
+/// Viscous drag on a body, relative to the ground at rest (Candia, de la Llera and Almazán 2008,
+/// eq. 2.8).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viscous {
     /// On the velocity of the center of mass (N·s/m).

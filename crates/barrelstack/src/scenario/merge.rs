@@ -1,8 +1,8 @@
 //! Lays one scenario over another: `extends` and overrides.
 //!
-//! Tables are merged key by key and everything else is replaced.
-//! A field that excludes another removes it, and a new variant removes the fields of the old one, so that what is laid
-//! over never has to undo what lies below.
+//! Tables are merged key by key and everything else is replaced. A field that excludes another
+//! removes it, and a new variant removes the fields of the old one, so that what is laid over never
+//! has to undo what lies below.
 
 use super::error::{Problem, ScenarioError};
 use super::field::{Default, Field, Kind, Section, Variant};
@@ -33,8 +33,9 @@ pub(super) fn overlay(base: &mut Table, over: Table, section: Option<&'static Se
     }
 }
 
-/// Makes room for a key: removes its rivals and the fields of an abandoned variant, and turns a name into the table it
-/// stands for when a table is laid over it. Returns the section inside the key.
+/// Makes room for a key: removes its rivals and the fields of an abandoned variant, and turns a
+/// name into the table it stands for when a table is laid over it. Returns the section inside the
+/// key.
 fn place_for(
     base: &mut Table,
     section: Option<&'static Section>,

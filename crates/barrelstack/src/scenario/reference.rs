@@ -8,7 +8,8 @@ use super::quantity::plain;
 use super::root::ROOT;
 use super::unit;
 
-/// Every table and field of a scenario file: kind, range, default and meaning; then the units and the catalogue.
+/// Every table and field of a scenario file: kind, range, default and meaning; then the units and
+/// the catalogue.
 pub fn markdown() -> String {
     let mut text = String::from("# Fields of a scenario file\n\n");
     let mut seen = Vec::new();

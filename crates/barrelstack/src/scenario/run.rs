@@ -30,14 +30,15 @@ pub struct RunSpec {
     pub duration: Option<f64>,
     /// Time integration.
     pub method: Method,
-    /// Time step, or first step of an adaptive method (s); `None` for a step from the stiffest contact.
+    /// Time step, or first step of an adaptive method (s); `None` for a step from the stiffest
+    /// contact.
     pub step: Option<f64>,
     /// Time to keep running after a collapse (s); `None` to run to the end.
     pub stop_after_collapse: Option<f64>,
     /// Acceleration of gravity (m/s²).
     pub gravity: f64,
-    /// Length scale `λ` of Froude similitude applied to bodies, contacts and motion: mass `λ³`, stiffness `λ²`,
-    /// damping `λ^2.5`, time `√λ`.
+    /// Length scale `λ` of Froude similitude applied to bodies, contacts and motion: mass `λ³`,
+    /// stiffness `λ²`, damping `λ^2.5`, time `√λ`.
     pub similitude: f64,
     /// Whether the bodies are brought to rest under gravity before the motion starts.
     pub settle: bool,
@@ -55,12 +56,13 @@ pub struct RecordSpec {
 /// Thresholds that tell a collapse.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OutcomeSpec {
-    /// A barrel has lost its seat when its center is this many barrel radii away from its place in the rack.
+    /// A barrel has lost its seat when its center is this many barrel radii away from its place in
+    /// the rack.
     pub seat_loss_ratio: f64,
     /// A body has fallen when its center is this far below its place at rest (m).
     pub fall_drop: f64,
-    /// A rack has slid off when it has moved this part of the distance between its rail and the end of the barrel
-    /// below.
+    /// A rack has slid off when it has moved this part of the distance between its rail and the end
+    /// of the barrel below.
     pub rack_slide_ratio: f64,
     /// A level has rocked over when its rack is inclined more than this (rad).
     pub rocking_angle: f64,

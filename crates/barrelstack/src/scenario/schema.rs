@@ -7,8 +7,9 @@ use super::root::ROOT;
 
 /// The schema (JSON Schema 2020-12) of a scenario file, for completion and checking in editors.
 ///
-/// It holds names, types, choices and ranges of plain numbers. It requires no field, since `extends` and overrides may
-/// supply any; ranges and dimensions of quantities, and what fields mean together, are checked by the reader alone.
+/// It holds names, types, choices and ranges of plain numbers. It requires no field, since
+/// `extends` and overrides may supply any; ranges and dimensions of quantities, and what fields
+/// mean together, are checked by the reader alone.
 pub fn json_schema() -> Value {
     let mut sections = Map::new();
     collect(&mut sections, &ROOT);
@@ -46,7 +47,8 @@ fn section(section: &'static Section) -> Value {
     let Some(variants) = &section.variants else {
         return object(section.help, section.fields.iter());
     };
-    // One alternative for each variant; a file that extends another may leave the choosing field out.
+    // One alternative for each variant; a file that extends another may leave the choosing field
+    // out.
     let alternatives: Vec<Value> = variants
         .list
         .iter()

@@ -75,8 +75,8 @@ pub struct BodyOverride {
     pub body: StackBody,
     /// Level, 1 at the bottom.
     pub level: u32,
-    /// Column, 1 at the left before any mirroring: of barrels, or of racks when `body` is a rack; `None` for the
-    /// whole level.
+    /// Column, 1 at the left before any mirroring: of barrels, or of racks when `body` is a rack;
+    /// `None` for the whole level.
     pub column: Option<u32>,
     /// Mass in place of the regular one (kg).
     pub mass: Option<f64>,

@@ -23,7 +23,8 @@ pub(super) struct Unit {
 
 /// Names, exact sizes (numerator, denominator, power of ten, power of π) and dimensions.
 ///
-/// Inch, foot, pound and standard gravity are exact by definition; the pound-force is their product.
+/// Inch, foot, pound and standard gravity are exact by definition; the pound-force is their
+/// product.
 const UNITS: &[(&str, u128, u128, i32, i32, Dimension)] = &[
     ("1", 1, 1, 0, 0, Dimension::NONE),
     ("%", 1, 1, -2, 0, Dimension::NONE),

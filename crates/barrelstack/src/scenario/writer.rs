@@ -35,7 +35,8 @@ impl Writer {
         writer
     }
 
-    /// Ends the table: in builds with assertions, every defined field must have been written or left out.
+    /// Ends the table: in builds with assertions, every defined field must have been written or
+    /// left out.
     pub(super) fn finish(self) -> Table {
         for field in self.section.fields_of(self.variant) {
             debug_assert!(self.seen.contains(&field.name), "`{}` was forgotten", field.name);
