@@ -1,4 +1,4 @@
-//! Mass and moments of inertia of catalogue barrels.
+//! Mass and moments of inertia of catalog barrels.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -88,7 +88,7 @@ fn altering_the_contents_brings_the_mass_that_goes_with_them() {
     assert_eq!(empty, barrel("bordeaux-225", "empty"));
     assert_eq!(empty.altered(None, Some(Fill::FullFluid)), full);
     assert_eq!(full.altered(Some(300.0), None).mass, 300.0);
-    // An empty barrel heavier than its catalogue wood keeps its shape.
+    // An empty barrel heavier than its catalog wood keeps its shape.
     let heavy = empty.altered(Some(2.0 * empty.mass), None);
     let ratio = heavy.inertia(View::Transverse) / empty.inertia(View::Transverse);
     assert!((ratio - 2.0).abs() < 1e-12, "{ratio}"); // measured 0

@@ -27,7 +27,7 @@ pub enum Fill {
 /// heads.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Barrel {
-    /// Catalogue name the barrel was made from.
+    /// Catalog name the barrel was made from.
     pub base: String,
     /// Mass of wood and contents (kg).
     pub mass: f64,
@@ -78,7 +78,7 @@ impl Barrel {
     /// them is the nominal volume. The contents weigh what the wood leaves of `mass`. A frozen
     /// filling turns with the wood. An ideal fluid does not turn about the axis, except for half a
     /// Stokes layer at 1 Hz, and about a transverse axis it turns like the fluid in a spheroid with
-    /// the same moments, `(I_t - I_a)² / I_t` (Lamb, Hydrodynamics, art. 110).
+    /// the same moments, `(I_t - I_a)² / I_t` (Lamb, Hydrodynamics, on the ellipsoidal shell filled with liquid).
     pub fn inertia(&self, view: View) -> f64 {
         let moments = self.moments();
         match view {
@@ -114,7 +114,7 @@ impl Barrel {
             transverse: wine_density * wine.transverse,
         };
         let contents = match self.fill {
-            // Wood heavier than the catalogue's, when a mass is given for an empty barrel, keeps
+            // Wood heavier than the catalog's, when a mass is given for an empty barrel, keeps
             // its shape.
             Fill::Empty => {
                 let density = wine_mass / wood.volume;
@@ -216,20 +216,20 @@ impl Named for Fill {
     ];
 }
 
-const CATALOG: Default = Default::Derived("that of the catalogue");
+const CATALOG: Default = Default::Derived("that of the catalog");
 const SIZE: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Range { least: 0.01, above: false, greatest: 10.0 });
 
 /// A barrel.
 pub static BARREL: Section = Section {
     name: "barrel",
-    help: "A barrel of the catalogue, with what differs.",
+    help: "A barrel of the catalog, with what differs.",
     fields: &[
         Field::new(
             "base",
             Kind::Choice(catalog::barrel_names),
             Default::Value("\"bordeaux-225\""),
-            "Barrel of the catalogue.",
+            "Barrel of the catalog.",
         ),
         Field::new(
             "fill",

@@ -10,7 +10,7 @@ use super::rack::{Cradle, Posts, RackKind};
 /// Density of wine (kg/m³).
 pub const WINE_DENSITY: f64 = 990.0;
 
-/// A barrel of the catalogue.
+/// A barrel of the catalog.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CatalogBarrel {
     /// Name.
@@ -77,7 +77,7 @@ pub const BARRELS: &[CatalogBarrel] = &[
     },
 ];
 
-/// A rack of the catalogue.
+/// A rack of the catalog.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CatalogRack {
     /// Name.
@@ -218,12 +218,12 @@ pub(super) fn record_names() -> Vec<&'static str> {
     RECORDS.iter().map(|(name, _)| *name).collect()
 }
 
-/// A barrel of the catalogue.
+/// A barrel of the catalog.
 pub fn barrel(name: &str) -> Option<&'static CatalogBarrel> {
     BARRELS.iter().find(|barrel| barrel.name == name)
 }
 
-/// A rack of the catalogue.
+/// A rack of the catalog.
 pub fn rack(name: &str) -> Option<&'static CatalogRack> {
     RACKS.iter().find(|rack| rack.name == name)
 }

@@ -6,6 +6,7 @@
 use std::fmt;
 
 use super::dimension::Dimension;
+use super::quantity::plain;
 
 /// A table of a scenario file.
 #[derive(Debug)]
@@ -146,8 +147,9 @@ impl Range {
     /// The range in words, with a unit.
     pub fn describe(&self, unit: &str) -> String {
         let unit = if unit.is_empty() || unit == "1" { String::new() } else { format!(" {unit}") };
-        let (least, greatest) = (self.least, self.greatest);
-        match (self.above, least == -VAST, greatest == VAST) {
+        let bounds = (self.above, self.least == -VAST, self.greatest == VAST);
+        let (least, greatest) = (plain(self.least), plain(self.greatest));
+        match bounds {
             (_, true, true) => format!("a number no larger than 1e12{unit} in size"),
             (true, _, true) => format!("greater than {least}{unit} and below 1e12{unit}"),
             (false, _, true) => format!("at least {least}{unit} and below 1e12{unit}"),

@@ -24,9 +24,12 @@ impl Scenario {
     /// Reads a scenario from text, without touching the file system.
     ///
     /// `source_name` is the path shown in errors; relative paths in the scenario are relative to
-    /// its folder. An override is `path=value`, such as `stack.levels=5` or `motion.scale.pgv=60
-    /// cm/s`: the value is TOML, or text when it is not TOML. Items of lists are known by their
-    /// name, or by their number from 1. `extends` may name a built-in scenario only.
+    /// its folder.
+    ///
+    /// An override is `path=value`, such as `stack.levels=5` or `motion.scale.pgv=60 cm/s`.
+    /// The value is TOML, or text when it is not TOML. Items of lists are known by their name
+    /// (`body.block.mass`), interfaces by their pair (`interface.block-ground.stiffness`), or by
+    /// their number from 1. `extends` may name a built-in scenario only.
     ///
     /// ```
     /// use barrelstack::scenario::Scenario;

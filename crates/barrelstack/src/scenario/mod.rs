@@ -112,7 +112,7 @@ impl Scenario {
         }
     }
 
-    /// The scenario as text that reads back equal: every default written out, every quantity in SI.
+    /// The scenario as text that reads back equal: every default written out, every quantity in SI. Paths are kept as written.
     pub fn to_resolved_toml(&self) -> String {
         writer::to_toml(&root::write(self))
     }

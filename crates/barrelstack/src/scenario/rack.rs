@@ -46,7 +46,7 @@ pub struct Posts {
 /// A rack.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rack {
-    /// Catalogue name the rack was made from.
+    /// Catalog name the rack was made from.
     pub base: String,
     /// How the rack stands on what is below.
     pub kind: RackKind,
@@ -104,7 +104,7 @@ impl Named for CradleKind {
         &[("supports", Self::Supports), ("arc", Self::Arc)];
 }
 
-const CATALOG: Default = Default::Derived("that of the catalogue");
+const CATALOG: Default = Default::Derived("that of the catalog");
 
 const fn size(least: f64, greatest: f64) -> Kind {
     Kind::Quantity(&[Dimension::LENGTH], Range { least, above: false, greatest })
@@ -161,13 +161,13 @@ pub static CRADLE: Section = Section {
 /// A rack.
 pub static RACK: Section = Section {
     name: "rack",
-    help: "A rack of the catalogue, with what differs.",
+    help: "A rack of the catalog, with what differs.",
     fields: &[
         Field::new(
             "base",
             Kind::Choice(catalog::rack_names),
             Default::Value("\"two-barrel\""),
-            "Rack of the catalogue.",
+            "Rack of the catalog.",
         ),
         Field::new(
             "mass",

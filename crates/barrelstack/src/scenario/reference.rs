@@ -9,7 +9,7 @@ use super::root::ROOT;
 use super::unit;
 
 /// Every table and field of a scenario file: kind, range, default and meaning; then the units and
-/// the catalogue.
+/// the catalog.
 pub fn markdown() -> String {
     let mut text = String::from("# Fields of a scenario file\n\n");
     let mut seen = Vec::new();
@@ -22,7 +22,7 @@ pub fn markdown() -> String {
         "{}.\nUnits may be multiplied (`N s`), divided (`kN/cm`), raised to a power (`m^2`) and grouped (`N/(m s)`).\n",
         names.join(" ")
     );
-    catalogue(&mut text);
+    catalog_tables(&mut text);
     text
 }
 
@@ -107,8 +107,8 @@ fn quoted(names: &[&str]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
-fn catalogue(text: &mut String) {
-    text.push_str("## Barrels of the catalogue\n\n");
+fn catalog_tables(text: &mut String) {
+    text.push_str("## Barrels of the catalog\n\n");
     text.push_str(
         "| name | length (m) | bilge (m) | head (m) | stave (m) | empty (kg) | volume (L) | source |\n\
          |---|---|---|---|---|---|---|---|\n",
@@ -127,7 +127,7 @@ fn catalogue(text: &mut String) {
             b.source
         );
     }
-    text.push_str("\n## Racks of the catalogue\n\n");
+    text.push_str("\n## Racks of the catalog\n\n");
     text.push_str(
         "| name | mass (kg) | barrels | pitch (m) | width (m) | rails ± (m) | clearance (m) | source |\n\
          |---|---|---|---|---|---|---|---|\n",
@@ -148,7 +148,7 @@ fn catalogue(text: &mut String) {
         );
     }
     text.push_str(
-        "\n## Friction of the catalogue\n\n| pair | coefficient | source |\n|---|---|---|\n",
+        "\n## Friction of the catalog\n\n| pair | coefficient | source |\n|---|---|---|\n",
     );
     for p in &catalog::PAIRS {
         let _ = writeln!(text, "| `{}` | {} | {} |", p.name, p.coefficient, p.source);

@@ -340,9 +340,11 @@ impl Reader<'_> {
     /// A unit alone counts as one of it.
     fn read_unit(&self, name: &str, node: &Node, dimension: Dimension) -> Result<Quantity> {
         if let Value::Text(text) = &node.value
-            && let Ok(quantity) = Quantity::parse_as(&format!("1 {text}"), &[dimension])
+            && !text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
         {
-            return Ok(quantity);
+            let one =
+                Node { origin: node.origin, value: Value::Text(format!("1 {}", text.trim())) };
+            return self.read_quantity(name, &one, &[dimension], Range::POSITIVE);
         }
         self.read_quantity(name, node, &[dimension], Range::POSITIVE)
     }
