@@ -29,7 +29,8 @@
 //! ```
 //!
 //! Each field is defined once, in a table of [`field::Section`]s next to the type it fills; the reader,
-//! the writer of resolved text, the [JSON Schema](schema) and the [reference] all look there. To add a
+//! the writer of resolved text, the [JSON Schema](schema) and the
+//! [reference](mod@reference) all look there. To add a
 //! field: a line in that table, a field in the type, a line in its `read` and one in its `write`;
 //! leaving one out fails the tests.
 
