@@ -10,7 +10,7 @@ use super::rack::{Cradle, Posts, RackKind};
 /// Density of wine (kg/m³).
 pub const WINE_DENSITY: f64 = 990.0;
 
-/// A barrel of the catalogue.
+/// A barrel of the catalog.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CatalogBarrel {
     /// Name.
@@ -77,7 +77,7 @@ pub const BARRELS: &[CatalogBarrel] = &[
     },
 ];
 
-/// A rack of the catalogue.
+/// A rack of the catalog.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CatalogRack {
     /// Name.
@@ -114,7 +114,8 @@ pub struct CatalogRack {
     pub source: &'static str,
 }
 
-/// Two barrels side by side on two rails: racks of type 2 across the barrels and of type 1 along them.
+/// Two barrels side by side on two rails: racks of type 2 across the barrels and of type 1 along
+/// them.
 const TWO_BARREL: CatalogRack = CatalogRack {
     name: "two-barrel",
     kind: RackKind::OnBarrels,
@@ -157,10 +158,12 @@ pub const RACKS: &[CatalogRack] = &[
     },
 ];
 
-/// Stiffness of one contact node in a stack (N/m), calibrated by Candia, de la Llera and Almazán (2008).
+/// Stiffness of one contact node in a stack (N/m), calibrated by Candia, de la Llera and Almazán
+/// (2008).
 const STIFFNESS: f64 = 980_000.0;
 
-/// Damping of one contact node in a stack (N·s/m), calibrated by Candia, de la Llera and Almazán (2008).
+/// Damping of one contact node in a stack (N·s/m), calibrated by Candia, de la Llera and Almazán
+/// (2008).
 const DAMPING: f64 = 2200.0;
 
 /// A pair of bodies in a stack with the friction it takes when a scenario leaves it out.
@@ -215,12 +218,12 @@ pub(super) fn record_names() -> Vec<&'static str> {
     RECORDS.iter().map(|(name, _)| *name).collect()
 }
 
-/// A barrel of the catalogue.
+/// A barrel of the catalog.
 pub fn barrel(name: &str) -> Option<&'static CatalogBarrel> {
     BARRELS.iter().find(|barrel| barrel.name == name)
 }
 
-/// A rack of the catalogue.
+/// A rack of the catalog.
 pub fn rack(name: &str) -> Option<&'static CatalogRack> {
     RACKS.iter().find(|rack| rack.name == name)
 }

@@ -46,7 +46,7 @@ pub struct Posts {
 /// A rack.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rack {
-    /// Catalogue name the rack was made from.
+    /// Catalog name the rack was made from.
     pub base: String,
     /// How the rack stands on what is below.
     pub kind: RackKind,
@@ -104,7 +104,7 @@ impl Named for CradleKind {
         &[("supports", Self::Supports), ("arc", Self::Arc)];
 }
 
-const CATALOG: Default = Default::Derived("that of the catalogue");
+const CATALOG: Default = Default::Derived("that of the catalog");
 
 const fn size(least: f64, greatest: f64) -> Kind {
     Kind::Quantity(&[Dimension::LENGTH], Range { least, above: false, greatest })
@@ -114,6 +114,7 @@ const CRADLE_ANGLE: Kind = Kind::Quantity(&[Dimension::ANGLE], Range::up_to(1.5)
 
 /// A cradle.
 pub static CRADLE: Section = Section {
+    name: "cradle",
     help: "How a rack holds a barrel in the transverse view.",
     fields: &[Field::new(
         "type",
@@ -159,13 +160,14 @@ pub static CRADLE: Section = Section {
 
 /// A rack.
 pub static RACK: Section = Section {
-    help: "A rack of the catalogue, with what differs.",
+    name: "rack",
+    help: "A rack of the catalog, with what differs.",
     fields: &[
         Field::new(
             "base",
             Kind::Choice(catalog::rack_names),
             Default::Value("\"two-barrel\""),
-            "Rack of the catalogue.",
+            "Rack of the catalog.",
         ),
         Field::new(
             "mass",
