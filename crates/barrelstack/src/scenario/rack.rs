@@ -83,6 +83,7 @@ enum Base {
     TwoBarrel,
     FourBarrel,
     RackOnRack,
+    Candia2008,
 }
 
 impl Named for Base {
@@ -90,6 +91,7 @@ impl Named for Base {
         ("two-barrel", Self::TwoBarrel),
         ("four-barrel", Self::FourBarrel),
         ("rack-on-rack", Self::RackOnRack),
+        ("candia-2008", Self::Candia2008),
     ];
 }
 
@@ -279,7 +281,7 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
             height: or("post_height", posts.height)?,
             half_spacing: or("post_half_spacing", posts.half_spacing)?,
         }),
-        (Base::TwoBarrel | Base::FourBarrel | Base::RackOnRack, _) => None,
+        (Base::TwoBarrel | Base::FourBarrel | Base::RackOnRack | Base::Candia2008, _) => None,
     };
     let rack = Rack {
         base: known.name.to_owned(),
