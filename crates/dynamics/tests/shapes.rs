@@ -318,7 +318,7 @@ proptest! {
         let section = drawn.shape.section().unwrap();
         let expected = if drawn.closed { drawn.area } else { drawn.length };
         let error = (section.measure / expected - 1.0).abs();
-        prop_assert!(error < 1e-3, "{error:e}"); // measured 4e-4 (arcs drawn with 15° chords)
+        prop_assert!(error < 3e-4, "{error:e}"); // measured 1.1e-4: rounded corners in 15° chords
     }
 
     #[test]
@@ -345,9 +345,10 @@ proptest! {
         let centroid = first * (1.0 / count);
         let gyration = second / count - centroid.dot(centroid);
         let apart = (section.centroid - centroid).length();
-        prop_assert!(apart < 2e-3, "centroid off by {apart:e}"); // measured 1e-3, the grid's own
+        prop_assert!(apart < 1e-3, "centroid off by {apart:e}"); // measured 3.4e-4
         let error = (section.gyration_squared - gyration).abs();
-        prop_assert!(error < 1e-3, "k² off by {error:e}"); // measured 4e-4
+        // measured 8.9e-4: half a grid cell at the flat heads of a profile
+        prop_assert!(error < 1.5e-3, "k² off by {error:e}");
     }
 }
 

@@ -298,10 +298,12 @@ where
     }
 }
 
-/// Asserts that a number is what it should be, to a share of it.
+/// Asserts that a number is what it should be, to a share of it; prints the error it measured.
+#[allow(clippy::print_stdout, reason = "shown by cargo test with --nocapture, or when it fails")]
 #[track_caller]
 pub fn assert_close(what: &str, found: f64, expected: f64, relative: f64) {
     let error = (found - expected).abs() / expected.abs();
+    println!("{what}: {found:.9}, error {error:.1e} of {relative:.0e}");
     assert!(
         error <= relative,
         "{what}: found {found:.9}, expected {expected:.9}, relative error {error:.2e} > {relative:.0e}"
