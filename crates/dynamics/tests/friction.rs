@@ -105,7 +105,7 @@ fn what_rests_is_held_by_the_static_coefficient_and_what_slides_by_the_kinetic()
     let slow_down = GRAVITY * (libm::sin(slope) + 0.3 * libm::cos(slope));
     // Sticks stretched uphill let go and stretch downhill by what the block weighs there.
     let back = MASS * slow_down / (2.0 * STIFFNESS);
-    assert_close("way uphill", -end, 0.25 / (2.0 * slow_down) - back, 5e-3);
+    assert_close("way uphill", -end, 0.25 / (2.0 * slow_down) - back, 5e-3); // measured 2.4e-3
 }
 
 #[test]
