@@ -1,1 +1,27 @@
 //! Wine-barrel stacks in earthquakes: scenario, run, outcome, report.
+//!
+//! ```text
+//! scenario.toml ─▶ Scenario ─ assemble ─▶ Assembly { Model, parts }
+//! record ─ ground ─▶ Ground ────────────────────┐
+//!                                               ▼
+//!                   settle ─▶ simulate, watched by Watch ─▶ Run
+//!                                               │
+//!                     Summary (JSON) · files · report (HTML, Markdown)
+//! ```
+
+pub mod assemble;
+pub mod check;
+pub mod export;
+pub mod ground;
+pub mod outcome;
+pub mod report;
+pub mod run;
+pub mod scenario;
+pub mod step;
+pub mod summary;
+pub mod watch;
+
+pub use check::check;
+pub use run::{Run, RunFailure, run};
+pub use scenario::Scenario;
+pub use summary::Summary;

@@ -16,6 +16,8 @@ pub struct Contact<S: Space> {
     pub element: usize,
     /// Which pair of the model.
     pub pair: usize,
+    /// Which node of the contactor's node set.
+    pub node: u32,
     /// Where it touches; always true in a single run.
     pub touching: <S::Real as Real>::Mask,
     /// The companion point (m), in the frame of the target's surface: both bodies feel the force there.
@@ -47,11 +49,22 @@ pub struct ContactTotals<R> {
     pub friction: R,
 }
 
+/// The sum of the contact forces of one pair.
+#[derive(Clone, Copy, Debug)]
+pub struct PairForce<S: Space> {
+    /// Which pair of the model.
+    pub pair: usize,
+    /// Force (N) on the contactor, in the inertial frame; the target feels its opposite.
+    pub force: S::Vector,
+}
+
 /// What can be computed anew from a state; may be dropped at any time.
 #[derive(Clone, Debug)]
 pub struct Scratch<S: Space> {
     /// The contacts of the last evaluation, in the order of their elements.
     pub contacts: Vec<Contact<S>>,
+    /// Their sums over every pair that touches, in the order of the pairs.
+    pub pair_forces: Vec<PairForce<S>>,
     /// Their energies and powers.
     pub totals: ContactTotals<S::Real>,
     /// Contact forces on every body and their moments about its center of mass.
@@ -80,6 +93,7 @@ impl<S: Space> Scratch<S> {
         let count = model.bodies.len();
         Self {
             contacts: Vec::new(),
+            pair_forces: Vec::new(),
             totals: ContactTotals::default(),
             wrenches: vec![Wrench::default(); count],
             accelerations: vec![Twist::default(); count],
@@ -122,6 +136,7 @@ pub fn evaluate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scra
     scratch.wrenches.fill(Wrench::default());
     scratch.totals = ContactTotals::default();
     scratch.contacts.clear();
+    scratch.pair_forces.clear();
     scratch.slip_rates.clear();
     scratch.slip_rates.resize(state.elements.len(), S::Tangent::default());
     scratch.evaluations += 1;
@@ -178,6 +193,7 @@ fn touch<S: Space>(model: &Model<S>, state: &State<S>, group: &Group, scratch: &
         let on_target = &mut scratch.wrenches[pair.target];
         on_target.force -= force;
         on_target.moment -= S::rotate_spin(rotation, total.target_moment);
+        scratch.pair_forces.push(PairForce { pair: group.pair, force });
     }
 }
 
@@ -254,6 +270,7 @@ impl<S: Space> Meeting<'_, S> {
         scratch.contacts.push(Contact {
             element,
             pair: self.pair,
+            node: state.elements.nodes[element],
             touching,
             point,
             normal: gap.normal,

@@ -1,1 +1,41 @@
 //! Strong ground motion: read, process, scale, synthesise and measure.
+//!
+//! Inside, every number is SI: m, m/s, m/s², s, rad; azimuths alone are degrees clockwise from north.
+//! Vertical components are positive upward.
+
+mod bundled;
+mod direction;
+mod error;
+mod format;
+mod fourier;
+mod ground_motion;
+mod history;
+mod intensity;
+mod join;
+mod math;
+mod process;
+mod pulse;
+mod record;
+mod response;
+mod sampled;
+mod select;
+mod units;
+
+pub use bundled::{BUNDLED, bundled};
+pub use direction::{Direction, Orientation};
+pub use error::{MotionError, ReadError, Refusal};
+pub use format::{FORMATS, Format, ReadOptions, read, slammer_step, station_xml_sensitivities};
+pub use fourier::FourierSpectrum;
+pub use ground_motion::GroundMotion;
+pub use history::{Delayed, History};
+pub use intensity::{IntensityMeasure, arias, husid};
+pub use math::STANDARD_GRAVITY;
+pub use process::{MeanRemoval, Pads, Processed, Processing, Residuals};
+pub use pulse::Pulse;
+pub use record::{Channel, Quantity, Record, Stage, StatedPeak, Warning};
+pub use response::{
+    ResponsePeaks, ResponseSpectrum, response, response_subdivided, standard_periods,
+};
+pub use sampled::{Kinematics, Sampled};
+pub use select::Component;
+pub use units::AccelerationUnit;

@@ -7,7 +7,7 @@ pub mod restitution;
 use crate::space::Space;
 
 pub use friction::{Friction, FrictionLaw, Stick};
-pub use normal::{NormalForce, NormalLaw};
+pub use normal::{Exponent, NormalForce, NormalLaw};
 
 /// What the stiffness and damping of an interface are stated for.
 ///

@@ -30,19 +30,30 @@ pub enum NormalLaw<R = f64> {
         /// `c` (N·s/m).
         damping: R,
     },
-    /// `fₙ = max(0, k δ^(3/2) (1 + d δ̇))`: the force starts and ends at zero
+    /// `fₙ = max(0, k δⁿ (1 + d δ̇))`: the force starts and ends at zero
     /// (Hunt and Crossley 1975).
     HuntCrossley {
-        /// `k` (N/m^1.5).
+        /// `k` (N/mⁿ).
         stiffness: R,
         /// `d` (s/m).
         dissipation: R,
+        /// `n`.
+        exponent: Exponent,
     },
     /// `fₙ = k δ^(3/2)`, elastic (Hertz 1882; for spheres `k = 4/3 E* √r`).
     Hertz {
         /// `k` (N/m^1.5).
         stiffness: R,
     },
+}
+
+/// How an elastic force grows with penetration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exponent {
+    /// In proportion, `n = 1`.
+    Linear,
+    /// As between spheres, `n = 3/2`.
+    Hertzian,
 }
 
 /// A normal force and what of it can be got back.
@@ -79,12 +90,15 @@ impl<R: Real> NormalLaw<R> {
                     energy: R::splat(0.5) * elastic * depth,
                 }
             }
-            Self::HuntCrossley { stiffness, dissipation } => {
-                let elastic = stiffness * depth * depth.sqrt();
+            Self::HuntCrossley { stiffness, dissipation, exponent } => {
+                let (elastic, share) = match exponent {
+                    Exponent::Linear => (stiffness * depth, 0.5),
+                    Exponent::Hertzian => (stiffness * depth * depth.sqrt(), 0.4),
+                };
                 NormalForce {
                     total: (elastic * (R::splat(1.0) + dissipation * rate)).max(zero),
                     elastic,
-                    energy: R::splat(0.4) * elastic * depth,
+                    energy: R::splat(share) * elastic * depth,
                 }
             }
             Self::Hertz { stiffness } => {
@@ -98,6 +112,7 @@ impl<R: Real> NormalLaw<R> {
     pub fn tangent_stiffness(&self, depth: R) -> R {
         match *self {
             Self::SpeedGap { stiffness, .. } | Self::KelvinVoigt { stiffness, .. } => stiffness,
+            Self::HuntCrossley { stiffness, exponent: Exponent::Linear, .. } => stiffness,
             Self::HuntCrossley { stiffness, .. } | Self::Hertz { stiffness } => {
                 R::splat(1.5) * stiffness * depth.max(R::zero()).sqrt()
             }
@@ -108,9 +123,13 @@ impl<R: Real> NormalLaw<R> {
     pub fn tangent_damping(&self, depth: R) -> R {
         match *self {
             Self::SpeedGap { damping, .. } | Self::KelvinVoigt { damping, .. } => damping,
-            Self::HuntCrossley { stiffness, dissipation } => {
+            Self::HuntCrossley { stiffness, dissipation, exponent } => {
                 let depth = depth.max(R::zero());
-                stiffness * depth * depth.sqrt() * dissipation
+                let elastic = match exponent {
+                    Exponent::Linear => stiffness * depth,
+                    Exponent::Hertzian => stiffness * depth * depth.sqrt(),
+                };
+                elastic * dissipation
             }
             Self::Hertz { .. } => R::zero(),
         }

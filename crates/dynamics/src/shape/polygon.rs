@@ -242,6 +242,39 @@ impl Polygon {
         nodes_along(&self.pieces(), true, f64::INFINITY, CORNER_STEP)
     }
 
+    /// The same number of equal parts on every side, and a node at every end.
+    pub fn nodes_per_side(&self, parts: usize) -> Vec<BoundaryNode> {
+        let longest = self.sides.iter().map(|side| side.length).fold(0.0, f64::max);
+        if self.corner_radius > 0.0 {
+            return self.nodes(longest / parts.max(1) as f64);
+        }
+        let chain: Vec<Vec2> = self
+            .sides
+            .iter()
+            .flat_map(|side| {
+                (0..parts.max(1)).map(move |k| {
+                    side.start + side.along * (side.length * k as f64 / parts.max(1) as f64)
+                })
+            })
+            .collect();
+        nodes_along(&chain, true, f64::INFINITY)
+    }
+
+    /// The polygon seen in a mirror: every `x` becomes `−x`.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        let core: Vec<Vec2> =
+            self.sides.iter().rev().map(|side| Vec2::new(-side.start.x, side.start.z)).collect();
+        Self::grown(&core, self.corner_radius)
+    }
+
+    /// The polygon with every length multiplied by `factor` (positive).
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let core: Vec<Vec2> = self.sides.iter().map(|side| side.start * factor).collect();
+        Self::grown(&core, self.corner_radius * factor)
+    }
+
     pub(super) fn section(&self) -> Section {
         section_of(&self.outline())
     }

@@ -1,0 +1,220 @@
+//! A free scene: any planar bodies on a ground.
+
+use barrelstack_dynamics::shape::{BarrelProfile, Circle, Cradle, HalfPlane, Polygon};
+use barrelstack_dynamics::space::{Rotation2, Space};
+use barrelstack_dynamics::{
+    Body, BodyId, ContactPair, Model, Motion, Node, Nodes, Placed, Planar, Pose, Shape, Twist, Vec2,
+};
+
+use super::interfaces::interface;
+use super::{AssembleError, Assembly, Part, PartKind, Similitude, outline_of};
+use crate::scenario::{self, FreeBody, FreeScene};
+
+/// Builds a free scene.
+pub(super) fn assemble(
+    scene: &FreeScene,
+    gravity: f64,
+    scale: Similitude,
+) -> Result<Assembly, AssembleError> {
+    let mut bodies = vec![ground(scene)];
+    let mut parts = vec![part("ground", PartKind::Ground, 0.0)];
+    let mut kinds = vec![scene.ground.kind.as_str()];
+    for body in &scene.bodies {
+        let (body_of_model, part) = free_body(body, scale)?;
+        bodies.push(body_of_model);
+        parts.push(part);
+        kinds.push(body.kind.as_str());
+    }
+    let mut pairs = Vec::new();
+    let mut interfaces = Vec::new();
+    for (index, law) in scene.interfaces.iter().enumerate() {
+        let [contactor_kind, target_kind] = &law.between;
+        for kind in [contactor_kind, target_kind] {
+            if !kinds.contains(&kind.as_str()) {
+                let mut known: Vec<&str> = kinds.clone();
+                known.dedup();
+                return Err(AssembleError::UnknownKind {
+                    index: index + 1,
+                    kind: kind.clone(),
+                    kinds: known.join(", "),
+                });
+            }
+        }
+        join(&bodies, &kinds, [contactor_kind.as_str(), target_kind.as_str()], index, &mut pairs);
+        let name = format!("{contactor_kind}-{target_kind}");
+        interfaces.push(interface(&name, &law.law, scale));
+    }
+    let model = Model::new(bodies, interfaces, pairs, Vec2::new(0.0, -gravity))?;
+    Ok(Assembly { model, parts, height: 0.0, levels: 0, rack_reach: 0.0 })
+}
+
+/// Every body of the first kind against every one of the second.
+///
+/// Between bodies of one kind both carry nodes, but for two that roll, where one says it all.
+fn join(
+    bodies: &[Body<Planar>],
+    kinds: &[&str],
+    between: [&str; 2],
+    interface: usize,
+    pairs: &mut Vec<ContactPair>,
+) {
+    let rolls = |body: &Body<Planar>| matches!(body.nodes.first(), Some(Nodes::Rolling { .. }));
+    let of = |kind: &str| -> Vec<BodyId> {
+        (0..bodies.len()).filter(|i| kinds[*i] == kind).collect()
+    };
+    for contactor in of(between[0]) {
+        for target in of(between[1]) {
+            let both_fixed = bodies[contactor].motion == Motion::Prescribed
+                && bodies[target].motion == Motion::Prescribed;
+            let said =
+                contactor > target && rolls(&bodies[contactor]) && rolls(&bodies[target]);
+            let twice = between[0] == between[1] && said;
+            if contactor == target || both_fixed || twice {
+                continue;
+            }
+            for nodes in 0..bodies[contactor].nodes.len() {
+                for surface in 0..bodies[target].surfaces.len() {
+                    pairs.push(ContactPair { contactor, nodes, target, surface, interface });
+                }
+            }
+        }
+    }
+}
+
+fn ground(scene: &FreeScene) -> Body<Planar> {
+    Body {
+        name: "ground".into(),
+        motion: Motion::Prescribed,
+        mass: 1.0,
+        inertia: 1.0,
+        damping: None,
+        pose: Pose { position: Vec2::default(), orientation: scene.ground.slope },
+        twist: Twist::default(),
+        surfaces: vec![Placed {
+            surface: Shape::HalfPlane(HalfPlane),
+            offset: Vec2::default(),
+            rotation: Rotation2::identity(),
+        }],
+        nodes: Vec::new(),
+    }
+}
+
+fn part(name: &str, kind: PartKind, size: f64) -> Part {
+    Part {
+        name: name.to_owned(),
+        kind,
+        level: None,
+        column: None,
+        carrier: None,
+        supports: Vec::new(),
+        size,
+        outlines: Vec::new(),
+    }
+}
+
+fn free_body(body: &FreeBody, scale: Similitude) -> Result<(Body<Planar>, Part), AssembleError> {
+    let length = scale.length;
+    let vector = |v: [f64; 2]| Vec2::new(v[0], v[1]) * length;
+    let shape = shape(body, length)?;
+    let center = vector(body.center_of_mass);
+    let nodes = nodes(body, &shape, center, length);
+    let rotation = <Planar as Space>::rotation(body.angle);
+    let mut part = part(&body.name, PartKind::Body, 0.0);
+    part.outlines = vec![outline_of(&shape, -center)];
+    part.size = part.outlines[0].points.iter().map(|p| p.length()).fold(0.0, f64::max);
+    let damping = body.viscous.map(|viscous| {
+        let linear = viscous.linear * scale.damping(false);
+        let angular = viscous.angular * scale.damping(false) * length * length;
+        [[linear, 0.0, 0.0], [0.0, linear, 0.0], [0.0, 0.0, angular]]
+    });
+    let body = Body {
+        name: body.name.clone(),
+        motion: if body.fixed_to_ground { Motion::Prescribed } else { Motion::Free },
+        mass: body.mass * scale.mass(),
+        inertia: body.inertia * scale.inertia(),
+        damping,
+        pose: Pose {
+            position: vector(body.position) + rotation.apply(center),
+            orientation: body.angle,
+        },
+        twist: Twist {
+            linear: Vec2::new(body.velocity[0], body.velocity[1]) * scale.time(),
+            angular: body.spin / scale.time(),
+        },
+        surfaces: vec![Placed {
+            surface: shape,
+            offset: -center,
+            rotation: Rotation2::identity(),
+        }],
+        nodes: vec![nodes],
+    };
+    Ok((body, part))
+}
+
+fn shape(body: &FreeBody, length: f64) -> Result<Shape, AssembleError> {
+    let refuse =
+        |problem: String| AssembleError::Shape { body: body.name.clone(), problem };
+    Ok(match &body.shape {
+        scenario::Shape::Rectangle { width, height, corner_radius } => Shape::Polygon(
+            Polygon::rectangle(width * length, height * length, corner_radius * length)
+                .map_err(|problem| refuse(problem.to_string()))?,
+        ),
+        scenario::Shape::Circle { radius } => Shape::Circle(Circle { radius: radius * length }),
+        scenario::Shape::Polygon { vertices } => {
+            let corners: Vec<Vec2> =
+                vertices.iter().map(|v| Vec2::new(v[0], v[1]) * length).collect();
+            Shape::Polygon(
+                Polygon::new(&corners, 0.0).map_err(|problem| refuse(problem.to_string()))?,
+            )
+        }
+        scenario::Shape::Cradle { radius, half_angle } => {
+            Shape::Cradle(Cradle::new(radius * length, *half_angle))
+        }
+        scenario::Shape::BarrelProfile { length: long, bilge_diameter, head_diameter } => {
+            BarrelProfile::new(long * length, head_diameter * length, bilge_diameter * length)
+                .map(Shape::BarrelProfile)
+                .ok_or_else(|| {
+                    refuse("needs 0 < head_diameter < bilge_diameter and a length".into())
+                })?
+        }
+    })
+}
+
+fn nodes(body: &FreeBody, shape: &Shape, center: Vec2, length: f64) -> Nodes<Planar> {
+    let boundary = match (body.nodes, shape) {
+        (scenario::Nodes::Rolling, Shape::Circle(circle)) => {
+            return Nodes::Rolling {
+                center: -center,
+                radius: circle.radius,
+                tributary_length: 0.01 * length,
+            };
+        }
+        (scenario::Nodes::Corners, Shape::Polygon(polygon)) => polygon.corner_nodes(),
+        (scenario::Nodes::Spacing(spacing), _) => shape.nodes(spacing * length),
+        (scenario::Nodes::Count(count), Shape::Polygon(polygon)) => {
+            polygon.nodes_per_side(count as usize)
+        }
+        (scenario::Nodes::Count(count), Shape::Circle(circle)) => {
+            let around = std::f64::consts::TAU * circle.radius;
+            shape.nodes(around / f64::from(count.max(1)))
+        }
+        // For curved shapes a count divides the whole boundary; corners are where it has kinks.
+        (scenario::Nodes::Count(_) | scenario::Nodes::Corners | scenario::Nodes::Rolling, _) => {
+            let parts = match body.nodes {
+                scenario::Nodes::Count(count) => f64::from(count.max(1)),
+                _ => 64.0,
+            };
+            let size: f64 = shape.nodes(f64::INFINITY).iter().map(|n| n.tributary_length).sum();
+            shape.nodes(size / parts)
+        }
+    };
+    Nodes::Fixed(
+        boundary
+            .into_iter()
+            .map(|node| Node {
+                position: node.position - center,
+                tributary_length: node.tributary_length,
+            })
+            .collect(),
+    )
+}

@@ -1,0 +1,85 @@
+//! From the laws of a scenario to the laws of the model.
+
+use barrelstack_dynamics::contact::{Exponent, restitution};
+use barrelstack_dynamics::{Basis, FrictionLaw, Interface, NormalLaw, Planar};
+
+use super::Similitude;
+use crate::scenario;
+
+/// Penetration (m) at which the laws that stiffen with penetration lend their stiffness to the stick.
+const STICK_REFERENCE: f64 = 1e-3;
+
+/// An interface of the model.
+pub(super) fn interface(
+    name: &str,
+    law: &scenario::Interface,
+    scale: Similitude,
+) -> Interface<Planar> {
+    let basis = match law.basis {
+        scenario::Basis::Node => Basis::Node,
+        scenario::Basis::Length => Basis::Length,
+    };
+    let normal = normal(&law.normal, basis, scale);
+    let friction = friction(&law.friction, &normal, scale);
+    Interface { name: name.to_owned(), normal, friction, basis }
+}
+
+fn normal(law: &scenario::NormalLaw, basis: Basis, scale: Similitude) -> NormalLaw {
+    let per_length = basis == Basis::Length;
+    let stiff = |k: f64, exponent: f64| k * scale.stiffness(exponent, per_length);
+    let damp = |k: f64, damping: &scenario::Damping, invert: fn(f64) -> Option<f64>| {
+        let full = match *damping {
+            scenario::Damping::Coefficient(c) => c,
+            scenario::Damping::Restitution { restitution: e, reference_mass } => {
+                // A restitution of exactly 1 has no damping; the scenario admits only (0, 1].
+                let ratio = invert(e).unwrap_or(0.0);
+                restitution::damping(k, ratio, reference_mass)
+            }
+        };
+        full * scale.damping(per_length)
+    };
+    match law {
+        scenario::NormalLaw::SpeedGap { stiffness, damping } => NormalLaw::SpeedGap {
+            stiffness: stiff(*stiffness, 1.0),
+            damping: damp(*stiffness, damping, restitution::speed_gap_damping_ratio),
+        },
+        scenario::NormalLaw::KelvinVoigt { stiffness, damping } => NormalLaw::KelvinVoigt {
+            stiffness: stiff(*stiffness, 1.0),
+            damping: damp(*stiffness, damping, restitution::kelvin_voigt_damping_ratio),
+        },
+        scenario::NormalLaw::HuntCrossley { stiffness, exponent, damping } => {
+            NormalLaw::HuntCrossley {
+                stiffness: stiff(*stiffness, *exponent),
+                dissipation: damping / scale.time(),
+                exponent: if *exponent == 1.0 { Exponent::Linear } else { Exponent::Hertzian },
+            }
+        }
+        scenario::NormalLaw::Hertz { stiffness } => {
+            NormalLaw::Hertz { stiffness: stiff(*stiffness, 1.5) }
+        }
+    }
+}
+
+fn friction(law: &scenario::Friction, normal: &NormalLaw, scale: Similitude) -> FrictionLaw {
+    match *law {
+        scenario::Friction::None => FrictionLaw::Frictionless,
+        scenario::Friction::Coulomb {
+            coefficient,
+            static_coefficient,
+            tangential_stiffness_ratio,
+            tangential_damping_ratio,
+        } => {
+            let reference = STICK_REFERENCE * scale.length;
+            FrictionLaw::Coulomb {
+                static_coefficient,
+                kinetic_coefficient: coefficient,
+                tangential_stiffness: tangential_stiffness_ratio
+                    * normal.tangent_stiffness(reference),
+                tangential_damping: tangential_damping_ratio * normal.tangent_damping(reference),
+            }
+        }
+        scenario::Friction::Regularized { coefficient, velocity } => {
+            FrictionLaw::Regularized { coefficient, velocity: velocity * scale.time() }
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! From a scenario to bodies that can move: the model, and what each of its bodies means.
+
+mod free;
+mod interfaces;
+mod longitudinal;
+mod similitude;
+mod stack;
+mod transverse;
+
+use barrelstack_dynamics::{BodyId, Model, ModelError, Planar, Shape, Vec2};
+
+use crate::scenario::{Scenario, Scene};
+
+pub use similitude::Similitude;
+
+/// What kind of thing a body is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PartKind {
+    /// The ground and what is fixed to it.
+    Ground,
+    /// A barrel.
+    Barrel,
+    /// A rack.
+    Rack,
+    /// A body of a free scene.
+    Body,
+}
+
+impl PartKind {
+    /// The word used in files and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ground => "ground",
+            Self::Barrel => "barrel",
+            Self::Rack => "rack",
+            Self::Body => "body",
+        }
+    }
+}
+
+/// A chain of points (m) in a body's frame, for drawing; whether it closes on itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    /// The points (m), from the center of mass.
+    pub points: Vec<Vec2>,
+    /// Whether the last point joins the first.
+    pub closed: bool,
+}
+
+/// What a body of the model means.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// The name in results, that of the body.
+    pub name: String,
+    /// What it is.
+    pub kind: PartKind,
+    /// Level, 1 at the bottom; none in a free scene.
+    pub level: Option<u32>,
+    /// Column, 1 at the left: of barrels, or of racks for a rack.
+    pub column: Option<u32>,
+    /// For a barrel, the rack that carries it.
+    pub carrier: Option<BodyId>,
+    /// For a rack above the first level, the bodies it stands on.
+    pub supports: Vec<BodyId>,
+    /// A length (m) that tells the size of the body: the radius of a barrel.
+    pub size: f64,
+    /// Lines to draw, in the body frame.
+    pub outlines: Vec<Outline>,
+}
+
+/// A model and the meaning of its bodies.
+#[derive(Clone, Debug)]
+pub struct Assembly {
+    /// What moves.
+    pub model: Model<Planar>,
+    /// One part for every body, in the same order.
+    pub parts: Vec<Part>,
+    /// Height (m) of the stack from the ground to the top of the highest barrel; zero for a free scene.
+    pub height: f64,
+    /// Number of levels; zero for a free scene.
+    pub levels: u32,
+    /// How far (m) a rack may move on the barrels below before it has left them.
+    pub rack_reach: f64,
+}
+
+impl Assembly {
+    /// Bodies of a kind, in order.
+    pub fn of_kind(&self, kind: PartKind) -> impl Iterator<Item = BodyId> + '_ {
+        self.parts.iter().enumerate().filter(move |(_, p)| p.kind == kind).map(|(i, _)| i)
+    }
+
+    /// The body that the ground moves; every assembly has one.
+    pub const GROUND: BodyId = 0;
+}
+
+/// Why a scenario cannot be built.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AssembleError {
+    /// The bodies do not make a model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A polygon that is none.
+    #[error("body \"{body}\": {problem}")]
+    Shape {
+        /// The body.
+        body: String,
+        /// What is wrong with its shape.
+        problem: String,
+    },
+    /// Two bodies stand in each other.
+    #[error(
+        "\"{first}\" and \"{second}\" overlap by {depth:.4} m at the start: move them apart, or \
+         let them touch without overlap"
+    )]
+    Overlap {
+        /// One body.
+        first: String,
+        /// The other.
+        second: String,
+        /// How deep (m).
+        depth: f64,
+    },
+    /// An interface between kinds that no body has.
+    #[error(
+        "interface {index} is between \"{kind}\" and another kind, but no body is of kind \
+         \"{kind}\" (kinds: {kinds})"
+    )]
+    UnknownKind {
+        /// Which interface, counted from 1.
+        index: usize,
+        /// The kind that is missing.
+        kind: String,
+        /// The kinds there are.
+        kinds: String,
+    },
+    /// A stack that cannot stand as described.
+    #[error("{0}")]
+    Stack(String),
+}
+
+/// Builds the model of a scenario.
+///
+/// # Errors
+/// When shapes are impossible, bodies overlap, or names repeat.
+pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
+    let scale = Similitude::new(scenario.run.similitude);
+    match &scenario.scene {
+        Scene::Stack { stack, .. } => stack::assemble(stack, scenario.run.gravity, scale),
+        Scene::Free(scene) => free::assemble(scene, scenario.run.gravity, scale),
+    }
+}
+
+/// The outline of a shape that sits at an offset on a body.
+fn outline_of(shape: &Shape, offset: Vec2) -> Outline {
+    let (points, closed) = shape.outline();
+    Outline { points: points.into_iter().map(|p| p + offset).collect(), closed }
+}

@@ -1,0 +1,240 @@
+//! A stack across its barrels: circles in the cradles of racks that lie on the circles below.
+//!
+//! ```text
+//!      ( B2.1 )   ( B2.2 )
+//!      __\_/________\_/__      cradle supports at ± the support angle, rack beam
+//!          =          =        flat underside bearing around each crown
+//!      ( B1.1 )   ( B1.2 )
+//!      __\_/________\_/__
+//!          =          =
+//!     ////////////////////     ground
+//! ```
+//!
+//! A rack touches barrels with nodes: one at each cradle support (or along a cradle arc), and a row
+//! along the bearing around each crown below.
+//! The corners of its beam are nodes too, for what falls on it and where it falls.
+//! The beam is a polygon for the nodes of other racks.
+
+use barrelstack_dynamics::math;
+use barrelstack_dynamics::shape::{Circle, Polygon};
+use barrelstack_dynamics::{BodyId, Shape, Vec2};
+
+use super::stack::{Builder, Draft, DraftNodes};
+use super::{AssembleError, PartKind, outline_of};
+use crate::scenario::{Cradle, Rack, RackKind, StackBody, View};
+
+/// Builds all levels; returns the height of the stack and the reach of a rack on its barrels (m).
+pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
+    let spec = builder.spec;
+    let rack = &spec.rack;
+    let radius = 0.5 * spec.barrel.section_diameter;
+    let level_pitch = match (rack.kind, &rack.posts) {
+        (RackKind::OnRacks, Some(posts)) => posts.height,
+        _ => rack.clearance + 2.0 * radius,
+    };
+    let racks = spec.racks_per_level();
+    let mut below: Vec<Vec<BodyId>> = vec![Vec::new(); racks as usize];
+    for level in 1..=spec.levels {
+        let underside = f64::from(level - 1) * level_pitch;
+        for column in 1..=racks {
+            let slot = column as usize - 1;
+            let middle =
+                (f64::from(column) - 0.5 * f64::from(racks + 1)) * (rack.width + spec.gap);
+            let supports = std::mem::take(&mut below[slot]);
+            let (rack_id, barrels) =
+                add_rack(builder, level, column, middle, underside, supports)?;
+            below[slot] = match rack.kind {
+                RackKind::OnBarrels => barrels,
+                RackKind::OnRacks => vec![rack_id],
+            };
+        }
+    }
+    let height =
+        f64::from(spec.levels - 1) * level_pitch + rack.clearance + 2.0 * radius;
+    Ok((height, radius))
+}
+
+/// One rack with its barrels; returns their ids.
+fn add_rack(
+    builder: &mut Builder<'_>,
+    level: u32,
+    column: u32,
+    middle: f64,
+    underside: f64,
+    supports: Vec<BodyId>,
+) -> Result<(BodyId, Vec<BodyId>), AssembleError> {
+    let spec = builder.spec;
+    let rack = &spec.rack;
+    let radius = 0.5 * spec.barrel.section_diameter;
+    let places: Vec<f64> = (0..rack.barrels)
+        .map(|i| (f64::from(i) - 0.5 * f64::from(rack.barrels - 1)) * rack.pitch)
+        .collect();
+
+    let mut mass = rack.mass;
+    let mut offset = 0.0;
+    for change in builder.overrides(StackBody::Rack, level, column) {
+        mass = change.mass.unwrap_or(mass);
+        offset += change.offset_x;
+    }
+    let name = if spec.racks_per_level() == 1 {
+        format!("R{level}")
+    } else {
+        format!("R{level}.{column}")
+    };
+    let center = Vec2::new(middle + offset, underside + 0.5 * rack.beam_height);
+    let mut draft = Draft {
+        name,
+        kind: PartKind::Rack,
+        level,
+        column,
+        mass,
+        inertia: mass * (rack.width.powi(2) + rack.beam_height.powi(2)) / 12.0,
+        position: center,
+        size: 0.5 * rack.width,
+        surfaces: Vec::new(),
+        nodes: vec![DraftNodes::Fixed(rack_nodes(rack, &places, radius))],
+        outlines: Vec::new(),
+        carrier: None,
+        supports,
+    };
+    draw_rack(&mut draft, rack, &places, radius)?;
+    let rack_id = builder.add(draft);
+
+    let mut barrels = Vec::new();
+    for (i, place) in places.iter().enumerate() {
+        let barrel_column = (column - 1) * rack.barrels + u32::try_from(i).unwrap_or(0) + 1;
+        let mut barrel = spec.barrel.clone();
+        let mut offset_x = 0.0;
+        for change in builder.overrides(StackBody::Barrel, level, barrel_column) {
+            barrel = barrel.altered(change.mass, change.fill);
+            offset_x += change.offset_x;
+        }
+        let shape = Shape::Circle(Circle { radius });
+        barrels.push(builder.add(Draft {
+            name: format!("B{level}.{barrel_column}"),
+            kind: PartKind::Barrel,
+            level,
+            column: barrel_column,
+            mass: barrel.mass,
+            inertia: barrel.inertia(View::Transverse),
+            position: Vec2::new(
+                middle + offset + place + offset_x,
+                underside + rack.clearance + radius,
+            ),
+            size: radius,
+            outlines: vec![outline_of(&shape, Vec2::default())],
+            surfaces: vec![(shape, Vec2::default())],
+            nodes: vec![DraftNodes::Rolling(radius, rack.node_spacing)],
+            carrier: Some(rack_id),
+            supports: Vec::new(),
+        }));
+    }
+    Ok((rack_id, barrels))
+}
+
+/// The nodes of a rack from its center of mass, with their tributary lengths.
+fn rack_nodes(rack: &Rack, places: &[f64], radius: f64) -> Vec<(Vec2, f64)> {
+    let spacing = rack.node_spacing;
+    let half_height = 0.5 * rack.beam_height;
+    let mut nodes = Vec::new();
+    // The flat underside around each crown (and the same length on the ground).
+    let row = |nodes: &mut Vec<(Vec2, f64)>, from: f64, to: f64| {
+        let parts = ((to - from) / spacing - 1e-9).ceil().max(1.0);
+        let step = (to - from) / parts;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
+        for i in 0..=parts as u32 {
+            let edge = i == 0 || f64::from(i) >= parts;
+            let tributary = if edge { 0.5 * step } else { step };
+            nodes.push((Vec2::new(from + f64::from(i) * step, -half_height), tributary));
+        }
+    };
+    match (rack.kind, &rack.posts) {
+        (RackKind::OnRacks, Some(posts)) => {
+            let half = 0.5 * rack.rail_width;
+            for side in [-1.0, 1.0] {
+                let foot = side * posts.half_spacing;
+                row(&mut nodes, foot - half, foot + half);
+            }
+        }
+        _ => {
+            let half = rack.bearing_half_length;
+            for place in places {
+                row(&mut nodes, place - half, place + half);
+            }
+        }
+    }
+    // The cradles, seen from the center of each barrel.
+    for place in places {
+        let center = Vec2::new(*place, rack.clearance + radius - half_height);
+        match rack.cradle {
+            Cradle::Supports { angle } => {
+                for side in [-1.0, 1.0] {
+                    let (sin, cos) = math::sin_cos(angle);
+                    let support = center + Vec2::new(side * sin, -cos) * radius;
+                    nodes.push((support, spacing));
+                }
+            }
+            Cradle::Arc { radius: arc_radius, half_angle } => {
+                let center = center + Vec2::new(0.0, arc_radius - radius);
+                let shape = Shape::Cradle(barrelstack_dynamics::shape::Cradle::new(
+                    arc_radius, half_angle,
+                ));
+                nodes.extend(
+                    shape
+                        .nodes(spacing)
+                        .into_iter()
+                        .map(|node| (center + node.position, node.tributary_length)),
+                );
+            }
+        }
+    }
+    // The corners of the beam.
+    let half_width = 0.5 * rack.width;
+    for (x, z) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
+        nodes.push((Vec2::new(x * half_width, z * half_height), spacing));
+    }
+    nodes
+}
+
+/// The beam and posts as surfaces, and the lines that show a rack.
+fn draw_rack(
+    draft: &mut Draft,
+    rack: &Rack,
+    places: &[f64],
+    radius: f64,
+) -> Result<(), AssembleError> {
+    let half_height = 0.5 * rack.beam_height;
+    let rectangle = |width: f64, height: f64| {
+        Polygon::rectangle(width, height, 0.0).map(Shape::Polygon).map_err(|problem| {
+            AssembleError::Shape { body: draft.name.clone(), problem: problem.to_string() }
+        })
+    };
+    let mut surfaces = vec![(rectangle(rack.width, rack.beam_height)?, Vec2::default())];
+    if let (RackKind::OnRacks, Some(posts)) = (rack.kind, &rack.posts) {
+        let post = posts.height - rack.beam_height;
+        for side in [-1.0, 1.0] {
+            let place = Vec2::new(side * posts.half_spacing, half_height + 0.5 * post);
+            surfaces.push((rectangle(rack.rail_width, post)?, place));
+        }
+    }
+    draft.outlines = surfaces.iter().map(|(shape, offset)| outline_of(shape, *offset)).collect();
+    // Saddles, for the eye: from the beam up to each support.
+    let (angle, saddle_radius) = match rack.cradle {
+        Cradle::Supports { angle } => (angle, radius),
+        Cradle::Arc { radius, half_angle } => (half_angle, radius),
+    };
+    for place in places {
+        let center = Vec2::new(*place, rack.clearance + saddle_radius - half_height);
+        for side in [-1.0, 1.0] {
+            let (sin, cos) = math::sin_cos(angle);
+            let tip = center + Vec2::new(side * sin, -cos) * saddle_radius;
+            let foot = |dx: f64| Vec2::new(tip.x + dx, half_height);
+            draft.outlines.push(super::Outline {
+                points: vec![foot(-0.025), foot(0.025), tip],
+                closed: true,
+            });
+        }
+    }
+    draft.surfaces = surfaces;
+    Ok(())
+}

@@ -1,0 +1,74 @@
+//! Is a scenario sound, and does its stack stand before it is shaken?
+
+use barrelstack_dynamics::{Scratch, State, settle};
+
+use crate::assemble::{PartKind, assemble};
+use crate::ground::ground;
+use crate::run::{RunFailure, SETTLE_TOLERANCE, check_overlap, time_step};
+use crate::scenario::Scenario;
+
+/// What a check found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checked {
+    lines: Vec<String>,
+}
+
+impl Checked {
+    /// What was found, a line each, for people.
+    pub fn lines(&self) -> impl Iterator<Item = &str> {
+        self.lines.iter().map(String::as_str)
+    }
+}
+
+/// Does everything that comes before the shaking.
+///
+/// # Errors
+/// As [`crate::run()`].
+pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
+    let mut lines = vec![scenario.title.clone()];
+    let assembly = assemble(scenario)?;
+    let count = |kind| assembly.of_kind(kind).count();
+    lines.push(format!(
+        "  bodies        {} barrels, {} racks, {} others",
+        count(PartKind::Barrel),
+        count(PartKind::Rack),
+        count(PartKind::Body)
+    ));
+    let mut scratch = Scratch::new(&assembly.model);
+    let mut state = State::initial(&assembly.model);
+    check_overlap(&assembly, &state, &mut scratch, scenario.run.similitude)?;
+    let step = time_step(scenario, &assembly);
+    lines.push(format!("  time step     {:.3} ms", 1e3 * step));
+    if scenario.run.settle {
+        let start = state.poses.clone();
+        let settled = settle(&assembly.model, &mut state, &mut scratch, step, SETTLE_TOLERANCE)?;
+        let deepest = state
+            .poses
+            .iter()
+            .zip(&start)
+            .map(|(now, before)| before.position.z - now.position.z)
+            .fold(0.0, f64::max);
+        lines.push(format!(
+            "  at rest       after {} steps, deepest sinking {:.1} mm, forces balanced to {:.0e} of \
+             gravity",
+            settled.steps,
+            1e3 * deepest,
+            settled.unbalanced
+        ));
+    }
+    let ground = ground(scenario)?;
+    if let Some(motion) = &ground.motion {
+        lines.push(format!(
+            "  motion        {}: {:.2} s, PGA {:.3} g, PGV {:.1} cm/s, PGD {:.1} cm",
+            motion.name,
+            motion.duration,
+            motion.pga() / barrelstack_motion::STANDARD_GRAVITY,
+            100.0 * motion.pgv(),
+            100.0 * motion.pgd()
+        ));
+    }
+    lines.extend(ground.warnings.iter().map(|warning| format!("  warning       {warning}")));
+    lines.push(format!("  fingerprint   {:016x}", scenario.fingerprint()));
+    lines.push("the scenario is sound".into());
+    Ok(Checked { lines })
+}

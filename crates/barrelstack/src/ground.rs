@@ -1,0 +1,306 @@
+//! The ground motion of a scenario: read or made, scaled, and ready to drive.
+
+use std::path::PathBuf;
+
+use barrelstack_dynamics::{Drive, Planar, Vec2};
+use barrelstack_motion::{
+    AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Processing,
+    Pulse as MotionPulse, ReadError, ReadOptions, Record,
+};
+
+use crate::scenario::{
+    Amplitude, Direction, MotionSource, MotionSpec, Processing as ProcessingSpec, Pulse, PulseKind,
+    RecordMotion, RecordSource, Scale, Scenario, Sine, Vertical,
+};
+
+/// What moves the ground of a run.
+#[derive(Clone, Debug, Default)]
+pub struct Ground {
+    /// The motion; none for ground at rest.
+    pub motion: Option<GroundMotion>,
+    /// What the readers noticed, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+impl Drive<Planar> for Ground {
+    fn at(&self, time: f64) -> (Vec2, Vec2) {
+        let Some(motion) = &self.motion else { return Default::default() };
+        let x = motion.horizontal.at(time);
+        let z = motion.vertical.as_ref().map(|v| v.at(time)).unwrap_or_default();
+        (Vec2::new(x.displacement, z.displacement), Vec2::new(x.velocity, z.velocity))
+    }
+}
+
+/// Why a scenario has no ground motion.
+#[derive(Debug, thiserror::Error)]
+pub enum GroundError {
+    /// The file of a record cannot be opened.
+    #[error("cannot read the record {path}: {reason}{obtain}", path = path.display())]
+    Unreadable {
+        /// The path that was tried.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+        /// How to come by it, as a sentence that goes on from the reason; may be empty.
+        obtain: String,
+    },
+    /// The file is no record.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The record has no such component, or cannot be scaled so.
+    #[error(transparent)]
+    Motion(#[from] MotionError),
+    /// There is no bundled record of that name.
+    #[error("there is no bundled record \"{name}\"; the bundled ones are: {known}")]
+    UnknownBundled {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// A unit that no file uses.
+    #[error(
+        "motion.unit = {unit} m/s² is no unit of acceleration files: use 1 g, 0.1 g, 1 m/s^2, \
+         1 cm/s^2 or 1 mm/s^2"
+    )]
+    Unit {
+        /// The unit asked for (m/s²).
+        unit: f64,
+    },
+}
+
+/// Reads or makes the motion of a scenario, scaled as it says.
+///
+/// # Errors
+/// When a record cannot be read, lacks the component asked for, or cannot be scaled.
+pub fn ground(scenario: &Scenario) -> Result<Ground, GroundError> {
+    let spec = &scenario.motion;
+    let mut ground = match &spec.source {
+        MotionSource::None => return Ok(Ground::default()),
+        MotionSource::Record(record) => recorded(record)?,
+        MotionSource::Sine(sine) => Ground { motion: Some(harmonic(sine)?), ..Ground::default() },
+        MotionSource::Pulse(pulse) => Ground { motion: Some(pulsed(pulse)?), ..Ground::default() },
+    };
+    if let Some(motion) = ground.motion.take() {
+        ground.motion = Some(scaled(motion, spec, scenario.run.similitude)?);
+    }
+    Ok(ground)
+}
+
+fn scaled(
+    mut motion: GroundMotion,
+    spec: &MotionSpec,
+    run_scale: f64,
+) -> Result<GroundMotion, MotionError> {
+    match spec.scale {
+        Scale::Factor(factor) if factor == 1.0 => {}
+        Scale::Factor(factor) => motion = motion.scaled(factor),
+        Scale::Pga(target) => motion = motion.scale_to(IntensityMeasure::Pga, target)?,
+        Scale::Pgv(target) => motion = motion.scale_to(IntensityMeasure::Pgv, target)?,
+    }
+    for length in [spec.similitude, run_scale] {
+        if length != 1.0 {
+            motion = motion.froude(length);
+        }
+    }
+    Ok(motion)
+}
+
+fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
+    let options = ReadOptions {
+        unit: spec.unit.map(unit).transpose()?,
+        time_step: spec.time_step,
+        sensitivity: None,
+    };
+    let record = match &spec.source {
+        RecordSource::Bundled(name) => barrelstack_motion::bundled(name).ok_or_else(|| {
+            GroundError::UnknownBundled {
+                name: name.clone(),
+                known: barrelstack_motion::BUNDLED.join(", "),
+            }
+        })?,
+        RecordSource::File(file) => {
+            let obtain = spec
+                .obtain
+                .as_ref()
+                .map(|how| format!("; {how}, then name it with --record FILE"))
+                .unwrap_or_default();
+            read_file(&file.resolve(), &options, &obtain)?
+        }
+    };
+    let mut warnings: Vec<String> =
+        record.warnings.iter().map(|w| format!("{}: {w}", record.file)).collect();
+    let horizontal = component_of(&record, spec.component.as_deref())?;
+    let processing = match spec.processing {
+        ProcessingSpec::None => Processing::none(),
+        ProcessingSpec::Default => Processing::for_stage(record.stage),
+    };
+    let motion = match &spec.vertical {
+        Vertical::None => record.ground_motion(&horizontal, None, &processing)?,
+        Vertical::Component(name) => {
+            let vertical = component_of(&record, Some(name))?;
+            record.ground_motion(&horizontal, Some(&vertical), &processing)?
+        }
+        Vertical::File(file) => {
+            let other = read_file(&file.resolve(), &options, "")?;
+            warnings.extend(other.warnings.iter().map(|w| format!("{}: {w}", other.file)));
+            let processing = match spec.processing {
+                ProcessingSpec::None => Processing::none(),
+                ProcessingSpec::Default => Processing::for_stage(other.stage),
+            };
+            let vertical = other.ground_motion(&Component::Number(1), None, &processing)?;
+            let mut motion = record.ground_motion(&horizontal, None, &processing)?;
+            motion.provenance.extend(vertical.provenance);
+            let provenance = motion.provenance;
+            let mut joined =
+                GroundMotion::new(motion.name, motion.horizontal, Some(vertical.horizontal));
+            joined.provenance = provenance;
+            joined
+        }
+    };
+    Ok(Ground { motion: Some(motion), warnings })
+}
+
+fn read_file(
+    path: &std::path::Path,
+    options: &ReadOptions,
+    obtain: &str,
+) -> Result<Record, GroundError> {
+    let bytes = std::fs::read(path).map_err(|error| GroundError::Unreadable {
+        path: path.to_owned(),
+        reason: error.to_string(),
+        obtain: obtain.to_owned(),
+    })?;
+    Ok(barrelstack_motion::read(&bytes, &path.display().to_string(), options)?)
+}
+
+fn unit(meters_per_second_squared: f64) -> Result<AccelerationUnit, GroundError> {
+    [
+        AccelerationUnit::G,
+        AccelerationUnit::TenthG,
+        AccelerationUnit::MetersPerSecondSquared,
+        AccelerationUnit::Gal,
+        AccelerationUnit::MillimetersPerSecondSquared,
+    ]
+    .into_iter()
+    .find(|unit| (unit.factor() / meters_per_second_squared - 1.0).abs() < 1e-6)
+    .ok_or(GroundError::Unit { unit: meters_per_second_squared })
+}
+
+/// A component as people name it: the channel's own name first, then an azimuth in degrees.
+fn component_of(record: &Record, name: Option<&str>) -> Result<Component, MotionError> {
+    let Some(name) = name else {
+        let horizontal = record.channels.iter().any(|channel| !channel.is_vertical());
+        return Ok(if horizontal { Component::Horizontal1 } else { Component::Number(1) });
+    };
+    let by_name = Component::Name(name.to_owned());
+    if record.component(&by_name).is_ok() {
+        return Ok(by_name);
+    }
+    match name.trim().parse::<f64>() {
+        Ok(azimuth) if azimuth.is_finite() => Ok(Component::Azimuth(azimuth)),
+        _ if name.eq_ignore_ascii_case("up") => Ok(Component::Vertical),
+        _ => name.parse(),
+    }
+}
+
+fn harmonic(sine: &Sine) -> Result<GroundMotion, MotionError> {
+    let frequency = std::f64::consts::TAU / sine.period;
+    let amplitude = match sine.amplitude {
+        Amplitude::Displacement(d) => d,
+        Amplitude::Velocity(v) => v / frequency,
+        Amplitude::Acceleration(a) => a / (frequency * frequency),
+    };
+    let pulse = MotionPulse::Sine {
+        amplitude,
+        period: sine.period,
+        cycles: sine.cycles,
+        ramp_cycles: sine.ramp_cycles,
+    };
+    Ok(directed(GroundMotion::from_pulse("sine", pulse)?, sine.direction, 0.0))
+}
+
+/// A pulse whose peak is what the scenario says.
+///
+/// Each form has an amplitude of its own, of acceleration or of velocity; where the scenario states
+/// the other one, the pulse is scaled to it.
+fn pulsed(pulse: &Pulse) -> Result<GroundMotion, MotionError> {
+    let period = pulse.period;
+    let unit = 1.0;
+    let (name, natural, made) = match pulse.kind {
+        PulseKind::Ricker => {
+            ("Ricker pulse", Natural::Acceleration, MotionPulse::Ricker { acceleration: unit, period })
+        }
+        PulseKind::HalfSine => (
+            "half sine",
+            Natural::Acceleration,
+            MotionPulse::HalfSine { acceleration: unit, duration: 0.5 * period },
+        ),
+        PulseKind::OneSine => {
+            ("one sine", Natural::Acceleration, MotionPulse::OneSine { acceleration: unit, period })
+        }
+        PulseKind::OneCosine => (
+            "one cosine",
+            Natural::Acceleration,
+            MotionPulse::OneCosine { acceleration: unit, period },
+        ),
+        PulseKind::Rectangular => (
+            "rectangular pulse",
+            Natural::Acceleration,
+            MotionPulse::Rectangular { acceleration: unit, duration: period },
+        ),
+        PulseKind::Gabor { gamma, phase } => (
+            "Gabor pulse",
+            Natural::Velocity,
+            MotionPulse::Gabor { velocity: unit, period, gamma, phase },
+        ),
+        PulseKind::CycloidA => {
+            ("cycloid A", Natural::Velocity, MotionPulse::CycloidA { velocity: unit, period })
+        }
+        PulseKind::CycloidB => {
+            ("cycloid B", Natural::Velocity, MotionPulse::CycloidB { velocity: unit, period })
+        }
+        PulseKind::CycloidC { cycles } => {
+            ("cycloid C", Natural::Velocity, MotionPulse::CycloidC { velocity: unit, period, cycles })
+        }
+        PulseKind::MavroeidisPapageorgiou { gamma, phase } => (
+            "Mavroeidis–Papageorgiou pulse",
+            Natural::Velocity,
+            MotionPulse::MavroeidisPapageorgiou { velocity: unit, period, gamma, phase },
+        ),
+    };
+    let base = GroundMotion::from_pulse(name, made)?;
+    let sized = match (pulse.amplitude, natural) {
+        (Amplitude::Acceleration(a), Natural::Acceleration) => base.scaled(a),
+        (Amplitude::Velocity(v), Natural::Velocity) => base.scaled(v),
+        (Amplitude::Acceleration(a), Natural::Velocity) => base.scale_to(IntensityMeasure::Pga, a)?,
+        (Amplitude::Velocity(v), Natural::Acceleration) => base.scale_to(IntensityMeasure::Pgv, v)?,
+        (Amplitude::Displacement(d), _) => base.scale_to(IntensityMeasure::Pgd, d)?,
+    };
+    Ok(directed(sized, pulse.direction, pulse.start))
+}
+
+/// What the amplitude of a pulse's formula is.
+#[derive(Clone, Copy)]
+enum Natural {
+    Acceleration,
+    Velocity,
+}
+
+/// A horizontal motion, turned to its direction and delayed.
+fn directed(motion: GroundMotion, direction: Direction, start: f64) -> GroundMotion {
+    let history = if start == 0.0 {
+        motion.horizontal
+    } else {
+        let delayed = barrelstack_motion::Delayed { delay: start, history: motion.horizontal };
+        History::Sum(vec![delayed])
+    };
+    let mut made = match direction {
+        Direction::Horizontal => GroundMotion::new(motion.name, history, None),
+        Direction::Vertical => {
+            GroundMotion::new(motion.name, History::Sum(Vec::new()), Some(history))
+        }
+    };
+    made.provenance = motion.provenance;
+    made
+}

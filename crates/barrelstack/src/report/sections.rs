@@ -1,0 +1,343 @@
+//! The sections of a run's report, in reading order.
+
+use std::sync::Arc;
+
+use barrelstack_motion::STANDARD_GRAVITY;
+use barrelstack_report::{
+    Axis, Block, BoundarySample, Cell, Envelope, Figure, FigureKind, Mark, Player, Plot, Scene,
+    Series, Strip, Table, Trace,
+};
+
+use super::drawing;
+use crate::assemble::PartKind;
+use crate::run::Run;
+use crate::summary::Summary;
+use crate::watch::StressEnvelope;
+
+/// All sections.
+pub(super) fn all(run: &Run, summary: &Summary, scene: &Arc<Scene>) -> Vec<Block> {
+    let mut blocks = vec![Block::Player(player(run, scene))];
+    section(&mut blocks, "Collapse sequence", sequence(run, scene));
+    section(&mut blocks, "What became of every body", vec![Block::Table(fates(summary))]);
+    section(&mut blocks, "Displacements", displacements(run));
+    section(&mut blocks, "Demands", vec![Block::Table(demands(summary))]);
+    section(&mut blocks, "Normal stress on barrels and racks", stresses(run));
+    section(&mut blocks, "Forces between bodies", forces(run, summary));
+    section(&mut blocks, "Ground motion", motion(run));
+    section(&mut blocks, "Energy books", energy(run, summary));
+    section(&mut blocks, "Inputs", inputs(run));
+    blocks
+}
+
+fn section(blocks: &mut Vec<Block>, title: &str, content: Vec<Block>) {
+    if !content.is_empty() {
+        blocks.push(Block::Heading { level: 2, text: title.to_owned() });
+        blocks.extend(content);
+    }
+}
+
+fn player(run: &Run, scene: &Arc<Scene>) -> Player {
+    let top = run.assembly.of_kind(PartKind::Barrel).filter(|body| {
+        run.assembly.parts[*body].level == Some(run.assembly.levels)
+    });
+    Player {
+        id: "player".into(),
+        caption: "The run as computed, to scale. Arrows are contact forces.".into(),
+        scene: Arc::clone(scene),
+        traces: top
+            .map(|body| Trace {
+                body,
+                point: [0.0, 0.0],
+                label: format!("center of {}", run.assembly.parts[body].name),
+            })
+            .collect(),
+    }
+}
+
+fn sequence(run: &Run, scene: &Arc<Scene>) -> Vec<Block> {
+    if run.assembly.levels == 0 {
+        return Vec::new();
+    }
+    vec![Block::Figure(Figure {
+        id: "sequence".into(),
+        caption: "The stack at the moments that matter.".into(),
+        kind: FigureKind::Strip(Strip::of_run(Arc::clone(scene), 6)),
+    })]
+}
+
+fn number(value: f64) -> Cell {
+    Cell::Number(value, 3)
+}
+
+fn optional(value: Option<f64>) -> Cell {
+    value.map_or(Cell::Missing, number)
+}
+
+fn fates(summary: &Summary) -> Table {
+    let mut table = Table::new(
+        "Displacements are relative to the ground and to the place at rest; slip is relative to what \
+         the body stands on.",
+        &[
+            ("body", ""),
+            ("left its seat", "s"),
+            ("fell", "s"),
+            ("height of fall", "m"),
+            ("largest slip while standing", "cm"),
+            ("displacement at the end", "cm"),
+        ],
+    );
+    for body in &summary.bodies {
+        table.rows.push(vec![
+            Cell::text(&body.name),
+            optional(body.left_seat_at),
+            optional(body.fell_at),
+            optional(body.fall_height),
+            number(100.0 * body.peak_slip),
+            number(100.0 * body.residual_displacement),
+        ]);
+    }
+    table
+}
+
+fn demands(summary: &Summary) -> Table {
+    let demands = &summary.demands;
+    let mut table = Table::new(
+        "While the stack stood, unless said otherwise.",
+        &[("demand", ""), ("value", ""), ("unit", "")],
+    );
+    let mut row = |name: &str, value: Option<f64>, factor: f64, unit: &str| {
+        if let Some(value) = value {
+            table.rows.push(vec![Cell::text(name), number(value * factor), Cell::text(unit)]);
+        }
+    };
+    row("drift of the top against the ground, of the height", demands.top_drift_ratio, 100.0, "%");
+    row("stress amplification, largest on a bottom barrel", demands.stress_amplification, 1.0, "× at rest");
+    row(
+        "stress amplification, average over the loaded boundary",
+        demands.mean_stress_amplification,
+        1.0,
+        "× at rest",
+    );
+    row("slip of the bottom rack on the ground, largest", demands.base_slip_peak, 100.0, "cm");
+    row("slip of the bottom rack, at the collapse", demands.base_slip_at_collapse, 100.0, "cm");
+    row("slip of the bottom rack, at the end of the run", demands.base_slip_residual, 100.0, "cm");
+    row("walk of a rack on the barrels below, largest", demands.rack_walk_peak, 100.0, "cm");
+    row("tilt of a rack, largest", demands.rack_tilt_peak, 180.0 / std::f64::consts::PI, "deg");
+    table
+}
+
+/// A figure of histories over time with the collapse marked.
+fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> Block {
+    let mark = run.fates.collapse_time().map(|at| Mark { at, label: "loss of seat".into() });
+    Block::Figure(Figure {
+        id: id.to_owned(),
+        caption: caption.to_owned(),
+        kind: FigureKind::Plot(Plot {
+            x: Axis::new("time", "s"),
+            y,
+            series,
+            marks: mark.into_iter().collect(),
+            interactive: true,
+            timeline: true,
+            ..Plot::default()
+        }),
+    })
+}
+
+fn displacements(run: &Run) -> Vec<Block> {
+    let recording = &run.recording;
+    let mut series = Vec::new();
+    let stack = run.assembly.levels > 0;
+    for part in &run.assembly.parts {
+        // In a stack the left column tells the story, as in the paper: barrels 1, 4 and 7.
+        let shown = if stack {
+            part.kind == PartKind::Barrel && part.column == Some(1)
+        } else {
+            part.kind == PartKind::Body
+        };
+        if let (true, Some(channel)) = (shown, recording.displacement(&part.name)) {
+            let values = channel.values.iter().map(|v| 100.0 * v).collect();
+            series.push(Series::new(&part.name, recording.times.clone(), values));
+        }
+    }
+    if series.is_empty() {
+        return Vec::new();
+    }
+    vec![history(
+        run,
+        "displacements",
+        "Horizontal displacement relative to the ground.",
+        Axis::new("displacement", "cm"),
+        series,
+    )]
+}
+
+fn stresses(run: &Run) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    for envelope in &run.stresses.envelopes {
+        let part = &run.assembly.parts[envelope.body];
+        let bottom = part.level == Some(1) && part.column == Some(1);
+        if bottom && envelope.amplification().is_some() {
+            blocks.push(Block::Figure(stress_figure(run, envelope)));
+        }
+    }
+    if !blocks.is_empty() {
+        blocks.insert(
+            0,
+            Block::Paragraph(
+                "Stress is force per meter of boundary in the plane of the model. Shaded: at rest. \
+                 Line: the largest while the stack stood."
+                    .into(),
+            ),
+        );
+    }
+    blocks
+}
+
+fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
+    let name = &run.assembly.parts[envelope.body].name;
+    let mut order: Vec<usize> = (0..envelope.points.len()).collect();
+    if !envelope.closed {
+        // Nodes of a rack come in no order along a line: left to right, the underside first.
+        order.sort_by(|a, b| {
+            let (p, q) = (&envelope.points[*a], &envelope.points[*b]);
+            p.normal.z.total_cmp(&q.normal.z).then(p.position.x.total_cmp(&q.position.x))
+        });
+    }
+    let sample = |i: &usize| {
+        let point = &envelope.points[*i];
+        BoundarySample {
+            x: point.position.x,
+            z: point.position.z,
+            nx: point.normal.x,
+            nz: point.normal.z,
+            coordinate: point.coordinate,
+        }
+    };
+    Figure {
+        id: format!("stress-{name}"),
+        caption: format!("Normal stress on {name}."),
+        kind: FigureKind::Envelope(Envelope {
+            outline: drawing::outlines(&run.assembly, envelope.body),
+            samples: order.iter().map(sample).collect(),
+            closed: envelope.closed,
+            static_stress: order.iter().map(|i| 1e-3 * envelope.at_rest[*i]).collect(),
+            dynamic_stress: order.iter().map(|i| 1e-3 * envelope.peak[*i]).collect(),
+            unit: "kN/m".into(),
+            amplification: envelope.amplification(),
+            coordinate: if envelope.closed {
+                ("angle".into(), "rad".into())
+            } else {
+                ("x".into(), "m".into())
+            },
+        }),
+    }
+}
+
+fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
+    if summary.interfaces.is_empty() {
+        return Vec::new();
+    }
+    let mut table = Table::new(
+        "Force on the upper body; horizontal forces with their sign, positive to the right. All \
+         steps of the run count, falls too.",
+        &[
+            ("interface", ""),
+            ("vertical at rest", "kN"),
+            ("vertical, largest", "kN"),
+            ("at", "s"),
+            ("horizontal, largest", "kN"),
+            ("at", "s"),
+        ],
+    );
+    for joint in &summary.interfaces {
+        table.rows.push(vec![
+            Cell::text(&joint.name),
+            number(1e-3 * joint.at_rest),
+            number(1e-3 * joint.peak_vertical),
+            number(joint.peak_vertical_at),
+            number(1e-3 * joint.peak_horizontal),
+            number(joint.peak_horizontal_at),
+        ]);
+    }
+    let recording = &run.recording;
+    let mut blocks = Vec::new();
+    if let Some(base) = recording.joints.first() {
+        let kilo = |values: &[f64]| values.iter().map(|v| 1e-3 * v).collect();
+        blocks.push(history(
+            run,
+            "base-forces",
+            &format!("Force between {}.", base.name.replace(" on ", " and ")),
+            Axis::new("force", "kN"),
+            vec![
+                Series::new("vertical", recording.times.clone(), kilo(&base.vertical)),
+                Series::new("horizontal", recording.times.clone(), kilo(&base.horizontal)),
+            ],
+        ));
+    }
+    blocks.push(Block::Details {
+        summary: "Largest forces at every interface".into(),
+        blocks: vec![Block::Table(table)],
+    });
+    blocks
+}
+
+fn motion(run: &Run) -> Vec<Block> {
+    let Some(motion) = &run.ground.motion else { return Vec::new() };
+    let recording = &run.recording;
+    let mut blocks = Vec::new();
+    let mut series = Vec::new();
+    for (channel, label) in
+        [("ground acceleration x", "horizontal"), ("ground acceleration z", "vertical")]
+    {
+        if label == "vertical" && motion.vertical.is_none() {
+            continue;
+        }
+        if let Some(channel) = recording.channel(channel) {
+            let values = channel.values.iter().map(|v| v / STANDARD_GRAVITY).collect();
+            series.push(Series::new(label, recording.times.clone(), values));
+        }
+    }
+    blocks.push(history(
+        run,
+        "ground-acceleration",
+        "Acceleration of the ground.",
+        Axis::new("acceleration", "g"),
+        series,
+    ));
+    if let Some(spectrum) = super::spectrum::figure(motion) {
+        blocks.push(Block::Figure(spectrum));
+    }
+    blocks
+}
+
+fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
+    let recording = &run.recording;
+    let series = ["kinetic", "elastic", "damped", "friction", "ground work"]
+        .iter()
+        .filter_map(|name| {
+            let channel = recording.channel(&format!("energy {name}"))?;
+            let values = channel.values.iter().map(|v| 1e-3 * v).collect();
+            Some(Series::new(*name, recording.times.clone(), values))
+        })
+        .collect();
+    let books = &summary.energy;
+    vec![
+        Block::Paragraph(format!(
+            "What the ground gave and what the stack lost in height equals what is stored and what is \
+             dissipated but for {:.2e} of {:.0} J.",
+            books.residual_ratio, books.input
+        )),
+        history(run, "energy", "Energies since the start.", Axis::new("energy", "kJ"), series),
+    ]
+}
+
+fn inputs(run: &Run) -> Vec<Block> {
+    let lines = run.scenario.to_resolved_toml();
+    vec![Block::Details {
+        summary: "The scenario with every default written out".into(),
+        blocks: vec![Block::List(
+            lines.lines().filter(|line| !line.trim().is_empty()).map(str::to_owned).collect(),
+        )],
+    }]
+}

@@ -1,0 +1,370 @@
+//! A barrel: outer profile, wall, contents, mass and moments of inertia.
+
+use std::f64::consts::PI;
+
+use super::catalog;
+use super::dimension::Dimension;
+use super::error::ScenarioError;
+use super::field::{Default, Field, Kind, Named, Range, Section, names};
+use super::reader::Reader;
+use super::stack::View;
+use super::tree::Table;
+use super::writer::Writer;
+
+/// What the barrel holds and how the contents turn with it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fill {
+    /// Full, and the wine turns with the wood like a solid.
+    FullFrozen,
+    /// Full, and the wine is an ideal fluid: it does not turn about the axis of the barrel, and turns only in part
+    /// about a transverse axis.
+    FullFluid,
+    /// Wood only.
+    Empty,
+}
+
+/// A barrel, a body of revolution whose outer radius falls as a parabola from the bilge to the heads.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Barrel {
+    /// Catalogue name the barrel was made from.
+    pub base: String,
+    /// Mass of wood and contents (kg).
+    pub mass: f64,
+    /// Mass of the wood and hoops alone (kg).
+    pub empty_mass: f64,
+    /// Length over the chimes (m).
+    pub length: f64,
+    /// Outer diameter at the bilge, the widest place (m).
+    pub bilge_diameter: f64,
+    /// Outer diameter at the heads (m).
+    pub head_diameter: f64,
+    /// Thickness of staves and heads (m).
+    pub stave_thickness: f64,
+    /// Nominal volume of the contents (m³).
+    pub capacity: f64,
+    /// Diameter of the circle that stands for the barrel in the transverse view (m).
+    pub section_diameter: f64,
+    /// Contents.
+    pub fill: Fill,
+}
+
+impl Barrel {
+    /// Outer diameter (m) at a distance `offset` (m) from the bilge along the axis; constant beyond the heads.
+    pub fn diameter_at(&self, offset: f64) -> f64 {
+        let u = (2.0 * offset / self.length).clamp(-1.0, 1.0);
+        self.bilge_diameter - (self.bilge_diameter - self.head_diameter) * u * u
+    }
+
+    /// The barrel with another mass or other contents; a change of contents alone brings the mass that goes with it.
+    #[must_use]
+    pub fn altered(&self, mass: Option<f64>, fill: Option<Fill>) -> Self {
+        let fill = fill.unwrap_or(self.fill);
+        let regular = match (self.fill == Fill::Empty, fill == Fill::Empty) {
+            (true, false) => self.empty_mass + catalog::WINE_DENSITY * self.capacity,
+            (false, true) => self.empty_mass,
+            (true, true) | (false, false) => self.mass,
+        };
+        Self { mass: mass.unwrap_or(regular), fill, ..self.clone() }
+    }
+
+    /// Moment of inertia about the center of mass for motion in the plane of a view (kg·m²): about the axis of the
+    /// barrel in the transverse view, about a transverse axis in the longitudinal view.
+    ///
+    /// The wood is a shell of constant thickness with two heads, placed so that the room between them is the nominal
+    /// volume. The contents weigh what the wood leaves of `mass`. A frozen filling turns with the wood. An ideal fluid
+    /// does not turn about the axis, except for half a Stokes layer at 1 Hz, and about a transverse axis it turns like
+    /// the fluid in a spheroid with the same moments, `(I_t - I_a)² / I_t` (Lamb, Hydrodynamics, art. 110).
+    pub fn inertia(&self, view: View) -> f64 {
+        let moments = self.moments();
+        match view {
+            View::Transverse => moments.axial,
+            View::Longitudinal => moments.transverse,
+        }
+    }
+
+    fn moments(&self) -> Moments {
+        let half_room = self.half_room();
+        let thickness = self.stave_thickness;
+        let half_length = 0.5 * self.length;
+        let outer = |x: f64| 0.5 * self.diameter_at(x);
+        let inner = |x: f64| (outer(x) - thickness).max(0.0);
+        let staves = Solid::between(half_length, outer, inner);
+        let head = inner(half_room).powi(2) * PI * thickness;
+        let head_place = half_room + 0.5 * thickness;
+        let head_square = inner(half_room).powi(2);
+        let wood = Solid {
+            volume: staves.volume + 2.0 * head,
+            axial: staves.axial + head * head_square,
+            transverse: staves.transverse
+                + 2.0
+                    * head
+                    * (0.25 * head_square + thickness * thickness / 12.0 + head_place * head_place),
+        };
+        let wine = Solid::between(half_room, inner, |_| 0.0);
+        let wood_density = self.empty_mass / wood.volume;
+        let wine_mass = self.mass - self.empty_mass;
+        let wine_density = wine_mass / wine.volume;
+        let frozen = Moments {
+            axial: wine_density * wine.axial,
+            transverse: wine_density * wine.transverse,
+        };
+        let contents = match self.fill {
+            // Wood heavier than the catalogue's, when a mass is given for an empty barrel, keeps its shape.
+            Fill::Empty => {
+                let density = wine_mass / wood.volume;
+                Moments { axial: density * wood.axial, transverse: density * wood.transverse }
+            }
+            Fill::FullFrozen => frozen,
+            Fill::FullFluid if wine_mass <= 0.0 => Moments { axial: 0.0, transverse: 0.0 },
+            Fill::FullFluid => {
+                let lag = frozen.transverse - frozen.axial;
+                Moments {
+                    axial: wine_density * stokes_layer(half_room, inner),
+                    transverse: lag * lag / frozen.transverse,
+                }
+            }
+        };
+        Moments {
+            axial: wood_density * wood.axial + contents.axial,
+            transverse: wood_density * wood.transverse + contents.transverse,
+        }
+    }
+
+    /// Half of the distance between the heads that makes the room inside the nominal volume, or the most there is (m).
+    fn half_room(&self) -> f64 {
+        let most = 0.5 * self.length - self.stave_thickness;
+        let inner = |x: f64| (0.5 * self.diameter_at(x) - self.stave_thickness).max(0.0);
+        let room = |half: f64| Solid::between(half, inner, |_| 0.0).volume;
+        if room(most) <= self.capacity {
+            return most;
+        }
+        let (mut low, mut high) = (0.0, most);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if room(middle) < self.capacity {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
+    }
+}
+
+struct Moments {
+    axial: f64,
+    transverse: f64,
+}
+
+/// Volume (m³) and moments of volume (m⁵) of a body of revolution about its axis and a transverse axis at its middle.
+struct Solid {
+    volume: f64,
+    axial: f64,
+    transverse: f64,
+}
+
+impl Solid {
+    /// The body between two radii over `-half..half`, by Simpson's rule.
+    fn between(half: f64, outer: impl Fn(f64) -> f64, inner: impl Fn(f64) -> f64) -> Self {
+        const INTERVALS: u32 = 200;
+        let step = half / f64::from(INTERVALS);
+        let mut solid = Self { volume: 0.0, axial: 0.0, transverse: 0.0 };
+        for i in 0..=INTERVALS {
+            let x = step * f64::from(i);
+            let weight = match i {
+                0 | INTERVALS => 1.0,
+                _ if i % 2 == 1 => 4.0,
+                _ => 2.0,
+            };
+            // Both halves are alike.
+            let slice = 2.0 * weight * step / 3.0;
+            let (square_out, square_in) = (outer(x).powi(2), inner(x).powi(2));
+            let area = PI * (square_out - square_in);
+            let second = PI * (square_out * square_out - square_in * square_in);
+            solid.volume += slice * area;
+            solid.axial += slice * 0.5 * second;
+            solid.transverse += slice * (0.25 * second + area * x * x);
+        }
+        solid
+    }
+}
+
+/// Moment of volume (m⁵) of half a Stokes layer of wine on the wall at 1 Hz.
+fn stokes_layer(half: f64, radius: impl Fn(f64) -> f64) -> f64 {
+    /// Kinematic viscosity of wine (m²/s).
+    const VISCOSITY: f64 = 1.6e-6;
+    let thickness = (2.0 * VISCOSITY / (2.0 * PI)).sqrt();
+    let wall = |x: f64| 2.0 * PI * radius(x).powi(3);
+    let staves = half / 3.0 * (wall(half) + 4.0 * wall(0.5 * half) + wall(0.0));
+    let heads = PI * radius(half).powi(4);
+    0.5 * thickness * (staves + heads)
+}
+
+impl Named for Fill {
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("full-fluid", Self::FullFluid),
+        ("full-frozen", Self::FullFrozen),
+        ("empty", Self::Empty),
+    ];
+}
+
+const CATALOG: Default = Default::Derived("that of the catalogue");
+const SIZE: Kind =
+    Kind::Quantity(&[Dimension::LENGTH], Range { least: 0.01, above: false, greatest: 10.0 });
+
+/// A barrel.
+pub static BARREL: Section = Section {
+    help: "A barrel of the catalogue, with what differs.",
+    fields: &[
+        Field::new(
+            "base",
+            Kind::Choice(catalog::barrel_names),
+            Default::Value("\"bordeaux-225\""),
+            "Barrel of the catalogue.",
+        ),
+        Field::new(
+            "fill",
+            Kind::Choice(names::<Fill>),
+            Default::Value("\"full-fluid\""),
+            "Contents, and whether they turn with the barrel.",
+        ),
+        Field::new(
+            "mass",
+            Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)),
+            Default::Derived("the empty mass, and the capacity times 990 kg/m^3 unless empty"),
+            "Mass of wood and contents.",
+        ),
+        Field::new(
+            "empty_mass",
+            Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)),
+            CATALOG,
+            "Mass of wood and hoops.",
+        ),
+        Field::new("length", SIZE, CATALOG, "Length over the chimes."),
+        Field::new("bilge_diameter", SIZE, CATALOG, "Outer diameter at the widest place."),
+        Field::new("head_diameter", SIZE, CATALOG, "Outer diameter at the heads."),
+        Field::new(
+            "stave_thickness",
+            Kind::Quantity(
+                &[Dimension::LENGTH],
+                Range { least: 1e-3, above: false, greatest: 1.0 },
+            ),
+            CATALOG,
+            "Thickness of staves and heads.",
+        ),
+        Field::new(
+            "capacity",
+            Kind::Quantity(&[Dimension::VOLUME], Range::up_to(100.0)),
+            CATALOG,
+            "Nominal volume.",
+        ),
+        Field::new(
+            "section_diameter",
+            SIZE,
+            Default::Derived("that of the barrel above the rails of the rack"),
+            "Diameter of the circle that stands for the barrel in the transverse view.",
+        ),
+    ],
+    variants: None,
+    exclusive: &[],
+};
+
+/// Reads a barrel that lies on rails at `rail_half_spacing` (m) from its middle.
+pub(super) fn read(reader: Reader<'_>, rail_half_spacing: f64) -> Result<Barrel, ScenarioError> {
+    let base = reader.catalog_name("base")?;
+    let Some(known) = catalog::barrel(&base) else { return Err(reader.missing("base")) };
+    let fill: Fill = reader.choice("fill")?;
+    let or = |name, regular| Ok(reader.optional_quantity(name)?.unwrap_or(regular));
+    let empty_mass = or("empty_mass", known.empty_mass)?;
+    let capacity = or("capacity", known.capacity)?;
+    let regular_mass = match fill {
+        Fill::FullFluid | Fill::FullFrozen => empty_mass + catalog::WINE_DENSITY * capacity,
+        Fill::Empty => empty_mass,
+    };
+    let mut barrel = Barrel {
+        mass: or("mass", regular_mass)?,
+        empty_mass,
+        length: or("length", known.length)?,
+        bilge_diameter: or("bilge_diameter", known.bilge_diameter)?,
+        head_diameter: or("head_diameter", known.head_diameter)?,
+        stave_thickness: or("stave_thickness", known.stave_thickness)?,
+        capacity,
+        section_diameter: 0.0,
+        fill,
+        base,
+    };
+    let above_rails = barrel.diameter_at(rail_half_spacing);
+    barrel.section_diameter = or("section_diameter", above_rails)?;
+    check(&reader, &barrel)?;
+    reader.finish();
+    Ok(barrel)
+}
+
+fn check(reader: &Reader<'_>, barrel: &Barrel) -> Result<(), ScenarioError> {
+    let path = |name| reader.path_of(name);
+    if barrel.head_diameter > barrel.bilge_diameter {
+        let message = format!(
+            "`{}` is {} m, more than the bilge of {} m; a barrel is widest at the bilge",
+            path("head_diameter"),
+            barrel.head_diameter,
+            barrel.bilge_diameter
+        );
+        return Err(reader.inconsistent("head_diameter", message));
+    }
+    if 2.0 * barrel.stave_thickness >= barrel.head_diameter.min(barrel.length) {
+        let message = format!(
+            "`{}` of {} m leaves no room in a head of {} m",
+            path("stave_thickness"),
+            barrel.stave_thickness,
+            barrel.head_diameter
+        );
+        return Err(reader.inconsistent("stave_thickness", message));
+    }
+    let sections = barrel.head_diameter..=barrel.bilge_diameter;
+    if !sections.contains(&barrel.section_diameter) {
+        let message = format!(
+            "`{}` is {} m; a section lies between the head of {} m and the bilge of {} m",
+            path("section_diameter"),
+            barrel.section_diameter,
+            barrel.head_diameter,
+            barrel.bilge_diameter
+        );
+        return Err(reader.inconsistent("section_diameter", message));
+    }
+    if barrel.mass < barrel.empty_mass {
+        let message = format!(
+            "`{}` is {} kg, less than the wood of {} kg; lower `{}` too",
+            path("mass"),
+            barrel.mass,
+            barrel.empty_mass,
+            path("empty_mass")
+        );
+        return Err(reader.inconsistent("mass", message));
+    }
+    if barrel.fill == Fill::Empty && barrel.mass != barrel.empty_mass {
+        let message = format!(
+            "`{}` is {} kg but an empty barrel weighs its `empty_mass` of {} kg; give only `empty_mass`",
+            path("mass"),
+            barrel.mass,
+            barrel.empty_mass
+        );
+        return Err(reader.inconsistent("mass", message));
+    }
+    Ok(())
+}
+
+/// Writes a barrel.
+pub(super) fn write(barrel: &Barrel) -> Table {
+    let mut writer = Writer::new(&BARREL);
+    writer.text("base", &barrel.base);
+    writer.choice("fill", barrel.fill);
+    writer.quantity("mass", barrel.mass);
+    writer.quantity("empty_mass", barrel.empty_mass);
+    writer.quantity("length", barrel.length);
+    writer.quantity("bilge_diameter", barrel.bilge_diameter);
+    writer.quantity("head_diameter", barrel.head_diameter);
+    writer.quantity("stave_thickness", barrel.stave_thickness);
+    writer.quantity("capacity", barrel.capacity);
+    writer.quantity("section_diameter", barrel.section_diameter);
+    writer.finish()
+}

@@ -1,0 +1,32 @@
+//! The scenarios shipped with the program.
+
+macro_rules! scenarios {
+    ($($name:literal),* $(,)?) => {
+        const ALL: &[(&str, &str)] = &[
+            $(($name, include_str!(concat!("../../scenarios/", $name, ".toml")))),*
+        ];
+    };
+}
+
+scenarios![
+    "candia-6-barrels",
+    "candia-6-barrels-low-friction",
+    "candia-8-barrels",
+    "candia-8-barrels-half-scale",
+    "candia-8-barrels-longitudinal",
+    "demo-napa",
+    "rocking-block",
+    "sliding-block",
+    "rolling-disc",
+    "bouncing-disc",
+];
+
+/// Names of all built-in scenarios.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    ALL.iter().map(|(name, _)| *name)
+}
+
+/// The text of a built-in scenario.
+pub fn get(name: &str) -> Option<&'static str> {
+    ALL.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}

@@ -1,0 +1,226 @@
+//! Named barrels and racks, with the source of every number.
+//!
+//! Values that no source states are assumptions and say so: measure yours and override them.
+
+use std::f64::consts::PI;
+
+use super::interface::PairDefaults;
+use super::rack::{Cradle, Posts, RackKind};
+
+/// Density of wine (kg/m³).
+pub const WINE_DENSITY: f64 = 990.0;
+
+/// A barrel of the catalogue.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CatalogBarrel {
+    /// Name.
+    pub name: &'static str,
+    /// Length over the chimes (m).
+    pub length: f64,
+    /// Outer diameter at the bilge (m).
+    pub bilge_diameter: f64,
+    /// Outer diameter at the heads (m).
+    pub head_diameter: f64,
+    /// Thickness of staves and heads (m).
+    pub stave_thickness: f64,
+    /// Mass of wood and hoops (kg).
+    pub empty_mass: f64,
+    /// Nominal volume (m³).
+    pub capacity: f64,
+    /// Where the numbers come from.
+    pub source: &'static str,
+}
+
+/// The barrels.
+pub const BARRELS: &[CatalogBarrel] = &[
+    CatalogBarrel {
+        name: "bordeaux-225",
+        length: 0.945,
+        bilge_diameter: 0.690,
+        head_diameter: 0.555,
+        stave_thickness: 0.027,
+        empty_mass: 46.0,
+        capacity: 0.225,
+        source: "Bordeaux export barrel, Dimensions of a Bordeaux Barrel (dimensionsguide.com); mass of the A.P. John \
+                 225 L barrel (apjohn.com.au, technical specifications)",
+    },
+    CatalogBarrel {
+        name: "burgundy-228",
+        length: 0.880,
+        bilge_diameter: 0.720,
+        head_diameter: 0.580,
+        stave_thickness: 0.027,
+        empty_mass: 50.0,
+        capacity: 0.228,
+        source: "dimensions of patent application US 2011/0017686; stave thickness and mass are assumptions",
+    },
+    CatalogBarrel {
+        name: "hogshead-300",
+        length: 1.050,
+        bilge_diameter: 0.765,
+        head_diameter: 0.610,
+        stave_thickness: 0.025,
+        empty_mass: 55.5,
+        capacity: 0.300,
+        source: "A.P. John 300 L hogshead (apjohn.com.au, technical specifications)",
+    },
+    CatalogBarrel {
+        name: "puncheon-500",
+        length: 1.110,
+        bilge_diameter: 0.930,
+        head_diameter: 0.790,
+        stave_thickness: 0.027,
+        empty_mass: 90.0,
+        capacity: 0.500,
+        source: "middle of the ranges of Anatomy of a Wine Barrel (backyardbarrels.com.au); stave thickness is an \
+                 assumption",
+    },
+];
+
+/// A rack of the catalogue.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CatalogRack {
+    /// Name.
+    pub name: &'static str,
+    /// How the rack stands on what is below.
+    pub kind: RackKind,
+    /// Mass (kg).
+    pub mass: f64,
+    /// Barrels side by side.
+    pub barrels: u32,
+    /// Barrels end to end.
+    pub barrels_deep: u32,
+    /// Distance between the axes of neighboring barrels (m).
+    pub pitch: f64,
+    /// Overall width across the barrels (m).
+    pub width: f64,
+    /// Distance of each rail from the middle of a barrel along its axis (m).
+    pub rail_half_spacing: f64,
+    /// Width of one rail along the barrel axis (m).
+    pub rail_width: f64,
+    /// Height of the lowest point of a carried barrel above the underside (m).
+    pub clearance: f64,
+    /// Height of the beams (m).
+    pub beam_height: f64,
+    /// How the rack holds a barrel.
+    pub cradle: Cradle,
+    /// Half of the length of underside that bears on each barrel crown (m).
+    pub bearing_half_length: f64,
+    /// Distance between contact nodes (m).
+    pub node_spacing: f64,
+    /// Posts, if any.
+    pub posts: Option<Posts>,
+    /// Where the numbers come from.
+    pub source: &'static str,
+}
+
+/// Two barrels side by side on two rails: racks of type 2 across the barrels and of type 1 along them.
+const TWO_BARREL: CatalogRack = CatalogRack {
+    name: "two-barrel",
+    kind: RackKind::OnBarrels,
+    mass: 40.0,
+    barrels: 2,
+    barrels_deep: 1,
+    pitch: 0.76,
+    width: 1.50,
+    rail_half_spacing: 0.27,
+    rail_width: 0.05,
+    clearance: 0.06,
+    beam_height: 0.04,
+    cradle: Cradle::Supports { angle: 30.0 * PI / 180.0 },
+    bearing_half_length: 0.08,
+    node_spacing: 0.01,
+    posts: None,
+    source: "portable steel rack for two barrels on a footprint of 38 in by 58 in (Wines & Vines 2016); mass, pitch, \
+             rails, clearance, cradle and bearing are assumptions",
+};
+
+/// The racks.
+pub const RACKS: &[CatalogRack] = &[
+    TWO_BARREL,
+    CatalogRack {
+        name: "four-barrel",
+        mass: 80.0,
+        barrels_deep: 2,
+        source: "two racks for two barrels end to end (Wines & Vines 2016); the numbers of one are those of \
+                 `two-barrel`, the mass is an assumption",
+        ..TWO_BARREL
+    },
+    CatalogRack {
+        name: "rack-on-rack",
+        kind: RackKind::OnRacks,
+        mass: 60.0,
+        posts: Some(Posts { height: 0.89, half_spacing: 0.725 }),
+        source: "racks that carry load on posts (Wines & Vines 2014, 2016); every number is an assumption, the post \
+                 height makes the usual level pitch",
+        ..TWO_BARREL
+    },
+];
+
+/// Stiffness of one contact node in a stack (N/m), calibrated by Candia, de la Llera and Almazán (2008).
+const STIFFNESS: f64 = 980_000.0;
+
+/// Damping of one contact node in a stack (N·s/m), calibrated by Candia, de la Llera and Almazán (2008).
+const DAMPING: f64 = 2200.0;
+
+/// A pair of bodies in a stack with the friction it takes when a scenario leaves it out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CatalogPair {
+    /// Name.
+    pub name: &'static str,
+    /// Coefficient of friction.
+    pub coefficient: f64,
+    /// Where the number comes from.
+    pub source: &'static str,
+}
+
+/// The pairs.
+pub const PAIRS: [CatalogPair; 5] = [
+    CatalogPair {
+        name: "rack-ground",
+        coefficient: 0.4,
+        source: "six-barrel example of Candia, de la Llera and Almazán (2008)",
+    },
+    CatalogPair {
+        name: "barrel-rack",
+        coefficient: 0.22,
+        source: "calibrated by Candia, de la Llera and Almazán (2008)",
+    },
+    CatalogPair { name: "barrel-barrel", coefficient: 0.4, source: "wood on wood, assumption" },
+    CatalogPair { name: "barrel-ground", coefficient: 0.4, source: "wood on concrete, assumption" },
+    CatalogPair { name: "rack-rack", coefficient: 0.3, source: "steel on steel, assumption" },
+];
+
+impl CatalogPair {
+    pub(super) fn defaults(&self) -> PairDefaults {
+        PairDefaults { stiffness: STIFFNESS, damping: DAMPING, coefficient: self.coefficient }
+    }
+}
+
+/// Records shipped with the program.
+pub const RECORDS: &[(&str, &str)] = &[(
+    "napa-college-2014",
+    "South Napa 2014-08-24 M6.0, Napa College, CGS/CSMIP 68150: two horizontal components and the vertical",
+)];
+
+pub(super) fn barrel_names() -> Vec<&'static str> {
+    BARRELS.iter().map(|barrel| barrel.name).collect()
+}
+
+pub(super) fn rack_names() -> Vec<&'static str> {
+    RACKS.iter().map(|rack| rack.name).collect()
+}
+
+pub(super) fn record_names() -> Vec<&'static str> {
+    RECORDS.iter().map(|(name, _)| *name).collect()
+}
+
+/// A barrel of the catalogue.
+pub fn barrel(name: &str) -> Option<&'static CatalogBarrel> {
+    BARRELS.iter().find(|barrel| barrel.name == name)
+}
+
+/// A rack of the catalogue.
+pub fn rack(name: &str) -> Option<&'static CatalogRack> {
+    RACKS.iter().find(|rack| rack.name == name)
+}

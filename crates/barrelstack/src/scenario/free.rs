@@ -1,0 +1,459 @@
+//! A free scene: any planar bodies on a ground, for verification and for teaching.
+
+use super::dimension::Dimension;
+use super::error::ScenarioError;
+use super::field::{Default, Field, Kind, Named, Range, Section, names};
+use super::interface::{self, Interface};
+use super::reader::Reader;
+use super::shape::{self, SHAPE};
+use super::tree::Table;
+use super::writer::Writer;
+
+pub use super::shape::Shape;
+
+/// The ground of a free scene: the half-plane below a line through the origin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ground {
+    /// Slope of the surface, positive when it rises to the right (rad).
+    pub slope: f64,
+    /// Label used by interfaces.
+    pub kind: String,
+}
+
+/// Where the boundary of a body carries contact nodes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Nodes {
+    /// At the corners.
+    Corners,
+    /// Along the boundary at most this far apart, corners included (m).
+    Spacing(f64),
+    /// This many on each side, or around a curved shape.
+    Count(u32),
+    /// The one point of a circle that is deepest in the target.
+    Rolling,
+}
+
+/// Viscous drag on a body, relative to the ground at rest (Candia, de la Llera and Almazán 2008, eq. 2.8).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Viscous {
+    /// On the velocity of the center of mass (N·s/m).
+    pub linear: f64,
+    /// On the spin (N·m·s).
+    pub angular: f64,
+}
+
+/// One body of a free scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreeBody {
+    /// Unique name.
+    pub name: String,
+    /// Label used by interfaces.
+    pub kind: String,
+    /// Outline.
+    pub shape: Shape,
+    /// Mass (kg).
+    pub mass: f64,
+    /// Moment of inertia about the center of mass (kg·m²).
+    pub inertia: f64,
+    /// Center of mass in local coordinates, from the reference point of the shape (m).
+    pub center_of_mass: [f64; 2],
+    /// Place of the reference point `[x, z]` at the start (m).
+    pub position: [f64; 2],
+    /// Inclination at the start, counterclockwise (rad).
+    pub angle: f64,
+    /// Velocity of the center of mass at the start (m/s).
+    pub velocity: [f64; 2],
+    /// Spin at the start, counterclockwise (rad/s).
+    pub spin: f64,
+    /// Contact nodes.
+    pub nodes: Nodes,
+    /// Whether the body moves with the ground.
+    pub fixed_to_ground: bool,
+    /// Viscous drag.
+    pub viscous: Option<Viscous>,
+}
+
+/// The law between two kinds of a free scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreeInterface {
+    /// The two kinds; the first carries the nodes (contactor), the second the surface (target).
+    pub between: [String; 2],
+    /// The law.
+    pub law: Interface,
+}
+
+/// A free scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreeScene {
+    /// The ground.
+    pub ground: Ground,
+    /// Bodies, in the order of the file.
+    pub bodies: Vec<FreeBody>,
+    /// Interfaces, in the order of the file.
+    pub interfaces: Vec<FreeInterface>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum NodeRule {
+    Corners,
+    Rolling,
+}
+
+impl Named for NodeRule {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("corners", Self::Corners), ("rolling", Self::Rolling)];
+}
+
+/// Most bodies of a free scene.
+const MOST_BODIES: usize = 500;
+
+/// Most contact nodes of one body.
+const MOST_NODES: f64 = 20_000.0;
+
+/// The ground.
+pub static GROUND: Section = Section {
+    help: "The ground: the half-plane below a line through the origin.",
+    fields: &[
+        Field::new(
+            "slope",
+            Kind::Quantity(&[Dimension::ANGLE], Range::between(-1.5, 1.5)),
+            Default::Value("\"0 deg\""),
+            "Slope, positive when it rises to the right.",
+        ),
+        Field::new("kind", Kind::Text, Default::Value("\"ground\""), "Label used by interfaces."),
+    ],
+    variants: None,
+    exclusive: &[],
+};
+
+/// Contact nodes.
+pub static NODES: Section = Section {
+    help: "Where the boundary carries contact nodes: one of the fields.",
+    fields: &[
+        Field::new(
+            "rule",
+            Kind::Choice(names::<NodeRule>),
+            Default::Nothing,
+            "At the corners, or at the one deepest point of a circle.",
+        ),
+        Field::new(
+            "spacing",
+            Kind::Quantity(
+                &[Dimension::LENGTH],
+                Range { least: 1e-4, above: false, greatest: 1e3 },
+            ),
+            Default::Nothing,
+            "Greatest distance between nodes along the boundary.",
+        ),
+        Field::new(
+            "count",
+            Kind::Integer(1, 2000),
+            Default::Nothing,
+            "Nodes on each side, or around a curved shape.",
+        ),
+    ],
+    variants: None,
+    exclusive: &[&["rule", "spacing", "count"]],
+};
+
+/// Viscous drag.
+pub static VISCOUS: Section = Section {
+    help: "Viscous drag on the motion of a body (Candia, de la Llera and Almazán 2008, eq. 2.8).",
+    fields: &[
+        Field::new(
+            "linear",
+            Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE),
+            Default::Value("\"0 N s/m\""),
+            "Force per velocity of the center of mass.",
+        ),
+        Field::new(
+            "angular",
+            Kind::Quantity(&[Dimension::ANGULAR_DAMPING], Range::NOT_NEGATIVE),
+            Default::Value("\"0 N m s\""),
+            "Moment per spin.",
+        ),
+    ],
+    variants: None,
+    exclusive: &[],
+};
+
+/// A body.
+pub static BODY: Section = Section {
+    help: "A rigid body of a free scene.",
+    fields: &[
+        Field::new("name", Kind::Text, Default::Required, "Unique name."),
+        Field::new("kind", Kind::Text, Default::Derived("the name"), "Label used by interfaces."),
+        Field::new("shape", Kind::Table(&SHAPE), Default::Required, "Outline."),
+        Field::new(
+            "mass",
+            Kind::Quantity(&[Dimension::MASS], Range::POSITIVE),
+            Default::Required,
+            "Mass.",
+        ),
+        Field::new(
+            "inertia",
+            Kind::Quantity(&[Dimension::INERTIA], Range::POSITIVE),
+            Default::Derived("that of a uniform plate of this outline"),
+            "Moment of inertia about the center of mass.",
+        ),
+        Field::new(
+            "center_of_mass",
+            Kind::Point(Dimension::LENGTH),
+            Default::Derived("the centroid of the outline"),
+            "Center of mass, from the reference point of the shape.",
+        ),
+        Field::new(
+            "position",
+            Kind::Point(Dimension::LENGTH),
+            Default::Required,
+            "Place of the reference point of the shape at the start.",
+        ),
+        Field::new(
+            "angle",
+            Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)),
+            Default::Value("\"0 deg\""),
+            "Inclination at the start, counterclockwise.",
+        ),
+        Field::new(
+            "velocity",
+            Kind::Point(Dimension::VELOCITY),
+            Default::Value("[\"0 m/s\", \"0 m/s\"]"),
+            "Velocity of the center of mass at the start.",
+        ),
+        Field::new(
+            "spin",
+            Kind::Quantity(&[Dimension::SPIN], Range::between(-1e4, 1e4)),
+            Default::Value("\"0 rad/s\""),
+            "Spin at the start, counterclockwise.",
+        ),
+        Field::new(
+            "nodes",
+            Kind::ChoiceOrTable(names::<NodeRule>, "rule", &NODES),
+            Default::Derived(
+                "rolling for a circle, corners for straight sides, 1 cm apart otherwise",
+            ),
+            "Contact nodes.",
+        ),
+        Field::new(
+            "fixed_to_ground",
+            Kind::Flag,
+            Default::Value("false"),
+            "Whether the body moves with the ground.",
+        ),
+        Field::new("viscous", Kind::Table(&VISCOUS), Default::Nothing, "Viscous drag."),
+    ],
+    variants: None,
+    exclusive: &[],
+};
+
+/// Reads the fields of a free scene from the top of the file.
+pub(super) fn read(root: &Reader<'_>) -> Result<FreeScene, ScenarioError> {
+    let ground = read_ground(root.section("ground")?)?;
+    let mut bodies: Vec<FreeBody> = Vec::new();
+    for reader in root.sections("body")? {
+        if bodies.len() == MOST_BODIES {
+            let message = format!("a free scene has at most {MOST_BODIES} bodies");
+            return Err(reader.inconsistent("name", message));
+        }
+        let name = reader.text("name")?;
+        if bodies.iter().any(|body| body.name == name) {
+            let message = format!("two bodies are called \"{name}\"; give each its own name");
+            return Err(reader.inconsistent("name", message));
+        }
+        bodies.push(read_body(reader, name)?);
+    }
+    if bodies.is_empty() {
+        return Err(root.missing("body"));
+    }
+    let interfaces = read_interfaces(root, &ground, &bodies)?;
+    Ok(FreeScene { ground, bodies, interfaces })
+}
+
+fn read_ground(reader: Reader<'_>) -> Result<Ground, ScenarioError> {
+    let ground = Ground { slope: reader.quantity("slope")?, kind: reader.text("kind")? };
+    reader.finish();
+    Ok(ground)
+}
+
+fn read_body(reader: Reader<'_>, name: String) -> Result<FreeBody, ScenarioError> {
+    let shape = shape::read(reader.section("shape")?)?;
+    let nodes = read_nodes(&reader, &shape)?;
+    let mass = reader.quantity("mass")?;
+    let uniform = shape.uniform();
+    let center_of_mass = reader.optional_point("center_of_mass")?;
+    let inertia = reader.optional_quantity("inertia")?;
+    // The inertia of a uniform plate holds about its centroid only.
+    if inertia.is_none() && center_of_mass.is_some_and(|center| center != uniform.centroid) {
+        let message = format!(
+            "the center of mass is away from the centroid [{} m, {} m], so the body is not uniform; give `{}` too",
+            uniform.centroid[0],
+            uniform.centroid[1],
+            reader.path_of("inertia")
+        );
+        return Err(reader.inconsistent("center_of_mass", message));
+    }
+    let viscous = match reader.optional_section("viscous")? {
+        Some(viscous) => Some(read_viscous(viscous)?),
+        None => None,
+    };
+    let body = FreeBody {
+        kind: reader.optional_text("kind")?.unwrap_or_else(|| name.clone()),
+        name,
+        inertia: inertia.unwrap_or(mass * uniform.square_radius),
+        center_of_mass: center_of_mass.unwrap_or(uniform.centroid),
+        shape,
+        mass,
+        position: reader.point("position")?,
+        angle: reader.quantity("angle")?,
+        velocity: reader.point("velocity")?,
+        spin: reader.quantity("spin")?,
+        nodes,
+        fixed_to_ground: reader.flag("fixed_to_ground")?,
+        viscous,
+    };
+    reader.finish();
+    Ok(body)
+}
+
+fn read_viscous(reader: Reader<'_>) -> Result<Viscous, ScenarioError> {
+    let viscous =
+        Viscous { linear: reader.quantity("linear")?, angular: reader.quantity("angular")? };
+    reader.finish();
+    Ok(viscous)
+}
+
+fn read_nodes(reader: &Reader<'_>, shape: &Shape) -> Result<Nodes, ScenarioError> {
+    let Some(nodes) = reader.optional_section("nodes")? else {
+        return Ok(match shape {
+            Shape::Circle { .. } => Nodes::Rolling,
+            Shape::Rectangle { .. } | Shape::Polygon { .. } => Nodes::Corners,
+            Shape::Cradle { .. } | Shape::BarrelProfile { .. } => Nodes::Spacing(0.01),
+        });
+    };
+    let rule: Option<NodeRule> = nodes.optional_choice("rule")?;
+    let spacing = nodes.optional_quantity("spacing")?;
+    let count = nodes.optional_integer("count")?;
+    let rule = rule
+        .map(|rule| match rule {
+            NodeRule::Corners => Nodes::Corners,
+            NodeRule::Rolling => Nodes::Rolling,
+        })
+        .or(spacing.map(Nodes::Spacing))
+        .or(count.map(Nodes::Count))
+        .ok_or_else(|| nodes.one_of(&["rule", "spacing", "count"]))?;
+    let circle = matches!(shape, Shape::Circle { .. });
+    match rule {
+        Nodes::Rolling if !circle => {
+            let message =
+                "only a circle rolls on one node; write `nodes = \"corners\"` or a spacing";
+            return Err(nodes.inconsistent("rule", message.to_owned()));
+        }
+        Nodes::Corners if circle => {
+            let message = "a circle has no corners; write `nodes = \"rolling\"` or a spacing";
+            return Err(nodes.inconsistent("rule", message.to_owned()));
+        }
+        Nodes::Spacing(spacing) if shape.perimeter() / spacing > MOST_NODES => {
+            let message = format!(
+                "a spacing of {spacing} m puts more than {MOST_NODES} nodes on a boundary of {} m; take a wider one",
+                shape.perimeter()
+            );
+            return Err(nodes.inconsistent("spacing", message));
+        }
+        Nodes::Rolling | Nodes::Corners | Nodes::Spacing(_) | Nodes::Count(_) => {}
+    }
+    nodes.finish();
+    Ok(rule)
+}
+
+fn read_interfaces(
+    root: &Reader<'_>,
+    ground: &Ground,
+    bodies: &[FreeBody],
+) -> Result<Vec<FreeInterface>, ScenarioError> {
+    let mut kinds: Vec<&str> = Vec::new();
+    for kind in bodies.iter().map(|body| body.kind.as_str()).chain([ground.kind.as_str()]) {
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    let mut interfaces: Vec<FreeInterface> = Vec::new();
+    for reader in root.sections("interface")? {
+        let between = reader.pair("between")?;
+        for kind in &between {
+            if !kinds.contains(&kind.as_str()) {
+                let message = format!(
+                    "no body is of the kind \"{kind}\"; the kinds are {}",
+                    kinds.join(", ")
+                );
+                return Err(reader.inconsistent("between", message));
+            }
+        }
+        if between[0] == ground.kind {
+            let message = format!(
+                "the ground carries no contact nodes; write `between = [\"{}\", \"{}\"]`",
+                between[1], between[0]
+            );
+            return Err(reader.inconsistent("between", message));
+        }
+        if interfaces.iter().any(|known| known.between == between) {
+            let message = format!(
+                "a second interface between \"{}\" and \"{}\"; keep one",
+                between[0], between[1]
+            );
+            return Err(reader.inconsistent("between", message));
+        }
+        let law = interface::read(reader, None)?;
+        interfaces.push(FreeInterface { between, law });
+    }
+    Ok(interfaces)
+}
+
+/// Writes the fields of a free scene at the top of the file.
+pub(super) fn write(writer: &mut Writer, scene: &FreeScene) {
+    let mut ground = Writer::new(&GROUND);
+    ground.quantity("slope", scene.ground.slope);
+    ground.text("kind", &scene.ground.kind);
+    writer.table("ground", ground.finish());
+    writer.tables("body", scene.bodies.iter().map(write_body).collect());
+    let interfaces =
+        scene.interfaces.iter().map(|i| interface::write_free(&i.between, &i.law)).collect();
+    writer.tables("interface", interfaces);
+}
+
+fn write_body(body: &FreeBody) -> Table {
+    let mut writer = Writer::new(&BODY);
+    writer.text("name", &body.name);
+    writer.text("kind", &body.kind);
+    writer.quantity("mass", body.mass);
+    writer.quantity("inertia", body.inertia);
+    writer.point("center_of_mass", body.center_of_mass);
+    writer.point("position", body.position);
+    writer.quantity("angle", body.angle);
+    writer.point("velocity", body.velocity);
+    writer.quantity("spin", body.spin);
+    writer.flag("fixed_to_ground", body.fixed_to_ground);
+    writer.table("shape", shape::write(&body.shape));
+    writer.table("nodes", write_nodes(body.nodes));
+    match body.viscous {
+        Some(viscous) => {
+            let mut inner = Writer::new(&VISCOUS);
+            inner.quantity("linear", viscous.linear);
+            inner.quantity("angular", viscous.angular);
+            writer.table("viscous", inner.finish());
+        }
+        None => writer.omit(&["viscous"]),
+    }
+    writer.finish()
+}
+
+fn write_nodes(nodes: Nodes) -> Table {
+    let mut writer = Writer::new(&NODES);
+    match nodes {
+        Nodes::Corners => writer.choice("rule", NodeRule::Corners),
+        Nodes::Rolling => writer.choice("rule", NodeRule::Rolling),
+        Nodes::Spacing(spacing) => writer.quantity("spacing", spacing),
+        Nodes::Count(count) => writer.integer("count", count),
+    }
+    writer.omit(&["rule", "spacing", "count"]);
+    writer.finish()
+}

@@ -1,0 +1,233 @@
+//! The fields of `[interface]`.
+
+use crate::scenario::dimension::Dimension;
+use crate::scenario::field::{
+    Default, Field, Kind, Named, Range, Section, Variant, Variants, names,
+};
+
+use super::Basis;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Law {
+    SpeedGap,
+    KelvinVoigt,
+    HuntCrossley,
+    Hertz,
+}
+
+impl Named for Law {
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("speed-gap", Self::SpeedGap),
+        ("kelvin-voigt", Self::KelvinVoigt),
+        ("hunt-crossley", Self::HuntCrossley),
+        ("hertz", Self::Hertz),
+    ];
+}
+
+impl Named for Basis {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("node", Self::Node), ("length", Self::Length)];
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum FrictionKind {
+    None,
+    Coulomb,
+    Regularized,
+}
+
+impl Named for FrictionKind {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("coulomb", Self::Coulomb), ("regularized", Self::Regularized), ("none", Self::None)];
+}
+
+const LAW: Field = Field::new(
+    "law",
+    Kind::Choice(names::<Law>),
+    Default::Value("\"speed-gap\""),
+    "Normal force as a function of penetration and its rate.",
+);
+
+const BASIS: Field = Field::new(
+    "basis",
+    Kind::Choice(names::<Basis>),
+    Default::Value("\"node\""),
+    "Whether stiffness and damping belong to one contact node or to one meter of boundary.",
+);
+
+const STIFFNESS: Field = Field::new(
+    "stiffness",
+    Kind::Quantity(
+        &[
+            Dimension::STIFFNESS,
+            Dimension::STIFFNESS_PER_LENGTH,
+            Dimension::HERTZ_STIFFNESS,
+            Dimension::HERTZ_STIFFNESS_PER_LENGTH,
+        ],
+        Range::POSITIVE,
+    ),
+    Default::Derived("9.8 kN/cm in a stack, for a linear law per node; must be given otherwise"),
+    "Stiffness k: N/m per node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent 1.5.",
+);
+
+const FRICTION_FIELD: Field = Field::new(
+    "friction",
+    Kind::Table(&FRICTION),
+    Default::Derived(
+        "Coulomb friction with the coefficient of the pair in a stack; must be given otherwise",
+    ),
+    "Tangential force.",
+);
+
+const LINEAR: &[Field] = &[
+    Field::new(
+        "damping",
+        Kind::Quantity(&[Dimension::DAMPING, Dimension::DAMPING_PER_LENGTH], Range::NOT_NEGATIVE),
+        Default::Derived("22 N s/cm in a stack when the stiffness is not given either"),
+        "Damping c: N s/m per node or N s/m^2 per length.",
+    ),
+    Field::new(
+        "restitution",
+        Kind::Number(Range::up_to(1.0)),
+        Default::Nothing,
+        "Ratio of normal speeds after and before an impact, in place of the damping.",
+    ),
+    Field::new(
+        "reference_mass",
+        Kind::Quantity(&[Dimension::MASS, Dimension::MASS_PER_LENGTH], Range::POSITIVE),
+        Default::Derived("must be given with `restitution`"),
+        "Mass for which the restitution holds: kg on one node, or kg/m of boundary.",
+    ),
+];
+
+const LAWS: Variants = Variants {
+    tag: "law",
+    list: &[
+        Variant {
+            name: "speed-gap",
+            help: "Linear spring, with a damper that acts on approach only.",
+            fields: LINEAR,
+        },
+        Variant {
+            name: "kelvin-voigt",
+            help: "Linear spring and damper, never pulling.",
+            fields: LINEAR,
+        },
+        Variant {
+            name: "hunt-crossley",
+            help: "Spring whose damping grows with the penetration.",
+            fields: &[
+                Field::new(
+                    "exponent",
+                    Kind::Number(Range::between(1.0, 1.5)),
+                    Default::Value("1.5"),
+                    "Power of the penetration: 1 or 1.5.",
+                ),
+                Field::new(
+                    "damping",
+                    Kind::Quantity(&[Dimension::HUNT_CROSSLEY_DAMPING], Range::NOT_NEGATIVE),
+                    Default::Required,
+                    "Damping d: ratio of the damping force to the elastic force, per unit of penetration rate.",
+                ),
+            ],
+        },
+        Variant {
+            name: "hertz",
+            help: "Elastic spring with the power 1.5 of the penetration.",
+            fields: &[],
+        },
+    ],
+};
+
+/// The law of contact of one pair in a stack.
+pub static INTERFACE: Section = Section {
+    help: "The law of contact of one pair of bodies.",
+    fields: &[LAW, BASIS, STIFFNESS, FRICTION_FIELD],
+    variants: Some(LAWS),
+    exclusive: &[&["damping", "restitution"], &["damping", "reference_mass"]],
+};
+
+/// The law of contact between two kinds of a free scene.
+pub static FREE_INTERFACE: Section = Section {
+    help: "The law of contact between two kinds of body.",
+    fields: &[
+        Field::new(
+            "between",
+            Kind::Pair,
+            Default::Required,
+            "The two kinds: the first carries the contact nodes, the second the surface.",
+        ),
+        LAW,
+        BASIS,
+        STIFFNESS,
+        FRICTION_FIELD,
+    ],
+    variants: Some(LAWS),
+    exclusive: &[&["damping", "restitution"], &["damping", "reference_mass"]],
+};
+
+/// Greatest coefficient of friction that makes sense.
+const COEFFICIENT: Range = Range::between(0.0, 5.0);
+
+const COEFFICIENT_FIELD: Field = Field::new(
+    "coefficient",
+    Kind::Number(COEFFICIENT),
+    Default::Derived("that of the pair in a stack; must be given otherwise"),
+    "Kinetic coefficient of friction.",
+);
+
+/// Friction.
+pub static FRICTION: Section = Section {
+    help: "Tangential force of a contact.",
+    fields: &[Field::new(
+        "law",
+        Kind::Choice(names::<FrictionKind>),
+        Default::Value("\"coulomb\""),
+        "Tangential force as a function of slip.",
+    )],
+    variants: Some(Variants {
+        tag: "law",
+        list: &[
+            Variant {
+                name: "coulomb",
+                help: "Elastic, damped stick up to the static limit, then sliding.",
+                fields: &[
+                    COEFFICIENT_FIELD,
+                    Field::new(
+                        "static_coefficient",
+                        Kind::Number(COEFFICIENT),
+                        Default::Derived("`coefficient`"),
+                        "Static coefficient of friction, not below the kinetic one.",
+                    ),
+                    Field::new(
+                        "tangential_stiffness_ratio",
+                        Kind::Number(Range::up_to(100.0)),
+                        Default::Value("1.0"),
+                        "Tangential stiffness of the stick over the normal stiffness.",
+                    ),
+                    Field::new(
+                        "tangential_damping_ratio",
+                        Kind::Number(Range::between(0.0, 100.0)),
+                        Default::Value("1.0"),
+                        "Tangential damping of the stick over the normal damping.",
+                    ),
+                ],
+            },
+            Variant {
+                name: "regularized",
+                help: "Sliding friction smoothed around zero slip rate; it creeps and never sticks.",
+                fields: &[
+                    COEFFICIENT_FIELD,
+                    Field::new(
+                        "velocity",
+                        Kind::Quantity(&[Dimension::VELOCITY], Range::POSITIVE),
+                        Default::Required,
+                        "Slip rate at which the friction is fully developed.",
+                    ),
+                ],
+            },
+            Variant { name: "none", help: "No tangential force.", fields: &[] },
+        ],
+    }),
+    exclusive: &[],
+};

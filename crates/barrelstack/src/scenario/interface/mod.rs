@@ -1,0 +1,99 @@
+//! The law of contact between two kinds of body.
+
+mod fields;
+mod text;
+
+pub use fields::{FREE_INTERFACE, FRICTION, INTERFACE};
+pub(super) use text::{PairDefaults, read, write, write_free};
+
+/// To what a contact constant belongs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Basis {
+    /// Constants hold for one contact node, whatever the spacing of the nodes.
+    Node,
+    /// Constants hold for one meter of boundary and are multiplied by the tributary length of the node.
+    Length,
+}
+
+/// Dissipation of a linear law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Damping {
+    /// `c` (N·s/m per node, or N·s/m² on the basis of length).
+    Coefficient(f64),
+    /// The damping that gives this restitution to a reference mass.
+    Restitution {
+        /// Ratio of normal speeds after and before, in `(0, 1]`.
+        restitution: f64,
+        /// Mass that strikes one node (kg), or one meter of boundary (kg/m).
+        reference_mass: f64,
+    },
+}
+
+/// Penetration and its rate to compressive force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NormalLaw {
+    /// `k δ + c δ̇` on approach, `k δ` on rebound (Candia, de la Llera and Almazán 2008, eq. 2.6).
+    SpeedGap {
+        /// `k` (N/m per node, or N/m² on the basis of length).
+        stiffness: f64,
+        /// Dissipation.
+        damping: Damping,
+    },
+    /// `max(0, k δ + c δ̇)`.
+    KelvinVoigt {
+        /// `k` (N/m per node, or N/m² on the basis of length).
+        stiffness: f64,
+        /// Dissipation.
+        damping: Damping,
+    },
+    /// `k δⁿ (1 + d δ̇)`.
+    HuntCrossley {
+        /// `k` (N/mⁿ per node, or N/mⁿ⁺¹ on the basis of length).
+        stiffness: f64,
+        /// `n`, either 1 or 1.5.
+        exponent: f64,
+        /// `d` (s/m).
+        damping: f64,
+    },
+    /// `k δ^1.5`, without dissipation.
+    Hertz {
+        /// `k` (N/m^1.5 per node, or N/m^2.5 on the basis of length).
+        stiffness: f64,
+    },
+}
+
+/// Slip to tangential force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Friction {
+    /// No friction.
+    None,
+    /// Coulomb friction with an elastic, damped stick.
+    Coulomb {
+        /// Kinetic coefficient.
+        coefficient: f64,
+        /// Static coefficient, not below the kinetic one.
+        static_coefficient: f64,
+        /// Tangential stiffness over normal stiffness.
+        tangential_stiffness_ratio: f64,
+        /// Tangential damping over normal damping.
+        tangential_damping_ratio: f64,
+    },
+    /// Coulomb friction smoothed near zero slip rate: it never sticks, it creeps.
+    Regularized {
+        /// Kinetic coefficient.
+        coefficient: f64,
+        /// Slip rate at which the friction is fully developed (m/s).
+        velocity: f64,
+    },
+}
+
+/// The law of contact between two kinds of body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interface {
+    /// To what stiffness and damping belong.
+    pub basis: Basis,
+    /// Normal force.
+    pub normal: NormalLaw,
+    /// Tangential force.
+    pub friction: Friction,
+}

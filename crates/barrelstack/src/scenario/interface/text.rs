@@ -1,0 +1,263 @@
+//! Reads and writes `[interface]`.
+
+use crate::scenario::dimension::Dimension;
+use crate::scenario::error::{Problem, ScenarioError};
+use crate::scenario::quantity::QuantityError;
+use crate::scenario::reader::Reader;
+use crate::scenario::tree::Table;
+use crate::scenario::writer::Writer;
+
+use super::fields::{FREE_INTERFACE, FRICTION, FrictionKind, INTERFACE, Law};
+use super::{Basis, Damping, Friction, Interface, NormalLaw};
+
+/// What a stack takes for constants that its scenario leaves out.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::scenario) struct PairDefaults {
+    pub(in crate::scenario) stiffness: f64,
+    pub(in crate::scenario) damping: f64,
+    pub(in crate::scenario) coefficient: f64,
+}
+
+/// Reads a law of contact and ends the reading of its table.
+pub(in crate::scenario) fn read(
+    reader: Reader<'_>,
+    defaults: Option<PairDefaults>,
+) -> Result<Interface, ScenarioError> {
+    let law = reader.choice::<Law>("law")?;
+    let basis = reader.choice::<Basis>("basis")?;
+    let exponent = match law {
+        Law::SpeedGap | Law::KelvinVoigt => 1.0,
+        Law::HuntCrossley => {
+            let exponent = reader.number("exponent")?;
+            if exponent != 1.0 && exponent != 1.5 {
+                let message =
+                    format!("`{}` must be 1 or 1.5, found {exponent}", reader.path_of("exponent"));
+                return Err(reader.inconsistent("exponent", message));
+            }
+            exponent
+        }
+        Law::Hertz => 1.5,
+    };
+    // Constants of the catalogue hold together and for one law only.
+    let linear = matches!(law, Law::SpeedGap | Law::KelvinVoigt) && basis == Basis::Node;
+    let constants = defaults.filter(|_| linear && !reader.has("stiffness"));
+    let stiffness_dimension = stiffness_dimension(exponent, basis);
+    let stiffness = match quantity_in(&reader, "stiffness", stiffness_dimension)? {
+        Some(stiffness) => stiffness,
+        None => match constants {
+            Some(constants) => constants.stiffness,
+            None => return Err(missing_quantity(&reader, "stiffness", stiffness_dimension)),
+        },
+    };
+    let normal = match law {
+        Law::SpeedGap | Law::KelvinVoigt => {
+            let damping = read_damping(&reader, basis, constants)?;
+            if law == Law::SpeedGap {
+                NormalLaw::SpeedGap { stiffness, damping }
+            } else {
+                NormalLaw::KelvinVoigt { stiffness, damping }
+            }
+        }
+        Law::HuntCrossley => {
+            NormalLaw::HuntCrossley { stiffness, exponent, damping: reader.quantity("damping")? }
+        }
+        Law::Hertz => NormalLaw::Hertz { stiffness },
+    };
+    if defaults.is_none() && !reader.has("friction") {
+        return Err(reader.missing("friction"));
+    }
+    let friction = read_friction(reader.section("friction")?, defaults)?;
+    reader.finish();
+    Ok(Interface { basis, normal, friction })
+}
+
+fn read_damping(
+    reader: &Reader<'_>,
+    basis: Basis,
+    constants: Option<PairDefaults>,
+) -> Result<Damping, ScenarioError> {
+    let (damping_dimension, mass_dimension) = match basis {
+        Basis::Node => (Dimension::DAMPING, Dimension::MASS),
+        Basis::Length => (Dimension::DAMPING_PER_LENGTH, Dimension::MASS_PER_LENGTH),
+    };
+    let damping = quantity_in(reader, "damping", damping_dimension)?;
+    let restitution = reader.optional_number("restitution")?;
+    let reference_mass = quantity_in(reader, "reference_mass", mass_dimension)?;
+    match (damping, restitution, reference_mass, constants) {
+        (Some(damping), ..) => Ok(Damping::Coefficient(damping)),
+        (None, Some(restitution), Some(reference_mass), _) => {
+            Ok(Damping::Restitution { restitution, reference_mass })
+        }
+        (None, Some(_), None, _) => {
+            // The place is that of the restitution, which may be laid over another file.
+            let problem = missing_problem(reader, "reference_mass", mass_dimension);
+            Err(reader.error("restitution", problem))
+        }
+        (None, None, Some(_), _) => Err(reader.missing("restitution")),
+        (None, None, None, Some(constants)) => Ok(Damping::Coefficient(constants.damping)),
+        (None, None, None, None) => Err(missing_quantity(reader, "damping", damping_dimension)),
+    }
+}
+
+fn read_friction(
+    reader: Reader<'_>,
+    defaults: Option<PairDefaults>,
+) -> Result<Friction, ScenarioError> {
+    let coefficient = || -> Result<f64, ScenarioError> {
+        match (reader.optional_number("coefficient")?, defaults) {
+            (Some(coefficient), _) => Ok(coefficient),
+            (None, Some(defaults)) => Ok(defaults.coefficient),
+            (None, None) => Err(reader.missing("coefficient")),
+        }
+    };
+    let friction = match reader.choice::<FrictionKind>("law")? {
+        FrictionKind::None => Friction::None,
+        FrictionKind::Coulomb => {
+            let coefficient = coefficient()?;
+            let static_coefficient =
+                reader.optional_number("static_coefficient")?.unwrap_or(coefficient);
+            if static_coefficient < coefficient {
+                let message = format!(
+                    "`{}` is {static_coefficient}, below the kinetic coefficient {coefficient}; raise it or leave it \
+                     out",
+                    reader.path_of("static_coefficient")
+                );
+                return Err(reader.inconsistent("static_coefficient", message));
+            }
+            Friction::Coulomb {
+                coefficient,
+                static_coefficient,
+                tangential_stiffness_ratio: reader.number("tangential_stiffness_ratio")?,
+                tangential_damping_ratio: reader.number("tangential_damping_ratio")?,
+            }
+        }
+        FrictionKind::Regularized => Friction::Regularized {
+            coefficient: coefficient()?,
+            velocity: reader.quantity("velocity")?,
+        },
+    };
+    reader.finish();
+    Ok(friction)
+}
+
+fn stiffness_dimension(exponent: f64, basis: Basis) -> Dimension {
+    match (exponent == 1.0, basis) {
+        (true, Basis::Node) => Dimension::STIFFNESS,
+        (true, Basis::Length) => Dimension::STIFFNESS_PER_LENGTH,
+        (false, Basis::Node) => Dimension::HERTZ_STIFFNESS,
+        (false, Basis::Length) => Dimension::HERTZ_STIFFNESS_PER_LENGTH,
+    }
+}
+
+/// A quantity whose dimension depends on the law and the basis.
+fn quantity_in(
+    reader: &Reader<'_>,
+    name: &'static str,
+    dimension: Dimension,
+) -> Result<Option<f64>, ScenarioError> {
+    let Some(quantity) = reader.optional_quantity_with_dimension(name)? else { return Ok(None) };
+    if quantity.dimension == dimension {
+        return Ok(Some(quantity.value));
+    }
+    let reason = QuantityError::WrongDimension {
+        text: quantity.to_string(),
+        found: quantity.dimension.to_string(),
+        expected: format!("{dimension} for this law and this `basis`"),
+    };
+    let example = format!("\"{}\"", dimension.example());
+    Err(reader.error(name, Problem::Quantity { field: reader.path_of(name), reason, example }))
+}
+
+fn missing_quantity(reader: &Reader<'_>, name: &str, dimension: Dimension) -> ScenarioError {
+    reader.section_error(missing_problem(reader, name, dimension))
+}
+
+fn missing_problem(reader: &Reader<'_>, name: &str, dimension: Dimension) -> Problem {
+    let example = format!("`{name} = \"{}\"`", dimension.example());
+    Problem::Missing { field: name.to_owned(), section: reader.label(), example }
+}
+
+/// Writes a law of contact of a stack.
+pub(in crate::scenario) fn write(interface: &Interface) -> Table {
+    let mut writer = Writer::variant(&INTERFACE, law_of(&interface.normal));
+    write_fields(&mut writer, interface);
+    writer.finish()
+}
+
+/// Writes an interface of a free scene.
+pub(in crate::scenario) fn write_free(between: &[String; 2], interface: &Interface) -> Table {
+    let mut writer = Writer::variant(&FREE_INTERFACE, law_of(&interface.normal));
+    writer.pair("between", between);
+    write_fields(&mut writer, interface);
+    writer.finish()
+}
+
+fn law_of(normal: &NormalLaw) -> Law {
+    match normal {
+        NormalLaw::SpeedGap { .. } => Law::SpeedGap,
+        NormalLaw::KelvinVoigt { .. } => Law::KelvinVoigt,
+        NormalLaw::HuntCrossley { .. } => Law::HuntCrossley,
+        NormalLaw::Hertz { .. } => Law::Hertz,
+    }
+}
+
+fn write_fields(writer: &mut Writer, interface: &Interface) {
+    let basis = interface.basis;
+    writer.choice("basis", basis);
+    match interface.normal {
+        NormalLaw::SpeedGap { stiffness, damping }
+        | NormalLaw::KelvinVoigt { stiffness, damping } => {
+            writer.quantity_in("stiffness", stiffness, stiffness_dimension(1.0, basis));
+            let per_length = basis == Basis::Length;
+            match damping {
+                Damping::Coefficient(damping) => {
+                    let dimension =
+                        if per_length { Dimension::DAMPING_PER_LENGTH } else { Dimension::DAMPING };
+                    writer.quantity_in("damping", damping, dimension);
+                    writer.omit(&["restitution", "reference_mass"]);
+                }
+                Damping::Restitution { restitution, reference_mass } => {
+                    let dimension =
+                        if per_length { Dimension::MASS_PER_LENGTH } else { Dimension::MASS };
+                    writer.number("restitution", restitution);
+                    writer.quantity_in("reference_mass", reference_mass, dimension);
+                    writer.omit(&["damping"]);
+                }
+            }
+        }
+        NormalLaw::HuntCrossley { stiffness, exponent, damping } => {
+            writer.quantity_in("stiffness", stiffness, stiffness_dimension(exponent, basis));
+            writer.number("exponent", exponent);
+            writer.quantity("damping", damping);
+        }
+        NormalLaw::Hertz { stiffness } => {
+            writer.quantity_in("stiffness", stiffness, stiffness_dimension(1.5, basis));
+        }
+    }
+    writer.table("friction", write_friction(&interface.friction));
+}
+
+fn write_friction(friction: &Friction) -> Table {
+    match *friction {
+        Friction::None => Writer::variant(&FRICTION, FrictionKind::None).finish(),
+        Friction::Coulomb {
+            coefficient,
+            static_coefficient,
+            tangential_stiffness_ratio,
+            tangential_damping_ratio,
+        } => {
+            let mut writer = Writer::variant(&FRICTION, FrictionKind::Coulomb);
+            writer.number("coefficient", coefficient);
+            writer.number("static_coefficient", static_coefficient);
+            writer.number("tangential_stiffness_ratio", tangential_stiffness_ratio);
+            writer.number("tangential_damping_ratio", tangential_damping_ratio);
+            writer.finish()
+        }
+        Friction::Regularized { coefficient, velocity } => {
+            let mut writer = Writer::variant(&FRICTION, FrictionKind::Regularized);
+            writer.number("coefficient", coefficient);
+            writer.quantity("velocity", velocity);
+            writer.finish()
+        }
+    }
+}

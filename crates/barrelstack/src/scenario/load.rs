@@ -1,0 +1,209 @@
+//! From a file and overrides to a checked scenario.
+
+use std::path::{Path, PathBuf};
+
+use super::error::{Place, Problem, ScenarioError};
+use super::reader::{Reader, nearest};
+use super::tree::{Origin, SourceFile, Sources, Table, Value};
+use super::{Scenario, builtin, merge, root};
+
+/// Largest scenario file (bytes).
+const SIZE_LIMIT: usize = 1 << 20;
+
+/// Longest chain of `extends`.
+const CHAIN_LIMIT: usize = 8;
+
+/// Whether `extends` may name files.
+#[derive(Clone, Copy, PartialEq)]
+enum Access {
+    Files,
+    BuiltinOnly,
+}
+
+impl Scenario {
+    /// Reads a scenario from text, without touching the file system.
+    ///
+    /// `source_name` is the path shown in errors; relative paths in the scenario are relative to its folder.
+    /// An override is `path=value`, such as `stack.levels=5` or `motion.scale.pgv=60 cm/s`: the value is TOML, or text
+    /// when it is not TOML. Items of lists are known by their name, or by their number from 1.
+    /// `extends` may name a built-in scenario only.
+    ///
+    /// ```
+    /// use barrelstack::scenario::Scenario;
+    ///
+    /// let text = "schema = 1\nextends = \"candia-8-barrels\"";
+    /// let scenario = Scenario::parse("five.toml", text, &["stack.levels=5".to_owned()])?;
+    /// assert_eq!(scenario.stack().map(|stack| stack.levels), Some(5));
+    /// # Ok::<(), barrelstack::scenario::ScenarioError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The first problem found, at its place.
+    pub fn parse(
+        source_name: &str,
+        text: &str,
+        overrides: &[String],
+    ) -> Result<Self, ScenarioError> {
+        read(source_name, text.as_bytes(), overrides, Access::BuiltinOnly)
+    }
+
+    /// As [`Scenario::parse`], from bytes that may not be text.
+    ///
+    /// # Errors
+    ///
+    /// As [`Scenario::parse`], and when the bytes are not UTF-8.
+    pub fn parse_bytes(
+        source_name: &str,
+        bytes: &[u8],
+        overrides: &[String],
+    ) -> Result<Self, ScenarioError> {
+        read(source_name, bytes, overrides, Access::BuiltinOnly)
+    }
+
+    /// Reads a scenario file and the files it extends.
+    ///
+    /// # Errors
+    ///
+    /// As [`Scenario::parse_bytes`], and when a file cannot be read.
+    pub fn load(path: &Path, overrides: &[String]) -> Result<Self, ScenarioError> {
+        let name = path.display().to_string();
+        let bytes = read_file(path, &name, Place::Whole { file: name.clone() })?;
+        read(&name, &bytes, overrides, Access::Files)
+    }
+
+    /// Reads a built-in scenario.
+    ///
+    /// # Errors
+    ///
+    /// When there is none of that name, and for a problem of an override.
+    pub fn builtin(name: &str, overrides: &[String]) -> Result<Self, ScenarioError> {
+        let Some(text) = builtin::get(name) else {
+            let place = Place::Whole { file: name.to_owned() };
+            return Err(ScenarioError::new(unknown_builtin("scenario", name), place));
+        };
+        Self::parse(&format!("{name}.toml"), text, overrides)
+    }
+}
+
+fn unknown_builtin(field: &str, name: &str) -> Problem {
+    let valid: Vec<&str> = builtin::names().collect();
+    Problem::UnknownName {
+        field: field.to_owned(),
+        found: super::quantity::shorten(name),
+        nearest: nearest(name, &valid),
+        valid: valid.iter().map(|name| (*name).to_owned()).collect(),
+    }
+}
+
+fn read_file(path: &Path, name: &str, place: Place) -> Result<Vec<u8>, ScenarioError> {
+    std::fs::read(path).map_err(|error| {
+        let reason = format!("{name}: {error}");
+        ScenarioError::new(Problem::Unreadable { reason }, place)
+    })
+}
+
+fn read(
+    name: &str,
+    bytes: &[u8],
+    overrides: &[String],
+    access: Access,
+) -> Result<Scenario, ScenarioError> {
+    let mut sources = Sources { files: Vec::new(), overrides: overrides.to_vec() };
+    let folder = Path::new(name).parent().map(Path::to_path_buf).unwrap_or_default();
+    add_source(&mut sources, name, bytes, folder)?;
+    let mut table = chain(&mut sources, access)?;
+    for index in 0..overrides.len() {
+        merge::apply_override(&mut table, &root::ROOT, &sources, index)?;
+    }
+    merge::expand_names(&mut table, &root::ROOT);
+    let reader =
+        Reader::open(&sources, &root::ROOT, String::new(), Some(&table), Origin::Whole(0))?;
+    root::read(reader, &stem(name))
+}
+
+fn stem(name: &str) -> String {
+    Path::new(name)
+        .file_stem()
+        .map_or_else(|| name.to_owned(), |s| s.to_string_lossy().into_owned())
+}
+
+fn add_source(
+    sources: &mut Sources,
+    name: &str,
+    bytes: &[u8],
+    folder: PathBuf,
+) -> Result<(), ScenarioError> {
+    let whole = || Place::Whole { file: name.to_owned() };
+    if bytes.len() > SIZE_LIMIT {
+        let problem = Problem::TooLarge { size: bytes.len(), limit: SIZE_LIMIT };
+        return Err(ScenarioError::new(problem, whole()));
+    }
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        ScenarioError::new(Problem::NotText { offset: error.valid_up_to() }, whole())
+    })?;
+    let text = text.to_owned();
+    sources.files.push(SourceFile { name: name.to_owned(), text, folder });
+    Ok(())
+}
+
+/// Parses the first file and what it extends, and lays them over one another.
+fn chain(sources: &mut Sources, access: Access) -> Result<Table, ScenarioError> {
+    let mut tables: Vec<Table> = Vec::new();
+    let mut next = Some(0);
+    while let Some(file) = next {
+        let mut table = sources.parse(file)?;
+        if table.entries.is_empty() {
+            return Err(sources.error(Origin::Whole(file), Problem::Empty));
+        }
+        next = match table.get("extends").map(|entry| entry.node.clone()) {
+            None => None,
+            Some(node) => {
+                table.remove("extends");
+                let problem = |problem| sources.error(node.origin, problem);
+                let Value::Text(target) = &node.value else {
+                    return Err(problem(Problem::WrongType {
+                        field: "extends".to_owned(),
+                        expected: "the name of a built-in scenario or a file".to_owned(),
+                        found: node.value.describe(),
+                    }));
+                };
+                let is_file = Path::new(target).extension().is_some_and(|e| e == "toml");
+                let (name, bytes, folder) = if is_file {
+                    if access == Access::BuiltinOnly {
+                        let message = format!(
+                            "a file can extend \"{target}\" only when it is itself read from a \
+                             file; name a built-in scenario"
+                        );
+                        return Err(problem(Problem::Inconsistent { message }));
+                    }
+                    let path = sources.files[file].folder.join(target);
+                    let name = path.display().to_string();
+                    let place = problem(Problem::Empty).place().clone();
+                    let bytes = read_file(&path, &name, place)?;
+                    let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+                    (name, bytes, folder)
+                } else {
+                    let text = builtin::get(target)
+                        .ok_or_else(|| problem(unknown_builtin("extends", target)))?;
+                    (format!("{target}.toml"), text.as_bytes().to_vec(), PathBuf::new())
+                };
+                if tables.len() + 1 >= CHAIN_LIMIT {
+                    let message = format!(
+                        "more than {CHAIN_LIMIT} scenarios extend one another; does one extend \
+                         itself?"
+                    );
+                    return Err(problem(Problem::Inconsistent { message }));
+                }
+                add_source(sources, &name, &bytes, folder)?;
+                Some(sources.files.len() - 1)
+            }
+        };
+        tables.push(table);
+    }
+    let mut total = tables.pop().unwrap_or_default();
+    while let Some(above) = tables.pop() {
+        merge::overlay(&mut total, above, Some(&root::ROOT));
+    }
+    Ok(total)
+}

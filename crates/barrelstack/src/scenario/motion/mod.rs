@@ -1,0 +1,235 @@
+//! The ground motion: where it comes from and how it is scaled.
+
+use std::path::PathBuf;
+
+mod fields;
+mod text;
+
+pub use fields::{MOTION, PULSE, SCALE, SINE};
+pub(super) use text::{read, rest, write};
+
+/// A file named by a scenario.
+#[derive(Debug, Clone)]
+pub struct FileRef {
+    /// The path as written.
+    pub path: String,
+    /// Folder of the file that wrote it; empty for the current folder.
+    pub folder: PathBuf,
+}
+
+impl FileRef {
+    /// The path to open.
+    pub fn resolve(&self) -> PathBuf {
+        self.folder.join(&self.path)
+    }
+}
+
+/// Two references are equal when they were written alike, so that a scenario keeps its identity when its folder
+/// moves.
+impl PartialEq for FileRef {
+    fn eq(&self, other: &Self) -> bool {
+        self.path == other.path
+    }
+}
+
+/// Where the samples of a record are.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RecordSource {
+    /// A file.
+    File(FileRef),
+    /// A record shipped with the program, by name.
+    Bundled(String),
+}
+
+/// The vertical component.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Vertical {
+    /// Horizontal motion only.
+    None,
+    /// Another component of the same record, by name or azimuth.
+    Component(String),
+    /// A file of its own.
+    File(FileRef),
+}
+
+/// Signal processing of a record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Processing {
+    /// Samples as they are.
+    None,
+    /// The default processing of the motion library.
+    Default,
+}
+
+/// A recorded motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordMotion {
+    /// Where the samples are.
+    pub source: RecordSource,
+    /// Horizontal component: a name, an azimuth, `horizontal-1` or `horizontal-2`; `None` for the first.
+    pub component: Option<String>,
+    /// Vertical component.
+    pub vertical: Vertical,
+    /// Time step for files that state none (s).
+    pub time_step: Option<f64>,
+    /// Acceleration of one file unit for files that state none (m/s²).
+    pub unit: Option<f64>,
+    /// Processing.
+    pub processing: Processing,
+    /// Where to get the file, in words, for those who do not have it.
+    pub obtain: Option<String>,
+}
+
+/// What an amplitude measures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Amplitude {
+    /// Peak displacement (m).
+    Displacement(f64),
+    /// Peak velocity (m/s).
+    Velocity(f64),
+    /// Peak acceleration (m/s²).
+    Acceleration(f64),
+}
+
+/// Direction of an analytic motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// Along `x`.
+    Horizontal,
+    /// Along `z`.
+    Vertical,
+}
+
+/// A harmonic motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sine {
+    /// Amplitude.
+    pub amplitude: Amplitude,
+    /// Period (s).
+    pub period: f64,
+    /// Number of cycles, ramps included.
+    pub cycles: f64,
+    /// Cycles over which the amplitude grows from zero, and again falls to zero.
+    pub ramp_cycles: f64,
+    /// Phase (rad).
+    pub phase: f64,
+    /// Direction.
+    pub direction: Direction,
+}
+
+/// Form of a pulse.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PulseKind {
+    /// Second derivative of a Gaussian in acceleration.
+    Ricker,
+    /// Half a sine of acceleration.
+    HalfSine,
+    /// One sine of acceleration.
+    OneSine,
+    /// One cosine of acceleration.
+    OneCosine,
+    /// Constant acceleration.
+    Rectangular,
+    /// Harmonic under a Gaussian envelope.
+    Gabor {
+        /// Width of the envelope in cycles.
+        gamma: f64,
+        /// Phase (rad).
+        phase: f64,
+    },
+    /// Cycloid A of Jacobsen and Ayre: one forward displacement.
+    CycloidA,
+    /// Cycloid B: forward and back.
+    CycloidB,
+    /// Cycloid C with a number of cycles.
+    CycloidC {
+        /// Number of cycles.
+        cycles: u32,
+    },
+    /// Velocity pulse of Mavroeidis and Papageorgiou (2003).
+    MavroeidisPapageorgiou {
+        /// Oscillatory character, greater than 1.
+        gamma: f64,
+        /// Phase (rad).
+        phase: f64,
+    },
+}
+
+/// A pulse.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pulse {
+    /// Form.
+    pub kind: PulseKind,
+    /// Amplitude; never a displacement.
+    pub amplitude: Amplitude,
+    /// Period (s).
+    pub period: f64,
+    /// Time at which the pulse starts (s).
+    pub start: f64,
+    /// Direction.
+    pub direction: Direction,
+}
+
+/// Where a motion comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MotionSource {
+    /// The ground stays at rest.
+    None,
+    /// A recorded motion.
+    Record(RecordMotion),
+    /// A harmonic motion.
+    Sine(Sine),
+    /// A pulse.
+    Pulse(Pulse),
+}
+
+/// Scaling of the motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Scale {
+    /// Multiplied by a factor; 1 leaves the motion as it is.
+    Factor(f64),
+    /// To this peak horizontal acceleration (m/s²).
+    Pga(f64),
+    /// To this peak horizontal velocity (m/s).
+    Pgv(f64),
+}
+
+/// The ground motion of a scenario.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionSpec {
+    /// Where the motion comes from.
+    pub source: MotionSource,
+    /// Scaling, of all components by the same factor.
+    pub scale: Scale,
+    /// Length scale `λ` of Froude similitude applied to the motion alone: time by `√λ`, accelerations unchanged.
+    pub similitude: f64,
+}
+
+impl RecordMotion {
+    /// Checks that the files of the record exist.
+    ///
+    /// # Errors
+    ///
+    /// A sentence that names the missing file, says where to get it when the scenario knows, and how to name another.
+    pub fn check_files(&self) -> Result<(), String> {
+        let mut files: Vec<(&str, &FileRef)> = Vec::new();
+        if let RecordSource::File(file) = &self.source {
+            files.push(("motion.record", file));
+        }
+        if let Vertical::File(file) = &self.vertical {
+            files.push(("motion.vertical_record", file));
+        }
+        for (field, file) in files {
+            let path = file.resolve();
+            if !path.is_file() {
+                let obtain = self.obtain.as_ref().map_or_else(String::new, |o| format!("; {o}"));
+                return Err(format!(
+                    "there is no record `{}`{obtain}; put the file there, or name another with \
+                     `--set {field}=PATH`",
+                    path.display()
+                ));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,367 @@
+//! A rack: what carries the barrels of one level, in both views.
+
+use super::catalog::{self, CatalogRack};
+use super::dimension::Dimension;
+use super::error::ScenarioError;
+use super::field::{Default, Field, Kind, Named, Range, Section, Variant, Variants, names};
+use super::reader::Reader;
+use super::tree::Table;
+use super::writer::Writer;
+
+/// How a rack stands on what is below.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RackKind {
+    /// Rack-on-barrel: the rack lies on the barrels of the level below.
+    OnBarrels,
+    /// Rack-on-rack: posts carry the load to the rack below and no barrel carries another.
+    OnRacks,
+}
+
+/// How a rack holds a barrel in the transverse view.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Cradle {
+    /// Two supports at `±angle` from the lowest point of the barrel.
+    Supports {
+        /// Angle of each support from the vertical through the center of the barrel (rad).
+        angle: f64,
+    },
+    /// A circular trough.
+    Arc {
+        /// Radius of the trough (m).
+        radius: f64,
+        /// Half of the angle the trough spans (rad).
+        half_angle: f64,
+    },
+}
+
+/// The posts of a rack that stands on the rack below.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Posts {
+    /// Height from the foot of the post to the seat of the next rack (m).
+    pub height: f64,
+    /// Distance of each post from the middle of the rack in the transverse view (m).
+    pub half_spacing: f64,
+}
+
+/// A rack.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rack {
+    /// Catalogue name the rack was made from.
+    pub base: String,
+    /// How the rack stands on what is below.
+    pub kind: RackKind,
+    /// Mass (kg).
+    pub mass: f64,
+    /// Barrels side by side on one rack in the transverse view.
+    pub barrels: u32,
+    /// Barrels end to end on one rack in the longitudinal view.
+    pub barrels_deep: u32,
+    /// Distance between the axes of neighboring barrels (m).
+    pub pitch: f64,
+    /// Overall width in the transverse view (m).
+    pub width: f64,
+    /// Distance of each rail from the middle of a barrel along its axis (m).
+    pub rail_half_spacing: f64,
+    /// Width of one rail along the barrel axis (m).
+    pub rail_width: f64,
+    /// Height of the lowest point of a carried barrel above the underside of the rack (m).
+    pub clearance: f64,
+    /// Height of the beams, from the underside up (m).
+    pub beam_height: f64,
+    /// How the rack holds a barrel.
+    pub cradle: Cradle,
+    /// Half of the length of flat underside that bears on each barrel crown below (m).
+    pub bearing_half_length: f64,
+    /// Distance between contact nodes on rails and undersides (m).
+    pub node_spacing: f64,
+    /// Posts; present exactly when `kind` is [`RackKind::OnRacks`].
+    pub posts: Option<Posts>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Base {
+    TwoBarrel,
+    FourBarrel,
+    RackOnRack,
+}
+
+impl Named for Base {
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("two-barrel", Self::TwoBarrel),
+        ("four-barrel", Self::FourBarrel),
+        ("rack-on-rack", Self::RackOnRack),
+    ];
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum CradleKind {
+    Supports,
+    Arc,
+}
+
+impl Named for CradleKind {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("supports", Self::Supports), ("arc", Self::Arc)];
+}
+
+const CATALOG: Default = Default::Derived("that of the catalogue");
+
+const fn size(least: f64, greatest: f64) -> Kind {
+    Kind::Quantity(&[Dimension::LENGTH], Range { least, above: false, greatest })
+}
+
+const CRADLE_ANGLE: Kind = Kind::Quantity(&[Dimension::ANGLE], Range::up_to(1.5));
+
+/// A cradle.
+pub static CRADLE: Section = Section {
+    help: "How a rack holds a barrel in the transverse view.",
+    fields: &[Field::new(
+        "type",
+        Kind::Choice(names::<CradleKind>),
+        Default::Value("\"supports\""),
+        "Two supports, or a circular trough.",
+    )],
+    variants: Some(Variants {
+        tag: "type",
+        list: &[
+            Variant {
+                name: "supports",
+                help: "Two supports at equal angles from the lowest point of the barrel.",
+                fields: &[Field::new(
+                    "angle",
+                    CRADLE_ANGLE,
+                    CATALOG,
+                    "Angle of each support from the vertical through the center of the barrel.",
+                )],
+            },
+            Variant {
+                name: "arc",
+                help: "A circular trough.",
+                fields: &[
+                    Field::new(
+                        "radius",
+                        size(0.01, 10.0),
+                        Default::Required,
+                        "Radius of the trough.",
+                    ),
+                    Field::new(
+                        "half_angle",
+                        CRADLE_ANGLE,
+                        Default::Required,
+                        "Half of the angle the trough spans.",
+                    ),
+                ],
+            },
+        ],
+    }),
+    exclusive: &[],
+};
+
+/// A rack.
+pub static RACK: Section = Section {
+    help: "A rack of the catalogue, with what differs.",
+    fields: &[
+        Field::new(
+            "base",
+            Kind::Choice(catalog::rack_names),
+            Default::Value("\"two-barrel\""),
+            "Rack of the catalogue.",
+        ),
+        Field::new(
+            "mass",
+            Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)),
+            CATALOG,
+            "Mass of one rack.",
+        ),
+        Field::new(
+            "barrels",
+            Kind::Integer(1, 40),
+            CATALOG,
+            "Barrels side by side on one rack, in the transverse view.",
+        ),
+        Field::new(
+            "barrels_deep",
+            Kind::Integer(1, 40),
+            CATALOG,
+            "Barrels end to end on one rack, in the longitudinal view.",
+        ),
+        Field::new(
+            "pitch",
+            size(0.05, 10.0),
+            CATALOG,
+            "Distance between the axes of neighboring barrels.",
+        ),
+        Field::new("width", size(0.05, 100.0), CATALOG, "Overall width across the barrels."),
+        Field::new(
+            "rail_half_spacing",
+            size(0.01, 10.0),
+            CATALOG,
+            "Distance of each rail from the middle of a barrel, along its axis.",
+        ),
+        Field::new(
+            "rail_width",
+            size(1e-3, 1.0),
+            CATALOG,
+            "Width of one rail along the barrel axis.",
+        ),
+        Field::new(
+            "clearance",
+            size(1e-3, 10.0),
+            CATALOG,
+            "Height of the lowest point of a carried barrel above the underside of the rack.",
+        ),
+        Field::new(
+            "beam_height",
+            size(1e-3, 10.0),
+            CATALOG,
+            "Height of the beams from the underside up.",
+        ),
+        Field::new(
+            "cradle",
+            Kind::ChoiceOrTable(names::<CradleKind>, "type", &CRADLE),
+            CATALOG,
+            "How the rack holds a barrel.",
+        ),
+        Field::new(
+            "bearing_half_length",
+            size(1e-3, 10.0),
+            CATALOG,
+            "Half of the length of flat underside that bears on each barrel crown below.",
+        ),
+        Field::new(
+            "node_spacing",
+            size(1e-3, 0.5),
+            CATALOG,
+            "Distance between contact nodes on rails and undersides.",
+        ),
+    ],
+    variants: Some(Variants {
+        tag: "base",
+        list: &[
+            Variant { name: "two-barrel", help: "Lies on the barrels below.", fields: &[] },
+            Variant { name: "four-barrel", help: "Two racks end to end.", fields: &[] },
+            Variant {
+                name: "rack-on-rack",
+                help: "Stands on the posts of the rack below.",
+                fields: &[
+                    Field::new(
+                        "post_height",
+                        size(0.01, 10.0),
+                        CATALOG,
+                        "Height from the foot of the post to the seat of the next rack.",
+                    ),
+                    Field::new(
+                        "post_half_spacing",
+                        size(0.01, 100.0),
+                        CATALOG,
+                        "Distance of each post from the middle of the rack, in the transverse view.",
+                    ),
+                ],
+            },
+        ],
+    }),
+    exclusive: &[],
+};
+
+/// Reads a rack.
+pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
+    let base: Base = reader.choice("base")?;
+    let Some(known) = catalog::rack(base.name()) else { return Err(reader.missing("base")) };
+    let or = |name, regular| Ok(reader.optional_quantity(name)?.unwrap_or(regular));
+    let cradle = match reader.optional_section("cradle")? {
+        Some(cradle) => read_cradle(cradle, known)?,
+        None => known.cradle,
+    };
+    let posts = match (base, known.posts) {
+        (Base::RackOnRack, Some(posts)) => Some(Posts {
+            height: or("post_height", posts.height)?,
+            half_spacing: or("post_half_spacing", posts.half_spacing)?,
+        }),
+        (Base::TwoBarrel | Base::FourBarrel | Base::RackOnRack, _) => None,
+    };
+    let rack = Rack {
+        base: known.name.to_owned(),
+        kind: known.kind,
+        mass: or("mass", known.mass)?,
+        barrels: reader.optional_integer("barrels")?.unwrap_or(known.barrels),
+        barrels_deep: reader.optional_integer("barrels_deep")?.unwrap_or(known.barrels_deep),
+        pitch: or("pitch", known.pitch)?,
+        width: or("width", known.width)?,
+        rail_half_spacing: or("rail_half_spacing", known.rail_half_spacing)?,
+        rail_width: or("rail_width", known.rail_width)?,
+        clearance: or("clearance", known.clearance)?,
+        beam_height: or("beam_height", known.beam_height)?,
+        cradle,
+        bearing_half_length: or("bearing_half_length", known.bearing_half_length)?,
+        node_spacing: or("node_spacing", known.node_spacing)?,
+        posts,
+    };
+    let span = rack.pitch * f64::from(rack.barrels - 1);
+    if rack.width < span {
+        let message = format!(
+            "`{}` is {} m, less than the {span} m between the axes of the outer barrels",
+            reader.path_of("width"),
+            rack.width
+        );
+        return Err(reader.inconsistent("width", message));
+    }
+    reader.finish();
+    Ok(rack)
+}
+
+fn read_cradle(reader: Reader<'_>, known: &CatalogRack) -> Result<Cradle, ScenarioError> {
+    let cradle = match reader.choice::<CradleKind>("type")? {
+        CradleKind::Supports => {
+            let angle = match (reader.optional_quantity("angle")?, known.cradle) {
+                (Some(angle), _) | (None, Cradle::Supports { angle }) => angle,
+                (None, Cradle::Arc { .. }) => return Err(reader.missing("angle")),
+            };
+            Cradle::Supports { angle }
+        }
+        CradleKind::Arc => Cradle::Arc {
+            radius: reader.quantity("radius")?,
+            half_angle: reader.quantity("half_angle")?,
+        },
+    };
+    reader.finish();
+    Ok(cradle)
+}
+
+/// Writes a rack.
+pub(super) fn write(rack: &Rack) -> Table {
+    let base = Base::NAMES.iter().find(|(name, _)| *name == rack.base);
+    let mut writer = Writer::variant(&RACK, base.map_or(Base::TwoBarrel, |(_, base)| *base));
+    writer.quantity("mass", rack.mass);
+    writer.integer("barrels", rack.barrels);
+    writer.integer("barrels_deep", rack.barrels_deep);
+    writer.quantity("pitch", rack.pitch);
+    writer.quantity("width", rack.width);
+    writer.quantity("rail_half_spacing", rack.rail_half_spacing);
+    writer.quantity("rail_width", rack.rail_width);
+    writer.quantity("clearance", rack.clearance);
+    writer.quantity("beam_height", rack.beam_height);
+    writer.table("cradle", write_cradle(&rack.cradle));
+    writer.quantity("bearing_half_length", rack.bearing_half_length);
+    writer.quantity("node_spacing", rack.node_spacing);
+    if let Some(posts) = rack.posts {
+        writer.quantity("post_height", posts.height);
+        writer.quantity("post_half_spacing", posts.half_spacing);
+    }
+    writer.finish()
+}
+
+fn write_cradle(cradle: &Cradle) -> Table {
+    match *cradle {
+        Cradle::Supports { angle } => {
+            let mut writer = Writer::variant(&CRADLE, CradleKind::Supports);
+            writer.quantity("angle", angle);
+            writer.finish()
+        }
+        Cradle::Arc { radius, half_angle } => {
+            let mut writer = Writer::variant(&CRADLE, CradleKind::Arc);
+            writer.quantity("radius", radius);
+            writer.quantity("half_angle", half_angle);
+            writer.finish()
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! The top of a scenario file.
+
+use super::error::ScenarioError;
+use super::field::{Default, Field, Kind, Named, Section, Variant, Variants, names};
+use super::reader::Reader;
+use super::tree::Table;
+use super::writer::Writer;
+use super::{Scenario, Scene, free, interface, motion, run, stack};
+
+/// Version of the scenario language.
+pub(super) const SCHEMA: u32 = 1;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum SceneKind {
+    Stack,
+    Free,
+}
+
+impl Named for SceneKind {
+    const NAMES: &'static [(&'static str, Self)] = &[("stack", Self::Stack), ("free", Self::Free)];
+}
+
+/// The top of a scenario file.
+pub static ROOT: Section = Section {
+    help: "What stands where, what shakes it, and how it is run.",
+    fields: &[
+        Field::new(
+            "schema",
+            Kind::Integer(1, SCHEMA as i64),
+            Default::Required,
+            "Version of the scenario language.",
+        ),
+        Field::new(
+            "title",
+            Kind::Text,
+            Default::Derived("name of the file"),
+            "One line for people.",
+        ),
+        Field::new(
+            "extends",
+            Kind::Text,
+            Default::Nothing,
+            "Built-in scenario, or file ending in `.toml`, over which this one is laid.",
+        ),
+        Field::new(
+            "kind",
+            Kind::Choice(names::<SceneKind>),
+            Default::Value("\"stack\""),
+            "What stands.",
+        ),
+        Field::new("motion", Kind::Table(&motion::MOTION), Default::Nothing, "The ground motion."),
+        Field::new("run", Kind::Table(&run::RUN), Default::Nothing, "How it is run."),
+        Field::new("record", Kind::Table(&run::RECORD), Default::Nothing, "What is kept."),
+    ],
+    variants: Some(Variants {
+        tag: "kind",
+        list: &[
+            Variant {
+                name: "stack",
+                help: "A stack of barrels on racks.",
+                fields: &[
+                    Field::new(
+                        "stack",
+                        Kind::Table(&stack::STACK),
+                        Default::Required,
+                        "The stack.",
+                    ),
+                    Field::new(
+                        "interface",
+                        Kind::Table(&stack::INTERFACES),
+                        Default::Nothing,
+                        "Laws of contact by pair.",
+                    ),
+                    Field::new(
+                        "outcome",
+                        Kind::Table(&run::OUTCOME),
+                        Default::Nothing,
+                        "Thresholds that tell a collapse.",
+                    ),
+                ],
+            },
+            Variant {
+                name: "free",
+                help: "Any planar bodies on a ground.",
+                fields: &[
+                    Field::new(
+                        "ground",
+                        Kind::Table(&free::GROUND),
+                        Default::Nothing,
+                        "The ground.",
+                    ),
+                    Field::new("body", Kind::Tables(&free::BODY), Default::Required, "The bodies."),
+                    Field::new(
+                        "interface",
+                        Kind::Tables(&interface::FREE_INTERFACE),
+                        Default::Nothing,
+                        "Laws of contact between kinds of body.",
+                    ),
+                ],
+            },
+        ],
+    }),
+    exclusive: &[],
+};
+
+/// Reads the whole scenario; `fallback_title` is used when the file has none.
+pub(super) fn read(reader: Reader<'_>, fallback_title: &str) -> Result<Scenario, ScenarioError> {
+    reader.integer("schema")?;
+    let title = reader.optional_text("title")?.unwrap_or_else(|| fallback_title.to_owned());
+    // Resolved before the reading; still here when an override gives it.
+    if reader.optional_text("extends")?.is_some() {
+        let message = "`extends` cannot be overridden; write it in the file".to_owned();
+        return Err(reader.inconsistent("extends", message));
+    }
+    let run = run::read_run(reader.section("run")?)?;
+    let record = run::read_record(reader.section("record")?)?;
+    let kind = reader.choice::<SceneKind>("kind")?;
+    let scene = match kind {
+        SceneKind::Stack => {
+            let interfaces = stack::read_interfaces(reader.section("interface")?)?;
+            let stack = stack::read(reader.section("stack")?, interfaces)?;
+            let outcome = run::read_outcome(reader.section("outcome")?)?;
+            Scene::Stack { stack, outcome }
+        }
+        SceneKind::Free => Scene::Free(free::read(&reader)?),
+    };
+    let motion = match reader.optional_section("motion")? {
+        Some(motion) => motion::read(motion)?,
+        None if kind == SceneKind::Free => motion::rest(),
+        None => return Err(reader.missing("motion")),
+    };
+    reader.finish();
+    Ok(Scenario { title, scene, motion, run, record })
+}
+
+/// Writes the whole scenario.
+pub(super) fn write(scenario: &Scenario) -> Table {
+    let kind = match scenario.scene {
+        Scene::Stack { .. } => SceneKind::Stack,
+        Scene::Free(_) => SceneKind::Free,
+    };
+    let mut writer = Writer::variant(&ROOT, kind);
+    writer.integer("schema", SCHEMA);
+    writer.text("title", &scenario.title);
+    writer.omit(&["extends"]);
+    match &scenario.scene {
+        Scene::Stack { stack, outcome } => {
+            writer.table("stack", stack::write(stack));
+            writer.table("interface", stack::write_interfaces(&stack.interfaces));
+            writer.table("motion", motion::write(&scenario.motion));
+            writer.table("run", run::write_run(&scenario.run));
+            writer.table("record", run::write_record(&scenario.record));
+            writer.table("outcome", run::write_outcome(outcome));
+        }
+        Scene::Free(scene) => {
+            free::write(&mut writer, scene);
+            writer.table("motion", motion::write(&scenario.motion));
+            writer.table("run", run::write_run(&scenario.run));
+            writer.table("record", run::write_record(&scenario.record));
+        }
+    }
+    writer.finish()
+}

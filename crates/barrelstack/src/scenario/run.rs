@@ -1,0 +1,325 @@
+//! How a scenario is run, what is kept, and when a stack counts as collapsed.
+
+use super::dimension::Dimension;
+use super::error::ScenarioError;
+use super::field::{Default, Field, Kind, Named, Range, Section, Variant, Variants, names};
+use super::reader::Reader;
+use super::tree::Table;
+use super::writer::Writer;
+
+/// Time integration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Method {
+    /// Semi-implicit Euler, fixed step.
+    SemiImplicitEuler,
+    /// Velocity Verlet, fixed step.
+    VelocityVerlet,
+    /// Classical Runge–Kutta of order four, fixed step.
+    RungeKutta4,
+    /// Bogacki–Shampine of order three with error control.
+    BogackiShampine {
+        /// Relative error allowed in one step.
+        tolerance: f64,
+    },
+}
+
+/// How a scenario is run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunSpec {
+    /// Length of the run (s); `None` for the duration of the motion and 5 s more.
+    pub duration: Option<f64>,
+    /// Time integration.
+    pub method: Method,
+    /// Time step, or first step of an adaptive method (s); `None` for a step from the stiffest contact.
+    pub step: Option<f64>,
+    /// Time to keep running after a collapse (s); `None` to run to the end.
+    pub stop_after_collapse: Option<f64>,
+    /// Acceleration of gravity (m/s²).
+    pub gravity: f64,
+    /// Length scale `λ` of Froude similitude applied to bodies, contacts and motion: mass `λ³`, stiffness `λ²`,
+    /// damping `λ^2.5`, time `√λ`.
+    pub similitude: f64,
+    /// Whether the bodies are brought to rest under gravity before the motion starts.
+    pub settle: bool,
+}
+
+/// What is kept of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordSpec {
+    /// Frames of all poses per second of simulated time (Hz).
+    pub frame_rate: f64,
+    /// Samples of time histories per second of simulated time (Hz).
+    pub history_rate: f64,
+}
+
+/// Thresholds that tell a collapse.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutcomeSpec {
+    /// A barrel has lost its seat when its center is this many barrel radii away from its place in the rack.
+    pub seat_loss_ratio: f64,
+    /// A body has fallen when its center is this far below its place at rest (m).
+    pub fall_drop: f64,
+    /// A rack has slid off when it has moved this part of the distance between its rail and the end of the barrel
+    /// below.
+    pub rack_slide_ratio: f64,
+    /// A level has rocked over when its rack is inclined more than this (rad).
+    pub rocking_angle: f64,
+    /// The stack has overturned when its bottom rack is inclined more than this (rad).
+    pub overturning_angle: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum MethodName {
+    SemiImplicitEuler,
+    VelocityVerlet,
+    RungeKutta4,
+    BogackiShampine,
+}
+
+impl Named for MethodName {
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("velocity-verlet", Self::VelocityVerlet),
+        ("semi-implicit-euler", Self::SemiImplicitEuler),
+        ("runge-kutta-4", Self::RungeKutta4),
+        ("bogacki-shampine", Self::BogackiShampine),
+    ];
+}
+
+/// Longest run (s).
+const LONGEST_RUN: f64 = 3600.0;
+
+/// Most steps of a run of fixed step.
+const MOST_STEPS: f64 = 1e9;
+
+/// How it is run.
+pub static RUN: Section = Section {
+    help: "How the scenario is run.",
+    fields: &[
+        Field::new(
+            "duration",
+            Kind::Quantity(&[Dimension::TIME], Range::up_to(LONGEST_RUN)),
+            Default::Derived("duration of the motion and 5 s more"),
+            "Simulated time.",
+        ),
+        Field::new(
+            "method",
+            Kind::Choice(names::<MethodName>),
+            Default::Value("\"velocity-verlet\""),
+            "Time integration.",
+        ),
+        Field::new(
+            "step",
+            Kind::WordOr(
+                "auto",
+                &[Dimension::TIME],
+                Range { least: 1e-9, above: false, greatest: 0.1 },
+            ),
+            Default::Value("\"auto\""),
+            "Time step, or first step of an adaptive method; \"auto\" takes it from the stiffest contact.",
+        ),
+        Field::new(
+            "stop_after_collapse",
+            Kind::Quantity(&[Dimension::TIME], Range::between(0.0, LONGEST_RUN)),
+            Default::Derived("never stop early"),
+            "Time to keep running after a collapse.",
+        ),
+        Field::new(
+            "gravity",
+            Kind::Quantity(&[Dimension::ACCELERATION], Range::between(0.0, 1000.0)),
+            Default::Value("\"9.80665 m/s^2\""),
+            "Acceleration of gravity.",
+        ),
+        Field::new(
+            "similitude",
+            Kind::Number(Range { least: 1e-3, above: false, greatest: 1e3 }),
+            Default::Value("1.0"),
+            "Length scale of Froude similitude applied to bodies, contacts and motion together.",
+        ),
+        Field::new(
+            "settle",
+            Kind::Flag,
+            Default::Value("true"),
+            "Whether the bodies are brought to rest under gravity before the motion starts.",
+        ),
+    ],
+    variants: Some(Variants {
+        tag: "method",
+        list: &[
+            Variant { name: "velocity-verlet", help: "Order two, fixed step.", fields: &[] },
+            Variant { name: "semi-implicit-euler", help: "Order one, fixed step.", fields: &[] },
+            Variant { name: "runge-kutta-4", help: "Order four, fixed step.", fields: &[] },
+            Variant {
+                name: "bogacki-shampine",
+                help: "Order three with error control.",
+                fields: &[Field::new(
+                    "tolerance",
+                    Kind::Number(Range { least: 1e-14, above: false, greatest: 0.1 }),
+                    Default::Value("1e-6"),
+                    "Relative error allowed in one step.",
+                )],
+            },
+        ],
+    }),
+    exclusive: &[],
+};
+
+/// What is kept.
+pub static RECORD: Section = Section {
+    help: "What is kept of the run.",
+    fields: &[
+        Field::new(
+            "frame_rate",
+            Kind::Quantity(
+                &[Dimension::FREQUENCY],
+                Range { least: 0.01, above: false, greatest: 1e4 },
+            ),
+            Default::Value("\"60 Hz\""),
+            "Frames of all poses per second of simulated time.",
+        ),
+        Field::new(
+            "history_rate",
+            Kind::Quantity(
+                &[Dimension::FREQUENCY],
+                Range { least: 0.01, above: false, greatest: 1e5 },
+            ),
+            Default::Value("\"200 Hz\""),
+            "Samples of time histories per second of simulated time.",
+        ),
+    ],
+    variants: None,
+    exclusive: &[],
+};
+
+/// Thresholds that tell a collapse.
+pub static OUTCOME: Section = Section {
+    help: "Thresholds that tell a collapse; every default is an assumption to be varied.",
+    fields: &[
+        Field::new(
+            "seat_loss_ratio",
+            Kind::Number(Range::up_to(10.0)),
+            Default::Value("0.5"),
+            "A barrel has lost its seat when its center is this many barrel radii away from its place in the rack.",
+        ),
+        Field::new(
+            "fall_drop",
+            Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE),
+            Default::Value("\"0.2 m\""),
+            "A body has fallen when its center is this far below its place at rest.",
+        ),
+        Field::new(
+            "rack_slide_ratio",
+            Kind::Number(Range::up_to(10.0)),
+            Default::Value("1.0"),
+            "A rack has slid off when it has moved this part of the distance between its rail and the barrel end.",
+        ),
+        Field::new(
+            "rocking_angle",
+            Kind::Quantity(&[Dimension::ANGLE], Range::up_to(3.2)),
+            Default::Value("\"20 deg\""),
+            "A level has rocked over when its rack is inclined more than this.",
+        ),
+        Field::new(
+            "overturning_angle",
+            Kind::Quantity(&[Dimension::ANGLE], Range::up_to(3.2)),
+            Default::Value("\"30 deg\""),
+            "The stack has overturned when its bottom rack is inclined more than this.",
+        ),
+    ],
+    variants: None,
+    exclusive: &[],
+};
+
+/// Reads how it is run.
+pub(super) fn read_run(reader: Reader<'_>) -> Result<RunSpec, ScenarioError> {
+    let method = match reader.choice::<MethodName>("method")? {
+        MethodName::SemiImplicitEuler => Method::SemiImplicitEuler,
+        MethodName::VelocityVerlet => Method::VelocityVerlet,
+        MethodName::RungeKutta4 => Method::RungeKutta4,
+        MethodName::BogackiShampine => {
+            Method::BogackiShampine { tolerance: reader.number("tolerance")? }
+        }
+    };
+    let run = RunSpec {
+        duration: reader.optional_quantity("duration")?,
+        method,
+        step: reader.word_or_quantity("step")?,
+        stop_after_collapse: reader.optional_quantity("stop_after_collapse")?,
+        gravity: reader.quantity("gravity")?,
+        similitude: reader.number("similitude")?,
+        settle: reader.flag("settle")?,
+    };
+    if let (Some(duration), Some(step)) = (run.duration, run.step)
+        && duration / step > MOST_STEPS
+    {
+        let message = format!(
+            "`{}` of {step} s makes more than 1e9 steps in {duration} s; take a longer step",
+            reader.path_of("step")
+        );
+        return Err(reader.inconsistent("step", message));
+    }
+    reader.finish();
+    Ok(run)
+}
+
+/// Writes how it is run.
+pub(super) fn write_run(run: &RunSpec) -> Table {
+    let name = match run.method {
+        Method::SemiImplicitEuler => MethodName::SemiImplicitEuler,
+        Method::VelocityVerlet => MethodName::VelocityVerlet,
+        Method::RungeKutta4 => MethodName::RungeKutta4,
+        Method::BogackiShampine { .. } => MethodName::BogackiShampine,
+    };
+    let mut writer = Writer::variant(&RUN, name);
+    if let Method::BogackiShampine { tolerance } = run.method {
+        writer.number("tolerance", tolerance);
+    }
+    writer.optional_quantity("duration", run.duration);
+    writer.word_or_quantity("step", run.step);
+    writer.optional_quantity("stop_after_collapse", run.stop_after_collapse);
+    writer.quantity("gravity", run.gravity);
+    writer.number("similitude", run.similitude);
+    writer.flag("settle", run.settle);
+    writer.finish()
+}
+
+/// Reads what is kept.
+pub(super) fn read_record(reader: Reader<'_>) -> Result<RecordSpec, ScenarioError> {
+    let record = RecordSpec {
+        frame_rate: reader.quantity("frame_rate")?,
+        history_rate: reader.quantity("history_rate")?,
+    };
+    reader.finish();
+    Ok(record)
+}
+
+/// Writes what is kept.
+pub(super) fn write_record(record: &RecordSpec) -> Table {
+    let mut writer = Writer::new(&RECORD);
+    writer.quantity("frame_rate", record.frame_rate);
+    writer.quantity("history_rate", record.history_rate);
+    writer.finish()
+}
+
+/// Reads the thresholds.
+pub(super) fn read_outcome(reader: Reader<'_>) -> Result<OutcomeSpec, ScenarioError> {
+    let outcome = OutcomeSpec {
+        seat_loss_ratio: reader.number("seat_loss_ratio")?,
+        fall_drop: reader.quantity("fall_drop")?,
+        rack_slide_ratio: reader.number("rack_slide_ratio")?,
+        rocking_angle: reader.quantity("rocking_angle")?,
+        overturning_angle: reader.quantity("overturning_angle")?,
+    };
+    reader.finish();
+    Ok(outcome)
+}
+
+/// Writes the thresholds.
+pub(super) fn write_outcome(outcome: &OutcomeSpec) -> Table {
+    let mut writer = Writer::new(&OUTCOME);
+    writer.number("seat_loss_ratio", outcome.seat_loss_ratio);
+    writer.quantity("fall_drop", outcome.fall_drop);
+    writer.number("rack_slide_ratio", outcome.rack_slide_ratio);
+    writer.quantity("rocking_angle", outcome.rocking_angle);
+    writer.quantity("overturning_angle", outcome.overturning_angle);
+    writer.finish()
+}

@@ -1,0 +1,388 @@
+//! A stack of barrels on racks.
+
+use super::barrel::{self, BARREL, Barrel, Fill};
+use super::catalog;
+use super::dimension::Dimension;
+use super::error::ScenarioError;
+use super::field::{Default, Field, Kind, Named, Range, Section, names};
+use super::interface::{self, INTERFACE, Interface};
+use super::quantity::rounded;
+use super::rack::{self, RACK, Rack};
+use super::reader::Reader;
+use super::tree::Table;
+use super::writer::Writer;
+
+/// The plane of a planar model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum View {
+    /// The plane across the barrels, which are circles.
+    Transverse,
+    /// The plane along the barrels, which show their profile.
+    Longitudinal,
+}
+
+/// A stack and the laws of its contacts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StackSpec {
+    /// Plane of the model.
+    pub view: View,
+    /// Levels of barrels, 1 at the bottom.
+    pub levels: u32,
+    /// Barrels per level in this view.
+    pub columns: u32,
+    /// The barrel used everywhere unless overridden.
+    pub barrel: Barrel,
+    /// The rack used everywhere unless overridden.
+    pub rack: Rack,
+    /// Whether the whole stack is mirrored left to right.
+    pub mirror: bool,
+    /// Free distance between racks side by side (m).
+    pub gap: f64,
+    /// Bodies that differ, in the order of the file.
+    pub overrides: Vec<BodyOverride>,
+    /// Laws of contact.
+    pub interfaces: StackInterfaces,
+}
+
+impl StackSpec {
+    /// Barrels that one rack carries in this view.
+    pub fn barrels_per_rack(&self) -> u32 {
+        match self.view {
+            View::Transverse => self.rack.barrels,
+            View::Longitudinal => self.rack.barrels_deep,
+        }
+    }
+
+    /// Racks side by side on one level in this view.
+    pub fn racks_per_level(&self) -> u32 {
+        self.columns / self.barrels_per_rack().max(1)
+    }
+}
+
+/// The kind of body that an override changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StackBody {
+    /// A barrel; columns count barrels.
+    Barrel,
+    /// A rack; columns count racks.
+    Rack,
+}
+
+/// What differs at one body of a stack.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyOverride {
+    /// Kind of body.
+    pub body: StackBody,
+    /// Level, 1 at the bottom.
+    pub level: u32,
+    /// Column, 1 at the left before any mirroring: of barrels, or of racks when `body` is a rack; `None` for the
+    /// whole level.
+    pub column: Option<u32>,
+    /// Mass in place of the regular one (kg).
+    pub mass: Option<f64>,
+    /// Contents in place of the regular ones; barrels only.
+    pub fill: Option<Fill>,
+    /// Displacement from the regular place, positive to the right before any mirroring (m).
+    pub offset_x: f64,
+}
+
+/// The law of each kind of contact in a stack.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StackInterfaces {
+    /// Bottom rack on the ground.
+    pub rack_ground: Interface,
+    /// Barrel in its cradle, and the rack above on the barrel.
+    pub barrel_rack: Interface,
+    /// Barrel against barrel.
+    pub barrel_barrel: Interface,
+    /// Fallen barrel on the ground.
+    pub barrel_ground: Interface,
+    /// Rack against rack.
+    pub rack_rack: Interface,
+}
+
+impl Named for View {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("transverse", Self::Transverse), ("longitudinal", Self::Longitudinal)];
+}
+
+impl Named for StackBody {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("barrel", Self::Barrel), ("rack", Self::Rack)];
+}
+
+/// Most levels and columns of a stack.
+const LEVELS: Kind = Kind::Integer(1, 12);
+const COLUMNS: Kind = Kind::Integer(1, 40);
+
+/// A stack.
+pub static STACK: Section = Section {
+    help: "A stack of barrels on racks.",
+    fields: &[
+        Field::new(
+            "view",
+            Kind::Choice(names::<View>),
+            Default::Value("\"transverse\""),
+            "Plane of the model: across the barrels or along them.",
+        ),
+        Field::new("levels", LEVELS, Default::Required, "Levels of barrels."),
+        Field::new(
+            "columns",
+            COLUMNS,
+            Default::Required,
+            "Barrels per level in this view, a multiple of those that one rack carries.",
+        ),
+        Field::new(
+            "barrel",
+            Kind::ChoiceOrTable(catalog::barrel_names, "base", &BARREL),
+            Default::Derived("bordeaux-225"),
+            "The barrel.",
+        ),
+        Field::new(
+            "rack",
+            Kind::ChoiceOrTable(catalog::rack_names, "base", &RACK),
+            Default::Derived("two-barrel"),
+            "The rack.",
+        ),
+        Field::new(
+            "mirror",
+            Kind::Flag,
+            Default::Value("false"),
+            "Whether left and right change places.",
+        ),
+        Field::new(
+            "gap",
+            Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)),
+            Default::Value("\"0.05 m\""),
+            "Free distance between racks side by side.",
+        ),
+        Field::new(
+            "override",
+            Kind::Tables(&OVERRIDE),
+            Default::Nothing,
+            "Bodies that differ from the others.",
+        ),
+    ],
+    variants: None,
+    exclusive: &[],
+};
+
+/// A body that differs.
+pub static OVERRIDE: Section = Section {
+    help: "A body of the stack that differs from the others.",
+    fields: &[
+        Field::new(
+            "kind",
+            Kind::Choice(names::<StackBody>),
+            Default::Value("\"barrel\""),
+            "Kind of body.",
+        ),
+        Field::new("level", LEVELS, Default::Required, "Level, 1 at the bottom."),
+        Field::new(
+            "column",
+            COLUMNS,
+            Default::Derived("every column of the level"),
+            "Column, 1 at the left before mirroring: of barrels, or of racks for a rack.",
+        ),
+        Field::new(
+            "mass",
+            Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)),
+            Default::Nothing,
+            "Mass in place of the regular one.",
+        ),
+        Field::new(
+            "fill",
+            Kind::Choice(names::<Fill>),
+            Default::Nothing,
+            "Contents in place of the regular ones; barrels only.",
+        ),
+        Field::new(
+            "offset_x",
+            Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)),
+            Default::Value("\"0 m\""),
+            "Displacement from the regular place, positive to the right before mirroring.",
+        ),
+    ],
+    variants: None,
+    exclusive: &[],
+};
+
+const fn pair(name: &'static str, help: &'static str) -> Field {
+    Field::new(name, Kind::Table(&INTERFACE), Default::Nothing, help)
+}
+
+/// The laws of contact of a stack.
+pub static INTERFACES: Section = Section {
+    help: "Laws of contact in a stack, by pair.",
+    fields: &[
+        pair("rack-ground", "Bottom rack on the ground."),
+        pair("barrel-rack", "Barrel in its cradle, and the rack above on the barrel."),
+        pair("barrel-barrel", "Barrel against barrel."),
+        pair("barrel-ground", "Fallen barrel on the ground."),
+        pair("rack-rack", "Rack against rack."),
+    ],
+    variants: None,
+    exclusive: &[],
+};
+
+/// Reads a stack.
+pub(super) fn read(
+    reader: Reader<'_>,
+    interfaces: StackInterfaces,
+) -> Result<StackSpec, ScenarioError> {
+    let rack = rack::read(reader.section("rack")?)?;
+    let barrel = barrel::read(reader.section("barrel")?, rack.rail_half_spacing)?;
+    let mut stack = StackSpec {
+        view: reader.choice("view")?,
+        levels: reader.integer("levels")?,
+        columns: reader.integer("columns")?,
+        barrel,
+        rack,
+        mirror: reader.flag("mirror")?,
+        gap: reader.quantity("gap")?,
+        overrides: Vec::new(),
+        interfaces,
+    };
+    check_geometry(&reader, &stack)?;
+    for item in reader.sections("override")? {
+        let body = read_override(item, &stack)?;
+        stack.overrides.push(body);
+    }
+    reader.finish();
+    Ok(stack)
+}
+
+fn check_geometry(reader: &Reader<'_>, stack: &StackSpec) -> Result<(), ScenarioError> {
+    let per_rack = stack.barrels_per_rack();
+    let StackSpec { rack, barrel, columns, .. } = stack;
+    if columns % per_rack != 0 {
+        let below = (columns / per_rack) * per_rack;
+        let nearest = if below == 0 { per_rack } else { below };
+        let message = format!(
+            "`stack.columns` is {columns}, but one `{}` rack carries {per_rack} barrels in this view; take {nearest} \
+             columns or set `stack.rack.{}`",
+            rack.base,
+            match stack.view {
+                View::Transverse => "barrels",
+                View::Longitudinal => "barrels_deep",
+            }
+        );
+        return Err(reader.inconsistent("columns", message));
+    }
+    if rack.barrels > 1 && barrel.section_diameter > rack.pitch {
+        let message = format!(
+            "barrels of {} m overlap on a rack pitch of {} m; set `stack.rack.pitch` and `stack.rack.width`",
+            rounded(barrel.section_diameter),
+            rack.pitch
+        );
+        return Err(reader.inconsistent("barrel", message));
+    }
+    if 2.0 * rack.rail_half_spacing + rack.rail_width > barrel.length {
+        let message = format!(
+            "rails at {} m from the middle lie beyond the end of a barrel of {} m; set \
+             `stack.rack.rail_half_spacing`",
+            rack.rail_half_spacing, barrel.length
+        );
+        return Err(reader.inconsistent("rack", message));
+    }
+    Ok(())
+}
+
+fn read_override(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride, ScenarioError> {
+    let body: StackBody = reader.choice("kind")?;
+    let level = reader.integer("level")?;
+    let column = reader.optional_integer("column")?;
+    let mass = reader.optional_quantity("mass")?;
+    let fill: Option<Fill> = reader.optional_choice("fill")?;
+    let offset_x = reader.quantity("offset_x")?;
+    let columns = match body {
+        StackBody::Barrel => stack.columns,
+        StackBody::Rack => stack.racks_per_level(),
+    };
+    for (name, given, most) in [("level", Some(level), stack.levels), ("column", column, columns)] {
+        if let Some(given) = given
+            && given > most
+        {
+            let message = format!(
+                "`{}` is {given}, but the stack has {most} {name}{} of {}s",
+                reader.path_of(name),
+                if most == 1 { "" } else { "s" },
+                body.name()
+            );
+            return Err(reader.inconsistent(name, message));
+        }
+    }
+    if body == StackBody::Rack && fill.is_some() {
+        let message = format!("`{}` is for barrels; a rack holds no wine", reader.path_of("fill"));
+        return Err(reader.inconsistent("fill", message));
+    }
+    if let Some(mass) = mass
+        && body == StackBody::Barrel
+        && mass < stack.barrel.empty_mass
+    {
+        let message = format!(
+            "`{}` is {mass} kg, less than the wood of {} kg",
+            reader.path_of("mass"),
+            stack.barrel.empty_mass
+        );
+        return Err(reader.inconsistent("mass", message));
+    }
+    reader.finish();
+    Ok(BodyOverride { body, level, column, mass, fill, offset_x })
+}
+
+/// Reads the laws of contact.
+pub(super) fn read_interfaces(reader: Reader<'_>) -> Result<StackInterfaces, ScenarioError> {
+    let [rack_ground, barrel_rack, barrel_barrel, barrel_ground, rack_rack] = catalog::PAIRS;
+    let read = |pair: catalog::CatalogPair| {
+        interface::read(reader.section(pair.name)?, Some(pair.defaults()))
+    };
+    let interfaces = StackInterfaces {
+        rack_ground: read(rack_ground)?,
+        barrel_rack: read(barrel_rack)?,
+        barrel_barrel: read(barrel_barrel)?,
+        barrel_ground: read(barrel_ground)?,
+        rack_rack: read(rack_rack)?,
+    };
+    reader.finish();
+    Ok(interfaces)
+}
+
+/// Writes a stack.
+pub(super) fn write(stack: &StackSpec) -> Table {
+    let mut writer = Writer::new(&STACK);
+    writer.choice("view", stack.view);
+    writer.integer("levels", stack.levels);
+    writer.integer("columns", stack.columns);
+    writer.flag("mirror", stack.mirror);
+    writer.quantity("gap", stack.gap);
+    writer.table("barrel", barrel::write(&stack.barrel));
+    writer.table("rack", rack::write(&stack.rack));
+    writer.tables("override", stack.overrides.iter().map(write_override).collect());
+    writer.finish()
+}
+
+fn write_override(body: &BodyOverride) -> Table {
+    let mut writer = Writer::new(&OVERRIDE);
+    writer.choice("kind", body.body);
+    writer.integer("level", body.level);
+    match body.column {
+        Some(column) => writer.integer("column", column),
+        None => writer.omit(&["column"]),
+    }
+    writer.optional_quantity("mass", body.mass);
+    writer.optional_text("fill", body.fill.map(Named::name));
+    writer.quantity("offset_x", body.offset_x);
+    writer.finish()
+}
+
+/// Writes the laws of contact.
+pub(super) fn write_interfaces(interfaces: &StackInterfaces) -> Table {
+    let mut writer = Writer::new(&INTERFACES);
+    writer.table("rack-ground", interface::write(&interfaces.rack_ground));
+    writer.table("barrel-rack", interface::write(&interfaces.barrel_rack));
+    writer.table("barrel-barrel", interface::write(&interfaces.barrel_barrel));
+    writer.table("barrel-ground", interface::write(&interfaces.barrel_ground));
+    writer.table("rack-rack", interface::write(&interfaces.rack_rack));
+    writer.finish()
+}

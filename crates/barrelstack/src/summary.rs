@@ -1,0 +1,395 @@
+//! The summary of a run: one JSON document, the same numbers in print.
+
+use serde::Serialize;
+
+use crate::assemble::PartKind;
+use crate::outcome::Outcome;
+use crate::run::Run;
+
+/// Version of the summary's layout.
+pub const SUMMARY_SCHEMA: u32 = 1;
+
+/// The summary of a run. Lengths in m, times in s, forces in N, angles in rad; null where it did not
+/// happen or does not apply.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// Version of this layout.
+    pub schema: u32,
+    /// The scenario's title.
+    pub title: String,
+    /// What happened.
+    pub outcome: OutcomeSummary,
+    /// Every body but the ground.
+    pub bodies: Vec<BodySummary>,
+    /// Demands on the stack.
+    pub demands: Demands,
+    /// Forces between bodies.
+    pub interfaces: Vec<JointSummary>,
+    /// The energy books.
+    pub energy: EnergyBooks,
+    /// What shook it.
+    pub motion: Option<MotionSummary>,
+    /// How it was computed.
+    pub run: RunSummary,
+    /// What the reader should know.
+    pub warnings: Vec<String>,
+    /// What made the result.
+    pub provenance: Provenance,
+}
+
+/// What happened.
+#[derive(Clone, Debug, Serialize)]
+pub struct OutcomeSummary {
+    /// "stable", "collapse", "not-judged" or "invalid".
+    pub kind: &'static str,
+    /// "ejection", "rocking", "rack-sliding" or "overturning".
+    pub mode: Option<&'static str>,
+    /// When the first body left its seat.
+    pub time: Option<f64>,
+    /// That body.
+    pub first: Option<String>,
+    /// The lowest level that gave way.
+    pub from_level: Option<u32>,
+    /// The highest level that went.
+    pub to_level: Option<u32>,
+    /// When the first barrel had fallen.
+    pub first_fall: Option<f64>,
+    /// Barrels that had fallen at the end.
+    pub barrels_fallen: usize,
+    /// Barrels in all.
+    pub barrels: usize,
+    /// Why the run is invalid.
+    pub reason: Option<String>,
+}
+
+/// One body.
+#[derive(Clone, Debug, Serialize)]
+pub struct BodySummary {
+    /// Its name.
+    pub name: String,
+    /// "barrel", "rack" or "body".
+    pub kind: &'static str,
+    /// Level, 1 at the bottom.
+    pub level: Option<u32>,
+    /// Column, 1 at the left.
+    pub column: Option<u32>,
+    /// When it left its seat.
+    pub left_seat_at: Option<f64>,
+    /// When it had fallen.
+    pub fell_at: Option<f64>,
+    /// Largest drop below its place at rest, for what fell.
+    pub fall_height: Option<f64>,
+    /// Displacement along x relative to the ground, at the end.
+    pub residual_displacement: f64,
+    /// Largest displacement along x relative to the ground, while the stack stood.
+    pub peak_displacement: f64,
+    /// Displacement relative to what it stands on, at the end: a rack's walk, a barrel's way in its
+    /// cradle.
+    pub residual_slip: f64,
+    /// Largest such displacement while the stack stood.
+    pub peak_slip: f64,
+    /// Largest rise above its place at rest while the stack stood.
+    pub peak_uplift: f64,
+    /// Largest tilt while the stack stood; racks only.
+    pub peak_tilt: Option<f64>,
+    /// Largest normal stress at rest, per meter of boundary.
+    pub stress_at_rest: Option<f64>,
+    /// Largest normal stress while the stack stood, over the largest at rest.
+    pub stress_amplification: Option<f64>,
+    /// Average over the loaded boundary of the same ratio.
+    pub mean_stress_amplification: Option<f64>,
+}
+
+/// Demands on the stack, while it stood unless said otherwise.
+#[derive(Clone, Debug, Serialize)]
+pub struct Demands {
+    /// Largest displacement of the top barrels against the ground, over the height of the stack.
+    pub top_drift_ratio: Option<f64>,
+    /// Largest normal stress on a bottom-level barrel over the largest at rest.
+    pub stress_amplification: Option<f64>,
+    /// Average stress amplification over the loaded boundary of the bottom-level barrels.
+    pub mean_stress_amplification: Option<f64>,
+    /// Slip of the bottom rack on the ground, at the end of the run.
+    pub base_slip_residual: Option<f64>,
+    /// The same at the moment of the collapse (at the end if there was none).
+    pub base_slip_at_collapse: Option<f64>,
+    /// Largest slip of the bottom rack on the ground.
+    pub base_slip_peak: Option<f64>,
+    /// Largest tilt of any rack.
+    pub rack_tilt_peak: Option<f64>,
+    /// Largest walk of any rack on the barrels below.
+    pub rack_walk_peak: Option<f64>,
+}
+
+/// The force between two bodies.
+#[derive(Clone, Debug, Serialize)]
+pub struct JointSummary {
+    /// Such as "R1 on ground".
+    pub name: String,
+    /// Vertical force on the upper body at rest.
+    pub at_rest: f64,
+    /// Largest vertical force on the upper body, and when.
+    pub peak_vertical: f64,
+    /// When.
+    pub peak_vertical_at: f64,
+    /// Largest horizontal force on the upper body, with its sign, and when.
+    pub peak_horizontal: f64,
+    /// When.
+    pub peak_horizontal_at: f64,
+}
+
+/// The energy books at the end (J), relative to the start.
+#[derive(Clone, Debug, Serialize)]
+pub struct EnergyBooks {
+    /// Kinetic energy.
+    pub kinetic: f64,
+    /// Potential energy in gravity.
+    pub potential: f64,
+    /// In contact springs.
+    pub elastic: f64,
+    /// In sticks.
+    pub stick: f64,
+    /// Lost in contact dampers.
+    pub damped: f64,
+    /// Lost to friction.
+    pub friction: f64,
+    /// Lost to viscous damping.
+    pub viscous: f64,
+    /// Work of the ground.
+    pub ground_work: f64,
+    /// What does not balance.
+    pub residual: f64,
+    /// Energy that went through: absolute work of the ground plus the drop of potential energy.
+    pub input: f64,
+    /// |residual| / input.
+    pub residual_ratio: f64,
+}
+
+/// What shook it.
+#[derive(Clone, Debug, Serialize)]
+pub struct MotionSummary {
+    /// Its name.
+    pub name: String,
+    /// Peak horizontal acceleration (m/s²).
+    pub pga: f64,
+    /// Peak horizontal velocity (m/s).
+    pub pgv: f64,
+    /// Peak horizontal displacement (m).
+    pub pgd: f64,
+    /// Whether there is a vertical component.
+    pub vertical: bool,
+    /// When the shaking ends.
+    pub duration: f64,
+}
+
+/// How it was computed.
+#[derive(Clone, Debug, Serialize)]
+pub struct RunSummary {
+    /// Integration method.
+    pub method: &'static str,
+    /// Time step.
+    pub time_step: f64,
+    /// Accepted steps.
+    pub steps: u64,
+    /// Evaluations of all forces.
+    pub evaluations: u64,
+    /// Contact elements tested.
+    pub contact_evaluations: u64,
+    /// Simulated time reached.
+    pub end_time: f64,
+    /// Whether it was stopped early by the user.
+    pub interrupted: bool,
+    /// What contact constants are stated for: "node", "length" or "mixed".
+    pub stiffness_basis: &'static str,
+    /// Length scale of similitude.
+    pub similitude: f64,
+    /// Steps taken to find equilibrium.
+    pub settle_steps: Option<u64>,
+    /// Time on the clock.
+    pub wall_seconds: Option<f64>,
+}
+
+/// What made the result.
+#[derive(Clone, Debug, Serialize)]
+pub struct Provenance {
+    /// The program.
+    pub program: &'static str,
+    /// Its version.
+    pub version: &'static str,
+    /// Hash of the scenario with every default written out.
+    pub scenario_hash: String,
+    /// Where the motion came from and what was done to it, one sentence each.
+    pub motion: Vec<String>,
+}
+
+impl Summary {
+    /// Sums up a run; `wall_seconds` is the time it took on the clock, where it was measured.
+    pub fn of(run: &Run, wall_seconds: Option<f64>) -> Self {
+        Self {
+            schema: SUMMARY_SCHEMA,
+            title: run.scenario.title.clone(),
+            outcome: outcome(run),
+            bodies: bodies(run),
+            demands: demands(run),
+            interfaces: joints(run),
+            energy: EnergyBooks {
+                kinetic: run.energy.kinetic,
+                potential: run.energy.potential,
+                elastic: run.energy.elastic,
+                stick: run.energy.stick,
+                damped: run.energy.damped,
+                friction: run.energy.friction,
+                viscous: run.energy.viscous,
+                ground_work: run.energy.ground_work,
+                residual: run.energy.residual,
+                input: run.energy.throughput,
+                residual_ratio: run.energy.residual_ratio(),
+            },
+            motion: run.ground.motion.as_ref().map(|motion| MotionSummary {
+                name: motion.name.clone(),
+                pga: motion.pga(),
+                pgv: motion.pgv(),
+                pgd: motion.pgd(),
+                vertical: motion.vertical.is_some(),
+                duration: motion.duration,
+            }),
+            run: RunSummary {
+                method: run.simulation.method.name(),
+                time_step: run.simulation.time_step,
+                steps: run.work.steps,
+                evaluations: run.work.evaluations,
+                contact_evaluations: run.work.contact_evaluations,
+                end_time: run.end_time,
+                interrupted: run.interrupted,
+                stiffness_basis: run.stiffness_basis(),
+                similitude: run.scenario.run.similitude,
+                settle_steps: run.settled.map(|settled| settled.steps),
+                wall_seconds,
+            },
+            warnings: run.warnings.clone(),
+            provenance: Provenance {
+                program: "barrelstack",
+                version: env!("CARGO_PKG_VERSION"),
+                scenario_hash: format!("{:016x}", run.scenario.fingerprint()),
+                motion: run
+                    .ground
+                    .motion
+                    .as_ref()
+                    .map(|motion| motion.provenance.clone())
+                    .unwrap_or_default(),
+            },
+        }
+    }
+
+    /// The summary as JSON text, indented.
+    pub fn to_json(&self) -> String {
+        // Only maps with keys that are not text could fail, and there is none.
+        serde_json::to_string_pretty(self).unwrap_or_default()
+    }
+}
+
+fn outcome(run: &Run) -> OutcomeSummary {
+    let barrels: Vec<usize> = run.assembly.of_kind(PartKind::Barrel).collect();
+    let mut summary = OutcomeSummary {
+        kind: run.outcome.kind(),
+        mode: None,
+        time: None,
+        first: None,
+        from_level: None,
+        to_level: None,
+        first_fall: run.fates.first_fall(),
+        barrels_fallen: barrels
+            .iter()
+            .filter(|body| run.fates.fate(**body).fell_at.is_some())
+            .count(),
+        barrels: barrels.len(),
+        reason: None,
+    };
+    match &run.outcome {
+        Outcome::Collapse { mode, time, first, from_level, to_level } => {
+            summary.mode = Some(mode.name());
+            summary.time = Some(*time);
+            summary.first = Some(first.clone());
+            summary.from_level = Some(*from_level);
+            summary.to_level = Some(*to_level);
+        }
+        Outcome::Invalid { reason } => summary.reason = Some(reason.clone()),
+        Outcome::Stable | Outcome::NotJudged => {}
+    }
+    summary
+}
+
+fn bodies(run: &Run) -> Vec<BodySummary> {
+    let parts = run.assembly.parts.iter().enumerate();
+    parts
+        .filter(|(_, part)| part.kind != PartKind::Ground)
+        .map(|(i, part)| {
+            let fate = run.fates.fate(i);
+            let stress = run.stresses.of(i);
+            BodySummary {
+                name: part.name.clone(),
+                kind: part.kind.name(),
+                level: part.level,
+                column: part.column,
+                left_seat_at: fate.left_seat.map(|(time, _)| time),
+                fell_at: fate.fell_at,
+                fall_height: fate.fell_at.map(|_| fate.drop),
+                residual_displacement: fate.residual_displacement,
+                peak_displacement: fate.peak_displacement,
+                residual_slip: fate.residual_slip,
+                peak_slip: fate.peak_slip,
+                peak_uplift: fate.peak_uplift,
+                peak_tilt: (part.kind == PartKind::Rack).then_some(fate.peak_tilt),
+                stress_at_rest: stress.map(|s| s.at_rest.iter().copied().fold(0.0, f64::max)),
+                stress_amplification: stress.and_then(|s| s.amplification()),
+                mean_stress_amplification: stress.and_then(|s| s.mean_amplification()),
+            }
+        })
+        .collect()
+}
+
+fn demands(run: &Run) -> Demands {
+    let assembly = &run.assembly;
+    let of = |kind: PartKind, level: u32| {
+        assembly.of_kind(kind).filter(move |body| assembly.parts[*body].level == Some(level))
+    };
+    let most = |values: &mut dyn Iterator<Item = f64>| values.fold(None, |most: Option<f64>, v| {
+        Some(most.map_or(v, |m| if v.abs() > m.abs() { v } else { m }))
+    });
+    let fate = |body: usize| run.fates.fate(body);
+    let stresses = || of(PartKind::Barrel, 1).filter_map(|body| run.stresses.of(body));
+    let drift = most(&mut of(PartKind::Barrel, assembly.levels).map(|b| fate(b).peak_displacement));
+    Demands {
+        top_drift_ratio: drift.filter(|_| assembly.height > 0.0).map(|d| d / assembly.height),
+        stress_amplification: most(&mut stresses().filter_map(|s| s.amplification())),
+        mean_stress_amplification: most(&mut stresses().filter_map(|s| s.mean_amplification())),
+        base_slip_residual: most(&mut of(PartKind::Rack, 1).map(|b| fate(b).residual_slip)),
+        base_slip_at_collapse: most(
+            &mut of(PartKind::Rack, 1).map(|b| fate(b).displacement_at_collapse),
+        ),
+        base_slip_peak: most(&mut of(PartKind::Rack, 1).map(|b| fate(b).peak_slip)),
+        rack_tilt_peak: most(&mut assembly.of_kind(PartKind::Rack).map(|b| fate(b).peak_tilt)),
+        rack_walk_peak: most(
+            &mut assembly
+                .of_kind(PartKind::Rack)
+                .filter(|b| !assembly.parts[*b].supports.is_empty())
+                .map(|b| fate(b).peak_slip),
+        ),
+    }
+}
+
+fn joints(run: &Run) -> Vec<JointSummary> {
+    run.recording
+        .joints
+        .iter()
+        .filter(|joint| joint.peak_vertical.0 > 0.0)
+        .map(|joint| JointSummary {
+            name: joint.name.clone(),
+            at_rest: joint.at_rest,
+            peak_vertical: joint.peak_vertical.0,
+            peak_vertical_at: joint.peak_vertical.1,
+            peak_horizontal: joint.peak_horizontal.0,
+            peak_horizontal_at: joint.peak_horizontal.1,
+        })
+        .collect()
+}

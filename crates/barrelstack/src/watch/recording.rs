@@ -1,0 +1,297 @@
+//! Frames of the motion and histories of displacements, forces and energies, thinned to stated rates.
+
+use barrelstack_dynamics::{BodyId, EnergyLedger, Model, Planar, Scratch, State, Vec2};
+
+use crate::assemble::{Assembly, PartKind};
+use crate::ground::Ground;
+
+/// A quantity over the sample times of a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// What it is, such as "B1.1 displacement x".
+    pub name: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// One value for every sample.
+    pub values: Vec<f64>,
+}
+
+/// Poses of all bodies at the times of the frames.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frames {
+    /// Times (s).
+    pub times: Vec<f64>,
+    /// For every frame and body: `x` (m), `z` (m), angle (rad), in the inertial frame.
+    pub poses: Vec<Vec<[f64; 3]>>,
+    /// For every frame, contact forces as `x` (m), `z` (m), and the force (N) on the contactor.
+    pub forces: Vec<Vec<[f64; 4]>>,
+}
+
+/// Two bodies of a stack that lean on each other by design, and the force between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointForces {
+    /// The upper body.
+    pub upper: BodyId,
+    /// The lower body.
+    pub lower: BodyId,
+    /// Its name, such as "R1 on ground".
+    pub name: String,
+    /// Largest vertical force (N) on the upper body in any step, and when (s).
+    pub peak_vertical: (f64, f64),
+    /// Largest horizontal force (N) on the upper body in any step, with its sign, and when (s).
+    pub peak_horizontal: (f64, f64),
+    /// Vertical force (N) on the upper body at rest.
+    pub at_rest: f64,
+    /// Vertical force (N) on the upper body at the sample times.
+    pub vertical: Vec<f64>,
+    /// Horizontal force (N) on the upper body at the sample times.
+    pub horizontal: Vec<f64>,
+}
+
+/// What is kept of a run.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    /// The motion.
+    pub frames: Frames,
+    /// Times (s) of the samples of all channels.
+    pub times: Vec<f64>,
+    /// Ground, displacements and energies.
+    pub channels: Vec<Channel>,
+    /// Forces between bodies.
+    pub joints: Vec<JointForces>,
+    frame_rate: f64,
+    history_rate: f64,
+    rest: Vec<Vec2>,
+    /// Which joint a pair of the model belongs to, and whether its contactor is the lower body.
+    joint_of_pair: Vec<Option<(usize, bool)>>,
+    started: bool,
+}
+
+impl Recording {
+    /// Starts with the state at rest; `rates` are those of frames and histories (Hz).
+    pub(super) fn new(
+        assembly: &Assembly,
+        state: &State<Planar>,
+        (frame_rate, history_rate): (f64, f64),
+    ) -> Self {
+        let mut names: Vec<(String, &'static str)> = ["x", "z"]
+            .iter()
+            .flat_map(|axis| {
+                [
+                    (format!("ground acceleration {axis}"), "m/s2"),
+                    (format!("ground velocity {axis}"), "m/s"),
+                    (format!("ground displacement {axis}"), "m"),
+                ]
+            })
+            .collect();
+        for part in assembly.parts.iter().filter(|p| p.kind != PartKind::Ground) {
+            names.push((format!("{} displacement x", part.name), "m"));
+            names.push((format!("{} displacement z", part.name), "m"));
+            names.push((format!("{} rotation", part.name), "rad"));
+        }
+        for energy in ENERGIES {
+            names.push((format!("energy {energy}"), "J"));
+        }
+        let channels = names
+            .into_iter()
+            .map(|(name, unit)| Channel { name, unit, values: Vec::new() })
+            .collect();
+        let ground = state.poses[Assembly::GROUND].position;
+        let joints = joints(assembly);
+        let joint_of_pair = assembly
+            .model
+            .pairs()
+            .iter()
+            .map(|pair| {
+                joints.iter().enumerate().find_map(|(at, joint)| {
+                    let between = (pair.contactor, pair.target);
+                    if between == (joint.upper, joint.lower) {
+                        Some((at, false))
+                    } else if between == (joint.lower, joint.upper) {
+                        Some((at, true))
+                    } else {
+                        None
+                    }
+                })
+            })
+            .collect();
+        Self {
+            frames: Frames::default(),
+            times: Vec::new(),
+            channels,
+            joints,
+            frame_rate,
+            history_rate,
+            rest: state.poses.iter().map(|p| p.position - ground).collect(),
+            joint_of_pair,
+            started: false,
+        }
+    }
+
+    /// The channel of a name.
+    pub fn channel(&self, name: &str) -> Option<&Channel> {
+        self.channels.iter().find(|channel| channel.name == name)
+    }
+
+    /// Displacement (m) of a body along `x`, relative to the ground and to its place at rest.
+    pub fn displacement(&self, body: &str) -> Option<&Channel> {
+        self.channel(&format!("{body} displacement x"))
+    }
+
+    pub(super) fn observe(
+        &mut self,
+        assembly: &Assembly,
+        ground: &Ground,
+        model: &Model<Planar>,
+        state: &State<Planar>,
+        scratch: &Scratch<Planar>,
+        energy: &EnergyLedger<Planar>,
+    ) {
+        let sums = self.joint_sums(scratch);
+        for (joint, force) in self.joints.iter_mut().zip(&sums) {
+            if !self.started {
+                joint.at_rest = force.z;
+            }
+            if force.z > joint.peak_vertical.0 {
+                joint.peak_vertical = (force.z, state.time);
+            }
+            if force.x.abs() > joint.peak_horizontal.0.abs() {
+                joint.peak_horizontal = (force.x, state.time);
+            }
+        }
+        self.started = true;
+        // A time counts as reached within rounding of the step that reaches it.
+        let due = |taken: usize, rate: f64| state.time * rate >= taken as f64 - 1e-6;
+        if due(self.frames.times.len(), self.frame_rate) {
+            self.take_frame(model, state, scratch);
+        }
+        if due(self.times.len(), self.history_rate) {
+            self.take_sample(assembly, ground, state, energy, &sums);
+        }
+    }
+
+    /// Force (N) on the upper body of every joint.
+    fn joint_sums(&self, scratch: &Scratch<Planar>) -> Vec<Vec2> {
+        let mut sums = vec![Vec2::default(); self.joints.len()];
+        for pair in &scratch.pair_forces {
+            if let Some((joint, lower_touches)) = self.joint_of_pair[pair.pair] {
+                let force = if lower_touches { -pair.force } else { pair.force };
+                sums[joint] += force;
+            }
+        }
+        sums
+    }
+
+    fn take_frame(
+        &mut self,
+        model: &Model<Planar>,
+        state: &State<Planar>,
+        scratch: &Scratch<Planar>,
+    ) {
+        self.frames.times.push(state.time);
+        self.frames.poses.push(
+            state.poses.iter().map(|p| [p.position.x, p.position.z, p.orientation]).collect(),
+        );
+        // One arrow for every pair: the sum of its contacts at their center of pressure.
+        let mut forces: Vec<[f64; 4]> = Vec::new();
+        let mut weight = 0.0;
+        let mut last = usize::MAX;
+        for contact in &scratch.contacts {
+            let (force, point) =
+                barrelstack_dynamics::forces::contact_force(model, state, scratch, contact);
+            if contact.pair != last {
+                forces.push([0.0; 4]);
+                (weight, last) = (0.0, contact.pair);
+            }
+            if let Some(arrow) = forces.last_mut() {
+                let total = weight + contact.normal_force;
+                if total > 0.0 {
+                    let share = contact.normal_force / total;
+                    arrow[0] += (point.x - arrow[0]) * share;
+                    arrow[1] += (point.z - arrow[1]) * share;
+                }
+                weight = total;
+                arrow[2] += force.x;
+                arrow[3] += force.z;
+            }
+        }
+        self.frames.forces.push(forces);
+    }
+
+    fn take_sample(
+        &mut self,
+        assembly: &Assembly,
+        ground: &Ground,
+        state: &State<Planar>,
+        energy: &EnergyLedger<Planar>,
+        sums: &[Vec2],
+    ) {
+        self.times.push(state.time);
+        let mut values: Vec<f64> = Vec::with_capacity(self.channels.len());
+        let motion = ground.motion.as_ref();
+        let x = motion.map(|m| m.horizontal.at(state.time)).unwrap_or_default();
+        let z = motion.and_then(|m| m.vertical.as_ref()).map(|v| v.at(state.time)).unwrap_or_default();
+        for k in [x, z] {
+            values.extend([k.acceleration, k.velocity, k.displacement]);
+        }
+        let carried = state.poses[Assembly::GROUND].position;
+        for (i, part) in assembly.parts.iter().enumerate() {
+            if part.kind != PartKind::Ground {
+                let moved = state.poses[i].position - carried - self.rest[i];
+                values.extend([moved.x, moved.z, state.poses[i].orientation]);
+            }
+        }
+        let books = energy.summary(0);
+        values.extend([
+            books.kinetic,
+            books.potential,
+            books.elastic,
+            books.stick,
+            books.damped,
+            books.friction,
+            books.viscous,
+            books.ground_work,
+            books.residual,
+        ]);
+        for (channel, value) in self.channels.iter_mut().zip(values) {
+            channel.values.push(value);
+        }
+        for (joint, force) in self.joints.iter_mut().zip(sums) {
+            joint.vertical.push(force.z);
+            joint.horizontal.push(force.x);
+        }
+    }
+}
+
+/// The energies that are recorded, in order.
+const ENERGIES: [&str; 9] = [
+    "kinetic", "potential", "elastic", "stick", "damped", "friction", "viscous", "ground work",
+    "residual",
+];
+
+/// Every barrel on its rack, every rack on what is below it.
+fn joints(assembly: &Assembly) -> Vec<JointForces> {
+    let mut joints = Vec::new();
+    let mut join = |upper: BodyId, lower: BodyId| {
+        joints.push(JointForces {
+            upper,
+            lower,
+            name: format!("{} on {}", assembly.parts[upper].name, assembly.parts[lower].name),
+            peak_vertical: (0.0, 0.0),
+            peak_horizontal: (0.0, 0.0),
+            at_rest: 0.0,
+            vertical: Vec::new(),
+            horizontal: Vec::new(),
+        });
+    };
+    for (i, part) in assembly.parts.iter().enumerate() {
+        match part.kind {
+            PartKind::Rack if part.supports.is_empty() => join(i, Assembly::GROUND),
+            PartKind::Rack => part.supports.iter().for_each(|support| join(i, *support)),
+            PartKind::Barrel => part.carrier.iter().for_each(|rack| join(i, *rack)),
+            PartKind::Body => join(i, Assembly::GROUND),
+            PartKind::Ground => {}
+        }
+    }
+    joints
+}

@@ -1,0 +1,93 @@
+//! The scenarios shipped with the program, and what every scenario can do.
+
+use barrelstack::scenario::{
+    Amplitude, Friction, MotionSource, NormalLaw, Scale, Scenario, Scene, builtin,
+};
+
+fn load(name: &str) -> Scenario {
+    Scenario::builtin(name, &[]).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+#[test]
+fn every_builtin_scenario_is_valid() {
+    for name in builtin::names() {
+        let scenario = load(name);
+        assert!(!scenario.title.is_empty(), "{name}");
+    }
+}
+
+#[test]
+fn resolved_text_reads_back_equal() {
+    for name in builtin::names() {
+        let scenario = load(name);
+        let text = scenario.to_resolved_toml();
+        let again = Scenario::parse("resolved.toml", &text, &[])
+            .unwrap_or_else(|error| panic!("{name}: {error}\n{text}"));
+        assert_eq!(again, scenario, "{name}:\n{text}");
+        assert_eq!(again.to_resolved_toml(), text, "{name}");
+        assert_eq!(again.fingerprint(), scenario.fingerprint(), "{name}");
+    }
+}
+
+#[test]
+fn fingerprints_tell_scenarios_apart_and_ignore_titles() {
+    let mut seen = Vec::new();
+    for name in builtin::names() {
+        let print = load(name).fingerprint();
+        assert!(!seen.contains(&print), "{name} has the fingerprint of another");
+        seen.push(print);
+    }
+    let renamed = Scenario::builtin("demo-napa", &["title=other".to_owned()]).unwrap();
+    assert_eq!(renamed.title, "other");
+    assert_eq!(renamed.fingerprint(), load("demo-napa").fingerprint());
+}
+
+#[test]
+fn paper_constants_are_converted_exactly() {
+    let scenario = load("candia-8-barrels");
+    let stack = scenario.stack().unwrap();
+    for interface in [stack.interfaces.rack_ground, stack.interfaces.barrel_rack] {
+        let NormalLaw::SpeedGap { stiffness, damping } = interface.normal else {
+            panic!("{interface:?}")
+        };
+        assert_eq!(stiffness, 980_000.0);
+        assert_eq!(damping, barrelstack::scenario::Damping::Coefficient(2200.0));
+    }
+    let MotionSource::Sine(sine) = &scenario.motion.source else { panic!() };
+    assert_eq!(sine.amplitude, Amplitude::Displacement(0.1016));
+    assert_eq!(sine.period, 0.76 * 2.0_f64.sqrt());
+}
+
+#[test]
+fn a_variant_changes_only_what_it_says() {
+    let (high, low) = (load("candia-6-barrels"), load("candia-6-barrels-low-friction"));
+    let (Scene::Stack { stack: high_stack, .. }, Scene::Stack { stack: low_stack, .. }) =
+        (&high.scene, &low.scene)
+    else {
+        panic!()
+    };
+    let mut same = low_stack.clone();
+    same.interfaces.rack_ground = high_stack.interfaces.rack_ground;
+    assert_eq!(&same, high_stack);
+    let kinetic = |friction: &Friction| match friction {
+        Friction::Coulomb { coefficient, static_coefficient, .. } => {
+            assert_eq!(coefficient, static_coefficient);
+            *coefficient
+        }
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(kinetic(&high_stack.interfaces.rack_ground.friction), 0.4);
+    assert_eq!(kinetic(&low_stack.interfaces.rack_ground.friction), 0.1);
+    assert_eq!(high.motion, low.motion);
+    assert_eq!(high.motion.scale, Scale::Pgv(0.6));
+}
+
+#[test]
+fn a_missing_record_says_where_to_get_it() {
+    let scenario = load("candia-6-barrels");
+    let MotionSource::Record(record) = &scenario.motion.source else { panic!() };
+    let sentence = record.check_files().unwrap_err();
+    assert!(sentence.starts_with("there is no record `RSN995_NORTHR_PEL360.AT2`"), "{sentence}");
+    assert!(sentence.contains("NGA-West2"), "{sentence}");
+    assert!(sentence.contains("--set motion.record=PATH"), "{sentence}");
+}

@@ -1,0 +1,230 @@
+//! The JSON Schema and the reference agree with what the reader accepts.
+
+use barrelstack::scenario::field::{Default, Field, Kind, Section};
+use barrelstack::scenario::{ROOT, Scenario, builtin, reference, schema};
+use serde_json::{Value, json};
+
+/// Checks a value against the part of JSON Schema that the generator uses; a keyword it does not know fails.
+fn check(schema: &Value, value: &Value, path: &str) -> Result<(), String> {
+    let fail = |what: &str| Err(format!("{path}: {value} breaks {what}"));
+    for (keyword, rule) in schema.as_object().unwrap() {
+        match keyword.as_str() {
+            "$schema" | "title" | "description" | "additionalProperties" => {}
+            "type" => {
+                let types = rule.as_array().cloned().unwrap_or_else(|| vec![rule.clone()]);
+                let is = |name: &Value| match name.as_str().unwrap() {
+                    "string" => value.is_string(),
+                    "integer" => value.is_i64(),
+                    "number" => value.is_number(),
+                    "boolean" => value.is_boolean(),
+                    "array" => value.is_array(),
+                    "object" => value.is_object(),
+                    other => panic!("type {other}"),
+                };
+                if !types.iter().any(is) {
+                    return fail("type");
+                }
+            }
+            "properties" => {
+                let Some(object) = value.as_object() else { continue };
+                for (key, item) in object {
+                    match rule.get(key) {
+                        Some(schema) => check(schema, item, &format!("{path}.{key}"))?,
+                        None => return fail(&format!("additionalProperties with `{key}`")),
+                    }
+                }
+            }
+            "items" => {
+                for item in value.as_array().into_iter().flatten() {
+                    check(rule, item, path)?;
+                }
+            }
+            "minItems" | "maxItems" => {
+                let count = value.as_array().map_or(0, Vec::len) as u64;
+                let limit = rule.as_u64().unwrap();
+                if (keyword == "minItems" && count < limit)
+                    || (keyword == "maxItems" && count > limit)
+                {
+                    return fail(keyword);
+                }
+            }
+            "anyOf" => {
+                let tried: Vec<_> =
+                    rule.as_array().unwrap().iter().map(|s| check(s, value, path)).collect();
+                if !tried.iter().any(Result::is_ok) {
+                    let reasons: Vec<String> = tried.into_iter().filter_map(Result::err).collect();
+                    return Err(format!("{path}: no alternative: {}", reasons.join("; ")));
+                }
+            }
+            "enum" => {
+                if !rule.as_array().unwrap().contains(value) {
+                    return fail("enum");
+                }
+            }
+            "const" => {
+                if rule != value {
+                    return fail("const");
+                }
+            }
+            "minimum" | "maximum" | "exclusiveMinimum" => {
+                let (x, limit) = (value.as_f64().unwrap_or(f64::NAN), rule.as_f64().unwrap());
+                let good = match keyword.as_str() {
+                    "minimum" => x >= limit,
+                    "maximum" => x <= limit,
+                    _ => x > limit,
+                };
+                if !good {
+                    return fail(keyword);
+                }
+            }
+            "minLength" => {
+                if value.as_str().is_some_and(str::is_empty) {
+                    return fail(keyword);
+                }
+            }
+            // The one pattern of the schema: a number, then something.
+            "pattern" => {
+                let text =
+                    value.as_str().unwrap_or("").trim_start().trim_start_matches(['-', '+', '.']);
+                let number = text.starts_with(|c: char| c.is_ascii_digit());
+                let unit = text.trim_end().ends_with(|c: char| !c.is_ascii_digit() && c != '.')
+                    || text.contains('^');
+                if !(number && unit) {
+                    return fail("pattern");
+                }
+            }
+            other => panic!("keyword {other} is not checked"),
+        }
+    }
+    Ok(())
+}
+
+fn as_json(text: &str) -> Value {
+    let table: toml::Table = toml::from_str(text).unwrap();
+    serde_json::to_value(table).unwrap()
+}
+
+#[test]
+fn builtin_scenarios_satisfy_the_schema_as_written_and_as_resolved() {
+    let schema = schema::json_schema();
+    for name in builtin::names() {
+        check(&schema, &as_json(builtin::get(name).unwrap()), name).unwrap();
+        let scenario = Scenario::builtin(name, &[]).unwrap();
+        check(&schema, &as_json(&scenario.to_resolved_toml()), name).unwrap();
+        check(&schema, &scenario.to_resolved_json(), name).unwrap();
+    }
+}
+
+#[test]
+fn resolved_toml_and_json_hold_the_same() {
+    for name in builtin::names() {
+        let scenario = Scenario::builtin(name, &[]).unwrap();
+        assert_eq!(as_json(&scenario.to_resolved_toml()), scenario.to_resolved_json(), "{name}");
+    }
+}
+
+#[test]
+fn the_schema_refuses_what_the_reader_refuses_by_form() {
+    let schema = schema::json_schema();
+    for wrong in [
+        json!({ "schema": 1, "stack": { "levles": 4 } }),
+        json!({ "schema": 1, "stack": { "levels": 0 } }),
+        json!({ "schema": 1, "stack": { "levels": "4" } }),
+        json!({ "schema": 2 }),
+        json!({ "schema": 1, "run": { "duration": 30 } }),
+        json!({ "schema": 1, "run": { "duration": "30" } }),
+        json!({ "schema": 1, "run": { "method": "verlet" } }),
+        json!({ "schema": 1, "kind": "free", "stack": { "levels": 4 } }),
+        json!({ "schema": 1, "interface": { "rack-ground": { "law": "hertz", "damping": "1 s/m" } } }),
+        json!({ "schema": 1, "kind": "free", "body": [{ "position": ["0 m"] }] }),
+    ] {
+        assert!(check(&schema, &wrong, "").is_err(), "{wrong}");
+    }
+}
+
+/// Every field with its section, variants included, each section once.
+fn all_fields() -> Vec<(&'static Section, &'static Field)> {
+    fn collect(section: &'static Section, seen: &mut Vec<&'static Section>) {
+        if seen.iter().any(|known| std::ptr::eq(*known, section)) {
+            return;
+        }
+        seen.push(section);
+        for field in fields_of(section) {
+            match field.kind {
+                Kind::Table(inner) | Kind::Tables(inner) | Kind::ChoiceOrTable(_, _, inner) => {
+                    collect(inner, seen);
+                }
+                _ => {}
+            }
+        }
+    }
+    fn fields_of(section: &'static Section) -> impl Iterator<Item = &'static Field> {
+        let variants = section.variants.iter().flat_map(|v| v.list).flat_map(|v| v.fields);
+        section.fields.iter().chain(variants)
+    }
+    let mut seen = Vec::new();
+    collect(&ROOT, &mut seen);
+    seen.into_iter()
+        .flat_map(|section| fields_of(section).map(move |field| (section, field)))
+        .collect()
+}
+
+#[test]
+fn definitions_are_well_formed() {
+    let fields = all_fields();
+    assert!(fields.len() > 100, "{}", fields.len());
+    for (section, field) in fields {
+        let name = field.name;
+        assert!(field.help.ends_with('.') && section.help.ends_with('.'), "{name}");
+        if let Default::Value(text) = field.default {
+            let value = as_json(&format!("v = {text}"));
+            let schema = schema::json_schema();
+            // The default must satisfy the schema of its own field, wherever that stands.
+            assert!(finds(&schema, name, &value["v"]), "{name} = {text}");
+        }
+    }
+    for (section, _) in all_fields() {
+        let Some(variants) = &section.variants else { continue };
+        let tag = section.fields.iter().find(|field| field.name == variants.tag).unwrap();
+        let Kind::Choice(names) = tag.kind else { panic!("{}", tag.name) };
+        let mut listed: Vec<&str> = variants.list.iter().map(|variant| variant.name).collect();
+        let mut chosen = names();
+        listed.sort_unstable();
+        chosen.sort_unstable();
+        assert_eq!(listed, chosen, "{}", section.help);
+        for group in section.exclusive {
+            for name in *group {
+                let known = section.fields.iter().any(|field| field.name == *name)
+                    || variants.list.iter().any(|v| v.fields.iter().any(|f| f.name == *name));
+                assert!(known, "{name}");
+            }
+        }
+    }
+}
+
+/// Whether any property of this name in the schema accepts the value.
+fn finds(schema: &Value, name: &str, value: &Value) -> bool {
+    match schema {
+        Value::Object(object) => {
+            let here = object
+                .get("properties")
+                .and_then(|properties| properties.get(name))
+                .is_some_and(|inner| check(inner, value, name).is_ok());
+            here || object.values().any(|inner| finds(inner, name, value))
+        }
+        Value::Array(items) => items.iter().any(|inner| finds(inner, name, value)),
+        _ => false,
+    }
+}
+
+#[test]
+fn the_reference_names_every_field() {
+    let text = reference::markdown();
+    for (_, field) in all_fields() {
+        assert!(text.contains(&format!("| `{}` |", field.name)), "{}", field.name);
+        assert!(text.contains(field.help), "{}", field.name);
+    }
+    for line in text.lines() {
+        assert_eq!(line, line.trim_end());
+    }
+}

@@ -1,0 +1,16 @@
+//! `barrelstack check`: is the scenario sound, and does the stack stand before it is shaken?
+
+use std::process::ExitCode;
+
+use crate::args::CheckArgs;
+use crate::printer;
+
+/// Reads, builds and settles, and prints what was found.
+pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
+    let scenario = super::load(&args.scenario)?;
+    let found = barrelstack::check(&scenario)?;
+    for line in found.lines() {
+        printer::line(&line);
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,31 @@
+//! Motions that come with the crate, with the notices their owners ask for in their headers.
+
+use crate::format::{ReadOptions, read};
+use crate::record::Record;
+
+/// Names that [`bundled`] knows.
+pub const BUNDLED: &[&str] = &["napa-college-2014"];
+
+const NAPA_COLLEGE: &[u8] = include_bytes!("../records/napa-college-2014.txt");
+
+/// A bundled record by name.
+///
+/// `napa-college-2014` is the South Napa earthquake of 24 August 2014, M 6.0, at Napa College
+/// (CE.68150): E (PGA 0.373 g), N (0.339 g) and up (0.215 g), 200 Hz, 35 s.
+/// The series was cut after filtering, so plain integration drifts by half a meter; its stage is
+/// therefore raw, and the default processing filters it again.
+///
+/// ```
+/// let napa = barrelstack_motion::bundled("napa-college-2014").unwrap();
+/// let motion = napa.default_motion()?;
+/// assert!(motion.pgv() > 0.4);
+/// # Ok::<(), barrelstack_motion::MotionError>(())
+/// ```
+pub fn bundled(name: &str) -> Option<Record> {
+    match name {
+        "napa-college-2014" => {
+            read(NAPA_COLLEGE, "napa-college-2014.txt", &ReadOptions::default()).ok()
+        }
+        _ => None,
+    }
+}

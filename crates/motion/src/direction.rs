@@ -1,0 +1,124 @@
+//! What a component's name says about where it points.
+
+/// Whether a component lies in the ground plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Orientation {
+    /// In the ground plane.
+    Horizontal,
+    /// Along gravity; positive upward once read.
+    Vertical,
+}
+
+/// Direction of a component as far as it is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Direction {
+    /// Azimuth of the positive direction, degrees clockwise from north, 0 to below 360.
+    pub azimuth: Option<f64>,
+    /// Horizontal or vertical, when the name tells.
+    pub orientation: Option<Orientation>,
+    /// The name says the positive direction is down.
+    pub downward: bool,
+}
+
+impl Direction {
+    /// A horizontal direction of known azimuth (degrees clockwise from north).
+    pub fn horizontal(azimuth: f64) -> Self {
+        Self {
+            azimuth: Some(azimuth.rem_euclid(360.0)),
+            orientation: Some(Orientation::Horizontal),
+            downward: false,
+        }
+    }
+
+    /// A horizontal direction whose azimuth is unknown.
+    pub fn some_horizontal() -> Self {
+        Self { azimuth: None, orientation: Some(Orientation::Horizontal), downward: false }
+    }
+
+    /// The vertical, positive upward.
+    pub fn up() -> Self {
+        Self { azimuth: None, orientation: Some(Orientation::Vertical), downward: false }
+    }
+
+    fn down() -> Self {
+        Self { downward: true, ..Self::up() }
+    }
+
+    /// Reads names such as `360`, `90 Deg`, `N28W`, `E-W`, `UP`, `HNZ`, `L`.
+    ///
+    /// A name that says nothing gives the default: all unknown.
+    ///
+    /// ```
+    /// use barrelstack_motion::{Direction, Orientation};
+    /// assert_eq!(Direction::parse("S62W").azimuth, Some(242.0));
+    /// assert_eq!(Direction::parse("up").orientation, Some(Orientation::Vertical));
+    /// ```
+    pub fn parse(name: &str) -> Self {
+        let mut upper = name.trim().to_ascii_uppercase();
+        for word in ["DEGREES", "DEG.", "DEG", "COMPONENT", "COMP"] {
+            upper = upper.replace(word, "");
+        }
+        let text = upper.trim();
+        match text {
+            "UP" | "U" | "+U" | "V" | "VERT" | "VERT." | "VERTICAL" | "Z" | "UD" | "U-D" | "+V"
+            | "VRT" | "VER" => return Self::up(),
+            "DOWN" | "DN" | "DWN" | "DU" | "D-U" | "-U" | "V;-" => return Self::down(),
+            "V;+" => return Self::up(),
+            "N" | "NS" | "N-S" | "NORTH" => return Self::horizontal(0.0),
+            "E" | "EW" | "E-W" | "EAST" => return Self::horizontal(90.0),
+            "S" | "SN" | "S-N" | "SOUTH" => return Self::horizontal(180.0),
+            "W" | "WE" | "W-E" | "WEST" => return Self::horizontal(270.0),
+            "L" | "T" | "LONG" | "LONGITUDINAL" | "TRAN" | "TRANS" | "TRANSVERSE" | "H1" | "H2"
+            | "X" | "Y" | "LN" | "TR" => return Self::some_horizontal(),
+            _ => {}
+        }
+        if let Ok(azimuth) = text.parse::<f64>() {
+            return if (0.0..=360.0).contains(&azimuth) {
+                Self::horizontal(azimuth)
+            } else {
+                Self::default()
+            };
+        }
+        bearing(text).or_else(|| seed_channel(text)).unwrap_or_default()
+    }
+}
+
+/// A quadrant bearing such as `N28W`.
+fn bearing(text: &str) -> Option<Direction> {
+    let south = match text.chars().next()? {
+        'N' => false,
+        'S' => true,
+        _ => return None,
+    };
+    // `W` is written `O` in Spanish.
+    let west = match text.chars().last()? {
+        'E' => false,
+        'W' | 'O' => true,
+        _ => return None,
+    };
+    let angle: f64 = text.get(1..text.len() - 1)?.trim().parse().ok()?;
+    if !(0.0..=90.0).contains(&angle) {
+        return None;
+    }
+    Some(Direction::horizontal(match (south, west) {
+        (false, false) => angle,
+        (false, true) => 360.0 - angle,
+        (true, false) => 180.0 - angle,
+        (true, true) => 180.0 + angle,
+    }))
+}
+
+/// A three-letter channel code whose last letter is the direction, such as `HNE`.
+fn seed_channel(text: &str) -> Option<Direction> {
+    let [band, instrument, direction] = text.as_bytes() else { return None };
+    if !band.is_ascii_uppercase() || !matches!(instrument, b'N' | b'L' | b'G' | b'H') {
+        return None;
+    }
+    match direction {
+        b'N' => Some(Direction::horizontal(0.0)),
+        b'E' => Some(Direction::horizontal(90.0)),
+        b'Z' => Some(Direction::up()),
+        b'1' | b'2' => Some(Direction::some_horizontal()),
+        _ => None,
+    }
+}

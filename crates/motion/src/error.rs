@@ -1,0 +1,146 @@
+//! What can go wrong between a file and a usable ground motion, as sentences with a next move.
+
+use std::fmt;
+
+/// Why a file was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// No reader recognizes the bytes.
+    Unrecognized,
+    /// The file is sound but holds something other than an acceleration history.
+    NotAcceleration,
+    /// The file contradicts itself or its format: cut, overflown, counted wrong, not a number.
+    Damaged,
+    /// The format does not say something that must be known and was not given by the caller.
+    Missing,
+}
+
+/// A file that could not be read: where, what was expected, what was found and what to do.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}{}: expected {expected}, found {found}; {remedy}", Place { line: *line, column: *column })]
+pub struct ReadError {
+    /// Name of the file as given by the caller.
+    pub file: String,
+    /// Line, counted from 1.
+    pub line: Option<usize>,
+    /// Column of the first offending character, counted from 1.
+    pub column: Option<usize>,
+    /// The kind of refusal, for programs.
+    pub refusal: Refusal,
+    /// What the reader expected there.
+    pub expected: String,
+    /// What stands there.
+    pub found: String,
+    /// The next move.
+    pub remedy: String,
+}
+
+struct Place {
+    line: Option<usize>,
+    column: Option<usize>,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(line) = self.line {
+            write!(f, ", line {line}")?;
+        }
+        if let Some(column) = self.column {
+            write!(f, ", column {column}")?;
+        }
+        Ok(())
+    }
+}
+
+/// A request about a motion that cannot be met.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MotionError {
+    /// A parameter lies outside its range.
+    #[error("{what}: expected {expected}, found {found}")]
+    Parameter {
+        /// The parameter, in words.
+        what: String,
+        /// The permitted range.
+        expected: String,
+        /// The value given.
+        found: String,
+    },
+    /// A measure that does not grow with the motion cannot be a scaling target.
+    #[error("{measure} cannot be scaled to: {reason}; choose a measure such as PGV or Sa")]
+    NotScalable {
+        /// Name of the measure.
+        measure: String,
+        /// Why no factor exists.
+        reason: String,
+    },
+    /// The motion is zero in the measure asked for.
+    #[error("{measure} of \"{motion}\" is zero, so no factor brings it to {target}")]
+    Zero {
+        /// Name of the measure.
+        measure: String,
+        /// Name of the motion.
+        motion: String,
+        /// The wanted value with its unit.
+        target: String,
+    },
+    /// No channel answers the selection.
+    #[error("{file} has no channel {wanted}; it has {available}")]
+    NoChannel {
+        /// Name of the file.
+        file: String,
+        /// What was asked for.
+        wanted: String,
+        /// What there is.
+        available: String,
+    },
+    /// Two series that must be combined differ in step or do not fit.
+    #[error("{what}; {remedy}")]
+    Mismatch {
+        /// The disagreement.
+        what: String,
+        /// The next move.
+        remedy: String,
+    },
+    /// An iteration did not reach its tolerance.
+    #[error("{what} reached {reached} after {rounds} rounds, wanted {wanted}; {remedy}")]
+    NotConverged {
+        /// The iteration.
+        what: String,
+        /// Best misfit reached, printed.
+        reached: String,
+        /// Rounds done.
+        rounds: usize,
+        /// Tolerance, printed.
+        wanted: String,
+        /// The next move.
+        remedy: String,
+    },
+}
+
+impl MotionError {
+    pub(crate) fn parameter(
+        what: impl Into<String>,
+        expected: impl Into<String>,
+        found: impl fmt::Display,
+    ) -> Self {
+        Self::Parameter { what: what.into(), expected: expected.into(), found: found.to_string() }
+    }
+
+    /// `Ok` when `value` is finite and above zero.
+    pub(crate) fn require_positive(what: &str, value: f64) -> Result<(), Self> {
+        if value.is_finite() && value > 0.0 {
+            Ok(())
+        } else {
+            Err(Self::parameter(what, "a finite number above 0", value))
+        }
+    }
+
+    /// `Ok` when `value` is finite.
+    pub(crate) fn require_finite(what: &str, value: f64) -> Result<(), Self> {
+        if value.is_finite() {
+            Ok(())
+        } else {
+            Err(Self::parameter(what, "a finite number", value))
+        }
+    }
+}

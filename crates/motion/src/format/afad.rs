@@ -1,0 +1,103 @@
+//! AFAD, Turkey: `KEY : value` lines and three columns in gal.
+//!
+//! Spec: header lines of the Turkish National Strong Motion Network (NSMN) text files.
+
+use super::source::{LARGEST_ACCELERATION, Source, latin1, leading_number, resolution, shorten};
+use super::{Format, ReadOptions};
+use crate::direction::Direction;
+use crate::error::{ReadError, Refusal};
+use crate::math;
+use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+
+pub(crate) const FORMAT: Format =
+    Format { name: "afad", title: "AFAD and NSMN text (Turkey)", sniff, read };
+
+const GAL: f64 = 0.01;
+const MOST_HEADER_LINES: usize = 40;
+
+fn sniff(source: &Source<'_>) -> bool {
+    source.has(0, "STRONG GROUND MOTION RECORDS OF TUR")
+        || (0..MOST_HEADER_LINES).any(|line| source.has(line, "RAW PGA VALUES"))
+}
+
+fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
+    (0..MOST_HEADER_LINES).find_map(|line| {
+        let text = source.text(line);
+        let (name, value) = text.split_once(':')?;
+        name.trim().starts_with(key).then(|| (line, value.trim().to_owned()))
+    })
+}
+
+fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+    let number = |key: &str| {
+        let found = field(source, key);
+        let value = found.as_ref().and_then(|(line, text)| {
+            leading_number(text.as_bytes()).map(|(value, _)| (*line, value))
+        });
+        value.ok_or_else(|| {
+            source.error(
+                found.as_ref().map(|(line, _)| *line),
+                Refusal::Damaged,
+                format!("a number for \"{key}\""),
+                found.as_ref().map_or("none".to_owned(), |(_, text)| format!("\"{text}\"")),
+                "restore the header from the original file",
+            )
+        })
+    };
+    let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
+    if options.time_step.is_some() {
+        record.warn(None, "the file states its step; the time step given was ignored");
+    }
+    let (count_line, count) = number("NUMBER OF DATA")?;
+    let count = super::whole(source, count_line, "a number of values", count)?;
+    let (_, time_step) = number("SAMPLING INTERVAL")?;
+    record.event = field(source, "EARTHQUAKE DATE").map(|(_, text)| text).unwrap_or_default();
+    let place = field(source, "PLACE").map(|(_, text)| text).unwrap_or_default();
+    let station = field(source, "STATION ID").map(|(_, text)| text).unwrap_or_default();
+    record.station = format!("{station} {place}");
+    let names_line = (0..MOST_HEADER_LINES)
+        .find(|&line| !source.has(line, ":") && source.has(line, "N-S") && source.has(line, "E-W"))
+        .ok_or_else(|| {
+            source.error(
+                (),
+                Refusal::Damaged,
+                "a line of column names, N-S, E-W and U-D",
+                "none",
+                "restore the header from the original file",
+            )
+        })?;
+    let text = source.text(names_line);
+    let names: Vec<&str> = text.split_whitespace().collect();
+    let limit = LARGEST_ACCELERATION / GAL;
+    let first = names_line + 1;
+    let mut columns = super::rows(source, first, source.lines.len(), names.len(), limit)?;
+    let found = columns.first().map_or(0, Vec::len);
+    super::check_count(source, &mut record, count_line, count, found)?;
+    let peaks = field(source, "RAW PGA VALUES").map(|(_, text)| text).unwrap_or_default();
+    for (name, column) in names.iter().zip(&mut columns) {
+        let values: Vec<f64> = column.iter().map(|value| value * GAL).collect();
+        let mut channel = Channel::new(*name, Direction::parse(name), time_step, values);
+        let stated = peaks
+            .split_once(&format!("({name})"))
+            .and_then(|(_, rest)| leading_number(rest.as_bytes()));
+        if let Some((value, digits)) = stated {
+            channel.peaks.push(StatedPeak {
+                quantity: Quantity::Acceleration,
+                stated: value.abs() * GAL,
+                resolution: resolution(&digits) * GAL,
+                measured: math::peak(&channel.acceleration),
+            });
+        }
+        record.channels.push(channel);
+    }
+    if !latin1(source.bytes.get(..4000).unwrap_or(source.bytes)).contains("(gal)") {
+        record.warn(
+            None,
+            format!(
+                "no \"(gal)\" in the header; cm/s2 is the unit of this format (\"{}\")",
+                shorten(&source.text(0))
+            ),
+        );
+    }
+    Ok(record)
+}

@@ -1,0 +1,124 @@
+//! BHRC, Iran: volume 1 per component, `10E13.6` in g/10, closed by `/&`.
+//!
+//! Spec: header lines of files from the Iran Strong Motion Network (Building and Housing Research
+//! Center); the layout descends from CDMG volume 1 with equally spaced values.
+
+use super::source::{Columns, LARGEST_ACCELERATION, Source, shorten};
+use super::{Format, ReadOptions};
+use crate::direction::Direction;
+use crate::error::{ReadError, Refusal};
+use crate::record::{Channel, Record, Stage};
+use crate::units::AccelerationUnit;
+
+pub(crate) const FORMAT: Format =
+    Format { name: "bhrc", title: "BHRC (Iran) volume 1", sniff, read };
+
+/// 13 text lines, 7 lines of integers, 7 lines of reals.
+const HEADER_LINES: usize = 27;
+
+fn sniff(source: &Source<'_>) -> bool {
+    source.find(0, "VOL1DS FILE").is_some_and(|at| at < 6)
+}
+
+fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+    let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
+    if options.time_step.is_some() {
+        record.warn(None, "the file states its step; the time step given was ignored");
+    }
+    let mut line = 0;
+    while line < source.lines.len() {
+        if source.raw(line).trim_ascii().is_empty() {
+            line += 1;
+            continue;
+        }
+        line = read_component(source, &mut record, line)?;
+    }
+    Ok(record)
+}
+
+fn read_component(
+    source: &Source<'_>,
+    record: &mut Record,
+    first: usize,
+) -> Result<usize, ReadError> {
+    if !source.has(first, "VOL1DS FILE") {
+        return Err(source.error(
+            first,
+            Refusal::Damaged,
+            "\"* VOL1DS FILE\" at the start of a component",
+            format!("\"{}\"", shorten(&source.text(first))),
+            "lines are missing or in excess before this one; get the file again from its source",
+        ));
+    }
+    let count_line = first + 10;
+    let stated = source
+        .number_after(count_line, "POINTS")
+        .zip(source.number_after(count_line, "DURATION"))
+        .ok_or_else(|| {
+            source.error(
+                count_line.min(source.lines.len().saturating_sub(1)),
+                Refusal::Damaged,
+                "number of points and duration",
+                format!("\"{}\"", shorten(&source.text(count_line))),
+                "restore the header from the original file",
+            )
+        })?;
+    let count = super::whole(source, count_line, "a number of points", stated.0)?;
+    // The stated duration is the count times the step, not one step less.
+    let time_step = stated.1 / stated.0;
+    if !source.has(first + 11, "G/10") {
+        return Err(source.error(
+            first + 11,
+            Refusal::NotAcceleration,
+            "\"UNITS ARE SECONDS AND G/10\"",
+            format!("\"{}\"", shorten(&source.text(first + 11))),
+            "give the volume 1 acceleration file",
+        ));
+    }
+    let unit = AccelerationUnit::TenthG;
+    let (mut values, mut next) = source.fixed(
+        first + HEADER_LINES,
+        count,
+        Columns::new(10, 13),
+        LARGEST_ACCELERATION / unit.factor(),
+    )?;
+    for value in &mut values {
+        *value *= unit.factor();
+    }
+    let name = source.text(first + 4);
+    let about = source.text(first + 7);
+    if record.channels.is_empty() {
+        record.station = about.split("Station").next().unwrap_or("").trim().to_owned();
+        record.event = source.text(first + 8);
+    }
+    let direction = match azimuth(&about, &name) {
+        Some(azimuth) => Direction::horizontal(azimuth),
+        None => Direction::parse(&name),
+    };
+    record.channels.push(Channel::new(name, direction, time_step, values));
+    if next < source.lines.len() {
+        if !source.text(next).starts_with("/&") {
+            return Err(source.error(
+                next,
+                Refusal::Damaged,
+                "the end of the component, \"/&\"",
+                format!("\"{}\"", shorten(&source.text(next))),
+                "the header states another number of points than the file holds; get the file \
+                 again from its source",
+            ));
+        }
+        next += 1;
+    }
+    Ok(next)
+}
+
+/// `Azimuth L 50    T 140`: either may be missing.
+fn azimuth(text: &str, component: &str) -> Option<f64> {
+    let mut words = text.split("Azimuth").nth(1)?.split_whitespace();
+    while let Some(word) = words.next() {
+        if word.eq_ignore_ascii_case(component) {
+            return words.next()?.parse().ok().filter(|a| (0.0..=360.0).contains(a));
+        }
+    }
+    None
+}

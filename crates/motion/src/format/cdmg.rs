@@ -1,0 +1,231 @@
+//! The CDMG volume 1 layout that CSMIP, RENADIC and USC share, one block to a channel:
+//! 13 text lines, 7 lines 16I5, 7 lines of reals, then data.
+
+use super::ReadOptions;
+use super::even::{Timed, even_steps};
+use super::source::{Columns, LARGEST_ACCELERATION, Source, latin1};
+use crate::direction::Direction;
+use crate::error::{ReadError, Refusal};
+use crate::math::{self, STANDARD_GRAVITY};
+use crate::record::{Channel, Quantity, Record, StatedPeak};
+use crate::units::AccelerationUnit;
+
+/// Text lines and the 7 + 7 lines of integers and reals.
+const HEADER_LINES: usize = 27;
+
+/// How the pairs of time and value stand in their lines.
+pub(crate) const PAIRS: Columns = Columns { indent: 0, per_line: 10, width: 7 };
+
+/// Reads every block of a volume 1 file into `record`.
+pub(crate) fn read_blocks(
+    source: &Source<'_>,
+    options: &ReadOptions,
+    record: &mut Record,
+    pairs: Columns,
+) -> Result<(), ReadError> {
+    if options.time_step.is_some() {
+        record.warn(None, "the file states its step; the time step given was ignored");
+    }
+    let mut line = 0;
+    while line < source.lines.len() {
+        if source.raw(line).trim_ascii().is_empty() {
+            line += 1;
+            continue;
+        }
+        line = read_block(source, options, record, pairs, line)?;
+    }
+    Ok(())
+}
+
+fn read_block(
+    source: &Source<'_>,
+    options: &ReadOptions,
+    record: &mut Record,
+    pairs: Columns,
+    first: usize,
+) -> Result<usize, ReadError> {
+    if !source.has(first, "UNCORRECTED ACCELEROGRAM") {
+        return Err(source.error(
+            first,
+            Refusal::Damaged,
+            "\"UNCORRECTED ACCELEROGRAM DATA\" at the start of a channel",
+            format!("\"{}\"", super::source::shorten(&source.text(first))),
+            "lines are missing or in excess before this one; get the file again from its source",
+        ));
+    }
+    if source.lines.len() <= first + HEADER_LINES {
+        return Err(source.cut(
+            format!("{HEADER_LINES} header lines and data"),
+            format!("{} lines", source.lines.len() - first),
+        ));
+    }
+    if record.channels.is_empty() {
+        record.event = source.text(first + 1);
+        record.station = source.text(first + 5);
+    }
+    let name = channel_name(source, first + 6);
+    let direction = direction(source, first, &name);
+    let data = first + HEADER_LINES;
+    let equal = source.has(data, "points");
+    let unit = unit(source, if equal { data } else { first + 11 }, options)?;
+    let limit = LARGEST_ACCELERATION / unit.factor();
+    let (time_step, mut values, mut next) = if equal {
+        read_equal(source, data, limit)?
+    } else {
+        let count = source
+            .number_after(first + 10, "POINTS")
+            .ok_or_else(|| missing(source, first + 10, "the number of points"))?;
+        let count = super::whole(source, first + 10, "a number of points", count)?;
+        let (numbers, next) = source.fixed(data, 2 * count, pairs, limit.max(1e6))?;
+        let timed = Timed {
+            first_line: data,
+            per_line: pairs.per_line / 2,
+            time: numbers.iter().copied().step_by(2).collect(),
+            values: vec![numbers.iter().copied().skip(1).step_by(2).collect()],
+            resolution: 0.001,
+        };
+        let (step, mut columns) = even_steps(source, record, &name, timed)?;
+        (step, columns.pop().unwrap_or_default(), next)
+    };
+    for value in &mut values {
+        *value *= unit.factor();
+    }
+    let mut channel = Channel::new(name, direction, time_step, values);
+    if let Some(peak) = stated_peak(source, first + 11, math::peak(&channel.acceleration)) {
+        channel.peaks.push(peak);
+    }
+    record.channels.push(channel);
+    while next < source.lines.len() && source.raw(next).trim_ascii().is_empty() {
+        next += 1;
+    }
+    if next < source.lines.len() {
+        if !source.text(next).starts_with("/&") && !source.has(next, "END OF DATA") {
+            if source.has(next, "UNCORRECTED ACCELEROGRAM") {
+                return Ok(next);
+            }
+            return Err(source.error(
+                next,
+                Refusal::Damaged,
+                "the end of the channel, \"/&\"",
+                format!("\"{}\"", super::source::shorten(&source.text(next))),
+                "the header states another number of points than the file holds; get the file \
+                 again from its source",
+            ));
+        }
+        next += 1;
+    }
+    Ok(next)
+}
+
+/// `31932 Accelerogram points at 100 pts/sec in units of g. Format: (8f9.6)` or
+/// `12001 POINTS OF ACCEL DATA EQUALLY SPACED AT .005 SEC.  (UNITS: G)`.
+fn read_equal(
+    source: &Source<'_>,
+    line: usize,
+    limit: f64,
+) -> Result<(f64, Vec<f64>, usize), ReadError> {
+    let count = super::source::leading_number(source.raw(line))
+        .ok_or_else(|| missing(source, line, "the number of points"))?
+        .0;
+    let count = super::whole(source, line, "a number of points", count)?;
+    let time_step = if source.has(line, "pts/sec") {
+        source.number_after(line, "points at").map(|rate| 1.0 / rate)
+    } else {
+        source.number_after(line, "spaced at")
+    };
+    let time_step = time_step
+        .filter(|step| step.is_finite() && *step > 0.0)
+        .ok_or_else(|| missing(source, line, "the step"))?;
+    let columns = format_in(source, line).unwrap_or(Columns::new(8, 9));
+    let (values, next) = source.fixed(line + 1, count, columns, limit)?;
+    Ok((time_step, values, next))
+}
+
+/// The Fortran format in parentheses on a data line.
+pub(crate) fn format_in(source: &Source<'_>, line: usize) -> Option<Columns> {
+    let text = latin1(source.raw(line));
+    text.match_indices('(').find_map(|(at, _)| {
+        let rest = &text[at..];
+        rest[1..]
+            .trim_start()
+            .starts_with(|c: char| c.is_ascii_digit())
+            .then(|| Columns::parse(rest))
+            .flatten()
+    })
+}
+
+fn missing(source: &Source<'_>, line: usize, what: &str) -> ReadError {
+    source.error(
+        line,
+        Refusal::Damaged,
+        what,
+        format!("\"{}\"", super::source::shorten(&source.text(line))),
+        "restore the header from the original file",
+    )
+}
+
+/// `CHAN  1:  90 DEG`, `CHAN  2: V   (STA CHN:  2)` or `COMP N00W` without what follows in
+/// columns 73 to 80.
+pub(crate) fn channel_name(source: &Source<'_>, line: usize) -> String {
+    let text = latin1(source.slice(line, 0, 72));
+    let text = text.split('(').next().unwrap_or("");
+    let name = text.split_once(':').map_or(text, |(_, name)| name).trim();
+    let name = name.strip_prefix("COMP").map_or(name, str::trim);
+    name.split("  ").next().unwrap_or("").trim().to_owned()
+}
+
+/// The name decides; integer 27 of the header is asked where the name says nothing.
+fn direction(source: &Source<'_>, first: usize, name: &str) -> Direction {
+    let stated = Direction::parse(name);
+    if stated != Direction::default() {
+        return stated;
+    }
+    match super::source::parse_number(source.slice(first + 14, 50, 5)) {
+        Some(azimuth) if (1.0..=360.0).contains(&azimuth) => Direction::horizontal(azimuth),
+        Some(400.0 | 500.0) => Direction::up(),
+        Some(600.0) => Direction { downward: true, ..Direction::up() },
+        Some(700.0 | 800.0 | 1100.0 | 1200.0) => Direction::some_horizontal(),
+        _ => stated,
+    }
+}
+
+fn unit(
+    source: &Source<'_>,
+    line: usize,
+    options: &ReadOptions,
+) -> Result<AccelerationUnit, ReadError> {
+    for key in ["SEC AND ", "SECONDS AND ", "units of ", "UNITS: ", "in "] {
+        let Some(at) = source.find(line, key) else { continue };
+        let text = latin1(&source.raw(line)[at + key.len()..]);
+        let word = text
+            .trim_start_matches(['(', ' '])
+            .split([' ', ')', ','])
+            .next()
+            .unwrap_or("")
+            .trim_end_matches('.');
+        if let Ok(unit) = word.parse() {
+            return Ok(unit);
+        }
+    }
+    options.unit.ok_or_else(|| {
+        source.error(
+            line,
+            Refusal::Missing,
+            "a unit of acceleration",
+            format!("\"{}\"", super::source::shorten(&source.text(line))),
+            "state the unit (g, g/10, cm/s2)",
+        )
+    })
+}
+
+/// `MAX  =  -.200 G`: in g even where the data are in g/10.
+fn stated_peak(source: &Source<'_>, line: usize, measured: f64) -> Option<StatedPeak> {
+    let printed = source.printed_after(line, "MAX")?;
+    let factor = if source.has(line, "CM/SEC") { 0.01 } else { STANDARD_GRAVITY };
+    Some(StatedPeak {
+        quantity: Quantity::Acceleration,
+        stated: printed.value.abs() * factor,
+        resolution: printed.resolution * factor,
+        measured,
+    })
+}

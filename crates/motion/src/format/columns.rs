@@ -1,0 +1,285 @@
+//! Plain columns and CSV: values alone, time and values, or a count and a step on the first line.
+//!
+//! Neither unit nor step is ever guessed: both come from header words, a time column, or the caller.
+
+use super::even::{Timed, even_steps};
+use super::source::{Source, latin1, shorten};
+use super::{Format, ReadOptions};
+use crate::direction::Direction;
+use crate::error::{ReadError, Refusal};
+use crate::math;
+use crate::record::{Channel, Record, Stage};
+use crate::units::AccelerationUnit;
+
+pub(crate) const FORMAT: Format =
+    Format { name: "columns", title: "plain columns and CSV", sniff, read };
+
+/// Header lines searched.
+const MOST_HEADER_LINES: usize = 60;
+/// Anything larger is damage whatever the unit.
+const LIMIT: f64 = 1e12;
+
+/// The first line that holds numbers only.
+fn first_row(source: &Source<'_>) -> Option<usize> {
+    (0..source.lines.len().min(MOST_HEADER_LINES)).find(|&line| {
+        let mut values = Vec::new();
+        source.tokens(line, f64::INFINITY, &mut values).is_ok() && !values.is_empty()
+    })
+}
+
+fn sniff(source: &Source<'_>) -> bool {
+    if source.bytes.iter().take(4096).any(|&b| b == 0) {
+        return false;
+    }
+    let Some(first) = first_row(source) else { return false };
+    // Two rows of numbers in succession, or the last line.
+    let mut values = Vec::new();
+    first + 1 >= source.lines.len()
+        || source.tokens(first + 1, f64::INFINITY, &mut values).is_ok()
+        || first == 0
+}
+
+fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+    source.require_text()?;
+    let first = first_row(source).unwrap_or(0);
+    let mut record = Record::new(FORMAT.name, source.name, Stage::Unknown);
+    refuse_other_quantities(source, first)?;
+    let (stated, first) = count_and_step(source, first);
+    let mut end = source.lines.len();
+    while end > first && is_comment(source, end - 1) {
+        end -= 1;
+    }
+    let table = table(source, first, end)?;
+    let width = table.len();
+    let rows = table[0].len();
+    let timed = width > 1 && rows > 2 && is_time(&table[0]);
+    let names = header_names(source, first, width);
+    let (time_step, columns) = if timed {
+        let mut table = table;
+        let time = table.remove(0);
+        let resolution = time_resolution(source, first, end);
+        let timed = Timed { first_line: first, per_line: 1, time, values: table, resolution };
+        let (step, columns) = even_steps(source, &mut record, "all", timed)?;
+        let given = options.time_step.or(stated.map(|(_, step)| step));
+        if let Some(given) = given
+            && (given / step - 1.0).abs() > 1e-3
+        {
+            record.warn(
+                first + 1,
+                format!("the time column has a step of {step} s; {given} s was ignored"),
+            );
+        }
+        (step, columns)
+    } else {
+        let step = stated.map(|(_, step)| step).or(options.time_step).ok_or_else(|| {
+            source.error(
+                first,
+                Refusal::Missing,
+                "a time column or a time step",
+                format!("{width} column(s) without time"),
+                "state the time step (s)",
+            )
+        })?;
+        // Several values to a line and no time: one series row by row.
+        let series = if width > 1 { by_row(source, first, end)? } else { table };
+        (step, series)
+    };
+    let count = columns.first().map_or(0, Vec::len);
+    if let Some((stated, _)) = stated {
+        super::check_count(source, &mut record, first.saturating_sub(1), stated, count)?;
+    }
+    let unit = unit(source, first, options, &columns, &mut record)?;
+    let names = if timed { names.get(1..).unwrap_or(&[]).to_vec() } else { names };
+    let stem = super::file_stem(source.name);
+    let several = columns.len() > 1;
+    for (k, column) in columns.into_iter().enumerate() {
+        let fallback = if several { format!("column {}", k + 1) } else { stem.clone() };
+        let name = names.get(k).filter(|_| several).cloned().unwrap_or(fallback);
+        let direction = Direction::parse(&name);
+        let values = column.iter().map(|value| value * unit.factor()).collect();
+        record.channels.push(Channel::new(name, direction, time_step, values));
+    }
+    Ok(record)
+}
+
+fn is_comment(source: &Source<'_>, line: usize) -> bool {
+    let text = source.text(line);
+    text.is_empty() || text.starts_with(['#', '%', '!', '/'])
+}
+
+/// Header words that say the numbers are something else.
+fn refuse_other_quantities(source: &Source<'_>, first: usize) -> Result<(), ReadError> {
+    for line in 0..first {
+        let text = source.text(line).to_ascii_lowercase();
+        if text.contains("accel") {
+            return Ok(());
+        }
+        for word in ["spectr", "displacement", "velocity", "degree", "period (s)", "counts"] {
+            if text.contains(word) {
+                return Err(source.error(
+                    line,
+                    Refusal::NotAcceleration,
+                    "accelerations",
+                    format!("\"{}\"", shorten(&text)),
+                    "give the acceleration history",
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A first line `11800 0.005` above rows of another shape, or `NPTS, DT` in words before it.
+fn count_and_step(source: &Source<'_>, first: usize) -> (Option<(usize, f64)>, usize) {
+    let mut row = Vec::new();
+    let mut next = Vec::new();
+    let both = source.tokens(first, f64::INFINITY, &mut row).is_ok()
+        && source.tokens(first + 1, f64::INFINITY, &mut next).is_ok();
+    if let (true, [count, step]) = (both, row.as_slice())
+        && count.fract() == 0.0
+        && *count >= 10.0
+        && *count < 1e9
+        && *step > 0.0
+        && *step < 1.0
+        && !source.text(first).split([' ', ',', '\t']).next().unwrap_or("").contains('.')
+        && (next.len() != 2 || next[0] < *count)
+    {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "10 to 1e9")]
+        return (Some((*count as usize, *step)), first + 1);
+    }
+    (None, first)
+}
+
+/// All rows as columns; rows of several values without a common width are refused with their line,
+/// except a short last one.
+fn table(source: &Source<'_>, first: usize, end: usize) -> Result<Vec<Vec<f64>>, ReadError> {
+    let mut row = Vec::new();
+    source.tokens(first, LIMIT, &mut row)?;
+    let width = row.len();
+    if width == 0 {
+        return Err(source.bad_number(first, 0, source.raw(first)));
+    }
+    let mut columns: Vec<Vec<f64>> =
+        (0..width).map(|_| Vec::with_capacity(end.saturating_sub(first))).collect();
+    for line in first..end {
+        if source.raw(line).trim_ascii().is_empty() {
+            return Err(source.bad_number(line, 0, source.raw(line)));
+        }
+        row.clear();
+        source.tokens(line, LIMIT, &mut row)?;
+        if row.len() != width {
+            if line + 1 == end && row.len() < width && !is_time(&columns[0]) {
+                continue;
+            }
+            return Err(source.error(
+                line,
+                Refusal::Damaged,
+                format!("{width} numbers"),
+                format!("{} numbers", row.len()),
+                "the file is cut or a line was lost; get it again from its source",
+            ));
+        }
+        for (column, value) in columns.iter_mut().zip(&row) {
+            column.push(*value);
+        }
+    }
+    Ok(columns)
+}
+
+fn by_row(source: &Source<'_>, first: usize, end: usize) -> Result<Vec<Vec<f64>>, ReadError> {
+    Ok(vec![source.all_tokens(first, end, LIMIT)?])
+}
+
+/// Strictly rising values with no step above ten times the mean.
+fn is_time(column: &[f64]) -> bool {
+    if column.len() < 2 {
+        return false;
+    }
+    let mean = (column[column.len() - 1] - column[0]) / (column.len() - 1) as f64;
+    mean > 0.0 && column.windows(2).all(|pair| pair[1] > pair[0] && pair[1] - pair[0] < 10.0 * mean)
+}
+
+/// The coarsest resolution of the printed times: one unit of the most digits shown.
+fn time_resolution(source: &Source<'_>, first: usize, end: usize) -> f64 {
+    let mut finest = f64::INFINITY;
+    for line in first..end.min(first + 200) {
+        let text = latin1(source.raw(line));
+        let word = text.split([' ', '\t', ',', ';']).find(|word| !word.is_empty()).unwrap_or("");
+        finest = finest.min(super::source::resolution(word));
+    }
+    if finest.is_finite() { finest } else { 1e-6 }
+}
+
+/// Names from the last header line, when it has one to a column.
+fn header_names(source: &Source<'_>, first: usize, width: usize) -> Vec<String> {
+    let Some(line) = (0..first).rev().find(|&line| !source.text(line).is_empty()) else {
+        return Vec::new();
+    };
+    let text = source.text(line);
+    let text = text.trim_start_matches(['#', '%', '!', '/', ' ']);
+    let names: Vec<String> = if text.contains([',', ';', '\t']) {
+        text.split([',', ';', '\t']).map(|name| name.trim().to_owned()).collect()
+    } else {
+        text.split_whitespace().map(str::to_owned).collect()
+    };
+    if names.len() == width {
+        names
+            .into_iter()
+            .map(|name| name.split('(').next().unwrap_or("").trim().to_owned())
+            .collect()
+    } else {
+        Vec::new()
+    }
+}
+
+/// The unit in parentheses or after "units" in a header line that speaks of acceleration.
+fn stated_unit(source: &Source<'_>, first: usize) -> Option<(usize, AccelerationUnit)> {
+    for line in 0..first {
+        let text = source.text(line).to_ascii_lowercase();
+        if let Some(at) = text.find("acc")
+            && let Some(open) = text[at..].find(['(', '['])
+        {
+            let rest = &text[at + open + 1..];
+            let word = rest.split([')', ']']).next().unwrap_or("");
+            if let Ok(unit) = word.parse() {
+                return Some((line, unit));
+            }
+        }
+        if let Some((_, rest)) = text.split_once("unit") {
+            let word = rest.trim_start_matches(['s', ':', '=', ' ']);
+            let word = word.split([' ', ',', ';']).next().unwrap_or("");
+            if let Ok(unit) = word.parse() {
+                return Some((line, unit));
+            }
+        }
+    }
+    None
+}
+
+fn unit(
+    source: &Source<'_>,
+    first: usize,
+    options: &ReadOptions,
+    columns: &[Vec<f64>],
+    record: &mut Record,
+) -> Result<AccelerationUnit, ReadError> {
+    if let Some((line, unit)) = stated_unit(source, first) {
+        if options.unit.is_some_and(|given| given != unit) {
+            record.warn(
+                line + 1,
+                format!("the file states its unit ({unit}); that given is ignored"),
+            );
+        }
+        return Ok(unit);
+    }
+    options.unit.ok_or_else(|| {
+        let peak = columns.iter().map(|column| math::peak(column)).fold(0.0, f64::max);
+        source.error(
+            first,
+            Refusal::Missing,
+            "a unit of acceleration",
+            format!("numbers up to {peak:.4} without one"),
+            "state the unit (g, m/s2, cm/s2)",
+        )
+    })
+}

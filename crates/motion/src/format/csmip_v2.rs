@@ -1,0 +1,220 @@
+//! CSMIP volume 2: corrected acceleration, velocity and displacement; volume 3 spectra are refused.
+//!
+//! 25 text lines, 7 lines 16I5, 13 lines of reals, then three blocks, each with a data line.
+//! Spec: Shakal, Huang and Rojahn 1985, CSMIP report OSMS 85-03.
+
+use super::cdmg::{channel_name, format_in};
+use super::source::{Columns, LARGEST_ACCELERATION, Source, latin1, leading_number, shorten};
+use super::{Format, ReadOptions};
+use crate::direction::Direction;
+use crate::error::{ReadError, Refusal};
+use crate::math;
+use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::units::AccelerationUnit;
+
+pub(crate) const FORMAT: Format =
+    Format { name: "csmip-v2", title: "CSMIP/CDMG/CGS volume 2 (corrected)", sniff, read };
+
+const TEXT_LINES: usize = 25;
+const INTEGER_LINES: usize = 7;
+/// Text, integers and reals.
+const HEADER_LINES: usize = 45;
+
+fn sniff(source: &Source<'_>) -> bool {
+    source.find(0, "CORRECTED ACCELEROGRAM").is_some_and(|at| at < 2)
+        || source.has(0, "RESPONSE AND FOURIER AMPLITUDE SPECTRA")
+}
+
+fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+    if source.has(0, "SPECTRA") {
+        return Err(source.error(
+            0,
+            Refusal::NotAcceleration,
+            "a volume 2 accelerogram",
+            "a volume 3 file of response and Fourier spectra",
+            "give the volume 2 file of the same record",
+        ));
+    }
+    let mut record = Record::new(FORMAT.name, source.name, Stage::Corrected);
+    if options.time_step.is_some() {
+        record.warn(None, "the file states its step; the time step given was ignored");
+    }
+    let mut line = 0;
+    while line < source.lines.len() {
+        if source.raw(line).trim_ascii().is_empty() {
+            line += 1;
+            continue;
+        }
+        line = read_channel(source, options, &mut record, line)?;
+    }
+    Ok(record)
+}
+
+fn read_channel(
+    source: &Source<'_>,
+    options: &ReadOptions,
+    record: &mut Record,
+    first: usize,
+) -> Result<usize, ReadError> {
+    if !source.has(first, "CORRECTED ACCELEROGRAM") {
+        return Err(source.error(
+            first,
+            Refusal::Damaged,
+            "\"Corrected accelerogram\" at the start of a channel",
+            format!("\"{}\"", shorten(&source.text(first))),
+            "lines are missing or in excess before this one; get the file again from its source",
+        ));
+    }
+    if source.lines.len() <= first + HEADER_LINES {
+        return Err(source.cut(
+            format!("{HEADER_LINES} header lines and data"),
+            format!("{} lines", source.lines.len() - first),
+        ));
+    }
+    let header = first..first + TEXT_LINES;
+    if record.channels.is_empty() {
+        record.station = source.text(first + 6 - 1);
+        record.event = source.text(first + 2);
+    }
+    // Line 7 by rule; the first line that begins with CHAN where a line is missing.
+    let name_line = header
+        .clone()
+        .find(|&line| source.text(line).to_ascii_uppercase().starts_with("CHAN"))
+        .unwrap_or(first + 6);
+    let name = channel_name(source, name_line);
+    let (accelerations, mut next) =
+        read_block(source, first + HEADER_LINES, "acc", LARGEST_ACCELERATION * 1000.0)?
+            .ok_or_else(|| {
+                source.error(
+                    first + HEADER_LINES,
+                    Refusal::NotAcceleration,
+                    "a line such as \"7500 points of accel data equally spaced at .010 sec\"",
+                    format!("\"{}\"", shorten(&source.text(first + HEADER_LINES))),
+                    "give the file that holds the accelerations",
+                )
+            })?;
+    let unit = unit(source, first + HEADER_LINES, options)?;
+    let step = time_step(source, first, first + HEADER_LINES)?;
+    let values: Vec<f64> = accelerations.iter().map(|value| value * unit.factor()).collect();
+    let mut channel = Channel::new(name.clone(), Direction::parse(&name), step, values);
+    let mut measured =
+        vec![(Quantity::Acceleration, unit.factor(), math::peak(&channel.acceleration))];
+    for (key, quantity) in [("vel", Quantity::Velocity), ("dis", Quantity::Displacement)] {
+        if let Some((block, after)) = read_block(source, next, key, 1e9)? {
+            measured.push((quantity, 0.01, 0.01 * math::peak(&block)));
+            next = after;
+        }
+    }
+    for (quantity, factor, measured) in measured {
+        let word = match quantity {
+            Quantity::Acceleration => "accel",
+            Quantity::Velocity => "veloc",
+            Quantity::Displacement => "displ",
+        };
+        let stated = header
+            .clone()
+            .filter(|&line| source.text(line).to_ascii_uppercase().starts_with("PEAK"))
+            .find(|&line| source.has(line, word))
+            .and_then(|line| source.printed_after(line, "="));
+        if let Some(printed) = stated {
+            channel.peaks.push(StatedPeak {
+                quantity,
+                stated: printed.value.abs() * factor,
+                resolution: printed.resolution * factor,
+                measured,
+            });
+        }
+    }
+    if let Some(velocity) =
+        header.clone().find_map(|line| source.number_after(line, "INITIAL VELOCITY"))
+    {
+        channel.initial_velocity = 0.01 * velocity;
+    }
+    record.channels.push(channel);
+    while next < source.lines.len() && source.raw(next).trim_ascii().is_empty() {
+        next += 1;
+    }
+    if next < source.lines.len() && !source.has(next, "CORRECTED ACCELEROGRAM") {
+        if !source.text(next).starts_with("/&") && !source.has(next, "end of data") {
+            return Err(source.error(
+                next,
+                Refusal::Damaged,
+                "the end of the channel, \"/&\"",
+                format!("\"{}\"", shorten(&source.text(next))),
+                "a data line states another number of points than the file holds; get the file \
+                 again from its source",
+            ));
+        }
+        next += 1;
+    }
+    Ok(next)
+}
+
+/// One block of `key` (acc, vel, dis) if its data line stands here.
+fn read_block(
+    source: &Source<'_>,
+    line: usize,
+    key: &str,
+    limit: f64,
+) -> Result<Option<(Vec<f64>, usize)>, ReadError> {
+    if !source.has(line, "points") || !source.has(line, key) {
+        return Ok(None);
+    }
+    let Some((count, _)) = leading_number(source.raw(line)) else { return Ok(None) };
+    let count = super::whole(source, line, "a number of points", count)?;
+    let columns = format_in(source, line).unwrap_or(Columns::new(8, 10));
+    source.fixed(line + 1, count, columns, limit).map(Some)
+}
+
+fn unit(
+    source: &Source<'_>,
+    line: usize,
+    options: &ReadOptions,
+) -> Result<AccelerationUnit, ReadError> {
+    let text = latin1(source.raw(line)).to_ascii_lowercase();
+    if text.contains("cm/s") {
+        return Ok(AccelerationUnit::Gal);
+    }
+    for key in ["in ", "units: ", "units of "] {
+        if let Some((_, rest)) = text.split_once(key) {
+            let word = rest.split([' ', '.', ',', ')']).next().unwrap_or("");
+            if let Ok(unit) = word.parse() {
+                return Ok(unit);
+            }
+        }
+    }
+    options.unit.ok_or_else(|| {
+        source.error(
+            line,
+            Refusal::Missing,
+            "a unit of acceleration on the data line",
+            format!("\"{}\"", shorten(&source.text(line))),
+            "state the unit (cm/s2 by the rules of this format)",
+        )
+    })
+}
+
+/// The step on the data line; real 61 of the header refines it where both agree in the digits shown.
+fn time_step(source: &Source<'_>, first: usize, data: usize) -> Result<f64, ReadError> {
+    let printed = source
+        .printed_after(data, "spaced at")
+        .or_else(|| source.printed_after(data, "at"))
+        .filter(|printed| printed.value > 0.0)
+        .ok_or_else(|| {
+            source.error(
+                data,
+                Refusal::Damaged,
+                "the step, such as \"equally spaced at .010 sec\"",
+                format!("\"{}\"", shorten(&source.text(data))),
+                "restore the line from the original file",
+            )
+        })?;
+    let line = first + TEXT_LINES + INTEGER_LINES + 7;
+    let real = super::source::parse_number(source.slice(line, 40, 10));
+    Ok(match real {
+        Some(step) if (step - printed.value).abs() <= 0.5 * printed.resolution && step > 0.0 => {
+            step
+        }
+        _ => printed.value,
+    })
+}

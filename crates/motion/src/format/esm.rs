@@ -1,0 +1,129 @@
+//! ESM and ITACA ASCII (DYNA 1.2): `KEY: value` lines, then one value a line.
+//!
+//! Spec: Luzi et al. 2016, "Engineering Strong-Motion database, format DYNA 1.2" (INGV).
+
+use super::source::{LARGEST_ACCELERATION, Source, latin1, leading_number, resolution, shorten};
+use super::{Format, ReadOptions};
+use crate::direction::Direction;
+use crate::error::{ReadError, Refusal};
+use crate::math;
+use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::units::AccelerationUnit;
+
+pub(crate) const FORMAT: Format = Format { name: "esm", title: "ESM and ITACA ASCII", sniff, read };
+
+/// Longest header searched.
+const MOST_HEADER_LINES: usize = 120;
+
+fn sniff(source: &Source<'_>) -> bool {
+    source.text(0).starts_with("EVENT_NAME:")
+        || ((0..20).any(|line| source.text(line).starts_with("STATION_CODE:"))
+            && (0..MOST_HEADER_LINES).any(|line| source.text(line).starts_with("NDATA:")))
+}
+
+/// Line and value of a key; values may hold colons.
+fn field(source: &Source<'_>, end: usize, key: &str) -> Option<(usize, String)> {
+    (0..end).find_map(|line| {
+        let text = source.text(line);
+        let (name, value) = text.split_once(':')?;
+        (name.trim() == key).then(|| (line, value.trim().to_owned()))
+    })
+}
+
+fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+    let end = (0..source.lines.len().min(MOST_HEADER_LINES))
+        .find(|&line| super::source::parse_number(source.raw(line)).is_some())
+        .ok_or_else(|| source.cut("values after the header", "none"))?;
+    let need = |key: &str| {
+        field(source, end, key).filter(|(_, value)| !value.is_empty()).ok_or_else(|| {
+            source.error(
+                (),
+                Refusal::Damaged,
+                format!("a value for {key}"),
+                "none",
+                "restore the header from the original file",
+            )
+        })
+    };
+    let number = |key: &str| {
+        let (line, text) = need(key)?;
+        let value = leading_number(text.as_bytes()).map(|(value, _)| value);
+        value.map(|value| (line, value)).ok_or_else(|| {
+            source.error(
+                line,
+                Refusal::Damaged,
+                format!("a number for {key}"),
+                format!("\"{}\"", shorten(&text)),
+                "restore the header from the original file",
+            )
+        })
+    };
+    let (line, data_type) = need("DATA_TYPE")?;
+    if !data_type.eq_ignore_ascii_case("ACCELERATION") {
+        return Err(source.error(
+            line,
+            Refusal::NotAcceleration,
+            "DATA_TYPE: ACCELERATION",
+            format!("\"{}\"", shorten(&data_type)),
+            "give the .ACC.ASC file of the same component",
+        ));
+    }
+    let (line, text) = need("UNITS")?;
+    let unit: AccelerationUnit = text.parse().map_err(|_| {
+        source.error(
+            line,
+            Refusal::NotAcceleration,
+            "a unit of acceleration, such as cm/s^2",
+            format!("\"{}\"", shorten(&text)),
+            "give the .ACC.ASC file of the same component",
+        )
+    })?;
+    let (count_line, count) = number("NDATA")?;
+    let count = super::whole(source, count_line, "a number of values", count)?;
+    let (_, time_step) = number("SAMPLING_INTERVAL_S")?;
+    let text = |key: &str| field(source, end, key).map(|(_, value)| value).unwrap_or_default();
+    let filtered = !text("FILTER_TYPE").is_empty() && text("FILTER_TYPE") != "NONE";
+    let stage = if filtered || text("BASELINE_CORRECTION") == "BASELINE REMOVED" {
+        Stage::Corrected
+    } else {
+        Stage::Raw
+    };
+    let mut record = Record::new(FORMAT.name, source.name, stage);
+    if options.time_step.is_some() {
+        record.warn(None, "the file states its step; the time step given was ignored");
+    }
+    record.event = text("EVENT_NAME");
+    record.station = format!("{} {}", text("STATION_CODE"), text("STATION_NAME"));
+    let limit = LARGEST_ACCELERATION / unit.factor();
+    let mut values = Vec::with_capacity(source.lines.len() - end);
+    for line in end..source.lines.len() {
+        let value = super::source::parse_number(source.raw(line))
+            .ok_or_else(|| source.bad_number(line, 0, source.raw(line)))?;
+        if value.abs() > limit {
+            return Err(source.error(
+                (line, 0),
+                Refusal::Damaged,
+                format!("a number up to {limit:.1e} {unit}"),
+                latin1(source.raw(line)).trim().to_owned(),
+                "check the unit, or get the file again from its source",
+            ));
+        }
+        values.push(value * unit.factor());
+    }
+    super::check_count(source, &mut record, count_line, count, values.len())?;
+    let name = text("STREAM");
+    let mut channel = Channel::new(name.clone(), Direction::parse(&name), time_step, values);
+    if let Some((value, digits)) = leading_number(text("PGA_CM/S^2").as_bytes()) {
+        channel.peaks.push(StatedPeak {
+            quantity: Quantity::Acceleration,
+            stated: value.abs() * 0.01,
+            resolution: resolution(&digits) * 0.01,
+            measured: math::peak(&channel.acceleration),
+        });
+    }
+    if text("LATE/NORMAL_TRIGGERED").eq_ignore_ascii_case("LT") {
+        record.warn(None, "late-triggered record: its beginning is missing");
+    }
+    record.channels.push(channel);
+    Ok(record)
+}

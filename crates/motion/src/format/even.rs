@@ -1,0 +1,136 @@
+//! A step from a time column: even times give it, uneven ones are interpolated, neither is assumed.
+
+use super::source::Source;
+use crate::error::{ReadError, Refusal};
+use crate::math;
+use crate::record::Record;
+
+/// Columns with the time of each row.
+pub(crate) struct Timed {
+    /// Line of the first row, 0-based.
+    pub(crate) first_line: usize,
+    /// Rows to a line.
+    pub(crate) per_line: usize,
+    /// Times (s).
+    pub(crate) time: Vec<f64>,
+    /// One column to a channel.
+    pub(crate) values: Vec<Vec<f64>>,
+    /// One unit of the last printed digit of the times (s).
+    pub(crate) resolution: f64,
+}
+
+/// The even step of the times and the columns at that step.
+///
+/// Times that keep an even step within their printed digits give it exactly; others are
+/// interpolated linearly to a finer even step, with a warning.
+pub(crate) fn even_steps(
+    source: &Source<'_>,
+    record: &mut Record,
+    label: &str,
+    timed: Timed,
+) -> Result<(f64, Vec<Vec<f64>>), ReadError> {
+    let Timed { first_line, per_line, time, values, resolution } = timed;
+    let line_of = |row: usize| first_line + row / per_line.max(1);
+    if time.len() < 2 {
+        return Err(source.cut("at least 2 rows", format!("{} rows", time.len())));
+    }
+    if let Some(row) = (1..time.len()).find(|&row| !(time[row] > time[row - 1])) {
+        return Err(source.error(
+            line_of(row),
+            Refusal::Damaged,
+            format!("a time after {} s", time[row - 1]),
+            format!("{} s", time[row]),
+            "rows are repeated, lost or out of order; get the file again from its source",
+        ));
+    }
+    let (first, last) = (time[0], time[time.len() - 1]);
+    let mean = (last - first) / (time.len() - 1) as f64;
+    let fits = |step: f64| {
+        time.iter()
+            .enumerate()
+            .all(|(k, t)| (t - first - k as f64 * step).abs() <= 0.51 * resolution + 1e-9 * t.abs())
+    };
+    if let Some(step) = candidates(mean, resolution / (last - first)).find(|&step| fits(step)) {
+        return Ok((step, values));
+    }
+    if let Some(step) = jittered(&time, mean, resolution) {
+        record.warn(
+            first_line + 1,
+            format!(
+                "channel {label}: the times jitter about an even step of {step} s by their last \
+                 digits; the even step is used"
+            ),
+        );
+        return Ok((step, values));
+    }
+    // An even step throughout with a hole is a lost line, not a digitized trace.
+    let (mut shortest, mut longest, mut hole) = (f64::INFINITY, 0.0_f64, 1);
+    for row in 1..time.len() {
+        let gap = time[row] - time[row - 1];
+        shortest = shortest.min(gap);
+        if gap > longest {
+            (longest, hole) = (gap, row);
+        }
+    }
+    if longest > 20.0 * mean {
+        return Err(source.error(
+            line_of(hole),
+            Refusal::Damaged,
+            format!("a step near {mean:.4} s"),
+            format!("a gap of {longest:.4} s"),
+            "rows were lost; get the file again from its source",
+        ));
+    }
+    let step = math::powf(10.0, math::log10(0.5 * mean).floor());
+    let step = [5.0, 2.0, 1.0].into_iter().map(|m| m * step).find(|s| *s <= 0.5 * mean);
+    let step = step.unwrap_or(0.5 * mean);
+    let count = ((last - first) / step + 1e-9).floor();
+    if !(count < 1e8) {
+        return Err(source.error(
+            first_line,
+            Refusal::Damaged,
+            "usable times",
+            format!("{first} to {last} s with a mean step of {mean} s"),
+            "the time column is damaged; get the file again from its source",
+        ));
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1e8")]
+    let count = count as usize;
+    let columns = values
+        .iter()
+        .map(|column| {
+            (0..=count).map(|k| math::interpolate(&time, column, first + k as f64 * step)).collect()
+        })
+        .collect();
+    record.warn(
+        first_line + 1,
+        format!(
+            "channel {label}: unevenly spaced times ({shortest:.4} to {longest:.4} s, mean \
+             {mean:.5} s) were interpolated linearly to an even step of {step} s"
+        ),
+    );
+    Ok((step, columns))
+}
+
+/// A round step that the mean keeps within 0.1 % and nine of ten single steps within their digits.
+fn jittered(time: &[f64], mean: f64, resolution: f64) -> Option<f64> {
+    let step = 1.0 / (1.0 / mean).round();
+    let close = time
+        .windows(2)
+        .filter(|pair| (pair[1] - pair[0] - step).abs() <= 1.01 * resolution)
+        .count();
+    // Times coarser than the step would say nothing about evenness.
+    let fine = resolution < 0.5 * step;
+    (fine && (mean / step - 1.0).abs() <= 1e-3 && 10 * close >= 9 * (time.len() - 1))
+        .then_some(step)
+}
+
+/// Round steps near the mean, then the mean itself.
+fn candidates(mean: f64, relative: f64) -> impl Iterator<Item = f64> {
+    let rate = (1.0 / mean).round();
+    let decimal = (mean * 1e5).round() / 1e5;
+    let near = move |step: &f64| {
+        step.is_finite() && *step > 0.0 && (step / mean - 1.0).abs() <= relative.max(1e-9) * 1.01
+    };
+    [1.0 / rate, decimal].into_iter().filter(near).chain(std::iter::once(mean))
+}

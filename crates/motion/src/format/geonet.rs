@@ -1,0 +1,110 @@
+//! GeoNet, New Zealand: V1A uncorrected and V2A corrected accelerograms in millimeters.
+//!
+//! 16 text lines, 10 lines of ten numbers of 8 columns, then ten columns of 8 per block; V2A keeps
+//! its filter pads in the file.
+//! Spec: GeoNet, "Strong motion data, file formats" (GNS Science).
+
+use super::source::{Columns, LARGEST_ACCELERATION, Source, shorten};
+use super::{Format, ReadOptions};
+use crate::direction::Direction;
+use crate::error::{ReadError, Refusal};
+use crate::math;
+use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+
+pub(crate) const FORMAT: Format =
+    Format { name: "geonet", title: "GeoNet V1A and V2A (New Zealand)", sniff, read };
+
+const TEXT_LINES: usize = 16;
+const NUMBER_LINES: usize = 10;
+const COLUMNS: Columns = Columns { indent: 0, per_line: 10, width: 8 };
+const MILLIMETER: f64 = 0.001;
+
+fn sniff(source: &Source<'_>) -> bool {
+    (source.has(0, "corrected accelerogram") && source.text(1).starts_with("Site "))
+        || source.has(0, "GNS Science")
+}
+
+fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+    let raw = source.has(0, "uncorrected");
+    let stage = if raw { Stage::Raw } else { Stage::Corrected };
+    let mut record = Record::new(FORMAT.name, source.name, stage);
+    if options.time_step.is_some() {
+        record.warn(None, "the file states its step; the time step given was ignored");
+    }
+    record.station = source.text(2);
+    record.event = source.text(6);
+    let mut line = 0;
+    while line < source.lines.len() {
+        line = read_component(source, &mut record, line)?;
+    }
+    Ok(record)
+}
+
+fn read_component(
+    source: &Source<'_>,
+    record: &mut Record,
+    first: usize,
+) -> Result<usize, ReadError> {
+    if !source.has(first, "corrected accelerogram") {
+        return Err(source.error(
+            first,
+            Refusal::Damaged,
+            "\"Corrected accelerogram\" or \"Uncorrected accelerogram\" at the start of a component",
+            format!("\"{}\"", shorten(&source.text(first))),
+            "a header states another number of points than the file holds; get the file again \
+             from its source",
+        ));
+    }
+    let corrected = !source.has(first, "uncorrected");
+    let numbers = first + TEXT_LINES;
+    let (header, mut line) = source.fixed(numbers, 10 * NUMBER_LINES, COLUMNS, f64::INFINITY)?;
+    let cell = |row: usize, column: usize| header[10 * (row - 1) + column - 1];
+    let count_of =
+        |column: usize| super::whole(source, numbers + 3, "a number of points", cell(4, column));
+    let time_step = cell(7, 6);
+    let limit = LARGEST_ACCELERATION / MILLIMETER;
+    let count = count_of(if corrected { 4 } else { 1 })?;
+    let (mut values, next) = source.fixed(line, count, COLUMNS, limit)?;
+    line = next;
+    for value in &mut values {
+        *value *= MILLIMETER;
+    }
+    let text = source.text(first + 12);
+    let name = text
+        .strip_prefix("Component")
+        .unwrap_or(&text)
+        .split_whitespace()
+        .next()
+        .unwrap_or("")
+        .to_owned();
+    let mut channel = Channel::new(name.clone(), Direction::parse(&name), time_step, values);
+    let mut measured = vec![(Quantity::Acceleration, math::peak(&channel.acceleration))];
+    if corrected {
+        for (column, quantity) in [(5, Quantity::Velocity), (6, Quantity::Displacement)] {
+            if cell(4, column) > 0.0 {
+                let (block, next) = source.fixed(line, count_of(column)?, COLUMNS, 1e9)?;
+                line = next;
+                measured.push((quantity, MILLIMETER * math::peak(&block)));
+            }
+        }
+    }
+    for (k, (quantity, measured)) in measured.into_iter().enumerate() {
+        if let Some(printed) = source.printed_after(first + 13 + k, "peak") {
+            channel.peaks.push(StatedPeak {
+                quantity,
+                stated: printed.value.abs() * MILLIMETER,
+                resolution: printed.resolution * MILLIMETER,
+                measured,
+            });
+        }
+    }
+    if record.channels.iter().any(|other| other.name == name) {
+        channel.name = format!("{name} ({})", record.channels.len() + 1);
+        record.warn(first + 13, format!("two components are named {name}; the second is renamed"));
+    }
+    record.channels.push(channel);
+    while line < source.lines.len() && source.raw(line).trim_ascii().is_empty() {
+        line += 1;
+    }
+    Ok(line)
+}

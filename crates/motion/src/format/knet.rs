@@ -1,0 +1,155 @@
+//! K-NET and KiK-net, NIED Japan: counts with a scale factor and a large offset, one component.
+//!
+//! The offset, often larger than the motion, is the mean of the whole record; the header's peak is
+//! stated after its removal.
+//! Spec: NIED, "K-NET ASCII format" (knetform).
+
+use super::source::{Columns, LARGEST_ACCELERATION, Source, latin1, leading_number, shorten};
+use super::{Format, ReadOptions};
+use crate::direction::Direction;
+use crate::error::{ReadError, Refusal};
+use crate::math;
+use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+
+pub(crate) const FORMAT: Format =
+    Format { name: "knet", title: "K-NET and KiK-net (NIED)", sniff, read };
+
+const HEADER_LINES: usize = 17;
+const GAL: f64 = 0.01;
+
+fn sniff(source: &Source<'_>) -> bool {
+    source.text(0).starts_with("Origin Time")
+        && (0..HEADER_LINES).any(|line| source.has(line, "Scale Factor"))
+}
+
+/// Line and text of a header field by the start of its key.
+fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
+    (0..HEADER_LINES + 2)
+        .find(|&line| source.text(line).starts_with(key))
+        .map(|line| (line, latin1(source.slice(line, 18, 200)).trim().to_owned()))
+}
+
+fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+    let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
+    if options.time_step.is_some() {
+        record.warn(None, "the file states its step; the time step given was ignored");
+    }
+    let need = |key: &str| {
+        field(source, key).ok_or_else(|| {
+            source.error(
+                (),
+                Refusal::Damaged,
+                format!("a header line \"{key}\""),
+                "none",
+                "restore the header from the original file",
+            )
+        })
+    };
+    let bad = |line: usize, expected: &str, text: &str| {
+        source.error(
+            (line, 18),
+            Refusal::Damaged,
+            expected,
+            format!("\"{}\"", shorten(text)),
+            "restore the header from the original file",
+        )
+    };
+    record.event = format!("{} (Japan time)", need("Origin Time")?.1);
+    record.station = need("Station Code")?.1;
+    let (line, text) = need("Sampling Freq")?;
+    let rate = leading_number(text.as_bytes())
+        .map(|(rate, _)| rate)
+        .filter(|rate| *rate > 0.0)
+        .ok_or_else(|| bad(line, "a sampling frequency such as 100Hz", &text))?;
+    let (line, text) = need("Scale Factor")?;
+    let factor = scale(&text)
+        .ok_or_else(|| bad(line, "a scale factor such as 3920(gal)/6182761", &text))?
+        * GAL;
+    let (_, direction_text) = need("Dir.")?;
+    let (name, direction, borehole) = direction(&direction_text);
+    let first = field(source, "Memo").map_or(HEADER_LINES, |(line, _)| line + 1);
+    let counts = read_counts(source, first, LARGEST_ACCELERATION / factor)?;
+    let (duration_line, duration) = need("Duration")?;
+    if let Some((seconds, _)) = leading_number(duration.as_bytes()) {
+        let stated = (seconds * rate).round();
+        if (1.0..=1e9).contains(&stated) {
+            let stated = super::whole(source, duration_line, "a duration", stated)?;
+            // Whole seconds are stated; up to one second more or less is rounding.
+            let second = super::whole(source, duration_line, "a sampling frequency", rate.ceil())?;
+            if counts.len().abs_diff(stated) > second {
+                super::check_count(source, &mut record, duration_line, stated, counts.len())?;
+            } else if counts.len() != stated {
+                record.warn(
+                    duration_line + 1,
+                    format!("the header states {stated} values, the file holds {}", counts.len()),
+                );
+            }
+        }
+    }
+    let mut values: Vec<f64> = counts.iter().map(|count| count * factor).collect();
+    let offset = math::mean(&values);
+    for value in &mut values {
+        *value -= offset;
+    }
+    record.notes.push(format!(
+        "channel {name}: offset of {:.3} cm/s2, the mean of the whole record, removed as the \
+         format prescribes",
+        offset / GAL
+    ));
+    let lower = source.name.to_ascii_lowercase();
+    if borehole || ["ns1", "ew1", "ud1"].iter().any(|end| lower.ends_with(end)) {
+        record.warn(None, "this is the borehole sensor, not the ground surface");
+    }
+    let mut channel = Channel::new(name, direction, 1.0 / rate, values);
+    if let Some((line, text)) = field(source, "Max")
+        && let Some((value, digits)) = leading_number(text.as_bytes())
+    {
+        let _ = line;
+        channel.peaks.push(StatedPeak {
+            quantity: Quantity::Acceleration,
+            stated: value.abs() * GAL,
+            resolution: super::source::resolution(&digits) * GAL,
+            measured: math::peak(&channel.acceleration),
+        });
+    }
+    record.channels.push(channel);
+    Ok(record)
+}
+
+/// Eight integers of nine columns to a line; the last line may be short.
+fn read_counts(source: &Source<'_>, first: usize, limit: f64) -> Result<Vec<f64>, ReadError> {
+    let last = source.lines.len();
+    let mut values = Vec::with_capacity(8 * last.saturating_sub(first));
+    for line in first..last {
+        let filled = source.raw(line).trim_ascii_end().len();
+        let fields = if line + 1 == last { filled.div_ceil(9).min(8) } else { 8 };
+        let (mut row, _) = source.fixed(line, fields, Columns::new(8, 9), limit)?;
+        values.append(&mut row);
+    }
+    Ok(values)
+}
+
+/// `3920(gal)/6182761` in gal to a count.
+fn scale(text: &str) -> Option<f64> {
+    let (full, counts) = text.split_once('/')?;
+    let unit = full.find("(gal)")?;
+    let full: f64 = full[..unit].trim().parse().ok()?;
+    let counts: f64 = counts.trim().parse().ok()?;
+    let factor = full / counts;
+    (factor.is_finite() && factor > 0.0).then_some(factor)
+}
+
+/// K-NET names directions; KiK-net numbers them, 1 to 3 in the borehole and 4 to 6 at the surface.
+fn direction(text: &str) -> (String, Direction, bool) {
+    let (name, borehole) = match text.trim() {
+        "1" => ("N-S", true),
+        "2" => ("E-W", true),
+        "3" => ("U-D", true),
+        "4" => ("N-S", false),
+        "5" => ("E-W", false),
+        "6" => ("U-D", false),
+        other => (other, false),
+    };
+    let label = if borehole { format!("{name} borehole") } else { name.to_owned() };
+    (label, Direction::parse(name), borehole)
+}

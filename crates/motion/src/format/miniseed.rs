@@ -1,0 +1,319 @@
+//! miniSEED 2: data records of integers, floats or Steim-compressed counts, joined by channel.
+//!
+//! A decoder of our own: the maintained crates wrap a C library, which would put a C compiler into
+//! every build.
+//! Spec: FDSN, Standard for the Exchange of Earthquake Data, version 2.4, chapter 8 and appendix B.
+
+use std::collections::BTreeMap;
+
+use super::source::{Source, latin1};
+use super::{Format, ReadOptions};
+use crate::direction::Direction;
+use crate::error::{ReadError, Refusal};
+use crate::record::{Channel, Record, Stage};
+
+pub(crate) const FORMAT: Format = Format { name: "miniseed", title: "miniSEED 2", sniff, read };
+
+const FIXED_HEADER: usize = 48;
+
+fn sniff(source: &Source<'_>) -> bool {
+    let b = source.bytes;
+    b.len() >= FIXED_HEADER
+        && b[..6].iter().all(|c| c.is_ascii_digit() || *c == b' ')
+        && matches!(b[6], b'D' | b'R' | b'Q' | b'M')
+        && matches!(b[7], b' ' | 0)
+        && b[8..20].iter().all(|c| c.is_ascii_alphanumeric() || *c == b' ')
+}
+
+/// One data record's header.
+struct Header {
+    id: String,
+    channel: String,
+    samples: usize,
+    rate: f64,
+    /// Start in seconds since the beginning of year 0, good for differences.
+    start: f64,
+    data: usize,
+    length: usize,
+    encoding: u8,
+    big: bool,
+}
+
+/// One channel's samples so far.
+struct Trace {
+    channel: String,
+    rate: f64,
+    end: f64,
+    values: Vec<f64>,
+}
+
+fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+    let bytes = source.bytes;
+    let mut traces: BTreeMap<String, Trace> = BTreeMap::new();
+    let mut at = 0;
+    while at + FIXED_HEADER <= bytes.len() {
+        let header = header(source, at)?;
+        let end = at + header.length;
+        if end > bytes.len() {
+            return Err(damaged(
+                source,
+                &format!("a data record of {} bytes at byte {at}", header.length),
+                format!("{} bytes", bytes.len() - at),
+            ));
+        }
+        if header.samples > 0 {
+            let values = decode(source, &header, &bytes[at + header.data..end], at)?;
+            append(source, &mut traces, &header, values)?;
+        }
+        at = end;
+    }
+    if at != bytes.len() {
+        return Err(damaged(
+            source,
+            &format!("a whole number of data records, the last ending at byte {at}"),
+            format!("{} bytes in all", bytes.len()),
+        ));
+    }
+    let Some(sensitivity) = options.sensitivity else {
+        return Err(source.error(
+            (),
+            Refusal::Missing,
+            "a sensitivity (miniSEED holds counts)",
+            "none",
+            "state the counts per m/s2 from the station's StationXML (InstrumentSensitivity)",
+        ));
+    };
+    let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
+    for (id, trace) in traces {
+        record.station.clone_from(&id);
+        let mut values: Vec<f64> = trace.values.iter().map(|count| count / sensitivity).collect();
+        super::remove_offset(&mut record, &trace.channel, &mut values);
+        let direction = Direction::parse(&trace.channel);
+        record.channels.push(Channel::new(trace.channel, direction, 1.0 / trace.rate, values));
+    }
+    record.notes.push(format!("counts divided by {sensitivity} counts per m/s2, as given"));
+    Ok(record)
+}
+
+fn damaged(source: &Source<'_>, expected: &str, found: String) -> ReadError {
+    source.error(
+        (),
+        Refusal::Damaged,
+        expected,
+        found,
+        "the file is cut or damaged; get it again from its source",
+    )
+}
+
+fn two(bytes: &[u8], at: usize, big: bool) -> u16 {
+    let pair = [bytes.get(at).copied().unwrap_or(0), bytes.get(at + 1).copied().unwrap_or(0)];
+    if big { u16::from_be_bytes(pair) } else { u16::from_le_bytes(pair) }
+}
+
+fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
+    let bytes = &source.bytes[at..];
+    // The year tells the byte order, as no flag does.
+    let big = (1900..2200).contains(&two(bytes, 20, true));
+    let year = two(bytes, 20, big);
+    let day = two(bytes, 22, big);
+    if !(1900..2200).contains(&year) || !(1..=366).contains(&day) {
+        return Err(damaged(
+            source,
+            &format!("a data record header at byte {at}"),
+            format!("year {year}, day {day}"),
+        ));
+    }
+    let part = |from: usize, to: usize| latin1(&bytes[from..to]).trim().to_owned();
+    let id = format!("{}.{}.{}.{}", part(18, 20), part(8, 13), part(13, 15), part(15, 18));
+    let start = f64::from(year) * 366.0 * 86400.0
+        + f64::from(day) * 86400.0
+        + f64::from(bytes[24]) * 3600.0
+        + f64::from(bytes[25]) * 60.0
+        + f64::from(bytes[26])
+        + f64::from(two(bytes, 28, big)) * 1e-4;
+    #[expect(clippy::cast_possible_wrap, reason = "two's complement is the format's")]
+    let (factor, multiplier) =
+        (f64::from(two(bytes, 32, big) as i16), f64::from(two(bytes, 34, big) as i16));
+    let rate = if factor == 0.0 || multiplier == 0.0 {
+        0.0
+    } else {
+        (if factor > 0.0 { factor } else { -1.0 / factor })
+            * (if multiplier > 0.0 { multiplier } else { -1.0 / multiplier })
+    };
+    let mut encoding = None;
+    let mut blockette = usize::from(two(bytes, 46, big));
+    let mut seen = 0;
+    while blockette >= FIXED_HEADER && blockette + 8 <= bytes.len() && seen < 16 {
+        if two(bytes, blockette, big) == 1000 {
+            encoding = Some((bytes[blockette + 4], bytes[blockette + 5], bytes[blockette + 6]));
+        }
+        blockette = usize::from(two(bytes, blockette + 2, big));
+        seen += 1;
+    }
+    let Some((encoding, order, exponent)) = encoding else {
+        return Err(damaged(source, "blockette 1000 in every data record", "none".to_owned()));
+    };
+    if !(7..=20).contains(&exponent) {
+        return Err(damaged(source, "a record length of 2^7 to 2^20", format!("2^{exponent}")));
+    }
+    let (data, length) = (usize::from(two(bytes, 44, big)), 1_usize << exponent);
+    let samples = usize::from(two(bytes, 30, big));
+    if samples > 0 && (data < FIXED_HEADER || data >= length || rate <= 0.0) {
+        return Err(damaged(
+            source,
+            "data inside its record and a sample rate above 0",
+            format!("data at byte {data} of {length}, {rate} Hz"),
+        ));
+    }
+    let channel = part(15, 18);
+    Ok(Header { id, channel, samples, rate, start, data, length, encoding, big: order == 1 })
+}
+
+/// Joins records of one channel; a gap or overlap is an error, because nothing may be made up.
+fn append(
+    source: &Source<'_>,
+    traces: &mut BTreeMap<String, Trace>,
+    header: &Header,
+    mut values: Vec<f64>,
+) -> Result<(), ReadError> {
+    let span = values.len() as f64 / header.rate;
+    let Some(trace) = traces.get_mut(&header.id) else {
+        let trace = Trace {
+            channel: header.channel.clone(),
+            rate: header.rate,
+            end: header.start + span,
+            values,
+        };
+        traces.insert(header.id.clone(), trace);
+        return Ok(());
+    };
+    let off = header.start - trace.end;
+    if trace.rate != header.rate || off.abs() > 0.6 / header.rate {
+        return Err(damaged(
+            source,
+            &format!("{} without gaps at one rate", header.id),
+            format!("{off:.4} s between records at {} and {} Hz", trace.rate, header.rate),
+        ));
+    }
+    trace.end = header.start + span;
+    trace.values.append(&mut values);
+    Ok(())
+}
+
+fn decode(
+    source: &Source<'_>,
+    header: &Header,
+    data: &[u8],
+    at: usize,
+) -> Result<Vec<f64>, ReadError> {
+    let n = header.samples;
+    let big = header.big;
+    let fixed = |width: usize, convert: &dyn Fn(&[u8]) -> f64| -> Result<Vec<f64>, ReadError> {
+        if data.len() < n * width {
+            return Err(damaged(source, &format!("{n} samples"), format!("{} bytes", data.len())));
+        }
+        Ok(data.chunks_exact(width).take(n).map(convert).collect())
+    };
+    let values = match header.encoding {
+        1 => fixed(2, &|b| f64::from(i16::from_be_bytes(order(b, big))))?,
+        3 => fixed(4, &|b| f64::from(i32::from_be_bytes(order(b, big))))?,
+        4 => fixed(4, &|b| f64::from(f32::from_be_bytes(order(b, big))))?,
+        5 => fixed(8, &|b| f64::from_be_bytes(order(b, big)))?,
+        10 | 11 => steim(data, n, header.encoding == 11, big).ok_or_else(|| {
+            damaged(
+                source,
+                &format!("{n} Steim-compressed samples that end at the stated last value"),
+                format!("a contradiction in the record at byte {at}"),
+            )
+        })?,
+        other => {
+            return Err(source.error(
+                (),
+                Refusal::Unrecognized,
+                "encoding 1, 3, 4, 5, 10 or 11",
+                other.to_string(),
+                "convert the file to Steim-2 or to plain columns",
+            ));
+        }
+    };
+    match values.iter().position(|value| !value.is_finite()) {
+        Some(k) => {
+            Err(damaged(source, &format!("a finite sample {}", k + 1), values[k].to_string()))
+        }
+        None => Ok(values),
+    }
+}
+
+/// Bytes in big-endian order.
+fn order<const N: usize>(bytes: &[u8], big: bool) -> [u8; N] {
+    let mut ordered = [0; N];
+    ordered.copy_from_slice(&bytes[..N]);
+    if !big {
+        ordered.reverse();
+    }
+    ordered
+}
+
+/// Steim-1 and Steim-2: frames of 16 words, first differences packed as the top word's nibbles say.
+fn steim(data: &[u8], samples: usize, second: bool, big: bool) -> Option<Vec<f64>> {
+    let mut differences: Vec<i64> = Vec::with_capacity(samples);
+    let (mut first, mut last) = (0_i64, 0_i64);
+    for (index, frame) in data.chunks_exact(64).enumerate() {
+        let word = |k: usize| u32::from_be_bytes(order(&frame[4 * k..4 * k + 4], big));
+        let control = word(0);
+        for k in 1..16 {
+            let value = word(k);
+            if index == 0 && k <= 2 {
+                let constant = signed(value, 32);
+                if k == 1 {
+                    first = constant;
+                } else {
+                    last = constant;
+                }
+                continue;
+            }
+            let nibble = (control >> (30 - 2 * k)) & 3;
+            let (count, bits) = match (nibble, second, value >> 30) {
+                (0, _, _) => continue,
+                (1, _, _) => (4, 8),
+                (2, false, _) => (2, 16),
+                (3, false, _) | (2, true, 0) => {
+                    if second {
+                        return None;
+                    }
+                    (1, 32)
+                }
+                (2, true, 1) => (1, 30),
+                (2, true, 2) => (2, 15),
+                (2, true, _) => (3, 10),
+                (_, true, 0) => (5, 6),
+                (_, true, 1) => (6, 5),
+                (_, true, 2) => (7, 4),
+                _ => return None,
+            };
+            for part in (0..count).rev() {
+                differences.push(signed(value >> (part * bits), bits));
+            }
+        }
+    }
+    if differences.len() < samples || samples == 0 {
+        return None;
+    }
+    // The first difference leads from the previous record and is not used.
+    let mut value = first;
+    let mut values = Vec::with_capacity(samples);
+    values.push(value as f64);
+    for difference in &differences[1..samples] {
+        value = value.checked_add(*difference)?;
+        values.push(value as f64);
+    }
+    (value == last).then_some(values)
+}
+
+/// The lowest `bits` of a word as a signed number.
+fn signed(word: u32, bits: u32) -> i64 {
+    let shift = 64 - bits;
+    #[expect(clippy::cast_possible_wrap, reason = "sign extension of two's complement")]
+    let wide = (u64::from(word) << shift) as i64;
+    wide >> shift
+}

@@ -1,0 +1,359 @@
+//! Readers of strong-motion files: each format in a file of its own, chosen from the bytes.
+
+mod afad;
+mod bhrc;
+mod cdmg;
+mod columns;
+mod cosmos;
+mod csmip_v1;
+mod csmip_v2;
+mod cwa;
+mod esm;
+mod even;
+mod geonet;
+mod knet;
+mod miniseed;
+mod native;
+mod peer;
+mod refused;
+mod renadic;
+mod sac;
+mod slammer;
+mod smc;
+mod source;
+mod unam;
+mod usc;
+
+pub use refused::station_xml_sensitivities;
+pub use slammer::slammer_step;
+
+use crate::error::{ReadError, Refusal};
+use crate::math::STANDARD_GRAVITY;
+use crate::record::Record;
+use crate::units::AccelerationUnit;
+use source::{LARGEST_ACCELERATION, Source};
+
+/// What the caller knows and a file may not say.
+///
+/// A value the file states itself is taken from the file; one given in addition is reported as
+/// ignored.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ReadOptions {
+    /// Unit of acceleration for formats that state none.
+    pub unit: Option<AccelerationUnit>,
+    /// Step (s) for formats that state none.
+    pub time_step: Option<f64>,
+    /// Counts to one m/s² for formats that hold counts.
+    pub sensitivity: Option<f64>,
+}
+
+/// A readable format.
+#[derive(Clone, Copy)]
+pub struct Format {
+    /// Short name, as in [`Record::format`].
+    pub name: &'static str,
+    /// Full name with its publisher.
+    pub title: &'static str,
+    sniff: fn(&Source<'_>) -> bool,
+    read: fn(&Source<'_>, &ReadOptions) -> Result<Record, ReadError>,
+}
+
+impl std::fmt::Debug for Format {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Format").field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+/// Every format, in the order in which they are tried.
+pub const FORMATS: &[Format] = &[
+    sac::FORMAT,
+    miniseed::FORMAT,
+    native::FORMAT,
+    smc::FORMAT,
+    geonet::FORMAT,
+    renadic::FORMAT,
+    usc::FORMAT,
+    csmip_v1::FORMAT,
+    csmip_v2::FORMAT,
+    bhrc::FORMAT,
+    cosmos::FORMAT,
+    knet::FORMAT,
+    esm::FORMAT,
+    afad::FORMAT,
+    cwa::FORMAT,
+    unam::FORMAT,
+    peer::FORMAT,
+    columns::FORMAT,
+];
+
+/// Files that are known and refused, tried first.
+const KNOWN_OTHERS: &[Format] = &[refused::HDF5, refused::ARCHIVE, refused::XML, slammer::FORMAT];
+
+/// Reads a strong-motion file of any format; `name` is used in messages only.
+///
+/// # Errors
+/// If no format fits, the file holds no acceleration, is damaged, or lacks a unit, step or
+/// sensitivity that `options` does not give.
+///
+/// ```
+/// use barrelstack_motion::{ReadOptions, read};
+/// let file = b"PEER STRONG MOTION DATABASE RECORD\nEVENT, STATION, 090\n\
+///     ACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 4, DT= .0200 SEC\n .1 .2 -.3 .0\n";
+/// let record = read(file, "small.at2", &ReadOptions::default())?;
+/// assert_eq!(record.channels[0].time_step, 0.02);
+/// assert_eq!(record.channels[0].direction.azimuth, Some(90.0));
+/// # Ok::<(), barrelstack_motion::ReadError>(())
+/// ```
+pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, ReadError> {
+    let source = Source::new(name, bytes);
+    if bytes.trim_ascii().is_empty() {
+        return Err(source.error(
+            (),
+            Refusal::Damaged,
+            "a strong-motion file",
+            "an empty file",
+            "get the file again from its source",
+        ));
+    }
+    check_options(&source, options)?;
+    let Some(format) = KNOWN_OTHERS.iter().chain(FORMATS).find(|format| (format.sniff)(&source))
+    else {
+        source.require_text()?;
+        return Err(source.error(
+            (),
+            Refusal::Unrecognized,
+            format!("one of {}", names()),
+            format!("\"{}\" as first line", source::shorten(&source.text(0))),
+            "convert the file to plain columns, one value or time and value to a line",
+        ));
+    };
+    let mut record = (format.read)(&source, options)?;
+    record.format = format.name;
+    finish(&source, &mut record)?;
+    Ok(record)
+}
+
+/// The names of all formats, for messages.
+fn names() -> String {
+    FORMATS.iter().map(|format| format.name).collect::<Vec<_>>().join(", ")
+}
+
+fn check_options(source: &Source<'_>, options: &ReadOptions) -> Result<(), ReadError> {
+    for (what, value) in [
+        ("time step (s)", options.time_step),
+        ("sensitivity (counts per m/s2)", options.sensitivity),
+    ] {
+        if let Some(value) = value
+            && !(value.is_finite() && value > 0.0)
+        {
+            return Err(source.error(
+                (),
+                Refusal::Missing,
+                format!("a {what} above 0"),
+                value.to_string(),
+                "correct the option",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Checks that hold for every format.
+fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
+    if record.channels.is_empty() {
+        return Err(source.error(
+            (),
+            Refusal::NotAcceleration,
+            "an acceleration channel",
+            "none",
+            "give the file that holds the accelerations",
+        ));
+    }
+    drop_dead_channels(source, record)?;
+    for index in 0..record.channels.len() {
+        let channel = &mut record.channels[index];
+        let label = channel.name.clone();
+        if !(channel.time_step.is_finite() && channel.time_step > 0.0) {
+            return Err(source.error(
+                (),
+                Refusal::Damaged,
+                format!("a time step above 0 for channel {label}"),
+                channel.time_step.to_string(),
+                "the header is damaged; get the file again from its source",
+            ));
+        }
+        if channel.acceleration.len() < 2 {
+            return Err(source.error(
+                (),
+                Refusal::Damaged,
+                format!("at least 2 samples in channel {label}"),
+                channel.acceleration.len().to_string(),
+                "the file is cut; get it again from its source",
+            ));
+        }
+        let pga = channel.pga();
+        if !(pga <= LARGEST_ACCELERATION) {
+            return Err(source.error(
+                (),
+                Refusal::Damaged,
+                format!("accelerations below {LARGEST_ACCELERATION} m/s2 in channel {label}"),
+                format!("{pga:e} m/s2"),
+                "check the unit, or get the file again from its source",
+            ));
+        }
+        if channel.direction.downward {
+            for value in &mut channel.acceleration {
+                *value = -*value;
+            }
+            channel.initial_velocity = -channel.initial_velocity;
+            channel.direction.downward = false;
+            record.notes.push(format!("channel {label} points down and was turned upward"));
+        }
+        let mut messages = Vec::new();
+        for peak in &record.channels[index].peaks {
+            if !peak.agrees() {
+                messages.push(format!(
+                    "channel {label}: the header states a peak {} of {:.6} (SI), the numbers \
+                     give {:.6}",
+                    peak.quantity, peak.stated, peak.measured
+                ));
+            }
+        }
+        let in_g = pga / STANDARD_GRAVITY;
+        if in_g > 3.0 {
+            messages.push(format!("channel {label}: PGA is {in_g:.3} g; check the unit"));
+        } else if in_g < 0.001 {
+            messages.push(format!("channel {label}: PGA is {in_g:.2e} g; check the unit"));
+        }
+        for message in messages {
+            record.warn(None, message);
+        }
+    }
+    Ok(())
+}
+
+/// A positive whole number from a header.
+fn whole(source: &Source<'_>, line: usize, what: &str, value: f64) -> Result<usize, ReadError> {
+    if value.fract() == 0.0 && (1.0..=1e9).contains(&value) {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 1e9")]
+        return Ok(value as usize);
+    }
+    Err(source.error(
+        line,
+        Refusal::Damaged,
+        format!("{what}, 1 or more"),
+        value.to_string(),
+        "restore the header from the original file",
+    ))
+}
+
+/// Compares a stated count with the values found: one less or two more are used with a warning,
+/// because headers in circulation are off by that much; anything else means a cut or mixed file.
+fn check_count(
+    source: &Source<'_>,
+    record: &mut Record,
+    line: usize,
+    stated: usize,
+    found: usize,
+) -> Result<(), ReadError> {
+    if stated == found {
+        return Ok(());
+    }
+    if found + 1 == stated || found == stated + 1 || found == stated + 2 {
+        record.warn(
+            line + 1,
+            format!("the header states {stated} values, the file holds {found}; all are used"),
+        );
+        return Ok(());
+    }
+    Err(source.error(
+        line,
+        Refusal::Damaged,
+        format!("{stated} values as stated here"),
+        format!("{found}"),
+        "the file is cut or its header belongs to another; get it again from its source",
+    ))
+}
+
+/// The file name without folders and ending.
+pub(crate) fn file_stem(name: &str) -> String {
+    let base = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    base.rsplit_once('.').map_or(base, |(stem, _)| stem).to_owned()
+}
+
+/// Rows of `width` numbers separated by blanks, as columns.
+fn rows(
+    source: &Source<'_>,
+    from: usize,
+    to: usize,
+    width: usize,
+    limit: f64,
+) -> Result<Vec<Vec<f64>>, ReadError> {
+    let mut columns = vec![Vec::with_capacity(to.saturating_sub(from)); width];
+    let mut row = Vec::with_capacity(width);
+    for line in from..to {
+        row.clear();
+        source.tokens(line, limit, &mut row)?;
+        if row.len() != width {
+            return Err(source.error(
+                line,
+                Refusal::Damaged,
+                format!("{width} numbers"),
+                format!("{} numbers", row.len()),
+                "the file is cut or a line was lost; get it again from its source",
+            ));
+        }
+        for (column, value) in columns.iter_mut().zip(&row) {
+            column.push(*value);
+        }
+    }
+    Ok(columns)
+}
+
+/// Leaves out channels that never change: clocks and unused inputs.
+fn drop_dead_channels(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
+    let dead: Vec<String> = record
+        .channels
+        .iter()
+        .filter(|channel| {
+            channel.acceleration.len() > 1
+                && channel.acceleration.iter().all(|value| *value == channel.acceleration[0])
+        })
+        .map(|channel| channel.name.clone())
+        .collect();
+    if dead.is_empty() {
+        return Ok(());
+    }
+    if dead.len() == record.channels.len() {
+        return Err(source.error(
+            (),
+            Refusal::NotAcceleration,
+            "a channel that moves",
+            "one value throughout",
+            "give the file that holds the accelerations",
+        ));
+    }
+    record.channels.retain(|channel| {
+        channel.acceleration.len() < 2
+            || channel.acceleration.iter().any(|value| *value != channel.acceleration[0])
+    });
+    for name in dead {
+        record.warn(
+            None,
+            format!("channel {name} holds one value throughout (a clock or an unused input) and was left out"),
+        );
+    }
+    Ok(())
+}
+
+/// Takes off the mean of a raw digital channel, whose zero is arbitrary, and notes it.
+fn remove_offset(record: &mut Record, name: &str, values: &mut [f64]) {
+    let offset = crate::math::mean(values);
+    for value in values.iter_mut() {
+        *value -= offset;
+    }
+    record.notes.push(format!(
+        "channel {name}: offset of {offset:.4e} m/s2, the mean of the whole record, removed because \
+         the digitizer's zero is arbitrary"
+    ));
+}

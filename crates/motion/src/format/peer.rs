@@ -1,0 +1,174 @@
+//! PEER strong-motion database: AT2 accelerations; VT2 velocities and DT2 displacements are refused.
+//!
+//! A few title lines, a line that names quantity and unit, a line with count and step, then values
+//! row by row.
+//! Spec: header lines of the NGA and NGA-West2 flat files (Chiou et al. 2008, Earthquake Spectra
+//! 24:23-44; Ancheta et al. 2014, Earthquake Spectra 30:989-1005); spellings surveyed over 2416
+//! files.
+
+use super::source::{LARGEST_ACCELERATION, Source, leading_number};
+use super::{Format, ReadOptions};
+use crate::direction::Direction;
+use crate::error::{ReadError, Refusal};
+use crate::record::{Channel, Record, Stage};
+use crate::units::AccelerationUnit;
+
+pub(crate) const FORMAT: Format =
+    Format { name: "peer", title: "PEER AT2 (NGA, NGA-West2, PEER 2000)", sniff, read };
+
+/// Lines searched for the count and step.
+const HEADER_LINES: usize = 12;
+
+struct Counts {
+    line: usize,
+    count: usize,
+    time_step: f64,
+}
+
+fn sniff(source: &Source<'_>) -> bool {
+    (0..HEADER_LINES.min(source.lines.len())).any(|line| source.has(line, "NPTS"))
+}
+
+fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+    let counts = find_counts(source)?;
+    let unit = find_unit(source, counts.line, options)?;
+    let mut record = Record::new(FORMAT.name, source.name, Stage::Corrected);
+    if options.time_step.is_some() {
+        record.warn(None, "the file states its step; the time step given was ignored");
+    }
+    if options.unit.is_some_and(|given| given != unit) {
+        record.warn(None, format!("the file states its unit ({unit}); the unit given was ignored"));
+    }
+    let (event, station, component) = names(source, counts.line);
+    record.event = event;
+    record.station = station;
+    let first = counts.line + 1;
+    let mut end = source.lines.len();
+    while end > first && is_end_mark(source, end - 1) {
+        end -= 1;
+    }
+    let mut start = first;
+    while start < end && is_begin_mark(source, start) {
+        start += 1;
+    }
+    let limit = LARGEST_ACCELERATION / unit.factor();
+    let mut values = source.all_tokens(start, end, limit)?;
+    super::check_count(source, &mut record, counts.line, counts.count, values.len())?;
+    for value in &mut values {
+        *value *= unit.factor();
+    }
+    let direction = Direction::parse(&component);
+    record.channels.push(Channel::new(component, direction, counts.time_step, values));
+    Ok(record)
+}
+
+/// `*** Begin data ***` and its like around the values of some copies.
+fn is_begin_mark(source: &Source<'_>, line: usize) -> bool {
+    let text = source.text(line);
+    text.is_empty() || text.starts_with("***") && source.has(line, "begin")
+}
+
+fn is_end_mark(source: &Source<'_>, line: usize) -> bool {
+    let text = source.text(line);
+    text.is_empty() || text.starts_with("***") && source.has(line, "end")
+}
+
+/// `NPTS= 2000, DT= .0200 SEC` or `4096 0.0100 NPTS, DT`.
+fn find_counts(source: &Source<'_>) -> Result<Counts, ReadError> {
+    let line = (0..HEADER_LINES).find(|&line| source.has(line, "NPTS")).unwrap_or(0);
+    let after = source.number_after(line, "NPTS").zip(source.number_after(line, "DT"));
+    let before = leading_number(source.raw(line)).and_then(|(count, text)| {
+        let rest = source.find(line, &text)? + text.len();
+        leading_number(&source.raw(line)[rest..]).map(|(step, _)| (count, step))
+    });
+    let (count, time_step) = after.or(before).ok_or_else(|| {
+        source.error(
+            line,
+            Refusal::Damaged,
+            "count and step, such as \"NPTS= 2000, DT= .0200 SEC\"",
+            format!("\"{}\"", super::source::shorten(&source.text(line))),
+            "restore the header from the original file",
+        )
+    })?;
+    let count = super::whole(source, line, "a number of points", count)?;
+    if !(time_step > 0.0) {
+        return Err(source.error(
+            line,
+            Refusal::Damaged,
+            "a step above 0",
+            time_step.to_string(),
+            "restore the header from the original file",
+        ));
+    }
+    Ok(Counts { line, count, time_step })
+}
+
+fn find_unit(
+    source: &Source<'_>,
+    last: usize,
+    options: &ReadOptions,
+) -> Result<AccelerationUnit, ReadError> {
+    for line in 0..last {
+        let stated = |quantity: &str| {
+            source.find(line, quantity).is_some_and(|at| at < 4) && !source.has(line, "ACCEL")
+        };
+        if stated("VELOCITY") || stated("DISPLACEMENT") || source.has(line, "SPECTR") {
+            return Err(source.error(
+                line,
+                Refusal::NotAcceleration,
+                "an acceleration history",
+                format!("\"{}\"", super::source::shorten(&source.text(line))),
+                "give the .AT2 file of the same component",
+            ));
+        }
+    }
+    for line in 0..last {
+        for key in ["UNITS OF ", "UNITS ARE ", "UNITS: "] {
+            let Some(at) = source.find(line, key) else { continue };
+            let text = super::source::latin1(&source.raw(line)[at + key.len()..]);
+            let word = text
+                .trim_start_matches(['(', ' '])
+                .split([' ', ')', ',', ';'])
+                .next()
+                .unwrap_or("")
+                .trim_end_matches('.');
+            return word.parse().map_err(|_| {
+                source.error(
+                    (line, at + key.len()),
+                    Refusal::NotAcceleration,
+                    "a unit of acceleration",
+                    format!("\"{word}\""),
+                    "give the .AT2 file of the same component",
+                )
+            });
+        }
+    }
+    options.unit.ok_or_else(|| {
+        source.error(
+            (),
+            Refusal::Missing,
+            "a header line with the unit of acceleration",
+            "none",
+            "state the unit (g, m/s2, cm/s2)",
+        )
+    })
+}
+
+/// Event, station and component from the title lines.
+fn names(source: &Source<'_>, last: usize) -> (String, String, String) {
+    for line in 0..last.min(4) {
+        let text = source.text(line);
+        let plain = text.split(" (").next().unwrap_or(&text);
+        let parts: Vec<&str> = plain.split(',').map(str::trim).collect();
+        if let [event @ .., station, component] = parts.as_slice()
+            && !event.is_empty()
+            && !component.is_empty()
+            && component.len() <= 12
+        {
+            return (event.join(", "), (*station).to_owned(), (*component).to_owned());
+        }
+    }
+    let title = source.text(0);
+    let component = super::file_stem(source.name);
+    (title, String::new(), component)
+}

@@ -1,0 +1,160 @@
+//! SAC binary: 158 words of header and one component; the unit must come from the caller.
+//!
+//! Spec: SAC users manual, "SAC data file format", header version 6.
+
+use super::source::{Source, latin1};
+use super::{Format, ReadOptions};
+use crate::direction::{Direction, Orientation};
+use crate::error::{ReadError, Refusal};
+use crate::record::{Channel, Record, Stage};
+
+pub(crate) const FORMAT: Format = Format { name: "sac", title: "SAC binary", sniff, read };
+
+const HEADER_BYTES: usize = 632;
+const UNDEFINED: f64 = -12345.0;
+/// Word 76: header version; word 79: number of points; word 85: file type, 1 = time series;
+/// word 105: evenly spaced.
+const VERSION: usize = 76;
+const POINTS: usize = 79;
+const FILE_TYPE: usize = 85;
+const DEPENDENT: usize = 86;
+const EVEN: usize = 105;
+const TIME_SERIES: i32 = 1;
+
+fn word(bytes: &[u8], index: usize, big: bool) -> Option<[u8; 4]> {
+    let mut four: [u8; 4] = bytes.get(4 * index..4 * index + 4)?.try_into().ok()?;
+    if big {
+        four.reverse();
+    }
+    Some(four)
+}
+
+fn integer(bytes: &[u8], index: usize, big: bool) -> i32 {
+    word(bytes, index, big).map_or(-12345, i32::from_le_bytes)
+}
+
+fn real(bytes: &[u8], index: usize, big: bool) -> Option<f64> {
+    word(bytes, index, big)
+        .map(|four| f64::from(f32::from_le_bytes(four)))
+        .filter(|v| *v != UNDEFINED)
+}
+
+fn byte_order(bytes: &[u8]) -> Option<bool> {
+    if bytes.len() < HEADER_BYTES {
+        return None;
+    }
+    [false, true].into_iter().find(|&big| {
+        integer(bytes, VERSION, big) == 6
+            && (-12345..=100).contains(&integer(bytes, FILE_TYPE, big))
+    })
+}
+
+fn sniff(source: &Source<'_>) -> bool {
+    byte_order(source.bytes).is_some()
+}
+
+fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+    let bytes = source.bytes;
+    let big = byte_order(bytes).unwrap_or(false);
+    let damaged = |expected: &str, found: String| {
+        source.error(
+            (),
+            Refusal::Damaged,
+            expected,
+            found,
+            "the file is cut or damaged; get it again from its source",
+        )
+    };
+    if integer(bytes, FILE_TYPE, big) != TIME_SERIES || integer(bytes, EVEN, big) != 1 {
+        return Err(source.error(
+            (),
+            Refusal::NotAcceleration,
+            "an evenly spaced time series",
+            format!(
+                "SAC file type {} (evenly spaced: {})",
+                integer(bytes, FILE_TYPE, big),
+                integer(bytes, EVEN, big)
+            ),
+            "export the acceleration as an evenly spaced time series",
+        ));
+    }
+    // IDEP: 6 displacement, 7 velocity, 8 acceleration, 5 unknown.
+    let dependent = integer(bytes, DEPENDENT, big);
+    if matches!(dependent, 6 | 7) {
+        return Err(source.error(
+            (),
+            Refusal::NotAcceleration,
+            "acceleration as dependent variable",
+            if dependent == 6 { "displacement" } else { "velocity" },
+            "give the acceleration file of the same channel",
+        ));
+    }
+    let points = integer(bytes, POINTS, big);
+    let count = usize::try_from(points)
+        .ok()
+        .filter(|count| *count > 0)
+        .ok_or_else(|| damaged("a number of points above 0", points.to_string()))?;
+    let data = &bytes[HEADER_BYTES..];
+    if data.len() / 4 != count || data.len() % 4 != 0 {
+        return Err(damaged(
+            &format!("{count} samples of 4 bytes after the header"),
+            format!("{} bytes", data.len()),
+        ));
+    }
+    let time_step = real(bytes, 0, big)
+        .filter(|step| *step > 0.0)
+        .ok_or_else(|| damaged("a step above 0 in word 1", "none".to_owned()))?;
+    let factor = match (options.sensitivity, options.unit) {
+        (Some(sensitivity), _) => 1.0 / sensitivity,
+        (None, Some(unit)) => unit.factor(),
+        (None, None) => {
+            return Err(source.error(
+                (),
+                Refusal::Missing,
+                "a unit or a sensitivity (SAC files hold neither)",
+                "none",
+                "state the unit of the values, or the sensitivity in counts per m/s2 from the \
+                 station's metadata",
+            ));
+        }
+    };
+    let mut values = Vec::with_capacity(count);
+    for (k, four) in data.chunks_exact(4).enumerate() {
+        let value = word(four, 0, big).map_or(f64::NAN, |four| f64::from(f32::from_le_bytes(four)));
+        if !value.is_finite() {
+            return Err(damaged(
+                &format!("a finite number as sample {}", k + 1),
+                value.to_string(),
+            ));
+        }
+        values.push(value * factor);
+    }
+    let text = |from: usize, length: usize| {
+        let raw = bytes.get(from..from + length).unwrap_or(&[]);
+        let raw = raw.split(|&b| b == 0).next().unwrap_or(&[]);
+        let text = latin1(raw).trim().to_owned();
+        if text == "-12345" { String::new() } else { text }
+    };
+    // Single precision: 0.02 is stored as 0.0199999996; the nearest short decimal is meant.
+    let time_step = (time_step * 1e7).round() / 1e7;
+    let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
+    record.station = format!("{} {}", text(608, 8), text(440, 8)).trim().to_owned();
+    let name = text(600, 8);
+    let direction = match (real(bytes, 57, big), real(bytes, 58, big)) {
+        (_, Some(0.0)) => Direction::up(),
+        (_, Some(180.0)) => Direction { downward: true, ..Direction::up() },
+        (Some(azimuth), Some(90.0)) => Direction::horizontal(azimuth),
+        _ => Direction::parse(&name),
+    };
+    let name = if name.is_empty() {
+        match direction.orientation {
+            Some(Orientation::Vertical) => "up".to_owned(),
+            _ => "channel 1".to_owned(),
+        }
+    } else {
+        name
+    };
+    super::remove_offset(&mut record, &name, &mut values);
+    record.channels.push(Channel::new(name, direction, time_step, values));
+    Ok(record)
+}

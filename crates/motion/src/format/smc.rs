@@ -1,0 +1,145 @@
+//! USGS SMC: corrected records at equal steps and uncorrected ones as time and value pairs, cm/s².
+//!
+//! 11 text lines, 6 lines 8I10, 10 lines 5E15.7, comments, data 8E10.4 without blanks between.
+//! Spec: USGS National Strong-Motion Program, "SMC-format data files" (smcfmt), and Converse and
+//! Brady 1992, USGS Open-File Report 92-296A.
+
+use super::even::{Timed, even_steps};
+use super::source::{Columns, LARGEST_ACCELERATION, Printed, Source, latin1, shorten};
+use super::{Format, ReadOptions};
+use crate::direction::Direction;
+use crate::error::{ReadError, Refusal};
+use crate::math;
+use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+
+pub(crate) const FORMAT: Format = Format { name: "smc", title: "USGS SMC", sniff, read };
+
+const TEXT_LINES: usize = 11;
+const INTEGER_LINES: usize = 6;
+const REAL_LINES: usize = 10;
+const GAL: f64 = 0.01;
+
+fn sniff(source: &Source<'_>) -> bool {
+    let text = source.text(0).to_ascii_uppercase();
+    let mut words = text.split_whitespace();
+    let volume = words.next().unwrap_or("");
+    volume.len() == 1
+        && volume.chars().all(|c| c.is_ascii_digit())
+        && words.next().is_some_and(|word| {
+            ["UNCORRECTED", "CORRECTED", "VELOCITY", "DISPLACEMENT", "RESPONSE", "FOURIER"]
+                .iter()
+                .any(|known| word.starts_with(known))
+        })
+}
+
+fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+    let title = source.text(0).to_ascii_uppercase();
+    if !title.contains("ACCELEROGRAM") {
+        return Err(source.error(
+            0,
+            Refusal::NotAcceleration,
+            "an accelerogram",
+            format!("\"{}\"", shorten(&title)),
+            "give the acceleration file of the same record",
+        ));
+    }
+    let stage = if title.contains("UNCORRECTED") { Stage::Raw } else { Stage::Corrected };
+    let mut record = Record::new(FORMAT.name, source.name, stage);
+    record.event = source.text(3);
+    let station = latin1(source.slice(5, 0, 41));
+    record.station = station.split_once('=').map_or("", |(_, name)| name).trim().to_owned();
+    if options.time_step.is_some() {
+        record.warn(None, "the file states its step; the time step given was ignored");
+    }
+    let (integers, line) =
+        source.fixed(TEXT_LINES, 8 * INTEGER_LINES, Columns::new(8, 10), f64::INFINITY)?;
+    let (reals, line) = source.fixed(line, 5 * REAL_LINES, Columns::new(5, 15), f64::INFINITY)?;
+    let known = |index: usize| Some(integers[index]).filter(|value| *value != integers[0]);
+    let real = |index: usize| Some(reals[index]).filter(|value| value.abs() < 1e37);
+    let comments = known(15).unwrap_or(0.0);
+    let count =
+        known(16).ok_or_else(|| missing(source, TEXT_LINES + 2, "integer 17, the count"))?;
+    let count = super::whole(source, TEXT_LINES + 2, "a number of values", count)?;
+    if !(0.0..=1e6).contains(&comments) {
+        return Err(missing(source, TEXT_LINES + 1, "integer 16, the number of comment lines"));
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1e6")]
+    let data = line + comments as usize;
+    for comment in line..data {
+        if !source.text(comment).starts_with('|') {
+            return Err(missing(source, comment, "a comment line that starts with \"|\""));
+        }
+    }
+    let limit = LARGEST_ACCELERATION / GAL;
+    let (numbers, next) = source.fixed(data, count, Columns::new(8, 10), limit)?;
+    if next < source.lines.len() {
+        return Err(source.error(
+            next,
+            Refusal::Damaged,
+            format!("the end of the file after {count} values"),
+            format!("\"{}\"", shorten(&source.text(next))),
+            "the header states fewer values than the file holds; get the file again",
+        ));
+    }
+    let name = component(source);
+    let (time_step, values) = if let Some(rate) = real(1).filter(|rate| *rate > 0.0) {
+        (1.0 / rate, numbers)
+    } else {
+        let timed = Timed {
+            first_line: data,
+            per_line: 4,
+            time: numbers.iter().copied().step_by(2).collect(),
+            values: vec![numbers.iter().copied().skip(1).step_by(2).collect()],
+            resolution: 1e-4,
+        };
+        let (step, mut columns) = even_steps(source, &mut record, &name, timed)?;
+        (step, columns.pop().unwrap_or_default())
+    };
+    let direction = match known(13) {
+        Some(azimuth) if (0.0..=360.0).contains(&azimuth) && known(12) != Some(0.0) => {
+            Direction::horizontal(azimuth)
+        }
+        _ => Direction::parse(&name),
+    };
+    let values: Vec<f64> = values.iter().map(|value| value * GAL).collect();
+    let mut channel = Channel::new(name, direction, time_step, values);
+    if let Some(Printed { value, resolution }) = source
+        .printed_after(6, "pk acc")
+        .or_else(|| source.find(6, "pk").and_then(|_| source.printed_after(6, "pk     ")))
+    {
+        channel.peaks.push(StatedPeak {
+            quantity: Quantity::Acceleration,
+            stated: value.abs() * GAL,
+            resolution: resolution * GAL,
+            measured: math::peak(&channel.acceleration),
+        });
+    }
+    record.channels.push(channel);
+    for line in 0..TEXT_LINES {
+        if source.has(line, "building") || source.has(line, "floor") {
+            record.warn(line + 1, "the header speaks of a building; this may be no ground motion");
+        }
+    }
+    Ok(record)
+}
+
+fn missing(source: &Source<'_>, line: usize, what: &str) -> ReadError {
+    source.error(
+        line.min(source.lines.len().saturating_sub(1)),
+        Refusal::Damaged,
+        what,
+        format!("\"{}\"", shorten(&source.text(line))),
+        "restore the header from the original file",
+    )
+}
+
+/// `component= 360` at column 42 of line 6.
+fn component(source: &Source<'_>) -> String {
+    let text = source.text(5);
+    let lower = text.to_ascii_lowercase();
+    lower
+        .find("component")
+        .and_then(|at| text.get(at + 9..))
+        .map(|rest| rest.trim_start_matches([' ', '=']).trim().to_owned())
+        .unwrap_or_default()
+}

@@ -1,0 +1,450 @@
+//! The bytes of a text file by line and column, and numbers read from them or refused with a place.
+
+use crate::error::{ReadError, Refusal};
+
+/// Largest acceleration any reader accepts (m/s²), about a thousand g's.
+pub(crate) const LARGEST_ACCELERATION: f64 = 1e4;
+
+/// A file split into lines; line indices count from 0 here, from 1 in messages.
+pub(crate) struct Source<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) bytes: &'a [u8],
+    pub(crate) lines: Vec<&'a [u8]>,
+}
+
+/// A block of numbers in Fortran columns.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Columns {
+    /// Blank columns before the first field.
+    pub(crate) indent: usize,
+    /// Fields to a line.
+    pub(crate) per_line: usize,
+    /// Characters to a field.
+    pub(crate) width: usize,
+}
+
+impl Columns {
+    pub(crate) fn new(per_line: usize, width: usize) -> Self {
+        Self { indent: 0, per_line, width }
+    }
+
+    /// Reads `8F10.5`, `(10I8)`, `(1X,10F7.3)`, `5(E15.7)` is not a thing in these files.
+    pub(crate) fn parse(format: &str) -> Option<Self> {
+        let inner = format.trim().trim_start_matches('(');
+        let inner = inner.split(')').next()?.trim();
+        let mut indent = 0;
+        let mut block = None;
+        for part in inner.split(',') {
+            let part = part.trim().to_ascii_uppercase();
+            if let Some(blanks) = part.strip_suffix('X') {
+                indent += blanks.parse::<usize>().ok()?;
+                continue;
+            }
+            let letter = part.find(['F', 'E', 'I', 'G', 'D'])?;
+            let per_line = if letter == 0 { 1 } else { part[..letter].parse().ok()? };
+            let width: usize = part[letter + 1..].split('.').next()?.parse().ok()?;
+            block = Some(Self { indent, per_line, width });
+        }
+        let block = block?;
+        ((1..=1000).contains(&block.per_line) && (1..=100).contains(&block.width)).then_some(block)
+    }
+}
+
+impl<'a> Source<'a> {
+    pub(crate) fn new(name: &'a str, bytes: &'a [u8]) -> Self {
+        let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+        let mut text = bytes;
+        while let [rest @ .., 0x1A] = text {
+            text = rest;
+        }
+        let separator = if text.contains(&b'\n') { b'\n' } else { b'\r' };
+        let mut lines: Vec<&[u8]> = text
+            .split(|&byte| byte == separator)
+            .map(|mut line| {
+                while let [rest @ .., b'\r'] = line {
+                    line = rest;
+                }
+                line
+            })
+            .collect();
+        while lines.last().is_some_and(|line| line.trim_ascii().is_empty()) {
+            lines.pop();
+        }
+        Self { name, bytes, lines }
+    }
+
+    /// The line as trimmed text (Latin-1), empty beyond the end.
+    pub(crate) fn text(&self, line: usize) -> String {
+        latin1(self.raw(line)).trim().to_owned()
+    }
+
+    /// The untrimmed bytes of a line, empty beyond the end.
+    pub(crate) fn raw(&self, line: usize) -> &'a [u8] {
+        self.lines.get(line).copied().unwrap_or(&[])
+    }
+
+    /// The characters of a line from column `from` (0-based) on, at most `width`.
+    pub(crate) fn slice(&self, line: usize, from: usize, width: usize) -> &'a [u8] {
+        let raw = self.raw(line);
+        let start = from.min(raw.len());
+        &raw[start..(from.saturating_add(width)).min(raw.len())]
+    }
+
+    /// Whether the line holds `needle`, whatever its case.
+    pub(crate) fn has(&self, line: usize, needle: &str) -> bool {
+        self.find(line, needle).is_some()
+    }
+
+    /// Byte offset of `needle` in the line, whatever its case.
+    pub(crate) fn find(&self, line: usize, needle: &str) -> Option<usize> {
+        find_ignoring_case(self.raw(line), needle.as_bytes())
+    }
+
+    /// The first number that follows `key` on the line, skipping blanks, `=` and `:`.
+    pub(crate) fn number_after(&self, line: usize, key: &str) -> Option<f64> {
+        let start = self.find(line, key)? + key.len();
+        leading_number(&self.raw(line)[start..]).map(|(value, _)| value)
+    }
+
+    /// As [`Source::number_after`] with the resolution of the printed digits.
+    pub(crate) fn printed_after(&self, line: usize, key: &str) -> Option<Printed> {
+        let start = self.find(line, key)? + key.len();
+        leading_number(&self.raw(line)[start..])
+            .map(|(value, text)| Printed { value, resolution: resolution(&text) })
+    }
+
+    pub(crate) fn error(
+        &self,
+        place: impl Into<Place>,
+        refusal: Refusal,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> ReadError {
+        let place = place.into();
+        ReadError {
+            file: self.name.to_owned(),
+            line: place.line.map(|line| line + 1),
+            column: place.column.map(|column| column + 1),
+            refusal,
+            expected: expected.into(),
+            found: found.into(),
+            remedy: remedy.into(),
+        }
+    }
+
+    /// A damaged field.
+    pub(crate) fn bad_number(&self, line: usize, column: usize, field: &[u8]) -> ReadError {
+        let text = latin1(field.trim_ascii());
+        let (found, remedy) = if text.is_empty() {
+            ("blanks".to_owned(), "the file is damaged; get it again from its source")
+        } else if text.contains('*') {
+            (
+                format!("\"{}\"", shorten(&text)),
+                "the value overflowed its column when the file was written; get the file again \
+                 in a wider format",
+            )
+        } else {
+            (
+                format!("\"{}\"", shorten(&text)),
+                "the file is damaged or has another layout; get it again from its source",
+            )
+        };
+        self.error((line, column), Refusal::Damaged, "a number", found, remedy)
+    }
+
+    /// A file that ends too soon.
+    pub(crate) fn cut(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
+        self.error(
+            self.lines.len().saturating_sub(1),
+            Refusal::Damaged,
+            expected,
+            found,
+            "the file is cut; get it again from its source",
+        )
+    }
+
+    /// Reads `count` numbers from fixed columns starting on `line`; returns them and the next line.
+    ///
+    /// Fields are taken by column; a line whose columns do not fit is taken by blanks if that gives
+    /// the right number of fields.
+    pub(crate) fn fixed(
+        &self,
+        line: usize,
+        count: usize,
+        columns: Columns,
+        limit: f64,
+    ) -> Result<(Vec<f64>, usize), ReadError> {
+        let mut values = Vec::with_capacity(count.min(self.bytes.len()));
+        let mut at = line;
+        while values.len() < count {
+            if at >= self.lines.len() {
+                return Err(
+                    self.cut(format!("{count} numbers"), format!("{} numbers", values.len()))
+                );
+            }
+            let wanted = columns.per_line.min(count - values.len());
+            let before = values.len();
+            if let Err(error) = self.fixed_line(at, wanted, columns, limit, &mut values) {
+                values.truncate(before);
+                let mut tokens = Vec::with_capacity(wanted);
+                if self.tokens(at, limit, &mut tokens).is_err() || tokens.len() != wanted {
+                    return Err(error);
+                }
+                values.append(&mut tokens);
+            }
+            at += 1;
+        }
+        Ok((values, at))
+    }
+
+    fn fixed_line(
+        &self,
+        line: usize,
+        wanted: usize,
+        columns: Columns,
+        limit: f64,
+        values: &mut Vec<f64>,
+    ) -> Result<(), ReadError> {
+        let raw = self.raw(line);
+        let filled = raw.trim_ascii_end().len();
+        for k in 0..wanted {
+            let from = columns.indent + k * columns.width;
+            if from >= filled {
+                return Err(self.error(
+                    line,
+                    Refusal::Damaged,
+                    format!("{wanted} numbers"),
+                    format!("{k} numbers"),
+                    "the file is cut or a line was lost; get it again from its source",
+                ));
+            }
+            let field = self.slice(line, from, columns.width);
+            let value = parse_number(field).ok_or_else(|| self.bad_number(line, from, field))?;
+            values.push(self.within(line, from, value, limit)?);
+        }
+        let end = columns.indent + wanted * columns.width;
+        if filled > end {
+            return Err(self.error(
+                (line, end),
+                Refusal::Damaged,
+                format!("the end of {wanted} numbers"),
+                format!("\"{}\"", shorten(&latin1(raw[end..].trim_ascii()))),
+                "the header states fewer numbers than the file holds or other columns; get the \
+                 file again from its source",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Appends the numbers of one line separated by blanks, tabs, commas or semicolons, or touching.
+    pub(crate) fn tokens(
+        &self,
+        line: usize,
+        limit: f64,
+        values: &mut Vec<f64>,
+    ) -> Result<(), ReadError> {
+        let raw = self.raw(line);
+        let mut at = 0;
+        while at < raw.len() {
+            if is_separator(raw[at]) {
+                at += 1;
+                continue;
+            }
+            let start = at;
+            while at < raw.len() && !is_separator(raw[at]) {
+                at += 1;
+            }
+            let token = &raw[start..at];
+            if let Some(value) = parse_number(token) {
+                values.push(self.within(line, start, value, limit)?);
+                continue;
+            }
+            let pieces =
+                split_touching(token).ok_or_else(|| self.bad_number(line, start, token))?;
+            for (offset, value) in pieces {
+                values.push(self.within(line, start + offset, value, limit)?);
+            }
+        }
+        Ok(())
+    }
+
+    /// All numbers of lines `from..to` by blanks.
+    pub(crate) fn all_tokens(
+        &self,
+        from: usize,
+        to: usize,
+        limit: f64,
+    ) -> Result<Vec<f64>, ReadError> {
+        let mut values = Vec::with_capacity(self.bytes.len() / 12);
+        for line in from..to.min(self.lines.len()) {
+            self.tokens(line, limit, &mut values)?;
+        }
+        Ok(values)
+    }
+
+    fn within(&self, line: usize, column: usize, value: f64, limit: f64) -> Result<f64, ReadError> {
+        if value.abs() <= limit {
+            Ok(value)
+        } else {
+            Err(self.error(
+                (line, column),
+                Refusal::Damaged,
+                format!("a number up to {limit:.3e} in the file's unit"),
+                format!("{value:e}"),
+                "no ground moves like that; check the unit, or get the file again from its source",
+            ))
+        }
+    }
+
+    /// Refuses the first byte that no text file holds.
+    pub(crate) fn require_text(&self) -> Result<(), ReadError> {
+        for (line, raw) in self.lines.iter().enumerate() {
+            if let Some(column) = raw.iter().position(|&b| b < 0x09 || (0x0E..0x20).contains(&b)) {
+                return Err(self.error(
+                    (line, column),
+                    Refusal::Damaged,
+                    "text",
+                    format!("byte 0x{:02X}", raw[column]),
+                    "the file is binary or damaged; give the original file",
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Where in the file, 0-based.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Place {
+    line: Option<usize>,
+    column: Option<usize>,
+}
+
+impl From<()> for Place {
+    fn from((): ()) -> Self {
+        Self::default()
+    }
+}
+
+impl From<usize> for Place {
+    fn from(line: usize) -> Self {
+        Self { line: Some(line), column: None }
+    }
+}
+
+impl From<Option<usize>> for Place {
+    fn from(line: Option<usize>) -> Self {
+        Self { line, column: None }
+    }
+}
+
+impl From<(usize, usize)> for Place {
+    fn from((line, column): (usize, usize)) -> Self {
+        Self { line: Some(line), column: Some(column) }
+    }
+}
+
+/// A number with one unit of its last printed digit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Printed {
+    pub(crate) value: f64,
+    pub(crate) resolution: f64,
+}
+
+/// Bytes as text, one character each.
+pub(crate) fn latin1(bytes: &[u8]) -> String {
+    bytes.iter().map(|&byte| char::from(byte)).collect()
+}
+
+/// At most 40 characters of a text, for messages.
+pub(crate) fn shorten(text: &str) -> String {
+    if text.chars().count() <= 40 {
+        text.to_owned()
+    } else {
+        text.chars().take(37).chain("...".chars()).collect()
+    }
+}
+
+/// A finite decimal number with optional Fortran exponent letter `D`; nothing else.
+pub(crate) fn parse_number(field: &[u8]) -> Option<f64> {
+    let field = field.trim_ascii();
+    // Rejects what the standard parser would accept as words: inf, nan, infinity.
+    let mut fortran = false;
+    for &byte in field {
+        match byte {
+            b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E' => {}
+            b'd' | b'D' => fortran = true,
+            _ => return None,
+        }
+    }
+    let text = std::str::from_utf8(field).ok()?;
+    let value: f64 =
+        if fortran { text.replace(['d', 'D'], "E").parse().ok()? } else { text.parse().ok()? };
+    value.is_finite().then_some(value)
+}
+
+/// Splits `-.123E-02-.456E-02` at signs that do not follow an exponent letter.
+fn split_touching(token: &[u8]) -> Option<Vec<(usize, f64)>> {
+    let mut pieces = Vec::new();
+    let mut start = 0;
+    for at in 1..=token.len() {
+        let boundary = at == token.len()
+            || (matches!(token[at], b'+' | b'-')
+                && (token[at - 1].is_ascii_digit() || token[at - 1] == b'.'));
+        if boundary {
+            // A piece without a decimal point is not a Fortran real: refuse to guess where it ends.
+            let piece = &token[start..at];
+            if !piece.contains(&b'.') {
+                return None;
+            }
+            pieces.push((start, parse_number(piece)?));
+            start = at;
+        }
+    }
+    Some(pieces)
+}
+
+fn is_separator(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\t' | b',' | b';')
+}
+
+/// The number at the start of `bytes` after blanks, `=` and `:`, with its text.
+pub(crate) fn leading_number(bytes: &[u8]) -> Option<(f64, String)> {
+    let skip = bytes.iter().position(|&b| !matches!(b, b' ' | b'\t' | b'=' | b':'))?;
+    let rest = &bytes[skip..];
+    let mut end = 0;
+    while end < rest.len() {
+        let byte = rest[end];
+        let sign_ok = end == 0 || matches!(rest[end - 1], b'e' | b'E');
+        let exponent_ok = end > 0
+            && rest.get(end + 1).is_some_and(|b| b.is_ascii_digit() || matches!(b, b'+' | b'-'));
+        match byte {
+            b'0'..=b'9' | b'.' => {}
+            b'+' | b'-' if sign_ok => {}
+            b'e' | b'E' if exponent_ok => {}
+            _ => break,
+        }
+        end += 1;
+    }
+    // A sentence may end in a full stop right after the number.
+    let value = parse_number(&rest[..end])?;
+    Some((value, latin1(&rest[..end])))
+}
+
+/// One unit of the last digit of a printed number.
+pub(crate) fn resolution(text: &str) -> f64 {
+    let lower = text.to_ascii_lowercase();
+    let (mantissa, exponent) = lower.split_once('e').unwrap_or((&lower, "0"));
+    let decimals = mantissa.split_once('.').map_or(0, |(_, fraction)| fraction.len());
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    let power = exponent.saturating_sub(i32::try_from(decimals).unwrap_or(0)).clamp(-300, 300);
+    crate::math::powf(10.0, f64::from(power))
+}
+
+fn find_ignoring_case(haystack: &[u8], needle: &[u8]) -> Option<usize> {
+    if needle.is_empty() || haystack.len() < needle.len() {
+        return None;
+    }
+    haystack.windows(needle.len()).position(|window| window.eq_ignore_ascii_case(needle))
+}

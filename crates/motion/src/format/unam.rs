@@ -1,0 +1,174 @@
+//! UNAM and CICESE, Mexico: the "archivo estándar de aceleración" (ASA 2.0), columns in gal.
+//!
+//! Keys are Spanish and spelled in several ways; the order of the columns stands in
+//! `ORIENTACION C1-C6`.
+//! Spec: Sociedad Mexicana de Ingeniería Sísmica, formato estándar de aceleración, version 2.0.
+
+use super::source::{Columns, LARGEST_ACCELERATION, Source, leading_number, resolution, shorten};
+use super::{Format, ReadOptions};
+use crate::direction::Direction;
+use crate::error::{ReadError, Refusal};
+use crate::math;
+use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+
+pub(crate) const FORMAT: Format =
+    Format { name: "unam", title: "UNAM and CICESE ASA 2.0 (Mexico)", sniff, read };
+
+const GAL: f64 = 0.01;
+const MOST_HEADER_LINES: usize = 200;
+
+fn sniff(source: &Source<'_>) -> bool {
+    (0..20).any(|line| {
+        source.has(line, "ARCHIVO ESTANDAR DE ACELERACION")
+            || source.has(line, "ARCHIVO EST\u{c1}NDAR DE ACELERACI\u{d3}N")
+    })
+}
+
+/// A key reduced to letters and digits, so that "C1-C6, (s)" equals "C1-C6 (s)".
+fn reduced(text: &str) -> String {
+    text.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_uppercase()
+}
+
+fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
+    let key = reduced(key);
+    (0..MOST_HEADER_LINES).find_map(|line| {
+        let text = source.text(line);
+        let (name, value) = text.split_once(':')?;
+        reduced(name).starts_with(&key).then(|| (line, value.trim().to_owned()))
+    })
+}
+
+/// `/a/b/c`.
+fn list(text: &str) -> Vec<String> {
+    text.trim_start_matches('/').split('/').map(|part| part.trim().to_owned()).collect()
+}
+
+fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+    let need = |key: &str| {
+        field(source, key).filter(|(_, value)| !value.is_empty()).ok_or_else(|| {
+            source.error(
+                (),
+                Refusal::Damaged,
+                format!("a value for \"{key}\""),
+                "none",
+                "restore the header from the original file",
+            )
+        })
+    };
+    let numbers = |key: &str| -> Result<(usize, Vec<f64>), ReadError> {
+        let (line, text) = need(key)?;
+        let values: Option<Vec<f64>> = list(&text)
+            .iter()
+            .map(|part| leading_number(part.as_bytes()).map(|(value, _)| value))
+            .collect();
+        values.map(|values| (line, values)).ok_or_else(|| {
+            source.error(
+                line,
+                Refusal::Damaged,
+                format!("numbers between slashes for \"{key}\""),
+                format!("\"{}\"", shorten(&text)),
+                "restore the header from the original file",
+            )
+        })
+    };
+    let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
+    if options.time_step.is_some() {
+        record.warn(None, "the file states its step; the time step given was ignored");
+    }
+    let (unit_line, unit) = need("UNIDADES DE LOS DATOS")?;
+    if !unit.to_ascii_lowercase().contains("gal") {
+        return Err(source.error(
+            unit_line,
+            Refusal::NotAcceleration,
+            "Gal (cm/s/s) as unit",
+            format!("\"{}\"", shorten(&unit)),
+            "give the acceleration file of the same station",
+        ));
+    }
+    let names = list(&need("ORIENTACION C1-C6")?.1);
+    let (step_line, steps) = numbers("INTERVALO DE MUESTREO, C1-C6")?;
+    let (count_line, counts) = numbers("NUM. TOTAL DE MUESTRAS, C1-C6")?;
+    let (Some(&time_step), Some(&count)) = (steps.first(), counts.first()) else {
+        return Err(source.cut("steps and counts", "none"));
+    };
+    if steps.iter().any(|step| *step != time_step) {
+        return Err(source.error(
+            step_line,
+            Refusal::Damaged,
+            "one step for all channels",
+            format!("{steps:?}"),
+            "split the file by channel",
+        ));
+    }
+    let count = super::whole(source, count_line, "a number of samples", count)?;
+    let first = data_line(source)?;
+    let columns = field(source, "FORMATO DATOS")
+        .and_then(|(_, text)| Columns::parse(&text))
+        .filter(|columns| columns.per_line == names.len())
+        .unwrap_or(Columns::new(names.len(), 10));
+    let limit = LARGEST_ACCELERATION / GAL;
+    let mut values = vec![Vec::with_capacity(count.min(source.lines.len())); names.len()];
+    for line in first..source.lines.len() {
+        let (row, _) = source.fixed(line, names.len(), columns, limit)?;
+        for (column, value) in values.iter_mut().zip(row) {
+            column.push(value * GAL);
+        }
+    }
+    let found = values.first().map_or(0, Vec::len);
+    super::check_count(source, &mut record, count_line, count, found)?;
+    if found > count {
+        for column in &mut values {
+            column.truncate(count);
+        }
+        record
+            .notes
+            .push(format!("{} rows beyond the {count} stated were left out", found - count));
+        record.warnings.retain(|warning| warning.line != Some(count_line + 1));
+        record.warn(
+            count_line + 1,
+            format!(
+                "the header states {count} samples, the file holds {found}; the rest is left out"
+            ),
+        );
+    }
+    record.station = need("CLAVE DE LA ESTACION")?.1;
+    record.event = field(source, "FECHA DEL SISMO").map(|(_, text)| text).unwrap_or_default();
+    let peaks =
+        field(source, "ACEL. MAX.(Gal), C1-C6").map(|(_, text)| list(&text)).unwrap_or_default();
+    for (k, (name, values)) in names.iter().zip(values).enumerate() {
+        let mut channel = Channel::new(name.clone(), Direction::parse(name), time_step, values);
+        if let Some((value, digits)) = peaks.get(k).and_then(|text| leading_number(text.as_bytes()))
+        {
+            channel.peaks.push(StatedPeak {
+                quantity: Quantity::Acceleration,
+                stated: value.abs() * GAL,
+                resolution: resolution(&digits) * GAL,
+                measured: math::peak(&channel.acceleration),
+            });
+        }
+        record.channels.push(channel);
+    }
+    Ok(record)
+}
+
+/// The line after the second ruler below `DATOS DE ACELERACION`.
+fn data_line(source: &Source<'_>) -> Result<usize, ReadError> {
+    let title = (0..MOST_HEADER_LINES.min(source.lines.len()))
+        .rev()
+        .find(|&line| source.text(line).starts_with("DATOS DE ACELERACION"));
+    title
+        .and_then(|title| {
+            let mut rulers = (title..source.lines.len().min(title + 12))
+                .filter(|&line| source.text(line).starts_with("-----"));
+            rulers.nth(1).map(|line| line + 1)
+        })
+        .ok_or_else(|| {
+            source.error(
+                (),
+                Refusal::Damaged,
+                "\"DATOS DE ACELERACION\" with two rulers before the data",
+                "none",
+                "the file is cut; get it again from its source",
+            )
+        })
+}

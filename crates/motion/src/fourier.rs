@@ -1,0 +1,120 @@
+//! Discrete Fourier transform in a fixed order of operations, and the Fourier amplitude spectrum.
+//!
+//! A plain radix-2 transform of our own: its bits do not depend on the instruction set, which
+//! transforms that pick vector code at run time cannot promise.
+
+use crate::math::{self, TAU};
+
+/// A complex number.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Complex {
+    pub(crate) re: f64,
+    pub(crate) im: f64,
+}
+
+impl Complex {
+    pub(crate) fn norm(self) -> f64 {
+        (self.re * self.re + self.im * self.im).sqrt()
+    }
+
+    pub(crate) fn times(self, factor: f64) -> Self {
+        Self { re: self.re * factor, im: self.im * factor }
+    }
+}
+
+/// In-place forward transform `X[k] = Σ x[n] exp(-2πi kn/N)`; the length is a power of two.
+pub(crate) fn forward(values: &mut [Complex]) {
+    transform(values, -1.0);
+}
+
+/// In-place inverse transform, including the division by the length.
+pub(crate) fn inverse(values: &mut [Complex]) {
+    transform(values, 1.0);
+    let factor = 1.0 / values.len() as f64;
+    for value in values {
+        *value = value.times(factor);
+    }
+}
+
+fn transform(values: &mut [Complex], sign: f64) {
+    let n = values.len();
+    assert!(n.is_power_of_two(), "the transform works on powers of two");
+    let mut j = 0;
+    for i in 1..n {
+        let mut bit = n >> 1;
+        while j & bit != 0 {
+            j ^= bit;
+            bit >>= 1;
+        }
+        j |= bit;
+        if i < j {
+            values.swap(i, j);
+        }
+    }
+    // One table for all stages: twiddle k of stage `size` is entry k * n/size.
+    let table: Vec<Complex> = (0..n / 2)
+        .map(|k| {
+            let (s, c) = math::sin_cos(TAU * k as f64 / n as f64);
+            Complex { re: c, im: sign * s }
+        })
+        .collect();
+    let mut size = 2;
+    while size <= n {
+        let (half, stride) = (size / 2, n / size);
+        for block in values.chunks_exact_mut(size) {
+            let (low, high) = block.split_at_mut(half);
+            for (k, (a, b)) in low.iter_mut().zip(high).enumerate() {
+                let t = table[k * stride];
+                let product =
+                    Complex { re: b.re * t.re - b.im * t.im, im: b.re * t.im + b.im * t.re };
+                *b = Complex { re: a.re - product.re, im: a.im - product.im };
+                *a = Complex { re: a.re + product.re, im: a.im + product.im };
+            }
+        }
+        size *= 2;
+    }
+}
+
+/// Transform of real values, padded with zeros to `length` (a power of two).
+pub(crate) fn forward_real(values: &[f64], length: usize) -> Vec<Complex> {
+    let mut padded: Vec<Complex> = values.iter().map(|&re| Complex { re, im: 0.0 }).collect();
+    padded.resize(length, Complex::default());
+    forward(&mut padded);
+    padded
+}
+
+/// Multiplies the transform of a real signal of step `time_step` by a real gain of frequency (Hz),
+/// which keeps every phase.
+pub(crate) fn apply_gain(spectrum: &mut [Complex], time_step: f64, gain: impl Fn(f64) -> f64) {
+    let n = spectrum.len();
+    for k in 0..=n / 2 {
+        let g = gain(k as f64 / (n as f64 * time_step));
+        spectrum[k] = spectrum[k].times(g);
+        if k != 0 && k != n - k {
+            spectrum[n - k] = spectrum[n - k].times(g);
+        }
+    }
+}
+
+/// Amplitudes of the Fourier transform of an acceleration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FourierSpectrum {
+    /// Frequencies (Hz), from 0 to the Nyquist frequency.
+    pub frequency: Vec<f64>,
+    /// `|∫ a exp(-2πi f t) dt|` (m/s).
+    pub amplitude: Vec<f64>,
+}
+
+impl FourierSpectrum {
+    /// Computes the spectrum of accelerations (m/s²) of step `time_step` (s), padded with zeros to
+    /// the next power of two.
+    pub fn new(time_step: f64, acceleration: &[f64]) -> Self {
+        let length = acceleration.len().max(2).next_power_of_two();
+        let transform = forward_real(acceleration, length);
+        let half = length / 2;
+        Self {
+            frequency: (0..=half).map(|k| k as f64 / (length as f64 * time_step)).collect(),
+            amplitude: transform[..=half].iter().map(|x| x.norm() * time_step).collect(),
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! A ground motion ready to drive a model: a horizontal and perhaps a vertical component.
+
+use crate::error::MotionError;
+use crate::history::History;
+use crate::intensity::{Growth, IntensityMeasure};
+use crate::pulse::Pulse;
+use crate::sampled::Sampled;
+
+/// A motion with everything that was done to it.
+///
+/// ```
+/// use barrelstack_motion::{GroundMotion, IntensityMeasure, Pulse};
+/// let pulse = Pulse::Ricker { acceleration: 3.0, period: 0.8 };
+/// let motion = GroundMotion::from_pulse("ricker", pulse)?;
+/// let strong = motion.scale_to(IntensityMeasure::Pgv, 0.6)?;
+/// assert!((strong.pgv() - 0.6).abs() < 1e-12);
+/// # Ok::<(), barrelstack_motion::MotionError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroundMotion {
+    /// The horizontal component, positive along `x`.
+    pub horizontal: History,
+    /// The vertical component, positive upward.
+    pub vertical: Option<History>,
+    /// Name for tables and plots.
+    pub name: String,
+    /// Time after which nothing shakes (s).
+    pub duration: f64,
+    /// Every processing and scaling step, one sentence each, in the order done.
+    pub provenance: Vec<String>,
+}
+
+impl GroundMotion {
+    /// A motion of the given components.
+    pub fn new(name: impl Into<String>, horizontal: History, vertical: Option<History>) -> Self {
+        let duration = horizontal.duration().max(vertical.as_ref().map_or(0.0, History::duration));
+        Self { horizontal, vertical, name: name.into(), duration, provenance: Vec::new() }
+    }
+
+    /// A horizontal motion given by a formula.
+    ///
+    /// # Errors
+    /// If a parameter of the pulse is out of range.
+    pub fn from_pulse(name: impl Into<String>, pulse: Pulse) -> Result<Self, MotionError> {
+        pulse.check()?;
+        let mut motion = Self::new(name, History::Analytic(pulse), None);
+        motion.provenance.push(format!("closed form: {pulse:?}"));
+        Ok(motion)
+    }
+
+    /// A horizontal motion of equally spaced accelerations (m/s²), integrated from rest.
+    ///
+    /// # Errors
+    /// As [`Sampled::new`].
+    pub fn from_acceleration(
+        name: impl Into<String>,
+        time_step: f64,
+        acceleration: Vec<f64>,
+    ) -> Result<Self, MotionError> {
+        Ok(Self::new(name, History::Sampled(Sampled::new(time_step, acceleration)?), None))
+    }
+
+    /// All components times `factor`.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let mut motion = self.map(|history| history.scaled(factor));
+        motion.provenance.push(format!("scaled by {factor:.6} (one factor for all components)"));
+        motion
+    }
+
+    /// The motion for a model `length_scale` times the size under the same gravity: time times
+    /// `√length_scale`, displacement times `length_scale`, velocity times `√length_scale`,
+    /// acceleration unchanged.
+    #[must_use]
+    pub fn froude(&self, length_scale: f64) -> Self {
+        let mut motion = self.map(|history| history.froude(length_scale));
+        motion.provenance.push(format!(
+            "Froude-scaled to length {length_scale}: time times {:.6}, acceleration unchanged",
+            length_scale.sqrt()
+        ));
+        motion
+    }
+
+    fn map(&self, change: impl Fn(&History) -> History) -> Self {
+        let horizontal = change(&self.horizontal);
+        let vertical = self.vertical.as_ref().map(change);
+        let mut motion = Self::new(self.name.clone(), horizontal, vertical);
+        motion.provenance.clone_from(&self.provenance);
+        motion
+    }
+
+    /// The motion whose horizontal component has the given intensity (SI units); the vertical
+    /// component takes the same factor.
+    ///
+    /// # Errors
+    /// If the measure does not grow with amplitude, is zero here, or the target is not above zero.
+    pub fn scale_to(&self, measure: IntensityMeasure, target: f64) -> Result<Self, MotionError> {
+        MotionError::require_positive(&format!("target {measure} ({})", measure.unit()), target)?;
+        let factor = self.scale_factor(measure, target)?;
+        let mut motion = self.map(|history| history.scaled(factor));
+        motion.provenance.push(format!(
+            "scaled by {factor:.6} to {measure} = {target} {} of the horizontal component (one \
+             factor for all components)",
+            measure.unit()
+        ));
+        Ok(motion)
+    }
+
+    /// The factor that brings the horizontal component to the given intensity (SI units).
+    ///
+    /// # Errors
+    /// As [`GroundMotion::scale_to`].
+    pub fn scale_factor(&self, measure: IntensityMeasure, target: f64) -> Result<f64, MotionError> {
+        let now = self.intensity(measure)?;
+        let zero = || MotionError::Zero {
+            measure: measure.to_string(),
+            motion: self.name.clone(),
+            target: format!("{target} {}", measure.unit()),
+        };
+        match measure.growth() {
+            Growth::Power(power) => {
+                if !(now > 0.0) {
+                    return Err(zero());
+                }
+                let ratio = target / now;
+                Ok(if power == 2.0 { ratio.sqrt() } else { ratio })
+            }
+            Growth::Monotone => {
+                self.bracketed_factor(measure, target).and_then(|factor| factor.ok_or_else(zero))
+            }
+            Growth::None(reason) => Err(MotionError::NotScalable {
+                measure: measure.to_string(),
+                reason: reason.to_owned(),
+            }),
+        }
+    }
+
+    /// The factor at which a growing measure reaches `target`, by bisection.
+    fn bracketed_factor(
+        &self,
+        measure: IntensityMeasure,
+        target: f64,
+    ) -> Result<Option<f64>, MotionError> {
+        if !(self.horizontal.pga() > 0.0) {
+            return Ok(None);
+        }
+        let value = |factor: f64| measure.of_history(&self.horizontal.scaled(factor));
+        let (mut low, mut high) = (1.0, 1.0);
+        while value(low)? > target {
+            low *= 0.5;
+        }
+        while value(high)? < target {
+            high *= 2.0;
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if value(middle)? < target {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Ok(Some(high))
+    }
+
+    /// An intensity measure of the horizontal component (SI units).
+    ///
+    /// # Errors
+    /// If a parameter of the measure is out of range.
+    pub fn intensity(&self, measure: IntensityMeasure) -> Result<f64, MotionError> {
+        measure.of_history(&self.horizontal)
+    }
+
+    /// Peak ground acceleration of the horizontal component (m/s²).
+    pub fn pga(&self) -> f64 {
+        self.horizontal.pga()
+    }
+
+    /// Peak ground velocity of the horizontal component (m/s).
+    pub fn pgv(&self) -> f64 {
+        self.horizontal.pgv()
+    }
+
+    /// Peak ground displacement of the horizontal component (m).
+    pub fn pgd(&self) -> f64 {
+        self.horizontal.pgd()
+    }
+}

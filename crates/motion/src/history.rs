@@ -1,0 +1,188 @@
+//! One component's motion at any time, sampled, analytic or a sum of both.
+
+use crate::error::MotionError;
+use crate::pulse::Pulse;
+use crate::sampled::{Kinematics, Sampled};
+
+/// Displacement, velocity and acceleration of one component as functions of time.
+///
+/// The three are exact derivatives of one another.
+/// Before t = 0 they are zero; after [`History::duration`] the acceleration is zero, the velocity is
+/// held and the displacement grows linearly.
+#[derive(Clone, Debug, PartialEq)]
+pub enum History {
+    /// Accelerations at equal steps, linear between them.
+    Sampled(Sampled),
+    /// A closed form.
+    Analytic(Pulse),
+    /// Several histories, each delayed by its own time.
+    Sum(Vec<Delayed>),
+}
+
+/// A history that starts later.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Delayed {
+    /// Start (s), not negative.
+    pub delay: f64,
+    /// What starts then.
+    pub history: History,
+}
+
+impl History {
+    /// The motion at time `t` (s).
+    pub fn at(&self, t: f64) -> Kinematics {
+        match self {
+            Self::Sampled(sampled) => sampled.at(t),
+            Self::Analytic(pulse) => pulse.at(t),
+            Self::Sum(parts) => parts.iter().fold(Kinematics::default(), |sum, part| {
+                let k = part.history.at(t - part.delay);
+                Kinematics {
+                    displacement: sum.displacement + k.displacement,
+                    velocity: sum.velocity + k.velocity,
+                    acceleration: sum.acceleration + k.acceleration,
+                }
+            }),
+        }
+    }
+
+    /// Time after which there is no acceleration (s).
+    pub fn duration(&self) -> f64 {
+        match self {
+            Self::Sampled(sampled) => sampled.duration(),
+            Self::Analytic(pulse) => pulse.duration(),
+            Self::Sum(parts) => {
+                parts.iter().fold(0.0_f64, |end, p| end.max(p.delay + p.history.duration()))
+            }
+        }
+    }
+
+    /// The same history times `factor`.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        self.stretched(1.0, factor)
+    }
+
+    /// The history of a model `length_scale` times the size under the same gravity: time times
+    /// `√length_scale`, displacement times `length_scale`, acceleration unchanged.
+    #[must_use]
+    pub fn froude(&self, length_scale: f64) -> Self {
+        self.stretched(length_scale.sqrt(), 1.0)
+    }
+
+    fn stretched(&self, time: f64, factor: f64) -> Self {
+        match self {
+            Self::Sampled(sampled) => Self::Sampled(sampled.stretched(time, factor)),
+            Self::Analytic(pulse) => Self::Analytic(pulse.stretched(time, factor)),
+            Self::Sum(parts) => Self::Sum(
+                parts
+                    .iter()
+                    .map(|part| Delayed {
+                        delay: part.delay * time,
+                        history: part.history.stretched(time, factor),
+                    })
+                    .collect(),
+            ),
+        }
+    }
+
+    /// The step at which this history is well described by samples (s): its own step, or a 400th of
+    /// the period of a pulse.
+    pub fn natural_step(&self) -> f64 {
+        match self {
+            Self::Sampled(sampled) => sampled.time_step(),
+            Self::Analytic(pulse) => pulse.time_scale() / 400.0,
+            Self::Sum(parts) => parts
+                .iter()
+                .map(|part| part.history.natural_step())
+                .fold(f64::INFINITY, f64::min)
+                .min(self.duration()),
+        }
+    }
+
+    /// Accelerations at steps of at most `time_step`, integrated again.
+    ///
+    /// A sampled history of the same step is returned as it is.
+    /// The step is reduced so that the last sample falls on the end.
+    ///
+    /// # Errors
+    /// If the step is not above zero or would need more than 100 million samples.
+    pub fn sampled(&self, time_step: f64) -> Result<Sampled, MotionError> {
+        MotionError::require_positive("time step (s)", time_step)?;
+        if let Self::Sampled(sampled) = self
+            && sampled.time_step() == time_step
+        {
+            return Ok(sampled.clone());
+        }
+        let duration = self.duration();
+        let steps = (duration / time_step * (1.0 - 1e-12)).ceil();
+        if !(steps <= 1e8) {
+            return Err(MotionError::parameter(
+                "time step (s)",
+                format!("at least {:e} for a motion of {duration} s", duration / 1e8),
+                time_step,
+            ));
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1e8")]
+        let n = (steps as usize).max(1);
+        let even = duration / n as f64;
+        let acceleration = (0..=n).map(|k| self.at(k as f64 * even).acceleration).collect();
+        Sampled::with_initial_velocity(even, acceleration, self.at(0.0).velocity)
+    }
+
+    /// Largest absolute acceleration (m/s²).
+    pub fn pga(&self) -> f64 {
+        match self {
+            Self::Sampled(sampled) => sampled.pga(),
+            Self::Analytic(_) | Self::Sum(_) => self.search_peak(|k| k.acceleration),
+        }
+    }
+
+    /// Largest absolute velocity (m/s); at the samples if the history is sampled.
+    pub fn pgv(&self) -> f64 {
+        match self {
+            Self::Sampled(sampled) => sampled.pgv(),
+            Self::Analytic(_) | Self::Sum(_) => self.search_peak(|k| k.velocity),
+        }
+    }
+
+    /// Largest absolute displacement up to the end of shaking (m); at the samples if sampled.
+    pub fn pgd(&self) -> f64 {
+        match self {
+            Self::Sampled(sampled) => sampled.pgd(),
+            Self::Analytic(_) | Self::Sum(_) => self.search_peak(|k| k.displacement),
+        }
+    }
+
+    /// Scans at the natural step and refines every local extremum by golden section.
+    fn search_peak(&self, quantity: impl Fn(Kinematics) -> f64) -> f64 {
+        const GOLDEN: f64 = 0.618_033_988_749_894_8;
+        let duration = self.duration();
+        let step = self.natural_step();
+        if !(step > 0.0 && duration / step <= 1e8) {
+            return f64::NAN;
+        }
+        let value = |t: f64| quantity(self.at(t.clamp(0.0, duration))).abs();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1e8")]
+        let n = (duration / step).ceil() as usize;
+        let (mut best, mut before, mut here) = (value(0.0), value(0.0), value(step));
+        for k in 1..=n {
+            let after = value((k + 1) as f64 * step);
+            best = best.max(here);
+            if here >= before && here >= after {
+                let (mut low, mut high) = ((k - 1) as f64 * step, (k + 1) as f64 * step);
+                for _ in 0..60 {
+                    let (left, right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+                    if value(left) > value(right) {
+                        high = right;
+                    } else {
+                        low = left;
+                    }
+                }
+                best = best.max(value(0.5 * (low + high)));
+            }
+            before = here;
+            here = after;
+        }
+        best
+    }
+}

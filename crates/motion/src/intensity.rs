@@ -1,0 +1,395 @@
+//! Intensity measures: one number for how strong a motion is.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::error::MotionError;
+use crate::fourier::FourierSpectrum;
+use crate::history::History;
+use crate::math::{self, PI, STANDARD_GRAVITY};
+use crate::response::{check_oscillator, response};
+use crate::sampled::Sampled;
+
+/// A measure of the intensity of one component, in SI units.
+///
+/// Integrals over time are trapezoids of the samples, as published values are.
+/// Parses from and prints as `pgv`, `sa(1.0)`, `sa(1.0,0.02)`, `d5-95`, `housner(0.2)` and so on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum IntensityMeasure {
+    /// Peak ground acceleration (m/s²).
+    Pga,
+    /// Peak ground velocity (m/s).
+    Pgv,
+    /// Peak ground displacement (m).
+    Pgd,
+    /// PGV/PGA (s), long for pulse-like motions.
+    PgvOverPga,
+    /// Arias intensity `π/(2g) ∫a² dt` (m/s) (Arias 1970).
+    Arias,
+    /// Cumulative absolute velocity `∫|a| dt` (m/s) (EPRI 1988).
+    Cav,
+    /// CAV over those whole seconds in which `|a|` exceeds 0.025 g (m/s) (EPRI 1991).
+    CavStandardized,
+    /// Time between two fractions of the Arias intensity (s) (Trifunac and Brady 1975).
+    SignificantDuration {
+        /// First fraction, such as 0.05.
+        from: f64,
+        /// Last fraction, such as 0.95.
+        to: f64,
+    },
+    /// Time between the first and the last crossing of `threshold` by `|a|` (s).
+    BracketedDuration {
+        /// Threshold (m/s²), by custom 0.05 g.
+        threshold: f64,
+    },
+    /// Root mean square of the acceleration over the whole length (m/s²).
+    Rms,
+    /// `∫ PSV dT` from 0.1 to 2.5 s (m) (Housner 1952), trapezoid with steps of 0.01 s.
+    Housner {
+        /// Damping ratio; 0, 0.05 and 0.2 all occur.
+        damping: f64,
+    },
+    /// Acceleration spectrum intensity `∫ PSA dT` from 0.1 to 0.5 s at 5 % (m/s)
+    /// (Von Thun et al. 1988).
+    Asi,
+    /// Velocity spectrum intensity `∫ PSV dT` from 0.1 to 2.5 s at 5 % (m) (Von Thun et al. 1988).
+    Vsi,
+    /// Mean period `Σ(C²/f)/ΣC²`, 0.25 to 20 Hz (s) (Rathje et al. 1998).
+    MeanPeriod,
+    /// Fajfar index `PGV · D5-95^0.25` (m/s^0.75) (Fajfar et al. 1990).
+    Fajfar,
+    /// Pseudo-spectral acceleration (m/s²).
+    Sa {
+        /// Period (s).
+        period: f64,
+        /// Damping ratio.
+        damping: f64,
+    },
+}
+
+/// How a measure grows with the scale factor.
+pub(crate) enum Growth {
+    /// With the given power of the factor.
+    Power(f64),
+    /// Always upward, by no simple law.
+    Monotone,
+    /// Not at all, or in steps.
+    None(&'static str),
+}
+
+impl IntensityMeasure {
+    /// Significant duration from 5 % to 95 % of the Arias intensity.
+    pub const D5_95: Self = Self::SignificantDuration { from: 0.05, to: 0.95 };
+    /// Significant duration from 5 % to 75 % of the Arias intensity.
+    pub const D5_75: Self = Self::SignificantDuration { from: 0.05, to: 0.75 };
+    /// Bracketed duration at 0.05 g.
+    pub const BRACKETED: Self = Self::BracketedDuration { threshold: 0.05 * STANDARD_GRAVITY };
+
+    /// The SI unit of the number, as text; empty for a pure number.
+    pub fn unit(&self) -> &'static str {
+        match self {
+            Self::Pga | Self::Rms | Self::Sa { .. } => "m/s2",
+            Self::Pgv | Self::Arias | Self::Cav | Self::CavStandardized | Self::Asi => "m/s",
+            Self::Pgd | Self::Housner { .. } | Self::Vsi => "m",
+            Self::PgvOverPga
+            | Self::SignificantDuration { .. }
+            | Self::BracketedDuration { .. }
+            | Self::MeanPeriod => "s",
+            Self::Fajfar => "m/s^0.75",
+        }
+    }
+
+    pub(crate) fn growth(&self) -> Growth {
+        match self {
+            Self::Pga
+            | Self::Pgv
+            | Self::Pgd
+            | Self::Cav
+            | Self::Rms
+            | Self::Housner { .. }
+            | Self::Asi
+            | Self::Vsi
+            | Self::Fajfar
+            | Self::Sa { .. } => Growth::Power(1.0),
+            Self::Arias => Growth::Power(2.0),
+            Self::CavStandardized => Growth::Monotone,
+            Self::PgvOverPga => Growth::None("a ratio does not change with the amplitude"),
+            Self::SignificantDuration { .. } | Self::MeanPeriod => {
+                Growth::None("a time does not change with the amplitude")
+            }
+            Self::BracketedDuration { .. } => Growth::None("a bracketed duration grows in steps"),
+        }
+    }
+
+    /// Checks the parameters of the measure.
+    ///
+    /// # Errors
+    /// Names the parameter that is out of range.
+    pub fn check(&self) -> Result<(), MotionError> {
+        match *self {
+            Self::SignificantDuration { from, to } => {
+                if !(0.0 <= from && from < to && to <= 1.0) {
+                    return Err(MotionError::parameter(
+                        "significant duration",
+                        "fractions 0 <= from < to <= 1",
+                        format!("{from} and {to}"),
+                    ));
+                }
+                Ok(())
+            }
+            Self::BracketedDuration { threshold } => {
+                MotionError::require_positive("bracketed duration threshold (m/s2)", threshold)
+            }
+            Self::Housner { damping } => check_oscillator(1.0, damping),
+            Self::Sa { period, damping } => check_oscillator(period, damping),
+            _ => Ok(()),
+        }
+    }
+
+    /// The measure of a sampled motion.
+    ///
+    /// # Errors
+    /// If a parameter of the measure is out of range.
+    pub fn of(&self, motion: &Sampled) -> Result<f64, MotionError> {
+        self.check()?;
+        let (dt, a) = (motion.time_step(), motion.acceleration());
+        Ok(match *self {
+            Self::Pga => motion.pga(),
+            Self::Pgv => motion.pgv(),
+            Self::Pgd => motion.pgd(),
+            Self::PgvOverPga => motion.pgv() / motion.pga(),
+            Self::Arias => arias(dt, a),
+            Self::Cav => math::trapezoid(a.iter().map(|a| a.abs()), dt),
+            Self::CavStandardized => cav_standardized(dt, a),
+            Self::SignificantDuration { from, to } => significant_duration(dt, a, from, to),
+            Self::BracketedDuration { threshold } => bracketed_duration(dt, a, threshold),
+            Self::Rms => (math::trapezoid(a.iter().map(|a| a * a), dt) / motion.duration()).sqrt(),
+            Self::Housner { damping } => spectrum_integral(dt, a, 0.1, 2.5, damping, false)?,
+            Self::Vsi => spectrum_integral(dt, a, 0.1, 2.5, 0.05, false)?,
+            Self::Asi => spectrum_integral(dt, a, 0.1, 0.5, 0.05, true)?,
+            Self::MeanPeriod => mean_period(dt, a),
+            Self::Fajfar => {
+                let duration = significant_duration(dt, a, 0.05, 0.95);
+                motion.pgv() * duration.sqrt().sqrt()
+            }
+            Self::Sa { period, damping } => response(dt, a, period, damping)?.pseudo_acceleration,
+        })
+    }
+
+    /// The measure of any history; one that is not sampled is sampled at its natural step, except
+    /// for PGA, PGV and PGD, which are searched for.
+    ///
+    /// # Errors
+    /// If a parameter of the measure is out of range.
+    pub fn of_history(&self, history: &History) -> Result<f64, MotionError> {
+        match (self, history) {
+            (_, History::Sampled(sampled)) => self.of(sampled),
+            (Self::Pga, _) => Ok(history.pga()),
+            (Self::Pgv, _) => Ok(history.pgv()),
+            (Self::Pgd, _) => Ok(history.pgd()),
+            (Self::PgvOverPga, _) => Ok(history.pgv() / history.pga()),
+            _ => self.of(&history.sampled(history.natural_step())?),
+        }
+    }
+}
+
+/// Arias intensity (m/s) of accelerations (m/s²).
+pub fn arias(time_step: f64, acceleration: &[f64]) -> f64 {
+    PI / (2.0 * STANDARD_GRAVITY) * math::trapezoid(acceleration.iter().map(|a| a * a), time_step)
+}
+
+/// The normalized build-up of the Arias intensity at the samples (Husid plot), from 0 to 1.
+pub fn husid(acceleration: &[f64]) -> Vec<f64> {
+    let mut sum = 0.0;
+    let mut build_up = Vec::with_capacity(acceleration.len());
+    build_up.push(0.0);
+    for pair in acceleration.windows(2) {
+        sum += 0.5 * (pair[0] * pair[0] + pair[1] * pair[1]);
+        build_up.push(sum);
+    }
+    if sum > 0.0 {
+        for value in &mut build_up {
+            *value /= sum;
+        }
+    }
+    build_up
+}
+
+fn significant_duration(time_step: f64, acceleration: &[f64], from: f64, to: f64) -> f64 {
+    let build_up = husid(acceleration);
+    let time = |fraction: f64| {
+        let after = build_up.partition_point(|&value| value < fraction);
+        if after == 0 || after == build_up.len() {
+            return after as f64;
+        }
+        let (low, high) = (build_up[after - 1], build_up[after]);
+        (after - 1) as f64 + (fraction - low) / (high - low)
+    };
+    time_step * (time(to) - time(from))
+}
+
+fn cav_standardized(time_step: f64, acceleration: &[f64]) -> f64 {
+    let threshold = 0.025 * STANDARD_GRAVITY;
+    let per_window = (1.0 / time_step).round().max(1.0);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1")]
+    let per_window = per_window as usize;
+    let mut sum = 0.0;
+    let mut first = 0;
+    while first + 1 < acceleration.len() {
+        let last = (first + per_window).min(acceleration.len() - 1);
+        let window = &acceleration[first..=last];
+        if math::peak(window) > threshold {
+            sum += math::trapezoid(window.iter().map(|a| a.abs()), time_step);
+        }
+        first = last;
+    }
+    sum
+}
+
+fn bracketed_duration(time_step: f64, acceleration: &[f64], threshold: f64) -> f64 {
+    let above = |a: &f64| a.abs() > threshold;
+    let (Some(first), Some(last)) =
+        (acceleration.iter().position(above), acceleration.iter().rposition(above))
+    else {
+        return 0.0;
+    };
+    // The crossing inside a step, from the sample below the threshold towards the one above.
+    let part = |below: f64, above: f64| (threshold - below.abs()) / (above.abs() - below.abs());
+    let start = if first == 0 {
+        0.0
+    } else {
+        (first - 1) as f64 + part(acceleration[first - 1], acceleration[first])
+    };
+    let end = if last + 1 == acceleration.len() {
+        last as f64
+    } else {
+        (last + 1) as f64 - part(acceleration[last + 1], acceleration[last])
+    };
+    time_step * (end - start)
+}
+
+fn spectrum_integral(
+    time_step: f64,
+    acceleration: &[f64],
+    first: f64,
+    last: f64,
+    damping: f64,
+    of_acceleration: bool,
+) -> Result<f64, MotionError> {
+    let steps = ((last - first) / 0.01).round();
+    let mut ordinates = Vec::new();
+    let mut k = 0.0;
+    while k <= steps {
+        let period = first + (last - first) * k / steps;
+        let peaks = response(time_step, acceleration, period, damping)?;
+        ordinates.push(if of_acceleration {
+            peaks.pseudo_acceleration
+        } else {
+            peaks.pseudo_velocity
+        });
+        k += 1.0;
+    }
+    Ok(math::trapezoid(ordinates.into_iter(), (last - first) / steps))
+}
+
+fn mean_period(time_step: f64, acceleration: &[f64]) -> f64 {
+    let spectrum = FourierSpectrum::new(time_step, acceleration);
+    let (mut weighted, mut total) = (0.0, 0.0);
+    for (&f, &c) in spectrum.frequency.iter().zip(&spectrum.amplitude) {
+        if (0.25..=20.0).contains(&f) {
+            weighted += c * c / f;
+            total += c * c;
+        }
+    }
+    weighted / total
+}
+
+impl fmt::Display for IntensityMeasure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Pga => f.write_str("pga"),
+            Self::Pgv => f.write_str("pgv"),
+            Self::Pgd => f.write_str("pgd"),
+            Self::PgvOverPga => f.write_str("pgv/pga"),
+            Self::Arias => f.write_str("arias"),
+            Self::Cav => f.write_str("cav"),
+            Self::CavStandardized => f.write_str("cav-std"),
+            Self::SignificantDuration { from, to } => {
+                write!(f, "d{}-{}", percent(*from), percent(*to))
+            }
+            Self::BracketedDuration { threshold } => write!(f, "bracketed({threshold})"),
+            Self::Rms => f.write_str("rms"),
+            Self::Housner { damping } => write!(f, "housner({damping})"),
+            Self::Asi => f.write_str("asi"),
+            Self::Vsi => f.write_str("vsi"),
+            Self::MeanPeriod => f.write_str("tm"),
+            Self::Fajfar => f.write_str("fajfar"),
+            Self::Sa { period, damping } => write!(f, "sa({period},{damping})"),
+        }
+    }
+}
+
+/// A fraction in percent without the noise of the last binary digit.
+fn percent(fraction: f64) -> f64 {
+    (fraction * 1e8).round() / 1e6
+}
+
+impl FromStr for IntensityMeasure {
+    type Err = MotionError;
+
+    fn from_str(text: &str) -> Result<Self, MotionError> {
+        let refuse = || {
+            MotionError::parameter(
+                "intensity measure",
+                "pga, pgv, pgd, pgv/pga, arias, cav, cav-std, d5-75, d5-95, bracketed, rms, \
+                 housner, asi, vsi, tm, fajfar, sa(period) or sa(period,damping)",
+                format!("\"{text}\""),
+            )
+        };
+        let lower = text.trim().to_ascii_lowercase();
+        let (name, arguments) = match lower.split_once('(') {
+            Some((name, rest)) => {
+                let inside = rest.strip_suffix(')').ok_or_else(refuse)?;
+                let numbers = inside
+                    .split(',')
+                    .map(|part| part.trim().parse::<f64>())
+                    .collect::<Result<Vec<_>, _>>()
+                    .map_err(|_| refuse())?;
+                (name.trim().to_owned(), numbers)
+            }
+            None => (lower.clone(), Vec::new()),
+        };
+        let measure = match (name.as_str(), arguments.as_slice()) {
+            ("pga", []) => Self::Pga,
+            ("pgv", []) => Self::Pgv,
+            ("pgd", []) => Self::Pgd,
+            ("pgv/pga", []) => Self::PgvOverPga,
+            ("arias" | "ia", []) => Self::Arias,
+            ("cav", []) => Self::Cav,
+            ("cav-std", []) => Self::CavStandardized,
+            ("bracketed", []) => Self::BRACKETED,
+            ("bracketed", [threshold]) => Self::BracketedDuration { threshold: *threshold },
+            ("rms", []) => Self::Rms,
+            ("housner", []) => Self::Housner { damping: 0.05 },
+            ("housner", [damping]) => Self::Housner { damping: *damping },
+            ("asi", []) => Self::Asi,
+            ("vsi", []) => Self::Vsi,
+            ("tm", []) => Self::MeanPeriod,
+            ("fajfar", []) => Self::Fajfar,
+            ("sa", [period]) => Self::Sa { period: *period, damping: 0.05 },
+            ("sa", [period, damping]) => Self::Sa { period: *period, damping: *damping },
+            (duration, []) => {
+                let (from, to) = duration
+                    .strip_prefix('d')
+                    .and_then(|rest| rest.split_once('-'))
+                    .ok_or_else(refuse)?;
+                let fraction =
+                    |part: &str| part.parse::<f64>().map(|p| p / 100.0).map_err(|_| refuse());
+                Self::SignificantDuration { from: fraction(from)?, to: fraction(to)? }
+            }
+            _ => return Err(refuse()),
+        };
+        measure.check()?;
+        Ok(measure)
+    }
+}

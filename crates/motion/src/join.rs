@@ -1,0 +1,174 @@
+//! Joining files: parts of one record that overlap in time, and components that lie in files of
+//! their own.
+
+use crate::error::MotionError;
+use crate::math;
+use crate::record::{Channel, Record};
+
+/// Shortest overlap that is looked for (s).
+const SHORTEST_OVERLAP: f64 = 1.0;
+/// Largest share of the motion that may differ inside an overlap.
+const LARGEST_MISFIT: f64 = 0.05;
+
+impl Record {
+    /// One record of several files that hold one component each, or several.
+    ///
+    /// Channel names that occur twice get the file's name in front.
+    ///
+    /// # Errors
+    /// If there is no record, or the steps differ.
+    pub fn gather(records: &[Self]) -> Result<Self, MotionError> {
+        let Some((first, rest)) = records.split_first() else {
+            return Err(MotionError::parameter("records to gather", "at least 1", 0));
+        };
+        let mut gathered = first.clone();
+        for record in rest {
+            for channel in &record.channels {
+                let mut channel = channel.clone();
+                if gathered.channels.iter().any(|other| other.name == channel.name) {
+                    channel.name =
+                        format!("{} {}", crate::format::file_stem(&record.file), channel.name);
+                }
+                require_step(&gathered.channels[0], &channel)?;
+                gathered.channels.push(channel);
+            }
+            if record.stage != gathered.stage {
+                gathered.warn(
+                    None,
+                    format!(
+                        "{} is {}, {} is {}",
+                        first.file, first.stage, record.file, record.stage
+                    ),
+                );
+            }
+            gathered.warnings.extend(record.warnings.iter().cloned());
+            gathered.notes.extend(record.notes.iter().cloned());
+            gathered.file = format!("{}, {}", gathered.file, record.file);
+        }
+        Ok(gathered)
+    }
+
+    /// Parts of one long record joined where they overlap.
+    ///
+    /// The overlap is found by sliding the start of the later part along the earlier one; the later
+    /// part is shifted to the baseline of the earlier one.
+    /// Nothing is joined that does not repeat: parts without an overlap of a second are refused.
+    ///
+    /// # Errors
+    /// If there is no part, channels or steps differ, or a pair of parts does not overlap.
+    pub fn join(parts: &[Self]) -> Result<Self, MotionError> {
+        let Some((first, rest)) = parts.split_first() else {
+            return Err(MotionError::parameter("parts to join", "at least 1", 0));
+        };
+        let mut joined = first.clone();
+        for part in rest {
+            join_pair(&mut joined, part)?;
+        }
+        joined.warnings.retain(|warning| !warning.message.contains("one part of a longer record"));
+        Ok(joined)
+    }
+}
+
+fn require_step(one: &Channel, other: &Channel) -> Result<(), MotionError> {
+    if (one.time_step / other.time_step - 1.0).abs() > 1e-9 {
+        return Err(MotionError::Mismatch {
+            what: format!(
+                "channel {} has a step of {} s, channel {} of {} s",
+                one.name, one.time_step, other.name, other.time_step
+            ),
+            remedy: "give files of one step".to_owned(),
+        });
+    }
+    Ok(())
+}
+
+fn join_pair(joined: &mut Record, part: &Record) -> Result<(), MotionError> {
+    let refuse = |what: String| MotionError::Mismatch {
+        what,
+        remedy: "give the parts of one record in order of time".to_owned(),
+    };
+    let mut overlap = None;
+    let names: Vec<String> = joined.channels.iter().map(|channel| channel.name.clone()).collect();
+    for name in names {
+        let (Some(mine), Some(theirs)) = (
+            joined.channels.iter_mut().find(|channel| channel.name == name),
+            part.channels.iter().find(|channel| channel.name == name),
+        ) else {
+            return Err(refuse(format!("{} has no channel {name}", part.file)));
+        };
+        require_step(mine, theirs)?;
+        let found = match overlap {
+            Some(samples) => samples,
+            None => find_overlap(mine, theirs).ok_or_else(|| {
+                refuse(format!(
+                    "the start of {} does not repeat the end of {}",
+                    part.file, joined.file
+                ))
+            })?,
+        };
+        overlap = Some(found);
+        let start = mine.acceleration.len().checked_sub(found).ok_or_else(|| {
+            refuse(format!("channel {name} of {} is shorter than the overlap", joined.file))
+        })?;
+        if found > theirs.acceleration.len() {
+            return Err(refuse(format!(
+                "channel {name} of {} is shorter than the overlap",
+                part.file
+            )));
+        }
+        let (tail, head) = (&mine.acceleration[start..], &theirs.acceleration[..found]);
+        let misfit = misfit(tail, head);
+        if !(misfit <= LARGEST_MISFIT) {
+            return Err(refuse(format!(
+                "channel {name}: the overlap of {} differs by {:.0} %",
+                part.file,
+                100.0 * misfit
+            )));
+        }
+        let offset = math::mean(tail) - math::mean(head);
+        let seconds = found as f64 * mine.time_step;
+        mine.acceleration.extend(theirs.acceleration[found..].iter().map(|a| a + offset));
+        // Stated peaks belong to the parts.
+        mine.peaks.clear();
+        joined.notes.push(format!(
+            "channel {name}: {} joined where its first {seconds:.2} s repeat the end of the part \
+             before, baseline shifted by {offset:.3e} m/s2",
+            part.file
+        ));
+    }
+    joined.warnings.extend(part.warnings.iter().cloned());
+    joined.file = format!("{}, {}", joined.file, part.file);
+    Ok(())
+}
+
+/// Number of samples at the end of `first` that `second` repeats at its start.
+fn find_overlap(first: &Channel, second: &Channel) -> Option<usize> {
+    let (a, b) = (&first.acceleration, &second.acceleration);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, small")]
+    let shortest = (SHORTEST_OVERLAP / first.time_step).ceil().min(1e9) as usize;
+    let longest = a.len().min(b.len());
+    // The probe must move, or anything quiet would match it.
+    let probe_length = shortest.max(200).min(longest);
+    let mut best: Option<(f64, usize)> = None;
+    for samples in (shortest..=longest).rev() {
+        let start = a.len() - samples;
+        let length = probe_length.min(samples);
+        let misfit = misfit(&a[start..start + length], &b[..length]);
+        if misfit <= LARGEST_MISFIT && best.is_none_or(|(least, _)| misfit < least) {
+            best = Some((misfit, samples));
+        }
+    }
+    best.map(|(_, samples)| samples)
+}
+
+/// Root-mean-square difference of two series without their means, over the size of the motion.
+fn misfit(one: &[f64], other: &[f64]) -> f64 {
+    let (mean_one, mean_other) = (math::mean(one), math::mean(other));
+    let (mut difference, mut size) = (0.0, 0.0);
+    for (a, b) in one.iter().zip(other) {
+        let (a, b) = (a - mean_one, b - mean_other);
+        difference += (a - b) * (a - b);
+        size += 0.5 * (a * a + b * b);
+    }
+    if size > 0.0 { (difference / size).sqrt() } else { f64::INFINITY }
+}

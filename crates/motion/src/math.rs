@@ -1,0 +1,117 @@
+//! Transcendental functions with the same bits on every platform, from the pure-Rust `libm`.
+
+pub(crate) use std::f64::consts::PI;
+
+/// Standard gravity (m/s²), used for every conversion from g.
+pub const STANDARD_GRAVITY: f64 = 9.806_65;
+
+/// 2π.
+pub(crate) const TAU: f64 = std::f64::consts::TAU;
+
+pub(crate) fn sin(x: f64) -> f64 {
+    libm::sin(x)
+}
+
+pub(crate) fn cos(x: f64) -> f64 {
+    libm::cos(x)
+}
+
+/// Sine and cosine of `x`.
+pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
+    libm::sincos(x)
+}
+
+pub(crate) fn tan(x: f64) -> f64 {
+    libm::tan(x)
+}
+
+pub(crate) fn atan2(y: f64, x: f64) -> f64 {
+    libm::atan2(y, x)
+}
+
+pub(crate) fn exp(x: f64) -> f64 {
+    libm::exp(x)
+}
+
+pub(crate) fn ln(x: f64) -> f64 {
+    libm::log(x)
+}
+
+pub(crate) fn log10(x: f64) -> f64 {
+    libm::log10(x)
+}
+
+pub(crate) fn powf(x: f64, y: f64) -> f64 {
+    libm::pow(x, y)
+}
+
+pub(crate) fn erf(x: f64) -> f64 {
+    libm::erf(x)
+}
+
+pub(crate) fn cosh(x: f64) -> f64 {
+    libm::cosh(x)
+}
+
+pub(crate) fn sinh(x: f64) -> f64 {
+    libm::sinh(x)
+}
+
+pub(crate) fn hypot(x: f64, y: f64) -> f64 {
+    libm::hypot(x, y)
+}
+
+/// Integer power by repeated multiplication, in a fixed order.
+pub(crate) fn powi(x: f64, n: u32) -> f64 {
+    (0..n).fold(1.0, |product, _| product * x)
+}
+
+/// `n + 1` values from `first` to `last`, evenly spaced in the logarithm.
+pub(crate) fn log_space(first: f64, last: f64, n: usize) -> Vec<f64> {
+    let step = ln(last / first) / n as f64;
+    (0..=n).map(|i| if i == n { last } else { first * exp(step * i as f64) }).collect()
+}
+
+/// Largest absolute value, 0 for an empty slice.
+pub(crate) fn peak(values: &[f64]) -> f64 {
+    values.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()))
+}
+
+/// Arithmetic mean, 0 for an empty slice.
+pub(crate) fn mean(values: &[f64]) -> f64 {
+    if values.is_empty() { 0.0 } else { values.iter().sum::<f64>() / values.len() as f64 }
+}
+
+/// Trapezoid integral of equally spaced values.
+pub(crate) fn trapezoid(values: impl Iterator<Item = f64>, step: f64) -> f64 {
+    let mut sum = 0.0;
+    let mut previous: Option<f64> = None;
+    for value in values {
+        if let Some(p) = previous {
+            sum += 0.5 * step * (p + value);
+        }
+        previous = Some(value);
+    }
+    sum
+}
+
+/// Piecewise-linear interpolation through points of ascending abscissa, held at both ends.
+pub(crate) fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
+    let n = x.len().min(y.len());
+    if n == 0 {
+        return 0.0;
+    }
+    let after = x[..n].partition_point(|&value| value < at);
+    if after == 0 {
+        y[0]
+    } else if after == n {
+        y[n - 1]
+    } else {
+        let (x0, x1) = (x[after - 1], x[after]);
+        if x1 > x0 {
+            y[after - 1] + (y[after] - y[after - 1]) * (at - x0) / (x1 - x0)
+        } else {
+            y[after]
+        }
+    }
+}

@@ -1,0 +1,411 @@
+//! From a recorded acceleration to one that can be integrated: every step chosen and written down.
+
+use crate::error::MotionError;
+use crate::fourier::{apply_gain, forward_real, inverse};
+use crate::math::{self, PI};
+use crate::record::Stage;
+use crate::sampled::integrate;
+
+/// Which mean is taken off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MeanRemoval {
+    /// None.
+    Keep,
+    /// The mean of the quiet part before the first arrival, at most 5 s; of the whole record if the
+    /// first half second already moves.
+    PreEvent,
+    /// The mean of the whole record.
+    Whole,
+}
+
+/// What becomes of the zeros added for the filter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pads {
+    /// They stay: they hold the filter transients that make velocity and displacement end at zero
+    /// (Boore 2005, BSSA 95:745-750).
+    Kept,
+    /// They are cut off and the ends are closed by [`Processing::close`].
+    Removed,
+}
+
+/// The processing of one record, in the order of its fields.
+///
+/// ```
+/// use barrelstack_motion::{Processing, Stage};
+/// assert_eq!(Processing::for_stage(Stage::Corrected), Processing::none());
+/// let gentle = Processing { high_pass: Some(0.05), ..Processing::raw() };
+/// assert_eq!(gentle.order, 4);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Processing {
+    /// Mean removal.
+    pub mean: MeanRemoval,
+    /// Subtract the least-squares line; only for records without permanent tilt.
+    pub detrend: bool,
+    /// Length of the cosine taper at each end, as a fraction of the record; 0 for none.
+    pub taper: f64,
+    /// Corner of the high-pass (Hz); raised to one over the duration if it lies below.
+    pub high_pass: Option<f64>,
+    /// Corner of the low-pass (Hz), below the Nyquist frequency.
+    pub low_pass: Option<f64>,
+    /// Order `n` of the Butterworth filter, applied forth and back:
+    /// gain `1/(1 + (fc/f)^(2n))`, no phase, half amplitude at the corner.
+    pub order: u32,
+    /// Zeros at both ends, `1.5 n/fc` seconds in all (Converse and Brady 1992), and their fate.
+    pub pads: Pads,
+    /// Adds the smallest smooth acceleration of two terms that brings the end velocity and the end
+    /// displacement to zero.
+    pub close: bool,
+}
+
+impl Processing {
+    /// Nothing at all: the record as published.
+    pub fn none() -> Self {
+        Self {
+            mean: MeanRemoval::Keep,
+            detrend: false,
+            taper: 0.0,
+            high_pass: None,
+            low_pass: None,
+            order: 4,
+            pads: Pads::Kept,
+            close: false,
+        }
+    }
+
+    /// The full chain for raw records: pre-event mean, taper of 2 %, fourth-order zero-phase
+    /// high-pass at 0.1 Hz with pads kept, ends closed.
+    pub fn raw() -> Self {
+        Self {
+            mean: MeanRemoval::PreEvent,
+            taper: 0.02,
+            high_pass: Some(0.1),
+            close: true,
+            ..Self::none()
+        }
+    }
+
+    /// The default for a record: [`Processing::raw`] for raw ones, nothing for the others.
+    pub fn for_stage(stage: Stage) -> Self {
+        match stage {
+            Stage::Raw => Self::raw(),
+            Stage::Corrected | Stage::Unknown => Self::none(),
+        }
+    }
+
+    /// Whether the chain leaves the numbers as they are.
+    pub fn is_none(&self) -> bool {
+        self.mean == MeanRemoval::Keep
+            && !self.detrend
+            && self.taper == 0.0
+            && self.high_pass.is_none()
+            && self.low_pass.is_none()
+            && !self.close
+    }
+
+    fn check(&self, time_step: f64) -> Result<(), MotionError> {
+        MotionError::require_positive("time step (s)", time_step)?;
+        if !(0.0..=0.5).contains(&self.taper) {
+            return Err(MotionError::parameter("taper", "a fraction from 0 to 0.5", self.taper));
+        }
+        if !(1..=12).contains(&self.order) {
+            return Err(MotionError::parameter("filter order", "1 to 12", self.order));
+        }
+        let nyquist = 0.5 / time_step;
+        for (what, corner) in
+            [("high-pass corner (Hz)", self.high_pass), ("low-pass corner (Hz)", self.low_pass)]
+        {
+            if let Some(corner) = corner
+                && !(corner > 0.0 && corner < nyquist)
+            {
+                return Err(MotionError::parameter(
+                    what,
+                    format!("above 0 and below the Nyquist frequency, {nyquist} Hz"),
+                    corner,
+                ));
+            }
+        }
+        if let (Some(high), Some(low)) = (self.high_pass, self.low_pass)
+            && high >= low
+        {
+            return Err(MotionError::parameter(
+                "high-pass corner (Hz)",
+                format!("below the low-pass corner, {low} Hz"),
+                high,
+            ));
+        }
+        Ok(())
+    }
+
+    /// Applies the chain to accelerations (m/s²) of step `time_step` (s).
+    ///
+    /// # Errors
+    /// If a setting is out of range for the record.
+    pub fn apply(
+        &self,
+        time_step: f64,
+        acceleration: &[f64],
+        initial_velocity: f64,
+    ) -> Result<Processed, MotionError> {
+        self.check(time_step)?;
+        let mut steps = Vec::new();
+        let mut a = acceleration.to_vec();
+        let mut initial_velocity = initial_velocity;
+        let mut lead = 0.0;
+        if self.is_none() {
+            steps.push("used as read, without processing".to_owned());
+        } else {
+            self.remove_mean(time_step, &mut a, &mut steps);
+            if self.detrend {
+                remove_line(&mut a);
+                steps.push("least-squares line subtracted".to_owned());
+            }
+            if self.taper > 0.0 {
+                taper_ends(&mut a, self.taper);
+                steps.push(format!("cosine taper of {:.1} % at each end", 100.0 * self.taper));
+            }
+            if self.high_pass.is_some() || self.low_pass.is_some() {
+                lead = self.filter(time_step, &mut a, &mut steps);
+                // The filter takes the mean velocity out with everything else below its corner.
+                initial_velocity = 0.0;
+            }
+            if self.close {
+                close_ends(time_step, &mut a, initial_velocity, &mut steps);
+            }
+        }
+        let residuals = Residuals::of(time_step, &a, initial_velocity);
+        steps.push(residuals.sentence());
+        Ok(Processed { acceleration: a, initial_velocity, lead, residuals, steps })
+    }
+
+    fn remove_mean(&self, time_step: f64, a: &mut [f64], steps: &mut Vec<String>) {
+        let (mean, of) = match self.mean {
+            MeanRemoval::Keep => return,
+            MeanRemoval::Whole => (math::mean(a), "the whole record".to_owned()),
+            MeanRemoval::PreEvent => match quiet_samples(time_step, a) {
+                Some(n) => {
+                    (math::mean(&a[..n]), format!("the first {:.2} s", n as f64 * time_step))
+                }
+                None => (
+                    math::mean(a),
+                    "the whole record (it has no quiet part before the first arrival)".to_owned(),
+                ),
+            },
+        };
+        for value in a.iter_mut() {
+            *value -= mean;
+        }
+        steps.push(format!("mean of {of} removed, {mean:.3e} m/s2"));
+    }
+
+    /// Pads and filters; returns the time by which the record now starts later (s).
+    fn filter(&self, time_step: f64, a: &mut Vec<f64>, steps: &mut Vec<String>) -> f64 {
+        let duration = time_step * a.len() as f64;
+        let corner = self.high_pass.map(|corner| corner.max(1.0 / duration));
+        if let (Some(asked), Some(used)) = (self.high_pass, corner)
+            && used > asked
+        {
+            steps.push(format!(
+                "high-pass corner raised from {asked} to {used:.4} Hz, one over the duration"
+            ));
+        }
+        let slowest = corner.or(self.low_pass).unwrap_or(1.0);
+        let side = (0.75 * f64::from(self.order) / slowest / time_step).ceil();
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "positive, and at most 9 times the record because fc >= 1/duration"
+        )]
+        let side = side as usize;
+        let recorded = a.len();
+        let mut padded = vec![0.0; recorded + 2 * side];
+        padded[side..side + recorded].copy_from_slice(a);
+        let length = padded.len().next_power_of_two();
+        let mut spectrum = forward_real(&padded, length);
+        let power = 2 * self.order;
+        apply_gain(&mut spectrum, time_step, |f| {
+            let high = corner.map_or(1.0, |fc| {
+                if f == 0.0 { 0.0 } else { 1.0 / (1.0 + math::powi(fc / f, power)) }
+            });
+            high * self.low_pass.map_or(1.0, |fc| 1.0 / (1.0 + math::powi(f / fc, power)))
+        });
+        inverse(&mut spectrum);
+        for (value, filtered) in padded.iter_mut().zip(&spectrum) {
+            *value = filtered.re;
+        }
+        if let Some(fc) = corner {
+            steps.push(format!(
+                "zero-phase Butterworth high-pass, order {} forth and back, at {fc:.4} Hz",
+                self.order
+            ));
+        }
+        if let Some(fc) = self.low_pass {
+            steps.push(format!(
+                "zero-phase Butterworth low-pass, order {} forth and back, at {fc:.4} Hz",
+                self.order
+            ));
+        }
+        let pad = side as f64 * time_step;
+        match self.pads {
+            Pads::Kept => {
+                *a = padded;
+                steps.push(format!("zero pads of {pad:.2} s at each end kept"));
+                pad
+            }
+            Pads::Removed => {
+                a.copy_from_slice(&padded[side..side + recorded]);
+                steps.push(format!("zero pads of {pad:.2} s at each end removed after filtering"));
+                0.0
+            }
+        }
+    }
+}
+
+/// A processed acceleration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Processed {
+    /// Acceleration (m/s²).
+    pub acceleration: Vec<f64>,
+    /// Velocity at the first sample (m/s).
+    pub initial_velocity: f64,
+    /// Time by which the recorded part starts later, because of a pad (s).
+    pub lead: f64,
+    /// What is left at the end.
+    pub residuals: Residuals,
+    /// Every step, one sentence each.
+    pub steps: Vec<String>,
+}
+
+/// Velocity and displacement left at the end of a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residuals {
+    /// End velocity over PGV.
+    pub velocity: f64,
+    /// End displacement over PGD.
+    pub displacement: f64,
+}
+
+impl Residuals {
+    /// Integrates accelerations (m/s²) and compares the ends with the peaks.
+    pub fn of(time_step: f64, acceleration: &[f64], initial_velocity: f64) -> Self {
+        let (v, d) = integrate(time_step, acceleration, initial_velocity);
+        let ratio = |values: &[f64]| {
+            let peak = math::peak(values);
+            match values.last() {
+                Some(last) if peak > 0.0 => last.abs() / peak,
+                _ => 0.0,
+            }
+        };
+        Self { velocity: ratio(&v), displacement: ratio(&d) }
+    }
+
+    /// End velocity below a thousandth of PGV and end displacement below a hundredth of PGD.
+    pub fn acceptable(&self) -> bool {
+        self.velocity < 1e-3 && self.displacement < 1e-2
+    }
+
+    fn sentence(self) -> String {
+        let values =
+            format!("ends with {:.1e} of PGV and {:.1e} of PGD", self.velocity, self.displacement);
+        if self.acceptable() {
+            values
+        } else {
+            format!(
+                "{values}, above 1e-3 and 1e-2: the ground does not come to rest where it began"
+            )
+        }
+    }
+}
+
+/// Number of samples before the first arrival, at most 5 s, if there is at least half a second.
+///
+/// The arrival is where the acceleration first leaves its level of the first half second by 5 % of
+/// the peak; half a second before it is left out.
+fn quiet_samples(time_step: f64, a: &[f64]) -> Option<usize> {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, small")]
+    let samples = |seconds: f64| (seconds / time_step).ceil().min(1e9) as usize;
+    let half_second = samples(0.5);
+    if a.len() < 2 * half_second {
+        return None;
+    }
+    let level = math::mean(&a[..half_second]);
+    let peak = a.iter().fold(0.0_f64, |peak, value| peak.max((value - level).abs()));
+    let arrival = a.iter().position(|value| (value - level).abs() > 0.05 * peak)?;
+    let quiet = arrival.saturating_sub(half_second).min(samples(5.0));
+    (quiet >= half_second).then_some(quiet)
+}
+
+/// Subtracts the least-squares straight line.
+fn remove_line(a: &mut [f64]) {
+    let middle = 0.5 * (a.len() as f64 - 1.0);
+    let mean = math::mean(a);
+    let (mut product, mut square) = (0.0, 0.0);
+    for (k, value) in a.iter().enumerate() {
+        let x = k as f64 - middle;
+        product += x * value;
+        square += x * x;
+    }
+    let slope = if square > 0.0 { product / square } else { 0.0 };
+    for (k, value) in a.iter_mut().enumerate() {
+        *value -= mean + slope * (k as f64 - middle);
+    }
+}
+
+/// Half-cosine taper over a fraction of the length at each end.
+pub(crate) fn taper_ends(a: &mut [f64], fraction: f64) {
+    let n = a.len();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to n/2")]
+    let width = (fraction * n as f64).round() as usize;
+    for k in 0..width.min(n) {
+        let weight = 0.5 * (1.0 - math::cos(PI * k as f64 / width as f64));
+        a[k] *= weight;
+        a[n - 1 - k] *= weight;
+    }
+}
+
+/// Adds `c₁ s² + c₂ s² cos(π t/T)` with `s = sin(π t/T)` so that velocity and displacement end at
+/// zero; both terms start and end smoothly at zero.
+pub(crate) fn close_ends(
+    time_step: f64,
+    a: &mut [f64],
+    initial_velocity: f64,
+    steps: &mut Vec<String>,
+) {
+    let n = a.len();
+    if n < 3 {
+        return;
+    }
+    let term = |k: usize, odd: bool| {
+        let (s, c) = math::sin_cos(PI * k as f64 / (n - 1) as f64);
+        if odd { s * s * c } else { s * s }
+    };
+    let ends = |values: &[f64], v0: f64| {
+        let (v, d) = integrate(time_step, values, v0);
+        (v[n - 1], d[n - 1])
+    };
+    let even: Vec<f64> = (0..n).map(|k| term(k, false)).collect();
+    let odd: Vec<f64> = (0..n).map(|k| term(k, true)).collect();
+    let (even_v, even_d) = ends(&even, 0.0);
+    let (odd_v, odd_d) = ends(&odd, 0.0);
+    let determinant = even_v * odd_d - odd_v * even_d;
+    let mut largest = 0.0_f64;
+    // A second round removes the rounding left by the first.
+    for _ in 0..2 {
+        let (v, d) = ends(a, initial_velocity);
+        let c1 = -(v * odd_d - odd_v * d) / determinant;
+        let c2 = -(even_v * d - v * even_d) / determinant;
+        if !(c1.is_finite() && c2.is_finite()) {
+            return;
+        }
+        for (k, value) in a.iter_mut().enumerate() {
+            let correction = c1 * even[k] + c2 * odd[k];
+            largest = largest.max(correction.abs());
+            *value += correction;
+        }
+    }
+    let pga = math::peak(a);
+    let share = if pga > 0.0 { largest / pga } else { 0.0 };
+    steps.push(format!(
+        "ends closed by a smooth acceleration of at most {largest:.1e} m/s2 ({share:.1e} of PGA)"
+    ));
+}

@@ -1,0 +1,211 @@
+//! A file as read: its channels in SI units, with everything the header said.
+
+use std::fmt;
+
+use crate::direction::{Direction, Orientation};
+use crate::math;
+
+/// How far a record was processed before it was written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// As recorded; velocity and displacement drift when it is integrated.
+    Raw,
+    /// Filtered and baseline-corrected by its publisher.
+    Corrected,
+    /// The file does not say.
+    Unknown,
+}
+
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Raw => "raw",
+            Self::Corrected => "corrected",
+            Self::Unknown => "unknown",
+        })
+    }
+}
+
+/// The quantity a stated peak belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Acceleration (m/s²).
+    Acceleration,
+    /// Velocity (m/s).
+    Velocity,
+    /// Displacement (m).
+    Displacement,
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Acceleration => "acceleration",
+            Self::Velocity => "velocity",
+            Self::Displacement => "displacement",
+        })
+    }
+}
+
+/// A peak stated in a header next to the peak of the numbers it describes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StatedPeak {
+    /// What it is the peak of.
+    pub quantity: Quantity,
+    /// Absolute value stated (SI).
+    pub stated: f64,
+    /// One unit of the last printed digit (SI).
+    pub resolution: f64,
+    /// Absolute peak of the file's own numbers for this quantity (SI).
+    pub measured: f64,
+}
+
+impl StatedPeak {
+    /// Whether the two agree within one unit of the last printed digit or 0.1 %.
+    pub fn agrees(&self) -> bool {
+        (self.stated - self.measured).abs() <= (1.001 * self.resolution).max(1e-3 * self.stated)
+    }
+}
+
+/// One component as read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// Name in the file, such as `360` or `N28W`.
+    pub name: String,
+    /// Direction; a downward channel has been turned upward.
+    pub direction: Direction,
+    /// Time between samples (s).
+    pub time_step: f64,
+    /// Acceleration (m/s²).
+    pub acceleration: Vec<f64>,
+    /// Velocity at the first sample (m/s), stated by some corrected records; 0 otherwise.
+    pub initial_velocity: f64,
+    /// Peaks stated in the header.
+    pub peaks: Vec<StatedPeak>,
+}
+
+impl Channel {
+    /// A channel without stated peaks, starting from rest.
+    pub fn new(
+        name: impl Into<String>,
+        direction: Direction,
+        time_step: f64,
+        acceleration: Vec<f64>,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            direction,
+            time_step,
+            acceleration,
+            initial_velocity: 0.0,
+            peaks: Vec::new(),
+        }
+    }
+
+    /// Time from the first to the last sample (s).
+    pub fn duration(&self) -> f64 {
+        self.time_step * self.acceleration.len().saturating_sub(1) as f64
+    }
+
+    /// Peak ground acceleration (m/s²).
+    pub fn pga(&self) -> f64 {
+        math::peak(&self.acceleration)
+    }
+
+    /// Peak velocity (m/s) by plain integration from [`Channel::initial_velocity`]; of a raw record
+    /// this is drift, not ground motion.
+    pub fn pgv(&self) -> f64 {
+        math::peak(&self.integrated().0)
+    }
+
+    /// Peak displacement (m) by plain integration.
+    pub fn pgd(&self) -> f64 {
+        math::peak(&self.integrated().1)
+    }
+
+    fn integrated(&self) -> (Vec<f64>, Vec<f64>) {
+        crate::sampled::integrate(self.time_step, &self.acceleration, self.initial_velocity)
+    }
+
+    /// Whether the channel is known to be vertical.
+    pub fn is_vertical(&self) -> bool {
+        self.direction.orientation == Some(Orientation::Vertical)
+    }
+}
+
+/// Something the reader noticed and did not guess about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// Line, counted from 1, where there is one.
+    pub line: Option<usize>,
+    /// What was noticed.
+    pub message: String,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(line) = self.line {
+            write!(f, "line {line}: ")?;
+        }
+        f.write_str(&self.message)
+    }
+}
+
+/// A file as read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// Name of the format, as in [`crate::FORMATS`].
+    pub format: &'static str,
+    /// Name of the file.
+    pub file: String,
+    /// Event as the file states it; empty if it does not.
+    pub event: String,
+    /// Station as the file states it; empty if it does not.
+    pub station: String,
+    /// How far the record was processed.
+    pub stage: Stage,
+    /// Channels in file order.
+    pub channels: Vec<Channel>,
+    /// What the reader noticed.
+    pub warnings: Vec<Warning>,
+    /// What the reader did to the numbers beyond changing units, one sentence each.
+    pub notes: Vec<String>,
+}
+
+impl Record {
+    pub(crate) fn new(format: &'static str, file: &str, stage: Stage) -> Self {
+        Self {
+            format,
+            file: file.to_owned(),
+            event: String::new(),
+            station: String::new(),
+            stage,
+            channels: Vec::new(),
+            warnings: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    pub(crate) fn warn(&mut self, line: impl Into<Option<usize>>, message: impl Into<String>) {
+        self.warnings.push(Warning { line: line.into(), message: message.into() });
+    }
+
+    /// One line to a channel: name, duration, PGA, PGV, PGD, so that a wrong unit or step is seen.
+    pub fn summary(&self) -> Vec<String> {
+        self.channels
+            .iter()
+            .map(|channel| {
+                format!(
+                    "{}: {} samples at {} s, {:.2} s, PGA {:.4} g, PGV {:.2} cm/s, PGD {:.2} cm",
+                    channel.name,
+                    channel.acceleration.len(),
+                    channel.time_step,
+                    channel.duration(),
+                    channel.pga() / math::STANDARD_GRAVITY,
+                    channel.pgv() * 100.0,
+                    channel.pgd() * 100.0,
+                )
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,257 @@
+//! A sampled acceleration with the velocity and displacement that belong to it at any time.
+
+use crate::error::MotionError;
+use crate::math;
+
+/// Displacement (m), velocity (m/s) and acceleration (m/s²) of one component at one time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Kinematics {
+    /// Displacement (m).
+    pub displacement: f64,
+    /// Velocity (m/s).
+    pub velocity: f64,
+    /// Acceleration (m/s²).
+    pub acceleration: f64,
+}
+
+impl Kinematics {
+    /// The state `elapsed` seconds later without acceleration: velocity held, displacement linear.
+    #[must_use]
+    pub fn coast(self, elapsed: f64) -> Self {
+        Self {
+            displacement: self.displacement + self.velocity * elapsed,
+            velocity: self.velocity,
+            acceleration: 0.0,
+        }
+    }
+}
+
+/// Equally spaced accelerations, linear between samples, with their exact integrals:
+///
+/// ```text
+/// v[k+1] = v[k] + dt/2 (a[k] + a[k+1])
+/// d[k+1] = d[k] + dt v[k] + dt² (a[k]/3 + a[k+1]/6)
+/// ```
+///
+/// Inside a step velocity is quadratic and displacement cubic, so the three are derivatives of one
+/// another at every time, not only at the samples.
+/// Before t = 0 all three are zero; after the last sample the acceleration is zero, the velocity is
+/// held and the displacement grows linearly.
+///
+/// ```
+/// use barrelstack_motion::Sampled;
+/// let ramp = Sampled::new(0.5, vec![0.0, 1.0, 2.0])?;
+/// let middle = ramp.at(0.75);
+/// assert_eq!(middle.acceleration, 1.5);
+/// assert_eq!(middle.velocity, 0.75 * 0.75);
+/// # Ok::<(), barrelstack_motion::MotionError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sampled {
+    time_step: f64,
+    acceleration: Vec<f64>,
+    velocity: Vec<f64>,
+    displacement: Vec<f64>,
+}
+
+impl Sampled {
+    /// Integrates `acceleration` (m/s²) of step `time_step` (s) from rest at zero displacement.
+    ///
+    /// # Errors
+    /// If the step is not above zero, there are fewer than two samples, or one is not finite.
+    pub fn new(time_step: f64, acceleration: Vec<f64>) -> Result<Self, MotionError> {
+        Self::with_initial_velocity(time_step, acceleration, 0.0)
+    }
+
+    /// As [`Sampled::new`] with a first velocity (m/s) other than zero.
+    ///
+    /// Corrected records state one; it makes the velocity jump at t = 0.
+    ///
+    /// # Errors
+    /// As [`Sampled::new`], or if the velocity is not finite.
+    pub fn with_initial_velocity(
+        time_step: f64,
+        acceleration: Vec<f64>,
+        initial_velocity: f64,
+    ) -> Result<Self, MotionError> {
+        MotionError::require_positive("time step (s)", time_step)?;
+        MotionError::require_finite("initial velocity (m/s)", initial_velocity)?;
+        if acceleration.len() < 2 {
+            return Err(MotionError::parameter(
+                "acceleration samples",
+                "at least 2",
+                acceleration.len(),
+            ));
+        }
+        if let Some(k) = acceleration.iter().position(|a| !a.is_finite()) {
+            return Err(MotionError::parameter(
+                format!("acceleration sample {}", k + 1),
+                "a finite number",
+                acceleration[k],
+            ));
+        }
+        let (velocity, displacement) = integrate(time_step, &acceleration, initial_velocity);
+        Ok(Self { time_step, acceleration, velocity, displacement })
+    }
+
+    /// Time between samples (s).
+    pub fn time_step(&self) -> f64 {
+        self.time_step
+    }
+
+    /// Time of the last sample (s); the first is at 0.
+    pub fn duration(&self) -> f64 {
+        self.time_step * (self.acceleration.len() - 1) as f64
+    }
+
+    /// Accelerations at the samples (m/s²).
+    pub fn acceleration(&self) -> &[f64] {
+        &self.acceleration
+    }
+
+    /// Velocities at the samples (m/s).
+    pub fn velocity(&self) -> &[f64] {
+        &self.velocity
+    }
+
+    /// Displacements at the samples (m).
+    pub fn displacement(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    /// The motion at time `t` (s), in constant time.
+    pub fn at(&self, t: f64) -> Kinematics {
+        // A NaN time fails both comparisons and ends as the state at rest.
+        if !(t >= 0.0) {
+            return Kinematics::default();
+        }
+        let last = self.acceleration.len() - 1;
+        let position = t / self.time_step;
+        if position >= last as f64 {
+            let end = Kinematics {
+                displacement: self.displacement[last],
+                velocity: self.velocity[last],
+                acceleration: self.acceleration[last],
+            };
+            let elapsed = t - self.duration();
+            return if elapsed > 0.0 { end.coast(elapsed) } else { end };
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "0 <= position < last, checked above"
+        )]
+        let k = position as usize;
+        let elapsed = t - k as f64 * self.time_step;
+        let slope = (self.acceleration[k + 1] - self.acceleration[k]) / self.time_step;
+        let a = self.acceleration[k];
+        Kinematics {
+            acceleration: a + slope * elapsed,
+            velocity: self.velocity[k] + elapsed * (a + 0.5 * slope * elapsed),
+            displacement: self.displacement[k]
+                + elapsed * (self.velocity[k] + elapsed * (0.5 * a + slope * elapsed / 6.0)),
+        }
+    }
+
+    /// Largest absolute acceleration (m/s²); exact, because acceleration is linear between samples.
+    pub fn pga(&self) -> f64 {
+        math::peak(&self.acceleration)
+    }
+
+    /// Largest absolute velocity at the samples (m/s), the number that records are published with.
+    pub fn pgv(&self) -> f64 {
+        math::peak(&self.velocity)
+    }
+
+    /// Largest absolute displacement at the samples (m).
+    pub fn pgd(&self) -> f64 {
+        math::peak(&self.displacement)
+    }
+
+    /// Largest absolute velocity at any time, also between samples (m/s).
+    ///
+    /// Where the acceleration changes sign inside a step the velocity has an extremum there.
+    pub fn pgv_between_samples(&self) -> f64 {
+        let mut peak = self.pgv();
+        for (k, pair) in self.acceleration.windows(2).enumerate() {
+            if pair[0] * pair[1] < 0.0 {
+                let elapsed = self.time_step * pair[0] / (pair[0] - pair[1]);
+                peak = peak.max((self.velocity[k] + 0.5 * pair[0] * elapsed).abs());
+            }
+        }
+        peak
+    }
+
+    /// Largest absolute displacement at any time, also between samples (m).
+    pub fn pgd_between_samples(&self) -> f64 {
+        let mut peak = self.pgd();
+        for k in 0..self.acceleration.len() - 1 {
+            let (a, slope) = (
+                self.acceleration[k],
+                (self.acceleration[k + 1] - self.acceleration[k]) / self.time_step,
+            );
+            for root in quadratic_roots(0.5 * slope, a, self.velocity[k]).into_iter().flatten() {
+                if root > 0.0 && root < self.time_step {
+                    let d = self.displacement[k]
+                        + root * (self.velocity[k] + root * (0.5 * a + slope * root / 6.0));
+                    peak = peak.max(d.abs());
+                }
+            }
+        }
+        peak
+    }
+
+    /// The same motion times `factor`.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let times = |values: &[f64]| values.iter().map(|v| v * factor).collect();
+        Self {
+            time_step: self.time_step,
+            acceleration: times(&self.acceleration),
+            velocity: times(&self.velocity),
+            displacement: times(&self.displacement),
+        }
+    }
+
+    /// The same motion with time times `time` and acceleration times `factor`.
+    #[must_use]
+    pub(crate) fn stretched(&self, time: f64, factor: f64) -> Self {
+        let times = |values: &[f64], f: f64| values.iter().map(|v| v * f).collect();
+        Self {
+            time_step: self.time_step * time,
+            acceleration: times(&self.acceleration, factor),
+            velocity: times(&self.velocity, factor * time),
+            displacement: times(&self.displacement, factor * time * time),
+        }
+    }
+}
+
+/// Velocity and displacement at the samples of a piecewise-linear acceleration.
+pub(crate) fn integrate(
+    time_step: f64,
+    acceleration: &[f64],
+    initial_velocity: f64,
+) -> (Vec<f64>, Vec<f64>) {
+    let mut velocity = Vec::with_capacity(acceleration.len());
+    let mut displacement = Vec::with_capacity(acceleration.len());
+    let (mut v, mut d) = (initial_velocity, 0.0);
+    velocity.push(v);
+    displacement.push(d);
+    for pair in acceleration.windows(2) {
+        d += time_step * v + time_step * time_step * (pair[0] / 3.0 + pair[1] / 6.0);
+        v += 0.5 * time_step * (pair[0] + pair[1]);
+        velocity.push(v);
+        displacement.push(d);
+    }
+    (velocity, displacement)
+}
+
+/// Real roots of `a x² + b x + c`, without loss of digits when `a` is small.
+fn quadratic_roots(a: f64, b: f64, c: f64) -> [Option<f64>; 2] {
+    let discriminant = b * b - 4.0 * a * c;
+    if discriminant < 0.0 {
+        return [None, None];
+    }
+    let q = -0.5 * (b + discriminant.sqrt().copysign(b));
+    [(a != 0.0).then(|| q / a), (q != 0.0).then(|| c / q)]
+}

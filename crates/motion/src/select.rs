@@ -1,0 +1,277 @@
+//! Choosing components of a record and making a ground motion of them.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::direction::Direction;
+use crate::error::MotionError;
+use crate::ground_motion::GroundMotion;
+use crate::history::History;
+use crate::math;
+use crate::process::Processing;
+use crate::record::{Channel, Record, Stage};
+use crate::sampled::Sampled;
+
+/// A way to name one component of a record.
+///
+/// Parses from `h1`, `h2`, `vertical`, `az:90`, `#3` (third channel), or a channel's name.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Component {
+    /// First channel in the file that is not vertical.
+    Horizontal1,
+    /// Second channel in the file that is not vertical.
+    Horizontal2,
+    /// First vertical channel.
+    Vertical,
+    /// Channel by position, counted from 1.
+    Number(usize),
+    /// Channel by name, whatever its case.
+    Name(String),
+    /// Motion along an azimuth (degrees clockwise from north), rotated if no channel has it.
+    Azimuth(f64),
+}
+
+impl fmt::Display for Component {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Horizontal1 => f.write_str("h1"),
+            Self::Horizontal2 => f.write_str("h2"),
+            Self::Vertical => f.write_str("vertical"),
+            Self::Number(number) => write!(f, "#{number}"),
+            Self::Name(name) => f.write_str(name),
+            Self::Azimuth(azimuth) => write!(f, "az:{azimuth}"),
+        }
+    }
+}
+
+impl FromStr for Component {
+    type Err = MotionError;
+
+    fn from_str(text: &str) -> Result<Self, MotionError> {
+        let text = text.trim();
+        let lower = text.to_ascii_lowercase();
+        let refuse = |expected: &str| {
+            Err(MotionError::parameter("component", expected, format!("\"{text}\"")))
+        };
+        Ok(match lower.as_str() {
+            "" => return refuse("h1, h2, vertical, az:<degrees>, #<number> or a channel name"),
+            "h1" | "horizontal 1" | "horizontal-1" | "horizontal1" => Self::Horizontal1,
+            "h2" | "horizontal 2" | "horizontal-2" | "horizontal2" => Self::Horizontal2,
+            "vertical" => Self::Vertical,
+            _ => {
+                if let Some(degrees) = lower.strip_prefix("az:") {
+                    match degrees.trim().parse::<f64>() {
+                        Ok(azimuth) if azimuth.is_finite() => Self::Azimuth(azimuth),
+                        _ => return refuse("az: followed by degrees, such as az:90"),
+                    }
+                } else if let Some(number) = lower.strip_prefix('#') {
+                    match number.parse() {
+                        Ok(number) if number > 0 => Self::Number(number),
+                        _ => return refuse("# followed by a channel number from 1"),
+                    }
+                } else {
+                    Self::Name(text.to_owned())
+                }
+            }
+        })
+    }
+}
+
+impl Record {
+    /// The channel that `component` names; a rotated one is a new channel.
+    ///
+    /// # Errors
+    /// If there is no such channel, or the azimuth cannot be reached.
+    pub fn component(&self, component: &Component) -> Result<Channel, MotionError> {
+        let missing = || MotionError::NoChannel {
+            file: self.file.clone(),
+            wanted: component.to_string(),
+            available: self.channel_names(),
+        };
+        let horizontal = |skip: usize| {
+            self.channels.iter().filter(|channel| !channel.is_vertical()).nth(skip).cloned()
+        };
+        match component {
+            Component::Horizontal1 => horizontal(0),
+            Component::Horizontal2 => horizontal(1),
+            Component::Vertical => self.channels.iter().find(|c| c.is_vertical()).cloned(),
+            Component::Number(number) => self.channels.get(number.wrapping_sub(1)).cloned(),
+            Component::Name(name) => self
+                .channels
+                .iter()
+                .find(|channel| channel.name.trim().eq_ignore_ascii_case(name.trim()))
+                .cloned(),
+            Component::Azimuth(azimuth) => return self.along(*azimuth),
+        }
+        .ok_or_else(missing)
+    }
+
+    fn channel_names(&self) -> String {
+        let names: Vec<String> =
+            self.channels.iter().map(|channel| format!("\"{}\"", channel.name)).collect();
+        names.join(", ")
+    }
+
+    /// The motion along an azimuth, from a channel that has it or from two horizontals.
+    fn along(&self, azimuth: f64) -> Result<Channel, MotionError> {
+        let known: Vec<(&Channel, f64)> = self
+            .channels
+            .iter()
+            .filter_map(|channel| channel.direction.azimuth.map(|known| (channel, known)))
+            .collect();
+        let off = |known: f64| (azimuth - known).rem_euclid(360.0);
+        if let Some((channel, _)) = known.iter().find(|(_, known)| off(*known) == 0.0) {
+            return Ok((*channel).clone());
+        }
+        for (k, (first, first_azimuth)) in known.iter().enumerate() {
+            for (second, second_azimuth) in &known[k + 1..] {
+                let apart = (second_azimuth - first_azimuth).to_radians();
+                if math::sin(apart).abs() > 0.5 {
+                    return rotate((first, *first_azimuth), (second, *second_azimuth), azimuth);
+                }
+            }
+        }
+        Err(MotionError::NoChannel {
+            file: self.file.clone(),
+            wanted: format!("along azimuth {azimuth} and no two horizontals of known azimuth"),
+            available: self.channel_names(),
+        })
+    }
+
+    /// A ground motion of one horizontal and perhaps a vertical component, processed as told.
+    ///
+    /// Components are cut to the shorter one.
+    /// With [`Processing::none`] the record drives a model from its first sample.
+    ///
+    /// # Errors
+    /// If a component is missing, their steps differ, or a setting is out of range.
+    pub fn ground_motion(
+        &self,
+        horizontal: &Component,
+        vertical: Option<&Component>,
+        processing: &Processing,
+    ) -> Result<GroundMotion, MotionError> {
+        let mut first = self.component(horizontal)?;
+        let mut second = vertical.map(|component| self.component(component)).transpose()?;
+        let mut provenance = vec![format!(
+            "{}: format {}, stage {}, {}",
+            self.file,
+            self.format,
+            self.stage,
+            if self.station.is_empty() { "station not stated" } else { &self.station }
+        )];
+        provenance.extend(self.notes.iter().cloned());
+        provenance.extend(self.warnings.iter().map(|warning| format!("warning: {warning}")));
+        if let Some(second) = &mut second {
+            cut_to_shorter(&mut first, second, &mut provenance)?;
+        }
+        if self.stage == Stage::Raw && processing.is_none() {
+            provenance.push(
+                "warning: a raw record used without processing; its velocity and displacement \
+                 drift"
+                    .to_owned(),
+            );
+        }
+        let horizontal = history(&first, "horizontal", processing, &mut provenance)?;
+        let vertical = second
+            .map(|channel| history(&channel, "vertical", processing, &mut provenance))
+            .transpose()?;
+        let name = format!("{} {}", crate::format::file_stem(&self.file), first.name);
+        let mut motion = GroundMotion::new(name, horizontal, vertical);
+        motion.provenance = provenance;
+        Ok(motion)
+    }
+
+    /// The first horizontal component with the vertical one if there is any, processed by the
+    /// default for the record's stage.
+    ///
+    /// # Errors
+    /// As [`Record::ground_motion`].
+    pub fn default_motion(&self) -> Result<GroundMotion, MotionError> {
+        let vertical = self.channels.iter().any(Channel::is_vertical);
+        self.ground_motion(
+            &Component::Horizontal1,
+            vertical.then_some(&Component::Vertical),
+            &Processing::for_stage(self.stage),
+        )
+    }
+}
+
+fn history(
+    channel: &Channel,
+    role: &str,
+    processing: &Processing,
+    provenance: &mut Vec<String>,
+) -> Result<History, MotionError> {
+    let processed =
+        processing.apply(channel.time_step, &channel.acceleration, channel.initial_velocity)?;
+    for step in &processed.steps {
+        provenance.push(format!("{role} ({}): {step}", channel.name));
+    }
+    Ok(History::Sampled(Sampled::with_initial_velocity(
+        channel.time_step,
+        processed.acceleration,
+        processed.initial_velocity,
+    )?))
+}
+
+/// Same step required; the longer of two channels loses its end.
+fn cut_to_shorter(
+    first: &mut Channel,
+    second: &mut Channel,
+    provenance: &mut Vec<String>,
+) -> Result<(), MotionError> {
+    if (first.time_step - second.time_step).abs() > 1e-9 * first.time_step {
+        return Err(MotionError::Mismatch {
+            what: format!(
+                "channel {} has a step of {} s, channel {} of {} s",
+                first.name, first.time_step, second.name, second.time_step
+            ),
+            remedy: "choose channels of one step".to_owned(),
+        });
+    }
+    let shorter = first.acceleration.len().min(second.acceleration.len());
+    for channel in [first, second] {
+        let extra = channel.acceleration.len() - shorter;
+        if extra > 0 {
+            channel.acceleration.truncate(shorter);
+            provenance.push(format!(
+                "last {extra} samples of channel {} cut to match the other",
+                channel.name
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Two horizontals of different azimuth combined to the motion along a third, by solving for north
+/// and east; the two need not be perpendicular.
+fn rotate(
+    first: (&Channel, f64),
+    second: (&Channel, f64),
+    azimuth: f64,
+) -> Result<Channel, MotionError> {
+    let (mut one, mut two) = (first.0.clone(), second.0.clone());
+    let mut ignored = Vec::new();
+    cut_to_shorter(&mut one, &mut two, &mut ignored)?;
+    let radians = |degrees: f64| math::sin_cos(degrees.to_radians());
+    let ((s1, c1), (s2, c2), (s, c)) = (radians(first.1), radians(second.1), radians(azimuth));
+    let determinant = c1 * s2 - s1 * c2;
+    let weight_one = (c * s2 - s * c2) / determinant;
+    let weight_two = (s * c1 - c * s1) / determinant;
+    let acceleration = one
+        .acceleration
+        .iter()
+        .zip(&two.acceleration)
+        .map(|(a, b)| weight_one * a + weight_two * b)
+        .collect();
+    let mut channel = Channel::new(
+        format!("{azimuth} deg"),
+        Direction::horizontal(azimuth),
+        one.time_step,
+        acceleration,
+    );
+    channel.initial_velocity =
+        weight_one * one.initial_velocity + weight_two * two.initial_velocity;
+    Ok(channel)
+}

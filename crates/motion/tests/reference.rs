@@ -1,0 +1,121 @@
+//! Reference values of three records, computed elsewhere with independent programs.
+//!
+//! The records may not be bundled; the tests run when the folder `../shared/ground-motions` lies
+//! beside the workspace and say so when it does not.
+
+use std::path::PathBuf;
+
+use barrelstack_motion::{
+    IntensityMeasure, ReadOptions, STANDARD_GRAVITY, Sampled, read, response,
+};
+
+fn shared(path: &str) -> Option<PathBuf> {
+    let full =
+        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions").join(path);
+    if full.exists() {
+        Some(full)
+    } else {
+        println!("SKIPPED: {} is not there", full.display());
+        None
+    }
+}
+
+/// PGA (g), PGV (m/s), PGD (m), Arias (m/s), CAV (m/s), D5-95 (s), then PSA (g) at 5 % for periods.
+struct Row {
+    file: &'static str,
+    pga: f64,
+    pgv: f64,
+    pgd: f64,
+    arias: f64,
+    cav: f64,
+    duration: f64,
+    spectrum: [f64; 7],
+}
+
+const PERIODS: [f64; 7] = [0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0];
+
+const ROWS: [Row; 3] = [
+    Row {
+        file: "peer/RSN995_NORTHR_PEL360.AT2",
+        pga: 0.3583,
+        pgv: 0.2737,
+        pgd: 0.0303,
+        arias: 2.004,
+        cav: 11.837,
+        duration: 10.65,
+        spectrum: [0.6583, 0.9839, 0.6986, 0.6604, 0.4521, 0.0555, 0.0238],
+    },
+    Row {
+        file: "peer/IELC180.AT2",
+        pga: 0.3129,
+        pgv: 0.2968,
+        pgd: 0.1303,
+        arias: 1.703,
+        cav: 13.110,
+        duration: 24.10,
+        spectrum: [0.7110, 0.6343, 0.6747, 0.7123, 0.4862, 0.1870, 0.0992],
+    },
+    Row {
+        file: "renadic/hualane1002271.v1",
+        pga: 0.3894,
+        pgv: 0.5844,
+        pgd: 7.7928,
+        arias: 7.913,
+        cav: 53.426,
+        duration: 61.66,
+        spectrum: [1.1922, 1.0467, 0.9336, 0.8012, 0.5315, 0.1237, 0.0652],
+    },
+];
+
+/// Within `relative` of the reference, or half a unit of its last printed digit.
+fn near(what: &str, value: f64, reference: f64, relative: f64, digit: f64) {
+    let off = (value - reference).abs();
+    assert!(
+        off <= (relative * reference).max(0.501 * digit),
+        "{what}: {value} against {reference}, off by {:.2e}",
+        off / reference
+    );
+}
+
+fn trapezoid_pgd(motion: &Sampled) -> f64 {
+    let (mut d, mut peak) = (0.0_f64, 0.0_f64);
+    for pair in motion.velocity().windows(2) {
+        d += 0.5 * motion.time_step() * (pair[0] + pair[1]);
+        peak = peak.max(d.abs());
+    }
+    peak
+}
+
+#[test]
+fn the_reference_records_give_the_reference_values() {
+    for row in &ROWS {
+        let Some(path) = shared(row.file) else { continue };
+        let bytes = std::fs::read(path).unwrap();
+        let record = read(&bytes, row.file, &ReadOptions::default()).unwrap();
+        let channel = &record.channels[0];
+        let motion = Sampled::new(channel.time_step, channel.acceleration.clone()).unwrap();
+        let of = |measure: IntensityMeasure| measure.of(&motion).unwrap();
+        near("PGA", motion.pga() / STANDARD_GRAVITY, row.pga, 1e-3, 1e-4);
+        near("PGV", motion.pgv(), row.pgv, 2e-4, 1e-4);
+        // The reference integrates velocity by the trapezoid; the exact integral of a piecewise
+        // linear acceleration is up to 0.4 % larger here.
+        near("PGD", trapezoid_pgd(&motion), row.pgd, 1e-3, 1e-4);
+        near("PGD", motion.pgd(), row.pgd, 4e-3, 1e-4);
+        near("Arias", of(IntensityMeasure::Arias), row.arias, 1e-3, 1e-3);
+        near("CAV", of(IntensityMeasure::Cav), row.cav, 1e-3, 1e-3);
+        let duration = of(IntensityMeasure::D5_95);
+        assert!(
+            (duration - row.duration).abs() <= channel.time_step,
+            "{}: D5-95 {duration}",
+            row.file
+        );
+        for (period, reference) in PERIODS.into_iter().zip(row.spectrum) {
+            if period < 10.0 * channel.time_step * (1.0 - 1e-9) {
+                continue;
+            }
+            let peaks = response(channel.time_step, motion.acceleration(), period, 0.05).unwrap();
+            let psa = peaks.pseudo_acceleration / STANDARD_GRAVITY;
+            near(&format!("{} PSA({period})", row.file), psa, reference, 1e-3, 1e-4);
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! Every real file in `../shared/ground-motions` is read or refused for the right reason.
+//!
+//! Most of those files may not be bundled; without the folder the test says that it is skipped.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use barrelstack_motion::{
+    AccelerationUnit, ReadError, ReadOptions, Record, Refusal, STANDARD_GRAVITY, Stage, read,
+};
+
+fn folder() -> Option<PathBuf> {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions");
+    if folder.is_dir() {
+        Some(folder)
+    } else {
+        println!("SKIPPED: {} is not there", folder.display());
+        None
+    }
+}
+
+/// What a user of the file would state, from the folder's own README.
+fn options(file: &str) -> ReadOptions {
+    let g = Some(AccelerationUnit::G);
+    match file {
+        "columns/ChiChi.txt" => ReadOptions { unit: g, ..ReadOptions::default() },
+        _ if file.starts_with("slammer/") && file != "slammer/EQdata.txt" => {
+            ReadOptions { unit: g, time_step: Some(0.02), ..ReadOptions::default() }
+        }
+        _ if file.starts_with("sac/") => ReadOptions { unit: g, ..ReadOptions::default() },
+        _ if file.starts_with("mseed/") => {
+            ReadOptions { sensitivity: Some(427_819.0), ..ReadOptions::default() }
+        }
+        _ => ReadOptions::default(),
+    }
+}
+
+/// Files that hold no acceleration, and the word their refusal must contain.
+const REFUSED: [(&str, &str); 6] = [
+    ("README.md", "convert the file"),
+    ("asdf/nc72282711_workspace.h5", "HDF5"),
+    ("mseed/BK.CMB.xml", "427819"),
+    ("peer/RSN995_NORTHR_PEL360.DT2", "DISPLACEMENT"),
+    ("peer/RSN995_NORTHR_PEL360.VT2", "VELOCITY"),
+    ("slammer/EQdata.txt", "table"),
+];
+
+fn files(folder: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut open = vec![folder.to_path_buf()];
+    while let Some(next) = open.pop() {
+        for entry in std::fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                let relative = path.strip_prefix(folder).unwrap().to_str().unwrap();
+                found.push(relative.replace('\\', "/"));
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+fn read_all(folder: &Path) -> Vec<(String, Result<Record, ReadError>)> {
+    files(folder)
+        .into_iter()
+        .map(|file| {
+            let bytes = std::fs::read(folder.join(&file)).unwrap();
+            let result = read(&bytes, &file, &options(&file));
+            (file, result)
+        })
+        .collect()
+}
+
+#[test]
+fn every_file_is_read_or_refused_for_the_right_reason() {
+    let Some(folder) = folder() else { return };
+    let (mut channels, mut peaks) = (0, 0);
+    for (file, result) in read_all(&folder) {
+        if let Some((_, word)) = REFUSED.iter().find(|(name, _)| *name == file) {
+            let error = result.expect_err(&file);
+            assert!(error.to_string().contains(word), "{error}");
+            continue;
+        }
+        let record = result.unwrap_or_else(|error| panic!("{error}"));
+        for channel in &record.channels {
+            channels += 1;
+            for peak in &channel.peaks {
+                peaks += 1;
+                assert!(peak.agrees(), "{file} {}: {peak:?}", channel.name);
+            }
+        }
+    }
+    println!("{channels} channels read, {peaks} stated peaks met");
+    assert!(channels >= 55 && peaks >= 45, "{channels} channels, {peaks} peaks");
+}
+
+#[test]
+fn raw_records_come_to_rest_after_the_default_processing() {
+    let Some(folder) = folder() else { return };
+    for (file, result) in read_all(&folder) {
+        let Ok(record) = result else { continue };
+        if record.stage != Stage::Raw {
+            continue;
+        }
+        for number in 1..=record.channels.len() {
+            let motion = record
+                .ground_motion(
+                    &barrelstack_motion::Component::Number(number),
+                    None,
+                    &barrelstack_motion::Processing::raw(),
+                )
+                .unwrap();
+            let barrelstack_motion::History::Sampled(sampled) = &motion.horizontal else {
+                panic!("a processed record is sampled")
+            };
+            let end = sampled.at(sampled.duration());
+            assert!(end.velocity.abs() < 1e-3 * sampled.pgv(), "{file} #{number}");
+            assert!(end.displacement.abs() < 1e-2 * sampled.pgd(), "{file} #{number}");
+            println!(
+                "{file} #{number}: PGA {:.4} g, PGV {:.2} cm/s, PGD {:.2} cm",
+                sampled.pga() / STANDARD_GRAVITY,
+                100.0 * sampled.pgv(),
+                100.0 * sampled.pgd()
+            );
+        }
+    }
+}
+
+/// Rewrites `FORMATS.md` from the folder: `cargo test -p barrelstack-motion --test shared_folder
+/// -- --ignored`.
+#[test]
+#[ignore = "writes FORMATS.md into the source tree"]
+fn the_table_of_results_is_written() {
+    let folder = folder().expect("the folder of shared records");
+    let mut text = String::from(
+        "# Formats read\n\nEvery file of the shared folder `ground-motions`, as read by this crate.\n\
+         PGV and PGD are by plain integration; of a raw record they are drift.\n\
+         A peak stated in the header stands behind the measured one, with its largest difference.\n\
+         Regenerate with `cargo test -p barrelstack-motion --test shared_folder -- --ignored`.\n\n\
+         | file | format | stage | channel | step (s) | samples | PGA (g) | PGV (cm/s) | PGD (cm) | stated peaks |\n\
+         | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
+    );
+    let mut refused = String::from("\n## Refused\n\n| file | reason |\n| --- | --- |\n");
+    let mut warned = String::from("\n## Warnings\n\n| file | warning |\n| --- | --- |\n");
+    for (file, result) in read_all(&folder) {
+        match result {
+            Err(error) => {
+                assert_ne!(error.refusal, Refusal::Damaged, "{error}");
+                let reason = error.to_string();
+                let reason = reason.strip_prefix(&file).unwrap_or(&reason);
+                let reason = reason.trim_start_matches([',', ':', ' ']);
+                writeln!(refused, "| {file} | {reason} |").unwrap();
+            }
+            Ok(record) => {
+                for channel in &record.channels {
+                    let worst = channel
+                        .peaks
+                        .iter()
+                        .map(|p| (p.measured / p.stated - 1.0).abs())
+                        .fold(0.0, f64::max);
+                    let stated = if channel.peaks.is_empty() {
+                        "none".to_owned()
+                    } else {
+                        format!("{} met, {:.2} %", channel.peaks.len(), 100.0 * worst)
+                    };
+                    writeln!(
+                        text,
+                        "| {file} | {} | {} | {} | {} | {} | {:.4} | {:.2} | {:.2} | {stated} |",
+                        record.format,
+                        record.stage,
+                        channel.name,
+                        channel.time_step,
+                        channel.acceleration.len(),
+                        channel.pga() / STANDARD_GRAVITY,
+                        100.0 * channel.pgv(),
+                        100.0 * channel.pgd(),
+                    )
+                    .unwrap();
+                }
+                for warning in &record.warnings {
+                    writeln!(warned, "| {file} | {warning} |").unwrap();
+                }
+            }
+        }
+    }
+    text.push_str(&refused);
+    text.push_str(&warned);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("FORMATS.md");
+    std::fs::write(path, text).unwrap();
+}

@@ -1,0 +1,101 @@
+// The page: builds players and plots, follows size and theme, offers figures and data as files.
+
+const page = JSON.parse(document.getElementById("barrelstack-data").textContent);
+const columns = page.columns.map(columnOf);
+const root = document.documentElement;
+root.classList.add("js");
+
+const players = [...document.querySelectorAll("[data-player]")].map((figure) =>
+  makePlayer(page.players[Number(figure.dataset.player)], figure, page.dashes));
+const board = { player: players[0] || null, plots: [], dashes: page.dashes };
+for (const figure of document.querySelectorAll("[data-plot]")) {
+  board.plots.push(makePlot(page.plots[Number(figure.dataset.plot)], columns, figure, board));
+}
+for (const plot of board.plots) plot.build();
+if (board.player) {
+  board.player.onTime((time) => {
+    for (const plot of board.plots) if (plot.timeline) plot.onTime(time);
+  });
+}
+
+function refresh() {
+  for (const player of players) player.refresh();
+  for (const plot of board.plots) plot.build();
+}
+let width = window.innerWidth, waiting = 0;
+window.addEventListener("resize", () => {
+  // Phones fire this when the address bar hides; only the width matters.
+  if (window.innerWidth === width) return;
+  width = window.innerWidth;
+  clearTimeout(waiting);
+  waiting = setTimeout(refresh, 120);
+});
+window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", refresh);
+for (const fold of document.querySelectorAll("details")) {
+  // A plot inside a closed fold has no width until it opens.
+  fold.addEventListener("toggle", () => {
+    if (!fold.open || printing) return;
+    for (const plot of board.plots) {
+      if (!plot.plot && fold.querySelector(`#figure-${CSS.escape(plot.id)}`)) plot.build();
+    }
+  });
+}
+let printing = false;
+window.addEventListener("beforeprint", () => {
+  printing = true;
+  for (const fold of document.querySelectorAll("details:not([open])")) {
+    fold.open = true;
+    fold.dataset.printed = "";
+  }
+});
+window.addEventListener("afterprint", () => {
+  for (const fold of document.querySelectorAll("details[data-printed]")) {
+    fold.open = false;
+    delete fold.dataset.printed;
+  }
+  printing = false;
+});
+
+function save(name, type, text) {
+  const link = make("a", { download: name, href: URL.createObjectURL(new Blob([text], { type })) });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+function standalone(drawing) {
+  const copy = drawing.cloneNode(true);
+  const style = svg("style", {});
+  style.textContent = page.figureStyle;
+  const box = copy.viewBox.baseVal;
+  const paper = svg("rect", { width: box.width, height: box.height, fill: "#ffffff" });
+  copy.prepend(style, paper);
+  return new XMLSerializer().serializeToString(copy);
+}
+
+function csvOf(plot) {
+  const quote = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  const named = (label) => quote(plot.unit ? `${label} (${plot.unit})` : label);
+  const head = plot.series.flatMap((s) => [quote(plot.title), named(s.label)]);
+  const rows = [head.join(",")];
+  const count = Math.max(...plot.series.map((s) => s.xs.length));
+  const cell = (values, k) => (k < values.length && isFinite(values[k]) ? String(Number(values[k].toPrecision(8))) : "");
+  for (let k = 0; k < count; k++) rows.push(plot.series.flatMap((s) => [cell(s.xs, k), cell(s.ys, k)]).join(","));
+  return rows.join("\n") + "\n";
+}
+
+for (const figure of document.querySelectorAll("figure.plot, figure.envelope")) {
+  const name = figure.id.replace("figure-", "");
+  const button = (text, label, action) => {
+    const element = make("button", { type: "button", "aria-label": label }, text);
+    element.addEventListener("click", action);
+    return element;
+  };
+  const number = figure.querySelector("figcaption b").textContent.replace(/\.$/, "");
+  const files = make("span", { class: "files" }, button("SVG", `Save ${number} as SVG`, () =>
+    save(`${name}.svg`, "image/svg+xml", standalone(figure.querySelector(".drawing > svg")))));
+  const plot = board.plots.find((p) => p.id === name);
+  if (plot) files.append(button("CSV", `Save the data of ${number} as CSV`, () => save(`${name}.csv`, "text/csv", csvOf(plot))));
+  figure.querySelector("figcaption").append(" ", files);
+}
+
+window.barrelstack = { player: board.player, players, plots: board.plots };

@@ -1,0 +1,283 @@
+// The stage: bodies, paths, forces and events of one frame drawn on a canvas.
+
+const FORCE_SHARE = 0.2; // length of a strong force over the height of the view
+
+function bodyShape(body) {
+  const trace = (line) => {
+    const path = new Path2D();
+    for (let k = 0; k + 1 < line.points.length; k += 2) {
+      if (k === 0) path.moveTo(line.points[0], line.points[1]);
+      else path.lineTo(line.points[k], line.points[k + 1]);
+    }
+    if (line.closed) path.closePath();
+    return { path, closed: line.closed };
+  };
+  let reach = 0;
+  for (const line of body.outlines) {
+    for (let k = 0; k + 1 < line.points.length; k += 2) {
+      reach = Math.max(reach, Math.hypot(line.points[k], line.points[k + 1]));
+    }
+  }
+  return { outlines: body.outlines.map(trace), marks: body.marks.map(trace), reach };
+}
+
+function makeStage(data, canvas) {
+  const shapes = data.bodies.map(bodyShape);
+  const ground = data.bodies.findIndex((body) => body.role === "ground");
+  const moving = data.bodies.map((body, at) => at).filter((at) => data.bodies[at].role !== "ground");
+  const [left, bottom, right, top] = data.view;
+  const stage = {
+    camera: "fixed", names: true, forces: false, traces: true,
+    perNewton: 0, strong: strongForce(data), draw, resize, retheme,
+  };
+  let paint = {};
+  let width = 0, height = 0, dpr = 1;
+
+  function retheme() {
+    const names = ["paper", "ink", "soft", "rule", "grid", "ground", "barrel", "rack", "block",
+      "device", "line", "accent", "s0", "s1", "s2", "s3", "s4", "s5"];
+    paint = Object.fromEntries(names.map((name) => [name, color(name)]));
+  }
+
+  function resize() {
+    const box = canvas.parentElement.getBoundingClientRect();
+    const aspect = Math.min(Math.max((top - bottom) / (right - left), 0.3), 1.1);
+    const limit = Math.max(220, Math.min(window.innerHeight * 0.5, 520));
+    width = Math.max(200, Math.floor(box.width));
+    height = Math.round(Math.min(limit, Math.max(220, width * aspect)));
+    dpr = Math.min(window.devicePixelRatio || 1, 3);
+    canvas.width = Math.round(width * dpr);
+    canvas.height = Math.round(height * dpr);
+    canvas.style.height = height + "px";
+  }
+
+  // Meters to pixels: scale and the world point at the middle of the foot of the canvas.
+  function viewAt(frame) {
+    const scale = Math.min(width / (right - left), height / (top - bottom));
+    let x = 0.5 * (left + right), z = bottom;
+    const pose = (body, k) => [data.poses[3 * body][k], data.poses[3 * body + 1][k]];
+    if (stage.camera === "ground" && ground >= 0) {
+      const [now, start] = [pose(ground, frame), pose(ground, 0)];
+      if (isFinite(now[0] + now[1])) {
+        x += now[0] - start[0];
+        z += now[1] - start[1];
+      }
+    } else if (stage.camera === "stack" && moving.length > 0) {
+      // The median stays with the stack when a single body leaves it.
+      const shifts = moving.map((b) => pose(b, frame)[0] - pose(b, 0)[0]).filter(isFinite);
+      shifts.sort((a, b) => a - b);
+      if (shifts.length > 0) x += shifts[shifts.length >> 1];
+    }
+    return { scale, x, z };
+  }
+
+  function draw(frame, time) {
+    const context = canvas.getContext("2d");
+    context.setTransform(dpr, 0, 0, dpr, 0, 0);
+    context.fillStyle = paint.paper;
+    context.fillRect(0, 0, width, height);
+    if (!(data.count > 0)) {
+      context.fillStyle = paint.soft;
+      context.font = "14px system-ui, sans-serif";
+      context.fillText("no frames to show", 16, 28);
+      return;
+    }
+    const view = viewAt(frame);
+    const toX = (x) => 0.5 * width + (x - view.x) * view.scale;
+    const toY = (z) => height - (z - view.z) * view.scale;
+    for (let body = 0; body < shapes.length; body++) drawBody(context, body, frame, view, toX, toY);
+    if (stage.traces) drawTraces(context, frame, toX, toY);
+    if (stage.names) drawNames(context, frame, view, toX, toY);
+    if (stage.forces && data.forces) drawForces(context, frame, toX, toY);
+    drawEvents(context, frame, time, view, toX, toY);
+    drawScales(context, view);
+  }
+
+  function drawBody(context, body, frame, view, toX, toY) {
+    const [x, z, angle] = [0, 1, 2].map((c) => data.poses[3 * body + c][frame]);
+    if (!isFinite(x + z + angle)) return;
+    const role = data.bodies[body].role;
+    const s = view.scale;
+    context.save();
+    context.translate(toX(x), toY(z));
+    context.rotate(-angle);
+    context.scale(s, -s);
+    context.lineJoin = context.lineCap = "round";
+    context.strokeStyle = role === "ground" ? paint.soft : paint.line;
+    for (const { path, closed } of shapes[body].outlines) {
+      context.lineWidth = (closed ? 1.2 : 2) / s;
+      if (closed) {
+        context.fillStyle = paint[role];
+        context.fill(path);
+      }
+      context.stroke(path);
+    }
+    shapes[body].marks.forEach(({ path }, at) => {
+      context.lineWidth = (role !== "ground" && at === 0 ? 3 : 0.9) / s;
+      context.stroke(path);
+    });
+    context.restore();
+  }
+
+  function drawNames(context, frame, view, toX, toY) {
+    context.textAlign = "center";
+    context.textBaseline = "middle";
+    for (const body of moving) {
+      const [x, z] = [data.poses[3 * body][frame], data.poses[3 * body + 1][frame]];
+      const { name, role } = data.bodies[body];
+      const size = Math.min(13, 0.62 * shapes[body].reach * view.scale);
+      if (!isFinite(x + z) || role === "rack" || size < 8) continue;
+      context.font = `600 ${size}px system-ui, sans-serif`;
+      context.fillStyle = paint.line;
+      context.fillText(name, toX(x), toY(z));
+    }
+  }
+
+  function drawTraces(context, frame, toX, toY) {
+    data.traces.forEach((trace, at) => {
+      const [xs, zs, angles] = [0, 1, 2].map((c) => data.poses[3 * trace.body + c]);
+      const [px, pz] = trace.point;
+      // On the ground camera the path is that relative to the ground.
+      const onGround = stage.camera === "ground" && ground >= 0;
+      const gx = onGround ? data.poses[3 * ground] : null, gz = onGround ? data.poses[3 * ground + 1] : null;
+      context.beginPath();
+      let pen = false, x = 0, y = 0;
+      for (let k = 0; k <= frame; k++) {
+        const cos = Math.cos(angles[k]), sin = Math.sin(angles[k]);
+        const wx = xs[k] + cos * px - sin * pz + (gx ? gx[frame] - gx[k] : 0);
+        const wz = zs[k] + sin * px + cos * pz + (gz ? gz[frame] - gz[k] : 0);
+        if (!isFinite(wx + wz)) {
+          pen = false;
+          continue;
+        }
+        x = toX(wx);
+        y = toY(wz);
+        if (pen) context.lineTo(x, y);
+        else context.moveTo(x, y);
+        pen = true;
+      }
+      context.strokeStyle = paint["s" + (at % 6)];
+      context.setLineDash(data.dashes[at % 6].split(" ").filter(Boolean).map(Number));
+      context.lineWidth = 1.6;
+      context.stroke();
+      context.setLineDash([]);
+      if (pen) {
+        context.beginPath();
+        context.arc(x, y, 3.2, 0, 7);
+        context.fillStyle = paint["s" + (at % 6)];
+        context.fill();
+      }
+    });
+  }
+
+  function drawForces(context, frame, toX, toY) {
+    const perNewton = stage.strong > 0 ? FORCE_SHARE * height / stage.strong : 0;
+    context.strokeStyle = context.fillStyle = paint.s1;
+    context.lineWidth = 2;
+    context.lineCap = "butt";
+    for (const force of forcesAt(data, frame)) {
+      const x = toX(force.x), y = toY(force.z);
+      arrow(context, x, y, x + force.fx * perNewton, y - force.fz * perNewton);
+    }
+    const bar = roundLength(0.7 * stage.strong);
+    if (bar > 0) {
+      const length = bar * perNewton, y = height - 12;
+      arrow(context, width - 14 - length, y, width - 14, y);
+      context.fillStyle = paint.ink;
+      context.font = "12px system-ui, sans-serif";
+      context.textAlign = "right";
+      context.textBaseline = "middle";
+      const [value, unit] = bar >= 1000 ? [bar / 1000, "kN"] : [bar, "N"];
+      halo(context, `${readable(value, 1)} ${unit}`, width - 20 - length, y);
+    }
+  }
+
+  function arrow(context, x0, y0, x1, y1) {
+    const length = Math.hypot(x1 - x0, y1 - y0);
+    if (!(length > 1.5)) return;
+    const head = Math.min(8, 0.6 * length);
+    const ux = (x1 - x0) / length, uy = (y1 - y0) / length;
+    const bx = x1 - ux * head, by = y1 - uy * head;
+    context.beginPath();
+    context.moveTo(x0, y0);
+    context.lineTo(bx, by);
+    context.stroke();
+    context.beginPath();
+    context.moveTo(x1, y1);
+    context.lineTo(bx - uy * head * 0.45, by + ux * head * 0.45);
+    context.lineTo(bx + uy * head * 0.45, by - ux * head * 0.45);
+    context.fill();
+  }
+
+  function halo(context, text, x, y) {
+    context.save();
+    context.lineWidth = 4;
+    context.lineJoin = "round";
+    context.strokeStyle = paint.paper;
+    context.strokeText(text, x, y);
+    context.restore();
+    context.fillText(text, x, y);
+  }
+
+  function drawEvents(context, frame, time, view, toX, toY) {
+    for (const event of currentEvents(data, time)) {
+      if (event.body === null) continue;
+      const [x, z] = [data.poses[3 * event.body][frame], data.poses[3 * event.body + 1][frame]];
+      if (!isFinite(x + z) || data.bodies[event.body].role === "ground") continue;
+      context.beginPath();
+      context.arc(toX(x), toY(z), shapes[event.body].reach * view.scale + 5, 0, 7);
+      context.strokeStyle = paint.accent;
+      context.lineWidth = 2.5;
+      context.stroke();
+    }
+  }
+
+  function drawScales(context, view) {
+    const bar = roundLength(0.18 * width / view.scale);
+    const length = bar * view.scale, y = height - 12;
+    context.strokeStyle = context.fillStyle = paint.ink;
+    context.lineWidth = 1.4;
+    context.beginPath();
+    context.moveTo(14, y - 4);
+    context.lineTo(14, y);
+    context.lineTo(14 + length, y);
+    context.lineTo(14 + length, y - 4);
+    context.stroke();
+    context.font = "12px system-ui, sans-serif";
+    context.textAlign = "left";
+    context.textBaseline = "middle";
+    halo(context, bar >= 1 ? `${bar} m` : `${readable(bar * 100, 1)} cm`, 20 + length, y - 2);
+  }
+
+  retheme();
+  resize();
+  return stage;
+}
+
+// Events within the last 0.8 s of the run.
+function currentEvents(data, time) {
+  return data.events.filter((event) => event.t <= time + 1e-6 && event.t > time - 0.8);
+}
+
+function forcesAt(data, frame) {
+  const list = [];
+  if (!data.forces) return list;
+  const { x, z, fx, fz } = data.forces;
+  for (let slot = 0; slot < x.length; slot++) {
+    if (isFinite(fx[slot][frame] + fz[slot][frame] + x[slot][frame] + z[slot][frame])) {
+      list.push({ x: x[slot][frame], z: z[slot][frame], fx: fx[slot][frame], fz: fz[slot][frame] });
+    }
+  }
+  return list;
+}
+
+// The force that 98 of 100 stay below: a short impact may leave the picture, the rest is legible.
+function strongForce(data) {
+  const sizes = [];
+  const stride = Math.max(1, Math.floor(data.count / 300));
+  for (let k = 0; k < data.count; k += stride) {
+    for (const force of forcesAt(data, k)) sizes.push(Math.hypot(force.fx, force.fz));
+  }
+  sizes.sort((a, b) => a - b);
+  return sizes.length > 0 ? sizes[Math.floor(0.98 * (sizes.length - 1))] : 0;
+}

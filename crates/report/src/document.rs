@@ -1,0 +1,95 @@
+//! A document: a verdict, blocks in reading order, warnings and provenance.
+
+use crate::{Figure, Player, Table};
+
+/// What a page says, free of any output format.
+///
+/// [`html`](crate::html) and [`markdown`](crate::markdown) read the same value, so a number
+/// shown in one is the number shown in the other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Document {
+    /// Name of the run or study; the page title.
+    pub title: String,
+    /// The answer in plain language; opens the page.
+    pub verdict: Verdict,
+    /// Content in reading order.
+    pub blocks: Vec<Block>,
+    /// What made the result: pairs of name and value, shown at the end.
+    pub provenance: Vec<(String, String)>,
+    /// What the reader must know before trusting the result; shown right after the first player.
+    pub warnings: Vec<String>,
+}
+
+/// The answer in plain language.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// One short sentence, the largest text of the page.
+    pub headline: String,
+    /// Sentences that back it, in order.
+    pub sentences: Vec<String>,
+    /// Sets the sign and the color beside the headline.
+    pub tone: Tone,
+}
+
+/// The kind of answer; always shown as a sign and a word, never by color alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// Everything that should stay up stayed up.
+    Stands,
+    /// Something came down.
+    Falls,
+    /// The run is not to be trusted.
+    Invalid,
+    /// No verdict: a study, a comparison, a record.
+    Neutral,
+}
+
+impl Tone {
+    /// The word shown beside the sign.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Stands => "Stands",
+            Self::Falls => "Falls",
+            Self::Invalid => "Not valid",
+            Self::Neutral => "Summary",
+        }
+    }
+
+    pub(crate) fn class(self) -> &'static str {
+        match self {
+            Self::Stands => "stands",
+            Self::Falls => "falls",
+            Self::Invalid => "invalid",
+            Self::Neutral => "neutral",
+        }
+    }
+}
+
+/// One piece of content. All text is plain: it is escaped, never interpreted.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Block {
+    /// A heading. Levels outside 2 to 4 are brought into that range; level 1 is the verdict's.
+    Heading {
+        /// 2 opens a section and is listed in the page's contents.
+        level: u8,
+        /// The words.
+        text: String,
+    },
+    /// A paragraph of plain text.
+    Paragraph(String),
+    /// A bulleted list of plain sentences.
+    List(Vec<String>),
+    /// A table.
+    Table(Table),
+    /// A figure with its caption.
+    Figure(Figure),
+    /// Moving bodies with controls; on paper and in Markdown, a strip of frames and the events.
+    Player(Player),
+    /// Content folded away on screen and always open on paper.
+    Details {
+        /// The line that stays visible.
+        summary: String,
+        /// What it hides.
+        blocks: Vec<Block>,
+    },
+}

@@ -1,0 +1,296 @@
+//! A document as one self-contained HTML page.
+
+use std::fmt::Write as _;
+
+use crate::{
+    Block, Document, Figure, FigureKind, Player, Strip, Table, Tone, escape,
+    figure::Names,
+    number,
+    page::{Payload, assemble},
+};
+
+/// The document as one file that asks the network for nothing.
+///
+/// Order: verdict, then the blocks; warnings and a list of sections follow the first player (or
+/// open the content when there is none); provenance closes the page. Players and interactive
+/// plots run in the page; without scripts, and on paper, they are SVG.
+pub fn html(document: &Document) -> String {
+    let mut writer = Writer::default();
+    writer.header(document);
+    writer.out.push_str("<main id=\"content\">\n");
+    let first_player = document.blocks.iter().position(|b| matches!(b, Block::Player(_)));
+    let split = first_player.map_or(0, |at| at + 1);
+    let sections = sections(&document.blocks);
+    writer.blocks(&document.blocks[..split]);
+    writer.warnings(&document.warnings);
+    writer.contents(&sections, !document.provenance.is_empty());
+    writer.blocks(&document.blocks[split..]);
+    writer.provenance(&document.provenance);
+    writer.out.push_str("</main>\n");
+    assemble(&document.title, &writer.out, writer.payload)
+}
+
+/// Headings of level 2 outside details, with their anchors.
+fn sections(blocks: &[Block]) -> Vec<(String, String)> {
+    let mut names = Names::default();
+    let mut list = Vec::new();
+    for block in blocks {
+        if let Block::Heading { level: 0..=2, text } = block {
+            list.push((anchor(&mut names, text), text.clone()));
+        }
+    }
+    list
+}
+
+fn anchor(names: &mut Names, text: &str) -> String {
+    names.take(&format!("section {text}"))
+}
+
+#[derive(Default)]
+struct Writer {
+    out: String,
+    payload: Payload,
+    names: Names,
+    anchors: Names,
+    tables: usize,
+    figures: usize,
+    folded: usize,
+}
+
+impl Writer {
+    /// Appends `markup`, which holds only escaped text.
+    fn put(&mut self, markup: &str) {
+        self.out.push_str(markup);
+    }
+
+    fn element(&mut self, open: &str, text: &str, close: &str) {
+        let text = escape::html(text);
+        // Writing to a String cannot fail.
+        let _ = writeln!(self.out, "{open}{text}{close}");
+    }
+
+    fn header(&mut self, document: &Document) {
+        let verdict = &document.verdict;
+        let tone = verdict.tone;
+        self.put("<a class=\"skip\" href=\"#content\">Skip to the content</a>\n");
+        self.put(&format!("<header class=\"verdict {}\">\n", tone.class()));
+        self.element("<p class=\"title\">", &document.title, "</p>");
+        self.put(&format!(
+            "<p class=\"tone\">{}<span>{}</span></p>\n",
+            sign(tone),
+            escape::html(tone.word())
+        ));
+        self.element("<h1>", &verdict.headline, "</h1>");
+        if !verdict.sentences.is_empty() {
+            self.element("<p class=\"lead\">", &verdict.sentences.join(" "), "</p>");
+        }
+        let count = document.warnings.len();
+        if count > 0 {
+            let plural = if count == 1 { "" } else { "s" };
+            self.put(&format!(
+                "<p class=\"heed\"><a href=\"#warnings\">{count} warning{plural}</a></p>\n"
+            ));
+        }
+        self.put("</header>\n");
+    }
+
+    fn warnings(&mut self, warnings: &[String]) {
+        if warnings.is_empty() {
+            return;
+        }
+        self.put("<section class=\"warnings\" id=\"warnings\" aria-label=\"Warnings\">\n");
+        self.put("<h2>Warnings</h2>\n<ul>\n");
+        for warning in warnings {
+            self.element("<li>", warning, "</li>");
+        }
+        self.put("</ul>\n</section>\n");
+    }
+
+    fn contents(&mut self, sections: &[(String, String)], provenance: bool) {
+        if sections.len() < 3 {
+            return;
+        }
+        self.put("<nav class=\"contents\" aria-label=\"Sections\"><ul>\n");
+        for (anchor, text) in sections {
+            self.element(&format!("<li><a href=\"#{anchor}\">"), text, "</a></li>");
+        }
+        if provenance {
+            self.put("<li><a href=\"#provenance\">Provenance</a></li>\n");
+        }
+        self.put("</ul></nav>\n");
+    }
+
+    fn provenance(&mut self, pairs: &[(String, String)]) {
+        if pairs.is_empty() {
+            return;
+        }
+        self.put("<section class=\"provenance\" id=\"provenance\">\n<h2>Provenance</h2>\n<dl>\n");
+        for (name, value) in pairs {
+            self.element("<div><dt>", name, "</dt>");
+            self.element("<dd>", value, "</dd></div>");
+        }
+        self.put("</dl>\n</section>\n");
+    }
+
+    fn blocks(&mut self, blocks: &[Block]) {
+        for block in blocks {
+            match block {
+                Block::Heading { level, text } => {
+                    let level = (*level).clamp(2, 4);
+                    // Headings that are folded away are not listed and need no anchor.
+                    let open = if level == 2 && self.folded == 0 {
+                        format!("<h2 id=\"{}\">", anchor(&mut self.anchors, text))
+                    } else {
+                        format!("<h{level}>")
+                    };
+                    self.element(&open, text, &format!("</h{level}>"));
+                }
+                Block::Paragraph(text) => self.element("<p class=\"text\">", text, "</p>"),
+                Block::List(items) => {
+                    self.put("<ul class=\"text\">\n");
+                    for item in items {
+                        self.element("<li>", item, "</li>");
+                    }
+                    self.put("</ul>\n");
+                }
+                Block::Table(table) => self.table(table),
+                Block::Figure(figure) => self.figure(figure),
+                Block::Player(player) => self.player(player),
+                Block::Details { summary, blocks } => {
+                    self.element("<details>\n<summary>", summary, "</summary>");
+                    self.put("<div class=\"folded\">\n");
+                    self.folded += 1;
+                    self.blocks(blocks);
+                    self.folded -= 1;
+                    self.put("</div>\n</details>\n");
+                }
+            }
+        }
+    }
+
+    fn table(&mut self, table: &Table) {
+        self.tables += 1;
+        self.put("<div class=\"table\" tabindex=\"0\" role=\"region\"");
+        let label = escape::html(&table.caption);
+        self.put(&format!(" aria-label=\"Table {}. {label}\">\n<table>\n", self.tables));
+        let number = format!("<caption><b>Table {}.</b> ", self.tables);
+        self.element(&number, &table.caption, "</caption>");
+        let numeric: Vec<bool> = (0..table.columns.len()).map(|c| table.is_numeric(c)).collect();
+        let class = |column: usize| if numeric[column] { " class=\"number\"" } else { "" };
+        self.put("<thead><tr>");
+        for (at, column) in table.columns.iter().enumerate() {
+            let unit = if column.unit.is_empty() {
+                String::new()
+            } else {
+                format!(" <span class=\"unit\">({})</span>", escape::html(&column.unit))
+            };
+            let name = escape::html(&column.name);
+            self.put(&format!("<th scope=\"col\"{}>{name}{unit}</th>", class(at)));
+        }
+        self.put("</tr></thead>\n<tbody>\n");
+        for row in &table.rows {
+            self.put("<tr>");
+            for at in 0..table.columns.len() {
+                let text = row.get(at).map_or_else(|| number::MISSING.into(), crate::Cell::shown);
+                self.put(&format!("<td{}>{}</td>", class(at), escape::html(&text)));
+            }
+            self.put("</tr>\n");
+        }
+        self.put("</tbody>\n</table>\n</div>\n");
+    }
+
+    fn figure(&mut self, figure: &Figure) {
+        let id = self.names.take(&figure.id);
+        let live = match &figure.kind {
+            FigureKind::Plot(plot) if plot.is_live() => Some(self.payload.add_plot(&id, plot)),
+            _ => None,
+        };
+        let kind = match &figure.kind {
+            FigureKind::Plot(_) => "plot",
+            FigureKind::Strip(_) => "strip",
+            FigureKind::Envelope(_) => "envelope",
+        };
+        let data = live.map_or(String::new(), |place| format!(" data-plot=\"{place}\""));
+        self.put(&format!("<figure class=\"{kind}\" id=\"figure-{id}\"{data}>\n"));
+        if live.is_some() {
+            self.put("<div class=\"live\"></div>\n");
+        }
+        match &figure.kind {
+            FigureKind::Strip(strip) => self.strip(strip, &id),
+            FigureKind::Plot(_) | FigureKind::Envelope(_) => {
+                let drawing = figure.draw(&id).inline();
+                self.put(&format!("<div class=\"drawing\">{drawing}</div>\n"));
+            }
+        }
+        self.caption(&figure.caption);
+        self.put("</figure>\n");
+    }
+
+    fn caption(&mut self, caption: &str) {
+        self.figures += 1;
+        let number = format!("<figcaption><b>Figure {}.</b> ", self.figures);
+        self.element(&number, caption, "</figcaption>");
+    }
+
+    fn strip(&mut self, strip: &Strip, id: &str) {
+        self.put("<div class=\"panels\">\n");
+        for drawing in strip.drawings(id) {
+            self.put(&drawing.inline());
+            self.put("\n");
+        }
+        self.put("</div>\n");
+    }
+
+    fn player(&mut self, player: &Player) {
+        let id = self.names.take(&player.id);
+        let place = self.payload.players.len();
+        self.payload.players.push(player.payload(&id));
+        self.put(&format!("<figure class=\"player\" id=\"figure-{id}\" data-player=\"{place}\">\n"));
+        self.put(PLAYER_CONTROLS);
+        self.put("<div class=\"paper\">\n");
+        self.strip(&Strip::of_run(std::sync::Arc::clone(&player.scene), 6), &id);
+        self.put("</div>\n");
+        self.caption(&player.caption);
+        self.events(player);
+        self.put("</figure>\n");
+    }
+
+    fn events(&mut self, player: &Player) {
+        let events = || player.scene.events.iter().filter(|event| event.time.is_finite());
+        if events().next().is_none() {
+            return;
+        }
+        self.put("<ol class=\"events\" aria-label=\"Events\">\n");
+        for event in events() {
+            self.put(&format!(
+                "<li><button type=\"button\" data-time=\"{}\"><i class=\"event {}\" aria-hidden=\"true\"></i><span class=\"when\">{} s</span><span class=\"what\">{}</span>",
+                event.time,
+                event.kind.class(),
+                number::fixed(event.time, 2),
+                escape::html(event.kind.word())
+            ));
+            self.element("<span class=\"text\">", &event.text, "</span></button></li>");
+        }
+        self.put("</ol>\n");
+    }
+}
+
+/// A shape for each tone, so that color only repeats what it says.
+fn sign(tone: Tone) -> &'static str {
+    match tone {
+        Tone::Stands => {
+            r#"<svg class="sign" viewBox="0 0 24 24" aria-hidden="true"><circle cx="12" cy="12" r="11"/><path d="M6.5 12.5l3.8 3.8 7.2-8"/></svg>"#
+        }
+        Tone::Falls => {
+            r#"<svg class="sign" viewBox="0 0 24 24" aria-hidden="true"><path class="fill" d="M12 1.5 23 21.5H1z"/><path d="M12 8.5v6.5M12 18.2v.1"/></svg>"#
+        }
+        Tone::Invalid => {
+            r#"<svg class="sign" viewBox="0 0 24 24" aria-hidden="true"><rect class="fill" x="1.5" y="1.5" width="21" height="21" rx="2"/><path d="M7.5 7.5l9 9M16.5 7.5l-9 9"/></svg>"#
+        }
+        Tone::Neutral => {
+            r#"<svg class="sign" viewBox="0 0 24 24" aria-hidden="true"><circle cx="12" cy="12" r="11"/><path d="M12 11v6.5M12 6.8v.1"/></svg>"#
+        }
+    }
+}
+
+const PLAYER_CONTROLS: &str = include_str!("../assets/player.html");

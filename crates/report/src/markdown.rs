@@ -1,0 +1,152 @@
+//! A document as Markdown with its figures beside it.
+
+use std::fmt::Write as _;
+
+use crate::{
+    Attachment, Block, Document, Player, Table, attachments, escape, figure::Names, number,
+};
+
+/// Markdown text and the files it refers to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MarkdownBundle {
+    /// The text.
+    pub text: String,
+    /// Figures as SVG and CSV and tables as CSV, to be written into the folder that the text names.
+    pub files: Vec<Attachment>,
+}
+
+/// The document as GitHub-flavored Markdown, one sentence per line as given.
+///
+/// `figure_dir` is the folder of the figures relative to the text, with `/` between its parts;
+/// empty means beside the text. A player becomes a strip of frames and a table of events.
+pub fn markdown(document: &Document, figure_dir: &str) -> MarkdownBundle {
+    let mut writer = Writer {
+        out: String::new(),
+        folder: figure_dir.trim_end_matches('/').to_owned(),
+        names: Names::default(),
+        tables: 0,
+        figures: 0,
+    };
+    let verdict = &document.verdict;
+    writer.line(&format!("# {}\n", escape::markdown(&document.title)));
+    let headline = escape::markdown(&verdict.headline);
+    writer.line(&format!("**{}: {headline}**\n", verdict.tone.word()));
+    for sentence in &verdict.sentences {
+        writer.line(&escape::markdown(sentence));
+    }
+    writer.line("");
+    if !document.warnings.is_empty() {
+        writer.line("## Warnings\n");
+        writer.list(&document.warnings);
+    }
+    writer.blocks(&document.blocks, 0);
+    if !document.provenance.is_empty() {
+        writer.line("## Provenance\n\n| what | value |\n| :--- | :--- |");
+        for (name, value) in &document.provenance {
+            writer.line(&format!("| {} | {} |", escape::markdown(name), escape::markdown(value)));
+        }
+        writer.line("");
+    }
+    let text = format!("{}\n", writer.out.trim_end());
+    MarkdownBundle { text, files: attachments(document) }
+}
+
+struct Writer {
+    out: String,
+    folder: String,
+    names: Names,
+    tables: usize,
+    figures: usize,
+}
+
+impl Writer {
+    fn line(&mut self, text: &str) {
+        self.out.push_str(text);
+        self.out.push('\n');
+    }
+
+    fn list(&mut self, items: &[String]) {
+        for item in items {
+            self.line(&format!("- {}", escape::markdown(item)));
+        }
+        self.line("");
+    }
+
+    fn blocks(&mut self, blocks: &[Block], deeper: usize) {
+        for block in blocks {
+            match block {
+                Block::Heading { level, text } => {
+                    let depth = usize::from((*level).clamp(2, 4)) + deeper;
+                    let hashes = "#".repeat(depth.min(6));
+                    self.line(&format!("{hashes} {}\n", escape::markdown(text)));
+                }
+                Block::Paragraph(text) => self.line(&format!("{}\n", escape::markdown(text))),
+                Block::List(items) => self.list(items),
+                Block::Table(table) => self.table(table),
+                Block::Figure(figure) => self.picture(&figure.id, &figure.caption),
+                Block::Player(player) => self.player(player),
+                Block::Details { summary, blocks } => {
+                    self.line(&format!("**{}**\n", escape::markdown(summary)));
+                    self.blocks(blocks, deeper + 1);
+                }
+            }
+        }
+    }
+
+    fn picture(&mut self, id: &str, caption: &str) {
+        self.figures += 1;
+        let name = self.names.take(id);
+        let folder = if self.folder.is_empty() {
+            String::new()
+        } else {
+            // Spaces and brackets end a link; percent signs keep them in it.
+            let safe = self.folder.replace('%', "%25").replace(' ', "%20");
+            format!("{}/", safe.replace('(', "%28").replace(')', "%29"))
+        };
+        let caption = escape::markdown(caption);
+        let number = self.figures;
+        self.line(&format!("![Figure {number}]({folder}{name}.svg)\n"));
+        self.line(&format!("**Figure {number}.** {caption} ([data]({folder}{name}.csv))\n"));
+    }
+
+    fn player(&mut self, player: &Player) {
+        self.picture(&player.id, &player.caption);
+        let events: Vec<_> = player.scene.events.iter().filter(|e| e.time.is_finite()).collect();
+        if events.is_empty() {
+            return;
+        }
+        self.line("| time (s) | event | |\n| ---: | :--- | :--- |");
+        for event in events {
+            let time = number::fixed(event.time, 2);
+            let text = escape::markdown(&event.text);
+            self.line(&format!("| {time} | {} | {text} |", event.kind.word()));
+        }
+        self.line("");
+    }
+
+    fn table(&mut self, table: &Table) {
+        self.tables += 1;
+        self.line(&format!("**Table {}.** {}\n", self.tables, escape::markdown(&table.caption)));
+        if table.columns.is_empty() {
+            return;
+        }
+        let mut head = String::from("|");
+        let mut rule = String::from("|");
+        for (at, column) in table.columns.iter().enumerate() {
+            // Writing to a String cannot fail.
+            let _ = write!(head, " {} |", escape::markdown(&column.heading()));
+            rule.push_str(if table.is_numeric(at) { " ---: |" } else { " :--- |" });
+        }
+        self.line(&head);
+        self.line(&rule);
+        for row in &table.rows {
+            let mut line = String::from("|");
+            for at in 0..table.columns.len() {
+                let text = row.get(at).map_or_else(|| number::MISSING.into(), crate::Cell::shown);
+                let _ = write!(line, " {} |", escape::markdown(&text));
+            }
+            self.line(&line);
+        }
+        self.line("");
+    }
+}

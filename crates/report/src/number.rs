@@ -1,0 +1,94 @@
+//! Numbers as text: significant digits for people, full precision for programs.
+
+/// Shown in place of a number that is missing, NaN or infinite.
+pub(crate) const MISSING: &str = "–";
+
+/// `value` rounded to `digits` significant digits (at least one, at most 15).
+///
+/// Numbers from 10⁻⁴ to below 10⁶ are written out, others as a mantissa and a power of ten.
+/// The minus sign is U+2212. A number that is not finite gives "–".
+///
+/// ```
+/// use barrelstack_report::significant;
+/// assert_eq!(significant(0.353_91, 3), "0.354");
+/// assert_eq!(significant(-1234.6, 3), "−1230");
+/// assert_eq!(significant(2.5e-7, 2), "2.5×10⁻⁷");
+/// assert_eq!(significant(f64::NAN, 3), "–");
+/// ```
+pub fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return MISSING.into();
+    }
+    if value == 0.0 {
+        return "0".into();
+    }
+    let digits = digits.clamp(1, 15);
+    // Rust's own exponent form does the rounding, so 9.996 becomes 1.00e1 and not 10.00.
+    let scientific = format!("{:.*e}", digits - 1, value.abs());
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    let sign = if value < 0.0 { "−" } else { "" };
+    if (-4..6).contains(&exponent) {
+        let rounded: f64 = scientific.parse().unwrap_or(value.abs());
+        let decimals = usize::try_from(digits as i64 - 1 - i64::from(exponent)).unwrap_or(0);
+        format!("{sign}{rounded:.decimals$}")
+    } else {
+        format!("{sign}{mantissa}×10{}", superscript(exponent))
+    }
+}
+
+/// `value` with a fixed count of decimals and a real minus sign; "–" when not finite.
+pub(crate) fn fixed(value: f64, decimals: usize) -> String {
+    if !value.is_finite() {
+        return MISSING.into();
+    }
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|b| b == b'0' || b == b'.') => rest.into(),
+        Some(rest) => format!("−{rest}"),
+        None => text,
+    }
+}
+
+/// A number for a CSV cell: shortest text that reads back to the same bits; empty when not finite.
+pub(crate) fn csv_number(value: f64) -> String {
+    if value.is_finite() { format!("{value}") } else { String::new() }
+}
+
+pub(crate) fn superscript(exponent: i32) -> String {
+    exponent
+        .to_string()
+        .chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '4' => '⁴',
+            '5' => '⁵',
+            '6' => '⁶',
+            '7' => '⁷',
+            '8' => '⁸',
+            '9' => '⁹',
+            _ => '⁰',
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_carries_into_the_next_power_of_ten() {
+        assert_eq!(significant(9.996, 3), "10.0");
+        assert_eq!(significant(999_999.0, 3), "1.00×10⁶");
+        assert_eq!(significant(0.000_099_999, 2), "0.00010");
+    }
+
+    #[test]
+    fn a_small_negative_number_does_not_become_minus_zero() {
+        assert_eq!(fixed(-0.000_4, 2), "0.00");
+        assert_eq!(fixed(-0.4, 1), "−0.4");
+    }
+}

@@ -1,0 +1,220 @@
+//! Numbers packed for the page: quantized, differenced, as variable-length bytes in base64.
+//!
+//! A value becomes the nearest whole multiple of a quantum, a power of two, so that the
+//! decoder's product is exact and page and program agree to the bit.
+//! The stream holds, for each value, a LEB128 integer: 0 for a missing value, otherwise one
+//! plus the zigzag code of the difference (first or second order) to the values before it.
+
+use serde_json::{Value, json};
+
+/// Quantum of lengths (m) and angles (rad) of the frames: 2⁻¹⁴, about 0.061 mm and 0.061 mrad.
+pub const POSE_QUANTUM: f64 = 1.0 / 16384.0;
+
+/// Quantum of times (s): 2⁻²⁰, about 1 µs.
+pub const TIME_QUANTUM: f64 = 1.0 / 1_048_576.0;
+
+/// Largest multiple of the quantum that is stored; what lies beyond counts as missing.
+/// Second differences of such numbers stay exact in the decoder's doubles.
+const LIMIT: f64 = (1_u64 << 48) as f64;
+
+/// Columns no longer than this are written as plain numbers, exact to the last digit.
+const PLAIN: usize = 512;
+
+const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+fn quantize(value: f64, quantum: f64) -> Option<i64> {
+    let scaled = (value / quantum).round();
+    // The bound keeps the conversion exact.
+    #[expect(clippy::cast_possible_truncation, reason = "bounded by LIMIT")]
+    (scaled.abs() <= LIMIT).then_some(scaled as i64)
+}
+
+/// Appends the packed form of a channel to `out`.
+fn pack_channel(values: impl Iterator<Item = Option<i64>>, order: u8, out: &mut Vec<u8>) {
+    let (mut last, mut step) = (0_i64, 0_i64);
+    for value in values {
+        let Some(value) = value else {
+            out.push(0);
+            continue;
+        };
+        let delta = value - last;
+        let code = if order == 2 { delta - step } else { delta };
+        (last, step) = (value, delta);
+        let mut bits = (code.wrapping_shl(1) ^ (code >> 63)).cast_unsigned() + 1;
+        loop {
+            let byte = u8::try_from(bits & 0x7f).unwrap_or(0);
+            bits >>= 7;
+            if bits == 0 {
+                out.push(byte);
+                break;
+            }
+            out.push(byte | 0x80);
+        }
+    }
+}
+
+/// Packs channels one after the other; `order` is whichever of 1 and 2 gives fewer bytes.
+fn pack(channels: &[Vec<Option<i64>>]) -> (u8, Vec<u8>) {
+    let with = |order: u8| {
+        let mut bytes = Vec::new();
+        for channel in channels {
+            pack_channel(channel.iter().copied(), order, &mut bytes);
+        }
+        bytes
+    };
+    let (first, second) = (with(1), with(2));
+    if second.len() < first.len() { (2, second) } else { (1, first) }
+}
+
+/// The page's form of channels of equal length `count`, quantized with one quantum.
+pub(crate) fn channels(channels: &[Vec<f64>], count: usize, quantum: f64) -> Value {
+    let whole: Vec<Vec<Option<i64>>> = channels
+        .iter()
+        .map(|channel| channel.iter().map(|v| quantize(*v, quantum)).collect())
+        .collect();
+    let (order, bytes) = pack(&whole);
+    json!({ "q": quantum, "n": count, "c": channels.len(), "o": order, "d": base64(&bytes) })
+}
+
+/// The page's form of one column: plain numbers when short or when `exact`, packed otherwise.
+///
+/// The quantum of a packed column is at most 2⁻¹⁶ of its range, finer than any screen shows.
+pub(crate) fn column(values: &[f64], exact: bool) -> Value {
+    if exact || values.len() <= PLAIN {
+        return Value::Array(
+            values.iter().map(|v| if v.is_finite() { json!(v) } else { Value::Null }).collect(),
+        );
+    }
+    channels(&[values.to_vec()], values.len(), quantum_for(values))
+}
+
+/// A power of two at most 2⁻¹⁶ of the range of the finite values.
+pub(crate) fn quantum_for(values: &[f64]) -> f64 {
+    let finite = || values.iter().copied().filter(|v| v.is_finite());
+    let low = finite().fold(f64::INFINITY, f64::min);
+    let high = finite().fold(f64::NEG_INFINITY, f64::max);
+    let size = if high > low { high - low } else { high.abs() };
+    // The bounds keep the quantum a normal number and the multiples below LIMIT.
+    if size.is_finite() && size > 1e-250 {
+        let floor = high.abs().max(low.abs()) / LIMIT * 2.0;
+        (size.log2().floor() - 16.0).exp2().max(floor.max(1e-300).log2().ceil().exp2())
+    } else {
+        1.0
+    }
+}
+
+pub(crate) fn base64(bytes: &[u8]) -> String {
+    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let byte = |at: usize| u32::from(chunk.get(at).copied().unwrap_or(0));
+        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for place in 0..4 {
+            if place <= chunk.len() {
+                out.push(char::from(ALPHABET[(bits >> (18 - 6 * place) & 63) as usize]));
+            } else {
+                out.push('=');
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unbase64(text: &str) -> Vec<u8> {
+        let digit = |c: u8| ALPHABET.iter().position(|a| *a == c).unwrap_or(0) as u32;
+        let mut out = Vec::new();
+        for chunk in text.as_bytes().chunks(4) {
+            let bits = chunk.iter().fold(0, |bits, c| bits << 6 | digit(*c));
+            let kept = 3 - chunk.iter().filter(|c| **c == b'=').count();
+            out.extend_from_slice(&bits.to_be_bytes()[1..=kept]);
+        }
+        out
+    }
+
+    fn unpack(value: &Value) -> Vec<f64> {
+        let bytes = unbase64(value["d"].as_str().unwrap());
+        let (count, channels) = (value["n"].as_u64().unwrap(), value["c"].as_u64().unwrap());
+        let (quantum, order) = (value["q"].as_f64().unwrap(), value["o"].as_u64().unwrap());
+        let mut at = 0;
+        let mut out = Vec::new();
+        for _ in 0..channels {
+            let (mut last, mut step) = (0_i64, 0_i64);
+            for _ in 0..count {
+                let (mut bits, mut shift) = (0_u64, 0);
+                loop {
+                    let byte = bytes[at];
+                    at += 1;
+                    bits |= u64::from(byte & 0x7f) << shift;
+                    shift += 7;
+                    if byte & 0x80 == 0 {
+                        break;
+                    }
+                }
+                if bits == 0 {
+                    out.push(f64::NAN);
+                    continue;
+                }
+                let code = ((bits - 1) >> 1).cast_signed() ^ -(((bits - 1) & 1).cast_signed());
+                step = if order == 2 { step + code } else { code };
+                last += step;
+                out.push(last as f64 * quantum);
+            }
+        }
+        assert_eq!(at, bytes.len());
+        out
+    }
+
+    #[test]
+    fn packing_returns_every_value_within_half_a_quantum_and_gaps_as_gaps() {
+        let mut values: Vec<f64> =
+            (0..4000).map(|k| (f64::from(k) * 0.01).sin() * 3.0 - 100.0).collect();
+        values[17] = f64::NAN;
+        values[18] = f64::INFINITY;
+        values[3000] = -1.0e4;
+        let back = unpack(&channels(&[values.clone(), vec![0.0; 4000]], 4000, POSE_QUANTUM));
+        for (value, back) in values.iter().zip(&back) {
+            if value.is_finite() {
+                assert!((value - back).abs() <= 0.5 * POSE_QUANTUM);
+            } else {
+                assert!(back.is_nan());
+            }
+        }
+        assert!(back[4000..].iter().all(|v| *v == 0.0));
+    }
+
+    #[test]
+    fn values_too_large_to_store_are_missing_and_never_wrong() {
+        let back = unpack(&channels(&[vec![1.0, 1e30, -1e30, 2.0]], 4, POSE_QUANTUM));
+        assert_eq!(back[0], 1.0);
+        assert!(back[1].is_nan() && back[2].is_nan());
+        assert_eq!(back[3], 2.0);
+    }
+
+    #[test]
+    fn a_long_column_keeps_its_range_to_sixteen_bits() {
+        for scale in [1e-12, 1.0, 1e9] {
+            let values: Vec<f64> = (0..2000).map(|k| scale * f64::from(k % 701)).collect();
+            let back = unpack(&column(&values, false));
+            for (value, back) in values.iter().zip(&back) {
+                assert!((value - back).abs() <= scale * 700.0 / 65536.0);
+            }
+        }
+    }
+
+    #[test]
+    fn a_uniform_time_axis_costs_about_one_byte_a_sample() {
+        let times: Vec<f64> = (0..3600).map(|k| f64::from(k) / 60.0).collect();
+        let packed = channels(std::slice::from_ref(&times), times.len(), TIME_QUANTUM);
+        assert!(packed["d"].as_str().unwrap().len() < 3600 * 4 / 3 + 16);
+    }
+
+    #[test]
+    fn base64_pads_as_the_standard_says() {
+        for (bytes, text) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v")] {
+            assert_eq!(base64(bytes.as_bytes()), text);
+        }
+    }
+}

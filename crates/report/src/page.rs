@@ -1,0 +1,176 @@
+//! The page around a document's blocks: style, script, and the data they read.
+
+use std::{collections::HashMap, fmt::Write as _};
+
+use serde_json::{Value, json};
+
+use crate::{
+    Axis, Plot, Scale, escape, pack,
+    svg::{DASHES, PALETTE, page_style, standalone_style},
+};
+
+const REPORT_CSS: &str = include_str!("../assets/report.css");
+const UPLOT_CSS: &str = include_str!("../assets/vendor/uPlot.min.css");
+const UPLOT_JS: &str = include_str!("../assets/vendor/uPlot.iife.min.js");
+const UPLOT_LICENSE: &str = include_str!("../assets/vendor/uPlot-LICENSE");
+
+/// The page's own scripts, in the order they depend on each other.
+const SCRIPTS: [&str; 5] = [
+    include_str!("../assets/decode.js"),
+    include_str!("../assets/stage.js"),
+    include_str!("../assets/player.js"),
+    include_str!("../assets/plots.js"),
+    include_str!("../assets/page.js"),
+];
+
+/// The icon is an empty data address and the policy forbids every address but this page, so a
+/// browser asks for nothing else.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; \
+                      img-src data: blob:";
+
+/// Data for the scripts, gathered while blocks are written.
+#[derive(Default)]
+pub(crate) struct Payload {
+    pub(crate) players: Vec<Value>,
+    pub(crate) plots: Vec<Value>,
+    columns: Vec<Value>,
+    known: HashMap<String, usize>,
+}
+
+impl Payload {
+    /// Adds a live plot and gives its place.
+    pub(crate) fn add_plot(&mut self, id: &str, plot: &Plot) -> usize {
+        let series: Vec<Value> = plot
+            .series
+            .iter()
+            .enumerate()
+            .map(|(at, s)| {
+                let count = s.x.len().min(s.y.len());
+                // A log axis shows small values as large as great ones, so they stay exact.
+                let exact = plot.x.scale == Scale::Log || plot.y.scale == Scale::Log;
+                let shown = |axis: &Axis, values: &[f64]| -> Vec<f64> {
+                    values.iter().map(|v| if axis.shows(*v) { *v } else { f64::NAN }).collect()
+                };
+                let x = self.column(pack::column(&shown(&plot.x, &s.x[..count]), exact));
+                let y = self.column(pack::column(&shown(&plot.y, &s.y[..count]), exact));
+                json!({
+                    "label": s.label,
+                    "x": x,
+                    "y": y,
+                    "look": plot.look(at),
+                    "muted": s.style.muted,
+                    "area": s.style.area,
+                    "dots": s.style.dots,
+                })
+            })
+            .collect();
+        let marks = |list: &[crate::Mark]| -> Vec<Value> {
+            let finite = list.iter().filter(|m| m.at.is_finite());
+            finite.map(|m| json!({ "at": m.at, "label": m.label })).collect()
+        };
+        let bands: Vec<Value> = plot
+            .bands
+            .iter()
+            .filter(|b| b.from.is_finite() && b.to.is_finite())
+            .map(|b| json!({ "from": b.from, "to": b.to, "label": b.label }))
+            .collect();
+        self.plots.push(json!({
+            "id": id,
+            "x": axis(&plot.x),
+            "y": axis(&plot.y),
+            "series": series,
+            "marks": marks(&plot.marks),
+            "levels": marks(&plot.levels),
+            "bands": bands,
+            "timeline": plot.timeline,
+        }));
+        self.plots.len() - 1
+    }
+
+    /// The place of a column; equal columns are stored once.
+    fn column(&mut self, column: Value) -> usize {
+        let key = column.to_string();
+        if let Some(&place) = self.known.get(&key) {
+            return place;
+        }
+        self.columns.push(column);
+        self.known.insert(key, self.columns.len() - 1);
+        self.columns.len() - 1
+    }
+
+    fn into_json(self) -> String {
+        json!({
+            "players": self.players,
+            "plots": self.plots,
+            "columns": self.columns,
+            "dashes": DASHES,
+            "figureStyle": standalone_style(),
+        })
+        .to_string()
+    }
+}
+
+fn axis(axis: &Axis) -> Value {
+    let range = axis.range.filter(|[low, high]| axis.shows(*low) && axis.shows(*high) && low < high);
+    json!({
+        "title": axis.title(),
+        "label": axis.label,
+        "unit": axis.unit,
+        "log": axis.scale == Scale::Log,
+        "range": range,
+    })
+}
+
+/// The whole file.
+pub(crate) fn assemble(title: &str, body: &str, payload: Payload) -> String {
+    let live = !payload.plots.is_empty();
+    let scripted = live || !payload.players.is_empty();
+    let mut out = String::new();
+    let title = escape::html(title);
+    out.push_str("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+    // Writing to a String cannot fail, here and below.
+    let _ = writeln!(out, "<meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">");
+    out.push_str("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
+    out.push_str("<meta name=\"color-scheme\" content=\"light dark\">\n");
+    let _ = writeln!(out, "<title>{title}</title>\n<link rel=\"icon\" href=\"data:,\">");
+    out.push_str("<style>\n");
+    out.push_str(&palette_css());
+    if live {
+        out.push_str(UPLOT_CSS);
+    }
+    out.push_str(page_style());
+    out.push_str(REPORT_CSS);
+    out.push_str("</style>\n</head>\n<body>\n");
+    out.push_str(body);
+    if scripted {
+        out.push_str("<script type=\"application/json\" id=\"barrelstack-data\">");
+        out.push_str(&escape::json_in_script(&payload.into_json()));
+        out.push_str("</script>\n");
+    }
+    if live {
+        // The license asks that its text goes with every copy.
+        let license = UPLOT_LICENSE.replace("*/", "* /");
+        let _ = writeln!(out, "<script>\n/*\n{}\n*/\n{UPLOT_JS}\n</script>", license.trim());
+    }
+    if scripted {
+        out.push_str("<script>\n(() => {\n\"use strict\";\n");
+        for script in SCRIPTS {
+            out.push_str(script);
+        }
+        out.push_str("})();\n</script>\n");
+    }
+    out.push_str("</body>\n</html>\n");
+    out
+}
+
+/// The palette as custom properties: light, dark where asked for, light again on paper.
+fn palette_css() -> String {
+    let list = |pick: fn(&(&str, &str, &str)) -> String| -> String {
+        PALETTE.iter().map(pick).collect::<Vec<_>>().join(";")
+    };
+    let light = list(|(name, light, _)| format!("--{name}:{light}"));
+    let dark = list(|(name, _, dark)| format!("--{name}:{dark}"));
+    format!(
+        ":root{{{light}}}\n@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n"
+    )
+}

@@ -1,0 +1,187 @@
+//! A plot: series over a pair of axes, with marks, levels and bands.
+
+use crate::{escape, number};
+
+/// Lines over a pair of axes.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Plot {
+    /// The horizontal axis.
+    pub x: Axis,
+    /// The vertical axis.
+    pub y: Axis,
+    /// The lines.
+    pub series: Vec<Series>,
+    /// Upright lines at chosen x.
+    pub marks: Vec<Mark>,
+    /// Level lines at chosen y.
+    pub levels: Vec<Mark>,
+    /// Shaded stretches of x.
+    pub bands: Vec<Band>,
+    /// Drawn live in the page, with readout and zoom. Needs x that never decreases in every
+    /// series; a plot that breaks this (a hysteresis loop) is drawn as SVG everywhere.
+    pub interactive: bool,
+    /// x is the time of the run (s): cursor and zoom are shared with the player and with every
+    /// other such plot. Only for interactive plots.
+    pub timeline: bool,
+}
+
+/// An axis.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Axis {
+    /// Name of the quantity.
+    pub label: String,
+    /// Unit, shown in parentheses; empty for a pure number.
+    pub unit: String,
+    /// How values map to lengths.
+    pub scale: Scale,
+    /// Shown range; from the data when `None`, or when it is empty, reversed or not finite.
+    pub range: Option<[f64; 2]>,
+}
+
+impl Axis {
+    /// A linear axis ranged by its data.
+    pub fn new(label: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self { label: label.into(), unit: unit.into(), ..Self::default() }
+    }
+
+    /// The same axis with a logarithmic scale; values at or below zero become gaps.
+    #[must_use]
+    pub fn log(mut self) -> Self {
+        self.scale = Scale::Log;
+        self
+    }
+
+    /// Name and unit as printed.
+    pub(crate) fn title(&self) -> String {
+        match (self.label.is_empty(), self.unit.is_empty()) {
+            (_, true) => self.label.clone(),
+            (true, false) => self.unit.clone(),
+            (false, false) => format!("{} ({})", self.label, self.unit),
+        }
+    }
+
+    /// Whether the axis can show `value`.
+    pub(crate) fn shows(&self, value: f64) -> bool {
+        value.is_finite() && (self.scale == Scale::Linear || value > 0.0)
+    }
+}
+
+/// How values map to lengths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Scale {
+    /// Equal differences, equal lengths.
+    #[default]
+    Linear,
+    /// Equal ratios, equal lengths.
+    Log,
+}
+
+/// One line of a plot.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Series {
+    /// Name in the legend.
+    pub label: String,
+    /// Abscissas; points beyond the shorter of `x` and `y` are not drawn.
+    pub x: Vec<f64>,
+    /// Ordinates; a value that is not finite makes a gap.
+    pub y: Vec<f64>,
+    /// How it is drawn.
+    pub style: SeriesStyle,
+}
+
+impl Series {
+    /// A plain line.
+    pub fn new(label: impl Into<String>, x: Vec<f64>, y: Vec<f64>) -> Self {
+        Self { label: label.into(), x, y, style: SeriesStyle::default() }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.x.len().min(self.y.len())
+    }
+}
+
+/// How a series is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct SeriesStyle {
+    /// Which color and dash pattern, from 0, modulo six; the place in the plot when `None`.
+    pub index: Option<usize>,
+    /// Shade between the line and zero (or the foot of the plot).
+    pub area: bool,
+    /// Draw a dot at every point, for measured or sparse data.
+    pub dots: bool,
+    /// Thin and gray: context, such as single motions behind their mean.
+    pub muted: bool,
+}
+
+/// A place on an axis worth a line and a word.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// Where, in the axis's unit.
+    pub at: f64,
+    /// The word.
+    pub label: String,
+}
+
+/// A shaded stretch of the horizontal axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Band {
+    /// Start, in the axis's unit.
+    pub from: f64,
+    /// End.
+    pub to: f64,
+    /// The word.
+    pub label: String,
+}
+
+impl Plot {
+    /// Whether the page may draw it live: asked for, and x never decreases.
+    pub(crate) fn is_live(&self) -> bool {
+        self.interactive
+            && self.series.iter().any(|s| s.len() > 1)
+            && self.series.iter().all(|s| {
+                let x = &s.x[..s.len()];
+                x.iter().all(|v| self.x.shows(*v)) && x.windows(2).all(|p| p[1] >= p[0])
+            })
+    }
+
+    pub(crate) fn look(&self, at: usize) -> usize {
+        self.series[at].style.index.unwrap_or(at) % 6
+    }
+
+    pub(crate) fn to_csv(&self) -> String {
+        let mut groups: Vec<(&[f64], Vec<&Series>)> = Vec::new();
+        for series in &self.series {
+            let x = &series.x[..series.len()];
+            match groups.iter_mut().find(|(known, _)| same(known, x)) {
+                Some((_, members)) => members.push(series),
+                None => groups.push((x, vec![series])),
+            }
+        }
+        let with_unit = |label: &str, unit: &str| {
+            escape::csv(&if unit.is_empty() { label.into() } else { format!("{label} ({unit})") })
+        };
+        let mut header = Vec::new();
+        for (_, members) in &groups {
+            header.push(with_unit(&self.x.label, &self.x.unit));
+            header.extend(members.iter().map(|s| with_unit(&s.label, &self.y.unit)));
+        }
+        let mut out = header.join(",");
+        out.push('\n');
+        let rows = groups.iter().map(|(x, _)| x.len()).max().unwrap_or(0);
+        for row in 0..rows {
+            let mut cells = Vec::new();
+            for (x, members) in &groups {
+                let cell = |values: &[f64]| values.get(row).map_or(String::new(), |v| number::csv_number(*v));
+                cells.push(cell(x));
+                cells.extend(members.iter().map(|s| cell(&s.y[..s.len()])));
+            }
+            out.push_str(&cells.join(","));
+            out.push('\n');
+        }
+        out
+    }
+}
+
+fn same(a: &[f64], b: &[f64]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
+}

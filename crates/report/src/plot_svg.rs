@@ -1,0 +1,280 @@
+//! A plot drawn as SVG: axes, grid, bands, lines, marks, legend.
+
+use crate::{
+    Axis, Plot, Scale,
+    simplify::simplify,
+    svg::{Anchor, DASHES, Svg, text_width},
+    ticks::{Ticks, linear_ticks, log_ticks},
+};
+
+const WIDTH: f64 = 680.0;
+const PLOT_HEIGHT: f64 = 230.0;
+const FONT: f64 = 12.0;
+
+/// A range of data and the pixels it maps to.
+struct Map {
+    range: [f64; 2],
+    pixels: [f64; 2],
+    log: bool,
+}
+
+impl Map {
+    fn at(&self, value: f64) -> f64 {
+        let [low, high] = self.range;
+        let share = if self.log {
+            (value / low).ln() / (high / low).ln()
+        } else {
+            (value - low) / (high - low)
+        };
+        self.pixels[0] + share * (self.pixels[1] - self.pixels[0])
+    }
+
+    fn holds(&self, value: f64) -> bool {
+        value >= self.range[0] && value <= self.range[1]
+    }
+}
+
+impl Plot {
+    pub(crate) fn draw(&self, id: &str, title: &str) -> Svg {
+        let x_range = self.x.data_range(self.series.iter().map(|s| &s.x[..s.len()]), false);
+        let areas = self.series.iter().any(|s| s.style.area);
+        let y_range =
+            self.y.with_air(self.y.data_range(self.series.iter().map(|s| &s.y[..s.len()]), areas));
+        let y_ticks = self.y.ticks(y_range, 5);
+        let widest = y_ticks.labels.iter().map(|l| text_width(l, FONT)).fold(0.0, f64::max);
+        let left = 34.0 + widest;
+        let right = WIDTH - 14.0;
+        let (legend, legend_height) = self.legend_layout(left, right);
+        let mark_height = if self.marks.is_empty() && self.bands.is_empty() { 6.0 } else { 22.0 };
+        let top = 6.0 + legend_height + mark_height;
+        let bottom = top + PLOT_HEIGHT;
+        let x = Map { range: x_range, pixels: [left, right], log: self.x.scale == Scale::Log };
+        let y = Map { range: y_range, pixels: [bottom, top], log: self.y.scale == Scale::Log };
+
+        let mut svg = Svg::new(WIDTH, bottom + 46.0, title);
+        svg.raw(&format!(r#"<defs><clipPath id="{id}-clip">"#));
+        svg.rect("", [left, top - 1.0], [right - left, bottom - top + 2.0]);
+        svg.raw("</clipPath></defs>");
+        self.draw_bands(&mut svg, &x, top, bottom);
+        self.draw_axes(&mut svg, &x, &y, &y_ticks);
+        self.draw_series(&mut svg, id, &x, &y);
+        self.draw_marks(&mut svg, &x, &y, top);
+        for (at, corner, label) in legend {
+            let class = self.class(at);
+            svg.path(&class, self.dash(at), &[vec![[corner[0], corner[1] - 4.0], [corner[0] + 26.0, corner[1] - 4.0]]], false);
+            svg.text("label", [corner[0] + 32.0, corner[1]], Anchor::Start, &label);
+        }
+        svg
+    }
+
+    fn class(&self, at: usize) -> String {
+        if self.series[at].style.muted { "series muted".into() } else { format!("series s{}", self.look(at)) }
+    }
+
+    fn dash(&self, at: usize) -> &'static str {
+        if self.series[at].style.muted { "" } else { DASHES[self.look(at)] }
+    }
+
+    /// Where each legend entry goes, and the height they take together.
+    fn legend_layout(&self, left: f64, right: f64) -> (Vec<(usize, [f64; 2], String)>, f64) {
+        let mut entries = Vec::new();
+        let mut pen = [left, 14.0];
+        for (at, series) in self.series.iter().enumerate() {
+            if series.label.is_empty() {
+                continue;
+            }
+            let wide = 32.0 + text_width(&series.label, FONT) + 18.0;
+            if pen[0] > left && pen[0] + wide > right {
+                pen = [left, pen[1] + 17.0];
+            }
+            entries.push((at, pen, series.label.clone()));
+            pen[0] += wide;
+        }
+        let height = if entries.is_empty() { 0.0 } else { pen[1] + 2.0 };
+        (entries, height)
+    }
+
+    fn draw_axes(&self, svg: &mut Svg, x: &Map, y: &Map, y_ticks: &Ticks) {
+        let [left, right] = x.pixels;
+        let [bottom, top] = y.pixels;
+        for (value, label) in y_ticks.values.iter().zip(&y_ticks.labels) {
+            let at = y.at(*value);
+            svg.line("grid", [left, at], [right, at]);
+            svg.text("tick", [left - 7.0, at + 4.0], Anchor::End, label);
+        }
+        let x_ticks = self.x.ticks(x.range, 8);
+        for (value, label) in x_ticks.values.iter().zip(&x_ticks.labels) {
+            let at = x.at(*value);
+            svg.line("grid", [at, top], [at, bottom]);
+            svg.line("axis", [at, bottom], [at, bottom + 4.0]);
+            svg.text("tick", [at, bottom + 17.0], Anchor::Middle, label);
+        }
+        svg.line("axis", [left, bottom], [right, bottom]);
+        if !y.log && y.range[0] < 0.0 && y.range[1] > 0.0 {
+            svg.line("zero", [left, y.at(0.0)], [right, y.at(0.0)]);
+        }
+        svg.text("label", [0.5 * (left + right), bottom + 37.0], Anchor::Middle, &self.x.title());
+        let middle = 0.5 * (top + bottom);
+        svg.turned_text("label", [13.0, middle], Anchor::Middle, -90.0, &self.y.title());
+    }
+
+    fn draw_bands(&self, svg: &mut Svg, x: &Map, top: f64, bottom: f64) {
+        for band in &self.bands {
+            if !(self.x.shows(band.from) && self.x.shows(band.to)) {
+                continue;
+            }
+            let from = x.at(band.from.max(x.range[0]));
+            let to = x.at(band.to.min(x.range[1]));
+            if to > from {
+                svg.rect("band", [from, top], [to - from, bottom - top]);
+                svg.text("note", [0.5 * (from + to), top - 7.0], Anchor::Middle, &band.label);
+            }
+        }
+    }
+
+    fn draw_series(&self, svg: &mut Svg, id: &str, x: &Map, y: &Map) {
+        svg.raw(&format!(r#"<g clip-path="url(#{id}-clip)">"#));
+        // Context first, so that it lies under what it is the context of.
+        let mut order: Vec<usize> = (0..self.series.len()).collect();
+        order.sort_by_key(|&at| !self.series[at].style.muted);
+        for at in order {
+            let series = &self.series[at];
+            let class = self.class(at);
+            let runs = self.runs(at, x, y);
+            if series.style.area {
+                let foot = if y.log { y.pixels[0] } else { y.at(0.0_f64.clamp(y.range[0], y.range[1])) };
+                let shapes: Vec<_> = runs
+                    .iter()
+                    .map(|run| {
+                        let mut shape = run.clone();
+                        if let (Some(first), Some(last)) = (run.first(), run.last()) {
+                            shape.push([last[0], foot]);
+                            shape.push([first[0], foot]);
+                        }
+                        shape
+                    })
+                    .collect();
+                svg.path(&format!("area s{}", self.look(at)), "", &shapes, true);
+            }
+            svg.path(&class, self.dash(at), &runs, false);
+            if series.style.dots {
+                for k in 0..series.len() {
+                    if self.x.shows(series.x[k]) && self.y.shows(series.y[k]) {
+                        svg.circle(
+                            &format!("dot s{}", self.look(at)),
+                            [x.at(series.x[k]), y.at(series.y[k])],
+                            2.6,
+                        );
+                    }
+                }
+            }
+        }
+        svg.raw("</g>");
+    }
+
+    /// Runs of points between gaps, in pixels.
+    fn runs(&self, at: usize, x: &Map, y: &Map) -> Vec<Vec<[f64; 2]>> {
+        let series = &self.series[at];
+        let mut runs = vec![Vec::new()];
+        for k in 0..series.len() {
+            if self.x.shows(series.x[k]) && self.y.shows(series.y[k]) {
+                if let Some(run) = runs.last_mut() {
+                    // Far outside the window a line needs no exact place, and short numbers suffice.
+                    let point = [x.at(series.x[k]), y.at(series.y[k])];
+                    run.push(point.map(|v: f64| v.clamp(-9999.0, 9999.0)));
+                }
+            } else if runs.last().is_some_and(|run| !run.is_empty()) {
+                runs.push(Vec::new());
+            }
+        }
+        runs.retain(|run| !run.is_empty());
+        runs.iter().map(|run| simplify(run, 0.1)).collect()
+    }
+
+    fn draw_marks(&self, svg: &mut Svg, x: &Map, y: &Map, top: f64) {
+        let [left, right] = x.pixels;
+        let mut free = f64::NEG_INFINITY;
+        let mut marks: Vec<_> =
+            self.marks.iter().filter(|m| self.x.shows(m.at) && x.holds(m.at)).collect();
+        marks.sort_by(|a, b| a.at.total_cmp(&b.at));
+        for mark in marks {
+            let at = x.at(mark.at);
+            svg.line("mark", [at, top - 4.0], [at, y.pixels[0]]);
+            let wide = text_width(&mark.label, 11.0);
+            let center = at.clamp(left + 0.5 * wide, (right - 0.5 * wide).max(left + 0.5 * wide));
+            // A label that would cover the one before it is left to the caption and the table.
+            if center - 0.5 * wide > free {
+                svg.text("note", [center, top - 8.0], Anchor::Middle, &mark.label);
+                free = center + 0.5 * wide + 6.0;
+            }
+        }
+        for level in self.levels.iter().filter(|m| self.y.shows(m.at) && y.holds(m.at)) {
+            let at = y.at(level.at);
+            svg.line("mark", [left, at], [right, at]);
+            svg.text("note", [right - 4.0, at - 4.0], Anchor::End, &level.label);
+        }
+    }
+}
+
+impl Axis {
+    /// The range to show: the given one when usable, otherwise that of the data with some air.
+    ///
+    /// Data of no extent get a range around them; no data at all give 0 to 1 (1 to 10 for logs).
+    pub(crate) fn data_range<'a>(
+        &self,
+        columns: impl Iterator<Item = &'a [f64]>,
+        with_zero: bool,
+    ) -> [f64; 2] {
+        if let Some([low, high]) = self.range
+            && self.shows(low)
+            && self.shows(high)
+            && low < high
+        {
+            return [low, high];
+        }
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for value in columns.flatten().copied().filter(|v| self.shows(*v)) {
+            low = low.min(value);
+            high = high.max(value);
+        }
+        if self.scale == Scale::Log {
+            return match low < high {
+                true => [low, high],
+                false if low.is_finite() => [low / 3.0, low * 3.0],
+                false => [1.0, 10.0],
+            };
+        }
+        if with_zero && low.is_finite() {
+            low = low.min(0.0);
+            high = high.max(0.0);
+        }
+        if low < high && (high - low) > 1e-9 * low.abs().max(high.abs()) {
+            [low, high]
+        } else if low.is_finite() {
+            let half = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
+            [low - half, low + half]
+        } else {
+            [0.0, 1.0]
+        }
+    }
+
+    /// A linear range from data, widened so that no line runs along the frame.
+    fn with_air(&self, [low, high]: [f64; 2]) -> [f64; 2] {
+        if self.scale == Scale::Log || self.range == Some([low, high]) {
+            return [low, high];
+        }
+        let air = 0.05 * (high - low);
+        let touches_zero = |v: f64| v == 0.0;
+        [
+            if touches_zero(low) { low } else { low - air },
+            if touches_zero(high) { high } else { high + air },
+        ]
+    }
+
+    pub(crate) fn ticks(&self, range: [f64; 2], target: usize) -> Ticks {
+        match self.scale {
+            Scale::Linear => linear_ticks(range[0], range[1], target),
+            Scale::Log => log_ticks(range[0], range[1]),
+        }
+    }
+}

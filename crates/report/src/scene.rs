@@ -1,0 +1,343 @@
+//! A scene: rigid bodies in a vertical plane, their poses over time, what happened to them.
+
+use std::f64::consts::TAU;
+
+/// A point or vector `[x, z]` (m): x to the right, z up.
+pub type Point = [f64; 2];
+
+/// A pose `[x, z, angle]` (m, m, rad), angle counterclockwise, of a body's frame in the world.
+pub type Pose2 = [f64; 3];
+
+/// A broken line.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Polyline {
+    /// Its corners (m).
+    pub points: Vec<Point>,
+    /// Whether the last point joins the first.
+    pub closed: bool,
+}
+
+impl Polyline {
+    /// A line that ends where it ends.
+    pub fn open(points: Vec<Point>) -> Self {
+        Self { points, closed: false }
+    }
+
+    /// A line that returns to its start.
+    pub fn closed(points: Vec<Point>) -> Self {
+        Self { points, closed: true }
+    }
+
+    /// A circle about the origin drawn with `sides` corners (at least 3).
+    pub fn circle(radius: f64, sides: usize) -> Self {
+        let sides = sides.max(3);
+        let corner = |k: usize| {
+            let angle = TAU * k as f64 / sides as f64;
+            [radius * angle.cos(), radius * angle.sin()]
+        };
+        Self::closed((0..sides).map(corner).collect())
+    }
+
+    /// A rectangle with these lower left and upper right corners.
+    pub fn rectangle(lower: Point, upper: Point) -> Self {
+        Self::closed(vec![lower, [upper[0], lower[1]], upper, [lower[0], upper[1]]])
+    }
+}
+
+/// What a body is, for its color and its line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Moves with the ground; drawn without a name and left out of "follow the stack".
+    Ground,
+    /// Wood.
+    Barrel,
+    /// Steel.
+    Rack,
+    /// Any other body.
+    Block,
+    /// A protection device.
+    Device,
+}
+
+impl Role {
+    pub(crate) fn class(self) -> &'static str {
+        match self {
+            Self::Ground => "ground",
+            Self::Barrel => "barrel",
+            Self::Rack => "rack",
+            Self::Block => "block",
+            Self::Device => "device",
+        }
+    }
+}
+
+/// A body's drawing, in its own frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneBody {
+    /// Name shown at the body's origin.
+    pub name: String,
+    /// What it is.
+    pub role: Role,
+    /// Its outlines; closed ones are filled.
+    pub outlines: Vec<Polyline>,
+    /// Lines that make its rotation visible. The first is drawn strong (a bung), others thin.
+    pub marks: Vec<Polyline>,
+}
+
+impl SceneBody {
+    /// A body without marks.
+    pub fn new(name: impl Into<String>, role: Role, outlines: Vec<Polyline>) -> Self {
+        Self { name: name.into(), role, outlines, marks: Vec::new() }
+    }
+
+    /// A barrel seen from its head: a circle with a strong bung mark at the top and stave marks.
+    pub fn barrel(name: impl Into<String>, radius: f64) -> Self {
+        let spoke = |angle: f64, from: f64| {
+            let (sin, cos) = angle.sin_cos();
+            Polyline::open(vec![
+                [from * radius * cos, from * radius * sin],
+                [radius * cos, radius * sin],
+            ])
+        };
+        let mut marks = vec![spoke(TAU / 4.0, 0.72)];
+        marks.extend((1..12).map(|k| spoke(TAU / 4.0 + TAU * f64::from(k) / 12.0, 0.86)));
+        Self {
+            name: name.into(),
+            role: Role::Barrel,
+            outlines: vec![Polyline::circle(radius, 48)],
+            marks,
+        }
+    }
+}
+
+/// A force on a body at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactForce {
+    /// Where it acts (m).
+    pub x: f64,
+    /// Where it acts (m).
+    pub z: f64,
+    /// Component along x (N).
+    pub fx: f64,
+    /// Component along z (N).
+    pub fz: f64,
+}
+
+/// Poses over time.
+///
+/// Lengths that disagree are never an error: frames without a time are not shown, a body
+/// without a pose (or with one that is not finite) is not drawn in that frame.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Frames {
+    /// Times of the frames (s), not decreasing.
+    pub times: Vec<f64>,
+    /// For each frame, the pose of each body in the order of [`Scene::bodies`].
+    pub poses: Vec<Vec<Pose2>>,
+    /// For each frame, contact forces; empty when there are none to show.
+    /// The same contact at the same place of the list in every frame packs best.
+    pub forces: Vec<Vec<ContactForce>>,
+}
+
+impl Frames {
+    /// Count of frames that have a time and poses.
+    pub fn len(&self) -> usize {
+        self.times.len().min(self.poses.len())
+    }
+
+    /// Whether there is nothing to show.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The frame nearest in time to `time`; the earlier of two equally near.
+    pub fn nearest(&self, time: f64) -> Option<usize> {
+        let count = self.len();
+        let times = self.times.get(..count)?;
+        let distance = |k: usize| (times[k] - time).abs();
+        (0..count).filter(|&k| distance(k).is_finite()).min_by(|&a, &b| {
+            distance(a).partial_cmp(&distance(b)).unwrap_or(std::cmp::Ordering::Equal)
+        })
+    }
+
+    pub(crate) fn pose(&self, frame: usize, body: usize) -> Option<Pose2> {
+        let pose = *self.poses.get(frame)?.get(body)?;
+        pose.iter().all(|v| v.is_finite()).then_some(pose)
+    }
+}
+
+/// What kind of thing happened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EventKind {
+    /// A contact opened.
+    Uplift,
+    /// A contact slid.
+    Slip,
+    /// A body left the place that held it.
+    LossOfSeat,
+    /// A body reached the ground or left the scene.
+    Fall,
+    /// Anything else worth a mark.
+    Note,
+}
+
+impl EventKind {
+    /// The word shown to the reader.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Uplift => "uplift",
+            Self::Slip => "slip",
+            Self::LossOfSeat => "loss of seat",
+            Self::Fall => "fall",
+            Self::Note => "note",
+        }
+    }
+
+    pub(crate) fn class(self) -> &'static str {
+        match self {
+            Self::Uplift => "uplift",
+            Self::Slip => "slip",
+            Self::LossOfSeat => "seat",
+            Self::Fall => "fall",
+            Self::Note => "note",
+        }
+    }
+}
+
+/// Something that happened at an instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// When (s).
+    pub time: f64,
+    /// To which body, by its place in [`Scene::bodies`].
+    pub body: Option<usize>,
+    /// What kind.
+    pub kind: EventKind,
+    /// One plain sentence.
+    pub text: String,
+}
+
+/// One quantity over time.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct History {
+    /// Name.
+    pub label: String,
+    /// Unit of the values, for people; may be empty.
+    pub unit: String,
+    /// Times (s).
+    pub times: Vec<f64>,
+    /// Values; NaN makes a gap.
+    pub values: Vec<f64>,
+}
+
+/// Bodies, their motion, events and the ground motion under them.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Scene {
+    /// The bodies, drawn in this order.
+    pub bodies: Vec<SceneBody>,
+    /// Their poses.
+    pub frames: Frames,
+    /// What happened, in order of time.
+    pub events: Vec<Event>,
+    /// Histories shown in the strip under the player.
+    pub ground: Vec<History>,
+}
+
+impl Scene {
+    /// The name of body `body`; "body 3" when it has no entry.
+    pub fn name(&self, body: usize) -> String {
+        self.bodies.get(body).map_or_else(|| format!("body {}", body + 1), |b| b.name.clone())
+    }
+}
+
+/// A point of a body whose path is drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    /// The body, by its place in [`Scene::bodies`].
+    pub body: usize,
+    /// The point in the body's frame (m).
+    pub point: Point,
+    /// Its name.
+    pub label: String,
+}
+
+/// An axis-aligned box that grows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Extent {
+    pub lower: Point,
+    pub upper: Point,
+}
+
+impl Extent {
+    pub(crate) const EMPTY: Self =
+        Self { lower: [f64::INFINITY; 2], upper: [f64::NEG_INFINITY; 2] };
+
+    pub(crate) fn add(&mut self, point: Point) {
+        if point.iter().all(|v| v.is_finite()) {
+            for axis in 0..2 {
+                self.lower[axis] = self.lower[axis].min(point[axis]);
+                self.upper[axis] = self.upper[axis].max(point[axis]);
+            }
+        }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.lower[0] > self.upper[0]
+    }
+
+    pub(crate) fn width(&self) -> f64 {
+        (self.upper[0] - self.lower[0]).max(0.0)
+    }
+
+    pub(crate) fn height(&self) -> f64 {
+        (self.upper[1] - self.lower[1]).max(0.0)
+    }
+}
+
+pub(crate) fn place(pose: Pose2, point: Point) -> Point {
+    let (sin, cos) = pose[2].sin_cos();
+    [pose[0] + cos * point[0] - sin * point[1], pose[1] + sin * point[0] + cos * point[1]]
+}
+
+/// Extent of all bodies but the ground at frame `frame`.
+pub(crate) fn frame_extent(scene: &Scene, frame: usize) -> Extent {
+    let mut extent = Extent::EMPTY;
+    for (at, body) in scene.bodies.iter().enumerate() {
+        if body.role == Role::Ground {
+            continue;
+        }
+        if let Some(pose) = scene.frames.pose(frame, at) {
+            for point in body.outlines.iter().flat_map(|line| &line.points) {
+                extent.add(place(pose, *point));
+            }
+        }
+    }
+    extent
+}
+
+/// The window that shows `frames`: their extent, never wider than the first frame's grown by
+/// its own larger side on the left and the right, so that one body far away does not shrink all.
+pub(crate) fn window(scene: &Scene, frames: &[usize]) -> Extent {
+    let first = frame_extent(scene, 0);
+    let mut all = first;
+    for &frame in frames {
+        let extent = frame_extent(scene, frame);
+        all.add(extent.lower);
+        all.add(extent.upper);
+    }
+    if all.is_empty() {
+        return Extent { lower: [-1.0, 0.0], upper: [1.0, 1.0] };
+    }
+    if !first.is_empty() {
+        let reach = first.width().max(first.height());
+        all.lower = [all.lower[0].max(first.lower[0] - reach), all.lower[1].max(first.lower[1] - 0.5)];
+        all.upper = [
+            all.upper[0].min(first.upper[0] + reach),
+            all.upper[1].min(first.upper[1] + 0.5 * reach),
+        ];
+    }
+    let pad = 0.04 * all.width().max(all.height()).max(0.1);
+    Extent {
+        lower: [all.lower[0] - pad, all.lower[1] - 2.0 * pad],
+        upper: [all.upper[0] + pad, all.upper[1] + pad],
+    }
+}

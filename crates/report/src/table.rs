@@ -1,0 +1,99 @@
+//! A table: named columns with units, rows of cells.
+
+use crate::{escape, number};
+
+/// A table with a caption.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// What the table holds; plain text.
+    pub caption: String,
+    /// The columns, left to right.
+    pub columns: Vec<Column>,
+    /// The rows. A short row is filled with [`Cell::Missing`], surplus cells are not shown.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+/// A column's name and unit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Heading of the column.
+    pub name: String,
+    /// Unit of its numbers, shown in parentheses; empty when there is none.
+    pub unit: String,
+}
+
+impl Column {
+    /// A column; `unit` may be empty.
+    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self { name: name.into(), unit: unit.into() }
+    }
+
+    pub(crate) fn heading(&self) -> String {
+        if self.unit.is_empty() {
+            self.name.clone()
+        } else {
+            format!("{} ({})", self.name, self.unit)
+        }
+    }
+}
+
+/// One cell.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// Plain text.
+    Text(String),
+    /// A number and the count of significant digits to show; CSV keeps every digit.
+    Number(f64, usize),
+    /// No value: shown as a dash, empty in CSV.
+    Missing,
+}
+
+impl Cell {
+    /// A cell of text.
+    pub fn text(text: impl Into<String>) -> Self {
+        Self::Text(text.into())
+    }
+
+    pub(crate) fn shown(&self) -> String {
+        match self {
+            Self::Text(text) => text.clone(),
+            Self::Number(value, digits) => number::significant(*value, *digits),
+            Self::Missing => number::MISSING.into(),
+        }
+    }
+}
+
+impl Table {
+    /// An empty table with these columns, given as pairs of name and unit.
+    pub fn new(caption: impl Into<String>, columns: &[(&str, &str)]) -> Self {
+        let columns = columns.iter().map(|(name, unit)| Column::new(*name, *unit)).collect();
+        Self { caption: caption.into(), columns, rows: Vec::new() }
+    }
+
+    /// The table as CSV: a header with units, then every row at full precision.
+    pub fn to_csv(&self) -> String {
+        let mut out = String::new();
+        let header: Vec<_> = self.columns.iter().map(|c| escape::csv(&c.heading())).collect();
+        out.push_str(&header.join(","));
+        out.push('\n');
+        for row in &self.rows {
+            let cells: Vec<_> = (0..self.columns.len())
+                .map(|at| match row.get(at) {
+                    Some(Cell::Text(text)) => escape::csv(text),
+                    Some(Cell::Number(value, _)) => number::csv_number(*value),
+                    Some(Cell::Missing) | None => String::new(),
+                })
+                .collect();
+            out.push_str(&cells.join(","));
+            out.push('\n');
+        }
+        out
+    }
+
+    /// A column is numeric when it holds a number and no text.
+    pub(crate) fn is_numeric(&self, column: usize) -> bool {
+        let cells = || self.rows.iter().filter_map(move |row| row.get(column));
+        cells().any(|cell| matches!(cell, Cell::Number(..)))
+            && !cells().any(|cell| matches!(cell, Cell::Text(_)))
+    }
+}
