@@ -129,11 +129,7 @@ impl<S: Space> Elements<S> {
     /// Lists the elements within the margin and hands their memory over.
     ///
     /// Returns the origins: for every element of the new list, which one of the old list it was.
-    pub(crate) fn rebuild(
-        &mut self,
-        model: &Model<S>,
-        poses: &[Pose<S>],
-    ) -> Vec<Option<usize>> {
+    pub(crate) fn rebuild(&mut self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<Option<usize>> {
         let old = std::mem::replace(self, Self { exhaustive: self.exhaustive, ..Self::default() });
         self.built_for = poses.to_vec();
         let rotations: Vec<S::Rotation> =

@@ -96,10 +96,8 @@ fn a_step_far_too_long_ends_with_the_time_and_the_body() {
     let idle = disc("idle", 0.1, 5.0, 0.005, Vec2::new(10.0, 0.5));
     let squeezed = disc("squeezed", 0.2, 5.0, 0.02, Vec2::new(0.0, 0.194));
     let bodies = vec![walls, idle, squeezed];
-    let law = interface(
-        NormalLaw::SpeedGap { stiffness: 1e7, damping: 1e3 },
-        FrictionLaw::Frictionless,
-    );
+    let law =
+        interface(NormalLaw::SpeedGap { stiffness: 1e7, damping: 1e3 }, FrictionLaw::Frictionless);
     let mut pairs = all_pairs(&bodies);
     pairs.push(barrelstack_dynamics::ContactPair { surface: 1, ..pair(2, 0) });
     let model = Model::new(bodies, vec![law], pairs, DOWN).unwrap();
@@ -134,8 +132,7 @@ fn a_body_that_starts_without_a_number_is_named() {
     scene.state.twists[3] = Twist { linear: Vec2::new(f64::NAN, 0.0), angular: 0.0 };
     for method in every_method(1e-6) {
         let mut scene = Scene { state: scene.state.clone(), ..Scene::of(scene.model.clone()) };
-        let found =
-            scene.try_watch(&Still, method, 1e-3, 1.0, |_, _, _| ControlFlow::Continue(()));
+        let found = scene.try_watch(&Still, method, 1e-3, 1.0, |_, _, _| ControlFlow::Continue(()));
         let RunError::NotFinite { time, body, .. } = found.unwrap_err();
         assert_eq!(body, "body 2", "{}", method.name());
         assert!(time <= 1e-3, "{time}");

@@ -23,7 +23,8 @@ fn sledge(friction: FrictionLaw, slope: f64, speed: f64) -> Scene {
     let (width, height) = (0.6, 0.1);
     let gravity = gravity_on_slope(slope);
     let sunk = -MASS * gravity.z / (2.0 * STIFFNESS);
-    let mut body = block("sledge", (width, height), MASS, None, pose(0.0, 0.5 * height - sunk, 0.0));
+    let mut body =
+        block("sledge", (width, height), MASS, None, pose(0.0, 0.5 * height - sunk, 0.0));
     body.twist = Twist { linear: Vec2::new(speed, 0.0), angular: 0.0 };
     Scene::new(vec![floor(), body], interface(firm(), friction), gravity)
 }
@@ -120,8 +121,7 @@ fn a_thrown_block_slides_as_far_as_its_energy_lasts() {
         let expected = speed * speed / (2.0 * friction * GRAVITY);
         assert_close("sliding distance", farthest, expected, 1e-6); // measured 7.7e-8
         // It ends a little behind its farthest place: the sticks let go.
-        let (velocity, end) =
-            (scene.state.twists[1].linear.x, scene.state.poses[1].position.x);
+        let (velocity, end) = (scene.state.twists[1].linear.x, scene.state.poses[1].position.x);
         let stretch = friction * MASS * GRAVITY / (2.0 * STIFFNESS);
         let back = farthest - end;
         assert!(velocity.abs() < 1e-12, "{velocity:e}");

@@ -267,7 +267,11 @@ fn halving_the_step_of_an_impact_brings_it_nearer_to_the_exact_rebound() {
         } else {
             // A jump at touch-down leaves first order to every fixed step; measured 3.9e-3, 2.5e-3 and
             // 1.7e-3 at the shortest.
-            assert!(errors[3] < 0.2 * errors[0] && errors[3] < 6e-3, "{}: {errors:?}", method.name());
+            assert!(
+                errors[3] < 0.2 * errors[0] && errors[3] < 6e-3,
+                "{}: {errors:?}",
+                method.name()
+            );
         }
     }
 }

@@ -4,8 +4,9 @@ mod common;
 
 use std::ops::ControlFlow;
 
+use barrelstack_dynamics::contact::Exponent;
 use barrelstack_dynamics::forces::contact_force;
-use barrelstack_dynamics::shape::{Circle, Polygon};
+use barrelstack_dynamics::shape::Circle;
 use barrelstack_dynamics::{
     Body, ContactPair, Drive, FrictionLaw, Interface, Method, Model, Nodes, NormalLaw, Planar,
     Shape, State, Still, Twist, Vec2,
@@ -274,7 +275,11 @@ proptest! {
 
 fn crossley() -> Interface<Planar> {
     interface(
-        NormalLaw::HuntCrossley { stiffness: 4.0e6, dissipation: 0.4 },
+        NormalLaw::HuntCrossley {
+            stiffness: 4.0e6,
+            dissipation: 0.4,
+            exponent: Exponent::Hertzian,
+        },
         FrictionLaw::Regularized { coefficient: 0.4, velocity: 0.02 },
     )
 }
@@ -291,11 +296,7 @@ fn four_times(body: &Body<Planar>) -> Body<Planar> {
         match &mut placed.surface {
             Shape::Circle(circle) => *circle = Circle { radius: 4.0 * circle.radius },
             Shape::HalfPlane(_) => {}
-            Shape::Polygon(_) => {
-                let (corners, _) = placed.surface.outline();
-                let larger: Vec<Vec2> = corners.iter().map(|&p| p * 4.0).collect();
-                placed.surface = Shape::Polygon(Polygon::new(&larger, 0.0).unwrap());
-            }
+            Shape::Polygon(polygon) => *polygon = polygon.scaled(4.0),
             Shape::Cradle(_) | Shape::BarrelProfile(_) => unreachable!("not in these scenes"),
         }
     }
@@ -321,12 +322,16 @@ fn four_times(body: &Body<Planar>) -> Body<Planar> {
 fn stiffer(interface: &Interface<Planar>) -> Interface<Planar> {
     let mut larger = interface.clone();
     match &mut larger.normal {
-        NormalLaw::SpeedGap { stiffness, damping } | NormalLaw::KelvinVoigt { stiffness, damping } => {
+        NormalLaw::SpeedGap { stiffness, damping }
+        | NormalLaw::KelvinVoigt { stiffness, damping } => {
             *stiffness *= 16.0;
             *damping *= 32.0;
         }
-        NormalLaw::HuntCrossley { stiffness, dissipation } => {
-            *stiffness *= 8.0;
+        NormalLaw::HuntCrossley { stiffness, dissipation, exponent } => {
+            *stiffness *= match exponent {
+                Exponent::Linear => 16.0,
+                Exponent::Hertzian => 8.0,
+            };
             *dissipation *= 0.5;
         }
         NormalLaw::Hertz { stiffness } => *stiffness *= 8.0,
@@ -375,8 +380,8 @@ fn bodies_that_collide_in_space_keep_momentum_and_angular_momentum() {
         for (i, body) in scene.model.bodies().iter().enumerate() {
             let (pose, twist) = (scene.state.poses[i], scene.state.twists[i]);
             linear += twist.linear * body.mass;
-            angular += body.inertia * twist.angular
-                + moment(pose.position, twist.linear * body.mass);
+            angular +=
+                body.inertia * twist.angular + moment(pose.position, twist.linear * body.mass);
         }
         (linear, angular)
     };

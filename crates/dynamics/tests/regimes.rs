@@ -167,19 +167,13 @@ fn a_block_on_shaking_ground_slides_to_and_fro_by_the_exact_amplitude() {
     assert!((exact - 0.096_66 * GRAVITY / TABLE_GRAVITY).abs() < 6e-6);
     let mut scene = standing(2.0, 0.2, n, 1e9);
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    scene.watch(
-        &harmonic(a * GRAVITY, omega),
-        Method::VelocityVerlet,
-        2e-5,
-        9.0,
-        |state, _, _| {
-            if state.time > 8.0 {
-                let place = state.poses[1].position.x - state.poses[0].position.x;
-                (low, high) = (low.min(place), high.max(place));
-            }
-            ControlFlow::Continue(())
-        },
-    );
+    scene.watch(&harmonic(a * GRAVITY, omega), Method::VelocityVerlet, 2e-5, 9.0, |state, _, _| {
+        if state.time > 8.0 {
+            let place = state.poses[1].position.x - state.poses[0].position.x;
+            (low, high) = (low.min(place), high.max(place));
+        }
+        ControlFlow::Continue(())
+    });
     // Sticks must unload at every turn, so the error falls with 1/√k.
     assert_close("amplitude", 0.5 * (high - low), exact, 1e-3); // measured 4.8e-4
 }

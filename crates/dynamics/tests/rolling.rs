@@ -129,11 +129,8 @@ fn a_cylinder_swings_in_a_round_cradle_with_the_exact_period() {
         let angle = 0.01;
         let center = Vec2::new(arm * libm::sin(angle), -arm * libm::cos(angle));
         let body = disc("roller", RADIUS, MASS, ratio * RADIUS * RADIUS, center);
-        let mut scene = Scene::new(
-            vec![cradle(cradle_radius), body],
-            interface(firm(), stick(0.9)),
-            DOWN,
-        );
+        let mut scene =
+            Scene::new(vec![cradle(cradle_radius), body], interface(firm(), stick(0.9)), DOWN);
         let (mut crossings, mut before) = (vec![], (0.0, angle));
         scene.watch(&Still, Method::VelocityVerlet, 1e-4, 8.0, |state, _, _| {
             let x = state.poses[1].position.x;

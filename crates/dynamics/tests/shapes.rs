@@ -66,9 +66,8 @@ fn drawn_profile(length: f64, head: f64, bilge: f64) -> Drawn {
     let half_angle = libm::asin(0.5 * length / shape.stave_radius);
     let stave = 2.0 * half_angle * shape.stave_radius;
     // Under the stave: a rectangle to the chord, and the segment of the circle above it.
-    let segment = 0.5
-        * shape.stave_radius.powi(2)
-        * (2.0 * half_angle - libm::sin(2.0 * half_angle));
+    let segment =
+        0.5 * shape.stave_radius.powi(2) * (2.0 * half_angle - libm::sin(2.0 * half_angle));
     let boundary = above.iter().copied().chain(below).collect();
     Drawn {
         boundary,
@@ -98,7 +97,8 @@ fn drawn_polygon(corners: &[Vec2], corner_radius: f64) -> Drawn {
         let from = libm::atan2(outward.z, outward.x);
         let steps = if corner_radius > 0.0 { FINE / 10 } else { 0 };
         for k in 0..=steps {
-            boundary.push(center + polar(corner_radius, from + turn * k as f64 / steps.max(1) as f64));
+            boundary
+                .push(center + polar(corner_radius, from + turn * k as f64 / steps.max(1) as f64));
         }
         length += b.length() - 2.0 * cut + turn * corner_radius;
         area += 0.5 * (here.x * after.z - here.z * after.x);
@@ -131,7 +131,8 @@ impl Drawn {
         let to_side = |(from, to): (Vec2, Vec2)| {
             let (side, offset) = (to - from, point - from);
             let square = side.dot(side);
-            let share = if square > 0.0 { (offset.dot(side) / square).clamp(0.0, 1.0) } else { 0.0 };
+            let share =
+                if square > 0.0 { (offset.dot(side) / square).clamp(0.0, 1.0) } else { 0.0 };
             (offset - side * share).length()
         };
         self.sides().map(to_side).fold(f64::INFINITY, f64::min)
@@ -390,6 +391,43 @@ fn sharp_corners_are_their_own_nodes() {
 }
 
 #[test]
+fn sides_are_cut_into_the_same_number_of_parts() {
+    for radius in [0.0, 0.02] {
+        let polygon = Polygon::rectangle(0.6, 0.2, radius).unwrap();
+        let nodes = polygon.nodes_per_side(3);
+        let sum: f64 = nodes.iter().map(|n| n.tributary_length).sum();
+        let exact = 1.6 - 8.0 * radius + TAU * radius;
+        assert!((sum - exact).abs() < 1e-14, "{sum} for {exact}");
+        if radius == 0.0 {
+            assert_eq!(nodes.len(), 12);
+            assert!((nodes[1].tributary_length - 0.2).abs() < 1e-15);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(common::cases(64))]
+
+    #[test]
+    fn a_mirrored_and_a_scaled_polygon_are_as_far_as_they_should_be(
+        seed in any::<u64>(), count in 3..8_usize, radius in 0.0..0.02_f64
+    ) {
+        let polygon = Polygon::new(&convex_corners(count, seed, (0.4, 0.3)), radius).unwrap();
+        let distance = |p: &Polygon, at: Vec2| {
+            Surface::<Planar>::gap(&Shape::Polygon(p.clone()), at).distance
+        };
+        for point in points_about(seed, 20) {
+            let here = distance(&polygon, point);
+            let there = distance(&polygon.mirrored(), Vec2::new(-point.x, point.z));
+            prop_assert!((here - there).abs() < 1e-14);
+            // By a power of two to the bit, otherwise to rounding.
+            prop_assert_eq!(4.0 * here, distance(&polygon.scaled(4.0), point * 4.0));
+            prop_assert!((3.0 * here - distance(&polygon.scaled(3.0), point * 3.0)).abs() < 1e-14);
+        }
+    }
+}
+
+#[test]
 fn what_is_no_convex_polygon_is_refused_with_the_corner() {
     let at = |points: &[(f64, f64)]| {
         Polygon::new(&points.iter().map(|p| Vec2::new(p.0, p.1)).collect::<Vec<_>>(), 0.0)
@@ -399,23 +437,15 @@ fn what_is_no_convex_polygon_is_refused_with_the_corner() {
     // Clockwise: the first corner already turns the wrong way.
     assert_eq!(at(&[(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)]), not_convex(1, 0.0, 0.0));
     // A dent.
-    assert_eq!(
-        at(&[(0.0, 0.0), (1.0, 0.0), (0.4, 0.4), (0.0, 1.0)]),
-        not_convex(3, 0.4, 0.4)
-    );
+    assert_eq!(at(&[(0.0, 0.0), (1.0, 0.0), (0.4, 0.4), (0.0, 1.0)]), not_convex(3, 0.4, 0.4));
     // In line with its neighbors.
-    assert_eq!(
-        at(&[(0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (0.0, 1.0)]),
-        not_convex(2, 0.5, 0.0)
-    );
+    assert_eq!(at(&[(0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (0.0, 1.0)]), not_convex(2, 0.5, 0.0));
     // The same corner twice, and a number that is none.
     assert!(at(&[(0.0, 0.0), (1.0, 0.0), (1.0, 0.0), (0.0, 1.0)]).is_err());
     assert!(at(&[(0.0, 0.0), (1.0, f64::NAN), (0.0, 1.0)]).is_err());
     // A five-pointed star turns left at every corner, but goes around twice.
-    let star: Vec<(f64, f64)> = (0..5)
-        .map(|i| polar(1.0, 2.0 * TAU * f64::from(i) / 5.0))
-        .map(|p| (p.x, p.z))
-        .collect();
+    let star: Vec<(f64, f64)> =
+        (0..5).map(|i| polar(1.0, 2.0 * TAU * f64::from(i) / 5.0)).map(|p| (p.x, p.z)).collect();
     assert_eq!(at(&star), Err(PolygonError::Overlapping { corner: 3 }));
 }
 
@@ -434,7 +464,8 @@ fn corners_cannot_be_rounded_away() {
 #[test]
 fn what_is_no_barrel_has_no_profile() {
     assert!(BarrelProfile::new(0.95, 0.6, 0.7).is_some());
-    for (length, head, bilge) in [(0.0, 0.6, 0.7), (0.95, 0.7, 0.6), (0.95, 0.0, 0.7), (0.95, f64::NAN, 0.7)]
+    for (length, head, bilge) in
+        [(0.0, 0.6, 0.7), (0.95, 0.7, 0.6), (0.95, 0.0, 0.7), (0.95, f64::NAN, 0.7)]
     {
         assert!(BarrelProfile::new(length, head, bilge).is_none());
     }

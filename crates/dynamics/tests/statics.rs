@@ -157,9 +157,8 @@ fn harmonic_stack(n: u32, share: f64) -> Scene {
     // The lowest of the n bricks lies on a table that ends at x = 0; brick i from the top hangs out
     // by L/2i over the one below.
     let table = Polygon::rectangle(4.0, 1.0, 0.0).unwrap();
-    let mut ground = ground_of(vec![common::centered(barrelstack_dynamics::Shape::Polygon(
-        table.clone(),
-    ))]);
+    let mut ground =
+        ground_of(vec![common::centered(barrelstack_dynamics::Shape::Polygon(table.clone()))]);
     ground.pose = pose(-2.0, -0.5, 0.0);
     ground.nodes = vec![fixed(&table.corner_nodes())];
     let mut bodies = vec![ground];

@@ -257,7 +257,9 @@ impl Polygon {
                 })
             })
             .collect();
-        nodes_along(&chain, true, f64::INFINITY)
+        let pieces: Vec<Piece> =
+            (0..chain.len()).map(|i| Piece::Side(chain[i], chain[(i + 1) % chain.len()])).collect();
+        nodes_along(&pieces, true, f64::INFINITY, CORNER_STEP)
     }
 
     /// The polygon seen in a mirror: every `x` becomes `−x`.

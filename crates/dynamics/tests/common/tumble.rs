@@ -46,8 +46,5 @@ pub fn bodies(seed: u64, count: usize) -> Vec<Body<Planar>> {
 
 /// A speed-gap law and Coulomb friction that go with these bodies.
 pub fn rough() -> Interface<Planar> {
-    interface(
-        NormalLaw::SpeedGap { stiffness: 2.0e5, damping: 600.0 },
-        coulomb(0.4, 1.5e5, 300.0),
-    )
+    interface(NormalLaw::SpeedGap { stiffness: 2.0e5, damping: 600.0 }, coulomb(0.4, 1.5e5, 300.0))
 }
