@@ -1,6 +1,7 @@
 //! What happened to the stack, in one word and with its reasons.
 
 use crate::assemble::{Assembly, PartKind};
+use crate::scenario::View;
 use crate::watch::{Fates, Loss};
 
 /// How a stack collapses; the modes of the shaking-table tests behind the paper.
@@ -10,7 +11,8 @@ pub enum CollapseMode {
     Ejection,
     /// Two or more upper levels, or a level below the top, rock off together.
     Rocking,
-    /// A rack walks off the barrels below while it is nearly level.
+    /// A rack walks along the barrels below until its rail passes their ends; only a longitudinal view
+    /// can show it.
     RackSliding,
     /// The whole stack turns over about its foot.
     Overturning,
@@ -67,50 +69,39 @@ impl Outcome {
     }
 }
 
-/// How long (s, full scale) after the first loss of seat another one counts as part of the same event.
-const SAME_EVENT: f64 = 1.0;
-
-/// Judges a run by the fates of its bodies.
+/// Judges a run by the first body that left its seat; what follows, follows from it.
 ///
-/// The event is what leaves its seat within [`SAME_EVENT`] of the first loss.
-/// If the bottom rack has turned over it is overturning.
-/// Otherwise the lowest rack that left its seat decides: if it slid off while nearly level it is rack
-/// sliding; if it carries only the top level it is ejection; if it carries more it is rocking of the
-/// levels from there up.
-/// If no rack left its seat, barrels alone did: ejection.
-pub fn judge(assembly: &Assembly, fates: &Fates, time_scale: f64) -> Outcome {
+/// - The bottom rack: overturning of the whole.
+/// - A rack that passed the ends of the barrels below before it tilted, in a longitudinal view: rack
+///   sliding.
+/// - A rack of the top level, or a barrel from a rack that keeps its own seat: ejection.
+/// - Any other rack: rocking of its level and all above.
+///
+/// These are the paper's words: it calls the loss of the two upper of three levels rocking, and that
+/// of the top level of four, barrels and rack, the ejection of the top barrels.
+pub fn judge(assembly: &Assembly, fates: &Fates) -> Outcome {
     if assembly.levels == 0 {
         return Outcome::NotJudged;
     }
     let (Some(time), Some(first)) = (fates.collapse_time(), fates.first()) else {
         return Outcome::Stable;
     };
-    let end = time + SAME_EVENT * time_scale;
-    let lost = |body: usize| {
-        fates.fate(body).left_seat.filter(|(when, _)| *when <= end).map(|(_, loss)| loss)
-    };
-    let level = |body: usize| assembly.parts[body].level.unwrap_or(1);
-    let racks: Vec<(usize, Loss)> = assembly
-        .of_kind(PartKind::Rack)
-        .filter_map(|body| lost(body).map(|loss| (body, loss)))
-        .collect();
-    let gone = (0..assembly.parts.len()).filter(|body| lost(*body).is_some());
-    let to_level = gone.map(level).max().unwrap_or_else(|| level(first));
-    let lowest = racks.iter().min_by_key(|(body, _)| level(*body));
-    let (mode, from_level) = match lowest {
-        Some((body, _)) if level(*body) == 1 => (CollapseMode::Overturning, 1),
-        Some((body, Loss::Slid)) => (CollapseMode::RackSliding, level(*body)),
-        Some((body, _)) if level(*body) == assembly.levels => {
-            (CollapseMode::Ejection, level(*body))
+    let part = &assembly.parts[first];
+    let from_level = part.level.unwrap_or(1);
+    let slid = matches!(fates.fate(first).left_seat, Some((_, Loss::Slid)));
+    let mode = match part.kind {
+        PartKind::Rack if from_level == 1 => CollapseMode::Overturning,
+        PartKind::Rack if slid && assembly.view == Some(View::Longitudinal) => {
+            CollapseMode::RackSliding
         }
-        Some((body, _)) => (CollapseMode::Rocking, level(*body)),
-        None => (CollapseMode::Ejection, level(first)),
+        PartKind::Rack if from_level < assembly.levels => CollapseMode::Rocking,
+        PartKind::Rack | PartKind::Barrel | PartKind::Body | PartKind::Ground => {
+            CollapseMode::Ejection
+        }
     };
-    Outcome::Collapse {
-        mode,
-        time,
-        first: assembly.parts[first].name.clone(),
-        from_level,
-        to_level: to_level.max(from_level),
-    }
+    let to_level = match (mode, part.kind) {
+        (CollapseMode::Ejection, PartKind::Barrel) => from_level,
+        _ => assembly.levels,
+    };
+    Outcome::Collapse { mode, time, first: part.name.clone(), from_level, to_level }
 }

@@ -147,7 +147,7 @@ pub fn run(
                     state.time
                 ));
             }
-            (judge(&assembly, &fates, time_scale), energy, totals.steps)
+            (judge(&assembly, &fates), energy, totals.steps)
         }
         Err(error @ RunError::NotFinite { .. }) => {
             (Outcome::Invalid { reason: error.to_string() }, EnergySummary::default(), 0)

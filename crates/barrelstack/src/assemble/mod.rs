@@ -9,7 +9,7 @@ mod transverse;
 
 use barrelstack_dynamics::{BodyId, Model, ModelError, Planar, Shape, Vec2};
 
-use crate::scenario::{Scenario, Scene};
+use crate::scenario::{Scenario, Scene, View};
 
 pub use similitude::Similitude;
 
@@ -79,7 +79,11 @@ pub struct Assembly {
     pub height: f64,
     /// Number of levels; zero for a free scene.
     pub levels: u32,
-    /// How far (m) a rack may move on the barrels below before it has left them.
+    /// The plane of a stack; none for a free scene.
+    pub view: Option<View>,
+    /// How far (m) a rack may move on the barrels below before nothing holds it there: across the
+    /// barrels until friction cannot hold its bearing on the round, along them until its rail passes
+    /// the end.
     pub rack_reach: f64,
 }
 

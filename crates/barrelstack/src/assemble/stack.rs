@@ -58,6 +58,7 @@ pub(super) fn assemble(
         parts: builder.parts,
         height: height * scale.length,
         levels: spec.levels,
+        view: Some(spec.view),
         rack_reach: rack_reach * scale.length,
     })
 }

@@ -21,7 +21,7 @@ use barrelstack_dynamics::{BodyId, Shape, Vec2};
 
 use super::stack::{Builder, Draft, DraftNodes};
 use super::{AssembleError, PartKind, outline_of};
-use crate::scenario::{Cradle, Rack, RackKind, StackBody, View};
+use crate::scenario::{Cradle, Friction, Rack, RackKind, StackBody, View};
 
 /// Builds all levels; returns the height of the stack and the reach of a rack on its barrels (m).
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
@@ -51,7 +51,23 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
     }
     let height =
         f64::from(spec.levels - 1) * level_pitch + rack.clearance + 2.0 * radius;
-    Ok((height, radius))
+    Ok((height, reach(rack, radius, &spec.interfaces.barrel_rack.friction)))
+}
+
+/// How far a rack may move across the barrels below: past the end of its flat bearing it stands on the
+/// falling side of the round, where friction holds it up to a slope of arctan μ.
+fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
+    if let (RackKind::OnRacks, Some(posts)) = (rack.kind, &rack.posts) {
+        // A post stands on a post: half of its width, and it is off.
+        return rack.rail_width.min(posts.half_spacing);
+    }
+    let coefficient = match *friction {
+        Friction::None => 0.0,
+        Friction::Coulomb { static_coefficient, .. } => static_coefficient,
+        Friction::Regularized { coefficient, .. } => coefficient,
+    };
+    let (sin, _) = math::sin_cos(math::atan(coefficient));
+    rack.bearing_half_length + radius * sin
 }
 
 /// One rack with its barrels; returns their ids.

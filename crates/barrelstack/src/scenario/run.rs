@@ -59,8 +59,8 @@ pub struct OutcomeSpec {
     pub seat_loss_ratio: f64,
     /// A body has fallen when its center is this far below its place at rest (m).
     pub fall_drop: f64,
-    /// A rack has slid off when it has moved this part of the distance between its rail and the end of the barrel
-    /// below.
+    /// A rack has left the barrels below when it has moved this part of its reach on them: across the barrels until
+    /// friction cannot hold it on the round, along them until its rail passes the end.
     pub rack_slide_ratio: f64,
     /// A level has rocked over when its rack is inclined more than this (rad).
     pub rocking_angle: f64,
@@ -210,7 +210,7 @@ pub static OUTCOME: Section = Section {
             "rack_slide_ratio",
             Kind::Number(Range::up_to(10.0)),
             Default::Value("1.0"),
-            "A rack has slid off when it has moved this part of the distance between its rail and the barrel end.",
+            "A rack has left the barrels below when it has moved this part of its reach on them: across the barrels until friction cannot hold it on the round, along them until its rail passes the end.",
         ),
         Field::new(
             "rocking_angle",

@@ -15,7 +15,7 @@ pub struct Thresholds {
     pub fall_drop: f64,
     /// A rack has left its seat when it has moved this part of its reach on the barrels below.
     pub rack_slide_ratio: f64,
-    /// A rack has left its seat by rocking when it is tilted this much (rad) against what it stands on.
+    /// A rack has left its seat by rocking when it is tilted this much (rad) against the rack below.
     pub rocking_angle: f64,
     /// The stack has overturned when its bottom rack is tilted this much (rad).
     pub overturning_angle: f64,
@@ -83,8 +83,6 @@ pub struct Fates {
     fates: Vec<Fate>,
     collapse: Option<(f64, BodyId)>,
     first_fall: Option<f64>,
-    /// Tilt of every rack when the first barrel had fallen; empty before.
-    tilt_at_first_fall: Vec<f64>,
 }
 
 impl Fates {
@@ -97,7 +95,6 @@ impl Fates {
             fates: vec![Fate::default(); assembly.parts.len()],
             collapse: None,
             first_fall: None,
-            tilt_at_first_fall: Vec::new(),
         }
     }
 
@@ -124,11 +121,6 @@ impl Fates {
     /// When (s) the first barrel had fallen.
     pub fn first_fall(&self) -> Option<f64> {
         self.first_fall
-    }
-
-    /// Tilt (rad) of a rack when the first barrel had fallen.
-    pub fn tilt_at_first_fall(&self, body: BodyId) -> f64 {
-        self.tilt_at_first_fall.get(body).copied().unwrap_or(0.0)
     }
 
     /// Looks at an accepted state.
@@ -159,8 +151,6 @@ impl Fates {
                 fate.fell_at = Some(state.time);
                 if part.kind == PartKind::Barrel && self.first_fall.is_none() {
                     self.first_fall = Some(state.time);
-                    self.tilt_at_first_fall =
-                        state.poses.iter().map(|pose| pose.orientation).collect();
                 }
             }
             let fell = self.fates[i].fell_at.is_some();
@@ -199,6 +189,14 @@ impl Fates {
         (here - below) - (self.rest[body] - below_rest)
     }
 
+    /// Tilt (rad) of a rack against the rack it stands on, directly or by way of barrels; of the rest
+    /// against the ground.
+    fn tilt(&self, assembly: &Assembly, state: &State<Planar>, body: BodyId) -> f64 {
+        let below = assembly.parts[body].supports.first().copied();
+        let rack = below.map(|support| assembly.parts[support].carrier.unwrap_or(support));
+        state.poses[body].orientation - rack.map_or(0.0, |rack| state.poses[rack].orientation)
+    }
+
     fn loss(
         &self,
         assembly: &Assembly,
@@ -216,7 +214,7 @@ impl Fates {
                 if away { Some(Loss::Displaced) } else { fell.then_some(Loss::Dropped) }
             }
             PartKind::Rack => {
-                let tilt = state.poses[body].orientation.abs();
+                let tilt = self.tilt(assembly, state, body).abs();
                 let limit = if part.supports.is_empty() {
                     limits.overturning_angle
                 } else {
