@@ -178,7 +178,7 @@ fn touch<S: Space>(model: &Model<S>, state: &State<S>, group: &Group, scratch: &
         Nodes::Rolling { center, radius, .. } => {
             let center = meeting.frame.to_surface(*center);
             let mut gap = surface.gap(center);
-            gap.distance = gap.distance - *radius;
+            gap.distance -= *radius;
             let node = center - gap.normal * *radius;
             meeting.contact(state, group.first, node, gap, scratch, &mut total);
         }

@@ -16,7 +16,7 @@ pub fn sin_cos<R: Real>(angle: R) -> (R, R) {
     const ROUNDER: f64 = 6_755_399_441_055_744.0;
     let quarters =
         (angle * R::splat(std::f64::consts::FRAC_2_PI) + R::splat(ROUNDER)) - R::splat(ROUNDER);
-    let r = angle - quarters * R::splat(1.570_796_251_296_997_1);
+    let r = angle - quarters * R::splat(1.570_796_251_296_997);
     let r = r - quarters * R::splat(7.549_789_415_861_596e-8);
     let r = r - quarters * R::splat(5.390_302_858_158_119e-15);
     let z = r * r;

@@ -33,7 +33,7 @@ pub fn speed_gap(damping_ratio: f64) -> f64 {
 /// Restitution of the Kelvin–Voigt law without tension at a damping ratio ζ ≥ 0.
 ///
 /// Contact ends when the force returns to zero, before the penetration does:
-/// with ω_d t = 2 arccos ζ for ζ < 1, `e = exp(−2 ζ arccos ζ / √(1 − ζ²))`, which is the square of the
+/// with `ω_d t = 2 arccos ζ` for ζ < 1, `e = exp(−2 ζ arccos ζ / √(1 − ζ²))`, which is the square of the
 /// speed-gap law's; above ζ = 1 arccos becomes arcosh.
 pub fn kelvin_voigt(damping_ratio: f64) -> f64 {
     let e = speed_gap(damping_ratio);

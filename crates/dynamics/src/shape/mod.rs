@@ -224,5 +224,5 @@ pub(crate) fn nodes_along(
 /// Into how many equal parts no longer than `spacing` a length is cut.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
 pub(crate) fn parts_of(length: f64, spacing: f64) -> usize {
-    ((length / spacing - 1e-9).ceil().max(1.0)).min(1e6) as usize
+    ((length / spacing - 1e-9).ceil().clamp(1.0, 1e6) as usize).max(1)
 }
