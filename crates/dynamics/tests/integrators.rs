@@ -181,7 +181,7 @@ fn times_are_whole_steps_and_the_last_step_ends_on_time() {
             times.push(state.time);
             ControlFlow::Continue(())
         });
-        assert_eq!(totals.steps as usize + 1, times.len());
+        assert_eq!(totals.steps + 1, times.len() as u64);
         assert_eq!(times.first(), Some(&0.0));
         assert_eq!(times.last(), Some(&end));
         if method.is_adaptive() {

@@ -104,7 +104,9 @@ proptest! {
             // Rectangles, discs and floors are their own mirror images; their nodes are not.
             for nodes in &mut body.nodes {
                 if let Nodes::Fixed(nodes) = nodes {
-                    nodes.iter_mut().for_each(|n| n.position = flip(n.position));
+                    for node in nodes {
+                        node.position = flip(node.position);
+                    }
                 }
             }
             body

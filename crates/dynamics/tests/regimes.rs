@@ -114,7 +114,7 @@ fn the_friction_that_prevents_sliding_while_rocking_is_the_exact_one() {
                 let middle = 0.5 * (slides + rocks);
                 match start(s, share * s, middle) {
                     Start::Rock => rocks = middle,
-                    _ => slides = middle,
+                    Start::Rest | Start::Slide | Start::SlideRock => slides = middle,
                 }
             }
             let found = 0.5 * (slides + rocks);

@@ -1,5 +1,7 @@
 //! Equilibrium under gravity: forces, overhangs, rest, and what does not stand.
 
+#![allow(clippy::unwrap_used, reason = "a body that cannot be made fails its test")]
+
 mod common;
 
 use std::ops::ControlFlow;
@@ -96,7 +98,7 @@ fn a_column_at_rest_stays_for_a_minute() {
         }
         ControlFlow::Continue(())
     });
-    assert!(drift < 1e-9, "{drift:e} m"); // measured ?
+    assert!(drift < 1e-11, "{drift:e} m"); // measured 1.2e-13
 }
 
 /// A disc on two points of the ground at ± an angle (rad).
