@@ -84,19 +84,17 @@ impl<S: Space> Elements<S> {
     }
 
     /// Builds the list anew where a body may have moved so far, or may move so far within `dt` (s),
-    /// that an element outside the list could touch. Returns whether it did.
+    /// that an element outside the list could touch. Returns the origins of [`Elements::rebuild`] if
+    /// it did.
     pub(crate) fn refresh(
         &mut self,
         model: &Model<S>,
         poses: &[Pose<S>],
         twists: &[Twist<S>],
         dt: f64,
-    ) -> bool {
+    ) -> Option<Vec<Option<usize>>> {
         let stale = !self.exhaustive && self.is_stale(model, poses, twists, dt);
-        if stale {
-            self.rebuild(model, poses);
-        }
-        stale
+        stale.then(|| self.rebuild(model, poses))
     }
 
     fn is_stale(&self, model: &Model<S>, poses: &[Pose<S>], twists: &[Twist<S>], dt: f64) -> bool {
@@ -129,12 +127,15 @@ impl<S: Space> Elements<S> {
     }
 
     /// Lists the elements within the margin and hands their memory over.
-    pub(crate) fn rebuild(&mut self, model: &Model<S>, poses: &[Pose<S>]) {
+    ///
+    /// Returns the origins: for every element of the new list, which one of the old list it was.
+    pub(crate) fn rebuild(&mut self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<Option<usize>> {
         let old = std::mem::replace(self, Self { exhaustive: self.exhaustive, ..Self::default() });
         self.built_for = poses.to_vec();
         let rotations: Vec<S::Rotation> =
             poses.iter().map(|p| S::rotation(p.orientation)).collect();
         let mut remembered = Remembered { old: &old, group: 0 };
+        let mut origins = Vec::new();
         for (index, pair) in model.pairs.iter().enumerate() {
             let frame = PairFrame::new(model, pair, poses, &rotations);
             let first = self.nodes.len();
@@ -143,10 +144,13 @@ impl<S: Space> Elements<S> {
             if end > first {
                 self.groups.push(Group { pair: index, first, end });
                 for element in first..end {
-                    self.sticks.push(remembered.stick(index, self.nodes[element]));
+                    let origin = remembered.origin(index, self.nodes[element]);
+                    self.sticks.push(origin.map_or_else(Stick::default, |o| old.sticks[o]));
+                    origins.push(origin);
                 }
             }
         }
+        origins
     }
 
     fn list_pair(&mut self, model: &Model<S>, pair: &ContactPair, frame: &PairFrame<S>) {
@@ -202,17 +206,15 @@ struct Remembered<'a, S: Space> {
 }
 
 impl<S: Space> Remembered<'_, S> {
-    fn stick(&mut self, pair: usize, node: u32) -> Stick<S> {
+    /// Where an element is in the old list.
+    fn origin(&mut self, pair: usize, node: u32) -> Option<usize> {
         let groups = &self.old.groups;
         while self.group < groups.len() && groups[self.group].pair < pair {
             self.group += 1;
         }
-        match groups.get(self.group) {
-            Some(group) if group.pair == pair => self.old.nodes[group.first..group.end]
-                .binary_search(&node)
-                .map_or_else(|_| Stick::default(), |at| self.old.sticks[group.first + at]),
-            _ => Stick::default(),
-        }
+        let group = groups.get(self.group).filter(|group| group.pair == pair)?;
+        let nodes = &self.old.nodes[group.first..group.end];
+        nodes.binary_search(&node).ok().map(|at| group.first + at)
     }
 }
 

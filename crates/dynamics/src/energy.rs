@@ -30,7 +30,8 @@ pub struct EnergySummary {
     /// arithmetic and time.
     pub residual: f64,
     /// Absolute flow of energy through the system so far: what the ground gave plus what was there
-    /// to be given, the measure of the residual.
+    /// to be given (motion and springs at the start, and the deepest drop), the measure of the
+    /// residual.
     pub throughput: f64,
 }
 
@@ -121,7 +122,7 @@ impl<S: Space> EnergyLedger<S> {
         let lost = self.works.damped + self.works.friction + self.works.viscous;
         // The work of friction is what bodies gave to sticks and to sliding together: sticks are in it.
         let residual = now + lost - self.works.ground - self.initial;
-        let throughput = self.ground_flow + (self.potential_start - self.deepest);
+        let throughput = self.ground_flow + (self.initial - self.deepest);
         EnergySummary {
             kinetic: kinetic.lane(lane),
             potential: (potential - self.potential_start).lane(lane),

@@ -108,6 +108,26 @@ impl<S: Space> Scratch<S> {
     }
 }
 
+impl<S: Space> Scratch<S> {
+    /// Follows a new list of elements; `origins` tells for each which one of the old list it was.
+    ///
+    /// Every contact keeps its element, since what touches is within the margin of any list.
+    pub(crate) fn renumber(&mut self, origins: &[Option<usize>]) {
+        let mut numbers = vec![None; self.slip_rates.len()];
+        let mut slip_rates = vec![S::Tangent::default(); origins.len()];
+        for (new, origin) in origins.iter().enumerate() {
+            if let Some(old) = *origin {
+                slip_rates[new] = self.slip_rates[old];
+                numbers[old] = Some(new);
+            }
+        }
+        self.slip_rates = slip_rates;
+        self.contacts.retain_mut(|contact| {
+            numbers[contact.element].map(|number| contact.element = number).is_some()
+        });
+    }
+}
+
 /// Fills `scratch` with the forces and accelerations at `state`. Never changes `state`.
 pub fn evaluate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
     for (rotation, pose) in scratch.rotations.iter_mut().zip(&state.poses) {
@@ -158,7 +178,7 @@ fn touch<S: Space>(model: &Model<S>, state: &State<S>, group: &Group, scratch: &
         Nodes::Rolling { center, radius, .. } => {
             let center = meeting.frame.to_surface(*center);
             let mut gap = surface.gap(center);
-            gap.distance = gap.distance - *radius;
+            gap.distance -= *radius;
             let node = center - gap.normal * *radius;
             meeting.contact(state, group.first, node, gap, scratch, &mut total);
         }

@@ -51,6 +51,17 @@ pub enum ModelError {
         /// Its mass (kg).
         mass: f64,
     },
+    /// A free body that nothing could keep from spinning.
+    #[error(
+        "body \"{name}\" has a moment of inertia of {inertia} kg·m²: a free body needs a positive, \
+         finite one"
+    )]
+    Inertia {
+        /// The body.
+        name: String,
+        /// Its least moment of inertia (kg·m²).
+        inertia: f64,
+    },
     /// A free body with a surface that has no end.
     #[error("body \"{name}\" carries an unbounded surface: only bodies fixed to the ground may")]
     Unbounded {
@@ -77,7 +88,7 @@ impl<S: Space> Model<S> {
     /// `gravity` is the acceleration of free fall (m/s²).
     ///
     /// # Errors
-    /// When names repeat, a free body has no mass or an unbounded surface, or a pair dangles.
+    /// When names repeat, a free body has no mass, no inertia or an unbounded surface, or a pair dangles.
     pub fn new(
         bodies: Vec<Body<S>>,
         interfaces: Vec<Interface<S>>,
@@ -94,6 +105,10 @@ impl<S: Space> Model<S> {
                 let mass = body.mass.lane(lane);
                 if !(mass > 0.0 && mass.is_finite()) {
                     return Err(ModelError::Mass { name: body.name.clone(), mass });
+                }
+                let inertia = S::least_inertia(body.inertia, lane);
+                if !(inertia > 0.0 && inertia.is_finite()) {
+                    return Err(ModelError::Inertia { name: body.name.clone(), inertia });
                 }
             }
             if body.surfaces.iter().any(|placed| placed.surface.reach().is_infinite()) {

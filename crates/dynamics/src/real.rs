@@ -32,8 +32,10 @@ pub trait Real:
     /// The same number in every lane.
     fn splat(value: f64) -> Self;
     /// The correctly rounded square root.
+    #[must_use]
     fn sqrt(self) -> Self;
     /// The absolute value.
+    #[must_use]
     fn abs(self) -> Self;
     /// `self < other`.
     fn lt(self, other: Self) -> Self::Mask;
@@ -58,16 +60,19 @@ pub trait Real:
     }
     /// The smaller of the two; `other` where they are equal or not comparable.
     #[inline]
+    #[must_use]
     fn min(self, other: Self) -> Self {
         Self::select(self.lt(other), self, other)
     }
     /// The larger of the two; `other` where they are equal or not comparable.
     #[inline]
+    #[must_use]
     fn max(self, other: Self) -> Self {
         Self::select(other.lt(self), self, other)
     }
     /// The number held between `-limit` and `limit`.
     #[inline]
+    #[must_use]
     fn clamp_magnitude(self, limit: Self) -> Self {
         self.min(limit).max(-limit)
     }

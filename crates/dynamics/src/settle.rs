@@ -141,7 +141,7 @@ fn most_moved<S: Space>(
     let (mut body, mut most) = (0, -1.0);
     for i in 0..model.bodies.len() {
         let way = moved(state, start, i);
-        if !(way <= most) {
+        if way.is_nan() || way > most {
             (body, most) = (i, way);
         }
     }

@@ -111,8 +111,9 @@ impl<R: Real> NormalLaw<R> {
     /// The tangent stiffness `∂fₙ/∂δ` (N/m) at a penetration (m), rates left out.
     pub fn tangent_stiffness(&self, depth: R) -> R {
         match *self {
-            Self::SpeedGap { stiffness, .. } | Self::KelvinVoigt { stiffness, .. } => stiffness,
-            Self::HuntCrossley { stiffness, exponent: Exponent::Linear, .. } => stiffness,
+            Self::SpeedGap { stiffness, .. }
+            | Self::KelvinVoigt { stiffness, .. }
+            | Self::HuntCrossley { stiffness, exponent: Exponent::Linear, .. } => stiffness,
             Self::HuntCrossley { stiffness, .. } | Self::Hertz { stiffness } => {
                 R::splat(1.5) * stiffness * depth.max(R::zero()).sqrt()
             }

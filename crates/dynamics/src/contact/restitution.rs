@@ -33,7 +33,7 @@ pub fn speed_gap(damping_ratio: f64) -> f64 {
 /// Restitution of the Kelvin–Voigt law without tension at a damping ratio ζ ≥ 0.
 ///
 /// Contact ends when the force returns to zero, before the penetration does:
-/// with ω_d t = 2 arccos ζ for ζ < 1, `e = exp(−2 ζ arccos ζ / √(1 − ζ²))`, which is the square of the
+/// with `ω_d t = 2 arccos ζ` for ζ < 1, `e = exp(−2 ζ arccos ζ / √(1 − ζ²))`, which is the square of the
 /// speed-gap law's; above ζ = 1 arccos becomes arcosh.
 pub fn kelvin_voigt(damping_ratio: f64) -> f64 {
     let e = speed_gap(damping_ratio);
@@ -84,16 +84,25 @@ pub fn hunt_crossley(dissipation: f64, speed: f64) -> f64 {
     if before <= 0.0 {
         return 1.0;
     }
-    let level = before - math::log(1.0 + before);
+    let level = excess(before);
     let (mut low, mut high) = (0.0, 1.0_f64.min(1.0 / before));
     for _ in 0..200 {
         let e = 0.5 * (low + high);
         if e <= low || e >= high {
             break;
         }
-        if -e * before - math::log(1.0 - e * before) < level { low = e } else { high = e }
+        if excess(-e * before) < level { low = e } else { high = e }
     }
     0.5 * (low + high)
+}
+
+/// `u − ln(1 + u)`, by its series where the difference would cancel.
+fn excess(u: f64) -> f64 {
+    if u.abs() < 1e-3 {
+        u * u * (1.0 / 2.0 - u * (1.0 / 3.0 - u * (1.0 / 4.0 - u * (1.0 / 5.0 - u / 6.0))))
+    } else {
+        u - math::log1p(u)
+    }
 }
 
 /// The Hunt–Crossley dissipation `d` (s/m) that shows a restitution `0 < e ≤ 1` at `speed` (m/s).

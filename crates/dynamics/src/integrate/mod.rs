@@ -127,10 +127,12 @@ impl<S: Space> Integrator<S> {
 }
 
 /// Brings the element list up to date; where it changed, so do the element numbers in `scratch`.
+///
+/// The forces in `scratch` stay as they are: evaluating them anew, at corrected velocities and
+/// committed sticks, would give other ones, and the list would no longer be a matter of speed alone.
 fn refresh<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &mut Scratch<S>, dt: f64) {
-    let rebuilt = state.elements.refresh(model, &state.poses, &state.twists, dt);
-    if rebuilt {
-        evaluate(model, state, scratch);
+    if let Some(origins) = state.elements.refresh(model, &state.poses, &state.twists, dt) {
+        scratch.renumber(&origins);
     }
 }
 

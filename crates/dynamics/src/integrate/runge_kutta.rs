@@ -38,6 +38,7 @@ pub(super) static BOGACKI_SHAMPINE: Tableau = Tableau {
 
 /// The rates of one stage.
 #[derive(Clone, Debug)]
+#[expect(clippy::struct_field_names, reason = "a slip rate is called so everywhere")]
 struct Rates<S: Space> {
     twists: Vec<Twist<S>>,
     accelerations: Vec<Twist<S>>,

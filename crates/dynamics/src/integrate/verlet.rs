@@ -7,7 +7,11 @@ use crate::real::Real;
 use crate::space::Space;
 use crate::state::State;
 
-/// `v ← v + a dt`, then `q ← q + v dt` and `s ← s + ṡ dt`.
+/// `v ← v + a dt`, then `q ← q + v dt` and `s ← s + ṡ dt`, all with the new velocity.
+///
+/// The new slip rates are known only after the evaluation, so sticks are predicted with the old ones
+/// and corrected: a stick advanced by old rates alone would gain energy in every step, by a share of
+/// ω² dt² for a tangential frequency ω.
 pub(super) fn semi_implicit_euler<S: Space>(
     model: &Model<S>,
     drive: &impl Drive<S>,
@@ -22,9 +26,11 @@ pub(super) fn semi_implicit_euler<S: Space>(
         state.poses[i] = state.poses[i].moved(state.twists[i], step);
     }
     advance_sticks(state, &scratch.slip_rates, dt);
+    scratch.old_slip_rates.clone_from(&scratch.slip_rates);
     state.time = until;
     place_prescribed(model, drive, state);
     evaluate(model, state, scratch);
+    correct_sticks(state, scratch, step);
     accept(model, state, scratch);
 }
 
@@ -61,10 +67,15 @@ pub(super) fn velocity_verlet<S: Space>(
         let old = scratch.old_accelerations[i];
         state.twists[i] = state.twists[i].plus(new, half).plus(old, -half);
     }
+    correct_sticks(state, scratch, half);
+    accept(model, state, scratch);
+}
+
+/// Trades a share (s) of the old slip rates for the new ones.
+fn correct_sticks<S: Space>(state: &mut State<S>, scratch: &Scratch<S>, share: S::Real) {
     for ((stick, new), old) in
         state.elements.sticks.iter_mut().zip(&scratch.slip_rates).zip(&scratch.old_slip_rates)
     {
-        stick.displacement += (*new - *old) * half;
+        stick.displacement += (*new - *old) * share;
     }
-    accept(model, state, scratch);
 }

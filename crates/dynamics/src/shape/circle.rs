@@ -32,7 +32,7 @@ impl<R: Real> Circle<R> {
 }
 
 impl Circle {
-    pub(super) fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {
+    pub(super) fn nodes(self, spacing: f64) -> Vec<BoundaryNode> {
         let count = parts_of(TAU * self.radius, spacing).max(3);
         let tributary_length = TAU * self.radius / count as f64;
         points(self.radius, count)
@@ -40,11 +40,11 @@ impl Circle {
             .collect()
     }
 
-    pub(super) fn outline(&self) -> Vec<Vec2> {
+    pub(super) fn outline(self) -> Vec<Vec2> {
         points(self.radius, 72).collect()
     }
 
-    pub(super) fn section(&self) -> Section {
+    pub(super) fn section(self) -> Section {
         Section {
             measure: PI * self.radius * self.radius,
             centroid: Vec2::default(),

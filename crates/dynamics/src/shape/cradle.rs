@@ -1,6 +1,8 @@
 //! A concave arc that opens upward: the seat of a barrel on its rack.
 
-use super::{BoundaryNode, Gap, Section, nodes_along, parts_of};
+use std::f64::consts::FRAC_PI_2;
+
+use super::{BoundaryNode, Gap, Piece, Section, nodes_along, parts_of};
 use crate::math;
 use crate::real::Real;
 use crate::space::{Linear, Planar, Vec2};
@@ -57,11 +59,14 @@ impl Cradle {
     }
 
     pub(super) fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {
-        nodes_along(
-            &self.arc(parts_of(2.0 * self.half_angle() * self.radius, spacing)),
-            false,
-            f64::INFINITY,
-        )
+        let half = self.half_angle();
+        let arc = Piece::Arc {
+            center: Vec2::default(),
+            radius: self.radius,
+            from: -(FRAC_PI_2 + half),
+            turn: 2.0 * half,
+        };
+        nodes_along(&[arc], false, spacing, f64::INFINITY)
     }
 
     fn arc(&self, parts: usize) -> Vec<Vec2> {

@@ -148,27 +148,72 @@ impl Shape {
     }
 }
 
-/// Nodes along an open or closed chain of straight sides, each side cut into equal parts no longer
-/// than `spacing`.
-pub(crate) fn nodes_along(chain: &[Vec2], closed: bool, spacing: f64) -> Vec<BoundaryNode> {
+/// A piece of a boundary.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Piece {
+    /// A straight side between two points (m).
+    Side(Vec2, Vec2),
+    /// An arc, counterclockwise.
+    Arc {
+        /// Center (m).
+        center: Vec2,
+        /// Radius (m).
+        radius: f64,
+        /// Where it starts (rad).
+        from: f64,
+        /// How far it turns (rad).
+        turn: f64,
+    },
+}
+
+impl Piece {
+    fn length(self) -> f64 {
+        match self {
+            Self::Side(from, to) => (to - from).length(),
+            Self::Arc { radius, turn, .. } => radius * turn,
+        }
+    }
+
+    /// The point (m) at a share of its length.
+    fn at(self, share: f64) -> Vec2 {
+        match self {
+            Self::Side(from, to) => from + (to - from) * share,
+            Self::Arc { center, radius, from, turn } => {
+                let (sin, cos) = crate::math::sin_cos(from + turn * share);
+                center + Vec2::new(cos, sin) * radius
+            }
+        }
+    }
+}
+
+/// Nodes along an open or closed boundary, each piece cut into equal parts no longer than `spacing`
+/// (m) that turn by no more than `most_turn` (rad).
+pub(crate) fn nodes_along(
+    pieces: &[Piece],
+    closed: bool,
+    spacing: f64,
+    most_turn: f64,
+) -> Vec<BoundaryNode> {
     let mut nodes: Vec<BoundaryNode> = Vec::new();
-    let sides = if closed { chain.len() } else { chain.len() - 1 };
-    for i in 0..sides {
-        let (from, to) = (chain[i], chain[(i + 1) % chain.len()]);
-        let length = (to - from).length();
-        let parts = parts_of(length, spacing);
+    for (i, piece) in pieces.iter().enumerate() {
+        let length = piece.length();
+        let turning = match piece {
+            Piece::Side(..) => 1,
+            Piece::Arc { turn, .. } => parts_of(*turn, most_turn),
+        };
+        let parts = parts_of(length, spacing).max(turning);
         let part = length / parts as f64;
         if i == 0 {
-            nodes.push(BoundaryNode { position: from, tributary_length: 0.0 });
+            nodes.push(BoundaryNode { position: piece.at(0.0), tributary_length: 0.0 });
         }
         for k in 1..=parts {
             if let Some(last) = nodes.last_mut() {
                 last.tributary_length += 0.5 * part;
             }
-            let position = from + (to - from) * (k as f64 / parts as f64);
-            if closed && i + 1 == sides && k == parts {
+            if closed && i + 1 == pieces.len() && k == parts {
                 nodes[0].tributary_length += 0.5 * part;
             } else {
+                let position = piece.at(k as f64 / parts as f64);
                 nodes.push(BoundaryNode { position, tributary_length: 0.5 * part });
             }
         }
@@ -179,5 +224,5 @@ pub(crate) fn nodes_along(chain: &[Vec2], closed: bool, spacing: f64) -> Vec<Bou
 /// Into how many equal parts no longer than `spacing` a length is cut.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
 pub(crate) fn parts_of(length: f64, spacing: f64) -> usize {
-    ((length / spacing - 1e-9).ceil().max(1.0)).min(1e6) as usize
+    ((length / spacing - 1e-9).ceil().clamp(1.0, 1e6) as usize).max(1)
 }

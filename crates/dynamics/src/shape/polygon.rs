@@ -1,9 +1,14 @@
 //! A convex polygon, its corners sharp or rounded: a rack beam, a block, a brick.
 
-use super::{BoundaryNode, Gap, Section, nodes_along};
+use std::f64::consts::TAU;
+
+use super::{BoundaryNode, Gap, Piece, Section, nodes_along};
 use crate::math;
 use crate::real::Real;
 use crate::space::{Linear, Planar, Vec2};
+
+/// The most that a part of a rounded corner turns (rad).
+const CORNER_STEP: f64 = TAU / 24.0;
 
 /// A convex polygon whose corners may be rounded.
 ///
@@ -51,6 +56,15 @@ pub enum PolygonError {
         x: f64,
         /// Its height (m).
         z: f64,
+    },
+    /// Corners that go around more than once.
+    #[error(
+        "the corners go around more than once at corner {corner}: give each corner of a convex \
+         polygon once"
+    )]
+    Overlapping {
+        /// The corner at which the first turn is complete, counted from 1.
+        corner: usize,
     },
     /// Corners rounded by more than the polygon can hold.
     #[error("the corner radius {radius} m leaves nothing of the polygon: make it smaller")]
@@ -111,12 +125,13 @@ impl Polygon {
     /// A convex polygon from its sharp corners (m), counterclockwise, and a corner radius (m).
     ///
     /// # Errors
-    /// When the corners are fewer than three, do not all turn left, or leave no core.
+    /// When the corners are fewer than three, do not all turn left, go around twice, or leave no core.
     pub fn new(corners: &[Vec2], corner_radius: f64) -> Result<Self, PolygonError> {
         let count = corners.len();
         if count < 3 {
             return Err(PolygonError::TooFew { found: count });
         }
+        let mut turned = 0.0;
         for i in 0..count {
             let (before, here, after) =
                 (corners[(i + count - 1) % count], corners[i], corners[(i + 1) % count]);
@@ -124,6 +139,10 @@ impl Polygon {
             let turn = a.x * b.z - a.z * b.x;
             if turn.is_nan() || turn <= 1e-12 * a.length() * b.length() {
                 return Err(PolygonError::NotConvex { corner: i + 1, x: here.x, z: here.z });
+            }
+            turned += math::atan2(turn, a.dot(b));
+            if turned > TAU + 1e-6 {
+                return Err(PolygonError::Overlapping { corner: i + 1 });
             }
         }
         if corner_radius == 0.0 {
@@ -144,7 +163,7 @@ impl Polygon {
             let core_side = core[(i + 1) % count] - core[i];
             core_side.dot(side) <= 0.0
         });
-        if flipped || corner_radius < 0.0 {
+        if flipped || corner_radius.is_nan() || corner_radius < 0.0 {
             return Err(PolygonError::RadiusTooLarge { radius: corner_radius });
         }
         Ok(Self::grown(&core, corner_radius))
@@ -179,29 +198,48 @@ impl Polygon {
         if self.corner_radius == 0.0 {
             return self.sides.iter().map(|side| side.start).collect();
         }
-        let count = self.sides.len();
         let mut chain = Vec::new();
-        for i in 0..count {
-            let here = self.sides[i].start;
-            let (a, b) = (self.sides[(i + count - 1) % count].along, self.sides[i].along);
-            let from = math::atan2(-a.x, a.z);
-            let turn = math::atan2(a.x * b.z - a.z * b.x, a.dot(b));
-            let steps = super::parts_of(turn, 15.0_f64.to_radians());
+        for i in 0..self.sides.len() {
+            let (from, turn) = self.corner(i);
+            let steps = super::parts_of(turn, CORNER_STEP);
             for k in 0..=steps {
                 let (sin, cos) = math::sin_cos(from + turn * k as f64 / steps as f64);
-                chain.push(here + Vec2::new(cos, sin) * self.corner_radius);
+                chain.push(self.sides[i].start + Vec2::new(cos, sin) * self.corner_radius);
             }
         }
         chain
     }
 
-    pub(super) fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {
-        nodes_along(&self.outline(), true, spacing)
+    /// Where the arc of a rounded corner starts and how far it turns (rad).
+    fn corner(&self, i: usize) -> (f64, f64) {
+        let count = self.sides.len();
+        let (a, b) = (self.sides[(i + count - 1) % count].along, self.sides[i].along);
+        (math::atan2(-a.x, a.z), math::atan2(a.x * b.z - a.z * b.x, a.dot(b)))
     }
 
-    /// The corners themselves as nodes, each standing for half of both its sides.
+    /// Corner and side, corner and side; no corners where they are sharp.
+    fn pieces(&self) -> Vec<Piece> {
+        let mut pieces = Vec::new();
+        for (i, side) in self.sides.iter().enumerate() {
+            let (radius, end) = (self.corner_radius, self.sides[(i + 1) % self.sides.len()].start);
+            if radius > 0.0 {
+                let (from, turn) = self.corner(i);
+                pieces.push(Piece::Arc { center: side.start, radius, from, turn });
+            }
+            let out = side.outward * radius;
+            pieces.push(Piece::Side(side.start + out, end + out));
+        }
+        pieces
+    }
+
+    pub(super) fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {
+        nodes_along(&self.pieces(), true, spacing, CORNER_STEP)
+    }
+
+    /// The corners themselves as nodes, each standing for half of both its sides; a rounded one is
+    /// cut into parts that turn by at most 15 degrees.
     pub fn corner_nodes(&self) -> Vec<BoundaryNode> {
-        nodes_along(&self.outline(), true, f64::INFINITY)
+        nodes_along(&self.pieces(), true, f64::INFINITY, CORNER_STEP)
     }
 
     /// The same number of equal parts on every side, and a node at every end.
@@ -219,7 +257,9 @@ impl Polygon {
                 })
             })
             .collect();
-        nodes_along(&chain, true, f64::INFINITY)
+        let pieces: Vec<Piece> =
+            (0..chain.len()).map(|i| Piece::Side(chain[i], chain[(i + 1) % chain.len()])).collect();
+        nodes_along(&pieces, true, f64::INFINITY, CORNER_STEP)
     }
 
     /// The polygon seen in a mirror: every `x` becomes `−x`.

@@ -1,6 +1,8 @@
 //! A barrel in longitudinal section: two bulged staves closed by the two heads.
 
-use super::{BoundaryNode, Gap, Section, nodes_along, parts_of};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use super::{BoundaryNode, Gap, Piece, Section, nodes_along};
 use crate::math;
 use crate::real::Real;
 use crate::space::{Planar, Vec2};
@@ -90,10 +92,14 @@ impl BarrelProfile {
             + (self.stave_radius * self.stave_radius - x * x).max(0.0).sqrt()
     }
 
+    /// Half the angle (rad) over which a stave bends.
+    fn half_stave(&self) -> f64 {
+        math::atan2(self.half_length, self.stave_radius - self.bilge_radius + self.head_radius)
+    }
+
     /// The chain from the right head over the top, the left head and the bottom.
     fn chain(&self, parts: usize) -> Vec<Vec2> {
-        let half =
-            math::atan2(self.half_length, self.stave_radius - self.bilge_radius + self.head_radius);
+        let half = self.half_stave();
         let arc: Vec<Vec2> = (0..=parts)
             .map(|i| {
                 let (sin, cos) = math::sin_cos(half * (1.0 - 2.0 * i as f64 / parts as f64));
@@ -111,7 +117,22 @@ impl BarrelProfile {
     }
 
     pub(super) fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {
-        nodes_along(&self.chain(parts_of(2.0 * self.half_length, spacing)), true, spacing)
+        let half = self.half_stave();
+        let rise = self.stave_radius - self.bilge_radius;
+        let (a, b) = (self.half_length, self.head_radius);
+        let stave = |center, middle: f64| Piece::Arc {
+            center,
+            radius: self.stave_radius,
+            from: middle - half,
+            turn: 2.0 * half,
+        };
+        let pieces = [
+            stave(Vec2::new(0.0, -rise), FRAC_PI_2),
+            Piece::Side(Vec2::new(-a, b), Vec2::new(-a, -b)),
+            stave(Vec2::new(0.0, rise), PI + FRAC_PI_2),
+            Piece::Side(Vec2::new(a, -b), Vec2::new(a, b)),
+        ];
+        nodes_along(&pieces, true, spacing, f64::INFINITY)
     }
 
     /// The flat section inside the outline (a barrel's own inertia is not that of a plate).

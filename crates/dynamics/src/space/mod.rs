@@ -87,6 +87,8 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         spin: Self::Spin,
         moment: Self::Spin,
     ) -> Self::Spin;
+    /// The smallest principal moment of inertia (kg·m²) in one lane.
+    fn least_inertia(inertia: Self::Inertia, lane: usize) -> f64;
     /// Rotational kinetic energy (J).
     fn spin_energy(
         inertia: Self::Inertia,

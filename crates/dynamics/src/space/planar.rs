@@ -199,6 +199,9 @@ impl<R: Real> Space for Planar<R> {
     fn spin_rate(inertia: R, _rotation: Rotation2<R>, _spin: R, moment: R) -> R {
         moment / inertia
     }
+    fn least_inertia(inertia: R, lane: usize) -> f64 {
+        inertia.lane(lane)
+    }
     #[inline]
     fn spin_energy(inertia: R, _rotation: Rotation2<R>, spin: R) -> R {
         R::splat(0.5) * inertia * spin * spin

@@ -1,0 +1,178 @@
+//! The same bits every time, and numbers that are lost are reported.
+
+mod common;
+
+use std::ops::ControlFlow;
+
+use barrelstack_dynamics::shape::HalfPlane;
+use barrelstack_dynamics::simulate::Finish;
+use barrelstack_dynamics::space::Rotation2;
+use barrelstack_dynamics::{
+    FrictionLaw, Method, Model, ModelError, NormalLaw, Placed, RunError, Shape, Still, Twist, Vec2,
+};
+use common::motion::harmonic;
+use common::tumble::{bodies, rough};
+use common::{
+    DOWN, Scene, all_pairs, bits, centered, disc, every_method, floor, ground_of, interface, pair,
+};
+
+fn tumbling() -> Scene {
+    Scene::new(bodies(2008, 8), rough(), DOWN)
+}
+
+/// A number that differs when any bit does (FNV-1a).
+fn hash(bits: &[u64]) -> u64 {
+    bits.iter().flat_map(|b| b.to_le_bytes()).fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+#[test]
+fn a_run_repeated_gives_the_same_bits() {
+    for method in every_method(1e-5) {
+        let run = || {
+            let mut scene = tumbling();
+            let totals = scene.run(&harmonic(4.0, 7.0), method, 2e-4, 1.0);
+            let energy = totals.energy.summary(0);
+            (scene.bits(), energy, totals.steps, scene.scratch.contact_evaluations)
+        };
+        let (first, second) = (run(), run());
+        assert_eq!(hash(&first.0), hash(&second.0), "{}", method.name());
+        assert_eq!(first, second, "{}", method.name());
+    }
+}
+
+#[test]
+fn a_run_stopped_and_continued_gives_the_bits_of_one_run() {
+    // Continued from the saved state alone: twists, poses, sticks. Times are powers of two, so that
+    // the same steps are taken.
+    let (step, half, end) = (1.0 / 4096.0, 0.25, 0.5);
+    let drive = harmonic(4.0, 7.0);
+    let mut whole = tumbling();
+    whole.run(&drive, Method::RungeKutta4, step, end);
+    let mut parts = tumbling();
+    parts.run(&drive, Method::RungeKutta4, step, half);
+    let mut resumed = Scene::of(parts.model.clone());
+    resumed.state = parts.state.clone();
+    resumed.run(&drive, Method::RungeKutta4, step, end);
+    assert_eq!(hash(&whole.bits()[..40]), hash(&resumed.bits()[..40]));
+}
+
+#[test]
+fn work_is_counted() {
+    let mut scene = tumbling();
+    let totals = scene.run(&Still, Method::RungeKutta4, 1e-3, 0.1);
+    assert_eq!(totals.steps, 100);
+    assert_eq!(totals.finish, Finish::EndTime);
+    assert_eq!(scene.scratch.evaluations, 1 + 4 * 100);
+    let mut scene = tumbling();
+    scene.run(&Still, Method::VelocityVerlet, 1e-3, 0.1);
+    assert_eq!(scene.scratch.evaluations, 1 + 100);
+}
+
+#[test]
+fn an_observer_sees_the_start_and_can_stop_the_run() {
+    let mut scene = tumbling();
+    let mut times = vec![];
+    let totals = scene.watch(&Still, Method::VelocityVerlet, 1e-3, 1.0, |state, _, _| {
+        times.push(state.time);
+        if times.len() == 4 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert_eq!((totals.finish, totals.steps), (Finish::Stopped, 3));
+    assert_eq!(times, [0.0, 1e-3, 2e-3, 3e-3]);
+    assert_eq!(bits(&scene.state)[0], 3e-3_f64.to_bits());
+}
+
+#[test]
+fn a_step_far_too_long_ends_with_the_time_and_the_body() {
+    // A disc pressed between a floor and a ceiling: the contact never lets go, so a step beyond the
+    // critical one doubles the swing again and again.
+    let ceiling = Placed {
+        surface: Shape::HalfPlane(HalfPlane),
+        offset: Vec2::new(0.0, 0.39),
+        rotation: Rotation2::new(std::f64::consts::PI),
+    };
+    let walls = ground_of(vec![centered(Shape::HalfPlane(HalfPlane)), ceiling]);
+    let idle = disc("idle", 0.1, 5.0, 0.005, Vec2::new(10.0, 0.5));
+    let squeezed = disc("squeezed", 0.2, 5.0, 0.02, Vec2::new(0.0, 0.194));
+    let bodies = vec![walls, idle, squeezed];
+    let law =
+        interface(NormalLaw::SpeedGap { stiffness: 1e7, damping: 1e3 }, FrictionLaw::Frictionless);
+    let mut pairs = all_pairs(&bodies);
+    pairs.push(barrelstack_dynamics::ContactPair { surface: 1, ..pair(2, 0) });
+    let model = Model::new(bodies, vec![law], pairs, DOWN).unwrap();
+    for method in [Method::SemiImplicitEuler, Method::VelocityVerlet, Method::RungeKutta4] {
+        let mut scene = Scene::of(model.clone());
+        let step = 0.01;
+        let mut last = 0.0;
+        let error = scene
+            .try_watch(&Still, method, step, 60.0, |state, _, _| {
+                assert!(state.poses[2].position.z.is_finite(), "lost numbers reach no observer");
+                last = state.time;
+                ControlFlow::Continue(())
+            })
+            .unwrap_err();
+        let RunError::NotFinite { time, body, time_step } = &error;
+        assert_eq!(body, "squeezed", "{}", method.name());
+        assert_eq!(*time_step, step);
+        assert!((*time - last - step).abs() < 1e-12 && *time > 0.0);
+        assert_eq!(
+            error.to_string(),
+            format!(
+                "the step failed at t = {time:.6} s: body \"squeezed\" left the finite numbers; try \
+                 a step below 1e-2 s"
+            )
+        );
+    }
+}
+
+#[test]
+fn a_body_that_starts_without_a_number_is_named() {
+    let mut scene = tumbling();
+    scene.state.twists[3] = Twist { linear: Vec2::new(f64::NAN, 0.0), angular: 0.0 };
+    for method in every_method(1e-6) {
+        let mut scene = Scene { state: scene.state.clone(), ..Scene::of(scene.model.clone()) };
+        let found = scene.try_watch(&Still, method, 1e-3, 1.0, |_, _, _| ControlFlow::Continue(()));
+        let RunError::NotFinite { time, body, .. } = found.unwrap_err();
+        assert_eq!(body, "body 2", "{}", method.name());
+        assert!(time <= 1e-3, "{time}");
+    }
+}
+
+#[test]
+fn what_is_no_model_is_refused_with_its_name() {
+    let law = || vec![rough()];
+    let ball = |name: &str| disc(name, 0.2, 5.0, 0.02, Vec2::new(0.0, 1.0));
+    let model = |bodies, pairs| Model::new(bodies, law(), pairs, DOWN).map(|_| ()).unwrap_err();
+
+    let twins = model(vec![floor(), ball("a"), ball("a")], vec![]);
+    assert_eq!(twins, ModelError::DuplicateName { name: "a".into() });
+    assert_eq!(twins.to_string(), "two bodies are named \"a\": give each its own name");
+
+    for mass in [0.0, -1.0, f64::INFINITY] {
+        let mut light = ball("light");
+        light.mass = mass;
+        let found = model(vec![floor(), light], vec![]);
+        assert_eq!(found, ModelError::Mass { name: "light".into(), mass });
+    }
+    let mut endless = ball("endless");
+    endless.surfaces = vec![centered(Shape::HalfPlane(HalfPlane))];
+    assert_eq!(model(vec![endless], vec![]), ModelError::Unbounded { name: "endless".into() });
+
+    let found = model(vec![floor(), ball("a")], vec![pair(1, 7)]);
+    let expected = ModelError::Dangling { pair: 0, what: "body", index: 7, count: 2 };
+    assert_eq!(found, expected);
+    assert_eq!(found.to_string(), "contact pair 0 names body 7, but there are only 2");
+    let found = model(vec![floor(), ball("a")], vec![pair(0, 1)]);
+    assert!(matches!(found, ModelError::Dangling { what: "node set", index: 0, count: 0, .. }));
+}
+
+#[test]
+fn a_free_body_needs_a_moment_of_inertia() {
+    for inertia in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let mut thin = disc("thin", 0.2, 5.0, 0.02, Vec2::new(0.0, 1.0));
+        thin.inertia = inertia;
+        let found = Model::new(vec![floor(), thin], vec![rough()], vec![], DOWN);
+        assert!(found.is_err(), "inertia {inertia} makes a model");
+    }
+}

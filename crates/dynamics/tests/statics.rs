@@ -1,0 +1,227 @@
+//! Equilibrium under gravity: forces, overhangs, rest, and what does not stand.
+
+#![allow(clippy::unwrap_used, reason = "a body that cannot be made fails its test")]
+
+mod common;
+
+use std::ops::ControlFlow;
+
+use barrelstack_dynamics::shape::Polygon;
+use barrelstack_dynamics::{
+    Body, FrictionLaw, Method, Node, Nodes, NormalLaw, Planar, SettleError, Still, Vec2, evaluate,
+};
+use common::exact::overhang;
+use common::{
+    DOWN, GRAVITY, Scene, assert_close, block, coulomb, disc, fixed, floor, ground_of, interface,
+    pose,
+};
+
+const MASS: f64 = 40.0;
+const STIFFNESS: f64 = 1e7;
+
+fn firm() -> NormalLaw {
+    NormalLaw::SpeedGap { stiffness: STIFFNESS, damping: 2e4 }
+}
+
+fn rough() -> FrictionLaw {
+    coulomb(0.5, STIFFNESS, 1e4)
+}
+
+/// A brick whose nodes are a little in from its corners, so that equal bricks can stand on each other.
+fn brick(name: &str, (length, height): (f64, f64), x: f64, z: f64) -> Body<Planar> {
+    let mut body = block(name, (length, height), MASS, None, pose(x, z, 0.0));
+    let inner = Polygon::rectangle(length - 0.04, height, 0.0).unwrap();
+    body.nodes = vec![fixed(&inner.corner_nodes())];
+    body
+}
+
+/// A column of bricks.
+fn column(count: u32) -> Scene {
+    let mut bodies = vec![floor()];
+    for i in 0..count {
+        bodies.push(brick(&format!("brick {i}"), (0.5, 0.2), 0.0, 0.1 + 0.2 * f64::from(i)));
+    }
+    Scene::new(bodies, interface(firm(), rough()), DOWN)
+}
+
+/// The sum of normal forces (N) between two bodies, whichever carries the nodes.
+fn force_between(scene: &Scene, a: usize, b: usize) -> f64 {
+    scene
+        .scratch
+        .contacts
+        .iter()
+        .filter(|c| {
+            let pair = scene.model.pairs()[c.pair];
+            (pair.contactor, pair.target) == (a, b) || (pair.contactor, pair.target) == (b, a)
+        })
+        .map(|c| c.normal_force)
+        .sum()
+}
+
+#[test]
+fn every_level_of_a_column_carries_what_is_above() {
+    let scene = column(5).settled(2e-4, 1e-9);
+    for level in 0..5 {
+        let above = f64::from(5 - u32::try_from(level).unwrap());
+        let found = force_between(&scene, level, level + 1);
+        assert_close("normal force", found, above * MASS * GRAVITY, 1e-8); // measured 9e-10
+    }
+    // Each joint has four springs (two nodes of either brick), the lowest two.
+    let sunk = 5.0 * MASS * GRAVITY / (2.0 * STIFFNESS);
+    assert_close("lowest brick", 0.1 - scene.state.poses[1].position.z, sunk, 1e-8); // measured 3e-10
+}
+
+#[test]
+fn a_settled_state_is_at_rest_at_its_time() {
+    let mut scene = column(3);
+    scene.state.time = 7.0;
+    let settled = scene.settle(2e-4, 1e-9).unwrap();
+    assert!(settled.unbalanced < 1e-9 && settled.steps > 10, "{settled:?}");
+    assert_eq!(scene.state.time, 7.0);
+    for twist in &scene.state.twists {
+        assert_eq!((twist.linear.length(), twist.angular), (0.0, 0.0));
+    }
+    // Settling what has settled changes nothing.
+    let before = scene.bits();
+    assert_eq!(scene.settle(2e-4, 1e-9).unwrap().steps, 0);
+    assert_eq!(scene.bits(), before);
+}
+
+#[test]
+fn a_column_at_rest_stays_for_a_minute() {
+    let mut scene = column(5).settled(2e-4, 1e-9);
+    let start: Vec<Vec2> = scene.state.poses.iter().map(|p| p.position).collect();
+    let mut drift = 0.0_f64;
+    scene.watch(&Still, Method::VelocityVerlet, 2e-4, 60.0, |state, _, _| {
+        for (pose, start) in state.poses.iter().zip(&start) {
+            drift = drift.max((pose.position - *start).length());
+        }
+        ControlFlow::Continue(())
+    });
+    assert!(drift < 1e-11, "{drift:e} m"); // measured 1.2e-13
+}
+
+/// A disc on two points of the ground at ± an angle (rad).
+fn cradled(angle: f64, friction: FrictionLaw) -> Scene {
+    let radius = 0.35;
+    let mut ground = ground_of(vec![]);
+    let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+    ground.nodes = vec![Nodes::Fixed(
+        [-1.0, 1.0]
+            .map(|side| Node {
+                position: Vec2::new(side * radius * sin, -radius * cos),
+                tributary_length: 1.0,
+            })
+            .to_vec(),
+    )];
+    let mut barrel = disc("barrel", radius, 275.0, 0.06, Vec2::default());
+    barrel.nodes = vec![];
+    Scene::new(vec![ground, barrel], interface(firm(), friction), DOWN).settled(2e-4, 1e-10)
+}
+
+#[test]
+fn a_smooth_cradle_carries_half_the_weight_over_its_cosine() {
+    for angle in [0.2_f64, 0.5, 0.8, 1.1] {
+        let scene = cradled(angle, FrictionLaw::Frictionless);
+        // The barrel sinks, and the points come to lie a little higher on it.
+        let sunk = -scene.state.poses[1].position.z;
+        let steeper = libm::atan2(0.35 * libm::sin(angle), 0.35 * libm::cos(angle) - sunk);
+        for contact in &scene.scratch.contacts {
+            let expected = 275.0 * GRAVITY / (2.0 * libm::cos(steeper));
+            assert_close("support", contact.normal_force, expected, 1e-9); // measured 7e-11
+        }
+    }
+}
+
+#[test]
+fn a_rough_cradle_carries_the_weight_by_normal_and_friction_forces() {
+    let scene = cradled(0.5, rough());
+    let (mut lift, mut thrust) = (0.0, 0.0);
+    for contact in &scene.scratch.contacts {
+        let (force, _) = barrelstack_dynamics::forces::contact_force(
+            &scene.model,
+            &scene.state,
+            &scene.scratch,
+            contact,
+        );
+        // The ground is the contactor: the barrel feels the opposite.
+        lift -= force.z;
+        thrust += force.x.abs();
+        assert!(contact.friction_force.abs() > 1.0, "friction takes part");
+    }
+    assert_close("lift", lift, 275.0 * GRAVITY, 1e-9); // measured 4e-11
+    assert!(thrust > 0.0);
+}
+
+/// The harmonic stack: the topmost of `n` bricks hangs out by a share of the farthest overhang.
+fn harmonic_stack(n: u32, share: f64) -> Scene {
+    let (length, height) = (1.0, 0.2);
+    // The lowest of the n bricks lies on a table that ends at x = 0; brick i from the top hangs out
+    // by L/2i over the one below.
+    let table = Polygon::rectangle(4.0, 1.0, 0.0).unwrap();
+    let mut ground =
+        ground_of(vec![common::centered(barrelstack_dynamics::Shape::Polygon(table.clone()))]);
+    ground.pose = pose(-2.0, -0.5, 0.0);
+    ground.nodes = vec![fixed(&table.corner_nodes())];
+    let mut bodies = vec![ground];
+    let mut edge = 0.0;
+    for i in (1..=n).rev() {
+        edge += share * 0.5 * length / f64::from(i);
+        let level = f64::from(n - i);
+        bodies.push(block(
+            &format!("brick {i}"),
+            (length, height),
+            MASS,
+            None,
+            pose(edge - 0.5 * length, height * (level + 0.5), 0.0),
+        ));
+    }
+    assert!((edge - share * overhang(n, length)).abs() < 1e-12);
+    Scene::new(bodies, interface(firm(), rough()), DOWN)
+}
+
+#[test]
+fn bricks_stand_just_inside_the_harmonic_overhang_and_fall_just_outside() {
+    for n in 1..=5 {
+        let mut inside = harmonic_stack(n, 0.99);
+        inside.settle(2e-4, 1e-7).unwrap_or_else(|e| panic!("{n} bricks at 99 %: {e}"));
+        let rest: Vec<Vec2> = inside.state.poses.iter().map(|p| p.position).collect();
+        inside.run(&Still, Method::VelocityVerlet, 2e-4, 2.0);
+        for (pose, rest) in inside.state.poses.iter().zip(&rest) {
+            assert!((pose.position - *rest).length() < 1e-4, "{n} bricks move at 99 %");
+        }
+        let mut outside = harmonic_stack(n, 1.01);
+        let lost = outside.settle(2e-4, 1e-7);
+        assert!(lost.is_err(), "{n} bricks stand at 101 %: {lost:?}");
+    }
+}
+
+#[test]
+fn a_body_in_the_air_does_not_settle_and_is_named() {
+    let resting = brick("resting", (0.5, 0.2), 0.0, 0.1);
+    let hanging = disc("hanging", 0.2, 10.0, 0.02, Vec2::new(1.0, 8.0));
+    let mut scene = Scene::new(vec![floor(), resting, hanging], interface(firm(), rough()), DOWN);
+    let SettleError::NotAtRest { body, moved } = scene.settle(2e-4, 1e-9).unwrap_err();
+    assert_eq!(body, "hanging");
+    assert!(moved > 0.05, "{moved}");
+    let error = SettleError::NotAtRest { body, moved };
+    let text = error.to_string();
+    assert!(text.starts_with("body \"hanging\" does not come to rest under gravity (it moved"));
+}
+
+#[test]
+fn a_body_on_a_smooth_slope_does_not_settle() {
+    let body = brick("sledge", (0.5, 0.2), 0.0, 0.1);
+    let law = interface(firm(), FrictionLaw::Frictionless);
+    let mut scene = Scene::new(vec![floor(), body], law, common::gravity_on_slope(0.2));
+    let SettleError::NotAtRest { body, .. } = scene.settle(2e-4, 1e-9).unwrap_err();
+    assert_eq!(body, "sledge");
+}
+
+#[test]
+fn evaluation_changes_nothing_but_scratch() {
+    let mut scene = column(3).settled(2e-4, 1e-9);
+    let before = scene.state.clone();
+    evaluate(&scene.model, &scene.state, &mut scene.scratch);
+    assert_eq!(scene.state, before);
+}
