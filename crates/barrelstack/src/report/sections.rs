@@ -75,15 +75,15 @@ fn optional(value: Option<f64>) -> Cell {
 
 fn fates(summary: &Summary) -> Table {
     let mut table = Table::new(
-        "Displacements are relative to the ground and to the place at rest; slip is relative to what \
-         the body stands on.",
+        "Largest slip: against what the body stands on, while the stack stood. At the end: displacement \
+         against the ground from the place at rest.",
         &[
             ("body", ""),
-            ("left its seat", "s"),
+            ("left seat", "s"),
             ("fell", "s"),
-            ("height of fall", "m"),
-            ("largest slip while standing", "cm"),
-            ("displacement at the end", "cm"),
+            ("fall height", "m"),
+            ("largest slip", "cm"),
+            ("at the end", "cm"),
         ],
     );
     for body in &summary.bodies {
