@@ -82,7 +82,7 @@ pub enum RunFailure {
     Settle(#[from] SettleError),
     /// The step is too long for the contacts.
     #[error(
-        "run.step = {asked:.3} ms is too long: {reason}; try {instead} ms, or leave it out"
+        "run.step = {asked} ms is too long: {reason}; try {instead} ms, or leave it out"
     )]
     Step {
         /// The step asked for (ms).
@@ -102,6 +102,9 @@ const SETTLE_TOLERANCE: f64 = 1e-10;
 
 /// Most steps of a run; a stack takes some 10⁵ steps a second.
 const MOST_STEPS: f64 = 1e9;
+
+/// Share of the way of the body that goes furthest from which a body counts as gone with it.
+const LOST_SHARE: f64 = 0.25;
 
 /// Deepest overlap (m) of two bodies at the start that sinking under weight can explain.
 const OVERLAP_ALLOWED: f64 = 2e-3;
@@ -222,16 +225,22 @@ pub(crate) fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64,
         return Ok(step);
     }
     Err(RunFailure::Step {
-        asked: 1e3 * step / scale,
+        asked: milliseconds(step / scale),
         reason: format!("the stiffest contact allows {:.2} ms at most", 1e3 * critical / scale),
-        instead: 1e3 * default_step(assembly) / scale,
+        instead: milliseconds(default_step(assembly) / scale),
     })
+}
+
+/// A step (s) in milliseconds, to be printed.
+fn milliseconds(step: f64) -> f64 {
+    (1e9 * step).round() / 1e6
 }
 
 /// Lets the stack come to rest.
 ///
 /// # Errors
-/// When it does not; blames the step where that is the likely reason.
+/// When it does not; blames the step where that is the likely reason, and otherwise the lowest of the
+/// bodies that go, which the others lose their hold with.
 pub(crate) fn at_rest(
     scenario: &Scenario,
     assembly: &Assembly,
@@ -239,18 +248,24 @@ pub(crate) fn at_rest(
     scratch: &mut Scratch<Planar>,
 ) -> Result<Settled, RunFailure> {
     let (step, suggested) = (time_step(scenario, assembly)?, default_step(assembly));
+    let start = state.poses.clone();
     settle(&assembly.model, state, scratch, step, SETTLE_TOLERANCE).map_err(|error| {
         let scale = scenario.run.similitude.sqrt();
+        let SettleError::NotAtRest { body, moved } = error;
         if step > suggested {
-            let SettleError::NotAtRest { body, .. } = error;
-            RunFailure::Step {
-                asked: 1e3 * step / scale,
+            return RunFailure::Step {
+                asked: milliseconds(step / scale),
                 reason: format!("with it \"{body}\" does not come to rest under gravity"),
-                instead: 1e3 * suggested / scale,
-            }
-        } else {
-            error.into()
+                instead: milliseconds(suggested / scale),
+            };
         }
+        let ways = state.poses.iter().zip(&start).map(|(a, b)| (a.position - b.position).length());
+        let lowest = ways.enumerate().find(|(_, way)| *way > LOST_SHARE * moved);
+        lowest
+            .map_or(SettleError::NotAtRest { body, moved }, |(lowest, way)| {
+                SettleError::NotAtRest { body: assembly.parts[lowest].name.clone(), moved: way }
+            })
+            .into()
     })
 }
 
