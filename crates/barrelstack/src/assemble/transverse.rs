@@ -23,6 +23,9 @@ use super::stack::{Builder, Draft, DraftNodes};
 use super::{AssembleError, PartKind, outline_of};
 use crate::scenario::{Cradle, Friction, Rack, RackKind, StackBody, View};
 
+/// Play (m) between the cup of a foot and the post in it.
+const SPIGOT_PLAY: f64 = 0.005;
+
 /// Builds all levels; returns the height of the stack and the reach of a rack on its barrels (m).
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
     let spec = builder.spec;
@@ -108,7 +111,7 @@ fn add_rack(
         position: center,
         size: 0.5 * rack.width,
         surfaces: Vec::new(),
-        nodes: vec![DraftNodes::Fixed(rack_nodes(rack, &places, radius))],
+        nodes: vec![DraftNodes::Fixed(rack_nodes(rack, &places, radius, level))],
         outlines: Vec::new(),
         carrier: None,
         supports,
@@ -149,7 +152,7 @@ fn add_rack(
 }
 
 /// The nodes of a rack from its center of mass, with their tributary lengths.
-fn rack_nodes(rack: &Rack, places: &[f64], radius: f64) -> Vec<(Vec2, f64)> {
+fn rack_nodes(rack: &Rack, places: &[f64], radius: f64, level: u32) -> Vec<(Vec2, f64)> {
     let spacing = rack.node_spacing;
     let half_height = 0.5 * rack.beam_height;
     let mut nodes = Vec::new();
@@ -170,6 +173,17 @@ fn rack_nodes(rack: &Rack, places: &[f64], radius: f64) -> Vec<(Vec2, f64)> {
             for side in [-1.0, 1.0] {
                 let foot = side * posts.half_spacing;
                 row(&mut nodes, foot - half, foot + half);
+                // Above the first level the foot is a cup over the post: nodes beside it hold the
+                // rack in place until it is lifted off. On the floor there is nothing to hold.
+                if level > 1 && posts.spigot > 0.0 {
+                    for beside in [-1.0, 1.0] {
+                        let x = foot + beside * (half + SPIGOT_PLAY);
+                        for share in [0.5, 1.0] {
+                            let z = -half_height - share * posts.spigot;
+                            nodes.push((Vec2::new(x, z), 0.5 * posts.spigot));
+                        }
+                    }
+                }
             }
         }
         _ => {
