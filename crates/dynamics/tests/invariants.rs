@@ -295,7 +295,7 @@ fn near_list_is_plain(scene: impl Fn() -> Scene, drive: &impl Drive<Planar>, end
             touched += scratch.contacts.len();
             ControlFlow::Continue(())
         });
-        (bits(&scene.state)[..1 + 6 * scene.state.poses.len()].to_vec(), touched)
+        (bits(&scene.state)[..=6 * scene.state.poses.len()].to_vec(), touched)
     };
     let (near, plain) = (run(false), run(true));
     plain.1 > 0 && near == plain
