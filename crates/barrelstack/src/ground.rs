@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
-    AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Processing,
+    AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Pads, Processing,
     Pulse as MotionPulse, ReadError, ReadOptions, Record,
 };
 
@@ -133,7 +133,7 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
     let horizontal = component_of(&record, spec.component.as_deref())?;
     let processing = match spec.processing {
         ProcessingSpec::None => Processing::none(),
-        ProcessingSpec::Default => Processing::for_stage(record.stage),
+        ProcessingSpec::Default => default_processing(&record),
     };
     let motion = match &spec.vertical {
         Vertical::None => record.ground_motion(&horizontal, None, &processing)?,
@@ -146,7 +146,7 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
             warnings.extend(other.warnings.iter().map(|w| format!("{}: {w}", other.file)));
             let processing = match spec.processing {
                 ProcessingSpec::None => Processing::none(),
-                ProcessingSpec::Default => Processing::for_stage(other.stage),
+                ProcessingSpec::Default => default_processing(&other),
             };
             let vertical = other.ground_motion(&Component::Number(1), None, &processing)?;
             let mut motion = record.ground_motion(&horizontal, None, &processing)?;
@@ -159,6 +159,15 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
         }
     };
     Ok(Ground { motion: Some(motion), warnings })
+}
+
+/// The default processing of a record's stage, its pads cut off again.
+///
+/// Pads hold half a minute of stillness before the first arrival, which a stack at rest does not need;
+/// what cutting them leaves at the ends is closed.
+fn default_processing(record: &Record) -> Processing {
+    let full = Processing::for_stage(record.stage);
+    if full.is_none() { full } else { Processing { pads: Pads::Removed, close: true, ..full } }
 }
 
 fn read_file(

@@ -1,8 +1,11 @@
-//! Literate cases: `tests/cases/*.md` hold prose, a scenario, and what the reader must say about it.
+//! Literate cases: `tests/cases/*.md` hold prose, a scenario, and what the reader must say about
+//! it.
 //!
-//! Each `##` section of a file is a case. Its `toml` block is the scenario, its `override` block has one override a
-//! line, and it ends with either an `error` block, the whole error, or a `resolved` block, lines that the resolved
-//! text must contain.
+//! Each `##` section of a file is a case. Its `toml` block is the scenario, its `override` block
+//! has one override a line, and it ends with either an `error` block, the whole error, or a
+//! `resolved` block, lines that the resolved text must contain.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
 use std::fs;
 use std::path::PathBuf;

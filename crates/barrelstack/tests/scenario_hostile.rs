@@ -1,4 +1,7 @@
-//! Bytes that are no scenario, files that are not there, and scenarios cut anywhere: one error, never a panic.
+//! Bytes that are no scenario, files that are not there, and scenarios cut anywhere: one error,
+//! never a panic.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
 use std::fs;
 use std::path::Path;

@@ -1,5 +1,7 @@
 //! Quantities: exact conversion, dimensions, errors, and no panic on any text.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
 use barrelstack::scenario::{Dimension, Quantity, QuantityError};
 use proptest::prelude::*;
 
@@ -60,7 +62,7 @@ fn ways_to_write_a_unit_agree() {
             same.iter().map(|text| Quantity::parse(text).unwrap()).collect();
         for (text, quantity) in same.iter().zip(&parsed) {
             assert_eq!(quantity.dimension, parsed[0].dimension, "{text}");
-            assert!((quantity.value / parsed[0].value - 1.0).abs() < 3e-16, "{text}"); // measured 2.2e-16
+            assert!((quantity.value / parsed[0].value - 1.0).abs() < 3e-16, "{text}"); // measured 0
         }
     }
 }

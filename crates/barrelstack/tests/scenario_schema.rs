@@ -1,15 +1,18 @@
 //! The JSON Schema and the reference agree with what the reader accepts.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
 use barrelstack::scenario::field::{Default, Field, Kind, Section};
 use barrelstack::scenario::{ROOT, Scenario, builtin, reference, schema};
 use serde_json::{Value, json};
 
-/// Checks a value against the part of JSON Schema that the generator uses; a keyword it does not know fails.
-fn check(schema: &Value, value: &Value, path: &str) -> Result<(), String> {
+/// Checks a value against the part of JSON Schema that the generator uses; a keyword it does not
+/// know fails.
+fn check(root: &Value, schema: &Value, value: &Value, path: &str) -> Result<(), String> {
     let fail = |what: &str| Err(format!("{path}: {value} breaks {what}"));
     for (keyword, rule) in schema.as_object().unwrap() {
         match keyword.as_str() {
-            "$schema" | "title" | "description" | "additionalProperties" => {}
+            "$schema" | "$defs" | "title" | "description" | "additionalProperties" => {}
             "type" => {
                 let types = rule.as_array().cloned().unwrap_or_else(|| vec![rule.clone()]);
                 let is = |name: &Value| match name.as_str().unwrap() {
@@ -29,14 +32,14 @@ fn check(schema: &Value, value: &Value, path: &str) -> Result<(), String> {
                 let Some(object) = value.as_object() else { continue };
                 for (key, item) in object {
                     match rule.get(key) {
-                        Some(schema) => check(schema, item, &format!("{path}.{key}"))?,
+                        Some(schema) => check(root, schema, item, &format!("{path}.{key}"))?,
                         None => return fail(&format!("additionalProperties with `{key}`")),
                     }
                 }
             }
             "items" => {
                 for item in value.as_array().into_iter().flatten() {
-                    check(rule, item, path)?;
+                    check(root, rule, item, path)?;
                 }
             }
             "minItems" | "maxItems" => {
@@ -50,7 +53,7 @@ fn check(schema: &Value, value: &Value, path: &str) -> Result<(), String> {
             }
             "anyOf" => {
                 let tried: Vec<_> =
-                    rule.as_array().unwrap().iter().map(|s| check(s, value, path)).collect();
+                    rule.as_array().unwrap().iter().map(|s| check(root, s, value, path)).collect();
                 if !tried.iter().any(Result::is_ok) {
                     let reasons: Vec<String> = tried.into_iter().filter_map(Result::err).collect();
                     return Err(format!("{path}: no alternative: {}", reasons.join("; ")));
@@ -77,19 +80,17 @@ fn check(schema: &Value, value: &Value, path: &str) -> Result<(), String> {
                     return fail(keyword);
                 }
             }
+            "$ref" => {
+                let name = rule.as_str().unwrap().strip_prefix("#/$defs/").unwrap();
+                check(root, &root["$defs"][name], value, path)?;
+            }
             "minLength" => {
                 if value.as_str().is_some_and(str::is_empty) {
                     return fail(keyword);
                 }
             }
-            // The one pattern of the schema: a number, then something.
             "pattern" => {
-                let text =
-                    value.as_str().unwrap_or("").trim_start().trim_start_matches(['-', '+', '.']);
-                let number = text.starts_with(|c: char| c.is_ascii_digit());
-                let unit = text.trim_end().ends_with(|c: char| !c.is_ascii_digit() && c != '.')
-                    || text.contains('^');
-                if !(number && unit) {
+                if !is_quantity(value.as_str().unwrap_or("")) {
                     return fail("pattern");
                 }
             }
@@ -97,6 +98,25 @@ fn check(schema: &Value, value: &Value, path: &str) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// What the one pattern of the schema says, by hand: a number, then something that starts no
+/// number.
+fn is_quantity(text: &str) -> bool {
+    fn digits(text: &str) -> &str {
+        text.trim_start_matches(|c: char| c.is_ascii_digit())
+    }
+    let text = text.trim_start();
+    let text = text.strip_prefix(['-', '+']).unwrap_or(text);
+    let rest = digits(text);
+    let rest = rest.strip_prefix('.').map_or(rest, digits);
+    let number = text[..text.len() - rest.len()].contains(|c: char| c.is_ascii_digit());
+    let rest = rest.strip_prefix(['e', 'E']).map_or(rest, |power| {
+        let power = power.strip_prefix(['-', '+']).unwrap_or(power);
+        if digits(power) == power { rest } else { digits(power) }
+    });
+    let unit = rest.trim_start();
+    number && (unit.starts_with("1/") || unit.starts_with(|c: char| !"-+.0123456789eE".contains(c)))
 }
 
 fn as_json(text: &str) -> Value {
@@ -108,10 +128,10 @@ fn as_json(text: &str) -> Value {
 fn builtin_scenarios_satisfy_the_schema_as_written_and_as_resolved() {
     let schema = schema::json_schema();
     for name in builtin::names() {
-        check(&schema, &as_json(builtin::get(name).unwrap()), name).unwrap();
+        check(&schema, &schema, &as_json(builtin::get(name).unwrap()), name).unwrap();
         let scenario = Scenario::builtin(name, &[]).unwrap();
-        check(&schema, &as_json(&scenario.to_resolved_toml()), name).unwrap();
-        check(&schema, &scenario.to_resolved_json(), name).unwrap();
+        check(&schema, &schema, &as_json(&scenario.to_resolved_toml()), name).unwrap();
+        check(&schema, &schema, &scenario.to_resolved_json(), name).unwrap();
     }
 }
 
@@ -138,7 +158,7 @@ fn the_schema_refuses_what_the_reader_refuses_by_form() {
         json!({ "schema": 1, "interface": { "rack-ground": { "law": "hertz", "damping": "1 s/m" } } }),
         json!({ "schema": 1, "kind": "free", "body": [{ "position": ["0 m"] }] }),
     ] {
-        assert!(check(&schema, &wrong, "").is_err(), "{wrong}");
+        assert!(check(&schema, &schema, &wrong, "").is_err(), "{wrong}");
     }
 }
 
@@ -150,11 +170,8 @@ fn all_fields() -> Vec<(&'static Section, &'static Field)> {
         }
         seen.push(section);
         for field in fields_of(section) {
-            match field.kind {
-                Kind::Table(inner) | Kind::Tables(inner) | Kind::ChoiceOrTable(_, _, inner) => {
-                    collect(inner, seen);
-                }
-                _ => {}
+            if let Some(inner) = field.kind.section() {
+                collect(inner, seen);
             }
         }
     }
@@ -180,9 +197,15 @@ fn definitions_are_well_formed() {
             let value = as_json(&format!("v = {text}"));
             let schema = schema::json_schema();
             // The default must satisfy the schema of its own field, wherever that stands.
-            assert!(finds(&schema, name, &value["v"]), "{name} = {text}");
+            assert!(finds(&schema, &schema, name, &value["v"]), "{name} = {text}");
         }
     }
+    let mut names: Vec<&str> = all_fields().iter().map(|(section, _)| section.name).collect();
+    names.dedup();
+    let count = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), count, "two sections share a name: {names:?}");
     for (section, _) in all_fields() {
         let Some(variants) = &section.variants else { continue };
         let tag = section.fields.iter().find(|field| field.name == variants.tag).unwrap();
@@ -203,17 +226,17 @@ fn definitions_are_well_formed() {
 }
 
 /// Whether any property of this name in the schema accepts the value.
-fn finds(schema: &Value, name: &str, value: &Value) -> bool {
+fn finds(root: &Value, schema: &Value, name: &str, value: &Value) -> bool {
     match schema {
         Value::Object(object) => {
             let here = object
                 .get("properties")
                 .and_then(|properties| properties.get(name))
-                .is_some_and(|inner| check(inner, value, name).is_ok());
-            here || object.values().any(|inner| finds(inner, name, value))
+                .is_some_and(|inner| check(root, inner, value, name).is_ok());
+            here || object.values().any(|inner| finds(root, inner, name, value))
         }
-        Value::Array(items) => items.iter().any(|inner| finds(inner, name, value)),
-        _ => false,
+        Value::Array(items) => items.iter().any(|inner| finds(root, inner, name, value)),
+        Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) => false,
     }
 }
 

@@ -1,5 +1,7 @@
 //! Every variant of every table is read, written and read back.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
 use barrelstack::scenario::{
     Amplitude, Basis, BodyOverride, Cradle, Damping, Fill, Friction, Method, MotionSource, Nodes,
     NormalLaw, PulseKind, RackKind, Scale, Scenario, Scene, Shape, StackBody, Vertical, Viscous,
@@ -276,9 +278,9 @@ fn shapes_with_their_uniform_inertia() {
         ]);
         let Scene::Free(scene) = &scenario.scene else { panic!() };
         let body = &scene.bodies[0];
-        assert!((body.inertia / inertia - 1.0).abs() < 1e-14, "{outline}: {}", body.inertia); // measured 4e-16
+        assert!((body.inertia / inertia - 1.0).abs() < 1e-14, "{outline}: {}", body.inertia); // measured 6e-16
         for (found, expected) in body.center_of_mass.iter().zip(center) {
-            assert!((found - expected).abs() < 1e-14, "{outline}: {found}"); // measured 2e-16
+            assert!((found - expected).abs() < 1e-14, "{outline}: {found}"); // measured 0
         }
     }
 }
@@ -295,7 +297,7 @@ fn a_bulging_profile_has_the_inertia_of_the_polygon_through_it() {
     vertices.extend(upper);
     let polygon = Shape::Polygon { vertices };
     let ratio = shape.uniform().square_radius / polygon.uniform().square_radius;
-    assert!((ratio - 1.0).abs() < 1e-6, "{ratio}"); // measured 2e-7
+    assert!((ratio - 1.0).abs() < 1e-6, "{ratio}"); // measured 2.4e-8
 }
 
 #[test]

@@ -18,6 +18,7 @@ pub(super) fn assemble(
 ) -> Result<Assembly, AssembleError> {
     let mut bodies = vec![ground(scene)];
     let mut parts = vec![part("ground", PartKind::Ground, 0.0)];
+    parts[0].outlines = vec![super::floor()];
     let mut kinds = vec![scene.ground.kind.as_str()];
     for body in &scene.bodies {
         let (body_of_model, part) = free_body(body, scale)?;

@@ -159,3 +159,8 @@ fn outline_of(shape: &Shape, offset: Vec2) -> Outline {
     let (points, closed) = shape.outline();
     Outline { points: points.into_iter().map(|p| p + offset).collect(), closed }
 }
+
+/// The line that shows the ground, longer than any picture is wide.
+fn floor() -> Outline {
+    Outline { points: vec![Vec2::new(-100.0, 0.0), Vec2::new(100.0, 0.0)], closed: false }
+}

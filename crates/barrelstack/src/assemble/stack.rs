@@ -116,7 +116,7 @@ impl Builder<'_> {
             carrier: None,
             supports: Vec::new(),
             size: 0.0,
-            outlines: Vec::new(),
+            outlines: vec![super::floor()],
         });
     }
 

@@ -12,7 +12,7 @@ use super::drawing;
 use crate::assemble::PartKind;
 use crate::run::Run;
 use crate::summary::Summary;
-use crate::watch::StressEnvelope;
+use crate::watch::{BoundaryPoint, StressEnvelope};
 
 /// All sections.
 pub(super) fn all(run: &Run, summary: &Summary, scene: &Arc<Scene>) -> Vec<Block> {
@@ -75,15 +75,15 @@ fn optional(value: Option<f64>) -> Cell {
 
 fn fates(summary: &Summary) -> Table {
     let mut table = Table::new(
-        "Displacements are relative to the ground and to the place at rest; slip is relative to what \
-         the body stands on.",
+        "Largest slip: against what the body stands on, while the stack stood. At the end: displacement \
+         against the ground from the place at rest.",
         &[
             ("body", ""),
-            ("left its seat", "s"),
+            ("left seat", "s"),
             ("fell", "s"),
-            ("height of fall", "m"),
-            ("largest slip while standing", "cm"),
-            ("displacement at the end", "cm"),
+            ("fall height", "m"),
+            ("largest slip", "cm"),
+            ("at the end", "cm"),
         ],
     );
     for body in &summary.bodies {
@@ -128,6 +128,7 @@ fn demands(summary: &Summary) -> Table {
 
 /// A figure of histories over time with the collapse marked.
 fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> Block {
+
     let mark = run.fates.collapse_time().map(|at| Mark { at, label: "loss of seat".into() });
     Block::Figure(Figure {
         id: id.to_owned(),
@@ -142,6 +143,20 @@ fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> 
             ..Plot::default()
         }),
     })
+}
+
+/// The range that shows a stack while it stands and as it gives way; what falls leaves the picture, as
+/// in the paper's histories. None where nothing collapses: then everything is shown.
+fn standing_range(run: &Run, series: &[Series]) -> Option<[f64; 2]> {
+    let until = run.fates.collapse_time()? + 0.5;
+    let mut range = [0.0_f64; 2];
+    for one in series {
+        for (_, value) in one.x.iter().zip(&one.y).filter(|(time, _)| **time <= until) {
+            range = [range[0].min(*value), range[1].max(*value)];
+        }
+    }
+    let pad = 0.15 * (range[1] - range[0]);
+    (pad > 0.0).then_some([range[0] - pad, range[1] + pad])
 }
 
 fn displacements(run: &Run) -> Vec<Block> {
@@ -167,7 +182,7 @@ fn displacements(run: &Run) -> Vec<Block> {
         run,
         "displacements",
         "Horizontal displacement relative to the ground.",
-        Axis::new("displacement", "cm"),
+        Axis { range: standing_range(run, &series), ..Axis::new("displacement", "cm") },
         series,
     )]
 }
@@ -196,33 +211,48 @@ fn stresses(run: &Run) -> Vec<Block> {
 
 fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
     let name = &run.assembly.parts[envelope.body].name;
-    let mut order: Vec<usize> = (0..envelope.points.len()).collect();
-    if !envelope.closed {
-        // Nodes of a rack come in no order along a line: left to right, the underside first.
+    let mut samples = Vec::new();
+    let (mut at_rest, mut peak) = (Vec::new(), Vec::new());
+    let mut push = |point: &BoundaryPoint, shift: f64, rest: f64, most: f64| {
+        samples.push(BoundarySample {
+            x: point.position.x + shift,
+            z: point.position.z,
+            nx: point.normal.x,
+            nz: point.normal.z,
+            coordinate: point.coordinate + if envelope.closed { 0.0 } else { shift },
+        });
+        at_rest.push(1e-3 * rest);
+        peak.push(1e-3 * most);
+    };
+    if envelope.is_on_nodes() {
+        // Every node of a rack is a block as wide as the boundary it stands for; nodes that nothing
+        // ever pressed are left out, and a gap divides the rows.
+        let mut order: Vec<usize> =
+            (0..envelope.points.len()).filter(|i| envelope.peak[*i] > 0.0).collect();
         order.sort_by(|a, b| {
             let (p, q) = (&envelope.points[*a], &envelope.points[*b]);
             p.normal.z.total_cmp(&q.normal.z).then(p.position.x.total_cmp(&q.position.x))
         });
-    }
-    let sample = |i: &usize| {
-        let point = &envelope.points[*i];
-        BoundarySample {
-            x: point.position.x,
-            z: point.position.z,
-            nx: point.normal.x,
-            nz: point.normal.z,
-            coordinate: point.coordinate,
+        for i in order {
+            let (point, half) = (&envelope.points[i], 0.5 * envelope.lengths[i]);
+            push(point, -half, envelope.at_rest[i], envelope.peak[i]);
+            push(point, half, envelope.at_rest[i], envelope.peak[i]);
+            push(point, half, f64::NAN, f64::NAN);
         }
-    };
+    } else {
+        for (i, point) in envelope.points.iter().enumerate() {
+            push(point, 0.0, envelope.at_rest[i], envelope.peak[i]);
+        }
+    }
     Figure {
         id: format!("stress-{name}"),
         caption: format!("Normal stress on {name}."),
         kind: FigureKind::Envelope(Envelope {
             outline: drawing::outlines(&run.assembly, envelope.body),
-            samples: order.iter().map(sample).collect(),
+            samples,
             closed: envelope.closed,
-            static_stress: order.iter().map(|i| 1e-3 * envelope.at_rest[*i]).collect(),
-            dynamic_stress: order.iter().map(|i| 1e-3 * envelope.peak[*i]).collect(),
+            static_stress: at_rest,
+            dynamic_stress: peak,
             unit: "kN/m".into(),
             amplification: envelope.amplification(),
             coordinate: if envelope.closed {

@@ -16,17 +16,18 @@ use super::writer::Writer;
 pub enum Fill {
     /// Full, and the wine turns with the wood like a solid.
     FullFrozen,
-    /// Full, and the wine is an ideal fluid: it does not turn about the axis of the barrel, and turns only in part
-    /// about a transverse axis.
+    /// Full, and the wine is an ideal fluid: it does not turn about the axis of the barrel, and
+    /// turns only in part about a transverse axis.
     FullFluid,
     /// Wood only.
     Empty,
 }
 
-/// A barrel, a body of revolution whose outer radius falls as a parabola from the bilge to the heads.
+/// A barrel, a body of revolution whose outer radius falls as a parabola from the bilge to the
+/// heads.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Barrel {
-    /// Catalogue name the barrel was made from.
+    /// Catalog name the barrel was made from.
     pub base: String,
     /// Mass of wood and contents (kg).
     pub mass: f64,
@@ -49,13 +50,15 @@ pub struct Barrel {
 }
 
 impl Barrel {
-    /// Outer diameter (m) at a distance `offset` (m) from the bilge along the axis; constant beyond the heads.
+    /// Outer diameter (m) at a distance `offset` (m) from the bilge along the axis; constant beyond
+    /// the heads.
     pub fn diameter_at(&self, offset: f64) -> f64 {
         let u = (2.0 * offset / self.length).clamp(-1.0, 1.0);
         self.bilge_diameter - (self.bilge_diameter - self.head_diameter) * u * u
     }
 
-    /// The barrel with another mass or other contents; a change of contents alone brings the mass that goes with it.
+    /// The barrel with another mass or other contents; a change of contents alone brings the mass
+    /// that goes with it.
     #[must_use]
     pub fn altered(&self, mass: Option<f64>, fill: Option<Fill>) -> Self {
         let fill = fill.unwrap_or(self.fill);
@@ -67,13 +70,15 @@ impl Barrel {
         Self { mass: mass.unwrap_or(regular), fill, ..self.clone() }
     }
 
-    /// Moment of inertia about the center of mass for motion in the plane of a view (kg·m²): about the axis of the
-    /// barrel in the transverse view, about a transverse axis in the longitudinal view.
+    /// Moment of inertia about the center of mass for motion in the plane of a view (kg·m²): about
+    /// the axis of the barrel in the transverse view, about a transverse axis in the longitudinal
+    /// view.
     ///
-    /// The wood is a shell of constant thickness with two heads, placed so that the room between them is the nominal
-    /// volume. The contents weigh what the wood leaves of `mass`. A frozen filling turns with the wood. An ideal fluid
-    /// does not turn about the axis, except for half a Stokes layer at 1 Hz, and about a transverse axis it turns like
-    /// the fluid in a spheroid with the same moments, `(I_t - I_a)² / I_t` (Lamb, Hydrodynamics, art. 110).
+    /// The wood is a shell of constant thickness with two heads, placed so that the room between
+    /// them is the nominal volume. The contents weigh what the wood leaves of `mass`. A frozen
+    /// filling turns with the wood. An ideal fluid does not turn about the axis, except for half a
+    /// Stokes layer at 1 Hz, and about a transverse axis it turns like the fluid in a spheroid with
+    /// the same moments, `(I_t - I_a)² / I_t` (Lamb, Hydrodynamics, on the ellipsoidal shell filled with liquid).
     pub fn inertia(&self, view: View) -> f64 {
         let moments = self.moments();
         match view {
@@ -109,7 +114,8 @@ impl Barrel {
             transverse: wine_density * wine.transverse,
         };
         let contents = match self.fill {
-            // Wood heavier than the catalogue's, when a mass is given for an empty barrel, keeps its shape.
+            // Wood heavier than the catalog's, when a mass is given for an empty barrel, keeps
+            // its shape.
             Fill::Empty => {
                 let density = wine_mass / wood.volume;
                 Moments { axial: density * wood.axial, transverse: density * wood.transverse }
@@ -130,7 +136,8 @@ impl Barrel {
         }
     }
 
-    /// Half of the distance between the heads that makes the room inside the nominal volume, or the most there is (m).
+    /// Half of the distance between the heads that makes the room inside the nominal volume, or the
+    /// most there is (m).
     fn half_room(&self) -> f64 {
         let most = 0.5 * self.length - self.stave_thickness;
         let inner = |x: f64| (0.5 * self.diameter_at(x) - self.stave_thickness).max(0.0);
@@ -156,7 +163,8 @@ struct Moments {
     transverse: f64,
 }
 
-/// Volume (m³) and moments of volume (m⁵) of a body of revolution about its axis and a transverse axis at its middle.
+/// Volume (m³) and moments of volume (m⁵) of a body of revolution about its axis and a transverse
+/// axis at its middle.
 struct Solid {
     volume: f64,
     axial: f64,
@@ -208,19 +216,20 @@ impl Named for Fill {
     ];
 }
 
-const CATALOG: Default = Default::Derived("that of the catalogue");
+const CATALOG: Default = Default::Derived("that of the catalog");
 const SIZE: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Range { least: 0.01, above: false, greatest: 10.0 });
 
 /// A barrel.
 pub static BARREL: Section = Section {
-    help: "A barrel of the catalogue, with what differs.",
+    name: "barrel",
+    help: "A barrel of the catalog, with what differs.",
     fields: &[
         Field::new(
             "base",
             Kind::Choice(catalog::barrel_names),
             Default::Value("\"bordeaux-225\""),
-            "Barrel of the catalogue.",
+            "Barrel of the catalog.",
         ),
         Field::new(
             "fill",

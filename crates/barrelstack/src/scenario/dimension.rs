@@ -3,7 +3,8 @@
 use std::fmt;
 use std::ops::{Add, Neg};
 
-/// Exponents of length, mass, time and angle, **in halves**, so that the Hertz stiffness (N/m^1.5) has one too.
+/// Exponents of length, mass, time and angle, **in halves**, so that the Hertz stiffness (N/m^1.5)
+/// has one too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Dimension {
     length: i8,

@@ -66,7 +66,9 @@ impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File { file, line, column, .. } => write!(f, "{file}:{line}:{column}"),
-            Self::Override { text } => write!(f, "override `{text}`"),
+            Self::Override { text } => {
+                write!(f, "override `{}`", super::quantity::shorten(text))
+            }
             Self::Whole { file } => f.write_str(file),
             Self::Unknown => f.write_str("default value"),
         }
@@ -231,35 +233,35 @@ fn suggestion(nearest: Option<&str>) -> String {
 impl Problem {
     /// The list of valid names, when that helps.
     fn help(&self) -> Option<String> {
-        match self {
-            Self::UnknownKey { valid, .. }
-            | Self::ForeignKey { valid, .. }
-            | Self::UnknownName { valid, .. }
-                if !valid.is_empty() =>
-            {
-                Some(format!("valid here: {}", valid.join(", ")))
-            }
-            Self::Quantity { reason: QuantityError::UnknownUnit { .. }, .. } => {
-                let units: Vec<&str> = super::unit::names().filter(|unit| *unit != "1").collect();
-                Some(format!(
-                    "units: {}, and their products, quotients and powers",
-                    units.join(" ")
-                ))
-            }
-            Self::Quantity {
-                reason: QuantityError::WrongDimension { text, found, .. }, ..
-            } if found.starts_with("an acceleration") && text.ends_with('g') => {
-                Some("`g` is the acceleration of gravity; grams are written `gram`".to_owned())
-            }
-            _ => None,
+        if let Self::UnknownKey { valid, .. }
+        | Self::ForeignKey { valid, .. }
+        | Self::UnknownName { valid, .. } = self
+            && !valid.is_empty()
+        {
+            return Some(format!("valid here: {}", valid.join(", ")));
         }
+        let Self::Quantity { reason, .. } = self else { return None };
+        if let QuantityError::UnknownUnit { .. } = reason {
+            let units: Vec<&str> = super::unit::names().filter(|unit| *unit != "1").collect();
+            return Some(format!(
+                "units: {}, and their products, quotients and powers",
+                units.join(" ")
+            ));
+        }
+        if let QuantityError::WrongDimension { text, found, .. } = reason
+            && found.starts_with("an acceleration")
+            && text.ends_with('g')
+        {
+            return Some("`g` is the acceleration of gravity; grams are written `gram`".to_owned());
+        }
+        None
     }
 }
 
 /// Why a scenario cannot be used: one problem at one place.
 ///
-/// `Display` writes the sentence, the place, the line with a caret under what is wrong, and the valid names when there
-/// are any. [`ScenarioError::sentence`] is the same on one line.
+/// `Display` writes the sentence, the place, the line with a caret under what is wrong, and the
+/// valid names when there are any. [`ScenarioError::sentence`] is the same on one line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScenarioError(Box<(Problem, Place)>);
 

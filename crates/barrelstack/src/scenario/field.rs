@@ -1,14 +1,18 @@
 //! The one definition of every field of a scenario: name, kind, default and help.
 //!
-//! The reader, the writer, the reference and the JSON Schema all look here, so that they cannot disagree.
+//! The reader, the writer, the reference and the JSON Schema all look here, so that they cannot
+//! disagree.
 
 use std::fmt;
 
 use super::dimension::Dimension;
+use super::quantity::plain;
 
 /// A table of a scenario file.
 #[derive(Debug)]
 pub struct Section {
+    /// Name in the reference and the schema, unique.
+    pub name: &'static str,
     /// What it describes, one sentence.
     pub help: &'static str,
     /// Fields that it always has.
@@ -143,8 +147,9 @@ impl Range {
     /// The range in words, with a unit.
     pub fn describe(&self, unit: &str) -> String {
         let unit = if unit.is_empty() || unit == "1" { String::new() } else { format!(" {unit}") };
-        let (least, greatest) = (self.least, self.greatest);
-        match (self.above, least == -VAST, greatest == VAST) {
+        let bounds = (self.above, self.least == -VAST, self.greatest == VAST);
+        let (least, greatest) = (plain(self.least), plain(self.greatest));
+        match bounds {
             (_, true, true) => format!("a number no larger than 1e12{unit} in size"),
             (true, _, true) => format!("greater than {least}{unit} and below 1e12{unit}"),
             (false, _, true) => format!("at least {least}{unit} and below 1e12{unit}"),
@@ -183,15 +188,39 @@ impl Field {
 
     /// The field with a good value, as a user would write it.
     pub fn example(&self) -> String {
-        match self.kind {
-            Kind::Table(_) => format!("a table `{}`", self.name),
-            Kind::Tables(_) => format!("a table `[[{}]]`", self.name),
-            _ => format!("`{} = {}`", self.name, self.kind.example()),
+        if let Kind::Table(_) = self.kind {
+            format!("a table `{}`", self.name)
+        } else if let Kind::Tables(_) = self.kind {
+            format!("a table `[[{}]]`", self.name)
+        } else {
+            format!("`{} = {}`", self.name, self.kind.example())
         }
     }
 }
 
 impl Kind {
+    /// The table inside a field, or that each item of its list is.
+    pub fn section(&self) -> Option<&'static Section> {
+        match self {
+            Self::Table(section) | Self::Tables(section) | Self::ChoiceOrTable(_, _, section) => {
+                Some(section)
+            }
+            Self::Text
+            | Self::Label
+            | Self::Flag
+            | Self::Integer(..)
+            | Self::Number(_)
+            | Self::Quantity(..)
+            | Self::WordOr(..)
+            | Self::Unit(_)
+            | Self::Point(_)
+            | Self::Points(_)
+            | Self::Pair
+            | Self::TextOrFalse
+            | Self::Choice(_) => None,
+        }
+    }
+
     /// A good value as TOML.
     pub fn example(&self) -> String {
         match self {

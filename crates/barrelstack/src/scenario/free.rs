@@ -33,7 +33,8 @@ pub enum Nodes {
     Rolling,
 }
 
-/// Viscous drag on a body, relative to the ground at rest (Candia, de la Llera and Almazán 2008, eq. 2.8).
+/// Viscous drag on a body, relative to the ground at rest (Candia, de la Llera and Almazán 2008,
+/// eq. 2.8).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viscous {
     /// On the velocity of the center of mass (N·s/m).
@@ -112,6 +113,7 @@ const MOST_NODES: f64 = 20_000.0;
 
 /// The ground.
 pub static GROUND: Section = Section {
+    name: "ground",
     help: "The ground: the half-plane below a line through the origin.",
     fields: &[
         Field::new(
@@ -128,6 +130,7 @@ pub static GROUND: Section = Section {
 
 /// Contact nodes.
 pub static NODES: Section = Section {
+    name: "nodes",
     help: "Where the boundary carries contact nodes: one of the fields.",
     fields: &[
         Field::new(
@@ -158,6 +161,7 @@ pub static NODES: Section = Section {
 
 /// Viscous drag.
 pub static VISCOUS: Section = Section {
+    name: "viscous",
     help: "Viscous drag on the motion of a body (Candia, de la Llera and Almazán 2008, eq. 2.8).",
     fields: &[
         Field::new(
@@ -179,6 +183,7 @@ pub static VISCOUS: Section = Section {
 
 /// A body.
 pub static BODY: Section = Section {
+    name: "body",
     help: "A rigid body of a free scene.",
     fields: &[
         Field::new("name", Kind::Text, Default::Required, "Unique name."),

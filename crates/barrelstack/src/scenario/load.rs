@@ -23,10 +23,13 @@ enum Access {
 impl Scenario {
     /// Reads a scenario from text, without touching the file system.
     ///
-    /// `source_name` is the path shown in errors; relative paths in the scenario are relative to its folder.
-    /// An override is `path=value`, such as `stack.levels=5` or `motion.scale.pgv=60 cm/s`: the value is TOML, or text
-    /// when it is not TOML. Items of lists are known by their name, or by their number from 1.
-    /// `extends` may name a built-in scenario only.
+    /// `source_name` is the path shown in errors; relative paths in the scenario are relative to
+    /// its folder.
+    ///
+    /// An override is `path=value`, such as `stack.levels=5` or `motion.scale.pgv=60 cm/s`.
+    /// The value is TOML, or text when it is not TOML. Items of lists are known by their name
+    /// (`body.block.mass`), interfaces by their pair (`interface.block-ground.stiffness`), or by
+    /// their number from 1. `extends` may name a built-in scenario only.
     ///
     /// ```
     /// use barrelstack::scenario::Scenario;
@@ -68,7 +71,7 @@ impl Scenario {
     /// As [`Scenario::parse_bytes`], and when a file cannot be read.
     pub fn load(path: &Path, overrides: &[String]) -> Result<Self, ScenarioError> {
         let name = path.display().to_string();
-        let bytes = read_file(path, &name, Place::Whole { file: name.clone() })?;
+        let bytes = read_file(path, Place::Whole { file: name.clone() })?;
         read(&name, &bytes, overrides, Access::Files)
     }
 
@@ -96,9 +99,15 @@ fn unknown_builtin(field: &str, name: &str) -> Problem {
     }
 }
 
-fn read_file(path: &Path, name: &str, place: Place) -> Result<Vec<u8>, ScenarioError> {
+fn read_file(path: &Path, place: Place) -> Result<Vec<u8>, ScenarioError> {
     std::fs::read(path).map_err(|error| {
-        let reason = format!("{name}: {error}");
+        // A file that extends this one stands elsewhere than the place of the error.
+        let reason = match &place {
+            Place::Whole { .. } => error.to_string(),
+            Place::File { .. } | Place::Override { .. } | Place::Unknown => {
+                format!("{}: {error}", path.display())
+            }
+        };
         ScenarioError::new(Problem::Unreadable { reason }, place)
     })
 }
@@ -180,7 +189,7 @@ fn chain(sources: &mut Sources, access: Access) -> Result<Table, ScenarioError> 
                     let path = sources.files[file].folder.join(target);
                     let name = path.display().to_string();
                     let place = problem(Problem::Empty).place().clone();
-                    let bytes = read_file(&path, &name, place)?;
+                    let bytes = read_file(&path, place)?;
                     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
                     (name, bytes, folder)
                 } else {

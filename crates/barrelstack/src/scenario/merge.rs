@@ -1,8 +1,8 @@
 //! Lays one scenario over another: `extends` and overrides.
 //!
-//! Tables are merged key by key and everything else is replaced.
-//! A field that excludes another removes it, and a new variant removes the fields of the old one, so that what is laid
-//! over never has to undo what lies below.
+//! Tables are merged key by key and everything else is replaced. A field that excludes another
+//! removes it, and a new variant removes the fields of the old one, so that what is laid over never
+//! has to undo what lies below.
 
 use super::error::{Problem, ScenarioError};
 use super::field::{Default, Field, Kind, Section, Variant};
@@ -33,8 +33,9 @@ pub(super) fn overlay(base: &mut Table, over: Table, section: Option<&'static Se
     }
 }
 
-/// Makes room for a key: removes its rivals and the fields of an abandoned variant, and turns a name into the table it
-/// stands for when a table is laid over it. Returns the section inside the key.
+/// Makes room for a key: removes its rivals and the fields of an abandoned variant, and turns a
+/// name into the table it stands for when a table is laid over it. Returns the section inside the
+/// key.
 fn place_for(
     base: &mut Table,
     section: Option<&'static Section>,
@@ -59,18 +60,13 @@ fn place_for(
         }
     }
     let field = field_of(base, section, key)?;
-    match field.kind {
-        Kind::Table(inner) | Kind::Tables(inner) => Some(inner),
-        Kind::ChoiceOrTable(_, name_key, inner) => {
-            if matches!(value, Value::Table(_))
-                && let Some(entry) = base.get_mut(key)
-            {
-                expand_name(&mut entry.node, name_key);
-            }
-            Some(inner)
-        }
-        _ => None,
+    if let Kind::ChoiceOrTable(_, name_key, _) = field.kind
+        && matches!(value, Value::Table(_))
+        && let Some(entry) = base.get_mut(key)
+    {
+        expand_name(&mut entry.node, name_key);
     }
+    field.kind.section()
 }
 
 fn variant_of(table: &Table, section: &'static Section) -> Option<&'static Variant> {
@@ -108,22 +104,18 @@ pub(super) fn expand_names(table: &mut Table, section: &'static Section) {
     let variant = variant_of(table, section);
     for field in section.fields_of(variant) {
         let Some(entry) = table.get_mut(field.name) else { continue };
-        match (field.kind, &mut entry.node.value) {
-            (Kind::ChoiceOrTable(_, key, inner), _) => {
-                expand_name(&mut entry.node, key);
-                if let Value::Table(table) = &mut entry.node.value {
+        if let Kind::ChoiceOrTable(_, key, _) = field.kind {
+            expand_name(&mut entry.node, key);
+        }
+        let Some(inner) = field.kind.section() else { continue };
+        if let Value::Table(table) = &mut entry.node.value {
+            expand_names(table, inner);
+        } else if let Value::Array(items) = &mut entry.node.value {
+            for item in items {
+                if let Value::Table(table) = &mut item.value {
                     expand_names(table, inner);
                 }
             }
-            (Kind::Table(inner), Value::Table(table)) => expand_names(table, inner),
-            (Kind::Tables(inner), Value::Array(items)) => {
-                for item in items {
-                    if let Value::Table(table) = &mut item.value {
-                        expand_names(table, inner);
-                    }
-                }
-            }
-            _ => {}
         }
     }
 }
@@ -179,24 +171,36 @@ fn set(
     let Some(entry) = table.get_mut(key) else { return Ok(()) };
     match &mut entry.node.value {
         Value::Table(below) => set(below, inner, rest, value),
-        Value::Array(items) => {
-            let names: Vec<String> =
-                items.iter().enumerate().map(|(i, item)| item_name(item, i)).collect();
-            let number = || rest[0].parse::<usize>().ok().filter(|n| (1..=items.len()).contains(n));
-            let found =
-                names.iter().position(|name| name == rest[0]).or_else(|| number().map(|n| n - 1));
-            let Some(at) = found else {
-                return Err(format!(
-                    "`{key}` has no item `{}`; it has {}",
-                    rest[0],
-                    names.join(", ")
-                ));
-            };
-            match &mut items[at].value {
-                Value::Table(below) if rest.len() > 1 => set(below, inner, &rest[1..], value),
-                _ => Err(format!("name a field of `{key}.{}` after a point", rest[0])),
-            }
+        Value::Array(items) => set_in_item(items, inner, key, rest, value),
+        other @ (Value::Text(_)
+        | Value::Integer(_)
+        | Value::Float(_)
+        | Value::Flag(_)
+        | Value::Date) => {
+            Err(format!("`{key}` is {} and has no field `{}`", other.describe(), rest[0]))
         }
-        other => Err(format!("`{key}` is {} and has no field `{}`", other.describe(), rest[0])),
     }
+}
+
+/// Sets the value at a path that starts with the name or the number of an item of the list `key`.
+fn set_in_item(
+    items: &mut [Node],
+    section: Option<&'static Section>,
+    key: &str,
+    keys: &[&str],
+    value: Node,
+) -> Result<(), String> {
+    let Some((wanted, rest)) = keys.split_first() else { return Ok(()) };
+    let names: Vec<String> = items.iter().enumerate().map(|(i, item)| item_name(item, i)).collect();
+    let number = || wanted.parse::<usize>().ok().filter(|n| (1..=items.len()).contains(n));
+    let found = names.iter().position(|name| name == wanted).or_else(|| number().map(|n| n - 1));
+    let Some(at) = found else {
+        return Err(format!("`{key}` has no item `{wanted}`; it has {}", names.join(", ")));
+    };
+    if let Value::Table(below) = &mut items[at].value
+        && !rest.is_empty()
+    {
+        return set(below, section, rest, value);
+    }
+    Err(format!("name a field of `{key}.{wanted}` after a point"))
 }

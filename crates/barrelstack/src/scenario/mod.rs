@@ -1,4 +1,38 @@
 //! The scenario: what stands where, what shakes it, and how it is run.
+//!
+//! A scenario is a TOML text in which every quantity carries its unit. Reading it gives plain data in
+//! SI units, checked so far that nothing downstream has to check again, or one error with its place.
+//!
+//! ```
+//! use barrelstack::scenario::{Scenario, View};
+//!
+//! let text = r#"
+//!     schema = 1
+//!     [stack]
+//!     levels = 4
+//!     columns = 2
+//!     [motion.sine]
+//!     amplitude = "4 in"
+//!     period = "1.07 s"
+//!     cycles = 10
+//! "#;
+//! let scenario = Scenario::parse("four.toml", text, &[])?;
+//! let stack = scenario.stack().expect("a stack");
+//! assert_eq!((stack.view, stack.racks_per_level()), (View::Transverse, 1));
+//!
+//! let error = Scenario::parse("four.toml", &text.replace("levels", "levles"), &[]).unwrap_err();
+//! assert_eq!(
+//!     error.sentence(),
+//!     "four.toml:4:5: unknown key `levles` in [stack]; did you mean `levels`?"
+//! );
+//! # Ok::<(), barrelstack::scenario::ScenarioError>(())
+//! ```
+//!
+//! Each field is defined once, in a table of [`field::Section`]s next to the type it fills; the reader,
+//! the writer of resolved text, the [JSON Schema](schema) and the
+//! [reference](mod@reference) all look there. To add a
+//! field: a line in that table, a field in the type, a line in its `read` and one in its `write`;
+//! leaving one out fails the tests.
 
 pub mod barrel;
 pub mod builtin;
@@ -57,6 +91,7 @@ pub struct Scenario {
 
 /// What stands.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a scenario has one scene and is seldom copied")]
 pub enum Scene {
     /// A stack of barrels on racks.
     Stack {
@@ -78,7 +113,7 @@ impl Scenario {
         }
     }
 
-    /// The scenario as text that reads back equal: every default written out, every quantity in SI.
+    /// The scenario as text that reads back equal: every default written out, every quantity in SI. Paths are kept as written.
     pub fn to_resolved_toml(&self) -> String {
         writer::to_toml(&root::write(self))
     }
@@ -90,8 +125,8 @@ impl Scenario {
 
     /// Fingerprint of everything but the title: FNV-1a, 64 bits, of the resolved text.
     ///
-    /// Two scenarios with the same fingerprint describe the same run, however they were written. Records count by
-    /// their path as written, not by their samples.
+    /// Two scenarios with the same fingerprint describe the same run, however they were written.
+    /// Records count by their path as written, not by their samples.
     pub fn fingerprint(&self) -> u64 {
         let untitled = Self { title: "-".to_owned(), ..self.clone() };
         fnv1a(untitled.to_resolved_toml().as_bytes())
@@ -103,4 +138,15 @@ fn fnv1a(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_fingerprint_is_the_published_fnv_1a() {
+        // Test vectors of Noll's page on FNV.
+        assert_eq!(super::fnv1a(b""), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(super::fnv1a(b"a"), 0xaf63_dc4c_8601_ec8c);
+        assert_eq!(super::fnv1a(b"foobar"), 0x8594_4171_f739_67e8);
+    }
 }

@@ -69,9 +69,9 @@ pub enum QuantityError {
 impl Quantity {
     /// Reads a quantity of any dimension.
     ///
-    /// A quantity is a decimal number and a unit. Units may be multiplied (space, `*` or `·`), divided (`/`), raised
-    /// to a power (`m^2`, `m²`, `m^1.5`) and grouped with parentheses. Decimal conversions are exact: the result is
-    /// the double nearest to the true value.
+    /// A quantity is a decimal number and a unit. Units may be multiplied (space, `*` or `·`),
+    /// divided (`/`), raised to a power (`m^2`, `m²`, `m^1.5`) and grouped with parentheses.
+    /// Decimal conversions are exact: the result is the double nearest to the true value.
     ///
     /// ```
     /// use barrelstack::scenario::quantity::Quantity;
@@ -83,7 +83,8 @@ impl Quantity {
     ///
     /// # Errors
     ///
-    /// When the number is missing, too large or not finite, or when the unit is missing, unknown or malformed.
+    /// When the number is missing, too large or not finite, or when the unit is missing, unknown or
+    /// malformed.
     pub fn parse(text: &str) -> Result<Self, QuantityError> {
         let trimmed = text.trim();
         let shown = || shorten(trimmed);
@@ -127,7 +128,8 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// The shortest decimal text that reads back to the same bits; an exponent when the number is very large or small.
+/// The shortest decimal text that reads back to the same bits; an exponent when the number is very
+/// large or small.
 pub(super) fn plain(value: f64) -> String {
     let size = value.abs();
     if size != 0.0 && !(1e-5..1e15).contains(&size) {
@@ -152,7 +154,8 @@ pub(super) fn shorten(text: &str) -> String {
     }
 }
 
-/// A decimal number kept as digits and a power of ten, so that scaling by a decimal unit loses nothing.
+/// A decimal number kept as digits and a power of ten, so that scaling by a decimal unit loses
+/// nothing.
 struct Decimal<'a> {
     negative: bool,
     /// All digits in order, without the point; empty for zero.
@@ -241,7 +244,8 @@ impl<'a> Decimal<'a> {
     }
 }
 
-/// Decimal text to the nearest double; the text is well formed by construction, and infinity is caught by the caller.
+/// Decimal text to the nearest double; the text is well formed by construction, and infinity is
+/// caught by the caller.
 fn decimal_to_f64(text: &str) -> f64 {
     text.parse().unwrap_or(f64::NAN)
 }

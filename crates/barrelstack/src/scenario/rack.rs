@@ -46,7 +46,7 @@ pub struct Posts {
 /// A rack.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rack {
-    /// Catalogue name the rack was made from.
+    /// Catalog name the rack was made from.
     pub base: String,
     /// How the rack stands on what is below.
     pub kind: RackKind,
@@ -83,6 +83,7 @@ enum Base {
     TwoBarrel,
     FourBarrel,
     RackOnRack,
+    Candia2008,
 }
 
 impl Named for Base {
@@ -90,6 +91,7 @@ impl Named for Base {
         ("two-barrel", Self::TwoBarrel),
         ("four-barrel", Self::FourBarrel),
         ("rack-on-rack", Self::RackOnRack),
+        ("candia-2008", Self::Candia2008),
     ];
 }
 
@@ -104,7 +106,7 @@ impl Named for CradleKind {
         &[("supports", Self::Supports), ("arc", Self::Arc)];
 }
 
-const CATALOG: Default = Default::Derived("that of the catalogue");
+const CATALOG: Default = Default::Derived("that of the catalog");
 
 const fn size(least: f64, greatest: f64) -> Kind {
     Kind::Quantity(&[Dimension::LENGTH], Range { least, above: false, greatest })
@@ -114,6 +116,7 @@ const CRADLE_ANGLE: Kind = Kind::Quantity(&[Dimension::ANGLE], Range::up_to(1.5)
 
 /// A cradle.
 pub static CRADLE: Section = Section {
+    name: "cradle",
     help: "How a rack holds a barrel in the transverse view.",
     fields: &[Field::new(
         "type",
@@ -159,13 +162,14 @@ pub static CRADLE: Section = Section {
 
 /// A rack.
 pub static RACK: Section = Section {
-    help: "A rack of the catalogue, with what differs.",
+    name: "rack",
+    help: "A rack of the catalog, with what differs.",
     fields: &[
         Field::new(
             "base",
             Kind::Choice(catalog::rack_names),
             Default::Value("\"two-barrel\""),
-            "Rack of the catalogue.",
+            "Rack of the catalog.",
         ),
         Field::new(
             "mass",
@@ -277,7 +281,7 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
             height: or("post_height", posts.height)?,
             half_spacing: or("post_half_spacing", posts.half_spacing)?,
         }),
-        (Base::TwoBarrel | Base::FourBarrel | Base::RackOnRack, _) => None,
+        (Base::TwoBarrel | Base::FourBarrel | Base::RackOnRack | Base::Candia2008, _) => None,
     };
     let rack = Rack {
         base: known.name.to_owned(),

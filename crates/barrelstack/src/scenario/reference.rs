@@ -8,7 +8,8 @@ use super::quantity::plain;
 use super::root::ROOT;
 use super::unit;
 
-/// Every table and field of a scenario file: kind, range, default and meaning; then the units and the catalogue.
+/// Every table and field of a scenario file: kind, range, default and meaning; then the units and
+/// the catalog.
 pub fn markdown() -> String {
     let mut text = String::from("# Fields of a scenario file\n\n");
     let mut seen = Vec::new();
@@ -21,21 +22,15 @@ pub fn markdown() -> String {
         "{}.\nUnits may be multiplied (`N s`), divided (`kN/cm`), raised to a power (`m^2`) and grouped (`N/(m s)`).\n",
         names.join(" ")
     );
-    catalogue(&mut text);
+    catalog_tables(&mut text);
     text
 }
 
 /// Writing to a `String` cannot fail, so results of `writeln!` are dropped in this file.
-fn table(text: &mut String, seen: &mut Vec<*const Section>, path: &str, section: &'static Section) {
+fn table(text: &mut String, seen: &mut Vec<(&str, String)>, path: &str, section: &'static Section) {
     let heading =
         if path.is_empty() { "Top of the file".to_owned() } else { format!("`[{path}]`") };
     let _ = writeln!(text, "## {heading}\n\n{}\n", section.help);
-    if seen.contains(&std::ptr::from_ref(section)) {
-        let _ =
-            writeln!(text, "The fields are those listed above for the table of the same kind.\n");
-        return;
-    }
-    seen.push(section);
     rows(text, section.fields.iter());
     for group in section.exclusive {
         let names: Vec<String> = group.iter().map(|name| format!("`{name}`")).collect();
@@ -55,11 +50,12 @@ fn table(text: &mut String, seen: &mut Vec<*const Section>, path: &str, section:
     for field in section.fields.iter().chain(variants) {
         let inner_path =
             if path.is_empty() { field.name.to_owned() } else { format!("{path}.{}", field.name) };
-        match field.kind {
-            Kind::Table(inner) | Kind::Tables(inner) | Kind::ChoiceOrTable(_, _, inner) => {
-                table(text, seen, &inner_path, inner);
-            }
-            _ => {}
+        let Some(inner) = field.kind.section() else { continue };
+        if let Some((_, first)) = seen.iter().find(|(name, _)| *name == inner.name) {
+            let _ = writeln!(text, "`[{inner_path}]` has the same fields as `[{first}]`.\n");
+        } else {
+            seen.push((inner.name, inner_path.clone()));
+            table(text, seen, &inner_path, inner);
         }
     }
 }
@@ -92,23 +88,27 @@ fn holds(kind: Kind) -> String {
             format!("{kind}, {}", range.describe(unit))
         }
     };
-    match kind {
-        Kind::Number(range) => ranged(range, ""),
-        Kind::Quantity([dimension], range) | Kind::WordOr(_, [dimension], range) => {
-            ranged(range, &dimension.si_unit())
-        }
-        Kind::Choice(names) => format!("one of {}", quoted(&names())),
-        Kind::ChoiceOrTable(names, ..) => format!("one of {}, or a table", quoted(&names())),
-        _ => kind.to_string(),
+    if let Kind::Number(range) = kind {
+        return ranged(range, "");
     }
+    if let Kind::Quantity([dimension], range) | Kind::WordOr(_, [dimension], range) = kind {
+        return ranged(range, &dimension.si_unit());
+    }
+    if let Kind::Choice(names) = kind {
+        return format!("one of {}", quoted(&names()));
+    }
+    if let Kind::ChoiceOrTable(names, ..) = kind {
+        return format!("one of {}, or a table", quoted(&names()));
+    }
+    kind.to_string()
 }
 
 fn quoted(names: &[&str]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
-fn catalogue(text: &mut String) {
-    text.push_str("## Barrels of the catalogue\n\n");
+fn catalog_tables(text: &mut String) {
+    text.push_str("## Barrels of the catalog\n\n");
     text.push_str(
         "| name | length (m) | bilge (m) | head (m) | stave (m) | empty (kg) | volume (L) | source |\n\
          |---|---|---|---|---|---|---|---|\n",
@@ -127,7 +127,7 @@ fn catalogue(text: &mut String) {
             b.source
         );
     }
-    text.push_str("\n## Racks of the catalogue\n\n");
+    text.push_str("\n## Racks of the catalog\n\n");
     text.push_str(
         "| name | mass (kg) | barrels | pitch (m) | width (m) | rails ± (m) | clearance (m) | source |\n\
          |---|---|---|---|---|---|---|---|\n",
@@ -148,7 +148,7 @@ fn catalogue(text: &mut String) {
         );
     }
     text.push_str(
-        "\n## Friction of the catalogue\n\n| pair | coefficient | source |\n|---|---|---|\n",
+        "\n## Friction of the catalog\n\n| pair | coefficient | source |\n|---|---|---|\n",
     );
     for p in &catalog::PAIRS {
         let _ = writeln!(text, "| `{}` | {} | {} |", p.name, p.coefficient, p.source);

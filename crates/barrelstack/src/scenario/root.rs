@@ -22,6 +22,7 @@ impl Named for SceneKind {
 
 /// The top of a scenario file.
 pub static ROOT: Section = Section {
+    name: "root",
     help: "What stands where, what shakes it, and how it is run.",
     fields: &[
         Field::new(

@@ -30,14 +30,15 @@ pub struct RunSpec {
     pub duration: Option<f64>,
     /// Time integration.
     pub method: Method,
-    /// Time step, or first step of an adaptive method (s); `None` for a step from the stiffest contact.
+    /// Time step, or first step of an adaptive method (s); `None` for a step from the stiffest
+    /// contact.
     pub step: Option<f64>,
     /// Time to keep running after a collapse (s); `None` to run to the end.
     pub stop_after_collapse: Option<f64>,
     /// Acceleration of gravity (m/s²).
     pub gravity: f64,
-    /// Length scale `λ` of Froude similitude applied to bodies, contacts and motion: mass `λ³`, stiffness `λ²`,
-    /// damping `λ^2.5`, time `√λ`.
+    /// Length scale `λ` of Froude similitude applied to bodies, contacts and motion: mass `λ³`,
+    /// stiffness `λ²`, damping `λ^2.5`, time `√λ`.
     pub similitude: f64,
     /// Whether the bodies are brought to rest under gravity before the motion starts.
     pub settle: bool,
@@ -55,7 +56,8 @@ pub struct RecordSpec {
 /// Thresholds that tell a collapse.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OutcomeSpec {
-    /// A barrel has lost its seat when its center is this many barrel radii away from its place in the rack.
+    /// A barrel has lost its seat when its center is this many barrel radii away from its place in
+    /// the rack.
     pub seat_loss_ratio: f64,
     /// A body has fallen when its center is this far below its place at rest (m).
     pub fall_drop: f64,
@@ -93,6 +95,7 @@ const MOST_STEPS: f64 = 1e9;
 
 /// How it is run.
 pub static RUN: Section = Section {
+    name: "run",
     help: "How the scenario is run.",
     fields: &[
         Field::new(
@@ -165,6 +168,7 @@ pub static RUN: Section = Section {
 
 /// What is kept.
 pub static RECORD: Section = Section {
+    name: "record",
     help: "What is kept of the run.",
     fields: &[
         Field::new(
@@ -192,6 +196,7 @@ pub static RECORD: Section = Section {
 
 /// Thresholds that tell a collapse.
 pub static OUTCOME: Section = Section {
+    name: "outcome",
     help: "Thresholds that tell a collapse; every default is an assumption to be varied.",
     fields: &[
         Field::new(

@@ -7,28 +7,48 @@ use super::root::ROOT;
 
 /// The schema (JSON Schema 2020-12) of a scenario file, for completion and checking in editors.
 ///
-/// It holds names, types, choices and ranges of plain numbers. It requires no field, since `extends` and overrides may
-/// supply any; ranges and dimensions of quantities, and what fields mean together, are checked by the reader alone.
+/// It holds names, types, choices and ranges of plain numbers. It requires no field, since
+/// `extends` and overrides may supply any; ranges and dimensions of quantities, and what fields
+/// mean together, are checked by the reader alone.
 pub fn json_schema() -> Value {
-    let mut schema = section(&ROOT);
-    let extra = json!({
+    let mut sections = Map::new();
+    collect(&mut sections, &ROOT);
+    json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "barrelstack scenario",
-    });
-    if let (Value::Object(schema), Value::Object(extra)) = (&mut schema, extra) {
-        schema.extend(extra);
-    }
-    schema
+        "$ref": reference(&ROOT),
+        "$defs": sections,
+    })
 }
 
-/// A number and a unit.
-const QUANTITY: &str = r"^\s*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?\s*\S.*$";
+/// A number and a unit; no unit starts with a digit, except for the one of `1/s`.
+const QUANTITY: &str =
+    r"^\s*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?(\s*[^-+.0-9eE\s].*|\s+1/.*)$";
+
+fn reference(section: &Section) -> String {
+    format!("#/$defs/{}", section.name)
+}
+
+/// Adds a section and all it contains.
+fn collect(sections: &mut Map<String, Value>, outer: &'static Section) {
+    if sections.contains_key(outer.name) {
+        return;
+    }
+    sections.insert(outer.name.to_owned(), section(outer));
+    let variants = outer.variants.iter().flat_map(|v| v.list).flat_map(|v| v.fields);
+    for field in outer.fields.iter().chain(variants) {
+        if let Some(inner) = field.kind.section() {
+            collect(sections, inner);
+        }
+    }
+}
 
 fn section(section: &'static Section) -> Value {
     let Some(variants) = &section.variants else {
         return object(section.help, section.fields.iter());
     };
-    // One alternative for each variant; a file that extends another may leave the choosing field out.
+    // One alternative for each variant; a file that extends another may leave the choosing field
+    // out.
     let alternatives: Vec<Value> = variants
         .list
         .iter()
@@ -68,7 +88,7 @@ fn kind(kind: Kind) -> Value {
     let pair =
         |item: Value| json!({ "type": "array", "items": item, "minItems": 2, "maxItems": 2 });
     match kind {
-        Kind::Text => json!({ "type": "string", "minLength": 1 }),
+        Kind::Text | Kind::Unit(_) => json!({ "type": "string", "minLength": 1 }),
         Kind::Label => json!({ "type": ["string", "integer"] }),
         Kind::Flag => json!({ "type": "boolean" }),
         Kind::Integer(least, greatest) => {
@@ -77,16 +97,15 @@ fn kind(kind: Kind) -> Value {
         Kind::Number(range) => json!({ "anyOf": [number(range), quantity()] }),
         Kind::Quantity(..) => quantity(),
         Kind::WordOr(word, ..) => json!({ "anyOf": [{ "const": word }, quantity()] }),
-        Kind::Unit(_) => json!({ "type": "string", "minLength": 1 }),
         Kind::Point(_) => pair(quantity()),
         Kind::Points(_) => json!({ "type": "array", "items": pair(quantity()), "minItems": 3 }),
         Kind::Pair => pair(json!({ "type": "string" })),
         Kind::TextOrFalse => json!({ "anyOf": [{ "type": "string" }, { "const": false }] }),
         Kind::Choice(names) => json!({ "enum": names() }),
-        Kind::Table(inner) => section(inner),
-        Kind::Tables(inner) => json!({ "type": "array", "items": section(inner) }),
+        Kind::Table(inner) => json!({ "$ref": reference(inner) }),
+        Kind::Tables(inner) => json!({ "type": "array", "items": { "$ref": reference(inner) } }),
         Kind::ChoiceOrTable(names, _, inner) => {
-            json!({ "anyOf": [{ "enum": names() }, section(inner)] })
+            json!({ "anyOf": [{ "enum": names() }, { "$ref": reference(inner) }] })
         }
     }
 }

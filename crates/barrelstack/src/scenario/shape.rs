@@ -71,7 +71,7 @@ impl Shape {
             }
             Self::Polygon { vertices } => polygon(vertices),
             Self::Cradle { radius, half_angle } => {
-                let depth = radius * half_angle.sin() / half_angle;
+                let depth = radius * libm::sin(*half_angle) / half_angle;
                 Uniform { centroid: [0.0, -depth], square_radius: radius * radius - depth * depth }
             }
             Self::BarrelProfile { length, bilge_diameter, head_diameter } => {
@@ -178,6 +178,7 @@ const MOST_CORNERS: usize = 200;
 
 /// An outline.
 pub static SHAPE: Section = Section {
+    name: "shape",
     help: "Outline of a body, about its reference point.",
     fields: &[Field::new(
         "type",

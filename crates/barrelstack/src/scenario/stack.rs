@@ -75,8 +75,8 @@ pub struct BodyOverride {
     pub body: StackBody,
     /// Level, 1 at the bottom.
     pub level: u32,
-    /// Column, 1 at the left before any mirroring: of barrels, or of racks when `body` is a rack; `None` for the
-    /// whole level.
+    /// Column, 1 at the left before any mirroring: of barrels, or of racks when `body` is a rack;
+    /// `None` for the whole level.
     pub column: Option<u32>,
     /// Mass in place of the regular one (kg).
     pub mass: Option<f64>,
@@ -117,6 +117,7 @@ const COLUMNS: Kind = Kind::Integer(1, 40);
 
 /// A stack.
 pub static STACK: Section = Section {
+    name: "stack",
     help: "A stack of barrels on racks.",
     fields: &[
         Field::new(
@@ -169,6 +170,7 @@ pub static STACK: Section = Section {
 
 /// A body that differs.
 pub static OVERRIDE: Section = Section {
+    name: "override",
     help: "A body of the stack that differs from the others.",
     fields: &[
         Field::new(
@@ -213,6 +215,7 @@ const fn pair(name: &'static str, help: &'static str) -> Field {
 
 /// The laws of contact of a stack.
 pub static INTERFACES: Section = Section {
+    name: "interfaces",
     help: "Laws of contact in a stack, by pair.",
     fields: &[
         pair("rack-ground", "Bottom rack on the ground."),

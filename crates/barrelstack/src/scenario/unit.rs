@@ -23,7 +23,8 @@ pub(super) struct Unit {
 
 /// Names, exact sizes (numerator, denominator, power of ten, power of π) and dimensions.
 ///
-/// Inch, foot, pound and standard gravity are exact by definition; the pound-force is their product.
+/// Inch, foot, pound and standard gravity are exact by definition; the pound-force is their
+/// product.
 const UNITS: &[(&str, u128, u128, i32, i32, Dimension)] = &[
     ("1", 1, 1, 0, 0, Dimension::NONE),
     ("%", 1, 1, -2, 0, Dimension::NONE),
@@ -235,6 +236,40 @@ fn halves(power: &str) -> Result<i8, UnitError> {
     Ok(halves as i8)
 }
 
+/// Words that users write for units.
+const SYNONYMS: &[(&str, &str)] = &[
+    ("grams", "gram"),
+    ("sec", "s"),
+    ("secs", "s"),
+    ("second", "s"),
+    ("seconds", "s"),
+    ("msec", "ms"),
+    ("meter", "m"),
+    ("meters", "m"),
+    ("metre", "m"),
+    ("metres", "m"),
+    ("inch", "in"),
+    ("inches", "in"),
+    ("\"", "in"),
+    ("feet", "ft"),
+    ("'", "ft"),
+    ("lbs", "lb"),
+    ("pound", "lb"),
+    ("pounds", "lb"),
+    ("degree", "deg"),
+    ("degrees", "deg"),
+    ("newton", "N"),
+    ("kgf", "kg"),
+    ("tonne", "t"),
+    ("ton", "t"),
+    ("l", "L"),
+    ("liter", "L"),
+    ("litre", "L"),
+    ("liters", "L"),
+    ("gal", "Gal"),
+    ("hz", "Hz"),
+];
+
 fn named(name: &str) -> Result<Unit, UnitError> {
     if let Some(&(_, numerator, denominator, ten, pi, dimension)) =
         UNITS.iter().find(|unit| unit.0 == name)
@@ -242,38 +277,6 @@ fn named(name: &str) -> Result<Unit, UnitError> {
         let scale = Scale { numerator, denominator, ten, pi, factor: 1.0 };
         return Ok(Unit { scale, dimension });
     }
-    const SYNONYMS: &[(&str, &str)] = &[
-        ("grams", "gram"),
-        ("sec", "s"),
-        ("secs", "s"),
-        ("second", "s"),
-        ("seconds", "s"),
-        ("msec", "ms"),
-        ("meter", "m"),
-        ("meters", "m"),
-        ("metre", "m"),
-        ("metres", "m"),
-        ("inch", "in"),
-        ("inches", "in"),
-        ("\"", "in"),
-        ("feet", "ft"),
-        ("'", "ft"),
-        ("lbs", "lb"),
-        ("pound", "lb"),
-        ("pounds", "lb"),
-        ("degree", "deg"),
-        ("degrees", "deg"),
-        ("newton", "N"),
-        ("kgf", "kg"),
-        ("tonne", "t"),
-        ("ton", "t"),
-        ("l", "L"),
-        ("liter", "L"),
-        ("litre", "L"),
-        ("liters", "L"),
-        ("gal", "Gal"),
-        ("hz", "Hz"),
-    ];
     let nearest = SYNONYMS
         .iter()
         .find(|(word, _)| word.eq_ignore_ascii_case(name))

@@ -1,5 +1,7 @@
 //! Writes one table of a scenario field by field, as its definition says.
 
+use std::fmt::Write as _;
+
 use super::dimension::Dimension;
 use super::field::{Field, Kind, Named, Section, Variant};
 use super::quantity::{Quantity, plain};
@@ -33,7 +35,8 @@ impl Writer {
         writer
     }
 
-    /// Ends the table: in builds with assertions, every defined field must have been written or left out.
+    /// Ends the table: in builds with assertions, every defined field must have been written or
+    /// left out.
     pub(super) fn finish(self) -> Table {
         for field in self.section.fields_of(self.variant) {
             debug_assert!(self.seen.contains(&field.name), "`{}` was forgotten", field.name);
@@ -60,10 +63,14 @@ impl Writer {
 
     /// A quantity in the SI unit of the field's only dimension.
     pub(super) fn quantity(&mut self, name: &'static str, value: f64) {
-        let dimension = match self.field(name).kind {
-            Kind::Quantity(dimensions, _) | Kind::WordOr(_, dimensions, _) => dimensions[0],
-            Kind::Unit(dimension) => dimension,
-            _ => panic!("field `{name}` is no quantity"),
+        let kind = self.field(name).kind;
+        let dimension = if let Kind::Quantity(dimensions, _) | Kind::WordOr(_, dimensions, _) = kind
+        {
+            dimensions[0]
+        } else if let Kind::Unit(dimension) = kind {
+            dimension
+        } else {
+            panic!("field `{name}` is no quantity")
         };
         self.quantity_in(name, value, dimension);
     }
@@ -178,32 +185,39 @@ pub(super) fn to_toml(table: &Table) -> String {
     text
 }
 
+fn is_table(value: &Value) -> bool {
+    matches!(value, Value::Table(_)) || tables_of(value).is_some()
+}
+
+/// The items of a list of tables.
+fn tables_of(value: &Value) -> Option<Vec<&Table>> {
+    let Value::Array(items) = value else { return None };
+    items
+        .iter()
+        .map(|item| if let Value::Table(table) = &item.value { Some(table) } else { None })
+        .collect()
+}
+
+/// Writing to a `String` cannot fail, so results of `writeln!` are dropped here.
 fn write_table(text: &mut String, table: &Table, path: &str) {
-    let is_table = |value: &Value| match value {
-        Value::Table(_) => true,
-        Value::Array(items) => items.iter().all(|i| matches!(i.value, Value::Table(_))),
-        _ => false,
-    };
     for entry in table.entries.iter().filter(|entry| !is_table(&entry.node.value)) {
-        text.push_str(&format!("{} = {}\n", entry.key, inline(&entry.node.value)));
+        let _ = writeln!(text, "{} = {}", entry.key, inline(&entry.node.value));
     }
     for entry in &table.entries {
         let path =
             if path.is_empty() { entry.key.clone() } else { format!("{path}.{}", entry.key) };
-        match &entry.node.value {
-            Value::Table(table) => {
-                text.push_str(&format!("\n[{path}]\n"));
-                write_table(text, table, &path);
+        if let Value::Table(table) = &entry.node.value {
+            // A table of tables needs no header of its own.
+            let bare = !table.entries.is_empty()
+                && table.entries.iter().all(|entry| is_table(&entry.node.value));
+            if !bare {
+                let _ = writeln!(text, "\n[{path}]");
             }
-            Value::Array(items) if is_table(&entry.node.value) => {
-                for item in items {
-                    if let Value::Table(table) = &item.value {
-                        text.push_str(&format!("\n[[{path}]]\n"));
-                        write_table(text, table, &path);
-                    }
-                }
-            }
-            _ => {}
+            write_table(text, table, &path);
+        }
+        for table in tables_of(&entry.node.value).into_iter().flatten() {
+            let _ = writeln!(text, "\n[[{path}]]");
+            write_table(text, table, &path);
         }
     }
 }
@@ -242,7 +256,9 @@ fn quote(text: &str) -> String {
             '\\' => quoted.push_str("\\\\"),
             '\n' => quoted.push_str("\\n"),
             '\t' => quoted.push_str("\\t"),
-            c if c.is_control() => quoted.push_str(&format!("\\u{:04X}", u32::from(c))),
+            c if c.is_control() => {
+                let _ = write!(quoted, "\\u{:04X}", u32::from(c));
+            }
             c => quoted.push(c),
         }
     }

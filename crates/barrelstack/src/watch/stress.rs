@@ -32,6 +32,8 @@ pub struct StressEnvelope {
     pub body: BodyId,
     /// Where the values are.
     pub points: Vec<BoundaryPoint>,
+    /// Length of boundary (m) that each value holds for.
+    pub lengths: Vec<f64>,
     /// Whether the last point is next to the first.
     pub closed: bool,
     /// At rest (N/m).
@@ -53,6 +55,11 @@ enum Cells {
 }
 
 impl StressEnvelope {
+    /// Whether the values sit at nodes of the body, and not in cells along its whole boundary.
+    pub fn is_on_nodes(&self) -> bool {
+        matches!(self.cells, Cells::Nodes)
+    }
+
     /// Largest stress while the stack stood over the largest at rest; none where nothing pressed.
     pub fn amplification(&self) -> Option<f64> {
         let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
@@ -176,9 +183,15 @@ impl StressEnvelope {
 
 fn empty(body: BodyId, points: Vec<BoundaryPoint>, closed: bool, cells: Cells) -> StressEnvelope {
     let count = points.len();
+    let length = match cells {
+        Cells::Around(radius) => std::f64::consts::TAU * radius / count as f64,
+        Cells::Along(half_length) => 4.0 * half_length / count as f64,
+        Cells::Nodes => 0.0,
+    };
     StressEnvelope {
         body,
         points,
+        lengths: vec![length; count],
         closed,
         at_rest: vec![0.0; count],
         peak: vec![0.0; count],
@@ -242,7 +255,8 @@ fn on_nodes(body: BodyId, nodes: &[Nodes<Planar>]) -> Option<StressEnvelope> {
             coordinate: node.position.x,
         })
         .collect();
-    Some(empty(body, points, false, Cells::Nodes))
+    let lengths = nodes.iter().map(|node| node.tributary_length).collect();
+    Some(StressEnvelope { lengths, ..empty(body, points, false, Cells::Nodes) })
 }
 
 /// The angle of a vector from `x`, between 0 and 2π, good to 2e-4 rad: fine enough to find a cell.

@@ -141,6 +141,7 @@ const LAWS: Variants = Variants {
 
 /// The law of contact of one pair in a stack.
 pub static INTERFACE: Section = Section {
+    name: "interface",
     help: "The law of contact of one pair of bodies.",
     fields: &[LAW, BASIS, STIFFNESS, FRICTION_FIELD],
     variants: Some(LAWS),
@@ -149,6 +150,7 @@ pub static INTERFACE: Section = Section {
 
 /// The law of contact between two kinds of a free scene.
 pub static FREE_INTERFACE: Section = Section {
+    name: "free-interface",
     help: "The law of contact between two kinds of body.",
     fields: &[
         Field::new(
@@ -178,6 +180,7 @@ const COEFFICIENT_FIELD: Field = Field::new(
 
 /// Friction.
 pub static FRICTION: Section = Section {
+    name: "friction",
     help: "Tangential force of a contact.",
     fields: &[Field::new(
         "law",

@@ -11,7 +11,8 @@ pub(super) use text::{PairDefaults, read, write, write_free};
 pub enum Basis {
     /// Constants hold for one contact node, whatever the spacing of the nodes.
     Node,
-    /// Constants hold for one meter of boundary and are multiplied by the tributary length of the node.
+    /// Constants hold for one meter of boundary and are multiplied by the tributary length of the
+    /// node.
     Length,
 }
 

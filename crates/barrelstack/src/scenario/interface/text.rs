@@ -38,7 +38,7 @@ pub(in crate::scenario) fn read(
         }
         Law::Hertz => 1.5,
     };
-    // Constants of the catalogue hold together and for one law only.
+    // Constants of the catalog hold together and for one law only.
     let linear = matches!(law, Law::SpeedGap | Law::KelvinVoigt) && basis == Basis::Node;
     let constants = defaults.filter(|_| linear && !reader.has("stiffness"));
     let stiffness_dimension = stiffness_dimension(exponent, basis);

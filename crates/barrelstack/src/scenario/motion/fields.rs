@@ -83,6 +83,7 @@ const PHASE_FIELD: Field = Field::new(
 
 /// A harmonic motion.
 pub static SINE: Section = Section {
+    name: "sine",
     help: "A harmonic motion.",
     fields: &[
         Field::new(
@@ -123,6 +124,7 @@ pub static SINE: Section = Section {
 
 /// A pulse.
 pub static PULSE: Section = Section {
+    name: "pulse",
     help: "A pulse.",
     fields: &[
         Field::new(
@@ -204,6 +206,7 @@ pub static PULSE: Section = Section {
 
 /// Scaling.
 pub static SCALE: Section = Section {
+    name: "scale",
     help: "Scaling of all components by one factor; one of the fields.",
     fields: &[
         Field::new(
@@ -233,6 +236,7 @@ pub(super) const SOURCES: &[&str] = &["record", "bundled", "sine", "pulse", "non
 
 /// The ground motion.
 pub static MOTION: Section = Section {
+    name: "motion",
     help: "The ground motion: one of `record`, `bundled`, `sine`, `pulse` and `none`.",
     fields: &[
         Field::new(

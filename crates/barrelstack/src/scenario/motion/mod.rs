@@ -24,8 +24,8 @@ impl FileRef {
     }
 }
 
-/// Two references are equal when they were written alike, so that a scenario keeps its identity when its folder
-/// moves.
+/// Two references are equal when they were written alike, so that a scenario keeps its identity
+/// when its folder moves.
 impl PartialEq for FileRef {
     fn eq(&self, other: &Self) -> bool {
         self.path == other.path
@@ -66,7 +66,8 @@ pub enum Processing {
 pub struct RecordMotion {
     /// Where the samples are.
     pub source: RecordSource,
-    /// Horizontal component: a name, an azimuth, `horizontal-1` or `horizontal-2`; `None` for the first.
+    /// Horizontal component: a name, an azimuth, `horizontal-1` or `horizontal-2`; `None` for the
+    /// first.
     pub component: Option<String>,
     /// Vertical component.
     pub vertical: Vertical,
@@ -201,7 +202,8 @@ pub struct MotionSpec {
     pub source: MotionSource,
     /// Scaling, of all components by the same factor.
     pub scale: Scale,
-    /// Length scale `λ` of Froude similitude applied to the motion alone: time by `√λ`, accelerations unchanged.
+    /// Length scale `λ` of Froude similitude applied to the motion alone: time by `√λ`,
+    /// accelerations unchanged.
     pub similitude: f64,
 }
 
@@ -210,7 +212,8 @@ impl RecordMotion {
     ///
     /// # Errors
     ///
-    /// A sentence that names the missing file, says where to get it when the scenario knows, and how to name another.
+    /// A sentence that names the missing file, says where to get it when the scenario knows, and
+    /// how to name another.
     pub fn check_files(&self) -> Result<(), String> {
         let mut files: Vec<(&str, &FileRef)> = Vec::new();
         if let RecordSource::File(file) = &self.source {

@@ -178,12 +178,12 @@ impl<'a> Reader<'a> {
         };
         let path = self.path_of(name);
         match self.entry(name) {
-            Some(node) => match &node.value {
-                Value::Table(table) => {
-                    Self::open(self.sources, section, path, Some(table), node.origin)
-                }
-                _ => Err(self.wrong_type(name, field.kind, node)),
-            },
+            Some(node) => {
+                let Value::Table(table) = &node.value else {
+                    return Err(self.wrong_type(name, field.kind, node));
+                };
+                Self::open(self.sources, section, path, Some(table), node.origin)
+            }
             None if matches!(field.default, Default::Required) => Err(self.missing(name)),
             None => Self::open(self.sources, section, path, None, self.origin),
         }
@@ -244,6 +244,24 @@ fn owned(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| (*name).to_owned()).collect()
 }
 
+/// What users of other programs write, and what it is called here.
+const HABITS: &[(&str, &str)] = &[
+    ("mu", "coefficient"),
+    ("mu", "friction"),
+    ("mu_s", "static_coefficient"),
+    ("k", "stiffness"),
+    ("kn", "stiffness"),
+    ("c", "damping"),
+    ("e", "restitution"),
+    ("cor", "restitution"),
+    ("dt", "step"),
+    ("integrator", "method"),
+    ("tol", "tolerance"),
+    ("file", "record"),
+    ("diameter", "bilge_diameter"),
+    ("material", "kind"),
+];
+
 /// The name that looks most like a word, if any comes close.
 pub(in crate::scenario) fn nearest(word: &str, valid: &[&str]) -> Option<String> {
     if word.len() > 60 {
@@ -251,6 +269,10 @@ pub(in crate::scenario) fn nearest(word: &str, valid: &[&str]) -> Option<String>
     }
     let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
     let word = plain(word);
+    let habit = HABITS.iter().find(|(habit, name)| *habit == word && valid.contains(name));
+    if let Some((_, name)) = habit {
+        return Some((*name).to_owned());
+    }
     valid
         .iter()
         .map(|name| (strsim::damerau_levenshtein(&word, &plain(name)), *name))

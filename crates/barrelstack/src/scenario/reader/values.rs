@@ -46,23 +46,27 @@ impl Reader<'_> {
         &self,
         name: &'static str,
     ) -> Result<Option<Quantity>> {
-        self.value(name, |reader, field, node| match field.kind {
-            Kind::Quantity(dimensions, range) => {
+        self.value(name, |reader, field, node| {
+            if let Kind::Quantity(dimensions, range) = field.kind {
                 reader.read_quantity(name, node, dimensions, range)
+            } else if let Kind::Unit(dimension) = field.kind {
+                reader.read_unit(name, node, dimension)
+            } else {
+                reader.defined_otherwise(name)
             }
-            Kind::Unit(dimension) => reader.read_unit(name, node, dimension),
-            _ => reader.defined_otherwise(name),
         })
     }
 
     /// A quantity, or `None` for the word that stands in its place.
     pub(in crate::scenario) fn word_or_quantity(&self, name: &'static str) -> Result<Option<f64>> {
-        let value = self.value(name, |reader, field, node| match (field.kind, &node.value) {
-            (Kind::WordOr(word, ..), Value::Text(text)) if text == word => Ok(None),
-            (Kind::WordOr(_, dimensions, range), _) => {
-                reader.read_quantity(name, node, dimensions, range).map(|q| Some(q.value))
+        let value = self.value(name, |reader, field, node| {
+            let Kind::WordOr(word, dimensions, range) = field.kind else {
+                reader.defined_otherwise(name);
+            };
+            if node.value == Value::Text(word.to_owned()) {
+                return Ok(None);
             }
-            _ => reader.defined_otherwise(name),
+            reader.read_quantity(name, node, dimensions, range).map(|q| Some(q.value))
         })?;
         Ok(value.flatten())
     }
@@ -132,9 +136,11 @@ impl Reader<'_> {
 
     /// `true` or `false`, or absent.
     pub(in crate::scenario) fn optional_flag(&self, name: &'static str) -> Result<Option<bool>> {
-        self.value(name, |reader, field, node| match node.value {
-            Value::Flag(value) => Ok(value),
-            _ => Err(reader.wrong_type(name, field.kind, node)),
+        self.value(name, |reader, field, node| {
+            let Value::Flag(value) = node.value else {
+                return Err(reader.wrong_type(name, field.kind, node));
+            };
+            Ok(value)
         })
     }
 
@@ -206,9 +212,9 @@ impl Reader<'_> {
         &self,
         name: &'static str,
     ) -> Result<Option<String>> {
-        self.value(name, |reader, field, node| match field.kind {
-            Kind::Choice(names) => reader.read_name(name, node, &names()),
-            _ => reader.defined_otherwise(name),
+        self.value(name, |reader, field, node| {
+            let Kind::Choice(names) = field.kind else { reader.defined_otherwise(name) };
+            reader.read_name(name, node, &names())
         })
     }
 
@@ -298,15 +304,8 @@ impl Reader<'_> {
         match &node.value {
             Value::Text(text) => {
                 let quantity = Quantity::parse_as(text, dimensions).map_err(|reason| {
-                    let example = match reason {
-                        QuantityError::NoUnit { .. } => format!("\"{} {unit}\"", text.trim()),
-                        QuantityError::UnknownUnit {
-                            nearest: Some(ref near), ref unit, ..
-                        } => {
-                            format!("\"{}\"", shorten(&text.trim().replace(unit.as_str(), near)))
-                        }
-                        _ => format!("\"{example}\""),
-                    };
+                    let repaired = repaired(text, &reason, &unit);
+                    let example = repaired.unwrap_or_else(|| format!("\"{example}\""));
                     let field = self.path_of(name);
                     self.sources.error(node.origin, Problem::Quantity { field, reason, example })
                 })?;
@@ -315,18 +314,14 @@ impl Reader<'_> {
                 self.in_range(name, node, range, quantity.value, &unit, &found)?;
                 Ok(quantity)
             }
-            Value::Integer(Some(_)) | Value::Float(_) => {
-                let found = node.value.describe();
-                let number = match node.value {
-                    Value::Integer(Some(value)) => value.to_string(),
-                    Value::Float(value) if value.is_finite() => plain(value),
-                    _ => return Err(self.wrong_type_as(name, kind, node)),
-                };
-                let example = format!("`{name} = \"{number} {unit}\"`");
-                let problem = Problem::BareNumber { field: self.path_of(name), found, example };
-                Err(self.sources.error(node.origin, problem))
+            Value::Integer(Some(number)) => {
+                Err(self.bare_number(name, node, &number.to_string(), &unit))
             }
-            Value::Integer(None)
+            Value::Float(number) if number.is_finite() => {
+                Err(self.bare_number(name, node, &plain(*number), &unit))
+            }
+            Value::Float(_)
+            | Value::Integer(None)
             | Value::Flag(_)
             | Value::Date
             | Value::Array(_)
@@ -334,12 +329,22 @@ impl Reader<'_> {
         }
     }
 
+    /// A number without a unit, with the advice to add the SI unit.
+    fn bare_number(&self, name: &str, node: &Node, number: &str, unit: &str) -> ScenarioError {
+        let example = format!("`{name} = \"{number} {unit}\"`");
+        let found = node.value.describe();
+        let problem = Problem::BareNumber { field: self.path_of(name), found, example };
+        self.sources.error(node.origin, problem)
+    }
+
     /// A unit alone counts as one of it.
     fn read_unit(&self, name: &str, node: &Node, dimension: Dimension) -> Result<Quantity> {
         if let Value::Text(text) = &node.value
-            && let Ok(quantity) = Quantity::parse_as(&format!("1 {text}"), &[dimension])
+            && !text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
         {
-            return Ok(quantity);
+            let one =
+                Node { origin: node.origin, value: Value::Text(format!("1 {}", text.trim())) };
+            return self.read_quantity(name, &one, &[dimension], Range::POSITIVE);
         }
         self.read_quantity(name, node, &[dimension], Range::POSITIVE)
     }
@@ -376,4 +381,15 @@ impl Reader<'_> {
         };
         self.sources.error(node.origin, problem)
     }
+}
+
+/// The text with the unit it lacks, or with the unit that was probably meant.
+fn repaired(text: &str, reason: &QuantityError, unit: &str) -> Option<String> {
+    if let QuantityError::NoUnit { .. } = reason {
+        return Some(format!("\"{} {unit}\"", text.trim()));
+    }
+    if let QuantityError::UnknownUnit { nearest: Some(nearest), unit, .. } = reason {
+        return Some(format!("\"{}\"", shorten(&text.trim().replace(unit.as_str(), nearest))));
+    }
+    None
 }
