@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
-    AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Pads, Processing,
-    Pulse as MotionPulse, ReadError, ReadOptions, Record,
+    AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Pads,
+    Processing, Pulse as MotionPulse, ReadError, ReadOptions, Record,
 };
 
 use crate::scenario::{
@@ -113,12 +113,12 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
         sensitivity: None,
     };
     let record = match &spec.source {
-        RecordSource::Bundled(name) => barrelstack_motion::bundled(name).ok_or_else(|| {
-            GroundError::UnknownBundled {
+        RecordSource::Bundled(name) => {
+            barrelstack_motion::bundled(name).ok_or_else(|| GroundError::UnknownBundled {
                 name: name.clone(),
                 known: barrelstack_motion::BUNDLED.join(", "),
-            }
-        })?,
+            })?
+        }
         RecordSource::File(file) => {
             let obtain = spec
                 .obtain
@@ -237,9 +237,11 @@ fn pulsed(pulse: &Pulse) -> Result<GroundMotion, MotionError> {
     let period = pulse.period;
     let unit = 1.0;
     let (name, natural, made) = match pulse.kind {
-        PulseKind::Ricker => {
-            ("Ricker pulse", Natural::Acceleration, MotionPulse::Ricker { acceleration: unit, period })
-        }
+        PulseKind::Ricker => (
+            "Ricker pulse",
+            Natural::Acceleration,
+            MotionPulse::Ricker { acceleration: unit, period },
+        ),
         PulseKind::HalfSine => (
             "half sine",
             Natural::Acceleration,
@@ -269,9 +271,11 @@ fn pulsed(pulse: &Pulse) -> Result<GroundMotion, MotionError> {
         PulseKind::CycloidB => {
             ("cycloid B", Natural::Velocity, MotionPulse::CycloidB { velocity: unit, period })
         }
-        PulseKind::CycloidC { cycles } => {
-            ("cycloid C", Natural::Velocity, MotionPulse::CycloidC { velocity: unit, period, cycles })
-        }
+        PulseKind::CycloidC { cycles } => (
+            "cycloid C",
+            Natural::Velocity,
+            MotionPulse::CycloidC { velocity: unit, period, cycles },
+        ),
         PulseKind::MavroeidisPapageorgiou { gamma, phase } => (
             "Mavroeidis–Papageorgiou pulse",
             Natural::Velocity,
@@ -282,8 +286,12 @@ fn pulsed(pulse: &Pulse) -> Result<GroundMotion, MotionError> {
     let sized = match (pulse.amplitude, natural) {
         (Amplitude::Acceleration(a), Natural::Acceleration) => base.scaled(a),
         (Amplitude::Velocity(v), Natural::Velocity) => base.scaled(v),
-        (Amplitude::Acceleration(a), Natural::Velocity) => base.scale_to(IntensityMeasure::Pga, a)?,
-        (Amplitude::Velocity(v), Natural::Acceleration) => base.scale_to(IntensityMeasure::Pgv, v)?,
+        (Amplitude::Acceleration(a), Natural::Velocity) => {
+            base.scale_to(IntensityMeasure::Pga, a)?
+        }
+        (Amplitude::Velocity(v), Natural::Acceleration) => {
+            base.scale_to(IntensityMeasure::Pgv, v)?
+        }
         (Amplitude::Displacement(d), _) => base.scale_to(IntensityMeasure::Pgd, d)?,
     };
     Ok(directed(sized, pulse.direction, pulse.start))

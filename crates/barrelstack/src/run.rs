@@ -118,10 +118,8 @@ pub fn run(
 
     let simulation = Simulation { method: method(scenario), time_step: step, end_time };
     let thresholds = thresholds(scenario);
-    let rates = (
-        scenario.record.frame_rate / time_scale,
-        scenario.record.history_rate / time_scale,
-    );
+    let rates =
+        (scenario.record.frame_rate / time_scale, scenario.record.history_rate / time_scale);
     let (evaluations, elements) = (scratch.evaluations, scratch.contact_evaluations);
     let mut watch = Watch::new(
         &assembly,
@@ -283,8 +281,7 @@ impl Run {
 
     /// What the constants of the interfaces are stated for, such as "node"; "mixed" when they differ.
     pub fn stiffness_basis(&self) -> &'static str {
-        let mut bases =
-            self.assembly.model.interfaces().iter().map(|interface| interface.basis);
+        let mut bases = self.assembly.model.interfaces().iter().map(|interface| interface.basis);
         let Some(first) = bases.next() else { return Basis::Node.name() };
         if bases.all(|basis| basis == first) { first.name() } else { "mixed" }
     }

@@ -353,9 +353,11 @@ fn demands(run: &Run) -> Demands {
     let of = |kind: PartKind, level: u32| {
         assembly.of_kind(kind).filter(move |body| assembly.parts[*body].level == Some(level))
     };
-    let most = |values: &mut dyn Iterator<Item = f64>| values.fold(None, |most: Option<f64>, v| {
-        Some(most.map_or(v, |m| if v.abs() > m.abs() { v } else { m }))
-    });
+    let most = |values: &mut dyn Iterator<Item = f64>| {
+        values.fold(None, |most: Option<f64>, v| {
+            Some(most.map_or(v, |m| if v.abs() > m.abs() { v } else { m }))
+        })
+    };
     let fate = |body: usize| run.fates.fate(body);
     let stresses = || of(PartKind::Barrel, 1).filter_map(|body| run.stresses.of(body));
     let drift = most(&mut of(PartKind::Barrel, assembly.levels).map(|b| fate(b).peak_displacement));

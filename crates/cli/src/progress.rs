@@ -36,7 +36,11 @@ impl Progress {
             spinner.set_message(format!("{time:6.2} s simulated"));
             spinner.tick();
         }
-        if self.stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if self.stop.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     }
 
     /// Takes the line away.

@@ -60,15 +60,13 @@ fn join(
     pairs: &mut Vec<ContactPair>,
 ) {
     let rolls = |body: &Body<Planar>| matches!(body.nodes.first(), Some(Nodes::Rolling { .. }));
-    let of = |kind: &str| -> Vec<BodyId> {
-        (0..bodies.len()).filter(|i| kinds[*i] == kind).collect()
-    };
+    let of =
+        |kind: &str| -> Vec<BodyId> { (0..bodies.len()).filter(|i| kinds[*i] == kind).collect() };
     for contactor in of(between[0]) {
         for target in of(between[1]) {
             let both_fixed = bodies[contactor].motion == Motion::Prescribed
                 && bodies[target].motion == Motion::Prescribed;
-            let said =
-                contactor > target && rolls(&bodies[contactor]) && rolls(&bodies[target]);
+            let said = contactor > target && rolls(&bodies[contactor]) && rolls(&bodies[target]);
             let twice = between[0] == between[1] && said;
             if contactor == target || both_fixed || twice {
                 continue;
@@ -142,19 +140,14 @@ fn free_body(body: &FreeBody, scale: Similitude) -> Result<(Body<Planar>, Part),
             linear: Vec2::new(body.velocity[0], body.velocity[1]) * scale.time(),
             angular: body.spin / scale.time(),
         },
-        surfaces: vec![Placed {
-            surface: shape,
-            offset: -center,
-            rotation: Rotation2::identity(),
-        }],
+        surfaces: vec![Placed { surface: shape, offset: -center, rotation: Rotation2::identity() }],
         nodes: vec![nodes],
     };
     Ok((body, part))
 }
 
 fn shape(body: &FreeBody, length: f64) -> Result<Shape, AssembleError> {
-    let refuse =
-        |problem: String| AssembleError::Shape { body: body.name.clone(), problem };
+    let refuse = |problem: String| AssembleError::Shape { body: body.name.clone(), problem };
     Ok(match &body.shape {
         scenario::Shape::Rectangle { width, height, corner_radius } => Shape::Polygon(
             Polygon::rectangle(width * length, height * length, corner_radius * length)

@@ -19,7 +19,7 @@ use barrelstack_dynamics::math;
 use barrelstack_dynamics::shape::{Circle, Polygon};
 use barrelstack_dynamics::{BodyId, Shape, Vec2};
 
-use super::stack::{Builder, Draft, DraftNodes};
+use super::builder::{Builder, Draft, DraftNodes};
 use super::{AssembleError, PartKind, outline_of};
 use crate::scenario::{Cradle, Friction, Rack, RackKind, StackBody, View};
 
@@ -41,19 +41,16 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
         let underside = f64::from(level - 1) * level_pitch;
         for column in 1..=racks {
             let slot = column as usize - 1;
-            let middle =
-                (f64::from(column) - 0.5 * f64::from(racks + 1)) * (rack.width + spec.gap);
+            let middle = (f64::from(column) - 0.5 * f64::from(racks + 1)) * (rack.width + spec.gap);
             let supports = std::mem::take(&mut below[slot]);
-            let (rack_id, barrels) =
-                add_rack(builder, level, column, middle, underside, supports)?;
+            let (rack_id, barrels) = add_rack(builder, level, column, middle, underside, supports)?;
             below[slot] = match rack.kind {
                 RackKind::OnBarrels => barrels,
                 RackKind::OnRacks => vec![rack_id],
             };
         }
     }
-    let height =
-        f64::from(spec.levels - 1) * level_pitch + rack.clearance + 2.0 * radius;
+    let height = f64::from(spec.levels - 1) * level_pitch + rack.clearance + 2.0 * radius;
     Ok((height, reach(rack, radius, &spec.interfaces.barrel_rack.friction)))
 }
 
@@ -160,7 +157,11 @@ fn rack_nodes(rack: &Rack, places: &[f64], radius: f64, level: u32) -> Vec<(Vec2
     let row = |nodes: &mut Vec<(Vec2, f64)>, from: f64, to: f64| {
         let parts = ((to - from) / spacing - 1e-9).ceil().max(1.0);
         let step = (to - from) / parts;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a small count"
+        )]
         for i in 0..=parts as u32 {
             let edge = i == 0 || f64::from(i) >= parts;
             let tributary = if edge { 0.5 * step } else { step };
@@ -206,9 +207,8 @@ fn rack_nodes(rack: &Rack, places: &[f64], radius: f64, level: u32) -> Vec<(Vec2
             }
             Cradle::Arc { radius: arc_radius, half_angle } => {
                 let center = center + Vec2::new(0.0, arc_radius - radius);
-                let shape = Shape::Cradle(barrelstack_dynamics::shape::Cradle::new(
-                    arc_radius, half_angle,
-                ));
+                let shape =
+                    Shape::Cradle(barrelstack_dynamics::shape::Cradle::new(arc_radius, half_angle));
                 nodes.extend(
                     shape
                         .nodes(spacing)

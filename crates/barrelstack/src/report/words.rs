@@ -15,7 +15,10 @@ pub(super) fn headline(run: &Run, summary: &Summary) -> String {
         Outcome::Invalid { .. } => "The run broke down and says nothing about the stack.".into(),
         Outcome::Collapse { time, .. } => match outcome.barrels_fallen {
             0 => format!("The stack comes apart after {time:.1} s, but no barrel falls."),
-            1 => format!("One of {} barrels falls, the stack gives way after {time:.1} s.", outcome.barrels),
+            1 => format!(
+                "One of {} barrels falls, the stack gives way after {time:.1} s.",
+                outcome.barrels
+            ),
             fallen if fallen == outcome.barrels => {
                 format!("All {fallen} barrels fall, the stack gives way after {time:.1} s.")
             }
@@ -90,7 +93,9 @@ pub(super) fn details(run: &Run, summary: &Summary) -> Vec<String> {
 
 fn capital(text: &str) -> String {
     let mut chars = text.chars();
-    chars.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + chars.as_str())
+    chars
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + chars.as_str())
 }
 
 /// What made the result, in pairs of name and value.

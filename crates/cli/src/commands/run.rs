@@ -7,8 +7,8 @@ use barrelstack::export::Folder;
 use barrelstack::{Run, Scenario, Summary};
 
 use crate::args::RunArgs;
-use crate::progress::Progress;
 use crate::printer;
+use crate::progress::Progress;
 
 /// Runs and reports.
 pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
