@@ -46,7 +46,7 @@ pub enum GroundError {
     },
     /// The file is no record.
     #[error(transparent)]
-    Read(#[from] ReadError),
+    Read(Box<ReadError>),
     /// The record has no such component, or cannot be scaled so.
     #[error(transparent)]
     Motion(#[from] MotionError),
@@ -93,8 +93,11 @@ fn scaled(
     run_scale: f64,
 ) -> Result<GroundMotion, MotionError> {
     match spec.scale {
-        Scale::Factor(factor) if factor == 1.0 => {}
-        Scale::Factor(factor) => motion = motion.scaled(factor),
+        Scale::Factor(factor) => {
+            if factor != 1.0 {
+                motion = motion.scaled(factor);
+            }
+        }
         Scale::Pga(target) => motion = motion.scale_to(IntensityMeasure::Pga, target)?,
         Scale::Pgv(target) => motion = motion.scale_to(IntensityMeasure::Pgv, target)?,
     }
@@ -180,7 +183,8 @@ fn read_file(
         reason: error.to_string(),
         obtain: obtain.to_owned(),
     })?;
-    Ok(barrelstack_motion::read(&bytes, &path.display().to_string(), options)?)
+    barrelstack_motion::read(&bytes, &path.display().to_string(), options)
+        .map_err(|error| GroundError::Read(Box::new(error)))
 }
 
 fn unit(meters_per_second_squared: f64) -> Result<AccelerationUnit, GroundError> {

@@ -159,7 +159,9 @@ impl<'a> Builder<'a> {
             flip(&mut body.pose.position);
             for set in &mut body.nodes {
                 if let Nodes::Fixed(nodes) = set {
-                    nodes.iter_mut().for_each(|node| flip(&mut node.position));
+                    for node in nodes {
+                        flip(&mut node.position);
+                    }
                 }
             }
             for placed in &mut body.surfaces {

@@ -192,14 +192,12 @@ fn nodes(body: &FreeBody, shape: &Shape, center: Vec2, length: f64) -> Nodes<Pla
             let around = std::f64::consts::TAU * circle.radius;
             shape.nodes(around / f64::from(count.max(1)))
         }
-        // For curved shapes a count divides the whole boundary; corners are where it has kinks.
-        (scenario::Nodes::Count(_) | scenario::Nodes::Corners | scenario::Nodes::Rolling, _) => {
-            let parts = match body.nodes {
-                scenario::Nodes::Count(count) => f64::from(count.max(1)),
-                _ => 64.0,
-            };
-            let size: f64 = shape.nodes(f64::INFINITY).iter().map(|n| n.tributary_length).sum();
-            shape.nodes(size / parts)
+        // For curved shapes a count divides the whole boundary; without one, 64 parts are fine enough.
+        (scenario::Nodes::Count(count), _) => {
+            shape.nodes(boundary_length(shape) / f64::from(count.max(1)))
+        }
+        (scenario::Nodes::Corners | scenario::Nodes::Rolling, _) => {
+            shape.nodes(boundary_length(shape) / 64.0)
         }
     };
     Nodes::Fixed(
@@ -211,4 +209,9 @@ fn nodes(body: &FreeBody, shape: &Shape, center: Vec2, length: f64) -> Nodes<Pla
             })
             .collect(),
     )
+}
+
+/// The length (m) of a shape's boundary.
+fn boundary_length(shape: &Shape) -> f64 {
+    shape.nodes(f64::INFINITY).iter().map(|node| node.tributary_length).sum()
 }
