@@ -177,10 +177,13 @@ pub fn run(
 }
 
 /// The step (s) that a scenario asks for, or the one its stiffest contact suggests.
+///
+/// A scaled stack takes the step of the full one, scaled, so that the two runs are the same run.
 pub(crate) fn time_step(scenario: &Scenario, assembly: &Assembly) -> f64 {
+    let time_scale = scenario.run.similitude.sqrt();
     match scenario.run.step {
-        Some(step) => step * scenario.run.similitude.sqrt(),
-        None => default_step(assembly),
+        Some(step) => step * time_scale,
+        None => default_step(assembly, time_scale),
     }
 }
 
