@@ -23,6 +23,7 @@ pub enum MatchMethod {
     /// (Lilhanand and Tseng 1988; Al Atik and Abrahamson 2010, Earthquake Spectra 26:601-617).
     ///
     /// Keeps the character of the motion; slower.
+    /// Where it stalls, rounds in the frequency domain shake it loose.
     Time,
 }
 
@@ -57,8 +58,12 @@ impl Default for Matching {
 /// Exponent of target over spectrum in one round of the frequency domain.
 const AMPLITUDE_STEP: f64 = 0.7;
 
-/// Periods to a decade at which the spectrum is matched and judged.
-const PER_DECADE: f64 = 60.0;
+/// Periods to a decade at which the spectrum is matched.
+const PER_DECADE: f64 = 80.0;
+/// Periods judged to one matched, so that nothing hides between.
+const JUDGED: usize = 3;
+/// Share of the tolerance at which the rounds end.
+pub(crate) const GOOD_ENOUGH: f64 = 0.7;
 
 /// A matched motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,8 +106,11 @@ impl GroundMotion {
         };
         check(settings, sampled.time_step())?;
         let (time_step, given) = subdivided(&sampled, settings.shortest);
-        let periods = periods(settings);
-        let goal: Vec<f64> = periods.iter().map(|&t| target.acceleration(t)).collect();
+        let (periods, judged) = periods(settings);
+        let goal_at = |periods: &[f64]| -> Vec<f64> {
+            periods.iter().map(|&t| target.acceleration(t)).collect()
+        };
+        let (goal, judged_goal) = (goal_at(&periods), goal_at(&judged));
         let damping = target.damping();
         // Drift is kept out below the longest matched period.
         let chain = Processing {
@@ -111,9 +119,9 @@ impl GroundMotion {
             close: true,
             ..Processing::none()
         };
-        let work = Work { time_step, periods, goal, damping, chain };
+        let work = Work { time_step, periods, goal, judged, judged_goal, damping, chain };
         let now = work.spectrum(&given)?;
-        let factor = mean_ratio(&work.goal, &now);
+        let factor = mean_ratio(&work.judged_goal, &now);
         if !(factor.is_finite() && factor > 0.0) {
             return Err(MotionError::Zero {
                 measure: "the response spectrum".to_owned(),
@@ -122,18 +130,7 @@ impl GroundMotion {
             });
         }
         let start: Vec<f64> = given.iter().map(|a| a * factor).collect();
-        let (acceleration, misfit, rounds) = match settings.method {
-            MatchMethod::Frequency => {
-                let (near, misfit, rounds) = work.in_frequency(start, settings)?;
-                if misfit <= settings.tolerance {
-                    (near, misfit, rounds)
-                } else {
-                    let (a, misfit, more) = wavelets::match_in_time(&work, near, settings)?;
-                    (a, misfit, rounds + more)
-                }
-            }
-            MatchMethod::Time => wavelets::match_in_time(&work, start, settings)?,
-        };
+        let (acceleration, misfit, rounds) = work.alternate(start, settings)?;
         if !(misfit <= settings.tolerance) {
             return Err(MotionError::NotConverged {
                 what: "spectral matching".to_owned(),
@@ -197,11 +194,15 @@ fn subdivided(motion: &Sampled, shortest: f64) -> (f64, Vec<f64>) {
     (motion.time_step() / parts, fine)
 }
 
-fn periods(settings: &Matching) -> Vec<f64> {
+/// Periods matched and periods judged.
+fn periods(settings: &Matching) -> (Vec<f64>, Vec<f64>) {
     let decades = math::log10(settings.longest / settings.shortest);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small, positive")]
     let count = (PER_DECADE * decades).ceil().clamp(1.0, 1000.0) as usize;
-    math::log_space(settings.shortest, settings.longest, count)
+    (
+        math::log_space(settings.shortest, settings.longest, count),
+        math::log_space(settings.shortest, settings.longest, JUDGED * count),
+    )
 }
 
 /// Geometric mean of target over spectrum.
@@ -215,13 +216,16 @@ pub(crate) struct Work {
     pub(crate) time_step: f64,
     pub(crate) periods: Vec<f64>,
     pub(crate) goal: Vec<f64>,
+    judged: Vec<f64>,
+    judged_goal: Vec<f64>,
     pub(crate) damping: f64,
     pub(crate) chain: Processing,
 }
 
 impl Work {
-    pub(crate) fn spectrum(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
-        self.periods
+    /// Pseudo-accelerations at the judged periods.
+    fn spectrum(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
+        self.judged
             .iter()
             .map(|&period| {
                 response(self.time_step, acceleration, period, self.damping)
@@ -230,32 +234,63 @@ impl Work {
             .collect()
     }
 
-    pub(crate) fn misfit(&self, now: &[f64]) -> f64 {
-        self.goal.iter().zip(now).map(|(g, n)| (n / g - 1.0).abs()).fold(0.0, f64::max)
+    fn misfit_of(&self, now: &[f64]) -> f64 {
+        self.judged_goal.iter().zip(now).map(|(g, n)| (n / g - 1.0).abs()).fold(0.0, f64::max)
+    }
+
+    /// Largest relative misfit at the judged periods.
+    pub(crate) fn misfit(&self, acceleration: &[f64]) -> Result<f64, MotionError> {
+        Ok(self.misfit_of(&self.spectrum(acceleration)?))
     }
 
     pub(crate) fn close(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
         Ok(self.chain.apply(self.time_step, acceleration, 0.0)?.acceleration)
     }
 
-    fn in_frequency(
+    /// The chosen method first, then the other on what it left, until the tolerance is met.
+    fn alternate(
         &self,
         start: Vec<f64>,
         settings: &Matching,
     ) -> Result<(Vec<f64>, f64, usize), MotionError> {
+        use MatchMethod::{Frequency, Time};
+        let order: &[MatchMethod] = match settings.method {
+            Frequency => &[Frequency, Time, Frequency, Time],
+            Time => &[Time, Frequency, Time, Frequency, Time],
+        };
+        let (mut a, mut misfit, mut rounds) = (start, f64::INFINITY, 0);
+        for method in order {
+            let (next, reached, more) = match method {
+                Frequency => self.in_frequency(&a, settings)?,
+                Time => wavelets::match_in_time(self, &a, settings)?,
+            };
+            rounds += more;
+            (a, misfit) = (next, reached);
+            if misfit <= settings.tolerance {
+                break;
+            }
+        }
+        Ok((a, misfit, rounds))
+    }
+
+    fn in_frequency(
+        &self,
+        start: &[f64],
+        settings: &Matching,
+    ) -> Result<(Vec<f64>, f64, usize), MotionError> {
         let length = (2 * start.len()).next_power_of_two();
-        let mut a = self.close(&start)?;
+        let mut a = self.close(start)?;
         let mut best = Best::new(&a);
         // Ratios over the logarithm of frequency, from long periods to short ones.
-        let ln_f: Vec<f64> = self.periods.iter().rev().map(|t| -math::ln(*t)).collect();
+        let ln_f: Vec<f64> = self.judged.iter().rev().map(|t| -math::ln(*t)).collect();
         for round in 1..=settings.rounds {
             let now = self.spectrum(&a)?;
-            best.offer(&a, self.misfit(&now), round);
-            if best.misfit <= 0.5 * settings.tolerance {
+            best.offer(&a, self.misfit_of(&now), round);
+            if best.misfit <= GOOD_ENOUGH * settings.tolerance {
                 break;
             }
             let ratio: Vec<f64> = self
-                .goal
+                .judged_goal
                 .iter()
                 .zip(&now)
                 .rev()

@@ -1,7 +1,7 @@
 //! Time-domain matching: wavelets added where the responses peak.
 
 use crate::error::MotionError;
-use crate::matching::{Best, Matching, Work};
+use crate::matching::{Best, GOOD_ENOUGH, Matching, Work};
 use crate::math::{self, TAU};
 use crate::response::Step;
 
@@ -34,11 +34,11 @@ struct Demand {
 /// Rounds of linear systems: the responses of all wavelets at all peak times against the misfits.
 pub(crate) fn match_in_time(
     work: &Work,
-    start: Vec<f64>,
+    start: &[f64],
     settings: &Matching,
 ) -> Result<(Vec<f64>, f64, usize), MotionError> {
     let n = start.len();
-    let mut a = work.close(&start)?;
+    let mut a = work.close(start)?;
     let mut best = Best::new(&a);
     let steps: Vec<Step> =
         work.periods.iter().map(|&t| Step::new(t, work.damping, work.time_step)).collect();
@@ -55,9 +55,8 @@ pub(crate) fn match_in_time(
             let extrema = extrema(&a, work.periods[k], step, threshold);
             peaks.push(demand(&extrema, k, work, &mut demands));
         }
-        let now: Vec<f64> = peaks.iter().map(|peak| peak.value.abs()).collect();
-        best.offer(&a, work.misfit(&now), round);
-        if best.misfit <= 0.5 * settings.tolerance {
+        best.offer(&a, work.misfit(&a)?, round);
+        if best.misfit <= GOOD_ENOUGH * settings.tolerance {
             break;
         }
         let wavelets: Vec<Wavelet> = work
