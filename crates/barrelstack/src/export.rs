@@ -149,8 +149,8 @@ impl Folder {
 fn npz(arrays: &[(String, &[f64])]) -> std::io::Result<Vec<u8>> {
     let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
     // The default date of the archive is a constant, so equal runs give equal bytes.
-    let options = zip::write::SimpleFileOptions::default()
-        .compression_method(zip::CompressionMethod::Stored);
+    let options =
+        zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
     for (name, values) in arrays {
         archive.start_file(format!("{name}.npy"), options)?;
         archive.write_all(&npy(values))?;

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
-    AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Pads, Processing,
-    Pulse as MotionPulse, ReadError, ReadOptions, Record, Refusal,
+    AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Pads,
+    Processing, Pulse as MotionPulse, ReadError, ReadOptions, Record, Refusal,
 };
 
 use crate::scenario::{
@@ -47,7 +47,7 @@ pub enum GroundError {
     },
     /// The file is no record.
     #[error(transparent)]
-    Read(#[from] ReadError),
+    Read(Box<ReadError>),
     /// The record has no such component, or cannot be scaled so.
     #[error(transparent)]
     Motion(#[from] MotionError),
@@ -97,8 +97,11 @@ fn scaled(
     run_scale: f64,
 ) -> Result<GroundMotion, MotionError> {
     match spec.scale {
-        Scale::Factor(factor) if factor == 1.0 => {}
-        Scale::Factor(factor) => motion = motion.scaled(factor),
+        Scale::Factor(factor) => {
+            if factor != 1.0 {
+                motion = motion.scaled(factor);
+            }
+        }
         Scale::Pga(target) => motion = motion.scale_to(IntensityMeasure::Pga, target)?,
         Scale::Pgv(target) => motion = motion.scale_to(IntensityMeasure::Pgv, target)?,
     }
@@ -117,20 +120,17 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
         sensitivity: None,
     };
     let record = match &spec.source {
-        RecordSource::Bundled(name) => barrelstack_motion::bundled(name).ok_or_else(|| {
-            GroundError::UnknownBundled {
+        RecordSource::Bundled(name) => {
+            barrelstack_motion::bundled(name).ok_or_else(|| GroundError::UnknownBundled {
                 name: name.clone(),
                 known: barrelstack_motion::BUNDLED.join(", "),
-            }
-        })?,
+            })?
+        }
         RecordSource::File(file) => {
-            let obtain = spec
-                .obtain
-                .as_ref()
-                .map_or_else(
-                    || "; correct the path, or name another file with --record FILE".to_owned(),
-                    |how| format!("; {how}, then name your file with --record FILE"),
-                );
+            let obtain = spec.obtain.as_ref().map_or_else(
+                || "; correct the path, or name another file with --record FILE".to_owned(),
+                |how| format!("; {how}, then name your file with --record FILE"),
+            );
             read_file(&file.resolve(), &options, &obtain)?
         }
     };
@@ -198,7 +198,7 @@ fn read_file(
                 ""
             };
         }
-        error.into()
+        GroundError::Read(Box::new(error))
     })
 }
 
@@ -256,9 +256,11 @@ fn pulsed(pulse: &Pulse) -> Result<GroundMotion, MotionError> {
     let period = pulse.period;
     let unit = 1.0;
     let (name, natural, made) = match pulse.kind {
-        PulseKind::Ricker => {
-            ("Ricker pulse", Natural::Acceleration, MotionPulse::Ricker { acceleration: unit, period })
-        }
+        PulseKind::Ricker => (
+            "Ricker pulse",
+            Natural::Acceleration,
+            MotionPulse::Ricker { acceleration: unit, period },
+        ),
         PulseKind::HalfSine => (
             "half sine",
             Natural::Acceleration,
@@ -288,9 +290,11 @@ fn pulsed(pulse: &Pulse) -> Result<GroundMotion, MotionError> {
         PulseKind::CycloidB => {
             ("cycloid B", Natural::Velocity, MotionPulse::CycloidB { velocity: unit, period })
         }
-        PulseKind::CycloidC { cycles } => {
-            ("cycloid C", Natural::Velocity, MotionPulse::CycloidC { velocity: unit, period, cycles })
-        }
+        PulseKind::CycloidC { cycles } => (
+            "cycloid C",
+            Natural::Velocity,
+            MotionPulse::CycloidC { velocity: unit, period, cycles },
+        ),
         PulseKind::MavroeidisPapageorgiou { gamma, phase } => (
             "Mavroeidis–Papageorgiou pulse",
             Natural::Velocity,
@@ -301,8 +305,12 @@ fn pulsed(pulse: &Pulse) -> Result<GroundMotion, MotionError> {
     let sized = match (pulse.amplitude, natural) {
         (Amplitude::Acceleration(a), Natural::Acceleration) => base.scaled(a),
         (Amplitude::Velocity(v), Natural::Velocity) => base.scaled(v),
-        (Amplitude::Acceleration(a), Natural::Velocity) => base.scale_to(IntensityMeasure::Pga, a)?,
-        (Amplitude::Velocity(v), Natural::Acceleration) => base.scale_to(IntensityMeasure::Pgv, v)?,
+        (Amplitude::Acceleration(a), Natural::Velocity) => {
+            base.scale_to(IntensityMeasure::Pga, a)?
+        }
+        (Amplitude::Velocity(v), Natural::Acceleration) => {
+            base.scale_to(IntensityMeasure::Pgv, v)?
+        }
         (Amplitude::Displacement(d), _) => base.scale_to(IntensityMeasure::Pgd, d)?,
     };
     Ok(directed(sized, pulse.direction, pulse.start))

@@ -81,9 +81,7 @@ pub enum RunFailure {
     #[error(transparent)]
     Settle(#[from] SettleError),
     /// The step is too long for the contacts.
-    #[error(
-        "run.step = {asked} ms is too long: {reason}; try {instead} ms, or leave it out"
-    )]
+    #[error("run.step = {asked} ms is too long: {reason}; try {instead} ms, or leave it out")]
     Step {
         /// The step asked for (ms).
         asked: f64,
@@ -146,10 +144,8 @@ pub fn run(
 
     let simulation = Simulation { method: method(scenario), time_step: step, end_time };
     let thresholds = thresholds(scenario);
-    let rates = (
-        scenario.record.frame_rate / time_scale,
-        scenario.record.history_rate / time_scale,
-    );
+    let rates =
+        (scenario.record.frame_rate / time_scale, scenario.record.history_rate / time_scale);
     let (evaluations, elements) = (scratch.evaluations, scratch.contact_evaluations);
     let mut told = |time| progress(Progress { time, end_time });
     let mut watch = Watch::new(
@@ -211,13 +207,15 @@ pub fn run(
 
 /// The step (s) that a scenario asks for, or the one its stiffest contact suggests.
 ///
+/// A scaled stack takes the step of the full one, scaled, so that the two runs are the same run.
+///
 /// # Errors
 /// When the step asked for is above the critical one, with which no explicit method of a fixed step
 /// says anything.
 pub(crate) fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFailure> {
     let scale = scenario.run.similitude.sqrt();
     let Some(step) = scenario.run.step.map(|step| step * scale) else {
-        return Ok(default_step(assembly));
+        return Ok(default_step(assembly, scale));
     };
     let critical = critical_time_step(&assembly.model);
     let adapts = matches!(scenario.run.method, scenario::Method::BogackiShampine { .. });
@@ -227,7 +225,7 @@ pub(crate) fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64,
     Err(RunFailure::Step {
         asked: milliseconds(step / scale),
         reason: format!("the stiffest contact allows {:.2} ms at most", 1e3 * critical / scale),
-        instead: milliseconds(default_step(assembly) / scale),
+        instead: milliseconds(default_step(assembly, scale) / scale),
     })
 }
 
@@ -247,10 +245,10 @@ pub(crate) fn at_rest(
     state: &mut State<Planar>,
     scratch: &mut Scratch<Planar>,
 ) -> Result<Settled, RunFailure> {
-    let (step, suggested) = (time_step(scenario, assembly)?, default_step(assembly));
+    let scale = scenario.run.similitude.sqrt();
+    let (step, suggested) = (time_step(scenario, assembly)?, default_step(assembly, scale));
     let start = state.poses.clone();
     settle(&assembly.model, state, scratch, step, SETTLE_TOLERANCE).map_err(|error| {
-        let scale = scenario.run.similitude.sqrt();
         let SettleError::NotAtRest { body, moved } = error;
         if step > suggested {
             return RunFailure::Step {
@@ -392,8 +390,7 @@ impl Run {
 
     /// What the constants of the interfaces are stated for, such as "node"; "mixed" when they differ.
     pub fn stiffness_basis(&self) -> &'static str {
-        let mut bases =
-            self.assembly.model.interfaces().iter().map(|interface| interface.basis);
+        let mut bases = self.assembly.model.interfaces().iter().map(|interface| interface.basis);
         let Some(first) = bases.next() else { return Basis::Node.name() };
         if bases.all(|basis| basis == first) { first.name() } else { "mixed" }
     }
