@@ -11,6 +11,7 @@ use barrelstack_dynamics::{
 use crate::assemble::{AssembleError, Assembly, assemble};
 use crate::ground::{Ground, GroundError, ground};
 use crate::outcome::{Outcome, judge};
+use crate::overlap::check_overlap;
 use crate::scenario::{self, Scenario, Scene};
 use crate::step::{critical_time_step, default_step};
 use crate::watch::{Fates, Recording, Stresses, Thresholds, Watch};
@@ -103,9 +104,6 @@ const MOST_STEPS: f64 = 1e9;
 
 /// Share of the way of the body that goes furthest from which a body counts as gone with it.
 const LOST_SHARE: f64 = 0.25;
-
-/// Deepest overlap (m) of two bodies at the start that sinking under weight can explain.
-const OVERLAP_ALLOWED: f64 = 2e-3;
 
 /// Runs a scenario.
 ///
@@ -315,29 +313,6 @@ fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
          ({MOST_STEPS:.0e}): shorten run.duration, or see whether run.step and the stiffness of the \
          contacts have the right unit"
     )))
-}
-
-/// Refuses bodies that stand in each other before anything has moved.
-pub(crate) fn check_overlap(
-    assembly: &Assembly,
-    state: &State<Planar>,
-    scratch: &mut Scratch<Planar>,
-    length_scale: f64,
-) -> Result<(), AssembleError> {
-    let model = &assembly.model;
-    barrelstack_dynamics::evaluate(model, state, scratch);
-    let deepest = scratch.contacts.iter().max_by(|a, b| a.penetration.total_cmp(&b.penetration));
-    match deepest {
-        Some(contact) if contact.penetration > OVERLAP_ALLOWED * length_scale => {
-            let pair = &model.pairs()[contact.pair];
-            Err(AssembleError::Overlap {
-                first: model.bodies()[pair.contactor].name.clone(),
-                second: model.bodies()[pair.target].name.clone(),
-                depth: contact.penetration,
-            })
-        }
-        _ => Ok(()),
-    }
 }
 
 fn energy_warning(energy: &EnergySummary) -> Option<String> {
