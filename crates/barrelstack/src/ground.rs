@@ -12,6 +12,7 @@ use crate::scenario::{
     Amplitude, Direction, MotionSource, MotionSpec, Processing as ProcessingSpec, Pulse, PulseKind,
     RecordMotion, RecordSource, Scale, Scenario, Sine, Vertical,
 };
+use crate::system;
 
 /// What moves the ground of a run.
 #[derive(Clone, Debug, Default)]
@@ -68,6 +69,9 @@ pub enum GroundError {
         unit: f64,
     },
 }
+
+/// Largest record (bytes) that is read; the longest strong-motion files have a tenth of it.
+const RECORD_LIMIT: usize = 256 << 20;
 
 /// Reads or makes the motion of a scenario, scaled as it says.
 ///
@@ -126,8 +130,10 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
             let obtain = spec
                 .obtain
                 .as_ref()
-                .map(|how| format!("; {how}, then name it with --record FILE"))
-                .unwrap_or_default();
+                .map_or_else(
+                    || "; correct the path, or name another file with --record FILE".to_owned(),
+                    |how| format!("; {how}, then name your file with --record FILE"),
+                );
             read_file(&file.resolve(), &options, &obtain)?
         }
     };
@@ -145,7 +151,7 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
             record.ground_motion(&horizontal, Some(&vertical), &processing)?
         }
         Vertical::File(file) => {
-            let other = read_file(&file.resolve(), &options, "")?;
+            let other = read_file(&file.resolve(), &options, "; correct motion.vertical")?;
             warnings.extend(other.warnings.iter().map(|w| format!("{}: {w}", other.file)));
             let processing = match spec.processing {
                 ProcessingSpec::None => Processing::none(),
@@ -178,9 +184,9 @@ fn read_file(
     options: &ReadOptions,
     obtain: &str,
 ) -> Result<Record, GroundError> {
-    let bytes = std::fs::read(path).map_err(|error| GroundError::Unreadable {
+    let bytes = system::read(path, RECORD_LIMIT).map_err(|reason| GroundError::Unreadable {
         path: path.to_owned(),
-        reason: error.to_string(),
+        reason,
         obtain: obtain.to_owned(),
     })?;
     barrelstack_motion::read(&bytes, &path.display().to_string(), options)
