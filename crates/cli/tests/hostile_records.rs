@@ -97,7 +97,12 @@ fn records_of_something_else() {
 #[test]
 fn peer_files_that_are_damaged() {
     refuse("cut", "a.at2", &peer(100).as_bytes()[..900], &["100"]);
-    refuse("wrong count", "a.at2", &changed("NPTS=    100", "NPTS=     99"), &["99", "100"]);
+    refuse(
+        "wrong count",
+        "a.at2",
+        &changed("NPTS=    100", "NPTS=    101"),
+        &["line 4", "101", "100"],
+    );
     refuse("no count", "a.at2", &changed("NPTS=    100", "NPTS=      x"), &["line 4", "NPTS"]);
     refuse("no step", "a.at2", &changed(".0100", "0.000"), &["step"]);
     refuse("minus step", "a.at2", &changed(".0100", "-.010"), &["step"]);
@@ -121,13 +126,6 @@ fn columns_that_leave_something_out() {
     refuse("no unit", "a.csv", b"0.00 0.1\n0.01 0.2\n0.02 -0.3\n", &["unit", "motion.unit"]);
     let unit = &["motion.unit=1 g"][..];
     refuse_with("no step", "a.txt", b"0.1\n0.2\n-0.3\n0.1\n", unit, &["motion.time_step"]);
-    refuse_with(
-        "uneven",
-        "a.csv",
-        b"0.00 0.1\n0.01 0.2\n0.05 -0.3\n0.06 0.1\n",
-        unit,
-        &["line 3", "step"],
-    );
     refuse_with("back", "a.csv", b"0.00 0.1\n0.01 0.2\n0.00 -0.3\n0.01 0.1\n", unit, &["line 3"]);
     refuse_with("ragged", "a.csv", b"0.00 0.1\n0.01\n0.02 -0.3\n", unit, &["line 2"]);
     refuse_with("text", "a.csv", b"0.00 0.1\n0.01 high\n0.02 -0.3\n", unit, &["line 2", "high"]);
@@ -147,4 +145,34 @@ fn paths_that_are_no_files() {
     let missing = missing.to_str().unwrap();
     refused("missing", &with(missing), &out, &[missing, "no such file", "--record"]);
     refused("empty name", &with(""), &out, &["--record"]);
+}
+
+#[test]
+fn what_can_be_read_in_one_way_only_is_read_with_a_warning() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes, set, words) in [
+        ("a.at2", changed("NPTS=    100", "NPTS=     99"), "title=a", ["line 4", "99 values"]),
+        (
+            "a.csv",
+            b"0.00 0.1\n0.01 0.2\n0.05 -0.3\n0.06 0.1\n".to_vec(),
+            "motion.unit=1 g",
+            ["line 1", "unevenly spaced"],
+        ),
+    ] {
+        let file = folder.path().join(name);
+        fs::write(&file, bytes).unwrap();
+        let output = barrelstack([
+            "check",
+            "candia-6-barrels",
+            "--record",
+            file.to_str().unwrap(),
+            "--set",
+            set,
+        ]);
+        let text = common::stdout(&output);
+        assert_eq!(output.status.code(), Some(0), "{}", common::stderr(&output));
+        for word in [name].into_iter().chain(words) {
+            assert!(text.contains(word), "{name}: no {word:?} in {text}");
+        }
+    }
 }
