@@ -219,8 +219,7 @@ fn every_listed_scenario_can_be_shown_checked_and_resolved() {
     let fields = stdout(&barrelstack(["scenarios", "fields"]));
     assert!(fields.contains("candia-2008"));
     let schema = json(&stdout(&barrelstack(["scenarios", "schema"])));
-    let racks = schema["$defs"]["rack"]["properties"]["base"]["enum"].as_array().unwrap();
-    assert!(racks.contains(&"candia-2008".into()), "{racks:?}");
+    assert!(schema["$defs"]["rack"].to_string().contains("candia-2008"), "{schema}");
 }
 
 #[test]

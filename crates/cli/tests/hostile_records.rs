@@ -100,8 +100,8 @@ fn peer_files_that_are_damaged() {
     refuse(
         "wrong count",
         "a.at2",
-        &changed("NPTS=    100", "NPTS=    101"),
-        &["line 4", "101", "100"],
+        &changed("NPTS=    100", "NPTS=    120"),
+        &["line 4", "120", "100"],
     );
     refuse("no count", "a.at2", &changed("NPTS=    100", "NPTS=      x"), &["line 4", "NPTS"]);
     refuse("no step", "a.at2", &changed(".0100", "0.000"), &["step"]);
@@ -110,7 +110,7 @@ fn peer_files_that_are_damaged() {
     refuse("stars", "a.at2", &changed("  1.0000000E-1", "**************"), &["line 5", "*"]);
     refuse("nan", "a.at2", &changed("  1.0000000E-1", "           NaN"), &["line 5", "NaN"]);
     refuse("word", "a.at2", &changed("  1.0000000E-1", "        banana"), &["line 5", "banana"]);
-    refuse("huge", "a.at2", &changed("1.0000000E-1", "1.00000E+300"), &["m/s2", "unit"]);
+    refuse("huge", "a.at2", &changed("1.0000000E-1", "1.00000E+300"), &["line 5", "1e300", "unit"]);
     refuse(
         "infinite",
         "a.at2",
@@ -118,7 +118,9 @@ fn peer_files_that_are_damaged() {
         &["line 5", "1.00000E+999"],
     );
     refuse("one value", "a.at2", peer(1).as_bytes(), &["2 samples"]);
-    refuse("comma", "a.at2", &changed("1.0000000E-1", "1,0000000E-1"), &["line 5"]);
+    // A comma for the point all through the file, which makes two numbers of each.
+    let comma = peer(100).replace('.', ",").replacen(",0100", ".0100", 1);
+    refuse("comma", "a.at2", comma.as_bytes(), &["line 4", "100", "200"]);
 }
 
 #[test]
@@ -126,11 +128,17 @@ fn columns_that_leave_something_out() {
     refuse("no unit", "a.csv", b"0.00 0.1\n0.01 0.2\n0.02 -0.3\n", &["unit", "motion.unit"]);
     let unit = &["motion.unit=1 g"][..];
     refuse_with("no step", "a.txt", b"0.1\n0.2\n-0.3\n0.1\n", unit, &["motion.time_step"]);
-    refuse_with("back", "a.csv", b"0.00 0.1\n0.01 0.2\n0.00 -0.3\n0.01 0.1\n", unit, &["line 3"]);
+    refuse_with(
+        "back",
+        "a.csv",
+        b"0.00 0.1\n0.01 0.2\n0.00 -0.3\n0.01 0.1\n",
+        unit,
+        &["without time"],
+    );
     refuse_with("ragged", "a.csv", b"0.00 0.1\n0.01\n0.02 -0.3\n", unit, &["line 2"]);
     refuse_with("text", "a.csv", b"0.00 0.1\n0.01 high\n0.02 -0.3\n", unit, &["line 2", "high"]);
     let still = b"0.00 0.0\n0.01 0.0\n0.02 0.0\n0.03 0.0\n";
-    refuse_with("still", "a.csv", still, unit, &["zero"]);
+    refuse_with("still", "a.csv", still, unit, &["a channel that moves"]);
 }
 
 #[test]
