@@ -7,6 +7,7 @@
 //! skipped.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+#![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
 
 use std::io::Write as _;
 use std::ops::ControlFlow;
@@ -52,7 +53,7 @@ fn falls(run: &Run, level: u32) -> Vec<f64> {
     times
 }
 
-/// Largest value of the histories of displacement, of the first `samples`.
+/// The histories of displacement, of the ground and of all bodies.
 fn histories(run: &Run) -> impl Iterator<Item = &barrelstack::watch::Channel> {
     run.recording.channels.iter().filter(|channel| channel.name.contains("displacement"))
 }
