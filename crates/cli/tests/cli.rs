@@ -177,6 +177,23 @@ fn a_stack_that_stands_and_a_run_cut_short_say_so() {
 }
 
 #[test]
+fn a_run_that_broke_down_is_no_verdict_and_has_a_status_of_its_own() {
+    // A step close to the critical one, and no settling that would show it.
+    let broken = ["--set=run.settle=false", "--set=run.step=2.5 ms"];
+    let output = barrelstack(["run", "candia-8-barrels"].into_iter().chain(broken));
+    let text = stdout(&output);
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(text.contains("The run broke down and says nothing about the stack."), "{text}");
+    assert!(text.contains("outcome                 invalid\n"), "{text}");
+    assert!(!text.contains("fall"), "{text}");
+    let json_run = ["run", "candia-8-barrels", "--json"].into_iter().chain(broken);
+    let summary = json(&stdout(&barrelstack(json_run)));
+    assert_eq!(summary["outcome"]["kind"], "invalid");
+    assert!(summary["outcome"]["reason"].as_str().unwrap().contains("energy books"), "{summary}");
+    assert_eq!(summary["outcome"]["mode"], Value::Null);
+}
+
+#[test]
 fn a_free_scene_is_not_judged() {
     let text = stdout(&barrelstack(["run", "sliding-block"]));
     assert!(text.contains("outcome                 not judged: "), "{text}");
