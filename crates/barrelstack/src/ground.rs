@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
     AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Pads,
-    Processing, Pulse as MotionPulse, ReadError, ReadOptions, Record,
+    Processing, Pulse as MotionPulse, ReadError, ReadOptions, Record, Refusal,
 };
 
 use crate::scenario::{
@@ -127,13 +127,10 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
             })?
         }
         RecordSource::File(file) => {
-            let obtain = spec
-                .obtain
-                .as_ref()
-                .map_or_else(
-                    || "; correct the path, or name another file with --record FILE".to_owned(),
-                    |how| format!("; {how}, then name your file with --record FILE"),
-                );
+            let obtain = spec.obtain.as_ref().map_or_else(
+                || "; correct the path, or name another file with --record FILE".to_owned(),
+                |how| format!("; {how}, then name your file with --record FILE"),
+            );
             read_file(&file.resolve(), &options, &obtain)?
         }
     };
@@ -189,8 +186,20 @@ fn read_file(
         reason,
         obtain: obtain.to_owned(),
     })?;
-    barrelstack_motion::read(&bytes, &path.display().to_string(), options)
-        .map_err(|error| GroundError::Read(Box::new(error)))
+    let record = barrelstack_motion::read(&bytes, &path.display().to_string(), options);
+    record.map_err(|mut error| {
+        // The reader knows what is missing, the scenario where to state it.
+        if error.refusal == Refusal::Missing {
+            error.remedy += if error.expected.contains("unit") {
+                " in the scenario, for example motion.unit = \"1 g\""
+            } else if error.expected.contains("step") {
+                " in the scenario, for example motion.time_step = \"0.01 s\""
+            } else {
+                ""
+            };
+        }
+        GroundError::Read(Box::new(error))
+    })
 }
 
 fn unit(meters_per_second_squared: f64) -> Result<AccelerationUnit, GroundError> {

@@ -74,7 +74,9 @@ pub enum MotionError {
         reason: String,
     },
     /// The motion is zero in the measure asked for.
-    #[error("{measure} of \"{motion}\" is zero, so no factor brings it to {target}")]
+    #[error(
+        "{measure} of \"{motion}\" is zero, so no factor brings it to {target}; choose another component or another record"
+    )]
     Zero {
         /// Name of the measure.
         measure: String,
