@@ -15,10 +15,12 @@ pub mod export;
 pub mod ground;
 pub mod outcome;
 pub mod report;
+pub mod reproduce;
 pub mod run;
 pub mod scenario;
 pub mod step;
 pub mod summary;
+pub mod verify;
 pub mod watch;
 
 pub use check::check;

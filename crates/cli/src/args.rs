@@ -22,6 +22,8 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// Read a scenario, build the stack and let it settle, without shaking it.
     Check(CheckArgs),
+    /// Run every case of the paper behind the model and set its numbers beside ours.
+    Reproduce(ReproduceArgs),
     /// List the built-in scenarios, or print one.
     Scenarios(ScenariosArgs),
 }
@@ -75,6 +77,18 @@ pub(crate) struct DemoArgs {
 pub(crate) struct CheckArgs {
     #[command(flatten)]
     pub(crate) scenario: ScenarioArgs,
+}
+
+/// Arguments of `reproduce`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct ReproduceArgs {
+    /// The paper's record, RSN995_NORTHR_PEL360.AT2 of the PEER database; without it the bundled
+    /// record shakes the six barrels and nothing that depends on the motion is compared.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) record: Option<PathBuf>,
+    /// Where to write the page and its figures; files of an earlier page are replaced.
+    #[arg(long, value_name = "DIR", default_value = "barrelstack-reproduce")]
+    pub(crate) out: PathBuf,
 }
 
 /// Arguments of `scenarios`.

@@ -27,6 +27,11 @@ pub(crate) fn error(error: &anyhow::Error) {
     eprintln!("error: {error:#}");
 }
 
+/// What the reader of a result must know.
+pub(crate) fn warning(text: &str) {
+    eprintln!("warning: {text}");
+}
+
 /// The summary for people.
 pub(crate) fn summary(run: &Run, summary: &Summary) {
     line(&summary.title);
@@ -38,6 +43,6 @@ pub(crate) fn summary(run: &Run, summary: &Summary) {
         line(&row);
     }
     for warning in &summary.warnings {
-        eprintln!("warning: {warning}");
+        self::warning(warning);
     }
 }
