@@ -4,14 +4,15 @@ use std::path::PathBuf;
 
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
-    AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Pads, Processing,
-    Pulse as MotionPulse, ReadError, ReadOptions, Record,
+    AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Pads,
+    Processing, Pulse as MotionPulse, ReadError, ReadOptions, Record,
 };
 
 use crate::scenario::{
     Amplitude, Direction, MotionSource, MotionSpec, Processing as ProcessingSpec, Pulse, PulseKind,
     RecordMotion, RecordSource, Scale, Scenario, Sine, Vertical,
 };
+use crate::system;
 
 /// What moves the ground of a run.
 #[derive(Clone, Debug, Default)]
@@ -46,7 +47,7 @@ pub enum GroundError {
     },
     /// The file is no record.
     #[error(transparent)]
-    Read(#[from] ReadError),
+    Read(Box<ReadError>),
     /// The record has no such component, or cannot be scaled so.
     #[error(transparent)]
     Motion(#[from] MotionError),
@@ -68,6 +69,9 @@ pub enum GroundError {
         unit: f64,
     },
 }
+
+/// Largest record (bytes) that is read; the longest strong-motion files have a tenth of it.
+const RECORD_LIMIT: usize = 256 << 20;
 
 /// Reads or makes the motion of a scenario, scaled as it says.
 ///
@@ -93,8 +97,11 @@ fn scaled(
     run_scale: f64,
 ) -> Result<GroundMotion, MotionError> {
     match spec.scale {
-        Scale::Factor(factor) if factor == 1.0 => {}
-        Scale::Factor(factor) => motion = motion.scaled(factor),
+        Scale::Factor(factor) => {
+            if factor != 1.0 {
+                motion = motion.scaled(factor);
+            }
+        }
         Scale::Pga(target) => motion = motion.scale_to(IntensityMeasure::Pga, target)?,
         Scale::Pgv(target) => motion = motion.scale_to(IntensityMeasure::Pgv, target)?,
     }
@@ -113,18 +120,20 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
         sensitivity: None,
     };
     let record = match &spec.source {
-        RecordSource::Bundled(name) => barrelstack_motion::bundled(name).ok_or_else(|| {
-            GroundError::UnknownBundled {
+        RecordSource::Bundled(name) => {
+            barrelstack_motion::bundled(name).ok_or_else(|| GroundError::UnknownBundled {
                 name: name.clone(),
                 known: barrelstack_motion::BUNDLED.join(", "),
-            }
-        })?,
+            })?
+        }
         RecordSource::File(file) => {
             let obtain = spec
                 .obtain
                 .as_ref()
-                .map(|how| format!("; {how}, then name it with --record FILE"))
-                .unwrap_or_default();
+                .map_or_else(
+                    || "; correct the path, or name another file with --record FILE".to_owned(),
+                    |how| format!("; {how}, then name your file with --record FILE"),
+                );
             read_file(&file.resolve(), &options, &obtain)?
         }
     };
@@ -142,7 +151,7 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
             record.ground_motion(&horizontal, Some(&vertical), &processing)?
         }
         Vertical::File(file) => {
-            let other = read_file(&file.resolve(), &options, "")?;
+            let other = read_file(&file.resolve(), &options, "; correct motion.vertical")?;
             warnings.extend(other.warnings.iter().map(|w| format!("{}: {w}", other.file)));
             let processing = match spec.processing {
                 ProcessingSpec::None => Processing::none(),
@@ -175,12 +184,13 @@ fn read_file(
     options: &ReadOptions,
     obtain: &str,
 ) -> Result<Record, GroundError> {
-    let bytes = std::fs::read(path).map_err(|error| GroundError::Unreadable {
+    let bytes = system::read(path, RECORD_LIMIT).map_err(|reason| GroundError::Unreadable {
         path: path.to_owned(),
-        reason: error.to_string(),
+        reason,
         obtain: obtain.to_owned(),
     })?;
-    Ok(barrelstack_motion::read(&bytes, &path.display().to_string(), options)?)
+    barrelstack_motion::read(&bytes, &path.display().to_string(), options)
+        .map_err(|error| GroundError::Read(Box::new(error)))
 }
 
 fn unit(meters_per_second_squared: f64) -> Result<AccelerationUnit, GroundError> {
@@ -237,9 +247,11 @@ fn pulsed(pulse: &Pulse) -> Result<GroundMotion, MotionError> {
     let period = pulse.period;
     let unit = 1.0;
     let (name, natural, made) = match pulse.kind {
-        PulseKind::Ricker => {
-            ("Ricker pulse", Natural::Acceleration, MotionPulse::Ricker { acceleration: unit, period })
-        }
+        PulseKind::Ricker => (
+            "Ricker pulse",
+            Natural::Acceleration,
+            MotionPulse::Ricker { acceleration: unit, period },
+        ),
         PulseKind::HalfSine => (
             "half sine",
             Natural::Acceleration,
@@ -269,9 +281,11 @@ fn pulsed(pulse: &Pulse) -> Result<GroundMotion, MotionError> {
         PulseKind::CycloidB => {
             ("cycloid B", Natural::Velocity, MotionPulse::CycloidB { velocity: unit, period })
         }
-        PulseKind::CycloidC { cycles } => {
-            ("cycloid C", Natural::Velocity, MotionPulse::CycloidC { velocity: unit, period, cycles })
-        }
+        PulseKind::CycloidC { cycles } => (
+            "cycloid C",
+            Natural::Velocity,
+            MotionPulse::CycloidC { velocity: unit, period, cycles },
+        ),
         PulseKind::MavroeidisPapageorgiou { gamma, phase } => (
             "Mavroeidis–Papageorgiou pulse",
             Natural::Velocity,
@@ -282,8 +296,12 @@ fn pulsed(pulse: &Pulse) -> Result<GroundMotion, MotionError> {
     let sized = match (pulse.amplitude, natural) {
         (Amplitude::Acceleration(a), Natural::Acceleration) => base.scaled(a),
         (Amplitude::Velocity(v), Natural::Velocity) => base.scaled(v),
-        (Amplitude::Acceleration(a), Natural::Velocity) => base.scale_to(IntensityMeasure::Pga, a)?,
-        (Amplitude::Velocity(v), Natural::Acceleration) => base.scale_to(IntensityMeasure::Pgv, v)?,
+        (Amplitude::Acceleration(a), Natural::Velocity) => {
+            base.scale_to(IntensityMeasure::Pga, a)?
+        }
+        (Amplitude::Velocity(v), Natural::Acceleration) => {
+            base.scale_to(IntensityMeasure::Pgv, v)?
+        }
         (Amplitude::Displacement(d), _) => base.scale_to(IntensityMeasure::Pgd, d)?,
     };
     Ok(directed(sized, pulse.direction, pulse.start))

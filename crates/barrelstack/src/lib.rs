@@ -20,10 +20,11 @@ pub mod run;
 pub mod scenario;
 pub mod step;
 pub mod summary;
+mod system;
 pub mod verify;
 pub mod watch;
 
 pub use check::check;
-pub use run::{Run, RunFailure, run};
+pub use run::{Progress, Run, RunFailure, run};
 pub use scenario::Scenario;
 pub use summary::Summary;

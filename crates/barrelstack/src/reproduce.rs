@@ -25,7 +25,7 @@ use crate::run::RunFailure;
 use crate::scenario::ScenarioError;
 
 pub use cases::Motion;
-pub use compare::{Comparison, Verdict};
+pub use compare::{Comparison, Verdict, percent};
 
 /// The paper's results beside ours.
 #[derive(Clone, Debug)]
@@ -80,7 +80,7 @@ pub fn reproduce(
     tell: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Reproduction, ReproduceError> {
     let cases = cases::Cases::new(record)?;
-    let plan = results::Plan::new(&cases)?;
+    let plan = results::Plan::new(&cases);
     let done = pool::run_all(&plan.jobs, tell)?;
     let results = plan.read(cases.motion, done)?;
     let comparisons = rows::all(&results);

@@ -12,7 +12,7 @@ use crate::assemble::{AssembleError, Assembly, assemble};
 use crate::ground::{Ground, GroundError, ground};
 use crate::outcome::{Outcome, judge};
 use crate::scenario::{self, Scenario, Scene};
-use crate::step::default_step;
+use crate::step::{critical_time_step, default_step};
 use crate::watch::{Fates, Recording, Stresses, Thresholds, Watch};
 
 /// Everything that was seen of a run.
@@ -59,6 +59,15 @@ pub struct Work {
     pub contact_evaluations: u64,
 }
 
+/// How far a run is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Simulated time (s) that it has reached.
+    pub time: f64,
+    /// Simulated time (s) at which it ends, unless a collapse ends it earlier.
+    pub end_time: f64,
+}
+
 /// Why there is no run.
 #[derive(Debug, thiserror::Error)]
 pub enum RunFailure {
@@ -71,20 +80,35 @@ pub enum RunFailure {
     /// The stack does not stand by itself.
     #[error(transparent)]
     Settle(#[from] SettleError),
+    /// The step is too long for the contacts.
+    #[error(
+        "run.step = {asked:.3} ms is too long: {reason}; try {instead} ms, or leave it out"
+    )]
+    Step {
+        /// The step asked for (ms).
+        asked: f64,
+        /// How that shows.
+        reason: String,
+        /// The step that is taken when none is given (ms).
+        instead: f64,
+    },
     /// The run would not end, or not begin.
     #[error("{0}")]
     Duration(String),
 }
 
 /// Largest share of gravity that may be left unbalanced at rest.
-pub(crate) const SETTLE_TOLERANCE: f64 = 1e-10;
+const SETTLE_TOLERANCE: f64 = 1e-10;
+
+/// Most steps of a run; a stack takes some 10⁵ steps a second.
+const MOST_STEPS: f64 = 1e9;
 
 /// Deepest overlap (m) of two bodies at the start that sinking under weight can explain.
 const OVERLAP_ALLOWED: f64 = 2e-3;
 
 /// Runs a scenario.
 ///
-/// `progress` is told the simulated time (s) every 0.05 s of it and may stop the run; what was seen
+/// `progress` is told how far the run is every 0.05 s of simulated time and may stop it; what was seen
 /// until then is returned.
 /// A breakdown of the numbers is not an error but an outcome: [`Outcome::Invalid`].
 ///
@@ -92,7 +116,7 @@ const OVERLAP_ALLOWED: f64 = 2e-3;
 /// When the motion cannot be read, the stack cannot be built, or it does not stand.
 pub fn run(
     scenario: &Scenario,
-    progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Run, RunFailure> {
     let ground = ground(scenario)?;
     let assembly = assemble(scenario)?;
@@ -103,9 +127,10 @@ pub fn run(
     let mut state = State::initial(model);
     let mut scratch = Scratch::new(model);
     check_overlap(&assembly, &state, &mut scratch, scenario.run.similitude)?;
-    let step = time_step(scenario, &assembly);
+    let step = time_step(scenario, &assembly)?;
+    check_length(end_time, step)?;
     let settled = if scenario.run.settle {
-        Some(settle(model, &mut state, &mut scratch, step, SETTLE_TOLERANCE)?)
+        Some(at_rest(scenario, &assembly, &mut state, &mut scratch)?)
     } else {
         barrelstack_dynamics::evaluate(model, &state, &mut scratch);
         None
@@ -118,11 +143,10 @@ pub fn run(
 
     let simulation = Simulation { method: method(scenario), time_step: step, end_time };
     let thresholds = thresholds(scenario);
-    let rates = (
-        scenario.record.frame_rate / time_scale,
-        scenario.record.history_rate / time_scale,
-    );
+    let rates =
+        (scenario.record.frame_rate / time_scale, scenario.record.history_rate / time_scale);
     let (evaluations, elements) = (scratch.evaluations, scratch.contact_evaluations);
+    let mut told = |time| progress(Progress { time, end_time });
     let mut watch = Watch::new(
         &assembly,
         &ground,
@@ -131,7 +155,7 @@ pub fn run(
         thresholds,
         rates,
         scenario.run.stop_after_collapse.map(|after| after * time_scale),
-        progress,
+        &mut told,
     );
     let result = simulate(model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
     let Watch { recording, stresses, fates, interrupted, .. } = watch;
@@ -143,11 +167,13 @@ pub fn run(
             warnings.extend(energy_warning(&energy));
             if interrupted && totals.finish == Finish::Stopped {
                 warnings.push(format!(
-                    "the run was stopped at {:.3} s of {end_time:.3} s; what follows holds until then",
+                    "the run was stopped at {:.3} s of {end_time:.3} s; the results hold until then",
                     state.time
                 ));
             }
-            (judge(&assembly, &fates), energy, totals.steps)
+            let outcome = judge(&assembly, &fates);
+            warnings.extend(short_warning(&outcome, &ground, state.time).filter(|_| !interrupted));
+            (outcome, energy, totals.steps)
         }
         Err(error @ RunError::NotFinite { .. }) => {
             (Outcome::Invalid { reason: error.to_string() }, EnergySummary::default(), 0)
@@ -179,11 +205,53 @@ pub fn run(
 }
 
 /// The step (s) that a scenario asks for, or the one its stiffest contact suggests.
-pub(crate) fn time_step(scenario: &Scenario, assembly: &Assembly) -> f64 {
-    match scenario.run.step {
-        Some(step) => step * scenario.run.similitude.sqrt(),
-        None => default_step(assembly),
+///
+/// A scaled stack takes the step of the full one, scaled, so that the two runs are the same run.
+///
+/// # Errors
+/// When the step asked for is above the critical one, with which no explicit method of a fixed step
+/// says anything.
+pub(crate) fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFailure> {
+    let scale = scenario.run.similitude.sqrt();
+    let Some(step) = scenario.run.step.map(|step| step * scale) else {
+        return Ok(default_step(assembly, scale));
+    };
+    let critical = critical_time_step(&assembly.model);
+    let adapts = matches!(scenario.run.method, scenario::Method::BogackiShampine { .. });
+    if adapts || step < critical {
+        return Ok(step);
     }
+    Err(RunFailure::Step {
+        asked: 1e3 * step / scale,
+        reason: format!("the stiffest contact allows {:.2} ms at most", 1e3 * critical / scale),
+        instead: 1e3 * default_step(assembly, scale) / scale,
+    })
+}
+
+/// Lets the stack come to rest.
+///
+/// # Errors
+/// When it does not; blames the step where that is the likely reason.
+pub(crate) fn at_rest(
+    scenario: &Scenario,
+    assembly: &Assembly,
+    state: &mut State<Planar>,
+    scratch: &mut Scratch<Planar>,
+) -> Result<Settled, RunFailure> {
+    let scale = scenario.run.similitude.sqrt();
+    let (step, suggested) = (time_step(scenario, assembly)?, default_step(assembly, scale));
+    settle(&assembly.model, state, scratch, step, SETTLE_TOLERANCE).map_err(|error| {
+        if step > suggested {
+            let SettleError::NotAtRest { body, .. } = error;
+            RunFailure::Step {
+                asked: 1e3 * step / scale,
+                reason: format!("with it \"{body}\" does not come to rest under gravity"),
+                instead: 1e3 * suggested / scale,
+            }
+        } else {
+            error.into()
+        }
+    })
 }
 
 fn method(scenario: &Scenario) -> Method {
@@ -223,6 +291,19 @@ fn end_time(scenario: &Scenario, ground: &Ground, time_scale: f64) -> Result<f64
     }
 }
 
+/// Refuses a run that would not end in a day.
+fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
+    let steps = end_time / step;
+    if steps <= MOST_STEPS {
+        return Ok(());
+    }
+    Err(RunFailure::Duration(format!(
+        "{end_time:e} s in steps of {step:e} s are {steps:.0e} steps, more than a run may take \
+         ({MOST_STEPS:.0e}): shorten run.duration, or see whether run.step and the stiffness of the \
+         contacts have the right unit"
+    )))
+}
+
 /// Refuses bodies that stand in each other before anything has moved.
 pub(crate) fn check_overlap(
     assembly: &Assembly,
@@ -257,6 +338,19 @@ fn energy_warning(energy: &EnergySummary) -> Option<String> {
     })
 }
 
+/// A stack that stands in the middle of a motion has not stood it.
+fn short_warning(outcome: &Outcome, ground: &Ground, end_time: f64) -> Option<String> {
+    let motion = ground.motion.as_ref()?;
+    let short = *outcome == Outcome::Stable && end_time < motion.duration - 0.01;
+    short.then(|| {
+        format!(
+            "the run ends at {end_time:.1} s, the motion at {:.1} s: what the rest of it does is not \
+             known; leave out run.duration to see all of it",
+            motion.duration
+        )
+    })
+}
+
 /// Laws that cannot hold a body at rest say how fast it creeps.
 fn creep_warning(assembly: &Assembly) -> Vec<String> {
     assembly
@@ -283,8 +377,7 @@ impl Run {
 
     /// What the constants of the interfaces are stated for, such as "node"; "mixed" when they differ.
     pub fn stiffness_basis(&self) -> &'static str {
-        let mut bases =
-            self.assembly.model.interfaces().iter().map(|interface| interface.basis);
+        let mut bases = self.assembly.model.interfaces().iter().map(|interface| interface.basis);
         let Some(first) = bases.next() else { return Basis::Node.name() };
         if bases.all(|basis| basis == first) { first.name() } else { "mixed" }
     }

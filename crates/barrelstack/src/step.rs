@@ -14,13 +14,15 @@ const SHARE: f64 = 0.05;
 /// Penetration (m) at which laws that stiffen with penetration are measured.
 const REFERENCE: f64 = 0.01;
 
-/// The time step (s): a share of the critical one, rounded down to 1, 2 or 5 times a power of ten.
+/// The time step (s): a share of the critical one, rounded down to 1, 2 or 5 times a power of ten
+/// at full scale; `time_scale` is that of similitude.
 ///
 /// The critical time step of an explicit method is 2/ω, with ω² = Σk/m for the stiffest body: the
 /// springs of all nodes of one of its boundaries that face one target, over its mass.
-pub fn default_step(assembly: &Assembly) -> f64 {
-    let critical = critical_time_step(&assembly.model);
-    if critical.is_finite() { round_down(SHARE * critical) } else { 1e-3 }
+pub fn default_step(assembly: &Assembly, time_scale: f64) -> f64 {
+    let full_scale = critical_time_step(&assembly.model) / time_scale;
+    let step = if full_scale.is_finite() { round_down(SHARE * full_scale) } else { 1e-3 };
+    step * time_scale
 }
 
 /// The critical time step (s) of a model; infinite when nothing can touch.

@@ -5,6 +5,7 @@ use serde::Serialize;
 use crate::assemble::PartKind;
 use crate::outcome::Outcome;
 use crate::run::Run;
+use crate::watch::StressEnvelope;
 
 /// Version of the summary's layout.
 pub const SUMMARY_SCHEMA: u32 = 1;
@@ -341,8 +342,8 @@ fn bodies(run: &Run) -> Vec<BodySummary> {
                 peak_uplift: fate.peak_uplift,
                 peak_tilt: (part.kind == PartKind::Rack).then_some(fate.peak_tilt),
                 stress_at_rest: stress.map(|s| s.at_rest.iter().copied().fold(0.0, f64::max)),
-                stress_amplification: stress.and_then(|s| s.amplification()),
-                mean_stress_amplification: stress.and_then(|s| s.mean_amplification()),
+                stress_amplification: stress.and_then(StressEnvelope::amplification),
+                mean_stress_amplification: stress.and_then(StressEnvelope::mean_amplification),
             }
         })
         .collect()
@@ -353,16 +354,20 @@ fn demands(run: &Run) -> Demands {
     let of = |kind: PartKind, level: u32| {
         assembly.of_kind(kind).filter(move |body| assembly.parts[*body].level == Some(level))
     };
-    let most = |values: &mut dyn Iterator<Item = f64>| values.fold(None, |most: Option<f64>, v| {
-        Some(most.map_or(v, |m| if v.abs() > m.abs() { v } else { m }))
-    });
+    let most = |values: &mut dyn Iterator<Item = f64>| {
+        values.fold(None, |most: Option<f64>, v| {
+            Some(most.map_or(v, |m| if v.abs() > m.abs() { v } else { m }))
+        })
+    };
     let fate = |body: usize| run.fates.fate(body);
     let stresses = || of(PartKind::Barrel, 1).filter_map(|body| run.stresses.of(body));
     let drift = most(&mut of(PartKind::Barrel, assembly.levels).map(|b| fate(b).peak_displacement));
     Demands {
         top_drift_ratio: drift.filter(|_| assembly.height > 0.0).map(|d| d / assembly.height),
-        stress_amplification: most(&mut stresses().filter_map(|s| s.amplification())),
-        mean_stress_amplification: most(&mut stresses().filter_map(|s| s.mean_amplification())),
+        stress_amplification: most(&mut stresses().filter_map(StressEnvelope::amplification)),
+        mean_stress_amplification: most(
+            &mut stresses().filter_map(StressEnvelope::mean_amplification),
+        ),
         base_slip_residual: most(&mut of(PartKind::Rack, 1).map(|b| fate(b).residual_slip)),
         base_slip_at_collapse: most(
             &mut of(PartKind::Rack, 1).map(|b| fate(b).displacement_at_collapse),

@@ -14,7 +14,8 @@ fn paths_named_in(text: &str) -> Vec<String> {
         .chain(linked)
         .filter(|word| {
             let known = ["crates/", "xtask", "validation/", "scenarios/"];
-            let document = word.ends_with(".md") && !word.contains(' ');
+            let extension = Path::new(word).extension();
+            let document = extension.is_some_and(|e| e == "md") && !word.contains(' ');
             known.iter().any(|start| word.starts_with(start)) || document
         })
         .filter(|word| !word.contains([' ', '<', '*']))

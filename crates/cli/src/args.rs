@@ -4,9 +4,24 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+/// What the first page of help ends with.
+const AFTER_HELP: &str = "\
+Start with:
+  barrelstack demo                                       a first run, and a report to open in a browser
+  barrelstack scenarios show demo-napa > mine.toml       a commented scenario to change
+  barrelstack run mine.toml --record my-site.AT2 --out mine
+
+Results go to standard output, warnings and errors to standard error.
+
+Exit status:
+  0    there is a result, whatever became of the stack
+  1    the numbers broke down, and there is no verdict
+  2    there is none: a mistake in what was asked for, or a file that could not be read or written
+  130  stopped by Ctrl-C: what was computed until then was printed and written";
+
 /// Does a stack of wine barrels survive an earthquake, how does it fail, what would save it?
 #[derive(Debug, Parser)]
-#[command(name = "barrelstack", version, propagate_version = true)]
+#[command(name = "barrelstack", version, propagate_version = true, after_help = AFTER_HELP)]
 pub(crate) struct Args {
     /// What to do.
     #[command(subcommand)]
@@ -31,7 +46,7 @@ pub(crate) enum Command {
 /// A scenario and what to change in it.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ScenarioArgs {
-    /// A scenario file (TOML), or the name of a built-in scenario.
+    /// A scenario file (TOML), the name of a built-in scenario, or - for standard input.
     #[arg(default_value = "demo-napa", value_name = "SCENARIO")]
     pub(crate) scenario: String,
     /// Change a value, such as stack.levels=5 or "motion.scale.pgv=60 cm/s"; may be repeated.
@@ -50,13 +65,17 @@ pub(crate) struct RunArgs {
     /// Write summary, histories, envelopes and report into this folder, which must be new or empty.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Replace what an earlier run wrote into the folder.
+    /// Let the folder hold files, and replace those of an earlier run.
     #[arg(long, requires = "out")]
     pub(crate) overwrite: bool,
+    /// Repeat the run with half the step, finer nodes and disturbances of a nanometer, and say how
+    /// long it is predictable and whether its outcome is robust.
+    #[arg(long)]
+    pub(crate) verify: bool,
     /// Print one JSON document in place of the summary for people.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Show no progress.
+    /// Show no progress, which is shown on a terminal only; warnings are still printed.
     #[arg(long, short)]
     pub(crate) quiet: bool,
 }

@@ -59,6 +59,21 @@ fn a_run_stopped_and_continued_gives_the_bits_of_one_run() {
 }
 
 #[test]
+fn the_order_in_which_pairs_are_given_does_not_matter() {
+    let bodies = bodies(2008, 8);
+    let mut pairs = all_pairs(&bodies);
+    let model = Model::new(bodies.clone(), vec![rough()], pairs.clone(), DOWN).unwrap();
+    pairs.reverse();
+    pairs.push(pairs[3]);
+    let other = Model::new(bodies, vec![rough()], pairs, DOWN).unwrap();
+    assert_eq!(model.pairs(), other.pairs());
+    let (mut here, mut there) = (Scene::of(model), Scene::of(other));
+    here.run(&Still, Method::VelocityVerlet, 2e-4, 0.5);
+    there.run(&Still, Method::VelocityVerlet, 2e-4, 0.5);
+    assert_eq!(here.bits(), there.bits());
+}
+
+#[test]
 fn work_is_counted() {
     let mut scene = tumbling();
     let totals = scene.run(&Still, Method::RungeKutta4, 1e-3, 0.1);

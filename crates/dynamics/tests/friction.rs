@@ -157,6 +157,48 @@ fn a_slope_to_the_left_mirrors_one_to_the_right() {
     assert_eq!((left.0, left.1), (-right.0, -right.1));
 }
 
+#[test]
+fn a_node_slips_until_the_slip_turns_against_its_spring() {
+    let law = FrictionLaw::Coulomb {
+        static_coefficient: 0.5,
+        kinetic_coefficient: 0.3,
+        tangential_stiffness: 1e6,
+        tangential_damping: 0.0,
+    };
+    // A normal force of 1000 N: breaks at 500 N, slides at 300 N.
+    let commit = |displacement: f64, slipping: bool, slip: f64| {
+        let stick: Stick<Planar> = Stick { displacement, slipping };
+        stick.commit(&law, slip, 1000.0, 1.0)
+    };
+    assert!(!commit(0.49e-3, false, 0.1).slipping);
+    let broken = commit(0.51e-3, false, 0.1);
+    assert!(broken.slipping && (broken.displacement - 0.3e-3).abs() < 1e-18);
+    // Slipping goes on while the slip follows the spring, also where the spring has become short.
+    assert!(commit(0.2e-3, true, 0.1).slipping);
+    assert!(!commit(0.2e-3, true, -0.1).slipping);
+    assert!(!commit(-0.2e-3, true, 0.1).slipping);
+}
+
+#[test]
+fn a_stick_stores_half_its_force_times_its_stretch() {
+    let law = coulomb(0.5, 1e6, 0.0);
+    let found = |displacement: f64| {
+        let stick: Stick<Planar> = Stick { displacement, slipping: false };
+        law.force::<Planar>(stick, 0.0, 1000.0, 1.0)
+    };
+    assert!(
+        (found(0.2e-3).energy - 0.02).abs() < 1e-15 && (found(0.2e-3).force - 200.0).abs() < 1e-12
+    );
+}
+
+#[test]
+fn what_sticks_held_at_the_start_is_not_counted_as_lost() {
+    let mut scene = sledge(coulomb(0.5, STIFFNESS, 1e4), libm::atan(0.3), 0.0).settled(2e-4, 1e-10);
+    let summary = scene.run(&Still, Method::VelocityVerlet, 5e-4, 0.5).energy.summary(0);
+    assert!(summary.stick > 1e-3, "{summary:?}");
+    assert!(summary.friction.abs() < 1e-9 && summary.residual.abs() < 1e-9, "{summary:?}");
+}
+
 fn any_law() -> impl Strategy<Value = FrictionLaw> {
     prop_oneof![
         (0.0..1.0_f64, 0.0..1.0_f64, 1e3..1e7_f64, 0.0..1e4_f64).prop_map(

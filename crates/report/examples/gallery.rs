@@ -55,9 +55,7 @@ fn scene() -> Scene {
     for level in 0..4 {
         let z = LEVEL * f64::from(level);
         let beam = Polyline::rectangle([-0.72, 0.0], [0.72, 0.06]);
-        let cradle = |x: f64| {
-            Polyline::closed(vec![[x - 0.05, 0.06], [x + 0.05, 0.06], [x, 0.17]])
-        };
+        let cradle = |x: f64| Polyline::closed(vec![[x - 0.05, 0.06], [x + 0.05, 0.06], [x, 0.17]]);
         let outlines = vec![beam, cradle(-0.69), cradle(0.0), cradle(0.69)];
         bodies.push(SceneBody::new(format!("R{}", level + 1), Role::Rack, outlines));
         homes.push([0.0, z]);
@@ -98,7 +96,8 @@ fn frame(t: f64, homes: &[[f64; 2]]) -> Vec<[f64; 3]> {
             return [ground, 0.0, 0.0];
         }
         let height = home[1];
-        let sway = 0.035 * height * (t / 5.0).powi(2) * (2.0 - t / 4.0).exp() * (TAU * 0.8 * t).sin();
+        let sway =
+            0.035 * height * (t / 5.0).powi(2) * (2.0 - t / 4.0).exp() * (TAU * 0.8 * t).sin();
         let tilt = -0.3 * sway / (1.0 + height);
         let x = ground + home[0] + 0.3 * sway - tilt * (height - 0.5);
         let barrel = body % 3 != 1;
@@ -163,11 +162,16 @@ fn histories(scene: &Scene) -> Vec<Block> {
         };
         Series::new(&scene.bodies[body].name, times.clone(), (0..times.len()).map(at).collect())
     };
-    let mut displacement =
-        timeline(Axis::new("displacement to the ground", "cm"), vec![drift(3), drift(6), drift(9), drift(12)]);
+    let mut displacement = timeline(
+        Axis::new("displacement to the ground", "cm"),
+        vec![drift(3), drift(6), drift(9), drift(12)],
+    );
     displacement.marks = vec![Mark { at: FALL, label: "B8 leaves its cradle".into() }];
-    displacement.bands = vec![Band { from: 3.2, to: 17.5, label: "5–95 % of Arias intensity".into() }];
-    let force = |phase: f64| move |t: f64| 6.2 + 3.0 * ground_acceleration(t) * (TAU * 3.0 * t + phase).sin();
+    displacement.bands =
+        vec![Band { from: 3.2, to: 17.5, label: "5–95 % of Arias intensity".into() }];
+    let force = |phase: f64| {
+        move |t: f64| 6.2 + 3.0 * ground_acceleration(t) * (TAU * 3.0 * t + phase).sin()
+    };
     let mut forces = timeline(
         Axis::new("normal force", "kN"),
         vec![series("R1 on B1", times, force(0.0)), series("R1 on B2", times, force(2.0))],
@@ -190,20 +194,38 @@ fn histories(scene: &Scene) -> Vec<Block> {
     energy.series[0].style.area = true;
     vec![
         Block::Heading { level: 2, text: "Histories".into() },
-        Block::Paragraph("Drag across a plot to zoom all of them; click to move the player.".into()),
-        figure("displacement", "Horizontal displacement of the right barrels of each level to the ground.", FigureKind::Plot(displacement)),
-        figure("force", "Normal force between rack R1 and the barrels of level 1. The gap is lost contact.", FigureKind::Plot(forces)),
-        figure("energy", "Energy books: what the ground put in and where it went.", FigureKind::Plot(energy)),
+        Block::Paragraph(
+            "Drag across a plot to zoom all of them; click to move the player.".into(),
+        ),
+        figure(
+            "displacement",
+            "Horizontal displacement of the right barrels of each level to the ground.",
+            FigureKind::Plot(displacement),
+        ),
+        figure(
+            "force",
+            "Normal force between rack R1 and the barrels of level 1. The gap is lost contact.",
+            FigureKind::Plot(forces),
+        ),
+        figure(
+            "energy",
+            "Energy books: what the ground put in and where it went.",
+            FigureKind::Plot(energy),
+        ),
     ]
 }
 
 fn spectrum() -> Block {
     let periods: Vec<f64> = (0..200).map(|k| 0.02 * 10_f64.powf(f64::from(k) / 80.0)).collect();
-    let sa = |scale: f64| move |t: f64| scale * (0.35 + 1.5 * (t / 0.4).powi(2) / (1.0 + (t / 0.4).powf(3.4)));
+    let sa = |scale: f64| {
+        move |t: f64| scale * (0.35 + 1.5 * (t / 0.4).powi(2) / (1.0 + (t / 0.4).powf(3.4)))
+    };
     let mut list: Vec<Series> = (0..6)
         .map(|k| {
             let f = f64::from(k);
-            series("", &periods, move |t| sa(0.5 + 0.2 * f)(t) * (1.0 + 0.15 * (9.0 * t.ln() + f).sin()))
+            series("", &periods, move |t| {
+                sa(0.5 + 0.2 * f)(t) * (1.0 + 0.15 * (9.0 * t.ln() + f).sin())
+            })
         })
         .collect();
     for single in &mut list {
@@ -221,7 +243,11 @@ fn spectrum() -> Block {
         interactive: true,
         ..Plot::default()
     };
-    figure("spectrum", "Response spectrum, 5 % damping, with single motions in gray.", FigureKind::Plot(plot))
+    figure(
+        "spectrum",
+        "Response spectrum, 5 % damping, with single motions in gray.",
+        FigureKind::Plot(plot),
+    )
 }
 
 fn loop_and_dots() -> Vec<Block> {
@@ -237,7 +263,8 @@ fn loop_and_dots() -> Vec<Block> {
         ..Plot::default()
     };
     let levels = vec![0.1, 0.2, 0.3, 0.4, 0.5, 0.6];
-    let mut measured = Series::new("runs that fell", levels, vec![0.0, 0.02, 0.15, 0.48, 0.8, 0.96]);
+    let mut measured =
+        Series::new("runs that fell", levels, vec![0.0, 0.02, 0.15, 0.48, 0.8, 0.96]);
     measured.style.dots = true;
     let fragility = Plot {
         x: Axis::new("peak ground acceleration", "g"),
@@ -269,7 +296,13 @@ fn envelopes() -> Vec<Block> {
     for k in 0..count {
         let angle = TAU * f64::from(k) / f64::from(count);
         let (nz, nx) = angle.sin_cos();
-        barrel.samples.push(BoundarySample { x: RADIUS * nx, z: RADIUS * nz, nx, nz, coordinate: angle });
+        barrel.samples.push(BoundarySample {
+            x: RADIUS * nx,
+            z: RADIUS * nz,
+            nx,
+            nz,
+            coordinate: angle,
+        });
         let seats = bump(angle, TAU * 0.68, 0.10) + bump(angle, TAU * 0.82, 0.10);
         let top = bump(angle, TAU * 0.25, 0.12);
         barrel.static_stress.push(42.0 * seats + 55.0 * top);
@@ -293,15 +326,29 @@ fn envelopes() -> Vec<Block> {
     }
     vec![
         Block::Heading { level: 2, text: "Contact stress".into() },
-        figure("envelope-b1", "Normal contact stress on barrel B1: self-weight and the largest value at each point during shaking.", FigureKind::Envelope(barrel)),
-        figure("envelope-r2", "Normal contact stress along the beam of rack R2.", FigureKind::Envelope(rack)),
+        figure(
+            "envelope-b1",
+            "Normal contact stress on barrel B1: self-weight and the largest value at each point during shaking.",
+            FigureKind::Envelope(barrel),
+        ),
+        figure(
+            "envelope-r2",
+            "Normal contact stress along the beam of rack R2.",
+            FigureKind::Envelope(rack),
+        ),
     ]
 }
 
 fn tables() -> Vec<Block> {
     let mut demands = Table::new(
         "Demands, largest over the run.",
-        &[("demand", ""), ("where", ""), ("value", "SI unit of the row"), ("at", "s"), ("limit", "")],
+        &[
+            ("demand", ""),
+            ("where", ""),
+            ("value", "SI unit of the row"),
+            ("at", "s"),
+            ("limit", ""),
+        ],
     );
     let rows = [
         ("top drift over stack height", "B8", 0.052, 9.31, Some(0.05)),
@@ -319,13 +366,19 @@ fn tables() -> Vec<Block> {
             limit,
         ]);
     }
-    let mut inputs = Table::new("Inputs.", &[("input", ""), ("value", ""), ("unit", ""), ("from", "")]);
+    let mut inputs =
+        Table::new("Inputs.", &[("input", ""), ("value", ""), ("unit", ""), ("from", "")]);
     for (name, value, unit, from) in [
         ("stiffness of a contact", 9.8e5, "N/m", "assumed"),
         ("friction of rack on floor", 0.4, "", "measured on site"),
         ("mass of a full barrel", 269.0, "kg", "maker's sheet <2024> & scale"),
     ] {
-        inputs.rows.push(vec![Cell::text(name), Cell::Number(value, 3), Cell::text(unit), Cell::text(from)]);
+        inputs.rows.push(vec![
+            Cell::text(name),
+            Cell::Number(value, 3),
+            Cell::text(unit),
+            Cell::text(from),
+        ]);
     }
     vec![
         Block::Heading { level: 2, text: "Numbers".into() },
@@ -339,7 +392,10 @@ fn tables() -> Vec<Block> {
 
 fn spectrum_inside() -> Block {
     let times: Vec<f64> = (0..6000).map(|k| f64::from(k) * 0.01).collect();
-    let plot = timeline(Axis::new("ground acceleration", "g"), vec![series("x", &times, ground_acceleration)]);
+    let plot = timeline(
+        Axis::new("ground acceleration", "g"),
+        vec![series("x", &times, ground_acceleration)],
+    );
     figure("ground-motion", "The ground motion as applied.", FigureKind::Plot(plot))
 }
 
@@ -352,10 +408,20 @@ fn document() -> Document {
         traces: vec![trace(12), trace(11)],
         scene: Arc::clone(&scene),
     };
-    let panels = [(0.0, "start"), (9.05, "largest sway"), (FALL + 0.05, "B8 leaves"), (FALL + 0.5, "in the air"), (FALL + 0.8, "on the floor"), (DURATION, "end")];
+    let panels = [
+        (0.0, "start"),
+        (9.05, "largest sway"),
+        (FALL + 0.05, "B8 leaves"),
+        (FALL + 0.5, "in the air"),
+        (FALL + 0.8, "on the floor"),
+        (DURATION, "end"),
+    ];
     let strip = Strip {
         scene: Arc::clone(&scene),
-        panels: panels.iter().map(|(time, note)| Panel { time: *time, note: (*note).into() }).collect(),
+        panels: panels
+            .iter()
+            .map(|(time, note)| Panel { time: *time, note: (*note).into() })
+            .collect(),
     };
     let mut blocks = vec![Block::Player(player)];
     blocks.push(Block::Heading { level: 2, text: "Collapse sequence".into() });
@@ -366,7 +432,10 @@ fn document() -> Document {
     blocks.push(spectrum());
     blocks.extend(loop_and_dots());
     blocks.extend(tables());
-    blocks.push(Block::List(vec!["A list item.".into(), "Another with <b>no</b> markup & all.".into()]));
+    blocks.push(Block::List(vec![
+        "A list item.".into(),
+        "Another with <b>no</b> markup & all.".into(),
+    ]));
     Document {
         title: "Four levels of two barrels, synthetic motion at 0.42 g".into(),
         verdict: Verdict {
@@ -395,14 +464,25 @@ fn empty_blocks() -> Vec<Block> {
         ..Scene::default()
     };
     let player = |id: &str, scene: Scene| {
-        Block::Player(Player { id: id.into(), caption: id.into(), scene: Arc::new(scene), traces: vec![] })
+        Block::Player(Player {
+            id: id.into(),
+            caption: id.into(),
+            scene: Arc::new(scene),
+            traces: vec![],
+        })
     };
-    let flat = timeline(Axis::new("a", ""), vec![Series::new("flat", vec![0.0, 1.0], vec![2.0, 2.0])]);
-    let gaps = timeline(Axis::new("b", ""), vec![Series::new("gaps", vec![0.0, 1.0], vec![f64::NAN; 2])]);
+    let flat =
+        timeline(Axis::new("a", ""), vec![Series::new("flat", vec![0.0, 1.0], vec![2.0, 2.0])]);
+    let gaps =
+        timeline(Axis::new("b", ""), vec![Series::new("gaps", vec![0.0, 1.0], vec![f64::NAN; 2])]);
     vec![
         player("one frame", one),
         player("no frames", Scene::default()),
-        figure("nothing", "A plot without series.", FigureKind::Plot(Plot { interactive: true, ..Plot::default() })),
+        figure(
+            "nothing",
+            "A plot without series.",
+            FigureKind::Plot(Plot { interactive: true, ..Plot::default() }),
+        ),
         figure("flat", "A level line.", FigureKind::Plot(flat)),
         figure("gaps", "Only gaps.", FigureKind::Plot(gaps)),
         figure("no stress", "An empty envelope.", FigureKind::Envelope(Envelope::default())),

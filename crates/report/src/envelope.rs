@@ -87,7 +87,9 @@ impl Envelope {
             let class = if line.closed { "outline" } else { "outline open" };
             svg.path(class, "", &[points], line.closed);
         }
-        for (stresses, class) in [(&self.static_stress, "static"), (&self.dynamic_stress, "dynamic")] {
+        for (stresses, class) in
+            [(&self.static_stress, "static"), (&self.dynamic_stress, "dynamic")]
+        {
             let shapes: Vec<Vec<[f64; 2]>> = self
                 .runs(stresses)
                 .iter()
@@ -184,7 +186,15 @@ impl Envelope {
         );
         for at in 0..self.count() {
             let s = &self.samples[at];
-            let cells = [s.coordinate, s.x, s.z, s.nx, s.nz, self.static_stress[at], self.dynamic_stress[at]];
+            let cells = [
+                s.coordinate,
+                s.x,
+                s.z,
+                s.nx,
+                s.nz,
+                self.static_stress[at],
+                self.dynamic_stress[at],
+            ];
             out.push_str(&cells.map(number::csv_number).join(","));
             out.push('\n');
         }

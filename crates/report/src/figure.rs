@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::{Document, Block, Envelope, Plot, Strip, escape, svg::Svg};
+use crate::{Block, Document, Envelope, Plot, Strip, escape, svg::Svg};
 
 /// One picture with a caption.
 #[derive(Clone, Debug, PartialEq)]

@@ -245,7 +245,9 @@ impl Writer {
         let id = self.names.take(&player.id);
         let place = self.payload.players.len();
         self.payload.players.push(player.payload(&id));
-        self.put(&format!("<figure class=\"player\" id=\"figure-{id}\" data-player=\"{place}\">\n"));
+        self.put(&format!(
+            "<figure class=\"player\" id=\"figure-{id}\" data-player=\"{place}\">\n"
+        ));
         self.put(PLAYER_CONTROLS);
         self.put("<div class=\"paper\">\n");
         self.strip(&Strip::of_run(std::sync::Arc::clone(&player.scene), 6), &id);

@@ -59,8 +59,8 @@ pub use pack::{POSE_QUANTUM, TIME_QUANTUM};
 pub use player::Player;
 pub use plot::{Axis, Band, Mark, Plot, Scale, Series, SeriesStyle};
 pub use scene::{
-    ContactForce, Event, EventKind, Frames, History, Point, Polyline, Pose2, Role, Scene, SceneBody,
-    Trace,
+    ContactForce, Event, EventKind, Frames, History, Point, Polyline, Pose2, Role, Scene,
+    SceneBody, Trace,
 };
 pub use strip::{Panel, Strip};
 pub use table::{Cell, Column, Table};

@@ -111,7 +111,8 @@ impl Payload {
 }
 
 fn axis(axis: &Axis) -> Value {
-    let range = axis.range.filter(|[low, high]| axis.shows(*low) && axis.shows(*high) && low < high);
+    let range =
+        axis.range.filter(|[low, high]| axis.shows(*low) && axis.shows(*high) && low < high);
     json!({
         "title": axis.title(),
         "label": axis.label,
@@ -170,7 +171,5 @@ fn palette_css() -> String {
     };
     let light = list(|(name, light, _)| format!("--{name}:{light}"));
     let dark = list(|(name, _, dark)| format!("--{name}:{dark}"));
-    format!(
-        ":root{{{light}}}\n@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n"
-    )
+    format!(":root{{{light}}}\n@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n")
 }

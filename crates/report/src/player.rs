@@ -57,7 +57,8 @@ impl Player {
         let mut channels = Vec::with_capacity(3 * scene.bodies.len());
         for body in 0..scene.bodies.len() {
             for component in 0..3 {
-                let value = |f: usize| scene.frames.pose(f, body).map_or(f64::NAN, |p| p[component]);
+                let value =
+                    |f: usize| scene.frames.pose(f, body).map_or(f64::NAN, |p| p[component]);
                 channels.push((0..count).map(value).collect::<Vec<f64>>());
             }
         }

@@ -171,7 +171,9 @@ impl Plot {
         for row in 0..rows {
             let mut cells = Vec::new();
             for (x, members) in &groups {
-                let cell = |values: &[f64]| values.get(row).map_or(String::new(), |v| number::csv_number(*v));
+                let cell = |values: &[f64]| {
+                    values.get(row).map_or(String::new(), |v| number::csv_number(*v))
+                };
                 cells.push(cell(x));
                 cells.extend(members.iter().map(|s| cell(&s.y[..s.len()])));
             }

@@ -61,14 +61,23 @@ impl Plot {
         self.draw_marks(&mut svg, &x, &y, top);
         for (at, corner, label) in legend {
             let class = self.class(at);
-            svg.path(&class, self.dash(at), &[vec![[corner[0], corner[1] - 4.0], [corner[0] + 26.0, corner[1] - 4.0]]], false);
+            svg.path(
+                &class,
+                self.dash(at),
+                &[vec![[corner[0], corner[1] - 4.0], [corner[0] + 26.0, corner[1] - 4.0]]],
+                false,
+            );
             svg.text("label", [corner[0] + 32.0, corner[1]], Anchor::Start, &label);
         }
         svg
     }
 
     fn class(&self, at: usize) -> String {
-        if self.series[at].style.muted { "series muted".into() } else { format!("series s{}", self.look(at)) }
+        if self.series[at].style.muted {
+            "series muted".into()
+        } else {
+            format!("series s{}", self.look(at))
+        }
     }
 
     fn dash(&self, at: usize) -> &'static str {
@@ -142,7 +151,8 @@ impl Plot {
             let class = self.class(at);
             let runs = self.runs(at, x, y);
             if series.style.area {
-                let foot = if y.log { y.pixels[0] } else { y.at(0.0_f64.clamp(y.range[0], y.range[1])) };
+                let foot =
+                    if y.log { y.pixels[0] } else { y.at(0.0_f64.clamp(y.range[0], y.range[1])) };
                 let shapes: Vec<_> = runs
                     .iter()
                     .map(|run| {

@@ -329,7 +329,8 @@ pub(crate) fn window(scene: &Scene, frames: &[usize]) -> Extent {
     }
     if !first.is_empty() {
         let reach = first.width().max(first.height());
-        all.lower = [all.lower[0].max(first.lower[0] - reach), all.lower[1].max(first.lower[1] - 0.5)];
+        all.lower =
+            [all.lower[0].max(first.lower[0] - reach), all.lower[1].max(first.lower[1] - 0.5)];
         all.upper = [
             all.upper[0].min(first.upper[0] + reach),
             all.upper[1].min(first.upper[1] + 0.5 * reach),

@@ -85,8 +85,9 @@ impl Svg {
     pub(crate) fn rect(&mut self, class: &str, lower: [f64; 2], size: [f64; 2]) {
         let [x, y] = lower.map(coordinate);
         let [w, h] = size.map(|v| coordinate(v.max(0.0)));
-        self.body
-            .push_str(&format!(r#"<rect class="{class}" x="{x}" y="{y}" width="{w}" height="{h}"/>"#));
+        self.body.push_str(&format!(
+            r#"<rect class="{class}" x="{x}" y="{y}" width="{w}" height="{h}"/>"#
+        ));
     }
 
     pub(crate) fn circle(&mut self, class: &str, center: [f64; 2], radius: f64) {
@@ -100,11 +101,8 @@ impl Svg {
         if data.is_empty() {
             return;
         }
-        let dash = if dash.is_empty() {
-            String::new()
-        } else {
-            format!(r#" stroke-dasharray="{dash}""#)
-        };
+        let dash =
+            if dash.is_empty() { String::new() } else { format!(r#" stroke-dasharray="{dash}""#) };
         self.body.push_str(&format!(r#"<path class="{class}"{dash} d="{data}"/>"#));
     }
 

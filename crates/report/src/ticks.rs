@@ -51,11 +51,8 @@ pub fn linear_ticks(low: f64, high: f64, target: usize) -> Ticks {
     let mut index = first;
     while index <= last {
         // Dividing by a whole power of ten gives 0.3 where multiplying by 0.1 gives 0.30000000000000004.
-        let value = if exponent < 0.0 {
-            index * factor / 10_f64.powf(-exponent)
-        } else {
-            index * step
-        };
+        let value =
+            if exponent < 0.0 { index * factor / 10_f64.powf(-exponent) } else { index * step };
         values.push(value + 0.0);
         index += 1.0;
     }

@@ -60,15 +60,13 @@ fn join(
     pairs: &mut Vec<ContactPair>,
 ) {
     let rolls = |body: &Body<Planar>| matches!(body.nodes.first(), Some(Nodes::Rolling { .. }));
-    let of = |kind: &str| -> Vec<BodyId> {
-        (0..bodies.len()).filter(|i| kinds[*i] == kind).collect()
-    };
+    let of =
+        |kind: &str| -> Vec<BodyId> { (0..bodies.len()).filter(|i| kinds[*i] == kind).collect() };
     for contactor in of(between[0]) {
         for target in of(between[1]) {
             let both_fixed = bodies[contactor].motion == Motion::Prescribed
                 && bodies[target].motion == Motion::Prescribed;
-            let said =
-                contactor > target && rolls(&bodies[contactor]) && rolls(&bodies[target]);
+            let said = contactor > target && rolls(&bodies[contactor]) && rolls(&bodies[target]);
             let twice = between[0] == between[1] && said;
             if contactor == target || both_fixed || twice {
                 continue;
@@ -142,19 +140,14 @@ fn free_body(body: &FreeBody, scale: Similitude) -> Result<(Body<Planar>, Part),
             linear: Vec2::new(body.velocity[0], body.velocity[1]) * scale.time(),
             angular: body.spin / scale.time(),
         },
-        surfaces: vec![Placed {
-            surface: shape,
-            offset: -center,
-            rotation: Rotation2::identity(),
-        }],
+        surfaces: vec![Placed { surface: shape, offset: -center, rotation: Rotation2::identity() }],
         nodes: vec![nodes],
     };
     Ok((body, part))
 }
 
 fn shape(body: &FreeBody, length: f64) -> Result<Shape, AssembleError> {
-    let refuse =
-        |problem: String| AssembleError::Shape { body: body.name.clone(), problem };
+    let refuse = |problem: String| AssembleError::Shape { body: body.name.clone(), problem };
     Ok(match &body.shape {
         scenario::Shape::Rectangle { width, height, corner_radius } => Shape::Polygon(
             Polygon::rectangle(width * length, height * length, corner_radius * length)
@@ -199,14 +192,12 @@ fn nodes(body: &FreeBody, shape: &Shape, center: Vec2, length: f64) -> Nodes<Pla
             let around = std::f64::consts::TAU * circle.radius;
             shape.nodes(around / f64::from(count.max(1)))
         }
-        // For curved shapes a count divides the whole boundary; corners are where it has kinks.
-        (scenario::Nodes::Count(_) | scenario::Nodes::Corners | scenario::Nodes::Rolling, _) => {
-            let parts = match body.nodes {
-                scenario::Nodes::Count(count) => f64::from(count.max(1)),
-                _ => 64.0,
-            };
-            let size: f64 = shape.nodes(f64::INFINITY).iter().map(|n| n.tributary_length).sum();
-            shape.nodes(size / parts)
+        // For curved shapes a count divides the whole boundary; without one, 64 parts are fine enough.
+        (scenario::Nodes::Count(count), _) => {
+            shape.nodes(boundary_length(shape) / f64::from(count.max(1)))
+        }
+        (scenario::Nodes::Corners | scenario::Nodes::Rolling, _) => {
+            shape.nodes(boundary_length(shape) / 64.0)
         }
     };
     Nodes::Fixed(
@@ -218,4 +209,9 @@ fn nodes(body: &FreeBody, shape: &Shape, center: Vec2, length: f64) -> Nodes<Pla
             })
             .collect(),
     )
+}
+
+/// The length (m) of a shape's boundary.
+fn boundary_length(shape: &Shape) -> f64 {
+    shape.nodes(f64::INFINITY).iter().map(|node| node.tributary_length).sum()
 }

@@ -8,7 +8,7 @@
 use barrelstack_dynamics::shape::{BarrelProfile, Polygon};
 use barrelstack_dynamics::{BodyId, Shape, Vec2};
 
-use super::stack::{Builder, Draft, DraftNodes};
+use super::builder::{Builder, Draft, DraftNodes};
 use super::{AssembleError, PartKind, outline_of};
 use crate::scenario::{Rack, RackKind, StackBody, View};
 
@@ -117,7 +117,8 @@ fn add_rack(
         column,
         mass,
         // The rails carry the mass, as two lines of it, each a rectangle of tube.
-        inertia: mass * (half_width.powi(2) + (rack.rail_width.powi(2) + rack.clearance.powi(2)) / 12.0),
+        inertia: mass
+            * (half_width.powi(2) + (rack.rail_width.powi(2) + rack.clearance.powi(2)) / 12.0),
         position: Vec2::new(underside.x + offset, underside.z + half_height),
         size: half_width,
         surfaces,
@@ -179,10 +180,8 @@ fn rail_nodes(rack: &Rack, rails: &[f64], half_height: f64) -> Vec<(Vec2, f64)> 
             for i in 0..=parts as u32 {
                 let edge = i == 0 || f64::from(i) >= parts;
                 let x = rail - 0.5 * rack.rail_width + f64::from(i) * step;
-                nodes.push((
-                    Vec2::new(x, side * half_height),
-                    if edge { 0.5 * step } else { step },
-                ));
+                nodes
+                    .push((Vec2::new(x, side * half_height), if edge { 0.5 * step } else { step }));
             }
         }
     }

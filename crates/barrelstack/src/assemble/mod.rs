@@ -1,5 +1,6 @@
 //! From a scenario to bodies that can move: the model, and what each of its bodies means.
 
+mod builder;
 mod free;
 mod interfaces;
 mod longitudinal;

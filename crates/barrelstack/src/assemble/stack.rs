@@ -1,29 +1,11 @@
-//! What both views of a stack have in common: bodies in order, and which boundaries may meet.
+//! A stack in one of its two views, with its laws of contact.
 
-use barrelstack_dynamics::shape::HalfPlane;
-use barrelstack_dynamics::space::Rotation2;
-use barrelstack_dynamics::{
-    Body, BodyId, ContactPair, Interface, Model, Motion, Placed, Planar, Pose, Shape, Twist, Vec2,
-};
+use barrelstack_dynamics::{Interface, Model, Planar, Vec2};
 
+use super::builder::{BARREL_BARREL, BARREL_GROUND, BARREL_RACK, Builder, RACK_GROUND, RACK_RACK};
 use super::interfaces::interface;
-use super::{AssembleError, Assembly, Outline, Part, PartKind, Similitude, longitudinal, transverse};
-use crate::scenario::{BodyOverride, StackBody, StackSpec, View};
-
-/// The interfaces of a stack, in the order of their ids.
-const RACK_GROUND: usize = 0;
-const BARREL_RACK: usize = 1;
-const BARREL_BARREL: usize = 2;
-const BARREL_GROUND: usize = 3;
-const RACK_RACK: usize = 4;
-
-/// A stack while it is built up.
-pub(super) struct Builder<'a> {
-    pub(super) spec: &'a StackSpec,
-    pub(super) scale: Similitude,
-    bodies: Vec<Body<Planar>>,
-    parts: Vec<Part>,
-}
+use super::{AssembleError, Assembly, Similitude, longitudinal, transverse};
+use crate::scenario::{StackInterfaces, StackSpec, View};
 
 /// Builds a stack in its view.
 pub(super) fn assemble(
@@ -31,8 +13,7 @@ pub(super) fn assemble(
     gravity: f64,
     scale: Similitude,
 ) -> Result<Assembly, AssembleError> {
-    let mut builder = Builder { spec, scale, bodies: Vec::new(), parts: Vec::new() };
-    builder.add_ground();
+    let mut builder = Builder::new(spec, scale);
     let (height, rack_reach) = match spec.view {
         View::Transverse => transverse::build(&mut builder)?,
         View::Longitudinal => longitudinal::build(&mut builder)?,
@@ -41,17 +22,7 @@ pub(super) fn assemble(
         builder.mirror();
     }
     let pairs = builder.pairs();
-    let laws = &spec.interfaces;
-    let interfaces: Vec<Interface<Planar>> = [
-        ("rack-ground", &laws.rack_ground),
-        ("barrel-rack", &laws.barrel_rack),
-        ("barrel-barrel", &laws.barrel_barrel),
-        ("barrel-ground", &laws.barrel_ground),
-        ("rack-rack", &laws.rack_rack),
-    ]
-    .into_iter()
-    .map(|(name, law)| interface(name, law, scale))
-    .collect();
+    let interfaces = laws(&spec.interfaces, scale);
     let model = Model::new(builder.bodies, interfaces, pairs, Vec2::new(0.0, -gravity))?;
     Ok(Assembly {
         model,
@@ -63,216 +34,15 @@ pub(super) fn assemble(
     })
 }
 
-/// What a view says of a body: full-scale numbers in its own frame, from its center of mass.
-pub(super) struct Draft {
-    pub(super) name: String,
-    pub(super) kind: PartKind,
-    pub(super) level: u32,
-    pub(super) column: u32,
-    /// Mass (kg) and moment of inertia (kg·m²).
-    pub(super) mass: f64,
-    pub(super) inertia: f64,
-    /// Center of mass (m).
-    pub(super) position: Vec2,
-    /// A length that tells its size (m).
-    pub(super) size: f64,
-    pub(super) surfaces: Vec<(Shape, Vec2)>,
-    pub(super) nodes: Vec<DraftNodes>,
-    pub(super) outlines: Vec<Outline>,
-    pub(super) carrier: Option<BodyId>,
-    pub(super) supports: Vec<BodyId>,
-}
-
-/// A node set of a draft.
-pub(super) enum DraftNodes {
-    /// Positions (m) and tributary lengths (m).
-    Fixed(Vec<(Vec2, f64)>),
-    /// A rolling node of a circle about the center of mass, and its tributary length (m).
-    Rolling(f64, f64),
-}
-
-impl Builder<'_> {
-    fn add_ground(&mut self) {
-        self.bodies.push(Body {
-            name: "ground".into(),
-            motion: Motion::Prescribed,
-            mass: 1.0,
-            inertia: 1.0,
-            damping: None,
-            pose: Pose { position: Vec2::default(), orientation: 0.0 },
-            twist: Twist::default(),
-            surfaces: vec![Placed {
-                surface: Shape::HalfPlane(HalfPlane),
-                offset: Vec2::default(),
-                rotation: Rotation2::identity(),
-            }],
-            nodes: Vec::new(),
-        });
-        self.parts.push(Part {
-            name: "ground".into(),
-            kind: PartKind::Ground,
-            level: None,
-            column: None,
-            carrier: None,
-            supports: Vec::new(),
-            size: 0.0,
-            outlines: vec![super::floor()],
-        });
-    }
-
-    /// Adds a body, scaled; returns its id.
-    pub(super) fn add(&mut self, draft: Draft) -> BodyId {
-        use barrelstack_dynamics::{Node, Nodes};
-        let length = self.scale.length;
-        let nodes = draft.nodes.into_iter().map(|set| match set {
-            DraftNodes::Fixed(nodes) => Nodes::Fixed(
-                nodes
-                    .into_iter()
-                    .map(|(position, tributary)| Node {
-                        position: position * length,
-                        tributary_length: tributary * length,
-                    })
-                    .collect(),
-            ),
-            DraftNodes::Rolling(radius, tributary) => Nodes::Rolling {
-                center: Vec2::default(),
-                radius: radius * length,
-                tributary_length: tributary * length,
-            },
-        });
-        let surfaces = draft.surfaces.into_iter().map(|(shape, offset)| Placed {
-            surface: scaled(shape, length),
-            offset: offset * length,
-            rotation: Rotation2::identity(),
-        });
-        self.bodies.push(Body {
-            name: draft.name.clone(),
-            motion: Motion::Free,
-            mass: draft.mass * self.scale.mass(),
-            inertia: draft.inertia * self.scale.inertia(),
-            damping: None,
-            pose: Pose { position: draft.position * length, orientation: 0.0 },
-            twist: Twist::default(),
-            surfaces: surfaces.collect(),
-            nodes: nodes.collect(),
-        });
-        let outlines = draft.outlines.into_iter().map(|outline| Outline {
-            points: outline.points.into_iter().map(|p| p * length).collect(),
-            closed: outline.closed,
-        });
-        self.parts.push(Part {
-            name: draft.name,
-            kind: draft.kind,
-            level: Some(draft.level),
-            column: Some(draft.column),
-            carrier: draft.carrier,
-            supports: draft.supports,
-            size: draft.size * length,
-            outlines: outlines.collect(),
-        });
-        self.bodies.len() - 1
-    }
-
-    /// What the scenario changes at one place, later entries last.
-    pub(super) fn overrides(
-        &self,
-        body: StackBody,
-        level: u32,
-        column: u32,
-    ) -> impl Iterator<Item = &BodyOverride> {
-        self.spec.overrides.iter().filter(move |o| {
-            o.body == body && o.level == level && o.column.is_none_or(|c| c == column)
-        })
-    }
-
-    /// Turns the stack left to right: everything at `x` goes to `−x`.
-    fn mirror(&mut self) {
-        use barrelstack_dynamics::Nodes;
-        let flip = |v: &mut Vec2| v.x = -v.x;
-        for body in &mut self.bodies {
-            flip(&mut body.pose.position);
-            for set in &mut body.nodes {
-                if let Nodes::Fixed(nodes) = set {
-                    nodes.iter_mut().for_each(|node| flip(&mut node.position));
-                }
-            }
-            for placed in &mut body.surfaces {
-                flip(&mut placed.offset);
-                // Every shape of a stack is symmetric about its own frame, but for polygons.
-                if let Shape::Polygon(polygon) = &placed.surface {
-                    placed.surface = Shape::Polygon(polygon.mirrored());
-                }
-            }
-        }
-        for outline in self.parts.iter_mut().flat_map(|part| &mut part.outlines) {
-            outline.points.iter_mut().for_each(flip);
-        }
-    }
-
-    /// All boundaries that can ever meet, each with its interface.
-    ///
-    /// Racks carry the nodes against barrels and against each other; barrels against the ground and
-    /// against barrels. Between two barrels the one with the lower id carries the nodes when they
-    /// roll (the other's would say the same), and both do when their nodes are fixed.
-    fn pairs(&self) -> Vec<ContactPair> {
-        let mut pairs = Vec::new();
-        let mut join = |contactor: BodyId, target: BodyId, interface: usize| {
-            for nodes in 0..self.bodies[contactor].nodes.len() {
-                for surface in 0..self.bodies[target].surfaces.len() {
-                    pairs.push(ContactPair { contactor, nodes, target, surface, interface });
-                }
-            }
-        };
-        let count = self.bodies.len();
-        for a in 1..count {
-            let interface = match self.parts[a].kind {
-                PartKind::Rack => RACK_GROUND,
-                PartKind::Barrel | PartKind::Ground | PartKind::Body => BARREL_GROUND,
-            };
-            join(a, Assembly::GROUND, interface);
-            for b in a + 1..count {
-                match (self.parts[a].kind, self.parts[b].kind) {
-                    (PartKind::Rack, PartKind::Rack) => {
-                        join(a, b, RACK_RACK);
-                        join(b, a, RACK_RACK);
-                    }
-                    (PartKind::Rack, _) => join(a, b, BARREL_RACK),
-                    (_, PartKind::Rack) => join(b, a, BARREL_RACK),
-                    _ => {
-                        join(a, b, BARREL_BARREL);
-                        if self.spec.view == View::Longitudinal {
-                            join(b, a, BARREL_BARREL);
-                        }
-                    }
-                }
-            }
-        }
-        pairs
-    }
-}
-
-/// A shape at another size.
-fn scaled(shape: Shape, length: f64) -> Shape {
-    if length == 1.0 {
-        return shape;
-    }
-    match shape {
-        Shape::Circle(mut circle) => {
-            circle.radius *= length;
-            Shape::Circle(circle)
-        }
-        Shape::HalfPlane(plane) => Shape::HalfPlane(plane),
-        Shape::Polygon(polygon) => Shape::Polygon(polygon.scaled(length)),
-        Shape::Cradle(mut cradle) => {
-            cradle.radius *= length;
-            Shape::Cradle(cradle)
-        }
-        Shape::BarrelProfile(mut profile) => {
-            profile.half_length *= length;
-            profile.head_radius *= length;
-            profile.bilge_radius *= length;
-            profile.stave_radius *= length;
-            Shape::BarrelProfile(profile)
-        }
-    }
+/// The laws of contact, each at the place of its id.
+fn laws(laws: &StackInterfaces, scale: Similitude) -> Vec<Interface<Planar>> {
+    let mut named = [
+        (RACK_GROUND, "rack-ground", &laws.rack_ground),
+        (BARREL_RACK, "barrel-rack", &laws.barrel_rack),
+        (BARREL_BARREL, "barrel-barrel", &laws.barrel_barrel),
+        (BARREL_GROUND, "barrel-ground", &laws.barrel_ground),
+        (RACK_RACK, "rack-rack", &laws.rack_rack),
+    ];
+    named.sort_by_key(|(id, _, _)| *id);
+    named.into_iter().map(|(_, name, law)| interface(name, law, scale)).collect()
 }

@@ -15,13 +15,15 @@
 //! The corners of its beam are nodes too, for what falls on it and where it falls.
 //! The beam is a polygon for the nodes of other racks.
 
-use barrelstack_dynamics::math;
-use barrelstack_dynamics::shape::{Circle, Polygon};
-use barrelstack_dynamics::{BodyId, Shape, Vec2};
+use barrelstack_dynamics::shape::{self, Circle, Polygon};
+use barrelstack_dynamics::{BodyId, Shape, Vec2, math};
 
-use super::stack::{Builder, Draft, DraftNodes};
+use super::builder::{Builder, Draft, DraftNodes};
 use super::{AssembleError, PartKind, outline_of};
-use crate::scenario::{Cradle, Friction, Rack, RackKind, StackBody, View};
+use crate::scenario::{Cradle, Friction, Posts, Rack, RackKind, StackBody, View};
+
+/// Play (m) between the cup of a foot and the post in it.
+const SPIGOT_PLAY: f64 = 0.005;
 
 /// Builds all levels; returns the height of the stack and the reach of a rack on its barrels (m).
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
@@ -38,19 +40,16 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
         let underside = f64::from(level - 1) * level_pitch;
         for column in 1..=racks {
             let slot = column as usize - 1;
-            let middle =
-                (f64::from(column) - 0.5 * f64::from(racks + 1)) * (rack.width + spec.gap);
+            let middle = (f64::from(column) - 0.5 * f64::from(racks + 1)) * (rack.width + spec.gap);
             let supports = std::mem::take(&mut below[slot]);
-            let (rack_id, barrels) =
-                add_rack(builder, level, column, middle, underside, supports)?;
+            let (rack_id, barrels) = add_rack(builder, level, column, middle, underside, supports)?;
             below[slot] = match rack.kind {
                 RackKind::OnBarrels => barrels,
                 RackKind::OnRacks => vec![rack_id],
             };
         }
     }
-    let height =
-        f64::from(spec.levels - 1) * level_pitch + rack.clearance + 2.0 * radius;
+    let height = f64::from(spec.levels - 1) * level_pitch + rack.clearance + 2.0 * radius;
     Ok((height, reach(rack, radius, &spec.interfaces.barrel_rack.friction)))
 }
 
@@ -108,7 +107,7 @@ fn add_rack(
         position: center,
         size: 0.5 * rack.width,
         surfaces: Vec::new(),
-        nodes: vec![DraftNodes::Fixed(rack_nodes(rack, &places, radius))],
+        nodes: vec![DraftNodes::Fixed(rack_nodes(rack, &places, radius, level))],
         outlines: Vec::new(),
         carrier: None,
         supports,
@@ -149,67 +148,77 @@ fn add_rack(
 }
 
 /// The nodes of a rack from its center of mass, with their tributary lengths.
-fn rack_nodes(rack: &Rack, places: &[f64], radius: f64) -> Vec<(Vec2, f64)> {
-    let spacing = rack.node_spacing;
-    let half_height = 0.5 * rack.beam_height;
-    let mut nodes = Vec::new();
-    // The flat underside around each crown (and the same length on the ground).
-    let row = |nodes: &mut Vec<(Vec2, f64)>, from: f64, to: f64| {
-        let parts = ((to - from) / spacing - 1e-9).ceil().max(1.0);
-        let step = (to - from) / parts;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
-        for i in 0..=parts as u32 {
-            let edge = i == 0 || f64::from(i) >= parts;
-            let tributary = if edge { 0.5 * step } else { step };
-            nodes.push((Vec2::new(from + f64::from(i) * step, -half_height), tributary));
-        }
+fn rack_nodes(rack: &Rack, places: &[f64], radius: f64, level: u32) -> Vec<(Vec2, f64)> {
+    let mut nodes = match (rack.kind, &rack.posts) {
+        (RackKind::OnRacks, Some(posts)) => feet(rack, posts, level),
+        _ => places.iter().flat_map(|x| row(rack, *x, rack.bearing_half_length)).collect(),
     };
-    match (rack.kind, &rack.posts) {
-        (RackKind::OnRacks, Some(posts)) => {
-            let half = 0.5 * rack.rail_width;
-            for side in [-1.0, 1.0] {
-                let foot = side * posts.half_spacing;
-                row(&mut nodes, foot - half, foot + half);
-            }
-        }
-        _ => {
-            let half = rack.bearing_half_length;
-            for place in places {
-                row(&mut nodes, place - half, place + half);
-            }
-        }
-    }
-    // The cradles, seen from the center of each barrel.
-    for place in places {
-        let center = Vec2::new(*place, rack.clearance + radius - half_height);
-        match rack.cradle {
-            Cradle::Supports { angle } => {
-                for side in [-1.0, 1.0] {
-                    let (sin, cos) = math::sin_cos(angle);
-                    let support = center + Vec2::new(side * sin, -cos) * radius;
-                    nodes.push((support, spacing));
-                }
-            }
-            Cradle::Arc { radius: arc_radius, half_angle } => {
-                let center = center + Vec2::new(0.0, arc_radius - radius);
-                let shape = Shape::Cradle(barrelstack_dynamics::shape::Cradle::new(
-                    arc_radius, half_angle,
-                ));
-                nodes.extend(
-                    shape
-                        .nodes(spacing)
-                        .into_iter()
-                        .map(|node| (center + node.position, node.tributary_length)),
-                );
-            }
-        }
-    }
-    // The corners of the beam.
-    let half_width = 0.5 * rack.width;
+    nodes.extend(places.iter().flat_map(|x| cradle_nodes(rack, *x, radius)));
+    // The corners of the beam, for what falls on it and where it falls.
+    let (half_width, half_height) = (0.5 * rack.width, 0.5 * rack.beam_height);
     for (x, z) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
-        nodes.push((Vec2::new(x * half_width, z * half_height), spacing));
+        nodes.push((Vec2::new(x * half_width, z * half_height), rack.node_spacing));
     }
     nodes
+}
+
+/// A row of nodes along the underside, `half` (m) to either side of `middle` (m).
+fn row(rack: &Rack, middle: f64, half: f64) -> Vec<(Vec2, f64)> {
+    let z = -0.5 * rack.beam_height;
+    let parts = (2.0 * half / rack.node_spacing - 1e-9).ceil().max(1.0);
+    let step = 2.0 * half / parts;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
+    let last = parts as u32;
+    (0..=last)
+        .map(|i| {
+            let tributary = if i == 0 || i == last { 0.5 * step } else { step };
+            (Vec2::new(middle - half + f64::from(i) * step, z), tributary)
+        })
+        .collect()
+}
+
+/// The feet of a rack that stands on posts.
+///
+/// Above the first level a foot is a cup over the post: nodes beside it hold the rack in place until it
+/// is lifted off. On the floor there is nothing to hold.
+fn feet(rack: &Rack, posts: &Posts, level: u32) -> Vec<(Vec2, f64)> {
+    let half = 0.5 * rack.rail_width;
+    let mut nodes = Vec::new();
+    for side in [-1.0, 1.0] {
+        let foot = side * posts.half_spacing;
+        nodes.extend(row(rack, foot, half));
+        if level > 1 && posts.spigot > 0.0 {
+            for beside in [-1.0, 1.0] {
+                let x = foot + beside * (half + SPIGOT_PLAY);
+                for share in [0.5, 1.0] {
+                    let z = -0.5 * rack.beam_height - share * posts.spigot;
+                    nodes.push((Vec2::new(x, z), 0.5 * posts.spigot));
+                }
+            }
+        }
+    }
+    nodes
+}
+
+/// The nodes of one cradle, seen from the center of its barrel.
+fn cradle_nodes(rack: &Rack, place: f64, radius: f64) -> Vec<(Vec2, f64)> {
+    let center = Vec2::new(place, rack.clearance + radius - 0.5 * rack.beam_height);
+    match rack.cradle {
+        Cradle::Supports { angle } => {
+            let (sin, cos) = math::sin_cos(angle);
+            [-1.0, 1.0]
+                .map(|side| (center + Vec2::new(side * sin, -cos) * radius, rack.node_spacing))
+                .to_vec()
+        }
+        Cradle::Arc { radius: arc_radius, half_angle } => {
+            let center = center + Vec2::new(0.0, arc_radius - radius);
+            Shape::Cradle(shape::Cradle::new(arc_radius, half_angle))
+                .nodes(rack.node_spacing)
+                .into_iter()
+                .map(|node| (center + node.position, node.tributary_length))
+                .collect()
+        }
+    }
 }
 
 /// The beam and posts as surfaces, and the lines that show a rack.

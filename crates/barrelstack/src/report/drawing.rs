@@ -54,8 +54,7 @@ fn body(assembly: &Assembly, index: usize) -> SceneBody {
             SceneBody::barrel(&part.name, circle.radius)
         }
         (PartKind::Barrel, Some(Shape::BarrelProfile(profile))) => {
-            let mut body =
-                SceneBody::new(&part.name, Role::Barrel, outlines(assembly, index));
+            let mut body = SceneBody::new(&part.name, Role::Barrel, outlines(assembly, index));
             // Hoops, where coopers drive them: at the heads and on both sides of the bilge.
             for share in [0.12, 0.42, -0.42, -0.12, 0.92, -0.92] {
                 let x = share * profile.half_length;

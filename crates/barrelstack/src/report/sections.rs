@@ -37,9 +37,10 @@ fn section(blocks: &mut Vec<Block>, title: &str, content: Vec<Block>) {
 }
 
 fn player(run: &Run, scene: &Arc<Scene>) -> Player {
-    let top = run.assembly.of_kind(PartKind::Barrel).filter(|body| {
-        run.assembly.parts[*body].level == Some(run.assembly.levels)
-    });
+    let top = run
+        .assembly
+        .of_kind(PartKind::Barrel)
+        .filter(|body| run.assembly.parts[*body].level == Some(run.assembly.levels));
     Player {
         id: "player".into(),
         caption: "The run as computed, to scale. Arrows are contact forces.".into(),
@@ -111,7 +112,12 @@ fn demands(summary: &Summary) -> Table {
         }
     };
     row("drift of the top against the ground, of the height", demands.top_drift_ratio, 100.0, "%");
-    row("stress amplification, largest on a bottom barrel", demands.stress_amplification, 1.0, "× at rest");
+    row(
+        "stress amplification, largest on a bottom barrel",
+        demands.stress_amplification,
+        1.0,
+        "× at rest",
+    );
     row(
         "stress amplification, average over the loaded boundary",
         demands.mean_stress_amplification,
@@ -128,7 +134,6 @@ fn demands(summary: &Summary) -> Table {
 
 /// A figure of histories over time with the collapse marked.
 fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> Block {
-
     let mark = run.fates.collapse_time().map(|at| Mark { at, label: "loss of seat".into() });
     Block::Figure(Figure {
         id: id.to_owned(),

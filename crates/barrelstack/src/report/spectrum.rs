@@ -15,7 +15,8 @@ pub(super) fn figure(motion: &GroundMotion) -> Option<Figure> {
     let values = spectrum.pseudo_acceleration().iter().map(|a| a / STANDARD_GRAVITY).collect();
     Some(Figure {
         id: "spectrum".into(),
-        caption: "Pseudo-acceleration response spectrum of the horizontal motion, 5 % damping.".into(),
+        caption: "Pseudo-acceleration response spectrum of the horizontal motion, 5 % damping."
+            .into(),
         kind: FigureKind::Plot(Plot {
             x: Axis::new("period", "s").log(),
             y: Axis::new("spectral acceleration", "g"),

@@ -58,7 +58,7 @@ pub(super) struct Cases {
     pub(super) slippery: Scenario,
     /// Eight barrels at full scale.
     pub(super) eight: Scenario,
-    /// Eight barrels at the scale of the test, with the same step in its time.
+    /// Eight barrels at the scale of the test.
     pub(super) half: Scenario,
     /// Four levels along the barrels.
     pub(super) along: Scenario,

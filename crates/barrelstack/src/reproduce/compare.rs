@@ -49,6 +49,13 @@ pub struct Comparison {
     pub why: String,
 }
 
+/// A share as a signed percentage.
+pub fn percent(share: f64) -> String {
+    let rounded = (100.0 * share).round();
+    let sign = if rounded < 0.0 { "−" } else { "+" };
+    format!("{sign}{} %", rounded.abs())
+}
+
 /// A number and the words around it.
 pub(super) struct Number {
     /// Where the paper says it.

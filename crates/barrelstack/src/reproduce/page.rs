@@ -5,7 +5,7 @@ use std::sync::Arc;
 use barrelstack_report::{Block, Cell, Document, Scene, Table, Tone, Verdict as Headline};
 
 use super::cases::Motion;
-use super::compare::{Comparison, Verdict};
+use super::compare::{Comparison, Verdict, percent};
 use super::results::Results;
 use super::study::Subject;
 use super::{ensemble, figures, numbering, tornado};
@@ -134,13 +134,6 @@ fn overview(rows: &[Comparison]) -> Table {
         ]);
     }
     table
-}
-
-/// A share as a signed percentage.
-pub(super) fn percent(share: f64) -> String {
-    let rounded = (100.0 * share).round();
-    let sign = if rounded < 0.0 { "−" } else { "+" };
-    format!("{sign}{} %", rounded.abs())
 }
 
 fn reasons(rows: &[Comparison]) -> Table {

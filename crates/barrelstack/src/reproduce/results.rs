@@ -4,10 +4,8 @@ use super::cases::{Cases, Motion};
 use super::pool::{Done, Job};
 use super::study::{self, Factor, Study, Subject};
 use super::{ReproduceError, ensemble, vary};
-use crate::assemble::assemble;
-use crate::run::{Run, RunFailure};
+use crate::run::Run;
 use crate::scenario::{Scale, Scenario};
-use crate::step::default_step;
 use crate::summary::Summary;
 
 /// The paper's measured parameters over its calibrated ones: k is 10 % greater than measured, c 16 %.
@@ -56,15 +54,7 @@ pub(super) struct Results {
 
 impl Plan {
     /// Plans the runs of all cases.
-    pub(super) fn new(cases: &Cases) -> Result<Self, ReproduceError> {
-        let failed = |case: &str, source: RunFailure| ReproduceError::Run {
-            case: case.to_owned(),
-            source,
-        };
-        let whole = assemble(&cases.eight).map_err(|e| failed("eight barrels", e.into()))?;
-        // The same step in the time of each scale, so that scales differ by similitude alone.
-        let mut half = cases.half.clone();
-        half.run.step = Some(default_step(&whole));
+    pub(super) fn new(cases: &Cases) -> Self {
         let mut mirrored = cases.eight.clone();
         mirrored.motion.scale = Scale::Factor(-1.0);
         let measured = vary::with(&cases.eight, |stack| {
@@ -80,7 +70,7 @@ impl Plan {
             job("six barrels on a slippery floor", &cases.slippery, true),
             job("four levels along the barrels", &cases.along, true),
             job("six barrels", &cases.six, true),
-            job("eight barrels at half scale", &half, true),
+            job("eight barrels at half scale", &cases.half, true),
             job("eight barrels", &cases.eight, true),
             job("eight barrels, sine to the other side", &mirrored, false),
             job("eight barrels, measured parameters", &measured, false),
@@ -99,7 +89,7 @@ impl Plan {
             jobs.extend(study::jobs(*subject, factors));
         }
         jobs.extend(ensemble::jobs(&cases.eight));
-        Ok(Self { jobs, studies, single })
+        Self { jobs, studies, single }
     }
 
     /// Sorts what came of the jobs.

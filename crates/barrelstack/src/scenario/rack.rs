@@ -41,6 +41,9 @@ pub struct Posts {
     pub height: f64,
     /// Distance of each post from the middle of the rack in the transverse view (m).
     pub half_spacing: f64,
+    /// How far the foot of the next rack reaches over the sides of the post (m); it must be lifted by
+    /// this much before it can slide off.
+    pub spigot: f64,
 }
 
 /// A rack.
@@ -260,6 +263,12 @@ pub static RACK: Section = Section {
                         CATALOG,
                         "Distance of each post from the middle of the rack, in the transverse view.",
                     ),
+                    Field::new(
+                        "post_spigot",
+                        size(0.01, 100.0),
+                        CATALOG,
+                        "How far the foot of the next rack reaches over the sides of the post.",
+                    ),
                 ],
             },
         ],
@@ -280,6 +289,7 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
         (Base::RackOnRack, Some(posts)) => Some(Posts {
             height: or("post_height", posts.height)?,
             half_spacing: or("post_half_spacing", posts.half_spacing)?,
+            spigot: or("post_spigot", posts.spigot)?,
         }),
         (Base::TwoBarrel | Base::FourBarrel | Base::RackOnRack | Base::Candia2008, _) => None,
     };
@@ -350,6 +360,7 @@ pub(super) fn write(rack: &Rack) -> Table {
     if let Some(posts) = rack.posts {
         writer.quantity("post_height", posts.height);
         writer.quantity("post_half_spacing", posts.half_spacing);
+        writer.quantity("post_spigot", posts.spigot);
     }
     writer.finish()
 }

@@ -80,7 +80,7 @@ pub struct Fates {
     thresholds: Thresholds,
     /// Positions at rest, relative to the ground.
     rest: Vec<Vec2>,
-    fates: Vec<Fate>,
+    bodies: Vec<Fate>,
     collapse: Option<(f64, BodyId)>,
     first_fall: Option<f64>,
 }
@@ -92,7 +92,7 @@ impl Fates {
         Self {
             thresholds,
             rest: state.poses.iter().map(|pose| pose.position - ground).collect(),
-            fates: vec![Fate::default(); assembly.parts.len()],
+            bodies: vec![Fate::default(); assembly.parts.len()],
             collapse: None,
             first_fall: None,
         }
@@ -105,7 +105,7 @@ impl Fates {
 
     /// The fate of a body.
     pub fn fate(&self, body: BodyId) -> &Fate {
-        &self.fates[body]
+        &self.bodies[body]
     }
 
     /// When (s) the first body left its seat.
@@ -134,7 +134,7 @@ impl Fates {
             let moved = state.poses[i].position - ground - self.rest[i];
             let slip = self.slip(assembly, state, i);
             let tilt = state.poses[i].orientation;
-            let fate = &mut self.fates[i];
+            let fate = &mut self.bodies[i];
             fate.drop = fate.drop.max(-moved.z);
             fate.residual_displacement = moved.x;
             fate.residual_slip = slip.x;
@@ -153,11 +153,11 @@ impl Fates {
                     self.first_fall = Some(state.time);
                 }
             }
-            let fell = self.fates[i].fell_at.is_some();
-            if self.fates[i].left_seat.is_none()
+            let fell = self.bodies[i].fell_at.is_some();
+            if self.bodies[i].left_seat.is_none()
                 && let Some(loss) = self.loss(assembly, state, i, slip, fell)
             {
-                self.fates[i].left_seat = Some((state.time, loss));
+                self.bodies[i].left_seat = Some((state.time, loss));
                 if self.collapse.is_none() {
                     self.collapse = Some((state.time, i));
                 }
@@ -183,15 +183,15 @@ impl Fates {
         let mut below = Vec2::default();
         let mut below_rest = Vec2::default();
         for support in &part.supports {
-            below = below + state.poses[*support].position * share;
-            below_rest = below_rest + self.rest[*support] * share;
+            below += state.poses[*support].position * share;
+            below_rest += self.rest[*support] * share;
         }
         (here - below) - (self.rest[body] - below_rest)
     }
 
     /// Tilt (rad) of a rack against the rack it stands on, directly or by way of barrels; of the rest
     /// against the ground.
-    fn tilt(&self, assembly: &Assembly, state: &State<Planar>, body: BodyId) -> f64 {
+    fn tilt(assembly: &Assembly, state: &State<Planar>, body: BodyId) -> f64 {
         let below = assembly.parts[body].supports.first().copied();
         let rack = below.map(|support| assembly.parts[support].carrier.unwrap_or(support));
         state.poses[body].orientation - rack.map_or(0.0, |rack| state.poses[rack].orientation)
@@ -214,7 +214,7 @@ impl Fates {
                 if away { Some(Loss::Displaced) } else { fell.then_some(Loss::Dropped) }
             }
             PartKind::Rack => {
-                let tilt = self.tilt(assembly, state, body).abs();
+                let tilt = Self::tilt(assembly, state, body).abs();
                 let limit = if part.supports.is_empty() {
                     limits.overturning_angle
                 } else {

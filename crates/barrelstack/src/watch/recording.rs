@@ -230,7 +230,8 @@ impl Recording {
         let mut values: Vec<f64> = Vec::with_capacity(self.channels.len());
         let motion = ground.motion.as_ref();
         let x = motion.map(|m| m.horizontal.at(state.time)).unwrap_or_default();
-        let z = motion.and_then(|m| m.vertical.as_ref()).map(|v| v.at(state.time)).unwrap_or_default();
+        let z =
+            motion.and_then(|m| m.vertical.as_ref()).map(|v| v.at(state.time)).unwrap_or_default();
         for k in [x, z] {
             values.extend([k.acceleration, k.velocity, k.displacement]);
         }
@@ -265,7 +266,14 @@ impl Recording {
 
 /// The energies that are recorded, in order.
 const ENERGIES: [&str; 9] = [
-    "kinetic", "potential", "elastic", "stick", "damped", "friction", "viscous", "ground work",
+    "kinetic",
+    "potential",
+    "elastic",
+    "stick",
+    "damped",
+    "friction",
+    "viscous",
+    "ground work",
     "residual",
 ];
 

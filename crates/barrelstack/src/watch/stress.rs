@@ -144,7 +144,10 @@ impl StressEnvelope {
                 let half = 0.5 * length / (radius * std::f64::consts::TAU);
                 let count = self.peak.len();
                 let cell = |turn: f64| (turn * count as f64).floor();
-                let (first, last) = (cell(turn - half + 0.5 / count as f64), cell(turn + half - 0.5 / count as f64));
+                let (first, last) = (
+                    cell(turn - half + 0.5 / count as f64),
+                    cell(turn + half - 0.5 / count as f64),
+                );
                 let mut at = first;
                 while at <= last.max(first) {
                     #[expect(
@@ -266,7 +269,10 @@ fn fast_angle(v: Vec2) -> f64 {
     let ratio = a.min(b) / a.max(b).max(f64::MIN_POSITIVE);
     let square = ratio * ratio;
     let octant = ratio
-        * (0.999_866 + square * (-0.330_299_5 + square * (0.180_141 + square * (-0.085_133 + 0.020_835_1 * square))));
+        * (0.999_866
+            + square
+                * (-0.330_299_5
+                    + square * (0.180_141 + square * (-0.085_133 + 0.020_835_1 * square))));
     let quadrant = if b > a { FRAC_PI_2 - octant } else { octant };
     let half = if v.x < 0.0 { PI - quadrant } else { quadrant };
     if v.z < 0.0 { TAU - half } else { half }

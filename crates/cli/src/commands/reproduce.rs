@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use barrelstack::reproduce::{Comparison, Reproduction, reproduce as run_all};
+use barrelstack::reproduce::{Comparison, Reproduction, percent, reproduce as run_all};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::args::ReproduceArgs;
@@ -25,8 +25,9 @@ pub(crate) fn reproduce(args: &ReproduceArgs) -> anyhow::Result<ExitCode> {
     bar.finish_and_clear();
     let found = result?;
     write(&args.out, &found)?;
-    print(&found);
-    printer::line(&format!("\npage: {}", args.out.join("index.html").display()));
+    print(&found)?;
+    printer::lines(["", &format!("page: {}", args.out.join("index.html").display())])?;
+    found.document.warnings.iter().for_each(|warning| printer::warning(warning));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -50,11 +51,9 @@ fn write(out: &Path, found: &Reproduction) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn print(found: &Reproduction) {
-    printer::line(&found.document.verdict.headline);
-    printer::line("");
+fn print(found: &Reproduction) -> anyhow::Result<()> {
     let cells = |row: &Comparison| {
-        let difference = row.difference.map(|d| format!("{:+.0} %", 100.0 * d));
+        let difference = row.difference.map(percent);
         [
             row.quantity.clone(),
             row.published.clone(),
@@ -66,10 +65,12 @@ fn print(found: &Reproduction) {
     let head = ["quantity", "published", "ours", "difference", "verdict"].map(str::to_owned);
     let rows: Vec<[String; 5]> =
         std::iter::once(head).chain(found.comparisons.iter().map(cells)).collect();
-    for row in &rows {
-        printer::line(&format!("  {}", row.join(" | ")));
-    }
-    for warning in &found.document.warnings {
-        printer::warning(warning);
-    }
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
+    let widths: [usize; 5] = std::array::from_fn(|column| width(column).unwrap_or(0));
+    let lines = rows.iter().map(|row| {
+        let padded = row.iter().zip(widths).map(|(cell, width)| format!("{cell:width$}"));
+        format!("  {}", padded.collect::<Vec<_>>().join("  ")).trim_end().to_owned()
+    });
+    let headline = found.document.verdict.headline.clone();
+    printer::lines([headline, String::new()].into_iter().chain(lines))
 }

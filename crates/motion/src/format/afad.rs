@@ -45,9 +45,6 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
         })
     };
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
-    if options.time_step.is_some() {
-        record.warn(None, "the file states its step; the time step given was ignored");
-    }
     let (count_line, count) = number("NUMBER OF DATA")?;
     let count = super::whole(source, count_line, "a number of values", count)?;
     let (_, time_step) = number("SAMPLING INTERVAL")?;

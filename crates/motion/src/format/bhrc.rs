@@ -22,9 +22,6 @@ fn sniff(source: &Source<'_>) -> bool {
 
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
-    if options.time_step.is_some() {
-        record.warn(None, "the file states its step; the time step given was ignored");
-    }
     let mut line = 0;
     while line < source.lines.len() {
         if source.raw(line).trim_ascii().is_empty() {

@@ -129,6 +129,9 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
     };
     let mut record = (format.read)(&source, options)?;
     record.format = format.name;
+    if options.time_step.is_some() && format.name != columns::FORMAT.name {
+        record.warn(None, "the file states its step; the time step given was ignored");
+    }
     finish(&source, &mut record)?;
     Ok(record)
 }

@@ -283,7 +283,14 @@ impl<'a> Source<'a> {
         Ok(values)
     }
 
-    fn within(&self, line: usize, column: usize, value: f64, limit: f64) -> Result<f64, ReadError> {
+    /// `value` unless it is larger than any acceleration can be.
+    pub(crate) fn within(
+        &self,
+        line: usize,
+        column: usize,
+        value: f64,
+        limit: f64,
+    ) -> Result<f64, ReadError> {
         if value.abs() <= limit {
             Ok(value)
         } else {

@@ -72,9 +72,6 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
         })
     };
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
-    if options.time_step.is_some() {
-        record.warn(None, "the file states its step; the time step given was ignored");
-    }
     let (unit_line, unit) = need("UNIDADES DE LOS DATOS")?;
     if !unit.to_ascii_lowercase().contains("gal") {
         return Err(source.error(
