@@ -3,6 +3,11 @@
 //! Inside, every number is SI: m, m/s, m/s², s, rad; azimuths alone are degrees clockwise from north.
 //! Vertical components are positive upward.
 
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "`!(x > 0.0)` refuses NaN with everything else that is not above zero"
+)]
+
 mod bundled;
 mod direction;
 mod error;
@@ -30,7 +35,7 @@ mod wavelets;
 
 pub use bundled::{BUNDLED, bundled};
 pub use direction::{Direction, Orientation};
-pub use error::{MotionError, ReadError, Refusal};
+pub use error::{MotionError, ReadError, ReadFailure, Refusal};
 pub use format::{FORMATS, Format, ReadOptions, read, slammer_step, station_xml_sensitivities};
 pub use fourier::FourierSpectrum;
 pub use ground_motion::GroundMotion;

@@ -2,10 +2,17 @@
 //!
 //! Every sample is the same decaying sine, so that the numbers expected are a formula.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by unwrap and tells by print"
+)]
+
 use std::path::{Path, PathBuf};
 
 use barrelstack_motion::{
-    AccelerationUnit, Orientation, ReadOptions, Record, Refusal, STANDARD_GRAVITY, Stage, read,
+    AccelerationUnit, Orientation, ReadOptions, Record, Refusal, STANDARD_GRAVITY, Stage,
+    StatedPeak, read,
 };
 
 fn folder() -> PathBuf {
@@ -231,7 +238,7 @@ fn stated_peaks_are_found() {
         let record = read(&bytes(file), file, &options(file)).unwrap();
         for channel in &record.channels {
             assert_eq!(channel.peaks.len(), count, "{file} {}", channel.name);
-            assert!(channel.peaks.iter().all(|p| p.agrees()), "{file}: {:?}", channel.peaks);
+            assert!(channel.peaks.iter().all(StatedPeak::agrees), "{file}: {:?}", channel.peaks);
         }
     }
 }
@@ -392,9 +399,8 @@ fn stars_words_and_huge_numbers_are_refused_with_their_place() {
             let damaged = format!("{}{damage}{}", &line[..start], &line[end..]);
             let mut all = lines.clone();
             all[target] = damaged.into_bytes();
-            let error = match read(&all.concat(), file, &options(file)) {
-                Err(error) => error,
-                Ok(_) => panic!("{file}: {found} on line {} was read", target + 1),
+            let Err(error) = read(&all.concat(), file, &options(file)) else {
+                panic!("{file}: {found} on line {} was read", target + 1)
             };
             assert_eq!(error.refusal, Refusal::Damaged, "{error}");
             assert_eq!(error.line, Some(target + 1), "{error}");
@@ -433,7 +439,7 @@ fn a_lost_line_and_a_wrong_count_are_refused() {
 #[test]
 fn binary_garbage_is_refused() {
     let garbage: Vec<u8> =
-        (0..5000_u32).map(|k| (k.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+        (0..5000_u32).map(|k| k.wrapping_mul(2_654_435_761).to_le_bytes()[2]).collect();
     let error = read(&garbage, "garbage", &ReadOptions::default()).unwrap_err();
     assert!(error.line.is_some() && error.column.is_some(), "{error}");
     assert!(read(b"", "empty", &ReadOptions::default()).is_err());
