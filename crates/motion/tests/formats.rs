@@ -261,6 +261,22 @@ fn uneven_times_are_interpolated_with_a_warning() {
 }
 
 #[test]
+fn columns_without_time_are_channels_only_if_named() {
+    let rows: Vec<String> = (0..60).map(|k| format!("{}.5 -0.25 0.{k:02}\n", k % 7)).collect();
+    let rows = rows.concat();
+    let given = ReadOptions { time_step: Some(0.01), ..ReadOptions::default() };
+    let named = format!("unit: cm/s2\nEW NS UD\n{rows}");
+    let record = read(named.as_bytes(), "named.txt", &given).unwrap();
+    // The second column never changes and is left out with a warning.
+    let names: Vec<&str> = record.channels.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["EW", "UD"]);
+    let bare = format!("unit: cm/s2\n{rows}");
+    let record = read(bare.as_bytes(), "bare.txt", &given).unwrap();
+    assert_eq!(record.channels[0].acceleration.len(), 180);
+    assert!(record.warnings.iter().any(|w| w.message.contains("row by row")));
+}
+
+#[test]
 fn what_is_no_acceleration_is_refused_by_name() {
     for (file, word) in [
         ("peer/velocity.VT2", "VELOCITY"),
