@@ -3,6 +3,12 @@
 //! The records may not be bundled; the tests run when the folder `../shared/ground-motions` lies
 //! beside the workspace and say so when it does not.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by unwrap and tells by print"
+)]
+
 use std::path::PathBuf;
 
 use barrelstack_motion::{

@@ -2,6 +2,12 @@
 //!
 //! Most of those files may not be bundled; without the folder the test says that it is skipped.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by unwrap and tells by print"
+)]
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
