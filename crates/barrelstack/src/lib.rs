@@ -16,11 +16,13 @@ pub mod ground;
 pub mod outcome;
 mod overlap;
 pub mod report;
+pub mod reproduce;
 pub mod run;
 pub mod scenario;
 pub mod step;
 pub mod summary;
 mod system;
+pub mod verify;
 pub mod watch;
 
 pub use check::check;

@@ -35,10 +35,15 @@ pub(crate) fn error(error: &anyhow::Error) {
     eprintln!("error: {error:#}");
 }
 
+/// What the reader of a result should know, one sentence.
+pub(crate) fn warning(text: &str) {
+    eprintln!("warning: {text}");
+}
+
 /// What the reader of a result should know.
 pub(crate) fn warnings(summary: &Summary) {
     for warning in &summary.warnings {
-        eprintln!("warning: {warning}");
+        self::warning(warning);
     }
 }
 
@@ -49,4 +54,12 @@ pub(crate) fn summary(run: &Run, summary: &Summary, changes: &[String]) -> anyho
     let title = std::iter::once(summary.title.clone());
     let sentences = sentences.into_iter().map(|sentence| format!("  {sentence}"));
     lines(title.chain(sentences).chain(std::iter::once(String::new())).chain(rows))
+}
+
+/// What repeats of a run say about it.
+pub(crate) fn verification(found: &barrelstack::verify::Verification) -> anyhow::Result<()> {
+    let rows = found.rows();
+    let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0) + 2;
+    let rows = rows.iter().map(|(name, value)| format!("  {name:width$}{value}"));
+    lines(["", "verification"].map(str::to_owned).into_iter().chain(rows))
 }

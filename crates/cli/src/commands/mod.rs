@@ -2,6 +2,7 @@
 
 mod check;
 mod demo;
+mod reproduce;
 mod run;
 mod scenarios;
 
@@ -25,6 +26,7 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
         Command::Run(args) => run::run(&args),
         Command::Demo(args) => demo::demo(&args),
         Command::Check(args) => check::check(&args),
+        Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::Scenarios(args) => scenarios::scenarios(&args),
     }
 }

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use barrelstack::export::Folder;
 use barrelstack::outcome::Outcome;
+use barrelstack::verify::{Verification, verify};
 use barrelstack::{Run, RunFailure, Scenario, Summary};
 
 use crate::args::RunArgs;
@@ -21,10 +22,18 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     if let Some(folder) = &folder {
         folder.write(&run, &summary)?;
     }
+    let verification = args.verify.then(|| repeated(&run, !args.quiet)).transpose()?;
     if args.json {
-        printer::lines([summary.to_json()])?;
+        let document = match &verification {
+            Some(verification) => verification.with_summary(&summary),
+            None => summary.to_json(),
+        };
+        printer::lines([document])?;
     } else {
         printer::summary(&run, &summary, &args.scenario.set)?;
+        if let Some(verification) = &verification {
+            printer::verification(verification)?;
+        }
         if let Some(folder) = &folder {
             printer::lines(["", &format!("report: {}", folder.report().display())])?;
         }
@@ -40,6 +49,12 @@ pub(super) fn watched(scenario: &Scenario, show: bool) -> Result<(Run, Summary),
     let run = barrelstack::run(scenario, &mut |reached| progress.at(reached))?;
     let summary = Summary::of(&run, Some(start.elapsed().as_secs_f64()));
     Ok((run, summary))
+}
+
+/// Repeats a run with a progress bar and Ctrl-C.
+fn repeated(run: &Run, show: bool) -> Result<Verification, RunFailure> {
+    let mut progress = Progress::new(show);
+    verify(run, &mut |reached| progress.at(reached))
 }
 
 /// The exit status of a run, as the help of the program lists them.
