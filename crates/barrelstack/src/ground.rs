@@ -173,7 +173,7 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
 /// what cutting them leaves at the ends is closed.
 fn default_processing(record: &Record) -> Processing {
     let full = Processing::for_stage(record.stage);
-    if full.is_none() { full } else { Processing { pads: Pads::Removed, close: true, ..full } }
+    if full.is_none() { full } else { Processing::compact() }
 }
 
 fn read_file(
