@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
-    AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Pads,
-    Processing, Pulse as MotionPulse, ReadError, ReadFailure, ReadOptions, Record, Refusal,
+    AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Processing,
+    Pulse as MotionPulse, ReadError, ReadFailure, ReadOptions, Record, Refusal,
 };
 
 use crate::scenario::{
