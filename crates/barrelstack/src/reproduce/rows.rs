@@ -4,6 +4,7 @@ use super::compare::{Comparison, Number, Verdict, finding};
 use super::results::Results;
 use super::study::{Study, Subject};
 use super::{ensemble, figures};
+use crate::run::Run;
 use crate::summary::Summary;
 
 /// The project's band of stress amplification.
@@ -43,16 +44,27 @@ fn fell(summary: &Summary, body: &str) -> Option<f64> {
     summary.bodies.iter().find(|b| b.name == body)?.fell_at
 }
 
+/// Displacement (m) along `x` of a body against the ground when it has fallen.
+fn place_at_fall(run: &Run, body: &str) -> Option<f64> {
+    let part = run.assembly.parts.iter().position(|part| part.name == body)?;
+    let time = run.fates.fate(part).fell_at?;
+    let at = run.recording.times.iter().position(|t| *t >= time)?;
+    run.recording.displacement(body)?.values.get(at).copied()
+}
+
 /// What a study says about a published time: the changes that reach it, or those that come nearest.
 fn reasons(study: Option<&Study>, published: f64) -> String {
     let Some(study) = study else { return String::new() };
     let clock = study.subject.clock();
+    let close = |time: f64| (time / published - 1.0).abs() < 0.05;
     let reached = study.reaching(published, |summary| clock.time(summary));
     let range = study
         .times()
         .map(|[low, high]| format!(" The changes of the study span {} to {}.", seconds(low), seconds(high)))
         .unwrap_or_default();
-    if reached.is_empty() {
+    if clock.time(&study.base).is_some_and(close) {
+        range
+    } else if reached.is_empty() {
         let strongest = study.strongest(2, |summary| clock.time(summary), seconds);
         format!(" No single change of the study reaches it; the strongest are {}.{range}", strongest.join(" and "))
     } else {
@@ -211,11 +223,8 @@ fn eight(results: &Results) -> Vec<Comparison> {
         (Some(_), Some(_)) => "11, then 10",
         _ => "not both",
     };
-    let place = |name: &str| {
-        let body = summary.bodies.iter().find(|b| b.name == name);
-        body.map_or(0.0, |b| b.residual_displacement)
-    };
-    let sides = place("B4.1") * place("B4.2") < 0.0;
+    let places = ["B4.1", "B4.2"].map(|body| place_at_fall(&results.eight.run, body));
+    let sides = places[0].zip(places[1]).is_some_and(|(a, b)| a * b < 0.0);
     vec![
         finding(
             "section 4, Fig. 7b",
@@ -264,9 +273,9 @@ fn eight(results: &Results) -> Vec<Comparison> {
             if sides { "to each side".into() } else { "to the same side".into() },
             sides,
             format!(
-                "At the end B4.1 lies at {} m and B4.2 at {} m from its place; what has fallen rolls.",
-                digits(place("B4.1")),
-                digits(place("B4.2"))
+                "At its fall B4.1 is {} cm from its place, B4.2 {} cm, against the ground.",
+                places[0].map_or_else(|| "–".into(), |x| digits(100.0 * x)),
+                places[1].map_or_else(|| "–".into(), |x| digits(100.0 * x))
             ),
         ),
         finding(
@@ -356,27 +365,37 @@ fn scales(results: &Results) -> Vec<Comparison> {
 
 fn parameters(results: &Results) -> Vec<Comparison> {
     let base = &results.eight.summary;
-    let agreement = ensemble::agreement(base, &results.ensemble);
+    let agreement = (!results.ensemble.is_empty())
+        .then(|| ensemble::agreement(base, &results.ensemble));
     let span = |[low, high]: [f64; 2], factor: f64| {
         format!("{} to {}", digits(low * factor), digits(high * factor))
     };
     let measured = &results.measured;
-    vec![
-        finding(
+    let walk = base.bodies.iter().find(|b| b.name == "R3").map_or(0.0, |b| b.peak_slip);
+    let mut rows = Vec::new();
+    if let Some(agreement) = agreement {
+        rows.push(finding(
             "section 4",
             "eight barrels: k, c and both μ within ±10 %",
             "robust",
             format!("{} of {} in the same mode", agreement.same_mode, agreement.members),
             agreement.same_mode == agreement.members,
             format!(
-                "First body the same in {}; first fall {} s, drift {} %, stress amplification {}.",
-                agreement.same_first,
+                "A barrel of the top level falls first in {} of {}, at {} s; drift {} %, stress \
+                 amplification {}. The mode is named by the rack that leaves its seat first. As stated \
+                 it is R4, while R3 has walked {} cm of the {} cm at which a rack counts as off its \
+                 seat: both give way, and small changes decide which is first.",
+                agreement.top_first,
+                agreement.members,
                 span(agreement.fall, 1.0),
                 span(agreement.drift, 100.0),
-                span(agreement.amplification, 1.0)
+                span(agreement.amplification, 1.0),
+                digits(100.0 * walk),
+                digits(100.0 * results.eight.run.assembly.rack_reach)
             ),
-        ),
-        finding(
+        ));
+    }
+    rows.push(finding(
             "section 4",
             "eight barrels: measured k and c, 10 % and 16 % below the calibrated ones",
             "8.9 kN/cm and 19.0 N s/cm",
@@ -392,8 +411,8 @@ fn parameters(results: &Results) -> Vec<Comparison> {
                 mode_of(base),
                 base.outcome.first_fall.map_or_else(|| "none".into(), seconds)
             ),
-        ),
-    ]
+    ));
+    rows
 }
 
 fn along(results: &Results) -> Vec<Comparison> {
