@@ -24,7 +24,7 @@ use crate::ground::GroundError;
 use crate::run::RunFailure;
 use crate::scenario::ScenarioError;
 
-pub use cases::Motion;
+pub use cases::{Motion, recognize};
 pub use compare::{Comparison, Verdict, percent};
 
 /// The paper's results beside ours.

@@ -4,7 +4,6 @@ use super::compare::{Comparison, Number, Verdict, finding};
 use super::results::Results;
 use super::study::{Study, Subject};
 use super::{ensemble, figures};
-use crate::run::Run;
 use crate::summary::Summary;
 
 /// The project's band of stress amplification.
@@ -44,14 +43,6 @@ fn fell(summary: &Summary, body: &str) -> Option<f64> {
     summary.bodies.iter().find(|b| b.name == body)?.fell_at
 }
 
-/// Displacement (m) along `x` of a body against the ground when it has fallen.
-fn place_at_fall(run: &Run, body: &str) -> Option<f64> {
-    let part = run.assembly.parts.iter().position(|part| part.name == body)?;
-    let time = run.fates.fate(part).fell_at?;
-    let at = run.recording.times.iter().position(|t| *t >= time)?;
-    run.recording.displacement(body)?.values.get(at).copied()
-}
-
 /// What a study says about a published time: the changes that reach it, or those that come nearest.
 fn reasons(study: Option<&Study>, published: f64) -> String {
     let Some(study) = study else { return String::new() };
@@ -76,11 +67,13 @@ fn six(results: &Results) -> Vec<Comparison> {
     let (summary, slippery) = (&results.six.summary, &results.slippery.summary);
     let outcome = &summary.outcome;
     let demands = &summary.demands;
-    let percent = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), digits);
-    let centimeters = |value: Option<f64>| percent(value.map(|v| 100.0 * v.abs()));
+    let shown = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), digits);
+    let centimeters = |value: Option<f64>| {
+        value.map_or_else(|| "–".to_owned(), |v| barrelstack_report::significant(100.0 * v.abs(), 2))
+    };
     let body = |name: &str| {
         let body = summary.bodies.iter().find(|b| b.name == name);
-        percent(body.and_then(|b| b.stress_amplification))
+        shown(body.and_then(|b| b.stress_amplification))
     };
     let mut rows = vec![
         finding(
@@ -110,8 +103,8 @@ fn six(results: &Results) -> Vec<Comparison> {
         rows.push(finding(
             "section 3, Fig. 6c",
             "six barrels, μ 0.4: the mechanism begins",
-            "right after the peak ground velocity",
-            format!("peak at {}, seat lost {} later", seconds(peak), seconds(loss - peak)),
+            "right after the peak velocity",
+            format!("{} after it ({})", seconds(loss - peak), seconds(peak)),
             (0.0..=2.0).contains(&(loss - peak)),
             "counted as \"right after\" up to 2 s".into(),
         ));
@@ -140,7 +133,7 @@ fn six(results: &Results) -> Vec<Comparison> {
         rows.push(finding(
             "section 3, Fig. 6b",
             "six barrels, μ 0.4: footprint on barrel 1",
-            "grows on top, where the rack slides; not at the bottom",
+            "grows on top, not at the bottom",
             format!(
                 "top {} → {} cm, bottom {} → {} cm",
                 digits(100.0 * top_rest),
@@ -149,15 +142,15 @@ fn six(results: &Results) -> Vec<Comparison> {
                 digits(100.0 * bottom)
             ),
             top > 1.2 * top_rest && (top - top_rest) > 2.0 * (bottom - bottom_rest),
-            "Length of boundary under stress, at rest → at any time while the stack stands. The same \
-             if the top gains more than a fifth and more than twice what the bottom gains."
+            "Length of boundary under stress, at rest → at any time while the stack stands; on top \
+             the rack slides. The same if the top gains more than a fifth and more than twice what the bottom gains."
                 .into(),
         ));
     }
     rows.push(
         Number {
             place: "section 3",
-            quantity: "six barrels, μ 0.4: residual slip of the bottom rack",
+            quantity: "six barrels, μ 0.4: residual slip of R1",
             published: 2.0,
             ours: demands.base_slip_residual.map(|slip| 100.0 * slip.abs()),
             unit: "cm",
@@ -182,7 +175,7 @@ fn six(results: &Results) -> Vec<Comparison> {
     ));
     rows.push(finding(
         "section 3, Fig. 6c",
-        "six barrels: residual slip with μ 0.1 against μ 0.4",
+        "six barrels: residual slip, μ 0.1 to μ 0.4",
         "larger",
         format!(
             "{} cm against {} cm",
@@ -223,8 +216,11 @@ fn eight(results: &Results) -> Vec<Comparison> {
         (Some(_), Some(_)) => "11, then 10",
         _ => "not both",
     };
-    let places = ["B4.1", "B4.2"].map(|body| place_at_fall(&results.eight.run, body));
-    let sides = places[0].zip(places[1]).is_some_and(|(a, b)| a * b < 0.0);
+    let places = ["B4.1", "B4.2"].map(|name| {
+        let body = summary.bodies.iter().find(|b| b.name == name);
+        body.map_or(f64::NAN, |b| b.residual_displacement)
+    });
+    let sides = places[0] * places[1] < 0.0;
     vec![
         finding(
             "section 4, Fig. 7b",
@@ -260,10 +256,10 @@ fn eight(results: &Results) -> Vec<Comparison> {
             "section 4",
             "eight barrels: which falls first",
             "11, then 10",
-            format!("{}; with the sine to the other side {}", order(summary), order(mirrored)),
+            format!("{}; mirrored {}", order(summary), order(mirrored)),
             order(summary) == "11, then 10" || order(mirrored) == "11, then 10",
-            "The paper does not say to which side its sine starts; stack and motion are symmetric, so \
-             the sides change places."
+            "The paper does not say to which side its sine starts. Stack and motion are symmetric, so \
+             the sides change places with it: mirrored is the run of the opposite sine."
                 .into(),
         ),
         finding(
@@ -273,9 +269,10 @@ fn eight(results: &Results) -> Vec<Comparison> {
             if sides { "to each side".into() } else { "to the same side".into() },
             sides,
             format!(
-                "At its fall B4.1 is {} cm from its place, B4.2 {} cm, against the ground.",
-                places[0].map_or_else(|| "–".into(), |x| digits(100.0 * x)),
-                places[1].map_or_else(|| "–".into(), |x| digits(100.0 * x))
+                "At the end of the run B4.1 lies {} m from its place and B4.2 {} m, negative to the \
+                 left; what has fallen rolls on.",
+                digits(places[0]),
+                digits(places[1])
             ),
         ),
         finding(
@@ -397,8 +394,8 @@ fn parameters(results: &Results) -> Vec<Comparison> {
     }
     rows.push(finding(
             "section 4",
-            "eight barrels: measured k and c, 10 % and 16 % below the calibrated ones",
-            "8.9 kN/cm and 19.0 N s/cm",
+            "eight barrels: measured k and c",
+            "8.9 kN/cm, 19.0 N s/cm",
             format!(
                 "{}, first fall {}",
                 mode_of(measured),
@@ -406,7 +403,7 @@ fn parameters(results: &Results) -> Vec<Comparison> {
             ),
             measured.outcome.mode == base.outcome.mode,
             format!(
-                "9.8 kN/cm / 1.10 and 22.0 N s/cm / 1.16. The paper gives no result for them; with the \
+                "The calibrated ones are 10 % and 16 % greater: 9.8 kN/cm / 1.10, 22.0 N s/cm / 1.16. The paper gives no result for them; with the \
                  calibrated ones: {}, first fall {}.",
                 mode_of(base),
                 base.outcome.first_fall.map_or_else(|| "none".into(), seconds)
@@ -423,10 +420,10 @@ fn along(results: &Results) -> Vec<Comparison> {
         finding(
             "section 4",
             "along the barrels: collapse",
-            "rack sliding: body 4, the rack of level 2, walks off the barrel below",
+            "rack sliding, body 4 first",
             format!("{}, {} first", mode_of(summary), outcome.first.as_deref().unwrap_or("nothing")),
             outcome.mode == Some("rack-sliding") && outcome.first.as_deref() == Some("R2"),
-            "R2 is the paper's body 4".into(),
+            "R2 is the paper's body 4, the rack of the second level.".into(),
         ),
         Number {
             place: "section 4",
