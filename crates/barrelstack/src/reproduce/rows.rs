@@ -50,11 +50,16 @@ fn reasons(study: Option<&Study>, published: f64) -> String {
     let reached = study.reaching(published, |summary| clock.time(summary));
     let range = study
         .times()
-        .map(|[low, high]| format!(" The changes of the study span {} to {}.", seconds(low), seconds(high)))
+        .map(|[low, high]| {
+            format!(" The changes of the study span {} to {}.", seconds(low), seconds(high))
+        })
         .unwrap_or_default();
     if reached.is_empty() {
         let strongest = study.strongest(2, |summary| clock.time(summary), seconds);
-        format!(" No single change of the study reaches it; the strongest are {}.{range}", strongest.join(" and "))
+        format!(
+            " No single change of the study reaches it; the strongest are {}.{range}",
+            strongest.join(" and ")
+        )
     } else {
         format!(" Single changes that reach it: {}.{range}", reached.join(", "))
     }
@@ -399,13 +404,18 @@ fn parameters(results: &Results) -> Vec<Comparison> {
 fn along(results: &Results) -> Vec<Comparison> {
     let summary = &results.along.summary;
     let outcome = &summary.outcome;
-    let fall = outcome.first_fall.map(|t| format!(" The first barrel has fallen at {}.", seconds(t)));
+    let fall =
+        outcome.first_fall.map(|t| format!(" The first barrel has fallen at {}.", seconds(t)));
     vec![
         finding(
             "section 4",
             "along the barrels: collapse",
             "rack sliding: body 4, the rack of level 2, walks off the barrel below",
-            format!("{}, {} first", mode_of(summary), outcome.first.as_deref().unwrap_or("nothing")),
+            format!(
+                "{}, {} first",
+                mode_of(summary),
+                outcome.first.as_deref().unwrap_or("nothing")
+            ),
             outcome.mode == Some("rack-sliding") && outcome.first.as_deref() == Some("R2"),
             "R2 is the paper's body 4".into(),
         ),
