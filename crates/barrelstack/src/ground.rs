@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
     AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Pads,
-    Processing, Pulse as MotionPulse, ReadError, ReadOptions, Record, Refusal,
+    Processing, Pulse as MotionPulse, ReadError, ReadFailure, ReadOptions, Record, Refusal,
 };
 
 use crate::scenario::{
@@ -47,7 +47,7 @@ pub enum GroundError {
     },
     /// The file is no record.
     #[error(transparent)]
-    Read(Box<ReadError>),
+    Read(#[from] ReadError),
     /// The record has no such component, or cannot be scaled so.
     #[error(transparent)]
     Motion(#[from] MotionError),
@@ -187,18 +187,19 @@ fn read_file(
         obtain: obtain.to_owned(),
     })?;
     let record = barrelstack_motion::read(&bytes, &path.display().to_string(), options);
-    record.map_err(|mut error| {
+    record.map_err(|error| {
+        let mut failure: ReadFailure = (*error).clone();
         // The reader knows what is missing, the scenario where to state it.
-        if error.refusal == Refusal::Missing {
-            error.remedy += if error.expected.contains("unit") {
+        if failure.refusal == Refusal::Missing {
+            failure.remedy += if failure.expected.contains("unit") {
                 " in the scenario, for example motion.unit = \"1 g\""
-            } else if error.expected.contains("step") {
+            } else if failure.expected.contains("step") {
                 " in the scenario, for example motion.time_step = \"0.01 s\""
             } else {
                 ""
             };
         }
-        GroundError::Read(Box::new(error))
+        GroundError::Read(failure.into())
     })
 }
 
