@@ -2,6 +2,7 @@
 
 mod check;
 mod demo;
+pub(crate) mod motion;
 mod reproduce;
 mod run;
 mod scenarios;
@@ -27,6 +28,7 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
         Command::Demo(args) => demo::demo(&args),
         Command::Check(args) => check::check(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
+        Command::Motion(args) => motion::motion(&args),
         Command::Scenarios(args) => scenarios::scenarios(&args),
     }
 }
