@@ -50,8 +50,8 @@ pub(super) fn details(run: &Run, summary: &Summary) -> Vec<String> {
                      its seat first."
                 ),
                 CollapseMode::RackSliding => format!(
-                    "Rack {first} walks along the barrels below until it is off them, and {part} \
-                     goes with it."
+                    "Rack {first} walks along the barrels below until it is off them, and takes \
+                     {part} with it."
                 ),
                 CollapseMode::Overturning => {
                     "The whole stack turns over about its foot.".to_owned()
