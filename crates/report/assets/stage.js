@@ -2,7 +2,8 @@
 
 const FOOT = 30; // room below the lowest body for the hatch of the ground and the scales (px)
 const HATCH = 12; // distance of the strokes of the hatch (px)
-const FORCE_SHARE = 0.2; // length of a strong force over the height of the view
+const HEAD = 34; // room above the highest body for the clock and the news (px)
+const FORCE_SHARE = 0.3; // length of a strong force over the height of the view
 
 function bodyShape(body) {
   const trace = (line) => {
@@ -48,7 +49,7 @@ function makeStage(data, canvas) {
     const below = canvas.closest(".screen").offsetHeight - canvas.offsetHeight;
     const room = above < 0.5 * window.innerHeight ? window.innerHeight - above - below - 8 : 0.6 * window.innerHeight;
     width = Math.max(200, Math.floor(box.width));
-    const wanted = (width * (top - bottom)) / (right - left) + FOOT;
+    const wanted = (width * (top - bottom)) / (right - left) + FOOT + HEAD;
     height = Math.round(Math.min(Math.max(room, 280), 640, Math.max(wanted, 220)));
     dpr = Math.min(window.devicePixelRatio || 1, 3);
     canvas.width = Math.round(width * dpr);
@@ -58,7 +59,7 @@ function makeStage(data, canvas) {
 
   // Meters to pixels: scale and the world point at the middle of the foot of the canvas.
   function viewAt(frame) {
-    const scale = Math.min(width / (right - left), (height - FOOT) / (top - bottom));
+    const scale = Math.min(width / (right - left), (height - FOOT - HEAD) / (top - bottom));
     let x = 0.5 * (left + right), z = bottom;
     const pose = (body, k) => [data.poses[3 * body][k], data.poses[3 * body + 1][k]];
     if (stage.camera === "ground" && ground >= 0) {
@@ -254,11 +255,17 @@ function makeStage(data, canvas) {
       if (event.body === null) continue;
       const [x, z] = [data.poses[3 * event.body][frame], data.poses[3 * event.body + 1][frame]];
       if (!isFinite(x + z) || data.bodies[event.body].role === "ground") continue;
-      context.beginPath();
-      context.arc(toX(x), toY(z), shapes[event.body].reach * view.scale + 5, 0, 7);
+      const angle = data.poses[3 * event.body + 2][frame];
+      if (!isFinite(angle)) continue;
+      context.save();
+      context.translate(toX(x), toY(z));
+      context.rotate(-angle);
+      context.scale(view.scale, -view.scale);
       context.strokeStyle = paint.accent;
-      context.lineWidth = 2.5;
-      context.stroke();
+      context.lineJoin = "round";
+      context.lineWidth = 3.5 / view.scale;
+      for (const { path } of shapes[event.body].outlines) context.stroke(path);
+      context.restore();
     }
   }
 
@@ -301,7 +308,7 @@ function forcesAt(data, frame) {
   return list;
 }
 
-// The force that 98 of 100 stay below: a short impact may leave the picture, the rest is legible.
+// The force that 95 of 100 stay below: a short impact may leave the picture, the rest is legible.
 function strongForce(data) {
   const sizes = [];
   const stride = Math.max(1, Math.floor(data.count / 300));
@@ -309,5 +316,5 @@ function strongForce(data) {
     for (const force of forcesAt(data, k)) sizes.push(Math.hypot(force.fx, force.fz));
   }
   sizes.sort((a, b) => a - b);
-  return sizes.length > 0 ? sizes[Math.floor(0.98 * (sizes.length - 1))] : 0;
+  return sizes.length > 0 ? sizes[Math.floor(0.95 * (sizes.length - 1))] : 0;
 }

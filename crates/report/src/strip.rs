@@ -27,7 +27,7 @@ pub struct Panel {
 }
 
 /// Largest width and height of a panel's picture (px); the widest strip of one row.
-const PANEL: [f64; 2] = [230.0, 250.0];
+const PANEL: [f64; 2] = [165.0, 235.0];
 const STILL: [f64; 2] = [480.0, 380.0];
 const ROW: f64 = 760.0;
 const GAP: f64 = 12.0;
@@ -49,7 +49,7 @@ struct Frame {
 impl Strip {
     /// A strip of `count` panels that tell the run: the first and the last frame, the events
     /// that matter most (falls before losses of seat before others, earlier before later), and
-    /// even steps in time where events are too few.
+    /// instants amid the widest gaps where events are too few.
     pub fn of_run(scene: Arc<Scene>, count: usize) -> Self {
         use crate::EventKind::{Fall, LossOfSeat, Note, Slip, Uplift};
         let times = &scene.frames.times[..scene.frames.len()];
@@ -74,17 +74,16 @@ impl Strip {
                 }
             }
         }
-        let mut parts = count;
-        while panels.len() < count && span > 0.0 && parts > 1 {
-            for k in 1..parts {
-                let time = first + span * k as f64 / parts as f64;
-                if panels.len() < count && far(&panels, time, 0.5 * span / count as f64) {
-                    panels.push(Panel { time, note: String::new() });
-                }
-            }
-            parts -= 1;
-        }
         panels.sort_by(|a, b| a.time.total_cmp(&b.time));
+        // From the first event on there is more to see than before it.
+        let quiet = usize::from(panels.len() > 2);
+        while panels.len() < count && span > 0.0 {
+            let gap = |k: usize| panels[k + 1].time - panels[k].time;
+            let widest = (quiet..panels.len() - 1).max_by(|&a, &b| gap(a).total_cmp(&gap(b)));
+            let Some(widest) = widest else { break };
+            let time = panels[widest].time + 0.5 * gap(widest);
+            panels.insert(widest + 1, Panel { time, note: String::new() });
+        }
         Self { scene, panels }
     }
 
