@@ -359,7 +359,9 @@ impl Verification {
         let mut rows = vec![(
             "predictable".to_owned(),
             match self.predictable_until {
-                None if self.repeats.is_empty() => "not known: no repeat reached its end".to_owned(),
+                None if self.repeats.is_empty() => {
+                    "not known: no repeat reached its end".to_owned()
+                }
                 Some(time) => format!(
                     "until {time:.2} s; then a body is more than {centimeters} cm elsewhere in a repeat"
                 ),

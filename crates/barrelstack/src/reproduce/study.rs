@@ -302,10 +302,15 @@ mod tests {
             for factor in factors(subject, &base) {
                 for (label, scenario) in factor.ends {
                     let print = scenario.fingerprint();
-                    assert!(!seen.contains(&print), "{name}, {}: {label} changes nothing", factor.name);
+                    assert!(
+                        !seen.contains(&print),
+                        "{name}, {}: {label} changes nothing",
+                        factor.name
+                    );
                     seen.push(print);
-                    crate::assemble::assemble(&scenario)
-                        .unwrap_or_else(|error| panic!("{name}, {}: {label}: {error}", factor.name));
+                    crate::assemble::assemble(&scenario).unwrap_or_else(|error| {
+                        panic!("{name}, {}: {label}: {error}", factor.name)
+                    });
                 }
             }
             // Ten quantities, the sine's start where there is one; the fill has one other end.
