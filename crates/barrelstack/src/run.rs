@@ -33,8 +33,8 @@ pub struct Run {
     pub stresses: Stresses,
     /// Frames and histories.
     pub recording: Recording,
-    /// The energy books at the end.
-    pub energy: EnergySummary,
+    /// The energy books at the end; none where numbers were lost.
+    pub energy: Option<EnergySummary>,
     /// How equilibrium was found; none where the scenario starts without.
     pub settled: Option<Settled>,
     /// How it was integrated.
@@ -183,10 +183,11 @@ pub fn run(
                 judge(&assembly, &fates)
             };
             warnings.extend(short_warning(&outcome, &ground, state.time).filter(|_| !interrupted));
-            (outcome, energy, totals.steps)
+            (outcome, Some(energy), totals.steps)
         }
-        Err(error @ RunError::NotFinite { .. }) => {
-            (Outcome::Invalid { reason: error.to_string() }, EnergySummary::default(), 0)
+        Err(error) => {
+            let RunError::NotFinite { steps, .. } = error;
+            (Outcome::Invalid { reason: error.to_string() }, None, steps)
         }
     };
     warnings.extend(creep_warning(&assembly));

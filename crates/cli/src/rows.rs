@@ -47,15 +47,16 @@ pub(crate) fn rows(run: &Run, summary: &Summary, changes: &[String]) -> Vec<Stri
     if let Some(slip) = demands.base_slip_residual {
         row("slip of the bottom rack", moved(slip));
     }
-    let energy = &summary.energy;
-    row(
-        "energy books",
-        format!(
-            "residual {:.1e} of the {} that went through",
-            energy.residual_ratio,
-            joules(energy.input)
-        ),
-    );
+    if let Some(energy) = &summary.energy {
+        row(
+            "energy books",
+            format!(
+                "residual {:.1e} of the {} that went through",
+                energy.residual_ratio,
+                joules(energy.input)
+            ),
+        );
+    }
     row("computed", computed(summary));
     row("contact constants", format!("per {}", run.stiffness_basis()));
     rows

@@ -152,9 +152,14 @@ pub(super) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> 
         ),
         (
             "energy books".to_owned(),
-            format!(
-                "residual {:.2e} of the {:.0} J that went through",
-                summary.energy.residual_ratio, summary.energy.input
+            summary.energy.as_ref().map_or_else(
+                || "lost with the numbers".to_owned(),
+                |books| {
+                    format!(
+                        "residual {:.2e} of the {:.0} J that went through",
+                        books.residual_ratio, books.input
+                    )
+                },
             ),
         ),
     ];
