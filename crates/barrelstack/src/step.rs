@@ -8,7 +8,7 @@ use crate::assemble::Assembly;
 /// Share of the critical time step that is taken: accuracy asks for more than stability.
 ///
 /// With it the six- and eight-barrel cases of the paper close their energy books to better than
-/// 2e-5, and halving the step moves no fall by more than 2 ms.
+/// 5e-5, and halving the step moves no fall by more than 3 ms.
 const SHARE: f64 = 0.1;
 
 /// Share of the time 1/γ in which dampers stop a body: beyond the whole of it, velocities predicted
