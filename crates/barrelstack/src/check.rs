@@ -4,7 +4,8 @@ use barrelstack_dynamics::{Scratch, State};
 
 use crate::assemble::{PartKind, assemble};
 use crate::ground::ground;
-use crate::run::{RunFailure, at_rest, check_overlap, time_step};
+use crate::overlap::check_overlap;
+use crate::run::{RunFailure, at_rest, time_step};
 use crate::scenario::Scenario;
 
 /// What a check found.

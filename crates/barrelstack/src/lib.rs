@@ -14,6 +14,7 @@ pub mod check;
 pub mod export;
 pub mod ground;
 pub mod outcome;
+mod overlap;
 pub mod report;
 pub mod reproduce;
 pub mod run;

@@ -11,6 +11,7 @@ use barrelstack_dynamics::{
 use crate::assemble::{AssembleError, Assembly, assemble};
 use crate::ground::{Ground, GroundError, ground};
 use crate::outcome::{Outcome, judge};
+use crate::overlap::check_overlap;
 use crate::scenario::{self, Scenario, Scene};
 use crate::step::{critical_time_step, default_step};
 use crate::watch::{Fates, Recording, Stresses, Thresholds, Watch};
@@ -81,9 +82,7 @@ pub enum RunFailure {
     #[error(transparent)]
     Settle(#[from] SettleError),
     /// The step is too long for the contacts.
-    #[error(
-        "run.step = {asked:.3} ms is too long: {reason}; try {instead} ms, or leave it out"
-    )]
+    #[error("run.step = {asked} ms is too long: {reason}; try {instead} ms, or leave it out")]
     Step {
         /// The step asked for (ms).
         asked: f64,
@@ -103,8 +102,8 @@ const SETTLE_TOLERANCE: f64 = 1e-10;
 /// Most steps of a run; a stack takes some 10⁵ steps a second.
 const MOST_STEPS: f64 = 1e9;
 
-/// Deepest overlap (m) of two bodies at the start that sinking under weight can explain.
-const OVERLAP_ALLOWED: f64 = 2e-3;
+/// Share of the way of the body that goes furthest from which a body counts as gone with it.
+const LOST_SHARE: f64 = 0.25;
 
 /// Runs a scenario.
 ///
@@ -222,16 +221,22 @@ pub(crate) fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64,
         return Ok(step);
     }
     Err(RunFailure::Step {
-        asked: 1e3 * step / scale,
+        asked: milliseconds(step / scale),
         reason: format!("the stiffest contact allows {:.2} ms at most", 1e3 * critical / scale),
-        instead: 1e3 * default_step(assembly, scale) / scale,
+        instead: milliseconds(default_step(assembly, scale) / scale),
     })
+}
+
+/// A step (s) in milliseconds, to be printed.
+fn milliseconds(step: f64) -> f64 {
+    (1e9 * step).round() / 1e6
 }
 
 /// Lets the stack come to rest.
 ///
 /// # Errors
-/// When it does not; blames the step where that is the likely reason.
+/// When it does not; blames the step where that is the likely reason, and otherwise the lowest of the
+/// bodies that go, which the others lose their hold with.
 pub(crate) fn at_rest(
     scenario: &Scenario,
     assembly: &Assembly,
@@ -240,17 +245,23 @@ pub(crate) fn at_rest(
 ) -> Result<Settled, RunFailure> {
     let scale = scenario.run.similitude.sqrt();
     let (step, suggested) = (time_step(scenario, assembly)?, default_step(assembly, scale));
+    let start = state.poses.clone();
     settle(&assembly.model, state, scratch, step, SETTLE_TOLERANCE).map_err(|error| {
+        let SettleError::NotAtRest { body, moved } = error;
         if step > suggested {
-            let SettleError::NotAtRest { body, .. } = error;
-            RunFailure::Step {
-                asked: 1e3 * step / scale,
+            return RunFailure::Step {
+                asked: milliseconds(step / scale),
                 reason: format!("with it \"{body}\" does not come to rest under gravity"),
-                instead: 1e3 * suggested / scale,
-            }
-        } else {
-            error.into()
+                instead: milliseconds(suggested / scale),
+            };
         }
+        let ways = state.poses.iter().zip(&start).map(|(a, b)| (a.position - b.position).length());
+        let lowest = ways.enumerate().find(|(_, way)| *way > LOST_SHARE * moved);
+        lowest
+            .map_or(SettleError::NotAtRest { body, moved }, |(lowest, way)| {
+                SettleError::NotAtRest { body: assembly.parts[lowest].name.clone(), moved: way }
+            })
+            .into()
     })
 }
 
@@ -302,29 +313,6 @@ fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
          ({MOST_STEPS:.0e}): shorten run.duration, or see whether run.step and the stiffness of the \
          contacts have the right unit"
     )))
-}
-
-/// Refuses bodies that stand in each other before anything has moved.
-pub(crate) fn check_overlap(
-    assembly: &Assembly,
-    state: &State<Planar>,
-    scratch: &mut Scratch<Planar>,
-    length_scale: f64,
-) -> Result<(), AssembleError> {
-    let model = &assembly.model;
-    barrelstack_dynamics::evaluate(model, state, scratch);
-    let deepest = scratch.contacts.iter().max_by(|a, b| a.penetration.total_cmp(&b.penetration));
-    match deepest {
-        Some(contact) if contact.penetration > OVERLAP_ALLOWED * length_scale => {
-            let pair = &model.pairs()[contact.pair];
-            Err(AssembleError::Overlap {
-                first: model.bodies()[pair.contactor].name.clone(),
-                second: model.bodies()[pair.target].name.clone(),
-                depth: contact.penetration,
-            })
-        }
-        _ => Ok(()),
-    }
 }
 
 fn energy_warning(energy: &EnergySummary) -> Option<String> {

@@ -101,7 +101,11 @@ pub fn verify(
         match repeat {
             Some(repeat) => repeats.push(repeat),
             None => skipped.push(Skipped {
-                change: if change.starts_with("disturbed") { "a disturbed repeat" } else { "a finer repeat" },
+                change: if change.starts_with("disturbed") {
+                    "a disturbed repeat"
+                } else {
+                    "a finer repeat"
+                },
                 reason: "stopped before its end".into(),
             }),
         }
@@ -169,14 +173,22 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
     match &mut finer.scene {
         Scene::Stack { stack, .. } => {
             let laws = &stack.interfaces;
-            let all = [laws.rack_ground, laws.barrel_rack, laws.barrel_barrel, laws.barrel_ground, laws.rack_rack];
+            let all = [
+                laws.rack_ground,
+                laws.barrel_rack,
+                laws.barrel_barrel,
+                laws.barrel_ground,
+                laws.rack_rack,
+            ];
             if all.iter().any(|interface| interface.basis == Basis::Node) {
                 return Err(PER_NODE.into());
             }
             if stack.view == View::Transverse {
-                return Err("across the barrels single nodes (cradle supports, corners of beams, rolling \
+                return Err(
+                    "across the barrels single nodes (cradle supports, corners of beams, rolling \
                             barrels) stand for one spacing, so halving it would soften them"
-                    .into());
+                        .into(),
+                );
             }
             stack.rack.node_spacing *= 0.5;
         }
@@ -320,8 +332,7 @@ fn judge(base: &Run, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verific
             _ => None,
         });
         repeat.fall_difference = differences.reduce(f64::max);
-        let same_falls =
-            repeat.fall_difference.is_none_or(|most| most <= SAME_FALL * scale.sqrt());
+        let same_falls = repeat.fall_difference.is_none_or(|most| most <= SAME_FALL * scale.sqrt());
         robust &= repeat.same_outcome && same_falls;
     }
     Verification { apart: APART * scale, predictable_until, robust, repeats, skipped }
@@ -348,11 +359,15 @@ impl Verification {
         let mut rows = vec![(
             "predictable".to_owned(),
             match self.predictable_until {
-                None if self.repeats.is_empty() => "not known: no repeat reached its end".to_owned(),
+                None if self.repeats.is_empty() => {
+                    "not known: no repeat reached its end".to_owned()
+                }
                 Some(time) => format!(
                     "until {time:.2} s; then a body is more than {centimeters} cm elsewhere in a repeat"
                 ),
-                None => format!("to the end; no body is more than {centimeters} cm elsewhere in a repeat"),
+                None => format!(
+                    "to the end; no body is more than {centimeters} cm elsewhere in a repeat"
+                ),
             },
         )];
         let same = self.repeats.iter().filter(|repeat| repeat.same_outcome).count();
@@ -385,7 +400,10 @@ impl Verification {
             rows.push((format!("  {}", repeat.change), what));
         }
         for skipped in &self.skipped {
-            rows.push((format!("  {}", skipped.change), format!("not repeated: {}", skipped.reason)));
+            rows.push((
+                format!("  {}", skipped.change),
+                format!("not repeated: {}", skipped.reason),
+            ));
         }
         rows
     }

@@ -24,9 +24,18 @@ fn row(quantity: &str) -> &'static Comparison {
 
 #[test]
 fn every_number_of_the_paper_has_a_row() {
-    for published in
-        ["10 s", "2.9", "2 cm", "1.5 s", "2.5 s", "5.2 %", "3", "2 s", "4.5 s", "8.9 kN/cm, 19.0 N s/cm"]
-    {
+    for published in [
+        "10 s",
+        "2.9",
+        "2 cm",
+        "1.5 s",
+        "2.5 s",
+        "5.2 %",
+        "3",
+        "2 s",
+        "4.5 s",
+        "8.9 kN/cm, 19.0 N s/cm",
+    ] {
         let rows = found().comparisons.iter().filter(|row| row.published == published);
         assert_eq!(rows.count(), 1, "{published}");
     }
@@ -40,7 +49,12 @@ fn what_needs_the_papers_record_is_not_compared_without_it() {
         assert_eq!(row.verdict == Verdict::NotCompared, six, "{}", row.quantity);
         if six {
             assert_eq!(row.difference, None, "{}", row.quantity);
-            assert!(!row.ours.contains(|c: char| c.is_ascii_digit()), "{}: {}", row.quantity, row.ours);
+            assert!(
+                !row.ours.contains(|c: char| c.is_ascii_digit()),
+                "{}: {}",
+                row.quantity,
+                row.ours
+            );
         }
     }
     let [warning] = found().document.warnings.as_slice() else { panic!("one warning") };
@@ -114,7 +128,8 @@ fn the_page_is_the_same_every_time() {
 fn a_missing_record_is_an_error_before_any_run() {
     let counted = std::sync::atomic::AtomicUsize::new(0);
     let tell = |_, _| _ = counted.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-    let error = reproduce(Some(Path::new("no/such/file.at2")), true, &tell).unwrap_err().to_string();
+    let error =
+        reproduce(Some(Path::new("no/such/file.at2")), true, &tell).unwrap_err().to_string();
     assert!(error.contains("no/such/file.at2"), "{error}");
     assert_eq!(counted.into_inner(), 0);
 }
@@ -130,5 +145,8 @@ fn the_papers_record_is_told_from_its_neighbors() {
     let north = recognize(&folder.join("RSN995_NORTHR_PEL360.AT2")).unwrap();
     assert!(north.is_papers(), "{north:?}");
     let east = recognize(&folder.join("RSN995_NORTHR_PEL090.AT2")).unwrap();
-    assert!(matches!(&east, Motion::Other { file, .. } if file == "RSN995_NORTHR_PEL090.AT2"), "{east:?}");
+    assert!(
+        matches!(&east, Motion::Other { file, .. } if file == "RSN995_NORTHR_PEL090.AT2"),
+        "{east:?}"
+    );
 }

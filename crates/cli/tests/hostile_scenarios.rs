@@ -34,16 +34,19 @@ position = ["1 m", "0.5 m"]
 [[interface]]
 between = ["left", "right"]
 stiffness = "5 MN/m"
+damping = "10 kN s/m"
 friction = { coefficient = 0.3 }
 
 [[interface]]
 between = ["left", "ground"]
 stiffness = "5 MN/m"
+damping = "10 kN s/m"
 friction = { coefficient = 0.3 }
 
 [[interface]]
 between = ["right", "ground"]
 stiffness = "5 MN/m"
+damping = "10 kN s/m"
 friction = { coefficient = 0.3 }
 
 [run]
@@ -156,7 +159,7 @@ fn runs_that_never_begin_or_end() {
 
 #[test]
 fn bodies_where_none_can_be() {
-    let moved = "[[stack.override]]\nkind = \"rack\"\nlevel = 2\noffset_x = \"5 m\"";
+    let moved = "[[stack.override]]\nkind = \"rack\"\nlevel = 2\noffset_x = \"0.9 m\"";
     refuse("rack in the air", &stack(moved), &["R2"]);
     let lifted = "[[stack.override]]\nkind = \"barrel\"\nlevel = 9\nmass = \"1 kg\"";
     refuse("no such level", &stack(lifted), &["level", "9"]);
@@ -196,6 +199,6 @@ fn motions_that_are_not_there() {
     refuse(
         "no channel",
         b"schema = 1\nextends = \"demo-napa\"\n[motion]\ncomponent = \"N999\"\n",
-        &["N999", "UP"],
+        &["N999", "\"Up\""],
     );
 }

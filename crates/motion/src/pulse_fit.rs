@@ -2,6 +2,7 @@
 
 use crate::error::MotionError;
 use crate::fourier::{Complex, forward_real, inverse};
+use crate::history::History;
 use crate::math::{self, TAU};
 use crate::pulse::Pulse;
 use crate::sampled::Sampled;
@@ -13,8 +14,10 @@ pub struct PulseFit {
     pub pulse: Pulse,
     /// Prevailing period (s).
     pub period: f64,
-    /// Velocity amplitude `A` (m/s).
+    /// Velocity amplitude `A` of the formula (m/s); above the peak where the phase is not zero.
     pub amplitude: f64,
+    /// Largest velocity of the pulse (m/s).
+    pub peak_velocity: f64,
     /// Time at which the pulse starts (s); may lie before the record.
     pub start: f64,
     /// Share of the squared velocity that the pulse explains, 0 to 1.
@@ -84,13 +87,15 @@ pub fn dominant_pulse(
     let projection = project(&velocity, dt, &best);
     let amplitude = math::hypot(projection.even, projection.odd);
     let phase = math::atan2(-projection.odd, projection.even);
+    let pulse = Pulse::MavroeidisPapageorgiou {
+        velocity: amplitude,
+        period: best.period,
+        gamma: best.gamma,
+        phase,
+    };
     Ok(PulseFit {
-        pulse: Pulse::MavroeidisPapageorgiou {
-            velocity: amplitude,
-            period: best.period,
-            gamma: best.gamma,
-            phase,
-        },
+        pulse,
+        peak_velocity: History::Analytic(pulse).pgv(),
         period: best.period,
         amplitude,
         start: best.center - 0.5 * best.gamma * best.period,

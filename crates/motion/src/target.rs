@@ -154,7 +154,12 @@ impl TargetSpectrum {
     pub fn damping(&self) -> f64 {
         match self {
             Self::Eurocode8 { damping, .. } => *damping,
-            _ => 0.05,
+            Self::Asce7 { .. }
+            | Self::NCh433 { .. }
+            | Self::NCh2745 { .. }
+            | Self::Nzs1170 { .. }
+            | Self::Ac156 { .. }
+            | Self::Table(_) => 0.05,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Time-domain matching: wavelets added where the responses peak.
 
 use crate::error::MotionError;
-use crate::matching::{Best, GOOD_ENOUGH, Matching, Work};
+use crate::matching::{Best, GOOD_ENOUGH, Matching, Work, matched_periods};
 use crate::math::{self, TAU};
 use crate::response::Step;
 
@@ -23,9 +23,17 @@ struct Extremum {
     value: f64,
 }
 
-/// One equation: the response of oscillator `period` at `sample` shall change by `change`.
+/// One matched period.
+struct Oscillator {
+    period: f64,
+    /// Target pseudo-acceleration (m/s²).
+    goal: f64,
+    step: Step,
+}
+
+/// One equation: the response of an oscillator at `sample` shall change by `change`.
 struct Demand {
-    period: usize,
+    oscillator: usize,
     sample: usize,
     change: f64,
     weight: f64,
@@ -33,39 +41,41 @@ struct Demand {
 
 /// Rounds of linear systems: the responses of all wavelets at all peak times against the misfits.
 pub(crate) fn match_in_time(
-    work: &Work,
+    work: &Work<'_>,
     start: &[f64],
     settings: &Matching,
 ) -> Result<(Vec<f64>, f64, usize), MotionError> {
     let n = start.len();
     let mut a = work.close(start)?;
     let mut best = Best::new(&a);
-    let steps: Vec<Step> =
-        work.periods.iter().map(|&t| Step::new(t, work.damping, work.time_step)).collect();
     for round in 1..=settings.rounds {
         // Far from the target the peaks alone lead on fastest.
         let watching = round > 2 * settings.rounds / 3;
         if round == 2 * settings.rounds / 3 + 1 && best.round > 0 {
             a.clone_from(&best.acceleration);
         }
-        let mut peaks = Vec::with_capacity(steps.len());
+        let oscillators: Vec<Oscillator> = matched_periods(settings, round)
+            .into_iter()
+            .map(|period| Oscillator {
+                period,
+                goal: work.target.acceleration(period),
+                step: Step::new(period, work.damping, work.time_step),
+            })
+            .collect();
+        let mut wavelets = Vec::with_capacity(oscillators.len());
         let mut demands = Vec::new();
-        for (k, step) in steps.iter().enumerate() {
-            let threshold = if watching { WATCHED * work.goal[k] } else { f64::INFINITY };
-            let extrema = extrema(&a, work.periods[k], step, threshold);
-            peaks.push(demand(&extrema, k, work, &mut demands));
+        for (k, oscillator) in oscillators.iter().enumerate() {
+            let threshold = if watching { WATCHED * oscillator.goal } else { f64::INFINITY };
+            let extrema = extrema(&a, oscillator, threshold);
+            let peak = demand(&extrema, k, oscillator, work.time_step, &mut demands);
+            let period = oscillator.period;
+            wavelets.push(Wavelet::new(period, work.damping, work.time_step, peak.sample, n));
         }
         best.offer(&a, work.misfit(&a)?, round);
         if best.misfit <= GOOD_ENOUGH * settings.tolerance {
             break;
         }
-        let wavelets: Vec<Wavelet> = work
-            .periods
-            .iter()
-            .zip(&peaks)
-            .map(|(&t, peak)| Wavelet::new(t, work.damping, work.time_step, peak.sample, n))
-            .collect();
-        let amplitudes = solve(work, &steps, &wavelets, &demands);
+        let amplitudes = solve(work, &oscillators, &wavelets, &demands);
         for (wavelet, amplitude) in wavelets.iter().zip(&amplitudes) {
             for (value, shape) in a[wavelet.first..].iter_mut().zip(&wavelet.values) {
                 *value += amplitude * shape;
@@ -77,18 +87,24 @@ pub(crate) fn match_in_time(
 }
 
 /// Least-squares amplitudes of the wavelets for the demands, which are in order of period.
-fn solve(work: &Work, steps: &[Step], wavelets: &[Wavelet], demands: &[Demand]) -> Vec<f64> {
+fn solve(
+    work: &Work<'_>,
+    oscillators: &[Oscillator],
+    wavelets: &[Wavelet],
+    demands: &[Demand],
+) -> Vec<f64> {
     let count = wavelets.len();
     let mut system = System::new(count);
-    for group in demands.chunk_by(|a, b| a.period == b.period) {
-        let period = group[0].period;
+    for group in demands.chunk_by(|a, b| a.oscillator == b.oscillator) {
+        let oscillator = &oscillators[group[0].oscillator];
         let mut rows = vec![0.0; group.len() * count];
         for (j, wavelet) in wavelets.iter().enumerate() {
-            let free = FreeVibration::new(work.periods[period], work.damping, work.time_step);
+            let free = FreeVibration::new(oscillator.period, work.damping, work.time_step);
             let mut state = (0.0, 0.0);
             let mut at = wavelet.first;
             for (i, demand) in group.iter().enumerate() {
-                let u = wavelet.advance(&steps[period], &free, &mut state, &mut at, demand.sample);
+                let u =
+                    wavelet.advance(&oscillator.step, &free, &mut state, &mut at, demand.sample);
                 rows[i * count + j] = demand.weight * free.stiffness * u;
             }
         }
@@ -100,22 +116,28 @@ fn solve(work: &Work, steps: &[Step], wavelets: &[Wavelet], demands: &[Demand]) 
 }
 
 /// Adds the demands of one oscillator and returns its peak.
-fn demand(extrema: &[Extremum], period: usize, work: &Work, demands: &mut Vec<Demand>) -> Extremum {
-    let goal = work.goal[period];
+fn demand(
+    extrema: &[Extremum],
+    index: usize,
+    oscillator: &Oscillator,
+    time_step: f64,
+    demands: &mut Vec<Demand>,
+) -> Extremum {
+    let goal = oscillator.goal;
     let first = Extremum { sample: 1, value: 0.0 };
     let peak = extrema.iter().fold(first, |best, other| {
         if other.value.abs() > best.value.abs() { *other } else { best }
     });
     for extremum in extrema {
         let is_peak = extremum.sample == peak.sample;
-        let apart = extremum.sample.abs_diff(peak.sample) as f64 * work.time_step;
+        let apart = extremum.sample.abs_diff(peak.sample) as f64 * time_step;
         let excess = extremum.value.abs() - goal;
-        if !is_peak && (apart < 1.5 * work.periods[period]) {
+        if !is_peak && (apart < 1.5 * oscillator.period) {
             continue;
         }
         let change = if is_peak { -excess } else { -excess.max(0.0) };
         demands.push(Demand {
-            period,
+            oscillator: index,
             sample: extremum.sample,
             change: RELAXATION * change * extremum.value.signum(),
             weight: if is_peak || excess > 0.0 { 1.0 } else { WATCHED_WEIGHT },
@@ -125,14 +147,14 @@ fn demand(extrema: &[Extremum], period: usize, work: &Work, demands: &mut Vec<De
 }
 
 /// Local extrema of the response above `threshold`, and the largest in any case.
-fn extrema(a: &[f64], period: f64, step: &Step, threshold: f64) -> Vec<Extremum> {
-    let w = TAU / period;
+fn extrema(a: &[f64], oscillator: &Oscillator, threshold: f64) -> Vec<Extremum> {
+    let w = TAU / oscillator.period;
     let (mut u, mut v) = (0.0_f64, 0.0_f64);
     let mut found = Vec::new();
     let mut largest = Extremum { sample: 1, value: 0.0 };
     let (mut before, mut here) = (0.0_f64, 0.0_f64);
     for (k, pair) in a.windows(2).enumerate() {
-        (u, v) = step.advance(u, v, -pair[0], -pair[1]);
+        (u, v) = oscillator.step.advance(u, v, -pair[0], -pair[1]);
         let after = w * w * u;
         // `here` belongs to sample k.
         if here.abs() >= before.abs() && here.abs() > after.abs() && here.abs() > threshold {
@@ -166,7 +188,7 @@ impl Wavelet {
         let lag = math::atan2(q, damping) / w;
         let gamma = 1.178 * math::powf(period, 0.93);
         let center = peak as f64 * time_step - lag;
-        let reach = 3.5 * gamma;
+        let reach = 3.0 * gamma;
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,

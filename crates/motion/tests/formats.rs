@@ -2,10 +2,17 @@
 //!
 //! Every sample is the same decaying sine, so that the numbers expected are a formula.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by unwrap and tells by print"
+)]
+
 use std::path::{Path, PathBuf};
 
 use barrelstack_motion::{
-    AccelerationUnit, Orientation, ReadOptions, Record, Refusal, STANDARD_GRAVITY, Stage, read,
+    AccelerationUnit, Orientation, ReadOptions, Record, Refusal, STANDARD_GRAVITY, Stage,
+    StatedPeak, read,
 };
 
 fn folder() -> PathBuf {
@@ -231,7 +238,7 @@ fn stated_peaks_are_found() {
         let record = read(&bytes(file), file, &options(file)).unwrap();
         for channel in &record.channels {
             assert_eq!(channel.peaks.len(), count, "{file} {}", channel.name);
-            assert!(channel.peaks.iter().all(|p| p.agrees()), "{file}: {:?}", channel.peaks);
+            assert!(channel.peaks.iter().all(StatedPeak::agrees), "{file}: {:?}", channel.peaks);
         }
     }
 }
@@ -251,6 +258,22 @@ fn uneven_times_are_interpolated_with_a_warning() {
             assert!((a - truth).abs() < 2e-3 * STANDARD_GRAVITY, "{file} sample {k}");
         }
     }
+}
+
+#[test]
+fn columns_without_time_are_channels_only_if_named() {
+    let rows: Vec<String> = (0..60).map(|k| format!("{}.5 -0.25 0.{k:02}\n", k % 7)).collect();
+    let rows = rows.concat();
+    let given = ReadOptions { time_step: Some(0.01), ..ReadOptions::default() };
+    let named = format!("unit: cm/s2\nEW NS UD\n{rows}");
+    let record = read(named.as_bytes(), "named.txt", &given).unwrap();
+    // The second column never changes and is left out with a warning.
+    let names: Vec<&str> = record.channels.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["EW", "UD"]);
+    let bare = format!("unit: cm/s2\n{rows}");
+    let record = read(bare.as_bytes(), "bare.txt", &given).unwrap();
+    assert_eq!(record.channels[0].acceleration.len(), 180);
+    assert!(record.warnings.iter().any(|w| w.message.contains("row by row")));
 }
 
 #[test]
@@ -392,9 +415,8 @@ fn stars_words_and_huge_numbers_are_refused_with_their_place() {
             let damaged = format!("{}{damage}{}", &line[..start], &line[end..]);
             let mut all = lines.clone();
             all[target] = damaged.into_bytes();
-            let error = match read(&all.concat(), file, &options(file)) {
-                Err(error) => error,
-                Ok(_) => panic!("{file}: {found} on line {} was read", target + 1),
+            let Err(error) = read(&all.concat(), file, &options(file)) else {
+                panic!("{file}: {found} on line {} was read", target + 1)
             };
             assert_eq!(error.refusal, Refusal::Damaged, "{error}");
             assert_eq!(error.line, Some(target + 1), "{error}");
@@ -433,7 +455,7 @@ fn a_lost_line_and_a_wrong_count_are_refused() {
 #[test]
 fn binary_garbage_is_refused() {
     let garbage: Vec<u8> =
-        (0..5000_u32).map(|k| (k.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+        (0..5000_u32).map(|k| k.wrapping_mul(2_654_435_761).to_le_bytes()[2]).collect();
     let error = read(&garbage, "garbage", &ReadOptions::default()).unwrap_err();
     assert!(error.line.is_some() && error.column.is_some(), "{error}");
     assert!(read(b"", "empty", &ReadOptions::default()).is_err());

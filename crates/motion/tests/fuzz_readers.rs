@@ -2,6 +2,12 @@
 //!
 //! A fixed count from a fixed seed, so that a failure repeats; `fuzz/` holds the open-ended targets.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by unwrap and tells by print"
+)]
+
 use std::path::Path;
 
 use barrelstack_motion::{AccelerationUnit, ReadOptions, read};

@@ -1,5 +1,11 @@
 //! Intensity measures of motions with closed forms.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by unwrap and tells by print"
+)]
+
 use barrelstack_motion::{
     FourierSpectrum, IntensityMeasure, Pulse, STANDARD_GRAVITY, Sampled, dominant_pulse, response,
     response_subdivided, rotated_peak, rotated_spectrum,

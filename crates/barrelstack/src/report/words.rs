@@ -22,7 +22,9 @@ pub(super) fn headline(run: &Run, summary: &Summary) -> String {
             let until = until.map(|until| format!("; {until}")).unwrap_or_default();
             let (fallen, barrels) = (summary.outcome.barrels_fallen, summary.outcome.barrels);
             match fallen {
-                0 => format!("The stack comes apart after {time:.1} s, but no barrel falls{until}."),
+                0 => {
+                    format!("The stack comes apart after {time:.1} s, but no barrel falls{until}.")
+                }
                 _ => {
                     let who = match fallen {
                         1 if barrels == 1 => "The barrel falls".to_owned(),
@@ -51,7 +53,9 @@ fn course(run: &Run, mode: CollapseMode, first: &str, part: &str) -> String {
     let barrel = run.assembly.parts.iter().any(|p| p.name == first && p.kind == PartKind::Barrel);
     match mode {
         CollapseMode::Ejection if barrel => {
-            format!("Barrel {first} is thrown out of its cradle, the first of {part} to leave its seat.")
+            format!(
+                "Barrel {first} is thrown out of its cradle, the first of {part} to leave its seat."
+            )
         }
         CollapseMode::Ejection => {
             format!("The barrels of {part} are thrown off the stack with their rack, {first}.")
@@ -121,7 +125,9 @@ pub(super) fn details(run: &Run, summary: &Summary) -> Vec<String> {
 
 fn capital(text: &str) -> String {
     let mut chars = text.chars();
-    chars.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + chars.as_str())
+    chars
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + chars.as_str())
 }
 
 /// What made the result, in pairs of name and value.

@@ -35,7 +35,8 @@ pub(super) fn table() -> Table {
             ("longitudinal, rack", ""),
         ],
     );
-    let pair = |number: u32, columns: u32| Cell::text(format!("{number} = {}", name(number, columns)));
+    let pair =
+        |number: u32, columns: u32| Cell::text(format!("{number} = {}", name(number, columns)));
     for level in (1..=4).rev() {
         let (first, along) = (3 * (level - 1), 2 * (level - 1));
         table.rows.push(vec![

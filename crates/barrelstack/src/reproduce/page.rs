@@ -185,7 +185,9 @@ fn figure_6(results: &Results) -> Vec<Block> {
         ),
     ));
     blocks.push(heading(3, "(c) horizontal displacement of barrels 1, 4 and 7"));
-    for (run, id, friction) in [(six, "figure-6c-upper", "0.4"), (slippery, "figure-6c-lower", "0.1")] {
+    for (run, id, friction) in
+        [(six, "figure-6c-upper", "0.4"), (slippery, "figure-6c-lower", "0.1")]
+    {
         blocks.push(figures::histories(
             run,
             id,
@@ -307,9 +309,7 @@ fn studies(results: &Results) -> Vec<Block> {
     for study in &results.studies {
         let (title, id, published) = match study.subject {
             Subject::Six => ("Six barrels, μ 0.4", "study-six", [Some(10.0), None, Some(2.9)]),
-            Subject::Eight => {
-                ("Eight barrels", "study-eight", [Some(1.5), Some(0.052), Some(3.0)])
-            }
+            Subject::Eight => ("Eight barrels", "study-eight", [Some(1.5), Some(0.052), Some(3.0)]),
             Subject::Along => ("Along the barrels", "study-along", [Some(4.5), None, None]),
         };
         blocks.push(heading(3, title));

@@ -98,9 +98,8 @@ impl Plan {
     /// Sorts what came of the jobs.
     pub(super) fn read(self, motion: Motion, done: Vec<Done>) -> Result<Results, ReproduceError> {
         let labels: Vec<String> = self.jobs.into_iter().map(|job| job.label).collect();
-        let lost = |at: usize| ReproduceError::Lost {
-            case: labels.get(at).cloned().unwrap_or_default(),
-        };
+        let lost =
+            |at: usize| ReproduceError::Lost { case: labels.get(at).cloned().unwrap_or_default() };
         let mut rest = done.into_iter();
         let mut singles = rest.by_ref().take(self.single).enumerate();
         let mut next = || singles.next().ok_or_else(|| lost(0));

@@ -51,13 +51,18 @@ fn reasons(study: Option<&Study>, published: f64) -> String {
     let reached = study.reaching(published, |summary| clock.time(summary));
     let range = study
         .times()
-        .map(|[low, high]| format!(" The changes of the study span {} to {}.", seconds(low), seconds(high)))
+        .map(|[low, high]| {
+            format!(" The changes of the study span {} to {}.", seconds(low), seconds(high))
+        })
         .unwrap_or_default();
     if clock.time(&study.base).is_some_and(close) {
         range
     } else if reached.is_empty() {
         let strongest = study.strongest(2, |summary| clock.time(summary), seconds);
-        format!(" No single change of the study reaches it; the strongest are {}.{range}", strongest.join(" and "))
+        format!(
+            " No single change of the study reaches it; the strongest are {}.{range}",
+            strongest.join(" and ")
+        )
     } else {
         format!(" Single changes that reach it: {}.{range}", reached.join(", "))
     }
@@ -69,7 +74,8 @@ fn six(results: &Results) -> Vec<Comparison> {
     let demands = &summary.demands;
     let shown = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), digits);
     let centimeters = |value: Option<f64>| {
-        value.map_or_else(|| "–".to_owned(), |v| barrelstack_report::significant(100.0 * v.abs(), 2))
+        value
+            .map_or_else(|| "–".to_owned(), |v| barrelstack_report::significant(100.0 * v.abs(), 2))
     };
     let body = |name: &str| {
         let body = summary.bodies.iter().find(|b| b.name == name);
@@ -362,8 +368,8 @@ fn scales(results: &Results) -> Vec<Comparison> {
 
 fn parameters(results: &Results) -> Vec<Comparison> {
     let base = &results.eight.summary;
-    let agreement = (!results.ensemble.is_empty())
-        .then(|| ensemble::agreement(base, &results.ensemble));
+    let agreement =
+        (!results.ensemble.is_empty()).then(|| ensemble::agreement(base, &results.ensemble));
     let span = |[low, high]: [f64; 2], factor: f64| {
         format!("{} to {}", digits(low * factor), digits(high * factor))
     };
@@ -415,13 +421,18 @@ fn parameters(results: &Results) -> Vec<Comparison> {
 fn along(results: &Results) -> Vec<Comparison> {
     let summary = &results.along.summary;
     let outcome = &summary.outcome;
-    let fall = outcome.first_fall.map(|t| format!(" The first barrel has fallen at {}.", seconds(t)));
+    let fall =
+        outcome.first_fall.map(|t| format!(" The first barrel has fallen at {}.", seconds(t)));
     vec![
         finding(
             "section 4",
             "along the barrels: collapse",
             "rack sliding, body 4 first",
-            format!("{}, {} first", mode_of(summary), outcome.first.as_deref().unwrap_or("nothing")),
+            format!(
+                "{}, {} first",
+                mode_of(summary),
+                outcome.first.as_deref().unwrap_or("nothing")
+            ),
             outcome.mode == Some("rack-sliding") && outcome.first.as_deref() == Some("R2"),
             "R2 is the paper's body 4, the rack of the second level.".into(),
         ),

@@ -116,10 +116,12 @@ pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
         list.push(Factor { name, ends: ends.into() });
     };
     let centimeters = |value: f64| barrelstack_report::significant(100.0 * value, 3);
-    let share = |change: fn(&mut StackSpec, f64), by: f64| move |stack: &mut StackSpec| change(stack, by);
-    let percent = |list: &mut dyn FnMut(String, [(&str, &dyn Fn(&mut StackSpec)); 2]), name: &str, f| {
-        list(name.to_owned(), [("−10 %", &share(f, 0.9)), ("+10 %", &share(f, 1.1))]);
-    };
+    let share =
+        |change: fn(&mut StackSpec, f64), by: f64| move |stack: &mut StackSpec| change(stack, by);
+    let percent =
+        |list: &mut dyn FnMut(String, [(&str, &dyn Fn(&mut StackSpec)); 2]), name: &str, f| {
+            list(name.to_owned(), [("−10 %", &share(f, 0.9)), ("+10 %", &share(f, 1.1))]);
+        };
 
     if subject == Subject::Along {
         change(
@@ -163,7 +165,10 @@ pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
     );
     change(
         "stick stiffness 1 × normal".to_owned(),
-        [("half", &|s| vary::stick_stiffness(s, 0.5)), ("double", &|s| vary::stick_stiffness(s, 2.0))],
+        [
+            ("half", &|s| vary::stick_stiffness(s, 0.5)),
+            ("double", &|s| vary::stick_stiffness(s, 2.0)),
+        ],
     );
     percent(&mut change, "k", vary::stiffness);
     percent(&mut change, "c", vary::damping);
@@ -297,10 +302,15 @@ mod tests {
             for factor in factors(subject, &base) {
                 for (label, scenario) in factor.ends {
                     let print = scenario.fingerprint();
-                    assert!(!seen.contains(&print), "{name}, {}: {label} changes nothing", factor.name);
+                    assert!(
+                        !seen.contains(&print),
+                        "{name}, {}: {label} changes nothing",
+                        factor.name
+                    );
                     seen.push(print);
-                    crate::assemble::assemble(&scenario)
-                        .unwrap_or_else(|error| panic!("{name}, {}: {label}: {error}", factor.name));
+                    crate::assemble::assemble(&scenario).unwrap_or_else(|error| {
+                        panic!("{name}, {}: {label}: {error}", factor.name)
+                    });
                 }
             }
             // Ten quantities, the sine's start where there is one; the fill has one other end.

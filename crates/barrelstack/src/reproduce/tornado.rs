@@ -64,10 +64,11 @@ fn figure(study: &Study, id: &str, published: [Option<f64>; 3]) -> Figure {
     let span = (high - low).max(1.0);
     // The names of the rows stand at the right, clear of the bars.
     let range = [low - 0.05 * span, high + 0.45 * span];
-    let levels = study.effects.iter().enumerate().map(|(row, effect)| Mark {
-        at: (count - row) as f64 - 0.45,
-        label: effect.name.clone(),
-    });
+    let levels = study
+        .effects
+        .iter()
+        .enumerate()
+        .map(|(row, effect)| Mark { at: (count - row) as f64 - 0.45, label: effect.name.clone() });
     Figure {
         id: id.to_owned(),
         caption: format!(
@@ -79,7 +80,10 @@ fn figure(study: &Study, id: &str, published: [Option<f64>; 3]) -> Figure {
         ),
         kind: FigureKind::Plot(Plot {
             x: Axis { range: Some(range), ..Axis::new("change", "%") },
-            y: Axis { range: Some([0.4, count as f64 + 0.65]), ..Axis::new("row of the table", "") },
+            y: Axis {
+                range: Some([0.4, count as f64 + 0.65]),
+                ..Axis::new("row of the table", "")
+            },
             series,
             marks,
             levels: levels.collect(),

@@ -11,6 +11,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::Context;
+use barrelstack::ground::GroundError;
 use barrelstack::scenario::{Problem, ScenarioError, builtin};
 use barrelstack::{RunFailure, Scenario};
 
@@ -80,6 +81,14 @@ fn no_such(name: &str, error: &ScenarioError) -> anyhow::Error {
 /// none.
 fn placed(error: RunFailure, args: &ScenarioArgs) -> anyhow::Error {
     match error {
+        RunFailure::Ground(GroundError::Unreadable { path, reason, .. })
+            if args.record.is_some() =>
+        {
+            anyhow::anyhow!(
+                "cannot read {}: {reason}; correct the path after --record",
+                path.display()
+            )
+        }
         RunFailure::Ground(error) if args.record.is_some() => error.into(),
         error => anyhow::Error::from(error).context(args.scenario.clone()),
     }

@@ -28,7 +28,7 @@ fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
     })
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let number = |key: &str| {
         let found = field(source, key);
         let value = found.as_ref().and_then(|(line, text)| {

@@ -30,7 +30,7 @@ fn field(source: &Source<'_>, end: usize, key: &str) -> Option<(usize, String)> 
     })
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let end = (0..source.lines.len().min(MOST_HEADER_LINES))
         .find(|&line| super::source::parse_number(source.raw(line)).is_some())
         .ok_or_else(|| source.cut("values after the header", "none"))?;

@@ -24,7 +24,7 @@ fn sniff(source: &Source<'_>) -> bool {
         || source.has(0, "GNS Science")
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let raw = source.has(0, "uncorrected");
     let stage = if raw { Stage::Raw } else { Stage::Corrected };
     let mut record = Record::new(FORMAT.name, source.name, stage);

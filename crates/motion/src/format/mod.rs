@@ -115,6 +115,15 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
             "get the file again from its source",
         ));
     }
+    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        return Err(source.error(
+            (),
+            Refusal::Damaged,
+            "text in UTF-8",
+            "UTF-16",
+            "save the file as UTF-8 or plain text",
+        ));
+    }
     check_options(&source, options)?;
     let Some(format) = KNOWN_OTHERS.iter().chain(FORMATS).find(|format| (format.sniff)(&source))
     else {

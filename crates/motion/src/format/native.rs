@@ -39,7 +39,7 @@ fn field(source: &Source<'_>, end: usize, key: &str) -> Option<(usize, String)> 
     })
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let end = (0..source.lines.len())
         .find(|&line| !source.text(line).starts_with('#'))
         .ok_or_else(|| source.cut("rows of numbers after the header", "none"))?;

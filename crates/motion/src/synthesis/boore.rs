@@ -180,9 +180,9 @@ impl BooreSource {
         // Windowed unit noise has mean-square Fourier amplitude Σw²: a known number, not a draw's.
         let norm = 1.0 / energy.sqrt();
         let df = 1.0 / (length as f64 * time_step);
-        for k in 0..length {
+        for (k, value) in spectrum.iter_mut().enumerate() {
             let f = k.min(length - k) as f64 * df;
-            spectrum[k] = spectrum[k].times(norm * self.fourier_amplitude(f) / time_step);
+            *value = value.times(norm * self.fourier_amplitude(f) / time_step);
         }
         inverse(&mut spectrum);
         Ok(spectrum.iter().take(steps + 1).map(|x| x.re).collect())

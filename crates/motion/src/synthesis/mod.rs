@@ -22,7 +22,7 @@ fn step_count(duration: f64, time_step: f64) -> Result<usize, MotionError> {
     MotionError::require_positive("duration (s)", duration)?;
     MotionError::require_positive("time step (s)", time_step)?;
     let steps = (duration / time_step * (1.0 - 1e-12)).ceil();
-    if !(steps >= 2.0 && steps <= MOST_SAMPLES) {
+    if !(2.0..=MOST_SAMPLES).contains(&steps) {
         return Err(MotionError::parameter(
             "duration over time step",
             format!("2 to {MOST_SAMPLES:e}"),
