@@ -48,8 +48,8 @@ fn a_run_far_from_the_threshold_is_robust() {
 
 #[test]
 fn a_run_at_the_threshold_is_not_robust() {
-    // Half the step moves the threshold by 2e-6 of the amplitude; the bisection ends below that, so
-    // one of its ends must change sides in a repeat.
+    // Half the step moves the threshold by more than 4e-7, measured as a change of the factor; the
+    // bisection ends at 2e-7, so one of its ends must change sides in a repeat.
     let collapses = |factor: f64| two_levels(factor).fates.collapse_time().is_some();
     let (mut stands, mut falls) = (0.645, 0.646);
     assert!(!collapses(stands) && collapses(falls), "the threshold has left its bracket");

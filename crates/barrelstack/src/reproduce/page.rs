@@ -42,7 +42,7 @@ pub(super) fn headline(rows: &[Comparison]) -> String {
     }
     text.push_str(&format!(", {} differ", count(Verdict::Differs)));
     if count(Verdict::NotCompared) > 0 {
-        text.push_str(&format!("; {} need the paper's record", count(Verdict::NotCompared)));
+        text.push_str(&format!("; not compared: {}", count(Verdict::NotCompared)));
     }
     text.push('.');
     text
@@ -215,7 +215,7 @@ fn stand_in(results: &Results) -> String {
     format!(
         "This is not the paper's motion, so none of its numbers can be read here. Under {} the six \
          barrels give: with μ 0.4 {} and {} cm of slip left, with μ 0.1 {} and {} cm.",
-        results.motion.words(),
+        results.motion.name(),
         what(six),
         slip(six),
         what(slippery),

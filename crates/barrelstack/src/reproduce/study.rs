@@ -47,7 +47,7 @@ impl Subject {
     fn duration(self) -> (f64, f64) {
         match self {
             Self::Six => (20.0, 0.1),
-            Self::Eight => (12.0, 1.2),
+            Self::Eight => (12.0, 1.6),
             Self::Along => (10.0, 0.1),
         }
     }
@@ -260,6 +260,38 @@ impl Study {
             }
         }
         found
+    }
+
+    /// The changes with which something holds, in words.
+    pub(super) fn holding(&self, what: impl Fn(&Summary) -> bool) -> Vec<String> {
+        let mut found = Vec::new();
+        for effect in &self.effects {
+            for (label, _) in effect.ends.iter().filter(|(_, summary)| what(summary)) {
+                found.push(format!("{} ({label})", effect.name));
+            }
+        }
+        found
+    }
+
+    /// The change that brings a quantity nearest to a published value, in words, and what it is then.
+    pub(super) fn nearest(
+        &self,
+        published: f64,
+        of: impl Fn(&Summary) -> Option<f64>,
+    ) -> Option<(String, f64)> {
+        let mut best: Option<(String, f64)> = None;
+        for effect in &self.effects {
+            for (label, summary) in &effect.ends {
+                let Some(value) = of(summary) else { continue };
+                let farther = |(_, known): &(String, f64)| {
+                    (known - published).abs() > (value - published).abs()
+                };
+                if best.as_ref().is_none_or(farther) {
+                    best = Some((format!("{} ({label})", effect.name), value));
+                }
+            }
+        }
+        best
     }
 
     /// The changes that move a quantity most, at most `count`, in words with what becomes of it.
