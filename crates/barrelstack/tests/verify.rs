@@ -73,7 +73,6 @@ fn a_run_at_the_threshold_is_not_robust() {
 fn a_long_collapse_is_predictable_only_for_a_while() {
     let run = run("candia-8-barrels", &["run.duration=4.5 s"]);
     let found = verified(&run);
-    println!("{:#?}", found.rows());
     // measured 2.4 s: a second after the first rack has left its seat, barrels lie on each other
     let until = found.predictable_until.unwrap();
     assert!(until > run.fates.collapse_time().unwrap() && until < run.end_time, "{until}");

@@ -1,5 +1,6 @@
 //! The page: the paper's numbers and figures in its order, ours beside them, and why they differ.
 
+use std::fmt::Write as _;
 use std::sync::Arc;
 
 use barrelstack_report::{Block, Cell, Document, Scene, Table, Tone, Verdict as Headline};
@@ -36,13 +37,14 @@ pub(super) fn document(results: &Results, rows: &[Comparison]) -> Document {
 pub(super) fn headline(rows: &[Comparison]) -> String {
     let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
     let compared = rows.len() - count(Verdict::NotCompared);
+    // Writing to a String cannot fail.
     let mut text = format!("{} of {compared} published results agree", count(Verdict::Agrees));
     if count(Verdict::InBand) > 0 {
-        text.push_str(&format!(", {} more within a wider band", count(Verdict::InBand)));
+        let _ = write!(text, ", {} more within a wider band", count(Verdict::InBand));
     }
-    text.push_str(&format!(", {} differ", count(Verdict::Differs)));
+    let _ = write!(text, ", {} differ", count(Verdict::Differs));
     if count(Verdict::NotCompared) > 0 {
-        text.push_str(&format!("; not compared: {}", count(Verdict::NotCompared)));
+        let _ = write!(text, "; not compared: {}", count(Verdict::NotCompared));
     }
     text.push('.');
     text

@@ -79,6 +79,7 @@ fn reasons(study: Option<&Study>, published: f64) -> String {
     }
 }
 
+#[expect(clippy::too_many_lines, reason = "a table, one row after the other")]
 fn six(results: &Results) -> Vec<Comparison> {
     let (summary, slippery) = (&results.six.summary, &results.slippery.summary);
     let outcome = &summary.outcome;
@@ -214,6 +215,7 @@ fn six(results: &Results) -> Vec<Comparison> {
     rows
 }
 
+#[expect(clippy::too_many_lines, reason = "a table, one row after the other")]
 fn eight(results: &Results) -> Vec<Comparison> {
     let summary = &results.eight.summary;
     let (outcome, demands) = (&summary.outcome, &summary.demands);

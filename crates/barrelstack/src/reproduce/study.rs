@@ -97,6 +97,9 @@ pub(super) struct Study {
     pub(super) effects: Vec<Effect>,
 }
 
+/// What a quantity is changed to, each with its name.
+type Ends<'a> = [(&'a str, &'a dyn Fn(&mut StackSpec)); 2];
+
 /// The factors of a case.
 pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
     let mut base = base.clone();
@@ -111,17 +114,16 @@ pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
     let rack = &stack.rack;
 
     let mut list = Vec::new();
-    let mut change = |name: String, ends: [(&str, &dyn Fn(&mut StackSpec)); 2]| {
+    let mut change = |name: String, ends: Ends<'_>| {
         let ends = ends.map(|(label, change)| (label.to_owned(), with(base, change)));
         list.push(Factor { name, ends: ends.into() });
     };
     let centimeters = |value: f64| barrelstack_report::significant(100.0 * value, 3);
     let share =
         |change: fn(&mut StackSpec, f64), by: f64| move |stack: &mut StackSpec| change(stack, by);
-    let percent =
-        |list: &mut dyn FnMut(String, [(&str, &dyn Fn(&mut StackSpec)); 2]), name: &str, f| {
-            list(name.to_owned(), [("−10 %", &share(f, 0.9)), ("+10 %", &share(f, 1.1))]);
-        };
+    let percent = |list: &mut dyn FnMut(String, Ends<'_>), name: &str, f| {
+        list(name.to_owned(), [("−10 %", &share(f, 0.9)), ("+10 %", &share(f, 1.1))]);
+    };
 
     if subject == Subject::Along {
         change(
@@ -190,10 +192,7 @@ pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
 }
 
 /// The runs of factors, in order.
-pub(super) fn jobs<'a>(
-    subject: Subject,
-    factors: &'a [Factor],
-) -> impl Iterator<Item = Job> + use<'a> {
+pub(super) fn jobs(subject: Subject, factors: &[Factor]) -> impl Iterator<Item = Job> {
     factors.iter().flat_map(move |factor| {
         factor.ends.iter().map(move |(label, scenario)| Job {
             label: format!("{}, {}: {label}", subject.name(), factor.name),
