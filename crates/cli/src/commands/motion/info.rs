@@ -97,7 +97,7 @@ pub(super) fn warn(record: &Record) {
 
 fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<String>> {
     let title = FORMATS.iter().find(|format| format.name == record.format);
-    let mut lines = vec![record.file.clone()];
+    let mut lines: Vec<String> = record.file.split(", ").map(str::to_owned).collect();
     let mut row = |name: &str, value: &str| {
         let value = if value.is_empty() { "not stated" } else { value };
         lines.push(format!("  {name:10}{value}"));
@@ -137,8 +137,8 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
         lines.extend(measures::pulses(record).into_iter().map(|line| format!("  {line}")));
     }
     if !record.notes.is_empty() {
-        lines.push(String::new());
-        lines.extend(record.notes.iter().map(|note| format!("  {note}")));
+        lines.extend([String::new(), "  what was done".to_owned()]);
+        lines.extend(record.notes.iter().map(|note| format!("    {note}")));
     }
     Ok(lines)
 }

@@ -113,6 +113,23 @@ impl Choice {
     /// the notes.
     pub(super) fn take(&self, record: &Record) -> anyhow::Result<Record> {
         let mut chosen = record.clone();
+        let from = format!(
+            "read from {}, format {}, stage {}",
+            base_names(record),
+            record.format,
+            record.stage
+        );
+        if record.format == "barrelstack" {
+            // The file brings its own past along.
+            for note in &mut chosen.notes {
+                if let Some(step) = note.strip_prefix("processing: ") {
+                    *note = step.to_owned();
+                }
+            }
+            chosen.notes.push(from);
+        } else {
+            chosen.notes.insert(0, from);
+        }
         if !self.component.is_empty() {
             chosen.channels = Vec::new();
             for name in &self.component {
@@ -129,15 +146,6 @@ impl Choice {
                 chosen.channels.push(channel);
             }
         }
-        chosen.notes.insert(
-            0,
-            format!(
-                "read from {}, format {}, stage {}",
-                base_names(record),
-                record.format,
-                record.stage
-            ),
-        );
         cut_to_shortest(&mut chosen);
         if self.processing == Chain::None {
             return Ok(chosen);
@@ -208,9 +216,17 @@ pub(super) fn component(record: &Record, name: &str) -> anyhow::Result<Component
 
 /// A quantity with its unit in SI; the option is named where it is wrong.
 pub(super) fn quantity(option: &str, text: &str, dimension: Dimension) -> anyhow::Result<f64> {
-    Quantity::parse_as(text, &[dimension]).map(|quantity| quantity.value).map_err(|error| {
-        anyhow!("{option}: {error}; write a number and a unit, such as \"{}\"", dimension.example())
-    })
+    let example = match dimension {
+        Dimension::FREQUENCY => "0.1 Hz".to_owned(),
+        Dimension::TIME => "0.5 s".to_owned(),
+        Dimension::LENGTH => "20 cm".to_owned(),
+        Dimension::STIFFNESS_PER_LENGTH => "7 MPa".to_owned(),
+        Dimension::NONE => "5 %".to_owned(),
+        other => other.example(),
+    };
+    Quantity::parse_as(text, &[dimension])
+        .map(|quantity| quantity.value)
+        .map_err(|error| anyhow!("{option}: {error}; write for example \"{example}\""))
 }
 
 /// Reads one file, or a bundled record if there is no file of that name.

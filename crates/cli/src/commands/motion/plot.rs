@@ -142,7 +142,10 @@ fn files(args: &PlotArgs) -> anyhow::Result<Vec<(Kind, PathBuf)>> {
 
 fn figure(kind: Kind, record: &Record, damping: &[f64]) -> anyhow::Result<Figure> {
     let mut plot = Plot::default();
-    for channel in &record.channels {
+    // The strongest first: the weaker ones are drawn over it and stay in sight.
+    let mut channels: Vec<&Channel> = record.channels.iter().collect();
+    channels.sort_by(|a, b| b.pga().total_cmp(&a.pga()));
+    for channel in &channels {
         plot.series.extend(series(kind, channel, damping)?);
     }
     let time = || Axis::new("time", "s");
@@ -158,7 +161,7 @@ fn figure(kind: Kind, record: &Record, damping: &[f64]) -> anyhow::Result<Figure
             (Axis::new("frequency", "Hz").log(), Axis::new("Fourier amplitude", "m/s").log())
         }
     };
-    if let (Kind::Arias, Some(first)) = (kind, record.channels.first()) {
+    if let (Kind::Arias, Some(first)) = (kind, channels.first()) {
         plot.bands.extend(strong_part(first));
     }
     let caption = format!("{}, {}", title(record), plot.y.label);
@@ -201,7 +204,7 @@ fn series(kind: Kind, channel: &Channel, damping: &[f64]) -> anyhow::Result<Vec<
             let mut lines = Vec::new();
             for damping in damping {
                 let spectrum = ResponseSpectrum::new(step, a, &periods, *damping)?;
-                let label = format!("{name}, {} %", super::table::number(100.0 * damping));
+                let label = format!("{name}, {}", super::table::percent(*damping));
                 let values = spectrum.pseudo_acceleration();
                 let in_g = values.iter().map(|value| value / STANDARD_GRAVITY).collect();
                 lines.push(Series::new(label, periods.clone(), in_g));

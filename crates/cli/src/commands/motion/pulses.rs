@@ -137,7 +137,7 @@ impl Shape<'_> {
         // What the user asked for stands in the file, not the pulse of unit amplitude.
         let mut motion = unit.scaled(unit.scale_factor(measure, peak.value)?);
         motion.provenance =
-            vec![format!("made by formula: {name}, period {} s, {measure} {}", period, size.peak)];
+            vec![format!("made by formula: {name}, period {period} s, {measure} {}", size.peak)];
         Ok(motion)
     }
 }

@@ -28,7 +28,7 @@ pub(super) struct ScaleArgs {
     #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     factor: Option<f64>,
     /// Make the motion for a model this many times the size: time times its square root,
-    /// acceleration as it is.
+    /// acceleration as it is. Done after --to or --factor.
     #[arg(long, value_name = "LENGTH")]
     froude: Option<f64>,
     #[command(flatten)]
@@ -121,7 +121,8 @@ fn goal(text: &str) -> anyhow::Result<(IntensityMeasure, f64)> {
     let (name, value) = text.rsplit_once('=').ok_or_else(|| {
         anyhow!("--to {text}: expected a measure and its value, such as \"pgv=60 cm/s\"")
     })?;
-    let measure: IntensityMeasure = name.parse()?;
+    let measure: IntensityMeasure =
+        name.parse().map_err(|error| anyhow!("--to {text}: {error}"))?;
     let dimension = match measure.unit() {
         "m/s2" => Dimension::ACCELERATION,
         "m/s" => Dimension::VELOCITY,
@@ -129,5 +130,9 @@ fn goal(text: &str) -> anyhow::Result<(IntensityMeasure, f64)> {
         "s" => Dimension::TIME,
         unit => bail!("--to {text}: a value in {unit} cannot be written; choose another measure"),
     };
-    Ok((measure, quantity(&format!("--to {}", name.trim()), value, dimension)?))
+    let goal = quantity(&format!("--to {}", name.trim()), value, dimension)?;
+    if !(goal > 0.0) {
+        bail!("--to {text}: expected a value above 0");
+    }
+    Ok((measure, goal))
 }

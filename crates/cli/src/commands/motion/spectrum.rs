@@ -15,7 +15,7 @@ use super::input::{Choice, Input, quantity};
 use super::measures::horizontals;
 use super::output::{store, vacant};
 use super::process::share;
-use super::table::{Table, number};
+use super::table::{Table, number, percent};
 use crate::printer;
 
 /// Arguments of `spectrum`.
@@ -88,7 +88,7 @@ impl Spectra {
         }
         let mut table = Table::new(0, head);
         for (k, period) in self.periods.iter().enumerate() {
-            let mut row = vec![number(*period)];
+            let mut row = vec![format!("{period}")];
             for (_, peaks) in &self.channels {
                 row.push(number(peaks[k].pseudo_acceleration / STANDARD_GRAVITY));
                 row.push(number(100.0 * peaks[k].pseudo_velocity));
@@ -101,7 +101,7 @@ impl Spectra {
             }
             table.row(row);
         }
-        let title = format!("pseudo-spectra at {} % damping", number(100.0 * self.damping));
+        let title = format!("pseudo-spectra at {} damping", percent(self.damping));
         std::iter::once(title).chain(table.lines()).collect()
     }
 

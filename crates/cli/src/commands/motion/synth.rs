@@ -175,6 +175,31 @@ impl Source {
     }
 }
 
+impl Source {
+    fn sentence(&self) -> String {
+        format!(
+            "stochastic method (Boore): magnitude {}, distance {}, stress parameter {}, kappa {}, seed \
+             {}",
+            self.magnitude, self.distance, self.stress, self.kappa, self.seed.seed
+        )
+    }
+
+    fn motion(&self, step: f64) -> anyhow::Result<GroundMotion> {
+        let made = format!("made by the {}", self.sentence());
+        Ok(told(self.build()?.motion(step, self.seed.seed)?, made))
+    }
+}
+
+/// The motion with the first step of its provenance in the words of the command line, which have
+/// units.
+fn told(mut motion: GroundMotion, made: String) -> GroundMotion {
+    match motion.provenance.first_mut() {
+        Some(first) => *first = made,
+        None => motion.provenance.push(made),
+    }
+    motion
+}
+
 impl Noise {
     fn motion(&self, step: f64) -> anyhow::Result<GroundMotion> {
         let rms = quantity("--rms", &self.rms, Dimension::ACCELERATION)?;
@@ -189,7 +214,19 @@ impl Noise {
             decay_start: time("--decay-start", &self.decay_start)?,
             decay: 1.0 / time("--decay", &self.decay)?,
         };
-        Ok(soil.motion(&envelope, time("--duration", &self.duration)?, step, self.seed.seed)?)
+        let duration = time("--duration", &self.duration)?;
+        let made = format!(
+            "made by filtered noise (Clough and Penzien): {:?} soil, rms {}, {} long, rise {}, decay \
+             from {} to 1/e in {}, seed {}",
+            self.soil,
+            self.rms,
+            self.duration,
+            self.rise,
+            self.decay_start,
+            self.decay,
+            self.seed.seed
+        );
+        Ok(told(soil.motion(&envelope, duration, step, self.seed.seed)?, made))
     }
 }
 
@@ -206,7 +243,17 @@ impl Fault {
             rest: self.source.build()?,
             crossover: self.crossover,
         };
-        Ok(near_fault.motion(step, self.source.seed.seed)?)
+        let made = format!(
+            "made as near-fault motion: pulse of Mavroeidis and Papageorgiou of {} and {}, gamma {}, \
+             phase {}, from {}; {}",
+            self.pulse_velocity,
+            self.pulse_period,
+            self.gamma,
+            self.phase,
+            self.start,
+            self.source.sentence()
+        );
+        Ok(told(near_fault.motion(step, self.source.seed.seed)?, made))
     }
 }
 
@@ -233,9 +280,7 @@ pub(super) fn synth(args: &SynthArgs) -> anyhow::Result<()> {
             &Shape::MavroeidisPapageorgiou(&made.kind),
         ),
         Kind::CloughPenzien(made) => write(&made.common, |step| made.kind.motion(step)),
-        Kind::Boore(made) => {
-            write(&made.common, |step| Ok(made.kind.build()?.motion(step, made.kind.seed.seed)?))
-        }
+        Kind::Boore(made) => write(&made.common, |step| made.kind.motion(step)),
         Kind::NearFault(made) => write(&made.common, |step| made.kind.motion(step)),
     }
 }
