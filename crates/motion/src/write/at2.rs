@@ -97,7 +97,7 @@ fn component(channel: &Channel) -> String {
         return name;
     }
     match (channel.direction.azimuth, channel.direction.orientation) {
-        (Some(azimuth), _) => format!("{:.1}", azimuth).trim_end_matches(".0").to_owned(),
+        (Some(azimuth), _) => format!("{azimuth:.1}").trim_end_matches(".0").to_owned(),
         (None, Some(Orientation::Vertical)) => "UP".to_owned(),
         _ if fits => name,
         _ => name.chars().take(LONGEST_NAME).collect::<String>().trim().to_owned(),

@@ -15,9 +15,11 @@ use crate::printer;
 pub(super) struct InfoArgs {
     #[command(flatten)]
     input: Input,
-    /// Also CAV standardized, RMS, Housner, ASI, VSI, Fajfar, Sa, `RotD50` and `RotD100`, and the
-    /// dominant velocity pulse.
-    #[arg(long)]
+    #[arg(
+        long,
+        help = "Also CAV standardized, RMS, Housner, ASI, VSI, Fajfar, Sa, RotD50 and RotD100, and \
+                the dominant velocity pulse"
+    )]
     all_measures: bool,
     /// Print one JSON document, in SI units.
     #[arg(long)]

@@ -19,7 +19,7 @@ const LIMIT: u64 = 256 << 20;
 #[derive(Debug, clap::Args)]
 pub(super) struct Input {
     /// Motion files of any known format, or napa-college-2014, which comes with the program; several
-    /// are taken as components of one record.
+    /// are taken as components of one record (info shows files that cannot be apart).
     #[arg(required = true, value_name = "FILE")]
     pub(super) files: Vec<String>,
     /// Take several files as parts of one long record and join them where they overlap.
@@ -53,11 +53,11 @@ pub(super) struct Choice {
 pub(super) enum Chain {
     /// The numbers as read.
     None,
-    /// What a scenario does: `compact` for raw records, nothing for the others.
+    /// What a scenario does: compact for raw records, nothing for the others.
     Default,
     /// Pre-event mean, taper of 2 %, zero-phase high-pass at 0.1 Hz without its pads, ends closed.
     Compact,
-    /// As `compact` with the pads of the filter kept: quiet before and after the shaking.
+    /// As compact with the pads of the filter kept: quiet before and after the shaking.
     Padded,
 }
 
@@ -218,6 +218,7 @@ pub(super) fn component(record: &Record, name: &str) -> anyhow::Result<Component
 pub(super) fn quantity(option: &str, text: &str, dimension: Dimension) -> anyhow::Result<f64> {
     let example = match dimension {
         Dimension::FREQUENCY => "0.1 Hz".to_owned(),
+        Dimension::TIME if option == "--time-step" => "0.01 s".to_owned(),
         Dimension::TIME => "0.5 s".to_owned(),
         Dimension::LENGTH => "20 cm".to_owned(),
         Dimension::STIFFNESS_PER_LENGTH => "7 MPa".to_owned(),

@@ -55,7 +55,7 @@ enum MotionCommand {
     Scale(scale::ScaleArgs),
     /// Match the response spectrum to a code's or a table's.
     Match(matching::MatchArgs),
-    /// Compute response spectra at any damping, also over all directions.
+    /// Compute response spectra at any damping, also over all directions; for Fourier spectra see plot.
     Spectrum(spectrum::SpectrumArgs),
     /// Make a motion from a formula or from random numbers of a stated seed.
     Synth(synth::SynthArgs),

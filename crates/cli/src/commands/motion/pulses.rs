@@ -13,7 +13,7 @@ pub(super) struct Size {
     /// "60 cm/s", "5 cm".
     #[arg(long, value_name = "QUANTITY")]
     peak: String,
-    /// Period; of a half sine or a rectangle its length.
+    /// Period; of a half sine its length.
     #[arg(long, value_name = "TIME")]
     period: String,
 }
@@ -64,8 +64,6 @@ pub(super) enum Shape<'a> {
     OneSine(&'a Size),
     /// One cosine wave of acceleration.
     OneCosine(&'a Size),
-    /// Constant acceleration.
-    Rectangular(&'a Size),
     /// Ricker wavelet.
     Ricker(&'a Size),
     /// Gabor wavelet.
@@ -87,7 +85,6 @@ impl Shape<'_> {
             Self::HalfSine(size)
             | Self::OneSine(size)
             | Self::OneCosine(size)
-            | Self::Rectangular(size)
             | Self::Ricker(size)
             | Self::CycloidA(size)
             | Self::CycloidB(size) => size,
@@ -112,7 +109,6 @@ impl Shape<'_> {
             Self::HalfSine(_) => Pulse::HalfSine { acceleration: 1.0, duration: period },
             Self::OneSine(_) => Pulse::OneSine { acceleration: 1.0, period },
             Self::OneCosine(_) => Pulse::OneCosine { acceleration: 1.0, period },
-            Self::Rectangular(_) => Pulse::Rectangular { acceleration: 1.0, duration: period },
             Self::Ricker(_) => Pulse::Ricker { acceleration: 1.0, period },
             Self::Gabor(w) => {
                 Pulse::Gabor { velocity: 1.0, period, gamma: w.gamma, phase: phase(w)? }

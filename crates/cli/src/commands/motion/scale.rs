@@ -29,7 +29,7 @@ pub(super) struct ScaleArgs {
     factor: Option<f64>,
     /// Make the motion for a model this many times the size: time times its square root,
     /// acceleration as it is. Done after --to or --factor.
-    #[arg(long, value_name = "LENGTH")]
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     froude: Option<f64>,
     #[command(flatten)]
     output: Output,

@@ -32,8 +32,10 @@ pub(super) struct SpectrumArgs {
     /// Without them, 16 are printed and 121 written.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     periods: Vec<String>,
-    /// Also `RotD50` and `RotD100`, the median and the largest over all horizontal directions.
-    #[arg(long)]
+    #[arg(
+        long,
+        help = "Also RotD50 and RotD100, the median and the largest over all horizontal directions"
+    )]
     rotd: bool,
     /// Write the spectrum as .csv, in SI units.
     #[arg(long, short, value_name = "FILE.csv")]

@@ -52,8 +52,6 @@ enum Kind {
     OneSine(Made<Size>),
     /// One cosine wave of acceleration.
     OneCosine(Made<Size>),
-    /// Constant acceleration; leaves with a velocity.
-    Rectangular(Made<Size>),
     /// Ricker wavelet of acceleration: ends at rest where it began.
     Ricker(Made<Size>),
     /// Gabor wavelet of velocity.
@@ -266,9 +264,6 @@ pub(super) fn synth(args: &SynthArgs) -> anyhow::Result<()> {
         Kind::HalfSine(made) => formula(&made.common, "half sine", &Shape::HalfSine(&made.kind)),
         Kind::OneSine(made) => formula(&made.common, "one sine", &Shape::OneSine(&made.kind)),
         Kind::OneCosine(made) => formula(&made.common, "one cosine", &Shape::OneCosine(&made.kind)),
-        Kind::Rectangular(made) => {
-            formula(&made.common, "rectangle", &Shape::Rectangular(&made.kind))
-        }
         Kind::Ricker(made) => formula(&made.common, "Ricker", &Shape::Ricker(&made.kind)),
         Kind::Gabor(made) => formula(&made.common, "Gabor", &Shape::Gabor(&made.kind)),
         Kind::CycloidA(made) => formula(&made.common, "cycloid A", &Shape::CycloidA(&made.kind)),
