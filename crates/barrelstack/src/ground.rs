@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
-    AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Pads,
-    Processing, Pulse as MotionPulse, ReadError, ReadFailure, ReadOptions, Record, Refusal,
+    AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Processing,
+    Pulse as MotionPulse, ReadError, ReadFailure, ReadOptions, Record, Refusal,
 };
 
 use crate::scenario::{
@@ -173,7 +173,7 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
 /// what cutting them leaves at the ends is closed.
 fn default_processing(record: &Record) -> Processing {
     let full = Processing::for_stage(record.stage);
-    if full.is_none() { full } else { Processing { pads: Pads::Removed, close: true, ..full } }
+    if full.is_none() { full } else { Processing::compact() }
 }
 
 fn read_file(

@@ -24,7 +24,7 @@ use crate::ground::GroundError;
 use crate::run::RunFailure;
 use crate::scenario::ScenarioError;
 
-pub use cases::Motion;
+pub use cases::{Motion, recognize};
 pub use compare::{Comparison, Verdict, percent};
 
 /// The paper's results beside ours.
@@ -69,6 +69,8 @@ pub enum ReproduceError {
 /// the program.
 /// Without it the six barrels are shaken by the bundled record of South Napa, and nothing that hangs on
 /// the motion is compared.
+/// `studies` asks for the studies too: what moves each case, and contact parameters 10 % off; they are
+/// most of the work.
 /// `tell` hears how many runs are done, of how many.
 ///
 /// The result depends on the program, the platform and the record alone.
@@ -77,10 +79,11 @@ pub enum ReproduceError {
 /// When the record cannot be read, or a case cannot be built.
 pub fn reproduce(
     record: Option<&Path>,
+    studies: bool,
     tell: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Reproduction, ReproduceError> {
     let cases = cases::Cases::new(record)?;
-    let plan = results::Plan::new(&cases);
+    let plan = results::Plan::new(&cases, studies);
     let done = pool::run_all(&plan.jobs, tell)?;
     let results = plan.read(cases.motion, done)?;
     let comparisons = rows::all(&results);

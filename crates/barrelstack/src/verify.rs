@@ -38,7 +38,7 @@ pub struct Verification {
     /// Until when no body of any repeat is that far from where the run has it; none where that holds
     /// for all that both ran.
     pub predictable_until: Option<f64>,
-    /// Whether all repeats end as the run does: the same kind, mode and first body, and every fall
+    /// Whether all repeats, of which there are some, end as the run does: the same kind, mode and first body, and every fall
     /// before they part at the same time.
     pub robust: bool,
     /// The repeats.
@@ -322,7 +322,7 @@ fn judge(base: &Run, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verific
     let until = predictable_until.unwrap_or(f64::INFINITY);
     let scale = base.scenario.run.similitude;
     let own = falls(base);
-    let mut robust = true;
+    let mut robust = !repeats.is_empty();
     for repeat in &mut repeats {
         let pairs = own.iter().zip(&repeat.falls);
         // What one run still has standing where the other has it down differs without end.
@@ -359,6 +359,9 @@ impl Verification {
         let mut rows = vec![(
             "predictable".to_owned(),
             match self.predictable_until {
+                None if self.repeats.is_empty() => {
+                    "not known: no repeat reached its end".to_owned()
+                }
                 Some(time) => format!(
                     "until {time:.2} s; then a body is more than {centimeters} cm elsewhere in a repeat"
                 ),
@@ -370,7 +373,11 @@ impl Verification {
         let same = self.repeats.iter().filter(|repeat| repeat.same_outcome).count();
         rows.push((
             "outcome".to_owned(),
-            if self.robust {
+            if self.repeats.is_empty() {
+                "not known: no repeat reached its end".to_owned()
+            } else if self.repeats.iter().all(|repeat| repeat.outcome.kind == "not-judged") {
+                "not judged: a free scene has no verdict that could change".to_owned()
+            } else if self.robust {
                 format!("robust: the same in all {} repeats", self.repeats.len())
             } else {
                 format!("not robust: the same in {same} of {} repeats", self.repeats.len())

@@ -107,6 +107,10 @@ pub(crate) struct ReproduceArgs {
     /// record shakes the six barrels and nothing that depends on the motion is compared.
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
+    /// Leave out the studies, which are most of the work: what moves each case, and contact parameters
+    /// 10 % off.
+    #[arg(long)]
+    pub(crate) no_studies: bool,
     /// Where to write the page and its figures; files of an earlier page are replaced.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-reproduce")]
     pub(crate) out: PathBuf,

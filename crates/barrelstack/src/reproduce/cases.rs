@@ -70,18 +70,14 @@ impl Cases {
     /// The cases, the six barrels under `record`.
     pub(super) fn new(record: Option<&Path>) -> Result<Self, ReproduceError> {
         let change = match record {
-            Some(path) => {
-                // Quoted as JSON, which is a quoted text in TOML too.
-                let name = serde_json::Value::from(path.display().to_string());
-                format!("motion.record={name}")
-            }
+            Some(path) => record_of(path),
             None => r#"motion={bundled = "napa-college-2014", component = "horizontal-1", scale = {pgv = "60 cm/s"}}"#
                 .to_owned(),
         };
         let six = Scenario::builtin("candia-6-barrels", std::slice::from_ref(&change))?;
         let slippery = Scenario::builtin("candia-6-barrels-low-friction", &[change])?;
         let motion = match record {
-            Some(path) => recognized(path, &six)?,
+            Some(path) => recognize(path)?,
             None => Motion::Bundled,
         };
         Ok(Self {
@@ -95,9 +91,18 @@ impl Cases {
     }
 }
 
+/// The change of a scenario that names a record.
+fn record_of(path: &Path) -> String {
+    // Quoted as JSON, which is a quoted text in TOML too.
+    format!("motion.record={}", serde_json::Value::from(path.display().to_string()))
+}
+
 /// Whether a file is the paper's record, told by its peak before any scaling.
-fn recognized(path: &Path, six: &Scenario) -> Result<Motion, ReproduceError> {
-    let mut unscaled = six.clone();
+///
+/// # Errors
+/// When the file cannot be read.
+pub fn recognize(path: &Path) -> Result<Motion, ReproduceError> {
+    let mut unscaled = Scenario::builtin("candia-6-barrels", &[record_of(path)])?;
     unscaled.motion.scale = Scale::Factor(1.0);
     let pga = ground(&unscaled)?.motion.map_or(0.0, |motion| motion.pga());
     let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();

@@ -53,8 +53,8 @@ pub(super) struct Results {
 }
 
 impl Plan {
-    /// Plans the runs of all cases.
-    pub(super) fn new(cases: &Cases) -> Self {
+    /// Plans the runs of all cases, and of the studies where they are wanted.
+    pub(super) fn new(cases: &Cases, with_studies: bool) -> Self {
         let mut mirrored = cases.eight.clone();
         mirrored.motion.scale = Scale::Factor(-1.0);
         let measured = vary::with(&cases.eight, |stack| {
@@ -76,6 +76,9 @@ impl Plan {
             job("eight barrels, measured parameters", &measured, false),
         ];
         let single = jobs.len();
+        if !with_studies {
+            return Self { jobs, studies: Vec::new(), single };
+        }
         let mut subjects = vec![(Subject::Along, &cases.along), (Subject::Eight, &cases.eight)];
         // A study explains differences from the paper; under another motion there is none to explain.
         if cases.motion.is_papers() {

@@ -283,3 +283,38 @@ impl Study {
         found.into_iter().take(count).map(|(_, words)| words).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Subject, factors};
+    use crate::scenario::Scenario;
+
+    #[test]
+    fn every_change_makes_another_scenario_that_can_be_built() {
+        let cases = [
+            (Subject::Six, "candia-6-barrels"),
+            (Subject::Eight, "candia-8-barrels"),
+            (Subject::Along, "candia-8-barrels-longitudinal"),
+        ];
+        for (subject, name) in cases {
+            let base = Scenario::builtin(name, &[]).unwrap();
+            let mut seen = Vec::new();
+            for factor in factors(subject, &base) {
+                for (label, scenario) in factor.ends {
+                    let print = scenario.fingerprint();
+                    assert!(
+                        !seen.contains(&print),
+                        "{name}, {}: {label} changes nothing",
+                        factor.name
+                    );
+                    seen.push(print);
+                    crate::assemble::assemble(&scenario).unwrap_or_else(|error| {
+                        panic!("{name}, {}: {label}: {error}", factor.name)
+                    });
+                }
+            }
+            // Ten quantities, the sine's start where there is one; the fill has one other end.
+            assert_eq!(seen.len(), if subject == Subject::Six { 19 } else { 21 });
+        }
+    }
+}

@@ -95,16 +95,20 @@ fn figure(study: &Study, id: &str, published: [Option<f64>; 3]) -> Figure {
 fn table(study: &Study) -> Table {
     let clock = study.subject.clock();
     let mut table = Table::new(
-        format!("The {} with one quantity changed at a time.", study.subject.name()),
+        format!(
+            "The {} with one quantity changed at a time. Time: {}.",
+            study.subject.name(),
+            clock.words()
+        ),
         &[
             ("row", ""),
             ("quantity", ""),
             ("changed", ""),
             ("outcome", ""),
-            ("first body", ""),
-            (clock.words(), "s"),
-            ("drift of the top", "%"),
-            ("stress amplification", ""),
+            ("first", ""),
+            ("time", "s"),
+            ("drift", "%"),
+            ("stress", "× at rest"),
         ],
     );
     let cells = |summary: &Summary| {

@@ -18,7 +18,7 @@ pub(crate) fn reproduce(args: &ReproduceArgs) -> anyhow::Result<ExitCode> {
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} runs  {elapsed}") {
         bar.set_style(style);
     }
-    let result = run_all(args.record.as_deref(), &|done, of| {
+    let result = run_all(args.record.as_deref(), !args.no_studies, &|done, of| {
         bar.set_length(of as u64);
         bar.set_position(done as u64);
     });
