@@ -272,9 +272,12 @@ pub(super) fn bytes(path: &Path) -> anyhow::Result<Vec<u8>> {
 
 /// What the system says, in words.
 pub(super) fn plain(error: std::io::Error) -> anyhow::Error {
-    match error.kind() {
-        std::io::ErrorKind::NotFound => anyhow!("there is no such file"),
-        std::io::ErrorKind::PermissionDenied => anyhow!("permission is denied"),
-        _ => anyhow::Error::from(error),
+    let kind = error.kind();
+    if kind == std::io::ErrorKind::NotFound {
+        anyhow!("there is no such file")
+    } else if kind == std::io::ErrorKind::PermissionDenied {
+        anyhow!("permission is denied")
+    } else {
+        error.into()
     }
 }

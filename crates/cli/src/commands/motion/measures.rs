@@ -56,7 +56,15 @@ pub(super) fn reading(measure: &IntensityMeasure) -> (&'static str, f64) {
         IntensityMeasure::Pgd | IntensityMeasure::Housner { .. } | IntensityMeasure::Vsi => {
             ("cm", 100.0)
         }
-        other => (other.unit(), 1.0),
+        IntensityMeasure::PgvOverPga
+        | IntensityMeasure::Arias
+        | IntensityMeasure::Cav
+        | IntensityMeasure::CavStandardized
+        | IntensityMeasure::SignificantDuration { .. }
+        | IntensityMeasure::BracketedDuration { .. }
+        | IntensityMeasure::Asi
+        | IntensityMeasure::MeanPeriod
+        | IntensityMeasure::Fajfar => (measure.unit(), 1.0),
     }
 }
 

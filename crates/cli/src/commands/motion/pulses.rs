@@ -20,7 +20,7 @@ pub(super) struct Size {
 
 /// Size, period and number of cycles.
 #[derive(Debug, clap::Args)]
-pub(super) struct Cycles {
+pub(super) struct Harmonic {
     #[command(flatten)]
     size: Size,
     /// Number of cycles.
@@ -33,7 +33,7 @@ pub(super) struct Cycles {
 
 /// Size, period and main cycles of a cycloid.
 #[derive(Debug, clap::Args)]
-pub(super) struct MainCycles {
+pub(super) struct Repeated {
     #[command(flatten)]
     size: Size,
     /// Number of main cycles.
@@ -57,7 +57,7 @@ pub(super) struct Wavelet {
 /// A pulse of unit amplitude, to be scaled.
 pub(super) enum Shape<'a> {
     /// `d = A sin(w t)` with ramps.
-    Sine(&'a Cycles),
+    Sine(&'a Harmonic),
     /// Half a wave of acceleration.
     HalfSine(&'a Size),
     /// One sine wave of acceleration.
@@ -73,7 +73,7 @@ pub(super) enum Shape<'a> {
     /// Forth and back.
     CycloidB(&'a Size),
     /// Several cycles.
-    CycloidC(&'a MainCycles),
+    CycloidC(&'a Repeated),
     /// Near-fault pulse.
     MavroeidisPapageorgiou(&'a Wavelet),
 }
@@ -126,7 +126,7 @@ impl Shape<'_> {
             Dimension::VELOCITY => IntensityMeasure::Pgv,
             _ => IntensityMeasure::Pgd,
         };
-        if !(peak.value > 0.0) {
+        if peak.value <= 0.0 {
             bail!("--peak: expected a quantity above 0, found {}", size.peak);
         }
         let unit = GroundMotion::from_pulse(name, pulse)?;

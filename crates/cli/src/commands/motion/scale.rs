@@ -131,7 +131,7 @@ fn goal(text: &str) -> anyhow::Result<(IntensityMeasure, f64)> {
         unit => bail!("--to {text}: a value in {unit} cannot be written; choose another measure"),
     };
     let goal = quantity(&format!("--to {}", name.trim()), value, dimension)?;
-    if !(goal > 0.0) {
+    if goal <= 0.0 {
         bail!("--to {text}: expected a value above 0");
     }
     Ok((measure, goal))

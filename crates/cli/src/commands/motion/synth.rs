@@ -10,7 +10,7 @@ use clap::{Subcommand, ValueEnum};
 use super::input::quantity;
 use super::measures::{self, USUAL};
 use super::output::Output;
-use super::pulses::{Cycles, MainCycles, Shape, Size, Wavelet};
+use super::pulses::{Harmonic, Repeated, Shape, Size, Wavelet};
 
 /// Arguments of `synth`.
 #[derive(Debug, clap::Args)]
@@ -45,7 +45,7 @@ struct Seed {
 #[derive(Debug, Subcommand)]
 enum Kind {
     /// Harmonic displacement with ramps at both ends.
-    Sine(Made<Cycles>),
+    Sine(Made<Harmonic>),
     /// Half a sine wave of acceleration; leaves with a velocity.
     HalfSine(Made<Size>),
     /// One sine wave of acceleration; leaves with a displacement.
@@ -61,7 +61,7 @@ enum Kind {
     /// Cycloidal pulse B: forth and back.
     CycloidB(Made<Size>),
     /// Cycloidal pulse C: several cycles.
-    CycloidC(Made<MainCycles>),
+    CycloidC(Made<Repeated>),
     /// Near-fault velocity pulse of Mavroeidis and Papageorgiou.
     MavroeidisPapageorgiou(Made<Wavelet>),
     /// Filtered white noise under an envelope (Clough and Penzien).
