@@ -43,9 +43,10 @@ pub(super) struct Choice {
     /// h2 or vertical; may be repeated. Without it all components are taken.
     #[arg(long, value_name = "NAME")]
     pub(super) component: Vec<String>,
-    /// Process the record first.
-    #[arg(long, value_enum, default_value_t = Chain::None)]
-    pub(super) processing: Chain,
+    /// Process the record first; without it convert takes the numbers as read, all others do as
+    /// default.
+    #[arg(long, value_enum)]
+    pub(super) processing: Option<Chain>,
 }
 
 /// Chains of processing under one name.
@@ -109,9 +110,9 @@ impl Input {
 }
 
 impl Choice {
-    /// The chosen components of a record, cut to the shortest and processed; what was done stands in
-    /// the notes.
-    pub(super) fn take(&self, record: &Record) -> anyhow::Result<Record> {
+    /// The chosen components of a record, cut to the shortest and processed by the chain that is
+    /// asked for, else by the command's `usual` one; what was done stands in the notes.
+    pub(super) fn take(&self, record: &Record, usual: Chain) -> anyhow::Result<Record> {
         let mut chosen = record.clone();
         let from = format!(
             "read from {}, format {}, stage {}",
@@ -147,10 +148,8 @@ impl Choice {
             }
         }
         cut_to_shortest(&mut chosen);
-        if self.processing == Chain::None {
-            return Ok(chosen);
-        }
-        Ok(processed(&chosen, &self.processing.of(record.stage))?)
+        let chain = self.processing.unwrap_or(usual).of(record.stage);
+        Ok(if chain.is_none() { chosen } else { processed(&chosen, &chain)? })
     }
 }
 
@@ -165,14 +164,10 @@ pub(super) fn processed(record: &Record, chain: &Processing) -> Result<Record, M
         for step in done.steps {
             out.notes.push(format!("{}: {step}", channel.name));
         }
-        if !chain.is_none() {
-            // What the header stated is true of other numbers.
-            channel.peaks.clear();
-        }
+        // What the header stated is true of other numbers.
+        channel.peaks.clear();
     }
-    if !chain.is_none() {
-        out.stage = Stage::Corrected;
-    }
+    out.stage = Stage::Corrected;
     Ok(out)
 }
 

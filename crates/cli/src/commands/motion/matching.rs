@@ -8,7 +8,7 @@ use barrelstack_motion::{
 };
 use clap::ValueEnum;
 
-use super::input::{self, Choice, Input, quantity};
+use super::input::{self, Chain, Choice, Input, quantity};
 use super::measures::{self, sampled};
 use super::output::Output;
 use super::process::share;
@@ -70,7 +70,7 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<()> {
         ..Matching::default()
     };
     let read = args.input.read()?;
-    let before = args.choice.take(&read)?;
+    let before = args.choice.take(&read, Chain::Default)?;
     let after = matched(args, &before, &spectrum, &settings)?;
     let mut lines = measures::before_after(&before, &after)?.lines();
     lines.push(String::new());

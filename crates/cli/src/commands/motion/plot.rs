@@ -11,7 +11,7 @@ use barrelstack_report::{Axis, Band, Figure, FigureKind, Plot, Series};
 use clap::ValueEnum;
 
 use super::info;
-use super::input::{self, Choice, Input};
+use super::input::{self, Chain, Choice, Input};
 use super::measures::sampled;
 use super::output::{store, vacant};
 use super::process::share;
@@ -84,7 +84,7 @@ pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<()> {
     let damping: Vec<f64> =
         args.damping.iter().map(|text| share("--damping", text)).collect::<Result<_, _>>()?;
     let read = args.input.read()?;
-    let record = args.choice.take(&read)?;
+    let record = args.choice.take(&read, Chain::Default)?;
     let figures: Vec<(Figure, &Path)> = files
         .iter()
         .map(|(kind, path)| Ok((figure(*kind, &record, &damping)?, path.as_path())))
@@ -94,7 +94,7 @@ pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<()> {
             .map_err(input::plain)
             .with_context(|| format!("cannot make the folder {}", args.output.display()))?;
     }
-    let mut lines = Vec::new();
+    let mut lines = record.notes.clone();
     for (figure, path) in figures {
         store(path, figure.to_svg().as_bytes())?;
         store(&path.with_extension("csv"), figure.to_csv().as_bytes())?;

@@ -4,7 +4,7 @@ use anyhow::{anyhow, bail};
 use barrelstack::scenario::Dimension;
 use barrelstack_motion::{GroundMotion, History, IntensityMeasure, Record};
 
-use super::input::{self, Choice, Input, quantity};
+use super::input::{self, Chain, Choice, Input, quantity};
 use super::measures::{self, reading, sampled};
 use super::output::Output;
 use super::table::number;
@@ -40,7 +40,7 @@ pub(super) fn scale(args: &ScaleArgs) -> anyhow::Result<()> {
     let target = args.output.prepare()?;
     let goal = args.to.as_deref().map(goal).transpose()?;
     let read = args.input.read()?;
-    let before = args.choice.take(&read)?;
+    let before = args.choice.take(&read, Chain::Default)?;
     let mut after = before.clone();
     if let Some((measure, value)) = goal {
         let (factor, of) = factor_to(args, &before, measure, value)?;

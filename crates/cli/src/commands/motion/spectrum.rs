@@ -11,7 +11,7 @@ use barrelstack_motion::{
 };
 
 use super::info;
-use super::input::{Choice, Input, quantity};
+use super::input::{Chain, Choice, Input, quantity};
 use super::measures::horizontals;
 use super::output::{store, vacant};
 use super::process::share;
@@ -162,8 +162,8 @@ pub(super) fn spectrum(args: &SpectrumArgs) -> anyhow::Result<()> {
     let dampings: Vec<f64> =
         args.damping.iter().map(|text| share("--damping", text)).collect::<Result<_, _>>()?;
     let read = args.input.read()?;
-    let record = args.choice.take(&read)?;
-    let mut lines = Vec::new();
+    let record = args.choice.take(&read, Chain::Default)?;
+    let mut lines = record.notes.clone();
     let mut text = String::new();
     for damping in dampings {
         if !lines.is_empty() {
