@@ -69,24 +69,10 @@ pub fn at2(record: &Record) -> Result<String, MotionError> {
 
 /// A text without the signs and words that readers take for the header's own.
 fn harmless(text: &str) -> String {
+    const OWN: [&str; 5] = ["SPECTR", "UNITS", "VELOCITY", "DISPLACEMENT", "ACCEL"];
     let plain = super::line(text).replace(',', ";").replace(['(', ')'], "");
-    let mut out = String::with_capacity(plain.len());
-    let mut rest = plain.as_str();
-    'next: while let Some(first) = rest.chars().next() {
-        for word in ["NPTS", "SPECTR", "UNITS", "VELOCITY", "DISPLACEMENT", "ACCEL"] {
-            if rest.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word)) {
-                // Two letters, a hyphen, the others: still legible, no longer the word.
-                out.push_str(&rest[..2]);
-                out.push('-');
-                out.push_str(&rest[2..word.len()]);
-                rest = &rest[word.len()..];
-                continue 'next;
-            }
-        }
-        out.push(if first.is_ascii() { first } else { '?' });
-        rest = &rest[first.len_utf8()..];
-    }
-    out.trim().to_owned()
+    let broken = super::broken(&super::broken(&plain, &OWN), &super::FOREIGN);
+    broken.chars().map(|c| if c.is_ascii() { c } else { '?' }).collect()
 }
 
 /// The component's name if it still tells its direction, else its azimuth or `UP`.

@@ -29,12 +29,12 @@ pub fn csv(record: &Record) -> Result<String, MotionError> {
     for (key, value) in [("event", &record.event), ("station", &record.station)] {
         if !value.is_empty() {
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "# {key}: {}", super::line(value));
+            let _ = writeln!(text, "# {key}: {}", plain(value));
         }
     }
     let _ = writeln!(text, "# stage: {}", record.stage);
     for note in super::provenance(record) {
-        let _ = writeln!(text, "# processing: {note}");
+        let _ = writeln!(text, "# processing: {}", plain(&note));
     }
     text.push_str("time (s)");
     for name in super::names(&record.channels) {
@@ -51,6 +51,11 @@ pub fn csv(record: &Record) -> Result<String, MotionError> {
         text.push('\n');
     }
     Ok(text)
+}
+
+/// A text on one line, without the words by which other formats are known.
+fn plain(text: &str) -> String {
+    super::broken(&super::line(text), &super::FOREIGN)
 }
 
 /// A time (s) to nine decimals without trailing zeros.

@@ -3,13 +3,32 @@
 use barrelstack_motion::Record;
 
 use super::info;
-use super::input::{Choice, Input};
+use super::input::{Chain, Choice, Input};
 use super::measures::{self, USUAL};
 use super::output::{Output, Target};
 use crate::printer;
 
+/// What the forms are, at the end of the help.
+const FORMS: &str = "\
+Forms:
+  .txt  the program's own, exact: lines that start with #, then one column to a channel in m/s2
+          # barrelstack motion 1
+          # station: Napa College
+          # event: South Napa, 2014-08-24, M 6.0
+          # processing: one line for every step that was done
+          # stage: raw, corrected or unknown
+          # unit: m/s2
+          # time_step: 0.005
+          # channels: E az=90, N az=0, UP vertical
+          1.2345e-3 -2.3456e-4 0e0
+        az is the azimuth in degrees clockwise from north, vertical is positive upward
+  .csv  time (s) and accelerations (m/s2), the steps that were done in lines that start with #
+  .npz  NumPy: time, NAME_acceleration, NAME_velocity and NAME_displacement in SI units
+  .at2  PEER: one component in g with eight digits, five to a line, below four lines of header";
+
 /// Arguments of `convert`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = FORMS)]
 pub(super) struct ConvertArgs {
     #[command(flatten)]
     input: Input,
@@ -23,7 +42,7 @@ pub(super) struct ConvertArgs {
 pub(super) fn convert(args: &ConvertArgs) -> anyhow::Result<()> {
     let target = args.output.prepare()?;
     let read = args.input.read()?;
-    let chosen = args.choice.take(&read)?;
+    let chosen = args.choice.take(&read, Chain::None)?;
     let columns: Vec<_> = chosen.channels.iter().map(|c| (c.name.clone(), c)).collect();
     let table = measures::table(&columns, &USUAL.iter().collect::<Vec<_>>())?;
     finish(&target, &read, &chosen, table.lines())

@@ -15,9 +15,11 @@ use crate::printer;
 pub(super) struct InfoArgs {
     #[command(flatten)]
     input: Input,
-    /// Also CAV standardized, RMS, Housner, ASI, VSI, Fajfar, Sa, `RotD50` and `RotD100`, and the
-    /// dominant velocity pulse.
-    #[arg(long)]
+    #[arg(
+        long,
+        help = "Also CAV standardized, RMS, Housner, ASI, VSI, Fajfar, Sa, RotD50 and RotD100, and \
+                the dominant velocity pulse"
+    )]
     all_measures: bool,
     /// Print one JSON document, in SI units.
     #[arg(long)]
@@ -32,8 +34,10 @@ pub(super) fn info(args: &InfoArgs) -> anyhow::Result<()> {
     let shown: Vec<&Shown> =
         USUAL.iter().chain(if args.all_measures { FURTHER } else { &[] }).collect();
     if args.json {
-        let documents: Vec<Value> =
-            records.iter().map(|record| document(record, &shown)).collect::<Result<_, _>>()?;
+        let documents: Vec<Value> = records
+            .iter()
+            .map(|record| document(record, &shown, args.all_measures))
+            .collect::<Result<_, _>>()?;
         let whole = json!({ "units": "m, s, degrees clockwise from north", "records": documents });
         printer::lines([serde_json::to_string_pretty(&whole)?])?;
     } else {
@@ -97,7 +101,7 @@ pub(super) fn warn(record: &Record) {
 
 fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<String>> {
     let title = FORMATS.iter().find(|format| format.name == record.format);
-    let mut lines = vec![record.file.clone()];
+    let mut lines: Vec<String> = record.file.split(", ").map(str::to_owned).collect();
     let mut row = |name: &str, value: &str| {
         let value = if value.is_empty() { "not stated" } else { value };
         lines.push(format!("  {name:10}{value}"));
@@ -129,7 +133,19 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
         record.channels.iter().map(|channel| (channel.name.clone(), channel)).collect();
     lines.extend(measures::table(&columns, shown)?.lines());
     if all {
-        if let Some(table) = measures::rotated(record)? {
+        let rotated = measures::rotated(record)?;
+        if !rotated.is_empty() {
+            let head = ["over all directions", "unit", "RotD50", "RotD100"];
+            let mut table = Table::new(2, head.map(str::to_owned));
+            for row in rotated {
+                let (unit, factor) = measures::reading(&row.measure);
+                table.row([
+                    row.name,
+                    unit.to_owned(),
+                    number(factor * row.peak.median),
+                    number(factor * row.peak.largest),
+                ]);
+            }
             lines.push(String::new());
             lines.extend(table.lines());
         }
@@ -137,8 +153,13 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
         lines.extend(measures::pulses(record).into_iter().map(|line| format!("  {line}")));
     }
     if !record.notes.is_empty() {
-        lines.push(String::new());
-        lines.extend(record.notes.iter().map(|note| format!("  {note}")));
+        lines.extend([String::new(), "  what was done".to_owned()]);
+        lines.extend(
+            record
+                .notes
+                .iter()
+                .map(|note| format!("    {}", note.strip_prefix("processing: ").unwrap_or(note))),
+        );
     }
     Ok(lines)
 }
@@ -185,7 +206,7 @@ fn stated(record: &Record) -> Table {
     table
 }
 
-fn document(record: &Record, shown: &[&Shown]) -> anyhow::Result<Value> {
+fn document(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Value> {
     let mut channels = Vec::new();
     for channel in &record.channels {
         let motion = measures::sampled(channel)?;
@@ -206,6 +227,14 @@ fn document(record: &Record, shown: &[&Shown]) -> anyhow::Result<Value> {
                 })
             })
             .collect();
+        let pulse = all.then(|| measures::pulse(&motion).ok()).flatten().map(|fit| {
+            json!({
+                "period": fit.period,
+                "peak_velocity": fit.peak_velocity,
+                "start": fit.start,
+                "energy_share": fit.energy_share,
+            })
+        });
         channels.push(json!({
             "name": channel.name,
             "azimuth": channel.direction.azimuth,
@@ -216,8 +245,21 @@ fn document(record: &Record, shown: &[&Shown]) -> anyhow::Result<Value> {
             "initial_velocity": channel.initial_velocity,
             "stated_peaks": peaks,
             "measures": values,
+            "velocity_pulse": pulse,
         }));
     }
+    let rotated = if all { measures::rotated(record)? } else { Vec::new() };
+    let rotated: Vec<Value> = rotated
+        .iter()
+        .map(|row| {
+            json!({
+                "measure": row.measure.to_string(),
+                "unit": row.measure.unit(),
+                "rotd50": row.peak.median,
+                "rotd100": row.peak.largest,
+            })
+        })
+        .collect();
     Ok(json!({
         "file": record.file,
         "format": record.format,
@@ -225,6 +267,7 @@ fn document(record: &Record, shown: &[&Shown]) -> anyhow::Result<Value> {
         "station": record.station,
         "stage": record.stage.to_string(),
         "channels": channels,
+        "over_all_directions": rotated,
         "warnings": record.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "notes": record.notes,
     }))

@@ -19,7 +19,7 @@ const LIMIT: u64 = 256 << 20;
 #[derive(Debug, clap::Args)]
 pub(super) struct Input {
     /// Motion files of any known format, or napa-college-2014, which comes with the program; several
-    /// are taken as components of one record.
+    /// are taken as components of one record (info shows files that cannot be apart).
     #[arg(required = true, value_name = "FILE")]
     pub(super) files: Vec<String>,
     /// Take several files as parts of one long record and join them where they overlap.
@@ -43,9 +43,10 @@ pub(super) struct Choice {
     /// h2 or vertical; may be repeated. Without it all components are taken.
     #[arg(long, value_name = "NAME")]
     pub(super) component: Vec<String>,
-    /// Process the record first.
-    #[arg(long, value_enum, default_value_t = Chain::None)]
-    pub(super) processing: Chain,
+    /// Process the record first; without it convert takes the numbers as read, all others do as
+    /// default.
+    #[arg(long, value_enum)]
+    pub(super) processing: Option<Chain>,
 }
 
 /// Chains of processing under one name.
@@ -53,11 +54,11 @@ pub(super) struct Choice {
 pub(super) enum Chain {
     /// The numbers as read.
     None,
-    /// What a scenario does: `compact` for raw records, nothing for the others.
+    /// What a scenario does: compact for raw records, nothing for the others.
     Default,
     /// Pre-event mean, taper of 2 %, zero-phase high-pass at 0.1 Hz without its pads, ends closed.
     Compact,
-    /// As `compact` with the pads of the filter kept: quiet before and after the shaking.
+    /// As compact with the pads of the filter kept: quiet before and after the shaking.
     Padded,
 }
 
@@ -109,10 +110,27 @@ impl Input {
 }
 
 impl Choice {
-    /// The chosen components of a record, cut to the shortest and processed; what was done stands in
-    /// the notes.
-    pub(super) fn take(&self, record: &Record) -> anyhow::Result<Record> {
+    /// The chosen components of a record, cut to the shortest and processed by the chain that is
+    /// asked for, else by the command's `usual` one; what was done stands in the notes.
+    pub(super) fn take(&self, record: &Record, usual: Chain) -> anyhow::Result<Record> {
         let mut chosen = record.clone();
+        let from = format!(
+            "read from {}, format {}, stage {}",
+            base_names(record),
+            record.format,
+            record.stage
+        );
+        if record.format == "barrelstack" {
+            // The file brings its own past along.
+            for note in &mut chosen.notes {
+                if let Some(step) = note.strip_prefix("processing: ") {
+                    *note = step.to_owned();
+                }
+            }
+            chosen.notes.push(from);
+        } else {
+            chosen.notes.insert(0, from);
+        }
         if !self.component.is_empty() {
             chosen.channels = Vec::new();
             for name in &self.component {
@@ -129,20 +147,9 @@ impl Choice {
                 chosen.channels.push(channel);
             }
         }
-        chosen.notes.insert(
-            0,
-            format!(
-                "read from {}, format {}, stage {}",
-                base_names(record),
-                record.format,
-                record.stage
-            ),
-        );
         cut_to_shortest(&mut chosen);
-        if self.processing == Chain::None {
-            return Ok(chosen);
-        }
-        Ok(processed(&chosen, &self.processing.of(record.stage))?)
+        let chain = self.processing.unwrap_or(usual).of(record.stage);
+        Ok(if chain.is_none() { chosen } else { processed(&chosen, &chain)? })
     }
 }
 
@@ -157,14 +164,10 @@ pub(super) fn processed(record: &Record, chain: &Processing) -> Result<Record, M
         for step in done.steps {
             out.notes.push(format!("{}: {step}", channel.name));
         }
-        if !chain.is_none() {
-            // What the header stated is true of other numbers.
-            channel.peaks.clear();
-        }
+        // What the header stated is true of other numbers.
+        channel.peaks.clear();
     }
-    if !chain.is_none() {
-        out.stage = Stage::Corrected;
-    }
+    out.stage = Stage::Corrected;
     Ok(out)
 }
 
@@ -208,9 +211,18 @@ pub(super) fn component(record: &Record, name: &str) -> anyhow::Result<Component
 
 /// A quantity with its unit in SI; the option is named where it is wrong.
 pub(super) fn quantity(option: &str, text: &str, dimension: Dimension) -> anyhow::Result<f64> {
-    Quantity::parse_as(text, &[dimension]).map(|quantity| quantity.value).map_err(|error| {
-        anyhow!("{option}: {error}; write a number and a unit, such as \"{}\"", dimension.example())
-    })
+    let example = match dimension {
+        Dimension::FREQUENCY => "0.1 Hz".to_owned(),
+        Dimension::TIME if option == "--time-step" => "0.01 s".to_owned(),
+        Dimension::TIME => "0.5 s".to_owned(),
+        Dimension::LENGTH => "20 cm".to_owned(),
+        Dimension::STIFFNESS_PER_LENGTH => "7 MPa".to_owned(),
+        Dimension::NONE => "5 %".to_owned(),
+        other => other.example(),
+    };
+    Quantity::parse_as(text, &[dimension])
+        .map(|quantity| quantity.value)
+        .map_err(|error| anyhow!("{option}: {error}; write for example \"{example}\""))
 }
 
 /// Reads one file, or a bundled record if there is no file of that name.
@@ -255,9 +267,12 @@ pub(super) fn bytes(path: &Path) -> anyhow::Result<Vec<u8>> {
 
 /// What the system says, in words.
 pub(super) fn plain(error: std::io::Error) -> anyhow::Error {
-    match error.kind() {
-        std::io::ErrorKind::NotFound => anyhow!("there is no such file"),
-        std::io::ErrorKind::PermissionDenied => anyhow!("permission is denied"),
-        _ => anyhow::Error::from(error),
+    let kind = error.kind();
+    if kind == std::io::ErrorKind::NotFound {
+        anyhow!("there is no such file")
+    } else if kind == std::io::ErrorKind::PermissionDenied {
+        anyhow!("permission is denied")
+    } else {
+        error.into()
     }
 }

@@ -8,11 +8,11 @@ use barrelstack_motion::{
 };
 use clap::ValueEnum;
 
-use super::input::{self, Choice, Input, quantity};
+use super::input::{self, Chain, Choice, Input, quantity};
 use super::measures::{self, sampled};
 use super::output::Output;
 use super::process::share;
-use super::table::{Table, number};
+use super::table::{Table, number, percent};
 use super::target;
 
 /// Arguments of `match`.
@@ -70,7 +70,7 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<()> {
         ..Matching::default()
     };
     let read = args.input.read()?;
-    let before = args.choice.take(&read)?;
+    let before = args.choice.take(&read, Chain::Default)?;
     let after = matched(args, &before, &spectrum, &settings)?;
     let mut lines = measures::before_after(&before, &after)?.lines();
     lines.push(String::new());
@@ -144,7 +144,8 @@ fn matched(
     }
     if step != channel.time_step {
         after.notes.push(format!(
-            "step cut from {} to {step} s, so that the shortest matched period has ten",
+            "step cut from {} to {step} s, so that the shortest matched period has ten; sums over \
+             samples, such as the Arias intensity, fall a little where the motion is linear between",
             channel.time_step
         ));
     }
@@ -172,11 +173,11 @@ fn comparison(
         };
         let (goal, old, new) = (spectrum.acceleration(*period), at(before)?, at(after)?);
         table.row([
-            number(*period),
+            format!("{period}"),
             number(goal / STANDARD_GRAVITY),
             number(old / STANDARD_GRAVITY),
             number(new / STANDARD_GRAVITY),
-            format!("{:+.1} %", 100.0 * (new / goal - 1.0)),
+            percent(0.001 * (1000.0 * (new / goal - 1.0)).round()),
         ]);
     }
     Ok(table)

@@ -1,8 +1,8 @@
 //! Measures in the units that people read, and tables of them.
 
 use barrelstack_motion::{
-    Channel, IntensityMeasure, MotionError, Record, STANDARD_GRAVITY, Sampled, dominant_pulse,
-    rotated_peak, rotated_spectrum,
+    Channel, IntensityMeasure, MotionError, PulseFit, Record, RotatedPeak, STANDARD_GRAVITY,
+    Sampled, dominant_pulse, rotated_peak, rotated_spectrum,
 };
 
 use super::table::{Table, number};
@@ -56,7 +56,15 @@ pub(super) fn reading(measure: &IntensityMeasure) -> (&'static str, f64) {
         IntensityMeasure::Pgd | IntensityMeasure::Housner { .. } | IntensityMeasure::Vsi => {
             ("cm", 100.0)
         }
-        other => (other.unit(), 1.0),
+        IntensityMeasure::PgvOverPga
+        | IntensityMeasure::Arias
+        | IntensityMeasure::Cav
+        | IntensityMeasure::CavStandardized
+        | IntensityMeasure::SignificantDuration { .. }
+        | IntensityMeasure::BracketedDuration { .. }
+        | IntensityMeasure::Asi
+        | IntensityMeasure::MeanPeriod
+        | IntensityMeasure::Fajfar => (measure.unit(), 1.0),
     }
 }
 
@@ -104,31 +112,28 @@ pub(super) fn before_after(before: &Record, after: &Record) -> Result<Table, Mot
     table(&columns, &USUAL.iter().collect::<Vec<_>>())
 }
 
+/// The dominant velocity pulse, from 0.3 to 12 s where the record allows.
+pub(super) fn pulse(motion: &Sampled) -> Result<PulseFit, MotionError> {
+    let shortest = (8.0 * motion.time_step()).max(0.3);
+    dominant_pulse(motion, shortest, (0.5 * motion.duration()).min(12.0))
+}
+
 /// The dominant velocity pulse of every channel, one sentence each.
 pub(super) fn pulses(record: &Record) -> Vec<String> {
-    record
-        .channels
-        .iter()
-        .map(|channel| {
-            let fit = sampled(channel).and_then(|motion| {
-                let longest = (0.5 * motion.duration()).min(12.0);
-                dominant_pulse(&motion, (8.0 * motion.time_step()).max(0.3), longest)
-            });
-            match fit {
-                Ok(fit) => format!(
-                    "{}: a velocity pulse of {} s and {} cm/s from {} s holds {:.0} % of the \
-                     squared velocity{}",
-                    channel.name,
-                    number(fit.period),
-                    number(100.0 * fit.peak_velocity),
-                    number(fit.start),
-                    100.0 * fit.energy_share,
-                    if fit.energy_share > 0.5 { ": pulse-like" } else { "" }
-                ),
-                Err(error) => format!("{}: no velocity pulse: {error}", channel.name),
-            }
-        })
-        .collect()
+    let sentence = |channel: &Channel| match sampled(channel).and_then(|motion| pulse(&motion)) {
+        Ok(fit) => format!(
+            "{}: a velocity pulse of {} s and {} cm/s from {} s holds {:.0} % of the squared \
+             velocity{}",
+            channel.name,
+            number(fit.period),
+            number(100.0 * fit.peak_velocity),
+            number(fit.start),
+            100.0 * fit.energy_share,
+            if fit.energy_share > 0.5 { ": pulse-like" } else { "" }
+        ),
+        Err(error) => format!("{}: no velocity pulse: {error}", channel.name),
+    };
+    record.channels.iter().map(sentence).collect()
 }
 
 /// The first two horizontals, if there are two of one step.
@@ -139,30 +144,38 @@ pub(super) fn horizontals(record: &Record) -> Option<(&Channel, &Channel)> {
     even.then_some((one, two))
 }
 
-/// `RotD50` and `RotD100` of the two horizontals; none if there are not two.
-pub(super) fn rotated(record: &Record) -> Result<Option<Table>, MotionError> {
-    let Some((one, two)) = horizontals(record) else { return Ok(None) };
+/// A measure over all horizontal directions.
+pub(super) struct Rotated {
+    /// The measure.
+    pub(super) measure: IntensityMeasure,
+    /// As printed.
+    pub(super) name: String,
+    /// Median and largest (SI).
+    pub(super) peak: RotatedPeak,
+}
+
+/// `RotD50` and `RotD100` of the two horizontals; nothing if there are not two.
+pub(super) fn rotated(record: &Record) -> Result<Vec<Rotated>, MotionError> {
+    let Some((one, two)) = horizontals(record) else { return Ok(Vec::new()) };
     let (first, second) = (sampled(one)?, sampled(two)?);
-    let head = ["over all directions", "unit", "RotD50", "RotD100"];
-    let mut table = Table::new(2, head.map(str::to_owned));
-    let mut row = |name: &str, unit: &str, factor: f64, median: f64, largest: f64| {
-        table.row([
-            name.to_owned(),
-            unit.to_owned(),
-            number(factor * median),
-            number(factor * largest),
-        ]);
-    };
-    let in_g = 1.0 / STANDARD_GRAVITY;
-    let peak = rotated_peak(first.acceleration(), second.acceleration());
-    row("PGA", "g", in_g, peak.median, peak.largest);
-    let peak = rotated_peak(first.velocity(), second.velocity());
-    row("PGV", "cm/s", 100.0, peak.median, peak.largest);
-    let periods = [0.2, 0.5, 1.0];
     let (a, b) = (first.acceleration(), second.acceleration());
-    let spectrum = rotated_spectrum(one.time_step, a, b, &periods, 0.05)?;
-    for (period, peak) in periods.iter().zip(spectrum) {
-        row(&format!("Sa({period} s), 5 %"), "g", in_g, peak.median, peak.largest);
+    let mut rows = vec![
+        Rotated {
+            measure: IntensityMeasure::Pga,
+            name: "PGA".to_owned(),
+            peak: rotated_peak(a, b),
+        },
+        Rotated {
+            measure: IntensityMeasure::Pgv,
+            name: "PGV".to_owned(),
+            peak: rotated_peak(first.velocity(), second.velocity()),
+        },
+    ];
+    let (periods, damping) = ([0.2, 0.5, 1.0], 0.05);
+    let spectrum = rotated_spectrum(one.time_step, a, b, &periods, damping)?;
+    for (period, peak) in periods.into_iter().zip(spectrum) {
+        let measure = IntensityMeasure::Sa { period, damping };
+        rows.push(Rotated { measure, name: format!("Sa({period:.1} s), 5 %"), peak });
     }
-    Ok(Some(table))
+    Ok(rows)
 }

@@ -25,10 +25,11 @@ Start with:
   barrelstack motion info my-site.AT2                    duration, PGA, PGV, PGD: is the unit right?
   barrelstack motion plot my-site.AT2 -o pictures        accelerations, velocities, spectra as SVG
   barrelstack motion scale my-site.AT2 --to \"pgv=60 cm/s\" -o strong.txt
-  barrelstack run demo-napa --record strong.txt
+  barrelstack run demo-napa --record strong.txt --set motion.vertical=false
 
 Quantities carry their unit: \"60 cm/s\", \"0.35 g\", \"0.1 Hz\", \"0.8 s\".
-Every step that is done to a motion is printed, and written into the header of the file.";
+Every step that is done to a motion is printed, and written into the header of the file.
+Accelerations are taken as linear between samples, velocities and displacements as their integrals.";
 
 /// Arguments of `motion`.
 #[derive(Debug, clap::Args)]
@@ -54,7 +55,7 @@ enum MotionCommand {
     Scale(scale::ScaleArgs),
     /// Match the response spectrum to a code's or a table's.
     Match(matching::MatchArgs),
-    /// Compute response spectra at any damping, also over all directions.
+    /// Compute response spectra at any damping, also over all directions; for Fourier spectra see plot.
     Spectrum(spectrum::SpectrumArgs),
     /// Make a motion from a formula or from random numbers of a stated seed.
     Synth(synth::SynthArgs),

@@ -11,7 +11,7 @@ use barrelstack_report::{Axis, Band, Figure, FigureKind, Plot, Series};
 use clap::ValueEnum;
 
 use super::info;
-use super::input::{self, Choice, Input};
+use super::input::{self, Chain, Choice, Input};
 use super::measures::sampled;
 use super::output::{store, vacant};
 use super::process::share;
@@ -84,7 +84,7 @@ pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<()> {
     let damping: Vec<f64> =
         args.damping.iter().map(|text| share("--damping", text)).collect::<Result<_, _>>()?;
     let read = args.input.read()?;
-    let record = args.choice.take(&read)?;
+    let record = args.choice.take(&read, Chain::Default)?;
     let figures: Vec<(Figure, &Path)> = files
         .iter()
         .map(|(kind, path)| Ok((figure(*kind, &record, &damping)?, path.as_path())))
@@ -94,7 +94,7 @@ pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<()> {
             .map_err(input::plain)
             .with_context(|| format!("cannot make the folder {}", args.output.display()))?;
     }
-    let mut lines = Vec::new();
+    let mut lines = record.notes.clone();
     for (figure, path) in figures {
         store(path, figure.to_svg().as_bytes())?;
         store(&path.with_extension("csv"), figure.to_csv().as_bytes())?;
@@ -142,7 +142,10 @@ fn files(args: &PlotArgs) -> anyhow::Result<Vec<(Kind, PathBuf)>> {
 
 fn figure(kind: Kind, record: &Record, damping: &[f64]) -> anyhow::Result<Figure> {
     let mut plot = Plot::default();
-    for channel in &record.channels {
+    // The strongest first: the weaker ones are drawn over it and stay in sight.
+    let mut channels: Vec<&Channel> = record.channels.iter().collect();
+    channels.sort_by(|a, b| b.pga().total_cmp(&a.pga()));
+    for channel in &channels {
         plot.series.extend(series(kind, channel, damping)?);
     }
     let time = || Axis::new("time", "s");
@@ -158,7 +161,7 @@ fn figure(kind: Kind, record: &Record, damping: &[f64]) -> anyhow::Result<Figure
             (Axis::new("frequency", "Hz").log(), Axis::new("Fourier amplitude", "m/s").log())
         }
     };
-    if let (Kind::Arias, Some(first)) = (kind, record.channels.first()) {
+    if let (Kind::Arias, Some(first)) = (kind, channels.first()) {
         plot.bands.extend(strong_part(first));
     }
     let caption = format!("{}, {}", title(record), plot.y.label);
@@ -201,7 +204,7 @@ fn series(kind: Kind, channel: &Channel, damping: &[f64]) -> anyhow::Result<Vec<
             let mut lines = Vec::new();
             for damping in damping {
                 let spectrum = ResponseSpectrum::new(step, a, &periods, *damping)?;
-                let label = format!("{name}, {} %", super::table::number(100.0 * damping));
+                let label = format!("{name}, {}", super::table::percent(*damping));
                 let values = spectrum.pseudo_acceleration();
                 let in_g = values.iter().map(|value| value / STANDARD_GRAVITY).collect();
                 lines.push(Series::new(label, periods.clone(), in_g));

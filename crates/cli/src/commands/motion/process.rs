@@ -128,8 +128,8 @@ pub(super) fn share(option: &str, text: &str) -> anyhow::Result<f64> {
 pub(super) fn process(args: &ProcessArgs) -> anyhow::Result<()> {
     let target = args.output.prepare()?;
     let read = args.input.read()?;
-    let choice = input::Choice { component: args.component.clone(), processing: Chain::None };
-    let before = choice.take(&read)?;
+    let choice = input::Choice { component: args.component.clone(), processing: None };
+    let before = choice.take(&read, Chain::None)?;
     let chain = args.chain(read.stage)?;
     if chain.is_none() {
         bail!(

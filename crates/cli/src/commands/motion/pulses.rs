@@ -13,14 +13,14 @@ pub(super) struct Size {
     /// "60 cm/s", "5 cm".
     #[arg(long, value_name = "QUANTITY")]
     peak: String,
-    /// Period; of a half sine or a rectangle its length.
+    /// Period; of a half sine its length.
     #[arg(long, value_name = "TIME")]
     period: String,
 }
 
 /// Size, period and number of cycles.
 #[derive(Debug, clap::Args)]
-pub(super) struct Cycles {
+pub(super) struct Harmonic {
     #[command(flatten)]
     size: Size,
     /// Number of cycles.
@@ -33,7 +33,7 @@ pub(super) struct Cycles {
 
 /// Size, period and main cycles of a cycloid.
 #[derive(Debug, clap::Args)]
-pub(super) struct MainCycles {
+pub(super) struct Repeated {
     #[command(flatten)]
     size: Size,
     /// Number of main cycles.
@@ -57,15 +57,13 @@ pub(super) struct Wavelet {
 /// A pulse of unit amplitude, to be scaled.
 pub(super) enum Shape<'a> {
     /// `d = A sin(w t)` with ramps.
-    Sine(&'a Cycles),
+    Sine(&'a Harmonic),
     /// Half a wave of acceleration.
     HalfSine(&'a Size),
     /// One sine wave of acceleration.
     OneSine(&'a Size),
     /// One cosine wave of acceleration.
     OneCosine(&'a Size),
-    /// Constant acceleration.
-    Rectangular(&'a Size),
     /// Ricker wavelet.
     Ricker(&'a Size),
     /// Gabor wavelet.
@@ -75,7 +73,7 @@ pub(super) enum Shape<'a> {
     /// Forth and back.
     CycloidB(&'a Size),
     /// Several cycles.
-    CycloidC(&'a MainCycles),
+    CycloidC(&'a Repeated),
     /// Near-fault pulse.
     MavroeidisPapageorgiou(&'a Wavelet),
 }
@@ -87,7 +85,6 @@ impl Shape<'_> {
             Self::HalfSine(size)
             | Self::OneSine(size)
             | Self::OneCosine(size)
-            | Self::Rectangular(size)
             | Self::Ricker(size)
             | Self::CycloidA(size)
             | Self::CycloidB(size) => size,
@@ -112,7 +109,6 @@ impl Shape<'_> {
             Self::HalfSine(_) => Pulse::HalfSine { acceleration: 1.0, duration: period },
             Self::OneSine(_) => Pulse::OneSine { acceleration: 1.0, period },
             Self::OneCosine(_) => Pulse::OneCosine { acceleration: 1.0, period },
-            Self::Rectangular(_) => Pulse::Rectangular { acceleration: 1.0, duration: period },
             Self::Ricker(_) => Pulse::Ricker { acceleration: 1.0, period },
             Self::Gabor(w) => {
                 Pulse::Gabor { velocity: 1.0, period, gamma: w.gamma, phase: phase(w)? }
@@ -130,14 +126,14 @@ impl Shape<'_> {
             Dimension::VELOCITY => IntensityMeasure::Pgv,
             _ => IntensityMeasure::Pgd,
         };
-        if !(peak.value > 0.0) {
+        if peak.value <= 0.0 {
             bail!("--peak: expected a quantity above 0, found {}", size.peak);
         }
         let unit = GroundMotion::from_pulse(name, pulse)?;
         // What the user asked for stands in the file, not the pulse of unit amplitude.
         let mut motion = unit.scaled(unit.scale_factor(measure, peak.value)?);
         motion.provenance =
-            vec![format!("made by formula: {name}, period {} s, {measure} {}", period, size.peak)];
+            vec![format!("made by formula: {name}, period {period} s, {measure} {}", size.peak)];
         Ok(motion)
     }
 }

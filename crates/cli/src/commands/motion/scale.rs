@@ -4,7 +4,7 @@ use anyhow::{anyhow, bail};
 use barrelstack::scenario::Dimension;
 use barrelstack_motion::{GroundMotion, History, IntensityMeasure, Record};
 
-use super::input::{self, Choice, Input, quantity};
+use super::input::{self, Chain, Choice, Input, quantity};
 use super::measures::{self, reading, sampled};
 use super::output::Output;
 use super::table::number;
@@ -28,8 +28,8 @@ pub(super) struct ScaleArgs {
     #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     factor: Option<f64>,
     /// Make the motion for a model this many times the size: time times its square root,
-    /// acceleration as it is.
-    #[arg(long, value_name = "LENGTH")]
+    /// acceleration as it is. Done after --to or --factor.
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     froude: Option<f64>,
     #[command(flatten)]
     output: Output,
@@ -40,7 +40,7 @@ pub(super) fn scale(args: &ScaleArgs) -> anyhow::Result<()> {
     let target = args.output.prepare()?;
     let goal = args.to.as_deref().map(goal).transpose()?;
     let read = args.input.read()?;
-    let before = args.choice.take(&read)?;
+    let before = args.choice.take(&read, Chain::Default)?;
     let mut after = before.clone();
     if let Some((measure, value)) = goal {
         let (factor, of) = factor_to(args, &before, measure, value)?;
@@ -121,7 +121,8 @@ fn goal(text: &str) -> anyhow::Result<(IntensityMeasure, f64)> {
     let (name, value) = text.rsplit_once('=').ok_or_else(|| {
         anyhow!("--to {text}: expected a measure and its value, such as \"pgv=60 cm/s\"")
     })?;
-    let measure: IntensityMeasure = name.parse()?;
+    let measure: IntensityMeasure =
+        name.parse().map_err(|error| anyhow!("--to {text}: {error}"))?;
     let dimension = match measure.unit() {
         "m/s2" => Dimension::ACCELERATION,
         "m/s" => Dimension::VELOCITY,
@@ -129,5 +130,9 @@ fn goal(text: &str) -> anyhow::Result<(IntensityMeasure, f64)> {
         "s" => Dimension::TIME,
         unit => bail!("--to {text}: a value in {unit} cannot be written; choose another measure"),
     };
-    Ok((measure, quantity(&format!("--to {}", name.trim()), value, dimension)?))
+    let goal = quantity(&format!("--to {}", name.trim()), value, dimension)?;
+    if goal <= 0.0 {
+        bail!("--to {text}: expected a value above 0");
+    }
+    Ok((measure, goal))
 }

@@ -11,11 +11,11 @@ use barrelstack_motion::{
 };
 
 use super::info;
-use super::input::{Choice, Input, quantity};
+use super::input::{Chain, Choice, Input, quantity};
 use super::measures::horizontals;
 use super::output::{store, vacant};
 use super::process::share;
-use super::table::{Table, number};
+use super::table::{Table, number, percent};
 use crate::printer;
 
 /// Arguments of `spectrum`.
@@ -32,8 +32,10 @@ pub(super) struct SpectrumArgs {
     /// Without them, 16 are printed and 121 written.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     periods: Vec<String>,
-    /// Also `RotD50` and `RotD100`, the median and the largest over all horizontal directions.
-    #[arg(long)]
+    #[arg(
+        long,
+        help = "Also RotD50 and RotD100, the median and the largest over all horizontal directions"
+    )]
     rotd: bool,
     /// Write the spectrum as .csv, in SI units.
     #[arg(long, short, value_name = "FILE.csv")]
@@ -88,7 +90,7 @@ impl Spectra {
         }
         let mut table = Table::new(0, head);
         for (k, period) in self.periods.iter().enumerate() {
-            let mut row = vec![number(*period)];
+            let mut row = vec![format!("{period}")];
             for (_, peaks) in &self.channels {
                 row.push(number(peaks[k].pseudo_acceleration / STANDARD_GRAVITY));
                 row.push(number(100.0 * peaks[k].pseudo_velocity));
@@ -101,7 +103,7 @@ impl Spectra {
             }
             table.row(row);
         }
-        let title = format!("pseudo-spectra at {} % damping", number(100.0 * self.damping));
+        let title = format!("pseudo-spectra at {} damping", percent(self.damping));
         std::iter::once(title).chain(table.lines()).collect()
     }
 
@@ -160,8 +162,8 @@ pub(super) fn spectrum(args: &SpectrumArgs) -> anyhow::Result<()> {
     let dampings: Vec<f64> =
         args.damping.iter().map(|text| share("--damping", text)).collect::<Result<_, _>>()?;
     let read = args.input.read()?;
-    let record = args.choice.take(&read)?;
-    let mut lines = Vec::new();
+    let record = args.choice.take(&read, Chain::Default)?;
+    let mut lines = record.notes.clone();
     let mut text = String::new();
     for damping in dampings {
         if !lines.is_empty() {

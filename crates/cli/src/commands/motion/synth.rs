@@ -10,7 +10,7 @@ use clap::{Subcommand, ValueEnum};
 use super::input::quantity;
 use super::measures::{self, USUAL};
 use super::output::Output;
-use super::pulses::{Cycles, MainCycles, Shape, Size, Wavelet};
+use super::pulses::{Harmonic, Repeated, Shape, Size, Wavelet};
 
 /// Arguments of `synth`.
 #[derive(Debug, clap::Args)]
@@ -45,15 +45,13 @@ struct Seed {
 #[derive(Debug, Subcommand)]
 enum Kind {
     /// Harmonic displacement with ramps at both ends.
-    Sine(Made<Cycles>),
+    Sine(Made<Harmonic>),
     /// Half a sine wave of acceleration; leaves with a velocity.
     HalfSine(Made<Size>),
     /// One sine wave of acceleration; leaves with a displacement.
     OneSine(Made<Size>),
     /// One cosine wave of acceleration.
     OneCosine(Made<Size>),
-    /// Constant acceleration; leaves with a velocity.
-    Rectangular(Made<Size>),
     /// Ricker wavelet of acceleration: ends at rest where it began.
     Ricker(Made<Size>),
     /// Gabor wavelet of velocity.
@@ -63,7 +61,7 @@ enum Kind {
     /// Cycloidal pulse B: forth and back.
     CycloidB(Made<Size>),
     /// Cycloidal pulse C: several cycles.
-    CycloidC(Made<MainCycles>),
+    CycloidC(Made<Repeated>),
     /// Near-fault velocity pulse of Mavroeidis and Papageorgiou.
     MavroeidisPapageorgiou(Made<Wavelet>),
     /// Filtered white noise under an envelope (Clough and Penzien).
@@ -175,6 +173,31 @@ impl Source {
     }
 }
 
+impl Source {
+    fn sentence(&self) -> String {
+        format!(
+            "stochastic method (Boore): magnitude {}, distance {}, stress parameter {}, kappa {}, seed \
+             {}",
+            self.magnitude, self.distance, self.stress, self.kappa, self.seed.seed
+        )
+    }
+
+    fn motion(&self, step: f64) -> anyhow::Result<GroundMotion> {
+        let made = format!("made by the {}", self.sentence());
+        Ok(told(self.build()?.motion(step, self.seed.seed)?, made))
+    }
+}
+
+/// The motion with the first step of its provenance in the words of the command line, which have
+/// units.
+fn told(mut motion: GroundMotion, made: String) -> GroundMotion {
+    match motion.provenance.first_mut() {
+        Some(first) => *first = made,
+        None => motion.provenance.push(made),
+    }
+    motion
+}
+
 impl Noise {
     fn motion(&self, step: f64) -> anyhow::Result<GroundMotion> {
         let rms = quantity("--rms", &self.rms, Dimension::ACCELERATION)?;
@@ -189,7 +212,19 @@ impl Noise {
             decay_start: time("--decay-start", &self.decay_start)?,
             decay: 1.0 / time("--decay", &self.decay)?,
         };
-        Ok(soil.motion(&envelope, time("--duration", &self.duration)?, step, self.seed.seed)?)
+        let duration = time("--duration", &self.duration)?;
+        let made = format!(
+            "made by filtered noise (Clough and Penzien): {:?} soil, rms {}, {} long, rise {}, decay \
+             from {} to 1/e in {}, seed {}",
+            self.soil,
+            self.rms,
+            self.duration,
+            self.rise,
+            self.decay_start,
+            self.decay,
+            self.seed.seed
+        );
+        Ok(told(soil.motion(&envelope, duration, step, self.seed.seed)?, made))
     }
 }
 
@@ -206,7 +241,17 @@ impl Fault {
             rest: self.source.build()?,
             crossover: self.crossover,
         };
-        Ok(near_fault.motion(step, self.source.seed.seed)?)
+        let made = format!(
+            "made as near-fault motion: pulse of Mavroeidis and Papageorgiou of {} and {}, gamma {}, \
+             phase {}, from {}; {}",
+            self.pulse_velocity,
+            self.pulse_period,
+            self.gamma,
+            self.phase,
+            self.start,
+            self.source.sentence()
+        );
+        Ok(told(near_fault.motion(step, self.source.seed.seed)?, made))
     }
 }
 
@@ -219,9 +264,6 @@ pub(super) fn synth(args: &SynthArgs) -> anyhow::Result<()> {
         Kind::HalfSine(made) => formula(&made.common, "half sine", &Shape::HalfSine(&made.kind)),
         Kind::OneSine(made) => formula(&made.common, "one sine", &Shape::OneSine(&made.kind)),
         Kind::OneCosine(made) => formula(&made.common, "one cosine", &Shape::OneCosine(&made.kind)),
-        Kind::Rectangular(made) => {
-            formula(&made.common, "rectangle", &Shape::Rectangular(&made.kind))
-        }
         Kind::Ricker(made) => formula(&made.common, "Ricker", &Shape::Ricker(&made.kind)),
         Kind::Gabor(made) => formula(&made.common, "Gabor", &Shape::Gabor(&made.kind)),
         Kind::CycloidA(made) => formula(&made.common, "cycloid A", &Shape::CycloidA(&made.kind)),
@@ -233,9 +275,7 @@ pub(super) fn synth(args: &SynthArgs) -> anyhow::Result<()> {
             &Shape::MavroeidisPapageorgiou(&made.kind),
         ),
         Kind::CloughPenzien(made) => write(&made.common, |step| made.kind.motion(step)),
-        Kind::Boore(made) => {
-            write(&made.common, |step| Ok(made.kind.build()?.motion(step, made.kind.seed.seed)?))
-        }
+        Kind::Boore(made) => write(&made.common, |step| made.kind.motion(step)),
         Kind::NearFault(made) => write(&made.common, |step| made.kind.motion(step)),
     }
 }

@@ -49,6 +49,11 @@ impl Table {
     }
 }
 
+/// A share in percent, without the noise of the last binary digit.
+pub(super) fn percent(share: f64) -> String {
+    format!("{} %", (share * 1e8).round() / 1e6)
+}
+
 /// A number with four significant digits; a dash where there is none.
 pub(super) fn number(value: f64) -> String {
     significant(value, 4).replace('\u{2212}', "-")
