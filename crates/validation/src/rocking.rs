@@ -22,6 +22,15 @@ pub enum Corner {
     KelvinVoigt,
 }
 
+/// What became of a block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ride {
+    /// Whether it turned over.
+    pub overturned: bool,
+    /// Largest lean (rad).
+    pub peak: f64,
+}
+
 /// A block on two stiff corners that cannot slide.
 #[derive(Clone, Copy, Debug)]
 pub struct RockingBlock {
@@ -241,10 +250,35 @@ impl RockingBlock {
         drive: &impl Drive<Planar>,
         acceleration_end: f64,
     ) -> Result<bool, Failure> {
-        self.ride(drive, acceleration_end, 15.0).map(|ride| ride.0)
+        self.ride(drive, acceleration_end, 15.0).map(|ride| ride.overturned)
     }
 
-    /// Whether a ground motion turns the block over, and the largest lean (rad).
+    /// Whether a ground motion turns the block over before it comes back upright.
+    ///
+    /// # Errors
+    /// When the numbers break down.
+    pub fn overturns_at_once(
+        &self,
+        drive: &impl Drive<Planar>,
+        acceleration_end: f64,
+    ) -> Result<bool, Failure> {
+        let mut scene = self.scene(0.0)?;
+        let (mut fell, mut side) = (false, 0.0);
+        // What the corners sway before uplift.
+        let slack = 0.01 * self.alpha;
+        scene.watch(drive, self.step(), acceleration_end + 15.0, |state, _| {
+            let lean = state.poses[1].orientation;
+            if side == 0.0 && lean.abs() > slack {
+                side = lean.signum();
+            }
+            fell = lean.abs() > OVERTURNED;
+            let back = side * lean < 0.0;
+            if fell || back { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })?;
+        Ok(fell)
+    }
+
+    /// What becomes of the block under a ground motion.
     ///
     /// # Errors
     /// When the numbers break down.
@@ -253,7 +287,7 @@ impl RockingBlock {
         drive: &impl Drive<Planar>,
         acceleration_end: f64,
         patience: f64,
-    ) -> Result<(bool, f64), Failure> {
+    ) -> Result<Ride, Failure> {
         let mut scene = self.scene(0.0)?;
         let rate = self.rate();
         let (mut fell, mut peak, mut last) = (false, 0.0_f64, 0.0_f64);
@@ -271,7 +305,7 @@ impl RockingBlock {
                 && (spin * lean <= 0.0 || last < 1e-5);
             if fell || safe { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })?;
-        Ok((fell || last > self.alpha, peak))
+        Ok(Ride { overturned: fell || last > self.alpha, peak })
     }
 
     /// Acceleration (m/s²) that lifts a corner.

@@ -3,6 +3,10 @@
 //! Two mappings. *Bodies*: the scene of those codes as it is, one contact point where a barrel's crown
 //! meets a flat underside. *Scenario*: the nearest stack of the scenario language, whose underside is
 //! a row of nodes, several of which share a sunken crown, so that a joint is stiffer.
+//!
+//! The ground's displacement is A sin ωt from the first instant, so that it starts with a jolt, as
+//! "sine base motion of 0.1016 m" reads. What those codes call a fall is not on record; here a barrel
+//! has fallen once it is one level lower, 0.76 m.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -10,7 +14,7 @@ use std::ops::ControlFlow;
 use barrelstack::Scenario;
 use barrelstack_dynamics::math::{cos, sin};
 use barrelstack_dynamics::{
-    Body, ContactPair, Model, Motion, Nodes, NormalLaw, Planar, Shape, Twist, Vec2,
+    Body, ContactPair, Model, Motion, NormalLaw, Planar, Shape, Twist, Vec2,
 };
 
 use crate::drive::Shake;
@@ -31,53 +35,68 @@ const LEVELS: usize = 4;
 const STIFFNESS: f64 = 9.8e5;
 const DAMPING: f64 = 2200.0;
 
-/// Drop (m) from which a barrel counts as fallen.
-const FALL: f64 = 0.2;
+/// Drops (m): one from which a barrel counts as fallen, one that shows what the choice matters.
+const FALLS: [f64; 2] = [0.76, 0.2];
 
 /// Length of the runs (s).
 const END: f64 = 10.0;
 
 /// The problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
-    // The five codes: 1.64, 1.73, 1.75 to 1.85, 2.0, 1.69 s; the middle of their range, and half of it.
-    let first_fall = |id: &str, title: &str, run: fn() -> Result<Option<f64>, Failure>| Problem {
-        id: format!("consensus/{id}"),
-        title: title.into(),
+    vec![
+        first_fall(),
+        verdict("a-scenario", "scene A (±20°) as a scenario", true, |end| scenario(20.0, end)),
+        verdict("c-bodies", "scene C (±35°) from bodies", false, |end| {
+            bodies(35.0, end).map(|times| times[0])
+        }),
+        verdict("c-scenario", "scene C (±35°) as a scenario", false, |end| scenario(35.0, end)),
+    ]
+}
+
+fn first_fall() -> Problem {
+    Problem {
+        id: "consensus/a-bodies".into(),
+        title: "scene A (±20°) from bodies".into(),
         source: SOURCE.into(),
         quantity: "first fall of a barrel",
         unit: "s",
+        // The five codes: 1.64, 1.73, 1.75 to 1.85, 2.0, 1.69 s; the middle of their range, and half
+        // of it.
         exact: 1.82,
         tolerance: Tolerance::Absolute(0.18),
         fast: None,
-        run: Box::new(move |_| match run()? {
-            Some(time) => Ok(Outcome::of(time).noted("five codes: 1.64 s to 2.0 s")),
-            None => Err(Failure::Absent("nothing falls in 10 s".into())),
+        run: Box::new(move |_| match bodies(20.0, 3.0)? {
+            [Some(time), Some(earlier)] => Ok(Outcome::of(time).noted(format!(
+                "five codes: 1.64 s to 2.0 s; a drop of 0.2 m is passed at {earlier:.2} s"
+            ))),
+            _ => Err(Failure::Absent("nothing falls in 3 s".into())),
         }),
-    };
-    let stands = |id: &str, title: &str, run: fn(f64) -> Result<Option<f64>, Failure>| Problem {
+    }
+}
+
+fn verdict(
+    id: &str,
+    title: &str,
+    falls: bool,
+    run: fn(f64) -> Result<Option<f64>, Failure>,
+) -> Problem {
+    Problem {
         id: format!("consensus/{id}"),
         title: title.into(),
         source: SOURCE.into(),
-        quantity: "barrels fallen first, 0 or 1",
+        quantity: "whether a barrel falls in 10 s, 0 or 1",
         unit: "",
-        exact: 0.0,
+        exact: f64::from(u8::from(falls)),
         tolerance: Tolerance::Absolute(0.0),
         fast: None,
         run: Box::new(move |effort| {
             let end = if effort == Effort::Full { END } else { 3.0 };
-            let note = "nothing falls in any code in 10 s (3 s in the fast form)";
             Ok(match run(end)? {
-                None => Outcome::of(0.0).noted(note),
+                None => Outcome::of(0.0).noted(format!("nothing falls in {end} s")),
                 Some(time) => Outcome::of(1.0).noted(format!("falls at {time:.2} s")),
             })
         }),
-    };
-    vec![
-        first_fall("a-bodies", "scene A (±20°) from bodies", || bodies(20.0, 3.0)),
-        first_fall("a-scenario", "scene A (±20°) as a scenario", || scenario(20.0, 3.0)),
-        stands("c-bodies", "scene C (±35°) from bodies", |end| bodies(35.0, end)),
-        stands("c-scenario", "scene C (±35°) as a scenario", |end| scenario(35.0, end)),
-    ]
+    }
 }
 
 /// A rack: a beam whose underside the crowns below touch, feet, and two points for each barrel.
@@ -108,8 +127,8 @@ fn rack(level: usize, underside: f64, angle: f64) -> Body<Planar> {
     }
 }
 
-/// When (s) the first barrel falls in the scene made of bodies.
-fn bodies(degrees: f64, end: f64) -> Result<Option<f64>, Failure> {
+/// When (s) the first barrel falls in the scene made of bodies, for either drop.
+fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
     let angle = degrees.to_radians();
     let mut bodies = vec![floor()];
     let pitch = CLEARANCE + 2.0 * RADIUS;
@@ -145,7 +164,6 @@ fn bodies(degrees: f64, end: f64) -> Result<Option<f64>, Failure> {
             }
         }
     }
-    debug_assert!(bodies.iter().all(|b| !matches!(b.nodes.first(), Some(Nodes::Fixed(n)) if n.is_empty())));
     let law = |friction| {
         let normal = NormalLaw::SpeedGap { stiffness: STIFFNESS, damping: DAMPING };
         interface(normal, coulomb(friction, STIFFNESS, DAMPING))
@@ -155,14 +173,18 @@ fn bodies(degrees: f64, end: f64) -> Result<Option<f64>, Failure> {
     let mut scene = Scene::of(model).settled(step, 1e-9)?;
     let rest: Vec<f64> = scene.state.poses.iter().map(|p| p.position.z).collect();
     let drive = Shake::Swing { amplitude: 0.1016, omega: TAU / 1.0748 };
-    let mut fallen = None;
+    let mut fallen = [None; 2];
     scene.watch(&drive, step, end, |state, _| {
-        let dropped = |i: usize| !is_rack(i) && rest[i] - state.poses[i].position.z > FALL;
-        if (1..rest.len()).any(dropped) {
-            fallen = Some(state.time);
-            return ControlFlow::Break(());
+        let dropped = |i: usize| {
+            if is_rack(i) { 0.0 } else { rest[i] - state.poses[i].position.z }
+        };
+        let most = (1..rest.len()).map(dropped).fold(0.0, f64::max);
+        for (fallen, drop) in fallen.iter_mut().zip(FALLS) {
+            if fallen.is_none() && most > drop {
+                *fallen = Some(state.time);
+            }
         }
-        ControlFlow::Continue(())
+        if fallen[0].is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
     Ok(fallen)
 }
@@ -187,7 +209,6 @@ cycles = 12
 [run]
 duration = "{end} s"
 stop_after_collapse = "1 s"
-step = "0.1 ms"
 "#
     );
     let scenario = Scenario::parse("consensus.toml", &text, &[])?;

@@ -193,7 +193,7 @@ fn overhang(n: u32) -> Problem {
         unit: "m",
         exact,
         tolerance: Tolerance::Relative(5e-3),
-        fast: Some(Tolerance::Relative(1e-2)),
+        fast: Some(Tolerance::Relative(1.2e-2)),
         run: Box::new(move |effort| {
             let halvings = if effort == Effort::Full { 6 } else { 0 };
             let found = border((0.99, 1.01), halvings, |share| Ok(!stands(n, share)?))?;

@@ -67,7 +67,7 @@ fn least_friction(s: f64, share: f64) -> Problem {
         unit: "",
         exact,
         tolerance: Tolerance::Relative(4e-3),
-        fast: Some(Tolerance::Relative(1e-2)),
+        fast: Some(Tolerance::Relative(1.2e-2)),
         run: Box::new(move |effort| {
             refine(effort, exact, |level| {
                 border((0.98 * exact, 1.02 * exact), halvings(effort), |friction| {
@@ -87,7 +87,7 @@ fn slide(friction: f64) -> Problem {
         unit: "g",
         exact: friction,
         tolerance: Tolerance::Relative(2e-3),
-        fast: Some(Tolerance::Relative(1e-2)),
+        fast: Some(Tolerance::Relative(1.2e-2)),
         run: Box::new(move |effort| {
             let found = border((0.98 * friction, 1.02 * friction), halvings(effort), |beta| {
                 let mut scene = standing((2.0, 0.2), friction, 1e9)?;

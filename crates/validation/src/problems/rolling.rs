@@ -98,7 +98,8 @@ fn problem(
         unit,
         exact,
         tolerance: Tolerance::Relative(tolerance),
-        fast: None,
+        // Borders are searched in fewer steps.
+        fast: (tolerance > 4e-3).then_some(Tolerance::Relative(1.2e-2)),
         run,
     }
 }
@@ -255,10 +256,14 @@ fn leaves(angle: f64) -> Problem {
         Box::new(move |effort| {
             let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |push| {
                 let mut scene = two_points(angle, FrictionLaw::Frictionless)?;
-                let rest = scene.state.poses[1].position.z;
                 let drive = Shake::Ramped { acceleration: push * GRAVITY, ramp: 0.5 };
-                scene.run(&drive, step(0), 1.5)?;
-                Ok(scene.state.poses[1].position.z - rest > 1e-4)
+                let mut left = false;
+                scene.watch(&drive, step(0), 2.0, |state, _| {
+                    let place = state.poses[1].position.x - state.poses[0].position.x;
+                    left = place.abs() > 1e-3;
+                    if left { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                })?;
+                Ok(left)
             })?;
             Ok(Outcome::of(found))
         }),

@@ -7,11 +7,10 @@ use barrelstack_dynamics::math::{atan, cos, sin};
 use barrelstack_dynamics::{FrictionLaw, NormalLaw, Still, Twist, Vec2};
 
 use crate::drive::Shake;
-use crate::problem::{border, refine};
+use crate::problem::refine;
 use crate::scene::{Scene, block, coulomb, floor, gravity_on_slope, interface, pose};
 use crate::{Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
 
-use super::housner::halvings;
 use super::regimes::{base, ridden, standing};
 
 const SOURCE: &str = "Newmark 1965; validation.md 4.4";
@@ -40,7 +39,6 @@ pub(super) fn problems() -> Vec<Problem> {
         ),
         ride_along(),
         steady(),
-        sticking_border(),
         no_creep(),
         thrown(),
     ];
@@ -112,39 +110,6 @@ fn steady() -> Problem {
                 })?;
                 Ok(0.5 * (high - low))
             })
-        }),
-    }
-}
-
-/// Steady sliding ends, and the block sticks for a while in every cycle, above this share.
-fn sticking_border() -> Problem {
-    let exact = 1.0 / (1.0 + 0.25 * PI * PI).sqrt();
-    Problem {
-        id: "sliding/sticks".into(),
-        title: "block on ground that shakes with 0.5 g at 1 Hz".into(),
-        source: STEADY.into(),
-        quantity: "friction over ground acceleration from which it sticks in every cycle",
-        unit: "",
-        exact,
-        tolerance: Tolerance::Relative(5e-3),
-        fast: Some(Tolerance::Relative(2e-2)),
-        run: Box::new(move |effort| {
-            let found = border((0.97 * exact, 1.03 * exact), halvings(effort), |share| {
-                let mut scene = standing((2.0, 0.2), 0.5 * share, 1e9)?;
-                let drive = Shake::Harmonic { acceleration: 0.5 * GRAVITY, omega: TAU };
-                let (mut stuck, mut before) = (0.0, 0.0);
-                scene.watch(&drive, 4e-5, 9.0, |state, _| {
-                    let slip = state.twists[1].linear.x - state.twists[0].linear.x;
-                    if state.time > 8.0 && slip.abs() < 1e-4 {
-                        stuck += state.time - before;
-                    }
-                    before = state.time;
-                    ControlFlow::Continue(())
-                })?;
-                // At a turn the block passes this speed within 0.1 ms.
-                Ok(stuck > 4e-3)
-            })?;
-            Ok(Outcome::of(found))
         }),
     }
 }

@@ -29,7 +29,7 @@ fn tower(sizes: &[(f64, f64)], frictions: (f64, f64)) -> Result<Scene, Failure> 
         bodies.push(brick(&format!("block {i}"), *size, MASS, (0.0, top + 0.5 * size.1)));
         top += size.1;
     }
-    let damping = restitution::damping(STIFFNESS, 1.0, MASS);
+    let damping = restitution::damping(STIFFNESS, 0.5, MASS);
     let laws = [frictions.0, frictions.1].map(|friction| {
         let normal = NormalLaw::SpeedGap { stiffness: STIFFNESS, damping };
         interface(normal, coulomb(friction, STIFFNESS, damping))
@@ -39,11 +39,11 @@ fn tower(sizes: &[(f64, f64)], frictions: (f64, f64)) -> Result<Scene, Failure> 
         .into_iter()
         .map(|pair| ContactPair { interface: usize::from(!on_ground(&pair)), ..pair })
         .collect();
-    Scene::of(Model::new(bodies, laws.to_vec(), pairs, DOWN)?).settled(STEP, 1e-9)
+    Scene::of(Model::new(bodies, laws.to_vec(), pairs, DOWN)?).settled(STEP, 1e-6)
 }
 
 /// Time step (s).
-const STEP: f64 = 2e-5;
+const STEP: f64 = 1e-5;
 
 /// The problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
@@ -89,7 +89,7 @@ fn opens(name: &str, sizes: &'static [(f64, f64)]) -> Problem {
         unit: "g",
         exact,
         tolerance: Tolerance::Relative(5e-3),
-        fast: Some(Tolerance::Relative(1e-2)),
+        fast: Some(Tolerance::Relative(1.2e-2)),
         run: Box::new(move |effort| {
             let mut wrong = None;
             let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |push| {
@@ -122,7 +122,7 @@ fn slides(ground: f64, between: f64, exact: f64) -> Problem {
         unit: "g",
         exact,
         tolerance: Tolerance::Relative(2e-3),
-        fast: Some(Tolerance::Relative(1e-2)),
+        fast: Some(Tolerance::Relative(1.2e-2)),
         run: Box::new(move |effort| {
             let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |push| {
                 let mut scene = tower(&[(2.0, 0.2), (2.0, 0.2)], (ground, between))?;

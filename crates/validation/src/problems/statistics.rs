@@ -55,8 +55,8 @@ fn maxima(effort: Effort) -> Result<(Vec<f64>, Vec<f64>), Failure> {
     let (mut ours, mut exact) = (vec![], vec![]);
     for seed in 1..=count {
         let record = record(seed);
-        let (fell, peak) = block.ride(&record, record.duration(), 8.0)?;
-        ours.push(if fell { 2.0 } else { peak / ALPHA });
+        let ride = block.ride(&record, record.duration(), 8.0)?;
+        ours.push(if ride.overturned { 2.0 } else { ride.peak / ALPHA });
         let ride = rigid.ride(|t| record.acceleration(t), record.duration(), 5e-4, 8.0);
         exact.push(if ride.overturned { 2.0 } else { ride.peak / ALPHA });
     }
