@@ -1,10 +1,11 @@
 //! Is a scenario sound, and does its stack stand before it is shaken?
 
-use barrelstack_dynamics::{Scratch, State, settle};
+use barrelstack_dynamics::{Scratch, State};
 
 use crate::assemble::{PartKind, assemble};
 use crate::ground::ground;
-use crate::run::{RunFailure, SETTLE_TOLERANCE, check_overlap, time_step};
+use crate::overlap::check_overlap;
+use crate::run::{RunFailure, at_rest, time_step};
 use crate::scenario::Scenario;
 
 /// What a check found.
@@ -28,20 +29,29 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
     let mut lines = vec![scenario.title.clone()];
     let assembly = assemble(scenario)?;
     let count = |kind| assembly.of_kind(kind).count();
-    lines.push(format!(
-        "  bodies        {} barrels, {} racks, {} others",
-        count(PartKind::Barrel),
-        count(PartKind::Rack),
-        count(PartKind::Body)
-    ));
+    let counts = [
+        (count(PartKind::Barrel), "barrel"),
+        (count(PartKind::Rack), "rack"),
+        (count(PartKind::Body), "free body"),
+    ];
+    let counts: Vec<String> = counts
+        .into_iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, name)| match (count, name) {
+            (1, _) => format!("1 {name}"),
+            (_, "free body") => format!("{count} free bodies"),
+            _ => format!("{count} {name}s"),
+        })
+        .collect();
+    lines.push(format!("  bodies        {}", counts.join(", ")));
     let mut scratch = Scratch::new(&assembly.model);
     let mut state = State::initial(&assembly.model);
     check_overlap(&assembly, &state, &mut scratch, scenario.run.similitude)?;
-    let step = time_step(scenario, &assembly);
+    let step = time_step(scenario, &assembly)?;
     lines.push(format!("  time step     {:.3} ms", 1e3 * step));
     if scenario.run.settle {
         let start = state.poses.clone();
-        let settled = settle(&assembly.model, &mut state, &mut scratch, step, SETTLE_TOLERANCE)?;
+        let settled = at_rest(scenario, &assembly, &mut state, &mut scratch)?;
         let deepest = state
             .poses
             .iter()

@@ -1,12 +1,12 @@
 //! The files of a run, in one folder.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::report;
 use crate::run::Run;
 use crate::summary::Summary;
+use crate::system;
 
 /// The names of all files that a run writes; nothing else in a folder is ever touched.
 const FILES: [&str; 8] = [
@@ -23,10 +23,10 @@ const FILES: [&str; 8] = [
 /// Why files could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
-    /// Something of an earlier run is there.
+    /// Something is there already.
     #[error(
-        "{folder} already holds {file}: name another folder, or add --overwrite to replace the \
-         earlier run",
+        "{folder} is not empty (it holds {file}): name another folder, or add --overwrite to replace \
+         what an earlier run wrote there",
         folder = folder.display()
     )]
     Occupied {
@@ -55,20 +55,22 @@ impl Folder {
     /// Checks a folder before the work is done; makes nothing yet.
     ///
     /// # Errors
-    /// When it holds files of an earlier run and `overwrite` is not set, or is no folder.
+    /// When it holds anything and `overwrite` is not set, or is no folder.
     pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, ExportError> {
-        if path.exists() && !path.is_dir() {
+        // A folder that is to be made needs one above it that is there.
+        let there = path.ancestors().find(|folder| folder.exists());
+        if let Some(file) = there.filter(|there| !there.is_dir()) {
             return Err(ExportError::Write {
                 path: path.to_owned(),
-                reason: "it is a file, not a folder".into(),
+                reason: format!("{} is a file, not a folder", file.display()),
             });
         }
-        let earlier = FILES.iter().find(|file| path.join(file).exists());
-        if let (false, Some(file)) = (overwrite, earlier) {
-            return Err(ExportError::Occupied {
-                folder: path.to_owned(),
-                file: (*file).to_owned(),
-            });
+        let first = || {
+            let names = std::fs::read_dir(path).into_iter().flatten().flatten();
+            names.map(|entry| entry.file_name().to_string_lossy().into_owned()).min()
+        };
+        if let (false, Some(file)) = (overwrite, first()) {
+            return Err(ExportError::Occupied { folder: path.to_owned(), file });
         }
         Ok(Self { path: path.to_owned() })
     }
@@ -78,35 +80,52 @@ impl Folder {
         self.path.join("report.html")
     }
 
-    /// Writes all files; each under a temporary name first, so that none is ever half there.
+    /// Writes all files: under temporary names first and renamed together, so that none is ever half
+    /// there and a full disk leaves an earlier run as it was.
     ///
     /// # Errors
     /// When the system refuses.
     pub fn write(&self, run: &Run, summary: &Summary) -> Result<(), ExportError> {
-        std::fs::create_dir_all(&self.path).map_err(|error| self.refused("", &error))?;
-        self.put("summary.json", (summary.to_json() + "\n").as_bytes())?;
-        self.put("scenario.toml", run.scenario.to_resolved_toml().as_bytes())?;
-        self.put("histories.csv", histories_csv(run).as_bytes())?;
-        self.put("histories.npz", &self.histories_npz(run)?)?;
-        self.put("forces.csv", forces_csv(run).as_bytes())?;
-        self.put("envelopes.csv", envelopes_csv(run).as_bytes())?;
-        self.put("frames.csv", frames_csv(run).as_bytes())?;
         let document = report::document(run, summary);
-        self.put("report.html", barrelstack_report::html(&document).as_bytes())
+        // In the order of FILES.
+        let contents: [Vec<u8>; FILES.len()] = [
+            (summary.to_json() + "\n").into_bytes(),
+            run.scenario.to_resolved_toml().into_bytes(),
+            histories_csv(run).into_bytes(),
+            self.histories_npz(run)?,
+            forces_csv(run).into_bytes(),
+            envelopes_csv(run).into_bytes(),
+            frames_csv(run).into_bytes(),
+            barrelstack_report::html(&document).into_bytes(),
+        ];
+        std::fs::create_dir_all(&self.path).map_err(|error| self.refused("", &error))?;
+        let files = || FILES.iter().zip(&contents);
+        let written = files()
+            .try_for_each(|(name, bytes)| {
+                let write = std::fs::write(self.temporary(name), bytes);
+                write.map_err(|error| self.refused(name, &error))
+            })
+            .and_then(|()| {
+                FILES.iter().try_for_each(|name| {
+                    let rename = std::fs::rename(self.temporary(name), self.path.join(name));
+                    rename.map_err(|error| self.refused(name, &error))
+                })
+            });
+        if written.is_err() {
+            for name in FILES {
+                // Those that were never made cannot be removed, and that is well.
+                let _ = std::fs::remove_file(self.temporary(name));
+            }
+        }
+        written
     }
 
-    fn put(&self, name: &str, bytes: &[u8]) -> Result<(), ExportError> {
-        let temporary = self.path.join(format!("{name}.part"));
-        let write = || -> std::io::Result<()> {
-            let mut file = std::fs::File::create(&temporary)?;
-            file.write_all(bytes)?;
-            std::fs::rename(&temporary, self.path.join(name))
-        };
-        write().map_err(|error| self.refused(name, &error))
+    fn temporary(&self, name: &str) -> PathBuf {
+        self.path.join(format!("{name}.part"))
     }
 
     fn refused(&self, name: &str, error: &std::io::Error) -> ExportError {
-        ExportError::Write { path: self.path.join(name), reason: error.to_string() }
+        ExportError::Write { path: self.path.join(name), reason: system::words(error) }
     }
 
     /// All channels as arrays, named like the columns of the CSV, and "time".
@@ -121,37 +140,9 @@ impl Folder {
             arrays.push((format!("{name}_vertical_force"), &joint.vertical));
             arrays.push((format!("{name}_horizontal_force"), &joint.horizontal));
         }
-        npz(&arrays).map_err(|error| self.refused("histories.npz", &error))
+        barrelstack_motion::write::archive(&arrays)
+            .map_err(|error| self.refused("histories.npz", &error))
     }
-}
-
-/// NumPy's archive: an uncompressed zip of one `.npy` for every array.
-fn npz(arrays: &[(String, &[f64])]) -> std::io::Result<Vec<u8>> {
-    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
-    // The default date of the archive is a constant, so equal runs give equal bytes.
-    let options =
-        zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
-    for (name, values) in arrays {
-        archive.start_file(format!("{name}.npy"), options)?;
-        archive.write_all(&npy(values))?;
-    }
-    Ok(archive.finish()?.into_inner())
-}
-
-/// NumPy's array format, version 1.0: a magic word, a padded description, the numbers.
-fn npy(values: &[f64]) -> Vec<u8> {
-    let mut description =
-        format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}", values.len());
-    // Magic, version, length, description and line feed together fill a multiple of 64 bytes.
-    while (10 + description.len() + 1) % 64 != 0 {
-        description.push(' ');
-    }
-    description.push('\n');
-    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
-    bytes.extend(u16::try_from(description.len()).unwrap_or(u16::MAX).to_le_bytes());
-    bytes.extend(description.as_bytes());
-    bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
-    bytes
 }
 
 /// Columns side by side, `time (s)` first.

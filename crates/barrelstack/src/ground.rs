@@ -4,14 +4,15 @@ use std::path::PathBuf;
 
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
-    AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Pads,
-    Processing, Pulse as MotionPulse, ReadError, ReadOptions, Record,
+    AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Processing,
+    Pulse as MotionPulse, ReadError, ReadFailure, ReadOptions, Record, Refusal,
 };
 
 use crate::scenario::{
     Amplitude, Direction, MotionSource, MotionSpec, Processing as ProcessingSpec, Pulse, PulseKind,
     RecordMotion, RecordSource, Scale, Scenario, Sine, Vertical,
 };
+use crate::system;
 
 /// What moves the ground of a run.
 #[derive(Clone, Debug, Default)]
@@ -46,7 +47,7 @@ pub enum GroundError {
     },
     /// The file is no record.
     #[error(transparent)]
-    Read(Box<ReadError>),
+    Read(#[from] ReadError),
     /// The record has no such component, or cannot be scaled so.
     #[error(transparent)]
     Motion(#[from] MotionError),
@@ -68,6 +69,9 @@ pub enum GroundError {
         unit: f64,
     },
 }
+
+/// Largest record (bytes) that is read; the longest strong-motion files have a tenth of it.
+const RECORD_LIMIT: usize = 256 << 20;
 
 /// Reads or makes the motion of a scenario, scaled as it says.
 ///
@@ -123,11 +127,10 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
             })?
         }
         RecordSource::File(file) => {
-            let obtain = spec
-                .obtain
-                .as_ref()
-                .map(|how| format!("; {how}, then name it with --record FILE"))
-                .unwrap_or_default();
+            let obtain = spec.obtain.as_ref().map_or_else(
+                || "; correct the path, or name another file with --record FILE".to_owned(),
+                |how| format!("; {how}, then name your file with --record FILE"),
+            );
             read_file(&file.resolve(), &options, &obtain)?
         }
     };
@@ -145,7 +148,7 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
             record.ground_motion(&horizontal, Some(&vertical), &processing)?
         }
         Vertical::File(file) => {
-            let other = read_file(&file.resolve(), &options, "")?;
+            let other = read_file(&file.resolve(), &options, "; correct motion.vertical")?;
             warnings.extend(other.warnings.iter().map(|w| format!("{}: {w}", other.file)));
             let processing = match spec.processing {
                 ProcessingSpec::None => Processing::none(),
@@ -170,7 +173,7 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
 /// what cutting them leaves at the ends is closed.
 fn default_processing(record: &Record) -> Processing {
     let full = Processing::for_stage(record.stage);
-    if full.is_none() { full } else { Processing { pads: Pads::Removed, close: true, ..full } }
+    if full.is_none() { full } else { Processing::compact() }
 }
 
 fn read_file(
@@ -178,13 +181,26 @@ fn read_file(
     options: &ReadOptions,
     obtain: &str,
 ) -> Result<Record, GroundError> {
-    let bytes = std::fs::read(path).map_err(|error| GroundError::Unreadable {
+    let bytes = system::read(path, RECORD_LIMIT).map_err(|reason| GroundError::Unreadable {
         path: path.to_owned(),
-        reason: error.to_string(),
+        reason,
         obtain: obtain.to_owned(),
     })?;
-    barrelstack_motion::read(&bytes, &path.display().to_string(), options)
-        .map_err(|error| GroundError::Read(Box::new(error)))
+    let record = barrelstack_motion::read(&bytes, &path.display().to_string(), options);
+    record.map_err(|error| {
+        let mut failure: ReadFailure = (*error).clone();
+        // The reader knows what is missing, the scenario where to state it.
+        if failure.refusal == Refusal::Missing {
+            failure.remedy += if failure.expected.contains("unit") {
+                " in the scenario, for example motion.unit = \"1 g\""
+            } else if failure.expected.contains("step") {
+                " in the scenario, for example motion.time_step = \"0.01 s\""
+            } else {
+                ""
+            };
+        }
+        GroundError::Read(failure.into())
+    })
 }
 
 fn unit(meters_per_second_squared: f64) -> Result<AccelerationUnit, GroundError> {

@@ -11,6 +11,9 @@ use crate::outcome::Outcome;
 use crate::run::Run;
 use crate::summary::Summary;
 
+pub(crate) use drawing::scene;
+pub(crate) use sections::{standing_range, stress_figure};
+
 /// What happened, in three plain sentences: the verdict, the why, and how far to trust it.
 pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     let mut sentences = vec![words::headline(run, summary)];
@@ -26,7 +29,7 @@ pub fn document(run: &Run, summary: &Summary) -> Document {
         Outcome::NotJudged => Tone::Neutral,
         Outcome::Invalid { .. } => Tone::Invalid,
     };
-    let scene = drawing::scene(run);
+    let scene = scene(run);
     Document {
         title: run.scenario.title.clone(),
         verdict: Verdict {

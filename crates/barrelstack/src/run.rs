@@ -11,8 +11,9 @@ use barrelstack_dynamics::{
 use crate::assemble::{AssembleError, Assembly, assemble};
 use crate::ground::{Ground, GroundError, ground};
 use crate::outcome::{Outcome, judge};
+use crate::overlap::check_overlap;
 use crate::scenario::{self, Scenario, Scene};
-use crate::step::default_step;
+use crate::step::{critical_time_step, default_step};
 use crate::watch::{Fates, Recording, Stresses, Thresholds, Watch};
 
 /// Everything that was seen of a run.
@@ -32,8 +33,8 @@ pub struct Run {
     pub stresses: Stresses,
     /// Frames and histories.
     pub recording: Recording,
-    /// The energy books at the end.
-    pub energy: EnergySummary,
+    /// The energy books at the end; none where numbers were lost.
+    pub energy: Option<EnergySummary>,
     /// How equilibrium was found; none where the scenario starts without.
     pub settled: Option<Settled>,
     /// How it was integrated.
@@ -59,6 +60,15 @@ pub struct Work {
     pub contact_evaluations: u64,
 }
 
+/// How far a run is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Simulated time (s) that it has reached.
+    pub time: f64,
+    /// Simulated time (s) at which it ends, unless a collapse ends it earlier.
+    pub end_time: f64,
+}
+
 /// Why there is no run.
 #[derive(Debug, thiserror::Error)]
 pub enum RunFailure {
@@ -71,28 +81,47 @@ pub enum RunFailure {
     /// The stack does not stand by itself.
     #[error(transparent)]
     Settle(#[from] SettleError),
+    /// The step is too long for the contacts.
+    #[error("run.step = {asked} ms is too long: {reason}; try {instead} ms, or leave it out")]
+    Step {
+        /// The step asked for (ms).
+        asked: f64,
+        /// How that shows.
+        reason: String,
+        /// The step that is taken when none is given (ms).
+        instead: f64,
+    },
     /// The run would not end, or not begin.
     #[error("{0}")]
     Duration(String),
 }
 
 /// Largest share of gravity that may be left unbalanced at rest.
-pub(crate) const SETTLE_TOLERANCE: f64 = 1e-10;
+const SETTLE_TOLERANCE: f64 = 1e-10;
 
-/// Deepest overlap (m) of two bodies at the start that sinking under weight can explain.
-const OVERLAP_ALLOWED: f64 = 2e-3;
+/// Share of the energy that went through, missing from the books, above which a run is invalid.
+///
+/// A hundred times what leads to a warning, and a thousand times what a sound step leaves open.
+const BOOKS_BROKEN: f64 = 0.1;
+
+/// Most steps of a run; a stack takes some 10⁵ steps a second.
+const MOST_STEPS: f64 = 1e9;
+
+/// Share of the way of the body that goes furthest from which a body counts as gone with it.
+const LOST_SHARE: f64 = 0.25;
 
 /// Runs a scenario.
 ///
-/// `progress` is told the simulated time (s) every 0.05 s of it and may stop the run; what was seen
+/// `progress` is told how far the run is every 0.05 s of simulated time and may stop it; what was seen
 /// until then is returned.
-/// A breakdown of the numbers is not an error but an outcome: [`Outcome::Invalid`].
+/// A breakdown of the numbers, or of the energy books, is not an error but an outcome:
+/// [`Outcome::Invalid`].
 ///
 /// # Errors
 /// When the motion cannot be read, the stack cannot be built, or it does not stand.
 pub fn run(
     scenario: &Scenario,
-    progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Run, RunFailure> {
     let ground = ground(scenario)?;
     let assembly = assemble(scenario)?;
@@ -103,9 +132,10 @@ pub fn run(
     let mut state = State::initial(model);
     let mut scratch = Scratch::new(model);
     check_overlap(&assembly, &state, &mut scratch, scenario.run.similitude)?;
-    let step = time_step(scenario, &assembly);
+    let step = time_step(scenario, &assembly)?;
+    check_length(end_time, step)?;
     let settled = if scenario.run.settle {
-        Some(settle(model, &mut state, &mut scratch, step, SETTLE_TOLERANCE)?)
+        Some(at_rest(scenario, &assembly, &mut state, &mut scratch)?)
     } else {
         barrelstack_dynamics::evaluate(model, &state, &mut scratch);
         None
@@ -121,6 +151,7 @@ pub fn run(
     let rates =
         (scenario.record.frame_rate / time_scale, scenario.record.history_rate / time_scale);
     let (evaluations, elements) = (scratch.evaluations, scratch.contact_evaluations);
+    let mut told = |time| progress(Progress { time, end_time });
     let mut watch = Watch::new(
         &assembly,
         &ground,
@@ -129,7 +160,7 @@ pub fn run(
         thresholds,
         rates,
         scenario.run.stop_after_collapse.map(|after| after * time_scale),
-        progress,
+        &mut told,
     );
     let result = simulate(model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
     let Watch { recording, stresses, fates, interrupted, .. } = watch;
@@ -138,17 +169,25 @@ pub fn run(
     let (outcome, energy, steps) = match result {
         Ok(totals) => {
             let energy = totals.energy.summary(0);
-            warnings.extend(energy_warning(&energy));
+            let broken = energy.residual_ratio() > BOOKS_BROKEN;
+            warnings.extend(energy_warning(&energy).filter(|_| !broken));
             if interrupted && totals.finish == Finish::Stopped {
                 warnings.push(format!(
-                    "the run was stopped at {:.3} s of {end_time:.3} s; what follows holds until then",
+                    "the run was stopped at {:.3} s of {end_time:.3} s; the results hold until then",
                     state.time
                 ));
             }
-            (judge(&assembly, &fates), energy, totals.steps)
+            let outcome = if broken {
+                Outcome::Invalid { reason: broken_books(&energy) }
+            } else {
+                judge(&assembly, &fates)
+            };
+            warnings.extend(short_warning(&outcome, &ground, state.time).filter(|_| !interrupted));
+            (outcome, Some(energy), totals.steps)
         }
-        Err(error @ RunError::NotFinite { .. }) => {
-            (Outcome::Invalid { reason: error.to_string() }, EnergySummary::default(), 0)
+        Err(error) => {
+            let RunError::NotFinite { steps, .. } = error;
+            (Outcome::Invalid { reason: error.to_string() }, None, steps)
         }
     };
     warnings.extend(creep_warning(&assembly));
@@ -179,12 +218,63 @@ pub fn run(
 /// The step (s) that a scenario asks for, or the one its stiffest contact suggests.
 ///
 /// A scaled stack takes the step of the full one, scaled, so that the two runs are the same run.
-pub(crate) fn time_step(scenario: &Scenario, assembly: &Assembly) -> f64 {
-    let time_scale = scenario.run.similitude.sqrt();
-    match scenario.run.step {
-        Some(step) => step * time_scale,
-        None => default_step(assembly, time_scale),
+///
+/// # Errors
+/// When the step asked for is above the critical one, with which no explicit method of a fixed step
+/// says anything.
+pub(crate) fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFailure> {
+    let scale = scenario.run.similitude.sqrt();
+    let Some(step) = scenario.run.step.map(|step| step * scale) else {
+        return Ok(default_step(assembly, scale));
+    };
+    let critical = critical_time_step(&assembly.model);
+    let adapts = matches!(scenario.run.method, scenario::Method::BogackiShampine { .. });
+    if adapts || step < critical {
+        return Ok(step);
     }
+    Err(RunFailure::Step {
+        asked: milliseconds(step / scale),
+        reason: format!("the stiffest contact allows {:.2} ms at most", 1e3 * critical / scale),
+        instead: milliseconds(default_step(assembly, scale) / scale),
+    })
+}
+
+/// A step (s) in milliseconds, to be printed.
+fn milliseconds(step: f64) -> f64 {
+    (1e9 * step).round() / 1e6
+}
+
+/// Lets the stack come to rest.
+///
+/// # Errors
+/// When it does not; blames the step where that is the likely reason, and otherwise the lowest of the
+/// bodies that go, which the others lose their hold with.
+pub(crate) fn at_rest(
+    scenario: &Scenario,
+    assembly: &Assembly,
+    state: &mut State<Planar>,
+    scratch: &mut Scratch<Planar>,
+) -> Result<Settled, RunFailure> {
+    let scale = scenario.run.similitude.sqrt();
+    let (step, suggested) = (time_step(scenario, assembly)?, default_step(assembly, scale));
+    let start = state.poses.clone();
+    settle(&assembly.model, state, scratch, step, SETTLE_TOLERANCE).map_err(|error| {
+        let SettleError::NotAtRest { body, moved } = error;
+        if step > suggested {
+            return RunFailure::Step {
+                asked: milliseconds(step / scale),
+                reason: format!("with it \"{body}\" does not come to rest under gravity"),
+                instead: milliseconds(suggested / scale),
+            };
+        }
+        let ways = state.poses.iter().zip(&start).map(|(a, b)| (a.position - b.position).length());
+        let lowest = ways.enumerate().find(|(_, way)| *way > LOST_SHARE * moved);
+        lowest
+            .map_or(SettleError::NotAtRest { body, moved }, |(lowest, way)| {
+                SettleError::NotAtRest { body: assembly.parts[lowest].name.clone(), moved: way }
+            })
+            .into()
+    })
 }
 
 fn method(scenario: &Scenario) -> Method {
@@ -224,27 +314,26 @@ fn end_time(scenario: &Scenario, ground: &Ground, time_scale: f64) -> Result<f64
     }
 }
 
-/// Refuses bodies that stand in each other before anything has moved.
-pub(crate) fn check_overlap(
-    assembly: &Assembly,
-    state: &State<Planar>,
-    scratch: &mut Scratch<Planar>,
-    length_scale: f64,
-) -> Result<(), AssembleError> {
-    let model = &assembly.model;
-    barrelstack_dynamics::evaluate(model, state, scratch);
-    let deepest = scratch.contacts.iter().max_by(|a, b| a.penetration.total_cmp(&b.penetration));
-    match deepest {
-        Some(contact) if contact.penetration > OVERLAP_ALLOWED * length_scale => {
-            let pair = &model.pairs()[contact.pair];
-            Err(AssembleError::Overlap {
-                first: model.bodies()[pair.contactor].name.clone(),
-                second: model.bodies()[pair.target].name.clone(),
-                depth: contact.penetration,
-            })
-        }
-        _ => Ok(()),
+/// Refuses a run that would not end in a day.
+fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
+    let steps = end_time / step;
+    if steps <= MOST_STEPS {
+        return Ok(());
     }
+    Err(RunFailure::Duration(format!(
+        "{end_time:e} s in steps of {step:e} s are {steps:.0e} steps, more than a run may take \
+         ({MOST_STEPS:.0e}): shorten run.duration, or see whether run.step and the stiffness of the \
+         contacts have the right unit"
+    )))
+}
+
+/// Why a run whose energy books do not balance has no outcome.
+fn broken_books(energy: &EnergySummary) -> String {
+    format!(
+        "the energy books miss {:.2e} times the energy that went through, so the steps follow no \
+         motion of these bodies: leave out run.step, or try a tenth of it",
+        energy.residual_ratio()
+    )
 }
 
 fn energy_warning(energy: &EnergySummary) -> Option<String> {
@@ -254,6 +343,19 @@ fn energy_warning(energy: &EnergySummary) -> Option<String> {
             "the energy books miss {:.2} % of the energy that went through: try half the step \
              (run.step)",
             100.0 * ratio
+        )
+    })
+}
+
+/// A stack that stands in the middle of a motion has not stood it.
+fn short_warning(outcome: &Outcome, ground: &Ground, end_time: f64) -> Option<String> {
+    let motion = ground.motion.as_ref()?;
+    let short = *outcome == Outcome::Stable && end_time < motion.duration - 0.01;
+    short.then(|| {
+        format!(
+            "the run ends at {end_time:.1} s, the motion at {:.1} s: what the rest of it does is not \
+             known; leave out run.duration to see all of it",
+            motion.duration
         )
     })
 }

@@ -2,9 +2,9 @@
 
 mod args;
 mod commands;
-mod pages;
 mod printer;
 mod progress;
+mod rows;
 
 use std::process::ExitCode;
 
@@ -16,7 +16,7 @@ fn main() -> ExitCode {
         Ok(code) => code,
         Err(error) => {
             printer::error(&error);
-            // The same status for every user's mistake, so that scripts can tell it from a verdict.
+            // The same status as for a mistyped option, so that scripts can tell both from a verdict.
             ExitCode::from(2)
         }
     }

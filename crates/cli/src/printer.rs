@@ -1,25 +1,33 @@
-//! Everything that is printed: results to standard output, errors to standard error.
-#![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is where printing is done")]
+//! Everything that is printed: results to standard output, errors and warnings to standard error.
+#![expect(clippy::print_stderr, reason = "this is where printing is done")]
 
-use std::io::Write as _;
+use std::io::{ErrorKind, Write as _};
 
+use anyhow::Context as _;
 use barrelstack::{Run, Summary};
 
-/// A line of a result.
-pub(crate) fn line(text: &str) {
-    this_text(text, true);
+/// Lines of a result.
+pub(crate) fn lines<T: AsRef<str>>(lines: impl IntoIterator<Item = T>) -> anyhow::Result<()> {
+    let mut whole = String::new();
+    for line in lines {
+        whole.push_str(line.as_ref());
+        whole.push('\n');
+    }
+    text(&whole)
 }
 
 /// A text as it is.
-pub(crate) fn text(text: &str) {
-    this_text(text, false);
-}
-
-fn this_text(text: &str, newline: bool) {
+///
+/// A reader that has gone away (`| head`) wants no more, and no message either.
+/// Any other failure, such as a full disk, would leave half a result behind and is an error.
+pub(crate) fn text(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
-    let end = if newline { "\n" } else { "" };
-    // A reader that has gone away (`| head`) wants no more, and no message either.
-    let _ = write!(out, "{text}{end}");
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(error).context("cannot write to standard output")
+        }
+        _ => Ok(()),
+    }
 }
 
 /// An error, with its causes, as one paragraph.
@@ -27,17 +35,31 @@ pub(crate) fn error(error: &anyhow::Error) {
     eprintln!("error: {error:#}");
 }
 
-/// The summary for people.
-pub(crate) fn summary(run: &Run, summary: &Summary) {
-    line(&summary.title);
-    for sentence in barrelstack::report::sentences(run, summary) {
-        line(&format!("  {sentence}"));
-    }
-    line("");
-    for row in crate::pages::rows(run, summary) {
-        line(&row);
-    }
+/// What the reader of a result should know, one sentence.
+pub(crate) fn warning(text: &str) {
+    eprintln!("warning: {text}");
+}
+
+/// What the reader of a result should know.
+pub(crate) fn warnings(summary: &Summary) {
     for warning in &summary.warnings {
-        eprintln!("warning: {warning}");
+        self::warning(warning);
     }
+}
+
+/// The summary for people; `changes` are the values changed on the command line.
+pub(crate) fn summary(run: &Run, summary: &Summary, changes: &[String]) -> anyhow::Result<()> {
+    let sentences = barrelstack::report::sentences(run, summary);
+    let rows = crate::rows::rows(run, summary, changes);
+    let title = std::iter::once(summary.title.clone());
+    let sentences = sentences.into_iter().map(|sentence| format!("  {sentence}"));
+    lines(title.chain(sentences).chain(std::iter::once(String::new())).chain(rows))
+}
+
+/// What repeats of a run say about it.
+pub(crate) fn verification(found: &barrelstack::verify::Verification) -> anyhow::Result<()> {
+    let rows = found.rows();
+    let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0) + 2;
+    let rows = rows.iter().map(|(name, value)| format!("  {name:width$}{value}"));
+    lines(["", "verification"].map(str::to_owned).into_iter().chain(rows))
 }

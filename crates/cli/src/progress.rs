@@ -4,37 +4,52 @@ use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Tells how far a run is, and whether the user wants it to stop.
 pub(crate) struct Progress {
-    spinner: Option<ProgressBar>,
+    bar: Option<ProgressBar>,
     stop: Arc<AtomicBool>,
 }
 
 impl Progress {
     /// Starts; shows a line only when asked to and only on a terminal.
+    ///
+    /// The first Ctrl-C asks the run to stop at its next report; a second one, for a run that is not
+    /// there yet, ends the program; files are written under their own names only when whole.
     pub(crate) fn new(show: bool) -> Self {
         let stop = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&stop);
-        // A second handler cannot be set in one process; the first one then does the work.
-        let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
-        let spinner = (show && std::io::stderr().is_terminal()).then(|| {
-            let spinner = ProgressBar::new_spinner();
-            if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}  {elapsed}") {
-                spinner.set_style(style);
+        // Without a handler, which a system may refuse, Ctrl-C ends the program as it always did.
+        let _ = ctrlc::set_handler(move || {
+            if flag.swap(true, Ordering::Relaxed) {
+                std::process::exit(130);
             }
-            spinner
         });
-        Self { spinner, stop }
+        let bar = (show && std::io::stderr().is_terminal()).then(|| {
+            let bar = ProgressBar::new_spinner().with_style(style("{spinner} {msg}"));
+            bar.set_message("the stack comes to rest");
+            bar.enable_steady_tick(Duration::from_millis(100));
+            bar
+        });
+        Self { bar, stop }
     }
 
-    /// The run has reached a simulated time (s).
-    pub(crate) fn at(&mut self, time: f64) -> ControlFlow<()> {
-        if let Some(spinner) = &self.spinner {
-            spinner.set_message(format!("{time:6.2} s simulated"));
-            spinner.tick();
+    /// The run has come this far.
+    pub(crate) fn at(&mut self, progress: barrelstack::Progress) -> ControlFlow<()> {
+        if let Some(bar) = &self.bar {
+            if bar.length().is_none() {
+                bar.set_style(style("{spinner} {bar:30} {msg}, {eta} to go"));
+                bar.reset_eta();
+            }
+            bar.set_length(milliseconds(progress.end_time));
+            bar.set_position(milliseconds(progress.time));
+            bar.set_message(format!(
+                "{:.1} of {:.1} s simulated",
+                progress.time, progress.end_time
+            ));
         }
         if self.stop.load(Ordering::Relaxed) {
             ControlFlow::Break(())
@@ -42,11 +57,28 @@ impl Progress {
             ControlFlow::Continue(())
         }
     }
+}
 
-    /// Takes the line away.
-    pub(crate) fn done(&self) {
-        if let Some(spinner) = &self.spinner {
-            spinner.finish_and_clear();
+/// Takes the line away, also where the run ends in an error.
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
         }
     }
+}
+
+fn style(template: &str) -> ProgressStyle {
+    // The templates are constants, and each is shown in a test of the command on a terminal.
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_spinner())
+}
+
+/// Whole milliseconds of a time (s), the unit in which the bar counts.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "times are not negative"
+)]
+fn milliseconds(time: f64) -> u64 {
+    (1e3 * time) as u64
 }

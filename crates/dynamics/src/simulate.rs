@@ -57,6 +57,8 @@ pub enum RunError {
         body: String,
         /// The step that was used (s).
         time_step: f64,
+        /// Steps that had been accepted before.
+        steps: u64,
     },
 }
 
@@ -111,7 +113,7 @@ pub fn simulate<S: Space>(
         steps += 1;
         energy.enter(model, state, scratch);
         if !energy.is_finite() {
-            return Err(lost_body(model, state, simulation.time_step));
+            return Err(lost_body(model, state, simulation.time_step, steps - 1));
         }
         if observer.observe(model, state, scratch, &energy).is_break() {
             finish = Finish::Stopped;
@@ -121,7 +123,7 @@ pub fn simulate<S: Space>(
 }
 
 /// Names the first body that is not where a finite number says.
-fn lost_body<S: Space>(model: &Model<S>, state: &State<S>, time_step: f64) -> RunError {
+fn lost_body<S: Space>(model: &Model<S>, state: &State<S>, time_step: f64, steps: u64) -> RunError {
     let lost = |i: &usize| {
         let (pose, twist) = (state.poses[*i], state.twists[*i]);
         let size = pose.position.dot(pose.position)
@@ -130,5 +132,10 @@ fn lost_body<S: Space>(model: &Model<S>, state: &State<S>, time_step: f64) -> Ru
         (0..S::Real::LANES).any(|lane| !size.lane(lane).is_finite())
     };
     let body = (0..model.bodies.len()).find(lost).unwrap_or(0);
-    RunError::NotFinite { time: state.time, body: model.bodies[body].name.clone(), time_step }
+    RunError::NotFinite {
+        time: state.time,
+        body: model.bodies[body].name.clone(),
+        time_step,
+        steps,
+    }
 }

@@ -60,10 +60,9 @@ impl Direction {
         }
         let text = upper.trim();
         match text {
-            "UP" | "U" | "+U" | "V" | "VERT" | "VERT." | "VERTICAL" | "Z" | "UD" | "U-D" | "+V"
-            | "VRT" | "VER" => return Self::up(),
+            "UP" | "V;+" | "U" | "+U" | "V" | "VERT" | "VERT." | "VERTICAL" | "Z" | "UD"
+            | "U-D" | "+V" | "VRT" | "VER" => return Self::up(),
             "DOWN" | "DN" | "DWN" | "DU" | "D-U" | "-U" | "V;-" => return Self::down(),
-            "V;+" => return Self::up(),
             "N" | "NS" | "N-S" | "NORTH" => return Self::horizontal(0.0),
             "E" | "EW" | "E-W" | "EAST" => return Self::horizontal(90.0),
             "S" | "SN" | "S-N" | "SOUTH" => return Self::horizontal(180.0),

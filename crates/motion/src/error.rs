@@ -16,9 +16,30 @@ pub enum Refusal {
 }
 
 /// A file that could not be read: where, what was expected, what was found and what to do.
+///
+/// The fields are those of [`ReadFailure`], reached directly: `error.line`, `error.refusal`.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(transparent)]
+pub struct ReadError(Box<ReadFailure>);
+
+impl std::ops::Deref for ReadError {
+    type Target = ReadFailure;
+
+    fn deref(&self) -> &ReadFailure {
+        &self.0
+    }
+}
+
+impl From<ReadFailure> for ReadError {
+    fn from(failure: ReadFailure) -> Self {
+        Self(Box::new(failure))
+    }
+}
+
+/// The facts of a [`ReadError`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}{}: expected {expected}, found {found}; {remedy}", Place { line: *line, column: *column })]
-pub struct ReadError {
+pub struct ReadFailure {
     /// Name of the file as given by the caller.
     pub file: String,
     /// Line, counted from 1.
@@ -74,7 +95,9 @@ pub enum MotionError {
         reason: String,
     },
     /// The motion is zero in the measure asked for.
-    #[error("{measure} of \"{motion}\" is zero, so no factor brings it to {target}")]
+    #[error(
+        "{measure} of \"{motion}\" is zero, so no factor brings it to {target}; choose another component or another record"
+    )]
     Zero {
         /// Name of the measure.
         measure: String,

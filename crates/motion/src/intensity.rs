@@ -142,7 +142,18 @@ impl IntensityMeasure {
             }
             Self::Housner { damping } => check_oscillator(1.0, damping),
             Self::Sa { period, damping } => check_oscillator(period, damping),
-            _ => Ok(()),
+            Self::Pga
+            | Self::Pgv
+            | Self::Pgd
+            | Self::PgvOverPga
+            | Self::Arias
+            | Self::Cav
+            | Self::CavStandardized
+            | Self::Rms
+            | Self::Asi
+            | Self::Vsi
+            | Self::MeanPeriod
+            | Self::Fajfar => Ok(()),
         }
     }
 

@@ -1,7 +1,47 @@
 //! Strong ground motion: read, process, scale, synthesise and measure.
 //!
-//! Inside, every number is SI: m, m/s, m/s², s, rad; azimuths alone are degrees clockwise from north.
-//! Vertical components are positive upward.
+//! A file becomes a [`Record`] (as recorded, SI, with everything the header said), a record becomes a
+//! [`GroundMotion`] (processed, scaled, ready to drive a model), and a motion answers
+//! [`History::at`] with displacement, velocity and acceleration that are exact derivatives of one
+//! another at any time.
+//!
+//! ```
+//! use barrelstack_motion::{IntensityMeasure, bundled};
+//! let record = bundled("napa-college-2014").unwrap();
+//! let motion = record.default_motion()?.scale_to(IntensityMeasure::Pgv, 0.6)?;
+//! let now = motion.horizontal.at(33.0);
+//! assert!(now.velocity.abs() <= 0.6);
+//! for step in &motion.provenance {
+//!     println!("{step}");
+//! }
+//! # Ok::<(), barrelstack_motion::MotionError>(())
+//! ```
+//!
+//! # Conventions
+//!
+//! - Every number is SI: m, m/s, m/s², s, rad. Azimuths alone are degrees clockwise from north.
+//! - g is 9.80665 m/s² ([`STANDARD_GRAVITY`]).
+//! - Vertical components are positive upward; a channel that points down is turned when read.
+//! - Acceleration is linear between samples, velocity quadratic, displacement cubic.
+//! - Before t = 0 nothing moves; after the end the acceleration is zero and the velocity is held.
+//! - PGV and PGD are peaks at the samples, as published values are.
+//! - Units and steps are never guessed: a file that states none needs [`ReadOptions`].
+//!
+//! # Where to look
+//!
+//! - Reading: [`read`], [`FORMATS`], [`ReadError`]; parts and components: [`Record::join`],
+//!   [`Record::gather`].
+//! - Choosing and processing: [`Component`], [`Record::ground_motion`], [`Processing`].
+//! - Measuring: [`IntensityMeasure`], [`ResponseSpectrum`], [`rotated_spectrum`], [`dominant_pulse`].
+//! - Scaling and matching: [`GroundMotion::scale_to`], [`GroundMotion::froude`],
+//!   [`GroundMotion::match_spectrum`], [`TargetSpectrum`].
+//! - Making: [`Pulse`], [`CloughPenzien`], [`BooreSource`], [`NearFault`], all from stated seeds of
+//!   [`Random`].
+
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "`!(x > 0.0)` refuses NaN with everything else that is not above zero"
+)]
 
 mod bundled;
 mod direction;
@@ -12,30 +52,44 @@ mod ground_motion;
 mod history;
 mod intensity;
 mod join;
+mod matching;
 mod math;
 mod process;
 mod pulse;
+mod pulse_fit;
+mod random;
 mod record;
 mod response;
+mod rotd;
 mod sampled;
 mod select;
+mod synthesis;
+mod target;
 mod units;
+mod wavelets;
+pub mod write;
 
 pub use bundled::{BUNDLED, bundled};
 pub use direction::{Direction, Orientation};
-pub use error::{MotionError, ReadError, Refusal};
+pub use error::{MotionError, ReadError, ReadFailure, Refusal};
 pub use format::{FORMATS, Format, ReadOptions, read, slammer_step, station_xml_sensitivities};
 pub use fourier::FourierSpectrum;
 pub use ground_motion::GroundMotion;
 pub use history::{Delayed, History};
 pub use intensity::{IntensityMeasure, arias, husid};
+pub use matching::{MatchMethod, Matched, Matching};
 pub use math::STANDARD_GRAVITY;
 pub use process::{MeanRemoval, Pads, Processed, Processing, Residuals};
 pub use pulse::Pulse;
+pub use pulse_fit::{PulseFit, dominant_pulse};
+pub use random::Random;
 pub use record::{Channel, Quantity, Record, Stage, StatedPeak, Warning};
 pub use response::{
     ResponsePeaks, ResponseSpectrum, response, response_subdivided, standard_periods,
 };
+pub use rotd::{RotatedPeak, rotated_peak, rotated_spectrum};
 pub use sampled::{Kinematics, Sampled};
 pub use select::Component;
+pub use synthesis::{BooreSource, CloughPenzien, Envelope, NearFault, Path, SiteAmplification};
+pub use target::{ChileanZone, NCh2745Soil, SiteClass, TargetSpectrum};
 pub use units::AccelerationUnit;

@@ -49,14 +49,6 @@ pub(crate) fn erf(x: f64) -> f64 {
     libm::erf(x)
 }
 
-pub(crate) fn cosh(x: f64) -> f64 {
-    libm::cosh(x)
-}
-
-pub(crate) fn sinh(x: f64) -> f64 {
-    libm::sinh(x)
-}
-
 pub(crate) fn hypot(x: f64, y: f64) -> f64 {
     libm::hypot(x, y)
 }

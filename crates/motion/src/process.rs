@@ -85,6 +85,12 @@ impl Processing {
         }
     }
 
+    /// As [`Processing::raw`] with the pads removed and the ends closed: for runs that cannot afford
+    /// half a minute of quiet before the shaking.
+    pub fn compact() -> Self {
+        Self { pads: Pads::Removed, ..Self::raw() }
+    }
+
     /// The default for a record: [`Processing::raw`] for raw ones, nothing for the others.
     pub fn for_stage(stage: Stage) -> Self {
         match stage {

@@ -1,5 +1,11 @@
 //! Displacement, velocity and acceleration are derivatives of one another in every kind of motion.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by unwrap and tells by print"
+)]
+
 use barrelstack_motion::{Delayed, GroundMotion, History, IntensityMeasure, Pulse, Sampled};
 
 fn pulses() -> Vec<Pulse> {

@@ -152,7 +152,7 @@ fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> 
 
 /// The range that shows a stack while it stands and as it gives way; what falls leaves the picture, as
 /// in the paper's histories. None where nothing collapses: then everything is shown.
-fn standing_range(run: &Run, series: &[Series]) -> Option<[f64; 2]> {
+pub(crate) fn standing_range(run: &Run, series: &[Series]) -> Option<[f64; 2]> {
     let until = run.fates.collapse_time()? + 0.5;
     let mut range = [0.0_f64; 2];
     for one in series {
@@ -214,7 +214,7 @@ fn stresses(run: &Run) -> Vec<Block> {
     blocks
 }
 
-fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
+pub(crate) fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
     let name = &run.assembly.parts[envelope.body].name;
     let mut samples = Vec::new();
     let (mut at_rest, mut peak) = (Vec::new(), Vec::new());
@@ -356,7 +356,7 @@ fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
             Some(Series::new(*name, recording.times.clone(), values))
         })
         .collect();
-    let books = &summary.energy;
+    let Some(books) = &summary.energy else { return Vec::new() };
     vec![
         Block::Paragraph(format!(
             "What the ground gave and what the stack lost in height equals what is stored and what is \

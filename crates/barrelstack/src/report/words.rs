@@ -2,37 +2,86 @@
 
 use barrelstack_motion::STANDARD_GRAVITY;
 
+use crate::assemble::PartKind;
 use crate::outcome::{CollapseMode, Outcome};
 use crate::run::Run;
-use crate::summary::Summary;
+use crate::summary::{MotionSummary, Summary};
 
 /// The answer in one sentence.
 pub(super) fn headline(run: &Run, summary: &Summary) -> String {
-    let outcome = &summary.outcome;
-    match &run.outcome {
-        Outcome::Stable => "The stack stands.".into(),
-        Outcome::NotJudged => "The scene ran to its end.".into(),
-        Outcome::Invalid { .. } => "The run broke down and says nothing about the stack.".into(),
-        Outcome::Collapse { time, .. } => match outcome.barrels_fallen {
-            0 => format!("The stack comes apart after {time:.1} s, but no barrel falls."),
-            1 => format!(
-                "One of {} barrels falls, the stack gives way after {time:.1} s.",
-                outcome.barrels
-            ),
-            fallen if fallen == outcome.barrels => {
-                format!("All {fallen} barrels fall, the stack gives way after {time:.1} s.")
+    let until = run.interrupted.then(|| format!("the run was stopped at {:.1} s", run.end_time));
+    match (&run.outcome, until) {
+        (Outcome::Stable, None) => "The stack stands.".into(),
+        (Outcome::Stable, Some(until)) => format!("The stack stood until {until}."),
+        (Outcome::NotJudged, None) => "The scene ran to its end.".into(),
+        (Outcome::NotJudged, Some(until)) => format!("The scene was seen until {until}."),
+        (Outcome::Invalid { .. }, _) => {
+            "The run broke down and says nothing about the stack.".into()
+        }
+        (Outcome::Collapse { time, .. }, until) => {
+            let until = until.map(|until| format!("; {until}")).unwrap_or_default();
+            let (fallen, barrels) = (summary.outcome.barrels_fallen, summary.outcome.barrels);
+            if fallen == 0 {
+                return format!(
+                    "The stack comes apart after {time:.1} s, but no barrel falls{until}."
+                );
             }
-            fallen => format!(
-                "{fallen} of {} barrels fall, the stack gives way after {time:.1} s.",
-                outcome.barrels
-            ),
-        },
+            let who = match fallen {
+                1 if barrels == 1 => "The barrel falls".to_owned(),
+                1 => format!("One of {barrels} barrels falls"),
+                _ if fallen == barrels => format!("All {barrels} barrels fall"),
+                _ => format!("{fallen} of {barrels} barrels fall"),
+            };
+            format!("{who}: the stack gives way after {time:.1} s{until}.")
+        }
     }
 }
 
-/// Levels in words: "level 3", "levels 2 to 4".
+/// Levels in words: "level 3", "levels 2 and 3", "levels 2 to 4".
 fn levels(from: u32, to: u32) -> String {
-    if from == to { format!("level {from}") } else { format!("levels {from} to {to}") }
+    match to.saturating_sub(from) {
+        0 => format!("level {from}"),
+        1 => format!("levels {from} and {to}"),
+        _ => format!("levels {from} to {to}"),
+    }
+}
+
+/// How the stack came down.
+fn course(run: &Run, mode: CollapseMode, first: &str, part: &str) -> String {
+    let barrel = run.assembly.parts.iter().any(|p| p.name == first && p.kind == PartKind::Barrel);
+    match mode {
+        CollapseMode::Ejection if barrel => {
+            format!(
+                "Barrel {first} is thrown out of its cradle, the first of {part} to leave its seat."
+            )
+        }
+        CollapseMode::Ejection => {
+            format!("The barrels of {part} are thrown off the stack with their rack, {first}.")
+        }
+        CollapseMode::Rocking => format!(
+            "The part above, {part}, rocks on the barrels below and topples; rack {first} leaves its \
+             seat first."
+        ),
+        CollapseMode::RackSliding => format!(
+            "Rack {first} walks along the barrels below until it is off them, and takes {part} with \
+             it."
+        ),
+        CollapseMode::Overturning => "The whole stack turns over about its foot.".to_owned(),
+    }
+}
+
+/// What shook the ground, and how much.
+fn shaking(motion: &MotionSummary) -> String {
+    let name = &motion.name;
+    if motion.pga == 0.0 {
+        return format!("The ground moves vertically only ({name}).");
+    }
+    format!(
+        "The ground motion ({name}{}) reaches {:.2} g and {:.0} cm/s.",
+        if motion.vertical { ", with its vertical component" } else { "" },
+        motion.pga / STANDARD_GRAVITY,
+        100.0 * motion.pgv,
+    )
 }
 
 /// The sentences that back the headline.
@@ -40,50 +89,31 @@ pub(super) fn details(run: &Run, summary: &Summary) -> Vec<String> {
     let mut sentences = Vec::new();
     match &run.outcome {
         Outcome::Collapse { mode, first, from_level, to_level, .. } => {
-            let part = levels(*from_level, *to_level);
-            let what = match mode {
-                CollapseMode::Ejection => format!(
-                    "The barrels of {part} are thrown off the stack; {first} leaves its seat first."
-                ),
-                CollapseMode::Rocking => format!(
-                    "The part above, {part}, rocks on the barrels below and topples; {first} leaves \
-                     its seat first."
-                ),
-                CollapseMode::RackSliding => format!(
-                    "Rack {first} walks along the barrels below until it is off them, and {part} \
-                     goes with it."
-                ),
-                CollapseMode::Overturning => {
-                    "The whole stack turns over about its foot.".to_owned()
-                }
-            };
-            sentences.push(what);
+            sentences.push(course(run, *mode, first, &levels(*from_level, *to_level)));
         }
         Outcome::Stable => {
             let drift = summary.demands.top_drift_ratio.unwrap_or(0.0);
-            let slip = summary.demands.base_slip_residual.unwrap_or(0.0);
-            sentences.push(format!(
-                "Its top sways by up to {:.1} % of its height, and its foot ends {:.1} cm from where \
-                 it stood.",
-                100.0 * drift,
-                100.0 * slip.abs()
-            ));
+            let slip = summary.demands.base_slip_residual.unwrap_or(0.0).abs();
+            let foot = if slip < 5e-4 {
+                "its foot ends where it stood".to_owned()
+            } else {
+                format!("its foot ends {:.1} cm from where it stood", 100.0 * slip)
+            };
+            let top = if drift < 1e-3 {
+                "Its top hardly moves".to_owned()
+            } else {
+                format!("Its top moves by up to {:.1} % of the height of the stack", 100.0 * drift)
+            };
+            sentences.push(format!("{top}, and {foot}."));
         }
         Outcome::NotJudged => {}
         Outcome::Invalid { reason } => sentences.push(format!("{}.", capital(reason))),
     }
-    if let Some(motion) = &summary.motion {
-        sentences.push(format!(
-            "The ground moved as in {}: up to {:.2} g and {:.0} cm/s{}.",
-            motion.name,
-            motion.pga / STANDARD_GRAVITY,
-            100.0 * motion.pgv,
-            if motion.vertical { ", with its vertical component" } else { "" }
-        ));
-    }
-    if run.assembly.levels > 0 {
+    sentences.extend(summary.motion.as_ref().map(shaking));
+    let judged = matches!(run.outcome, Outcome::Stable | Outcome::Collapse { .. });
+    if judged {
         sentences.push(
-            "One run is one possible course: small changes of friction or gaps can change who falls \
+            "One run is one possible course: small changes of friction or gaps can change what falls \
              when, so judge a stack by many runs."
                 .into(),
         );
@@ -122,9 +152,14 @@ pub(super) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> 
         ),
         (
             "energy books".to_owned(),
-            format!(
-                "residual {:.2e} of the {:.0} J that went through",
-                summary.energy.residual_ratio, summary.energy.input
+            summary.energy.as_ref().map_or_else(
+                || "lost with the numbers".to_owned(),
+                |books| {
+                    format!(
+                        "residual {:.2e} of the {:.0} J that went through",
+                        books.residual_ratio, books.input
+                    )
+                },
             ),
         ),
     ];

@@ -105,7 +105,7 @@ pub enum Problem {
     )]
     Empty,
     /// The file cannot be read.
-    #[error("cannot read the file: {reason}")]
+    #[error("cannot read the file: {reason}; correct the path")]
     Unreadable {
         /// The system's words.
         reason: String,

@@ -6,9 +6,13 @@ use super::error::{Place, Problem, ScenarioError};
 use super::reader::{Reader, nearest};
 use super::tree::{Origin, SourceFile, Sources, Table, Value};
 use super::{Scenario, builtin, merge, root};
+use crate::system;
 
 /// Largest scenario file (bytes).
 const SIZE_LIMIT: usize = 1 << 20;
+
+/// Largest file (bytes) that is read at all, to say how large it is.
+const READ_LIMIT: usize = 256 << 20;
 
 /// Longest chain of `extends`.
 const CHAIN_LIMIT: usize = 8;
@@ -100,10 +104,10 @@ fn unknown_builtin(field: &str, name: &str) -> Problem {
 }
 
 fn read_file(path: &Path, place: Place) -> Result<Vec<u8>, ScenarioError> {
-    std::fs::read(path).map_err(|error| {
+    system::read(path, READ_LIMIT).map_err(|error| {
         // A file that extends this one stands elsewhere than the place of the error.
         let reason = match &place {
-            Place::Whole { .. } => error.to_string(),
+            Place::Whole { .. } => error,
             Place::File { .. } | Place::Override { .. } | Place::Unknown => {
                 format!("{}: {error}", path.display())
             }

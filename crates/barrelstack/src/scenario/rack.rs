@@ -271,6 +271,11 @@ pub static RACK: Section = Section {
                     ),
                 ],
             },
+            Variant {
+                name: "candia-2008",
+                help: "The rack of the paper, reconstructed where its text leaves it open.",
+                fields: &[],
+            },
         ],
     }),
     exclusive: &[],

@@ -8,15 +8,15 @@ use barrelstack::export::Folder;
 use crate::args::DemoArgs;
 use crate::printer;
 
-/// Runs the demo scenario and says in three sentences what happened.
+/// Runs the demo scenario and says in a few sentences what happened.
 pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
     let scenario = Scenario::builtin("demo-napa", &args.set)?;
     let folder = Folder::prepare(&args.out, true)?;
     let (run, summary) = super::run::watched(&scenario, true)?;
     folder.write(&run, &summary)?;
-    for sentence in barrelstack::report::sentences(&run, &summary) {
-        printer::line(&sentence);
-    }
-    printer::line(&format!("\nOpen {} in a browser to watch it.", folder.report().display()));
-    Ok(if run.interrupted { ExitCode::from(130) } else { ExitCode::SUCCESS })
+    printer::lines(barrelstack::report::sentences(&run, &summary))?;
+    let report = folder.report();
+    printer::lines(["", &format!("Open {} in a browser to watch it.", report.display())])?;
+    printer::warnings(&summary);
+    Ok(super::run::status(&run))
 }

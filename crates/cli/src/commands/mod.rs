@@ -2,16 +2,24 @@
 
 mod check;
 mod demo;
+pub(crate) mod motion;
+mod reproduce;
 mod run;
 mod scenarios;
 
+use std::io::Read as _;
 use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use barrelstack::Scenario;
+use barrelstack::ground::GroundError;
+use barrelstack::scenario::{Problem, ScenarioError, builtin};
+use barrelstack::{RunFailure, Scenario};
 
 use crate::args::{Args, Command, ScenarioArgs};
+
+/// Most of standard input (bytes) that is taken for a scenario; more than any scenario has.
+const INPUT_LIMIT: u64 = 16 << 20;
 
 /// Does what was typed.
 pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
@@ -19,13 +27,15 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
         Command::Run(args) => run::run(&args),
         Command::Demo(args) => demo::demo(&args),
         Command::Check(args) => check::check(&args),
+        Command::Reproduce(args) => reproduce::reproduce(&args),
+        Command::Motion(args) => motion::motion(&args),
         Command::Scenarios(args) => scenarios::scenarios(&args),
     }
 }
 
-/// Loads a scenario file, or a built-in scenario, with its changes.
+/// Loads a scenario file, standard input (`-`), or a built-in scenario, with its changes.
 ///
-/// A name that is a file is a file; a name without a dot or a separator is a built-in scenario.
+/// A name that is a file is a file; any other name without a dot or a separator is a built-in scenario.
 fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
     let mut overrides = args.set.clone();
     if let Some(record) = &args.record {
@@ -34,12 +44,54 @@ fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
         let quoted = serde_json::to_string(&path.display().to_string())?;
         overrides.push(format!("motion.record={quoted}"));
     }
+    if args.scenario == "-" {
+        let mut bytes = Vec::new();
+        let input = std::io::stdin().lock();
+        input
+            .take(INPUT_LIMIT)
+            .read_to_end(&mut bytes)
+            .context("cannot read the scenario from standard input")?;
+        return Ok(Scenario::parse_bytes("standard input", &bytes, &overrides)?);
+    }
     let path = Path::new(&args.scenario);
     let looks_like_a_file = args.scenario.contains(['.', '/', '\\']);
-    let scenario = if path.exists() || looks_like_a_file {
-        Scenario::load(path, &overrides)
+    let scenario = if path.is_file() || looks_like_a_file {
+        Scenario::load(path, &overrides)?
     } else {
-        Scenario::builtin(&args.scenario, &overrides)
+        Scenario::builtin(&args.scenario, &overrides).map_err(|error| {
+            // A mistyped name may be meant for a file, which the library cannot know.
+            if builtin::get(&args.scenario).is_none() {
+                no_such(&args.scenario, &error)
+            } else {
+                error.into()
+            }
+        })?
     };
-    Ok(scenario?)
+    Ok(scenario)
+}
+
+/// A name that is neither a file nor a built-in scenario, with the one that looks most like it.
+fn no_such(name: &str, error: &ScenarioError) -> anyhow::Error {
+    let next = if let Problem::UnknownName { nearest: Some(nearest), .. } = error.problem() {
+        format!("did you mean `{nearest}`?")
+    } else {
+        "`barrelstack scenarios` lists those".to_owned()
+    };
+    anyhow::anyhow!("there is no file {name:?} and no built-in scenario of that name; {next}")
+}
+
+/// An error of a run with the scenario it comes from; a record named on the command line comes from
+/// none.
+fn placed(error: RunFailure, args: &ScenarioArgs) -> anyhow::Error {
+    if args.record.is_some()
+        && let RunFailure::Ground(error) = error
+    {
+        return if let GroundError::Unreadable { path, reason, .. } = error {
+            let path = path.display();
+            anyhow::anyhow!("cannot read {path}: {reason}; correct the path after --record")
+        } else {
+            error.into()
+        };
+    }
+    anyhow::Error::from(error).context(args.scenario.clone())
 }

@@ -4,7 +4,9 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use barrelstack::export::Folder;
-use barrelstack::{Run, Scenario, Summary};
+use barrelstack::outcome::Outcome;
+use barrelstack::verify::{Verification, verify};
+use barrelstack::{Run, RunFailure, Scenario, Summary};
 
 use crate::args::RunArgs;
 use crate::printer;
@@ -15,27 +17,53 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let scenario = super::load(&args.scenario)?;
     // The folder is looked at before the work is done, not after.
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
-    let (run, summary) = watched(&scenario, !args.quiet && !args.json)?;
+    let (run, summary) =
+        watched(&scenario, !args.quiet).map_err(|error| super::placed(error, &args.scenario))?;
     if let Some(folder) = &folder {
         folder.write(&run, &summary)?;
     }
+    let verification = args.verify.then(|| repeated(&run, !args.quiet)).transpose()?;
     if args.json {
-        printer::line(&summary.to_json());
+        let document = match &verification {
+            Some(verification) => verification.with_summary(&summary),
+            None => summary.to_json(),
+        };
+        printer::lines([document])?;
     } else {
-        printer::summary(&run, &summary);
-        if let Some(folder) = &folder {
-            printer::line(&format!("\nreport: {}", folder.report().display()));
+        printer::summary(&run, &summary, &args.scenario.set)?;
+        if let Some(verification) = &verification {
+            printer::verification(verification)?;
         }
+        if let Some(folder) = &folder {
+            printer::lines(["", &format!("report: {}", folder.report().display())])?;
+        }
+        printer::warnings(&summary);
     }
-    Ok(if run.interrupted { ExitCode::from(130) } else { ExitCode::SUCCESS })
+    Ok(status(&run))
 }
 
 /// Runs a scenario with a progress bar and Ctrl-C.
-pub(super) fn watched(scenario: &Scenario, show: bool) -> anyhow::Result<(Run, Summary)> {
+pub(super) fn watched(scenario: &Scenario, show: bool) -> Result<(Run, Summary), RunFailure> {
     let start = Instant::now();
     let mut progress = Progress::new(show);
-    let run = barrelstack::run(scenario, &mut |time| progress.at(time))?;
-    progress.done();
+    let run = barrelstack::run(scenario, &mut |reached| progress.at(reached))?;
     let summary = Summary::of(&run, Some(start.elapsed().as_secs_f64()));
     Ok((run, summary))
+}
+
+/// Repeats a run with a progress bar and Ctrl-C.
+fn repeated(run: &Run, show: bool) -> Result<Verification, RunFailure> {
+    let mut progress = Progress::new(show);
+    verify(run, &mut |reached| progress.at(reached))
+}
+
+/// The exit status of a run, as the help of the program lists them.
+pub(super) fn status(run: &Run) -> ExitCode {
+    if matches!(run.outcome, Outcome::Invalid { .. }) {
+        ExitCode::FAILURE
+    } else if run.interrupted {
+        ExitCode::from(130)
+    } else {
+        ExitCode::SUCCESS
+    }
 }

@@ -13,22 +13,22 @@ pub(crate) fn scenarios(args: &ScenariosArgs) -> anyhow::Result<ExitCode> {
     match &args.action {
         None | Some(ScenariosAction::List) => {
             let widest = builtin::names().map(str::len).max().unwrap_or(0);
-            for name in builtin::names() {
-                let title = Scenario::builtin(name, &[])?.title;
-                printer::line(&format!("{name:widest$}  {title}"));
-            }
+            let lines: anyhow::Result<Vec<String>> = builtin::names()
+                .map(|name| Ok(format!("{name:widest$}  {}", Scenario::builtin(name, &[])?.title)))
+                .collect();
+            printer::lines(lines?)?;
         }
         Some(ScenariosAction::Show { name, resolved: false }) => {
             // Loading it gives the error, with the nearest name, where there is none of this name.
             Scenario::builtin(name, &[])?;
-            printer::text(builtin::get(name).unwrap_or_default());
+            printer::text(builtin::get(name).unwrap_or_default())?;
         }
         Some(ScenariosAction::Show { name, resolved: true }) => {
-            printer::text(&Scenario::builtin(name, &[])?.to_resolved_toml());
+            printer::text(&Scenario::builtin(name, &[])?.to_resolved_toml())?;
         }
-        Some(ScenariosAction::Fields) => printer::text(&reference::markdown()),
+        Some(ScenariosAction::Fields) => printer::text(&reference::markdown())?,
         Some(ScenariosAction::Schema) => {
-            printer::line(&serde_json::to_string_pretty(&schema::json_schema())?);
+            printer::lines([serde_json::to_string_pretty(&schema::json_schema())?])?;
         }
     }
     Ok(ExitCode::SUCCESS)

@@ -28,7 +28,7 @@ fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
     })
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let number = |key: &str| {
         let found = field(source, key);
         let value = found.as_ref().and_then(|(line, text)| {
@@ -45,9 +45,6 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
         })
     };
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
-    if options.time_step.is_some() {
-        record.warn(None, "the file states its step; the time step given was ignored");
-    }
     let (count_line, count) = number("NUMBER OF DATA")?;
     let count = super::whole(source, count_line, "a number of values", count)?;
     let (_, time_step) = number("SAMPLING INTERVAL")?;

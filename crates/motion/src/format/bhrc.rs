@@ -20,11 +20,8 @@ fn sniff(source: &Source<'_>) -> bool {
     source.find(0, "VOL1DS FILE").is_some_and(|at| at < 6)
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
-    if options.time_step.is_some() {
-        record.warn(None, "the file states its step; the time step given was ignored");
-    }
     let mut line = 0;
     while line < source.lines.len() {
         if source.raw(line).trim_ascii().is_empty() {
@@ -88,7 +85,7 @@ fn read_component(
     let name = source.text(first + 4);
     let about = source.text(first + 7);
     if record.channels.is_empty() {
-        record.station = about.split("Station").next().unwrap_or("").trim().to_owned();
+        about.split("Station").next().unwrap_or("").trim().clone_into(&mut record.station);
         record.event = source.text(first + 8);
     }
     let direction = match azimuth(&about, &name) {

@@ -23,9 +23,6 @@ pub(crate) fn read_blocks(
     record: &mut Record,
     pairs: Columns,
 ) -> Result<(), ReadError> {
-    if options.time_step.is_some() {
-        record.warn(None, "the file states its step; the time step given was ignored");
-    }
     let mut line = 0;
     while line < source.lines.len() {
         if source.raw(line).trim_ascii().is_empty() {

@@ -80,9 +80,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
                 "state the time step (s)",
             )
         })?;
-        // Several values to a line and no time: one series row by row.
-        let series = if width > 1 { by_row(source, first, end)? } else { table };
-        (step, series)
+        (step, without_time(source, first, end, table, &names, &mut record)?)
     };
     let count = columns.first().map_or(0, Vec::len);
     if let Some((stated, _)) = stated {
@@ -186,7 +184,30 @@ fn table(source: &Source<'_>, first: usize, end: usize) -> Result<Vec<Vec<f64>>,
     Ok(columns)
 }
 
-fn by_row(source: &Source<'_>, first: usize, end: usize) -> Result<Vec<Vec<f64>>, ReadError> {
+/// Several values to a line and no time: channels if the header names the columns, one series row by
+/// row if it does not, with a warning.
+fn without_time(
+    source: &Source<'_>,
+    first: usize,
+    end: usize,
+    table: Vec<Vec<f64>>,
+    names: &[String],
+    record: &mut Record,
+) -> Result<Vec<Vec<f64>>, ReadError> {
+    let width = table.len();
+    if width == 1 {
+        return Ok(table);
+    }
+    let named = |name: &String| {
+        Direction::parse(name) != Direction::default() || name.to_ascii_lowercase().contains("acc")
+    };
+    if names.len() == width && names.iter().any(named) {
+        return Ok(table);
+    }
+    record.warn(
+        first + 1,
+        format!("{width} columns without names or time were read row by row as one series"),
+    );
     Ok(vec![source.all_tokens(first, end, LIMIT)?])
 }
 

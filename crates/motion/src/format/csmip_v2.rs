@@ -36,9 +36,6 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
         ));
     }
     let mut record = Record::new(FORMAT.name, source.name, Stage::Corrected);
-    if options.time_step.is_some() {
-        record.warn(None, "the file states its step; the time step given was ignored");
-    }
     let mut line = 0;
     while line < source.lines.len() {
         if source.raw(line).trim_ascii().is_empty() {
@@ -73,7 +70,7 @@ fn read_channel(
     }
     let header = first..first + TEXT_LINES;
     if record.channels.is_empty() {
-        record.station = source.text(first + 6 - 1);
+        record.station = source.text(first + 5);
         record.event = source.text(first + 2);
     }
     // Line 7 by rule; the first line that begins with CHAN where a line is missing.
@@ -96,7 +93,7 @@ fn read_channel(
     let unit = unit(source, first + HEADER_LINES, options)?;
     let step = time_step(source, first, first + HEADER_LINES)?;
     let values: Vec<f64> = accelerations.iter().map(|value| value * unit.factor()).collect();
-    let mut channel = Channel::new(name.clone(), Direction::parse(&name), step, values);
+    let mut channel = Channel::new(name.as_str(), Direction::parse(&name), step, values);
     let mut measured =
         vec![(Quantity::Acceleration, unit.factor(), math::peak(&channel.acceleration))];
     for (key, quantity) in [("vel", Quantity::Velocity), ("dis", Quantity::Displacement)] {
@@ -125,9 +122,8 @@ fn read_channel(
             });
         }
     }
-    if let Some(velocity) =
-        header.clone().find_map(|line| source.number_after(line, "INITIAL VELOCITY"))
-    {
+    let mut header = header;
+    if let Some(velocity) = header.find_map(|line| source.number_after(line, "INITIAL VELOCITY")) {
         channel.initial_velocity = 0.01 * velocity;
     }
     record.channels.push(channel);

@@ -28,7 +28,8 @@ fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
     })
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+#[expect(clippy::too_many_lines, reason = "one header, read from top to bottom")]
+fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let need = |key: &str| {
         field(source, key).ok_or_else(|| {
             source.error(
@@ -41,9 +42,6 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
         })
     };
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
-    if options.time_step.is_some() {
-        record.warn(None, "the file states its step; the time step given was ignored");
-    }
     let (unit_line, unit) = need("#AmplitudeUnit:")?;
     if !unit.to_ascii_lowercase().starts_with("gal") {
         return Err(source.error(
@@ -117,9 +115,15 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
         }
         if let Some((line, seconds)) = number(source, "#RecordLength(sec):") {
             let stated = (seconds * rate).round();
-            if (rows as f64 - stated).abs() > rate {
-                let stated = super::whole(source, line, "a record length", stated)?;
+            let stated = super::whole(source, line, "a record length", stated)?;
+            // Whole seconds are stated; up to one second more or less is rounding.
+            if (rows as f64 - stated as f64).abs() > rate {
                 super::check_count(source, &mut record, line, stated, rows)?;
+            } else if rows != stated {
+                record.warn(
+                    line + 1,
+                    format!("the header states {stated} rows, the file holds {rows}"),
+                );
             }
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! Spec: Luzi et al. 2016, "Engineering Strong-Motion database, format DYNA 1.2" (INGV).
 
-use super::source::{LARGEST_ACCELERATION, Source, latin1, leading_number, resolution, shorten};
+use super::source::{LARGEST_ACCELERATION, Source, leading_number, resolution, shorten};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
@@ -30,7 +30,7 @@ fn field(source: &Source<'_>, end: usize, key: &str) -> Option<(usize, String)> 
     })
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let end = (0..source.lines.len().min(MOST_HEADER_LINES))
         .find(|&line| super::source::parse_number(source.raw(line)).is_some())
         .ok_or_else(|| source.cut("values after the header", "none"))?;
@@ -89,9 +89,6 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
         Stage::Raw
     };
     let mut record = Record::new(FORMAT.name, source.name, stage);
-    if options.time_step.is_some() {
-        record.warn(None, "the file states its step; the time step given was ignored");
-    }
     record.event = text("EVENT_NAME");
     record.station = format!("{} {}", text("STATION_CODE"), text("STATION_NAME"));
     let limit = LARGEST_ACCELERATION / unit.factor();
@@ -99,15 +96,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     for line in end..source.lines.len() {
         let value = super::source::parse_number(source.raw(line))
             .ok_or_else(|| source.bad_number(line, 0, source.raw(line)))?;
-        if value.abs() > limit {
-            return Err(source.error(
-                (line, 0),
-                Refusal::Damaged,
-                format!("a number up to {limit:.1e} {unit}"),
-                latin1(source.raw(line)).trim().to_owned(),
-                "check the unit, or get the file again from its source",
-            ));
-        }
+        let value = source.within(line, 0, value, limit)?;
         values.push(value * unit.factor());
     }
     super::check_count(source, &mut record, count_line, count, values.len())?;

@@ -34,7 +34,10 @@ pub(crate) fn even_steps(
     if time.len() < 2 {
         return Err(source.cut("at least 2 rows", format!("{} rows", time.len())));
     }
-    if let Some(row) = (1..time.len()).find(|&row| !(time[row] > time[row - 1])) {
+    // Coarsely printed times may repeat; only going back is damage.
+    let back = (1..time.len()).find(|&row| !(time[row] >= time[row - 1]));
+    let stuck = (time.len() > 2 && time[time.len() - 1] <= time[0]).then_some(1);
+    if let Some(row) = back.or(stuck) {
         return Err(source.error(
             line_of(row),
             Refusal::Damaged,

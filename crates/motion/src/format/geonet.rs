@@ -24,13 +24,10 @@ fn sniff(source: &Source<'_>) -> bool {
         || source.has(0, "GNS Science")
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let raw = source.has(0, "uncorrected");
     let stage = if raw { Stage::Raw } else { Stage::Corrected };
     let mut record = Record::new(FORMAT.name, source.name, stage);
-    if options.time_step.is_some() {
-        record.warn(None, "the file states its step; the time step given was ignored");
-    }
     record.station = source.text(2);
     record.event = source.text(6);
     let mut line = 0;

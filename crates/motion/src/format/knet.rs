@@ -29,11 +29,8 @@ fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
         .map(|line| (line, latin1(source.slice(line, 18, 200)).trim().to_owned()))
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
-    if options.time_step.is_some() {
-        record.warn(None, "the file states its step; the time step given was ignored");
-    }
     let need = |key: &str| {
         field(source, key).ok_or_else(|| {
             source.error(

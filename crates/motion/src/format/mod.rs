@@ -115,6 +115,15 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
             "get the file again from its source",
         ));
     }
+    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        return Err(source.error(
+            (),
+            Refusal::Damaged,
+            "text in UTF-8",
+            "UTF-16",
+            "save the file as UTF-8 or plain text",
+        ));
+    }
     check_options(&source, options)?;
     let Some(format) = KNOWN_OTHERS.iter().chain(FORMATS).find(|format| (format.sniff)(&source))
     else {
@@ -129,6 +138,9 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
     };
     let mut record = (format.read)(&source, options)?;
     record.format = format.name;
+    if options.time_step.is_some() && format.name != columns::FORMAT.name {
+        record.warn(None, "the file states its step; the time step given was ignored");
+    }
     finish(&source, &mut record)?;
     Ok(record)
 }

@@ -39,7 +39,7 @@ fn field(source: &Source<'_>, end: usize, key: &str) -> Option<(usize, String)> 
     })
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let end = (0..source.lines.len())
         .find(|&line| !source.text(line).starts_with('#'))
         .ok_or_else(|| source.cut("rows of numbers after the header", "none"))?;
@@ -104,9 +104,6 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     let limit = LARGEST_ACCELERATION / unit.factor();
     let columns = super::rows(source, end, source.lines.len(), channels.len(), limit)?;
     let mut record = Record::new(FORMAT.name, source.name, stage);
-    if options.time_step.is_some() || options.unit.is_some() {
-        record.warn(None, "the file states unit and step; those given were ignored");
-    }
     record.station = field(source, end, "station").map(|(_, text)| text).unwrap_or_default();
     record.event = field(source, end, "event").map(|(_, text)| text).unwrap_or_default();
     for (line, text) in (0..end).map(|line| (line, source.text(line))) {

@@ -33,9 +33,6 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     let counts = find_counts(source)?;
     let unit = find_unit(source, counts.line, options)?;
     let mut record = Record::new(FORMAT.name, source.name, Stage::Corrected);
-    if options.time_step.is_some() {
-        record.warn(None, "the file states its step; the time step given was ignored");
-    }
     if options.unit.is_some_and(|given| given != unit) {
         record.warn(None, format!("the file states its unit ({unit}); the unit given was ignored"));
     }

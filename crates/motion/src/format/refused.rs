@@ -72,7 +72,7 @@ fn xml(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     ))
 }
 
-/// The overall sensitivities of the acceleration channels in a StationXML file: channel code and
+/// The overall sensitivities of the acceleration channels in a `StationXML` file: channel code and
 /// counts per m/s², in file order.
 pub fn station_xml_sensitivities(bytes: &[u8]) -> Vec<(String, f64)> {
     let text = super::source::latin1(bytes);

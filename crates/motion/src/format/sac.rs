@@ -53,6 +53,7 @@ fn sniff(source: &Source<'_>) -> bool {
     byte_order(source.bytes).is_some()
 }
 
+#[expect(clippy::too_many_lines, reason = "one header, read from top to bottom")]
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
     let bytes = source.bytes;
     let big = byte_order(bytes).unwrap_or(false);
@@ -95,7 +96,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
         .filter(|count| *count > 0)
         .ok_or_else(|| damaged("a number of points above 0", points.to_string()))?;
     let data = &bytes[HEADER_BYTES..];
-    if data.len() / 4 != count || data.len() % 4 != 0 {
+    if data.len() / 4 != count || !data.len().is_multiple_of(4) {
         return Err(damaged(
             &format!("{count} samples of 4 bytes after the header"),
             format!("{} bytes", data.len()),
@@ -138,7 +139,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     // Single precision: 0.02 is stored as 0.0199999996; the nearest short decimal is meant.
     let time_step = (time_step * 1e7).round() / 1e7;
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
-    record.station = format!("{} {}", text(608, 8), text(440, 8)).trim().to_owned();
+    format!("{} {}", text(608, 8), text(440, 8)).trim().clone_into(&mut record.station);
     let name = text(600, 8);
     let direction = match (real(bytes, 57, big), real(bytes, 58, big)) {
         (_, Some(0.0)) => Direction::up(),

@@ -32,7 +32,7 @@ fn sniff(source: &Source<'_>) -> bool {
         })
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let title = source.text(0).to_ascii_uppercase();
     if !title.contains("ACCELEROGRAM") {
         return Err(source.error(
@@ -47,10 +47,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     let mut record = Record::new(FORMAT.name, source.name, stage);
     record.event = source.text(3);
     let station = latin1(source.slice(5, 0, 41));
-    record.station = station.split_once('=').map_or("", |(_, name)| name).trim().to_owned();
-    if options.time_step.is_some() {
-        record.warn(None, "the file states its step; the time step given was ignored");
-    }
+    station.split_once('=').map_or("", |(_, name)| name).trim().clone_into(&mut record.station);
     let (integers, line) =
         source.fixed(TEXT_LINES, 8 * INTEGER_LINES, Columns::new(8, 10), f64::INFINITY)?;
     let (reals, line) = source.fixed(line, 5 * REAL_LINES, Columns::new(5, 15), f64::INFINITY)?;

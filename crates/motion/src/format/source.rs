@@ -1,6 +1,6 @@
 //! The bytes of a text file by line and column, and numbers read from them or refused with a place.
 
-use crate::error::{ReadError, Refusal};
+use crate::error::{ReadError, ReadFailure, Refusal};
 
 /// Largest acceleration any reader accepts (m/s²), about a thousand g's.
 pub(crate) const LARGEST_ACCELERATION: f64 = 1e4;
@@ -122,7 +122,7 @@ impl<'a> Source<'a> {
         remedy: impl Into<String>,
     ) -> ReadError {
         let place = place.into();
-        ReadError {
+        ReadFailure {
             file: self.name.to_owned(),
             line: place.line.map(|line| line + 1),
             column: place.column.map(|column| column + 1),
@@ -131,6 +131,7 @@ impl<'a> Source<'a> {
             found: found.into(),
             remedy: remedy.into(),
         }
+        .into()
     }
 
     /// A damaged field.
@@ -283,7 +284,14 @@ impl<'a> Source<'a> {
         Ok(values)
     }
 
-    fn within(&self, line: usize, column: usize, value: f64, limit: f64) -> Result<f64, ReadError> {
+    /// `value` unless it is larger than any acceleration can be.
+    pub(crate) fn within(
+        &self,
+        line: usize,
+        column: usize,
+        value: f64,
+        limit: f64,
+    ) -> Result<f64, ReadError> {
         if value.abs() <= limit {
             Ok(value)
         } else {

@@ -18,10 +18,8 @@ const GAL: f64 = 0.01;
 const MOST_HEADER_LINES: usize = 200;
 
 fn sniff(source: &Source<'_>) -> bool {
-    (0..20).any(|line| {
-        source.has(line, "ARCHIVO ESTANDAR DE ACELERACION")
-            || source.has(line, "ARCHIVO EST\u{c1}NDAR DE ACELERACI\u{d3}N")
-    })
+    // Accented capitals, where there are any, differ by encoding.
+    (0..20).any(|line| source.has(line, "ARCHIVO EST") && source.has(line, "NDAR DE ACELERACI"))
 }
 
 /// A key reduced to letters and digits, so that "C1-C6, (s)" equals "C1-C6 (s)".
@@ -43,7 +41,8 @@ fn list(text: &str) -> Vec<String> {
     text.trim_start_matches('/').split('/').map(|part| part.trim().to_owned()).collect()
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+#[expect(clippy::too_many_lines, reason = "one header, read from top to bottom")]
+fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let need = |key: &str| {
         field(source, key).filter(|(_, value)| !value.is_empty()).ok_or_else(|| {
             source.error(
@@ -72,9 +71,6 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
         })
     };
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
-    if options.time_step.is_some() {
-        record.warn(None, "the file states its step; the time step given was ignored");
-    }
     let (unit_line, unit) = need("UNIDADES DE LOS DATOS")?;
     if !unit.to_ascii_lowercase().contains("gal") {
         return Err(source.error(
@@ -155,7 +151,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
 fn data_line(source: &Source<'_>) -> Result<usize, ReadError> {
     let title = (0..MOST_HEADER_LINES.min(source.lines.len()))
         .rev()
-        .find(|&line| source.text(line).starts_with("DATOS DE ACELERACION"));
+        .find(|&line| source.text(line).starts_with("DATOS DE ACELERACI"));
     title
         .and_then(|title| {
             let mut rulers = (title..source.lines.len().min(title + 12))

@@ -1,0 +1,157 @@
+//! One published result beside ours, and the verdict.
+
+/// Largest difference, as a share of the published number, that counts as agreement.
+pub(super) const CLOSE: f64 = 0.20;
+
+/// What a comparison says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Within ±20 % of the published number, or the same in kind.
+    Agrees,
+    /// Farther than that, but within the wider band that the project states.
+    InBand,
+    /// Outside both, or another thing happens.
+    Differs,
+    /// Not compared, since the paper's record was not given.
+    NotCompared,
+}
+
+impl Verdict {
+    /// The words used in tables.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Agrees => "agrees",
+            Self::InBand => "within the band",
+            Self::Differs => "differs",
+            Self::NotCompared => "not compared",
+        }
+    }
+}
+
+/// One published result beside ours.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// Where the paper says it, such as "section 4" or "Fig. 6b".
+    pub place: &'static str,
+    /// What is compared.
+    pub quantity: String,
+    /// What the paper says, with its unit.
+    pub published: String,
+    /// What we find, with its unit.
+    pub ours: String,
+    /// Ours over the published number, less one; none where no number is compared.
+    pub difference: Option<f64>,
+    /// The project's own band, in words; none where there is none.
+    pub band: Option<&'static str>,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Why it is so, or how it is measured.
+    pub why: String,
+}
+
+/// A share as a signed percentage.
+pub fn percent(share: f64) -> String {
+    let rounded = (100.0 * share).round();
+    let sign = if rounded < 0.0 { "−" } else { "+" };
+    format!("{sign}{} %", rounded.abs())
+}
+
+/// A number and the words around it.
+pub(super) struct Number {
+    /// Where the paper says it.
+    pub(super) place: &'static str,
+    /// What is compared.
+    pub(super) quantity: &'static str,
+    /// The published number.
+    pub(super) published: f64,
+    /// Ours; none where it did not happen.
+    pub(super) ours: Option<f64>,
+    /// The unit of both.
+    pub(super) unit: &'static str,
+    /// The project's own band, if it has one.
+    pub(super) band: Option<(f64, f64, &'static str)>,
+    /// How it is measured, or why it differs.
+    pub(super) why: String,
+}
+
+impl Number {
+    /// Judges the number.
+    pub(super) fn judged(self) -> Comparison {
+        let difference = self.ours.map(|ours| ours / self.published - 1.0);
+        let within = |(low, high, _): (f64, f64, &str)| {
+            self.ours.is_some_and(|ours| (low..=high).contains(&ours))
+        };
+        let verdict = if difference.is_some_and(|d| d.abs() <= CLOSE) {
+            Verdict::Agrees
+        } else if self.band.is_some_and(within) {
+            Verdict::InBand
+        } else {
+            Verdict::Differs
+        };
+        let text = |value: f64| {
+            let value = barrelstack_report::significant(value, 3);
+            if self.unit.is_empty() { value } else { format!("{value} {}", self.unit) }
+        };
+        // Published numbers have two digits; a third would claim more than the paper says.
+        let published = format!("{} {}", self.published, self.unit).trim_end().to_owned();
+        Comparison {
+            place: self.place,
+            quantity: self.quantity.to_owned(),
+            published,
+            ours: self.ours.map_or_else(|| "does not happen".to_owned(), text),
+            difference,
+            band: self.band.map(|(_, _, words)| words),
+            verdict,
+            why: self.why,
+        }
+    }
+}
+
+/// A finding in words: the same, or not.
+pub(super) fn finding(
+    place: &'static str,
+    quantity: &str,
+    published: &str,
+    ours: String,
+    same: bool,
+    why: String,
+) -> Comparison {
+    Comparison {
+        place,
+        quantity: quantity.to_owned(),
+        published: published.to_owned(),
+        ours,
+        difference: None,
+        band: None,
+        verdict: if same { Verdict::Agrees } else { Verdict::Differs },
+        why,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Number, Verdict};
+
+    fn judge(ours: Option<f64>, band: Option<(f64, f64, &'static str)>) -> Verdict {
+        let number = Number {
+            place: "",
+            quantity: "",
+            published: 10.0,
+            ours,
+            unit: "s",
+            band,
+            why: String::new(),
+        };
+        number.judged().verdict
+    }
+
+    #[test]
+    fn the_verdict_is_the_narrowest_band_that_holds() {
+        let band = Some((5.0, 15.0, "5 to 15 s"));
+        assert_eq!(judge(Some(11.9), band), Verdict::Agrees);
+        assert_eq!(judge(Some(12.1), band), Verdict::InBand);
+        assert_eq!(judge(Some(12.1), None), Verdict::Differs);
+        assert_eq!(judge(Some(15.1), band), Verdict::Differs);
+        assert_eq!(judge(None, band), Verdict::Differs);
+    }
+}

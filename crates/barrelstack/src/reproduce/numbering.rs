@@ -1,0 +1,75 @@
+//! The paper's body numbers and our names.
+//!
+//! The paper prints numbers in its figures and never lists them.
+//! Its text fixes them: barrels 1, 4 and 7 are drawn together (Fig. 6c), bodies 11 and 10 are the top
+//! barrels of four levels (section 4), bodies 2 and 3 are "barrel and racks" (Fig. 7c), and along the
+//! barrels body 4 is "the rack from the second level".
+//! One rule meets all of it: count level by level from the bottom, the barrels of a level from the
+//! left and then its rack.
+
+use barrelstack_report::{Cell, Table};
+
+/// Our name of the paper's body `number` in a stack with `columns` barrels on a level.
+pub(super) fn name(number: u32, columns: u32) -> String {
+    let level = (number - 1) / (columns + 1) + 1;
+    let place = (number - 1) % (columns + 1) + 1;
+    if place > columns { format!("R{level}") } else { format!("B{level}.{place}") }
+}
+
+/// The paper's number of the body with one of our names; none for what the paper does not number.
+pub(super) fn number(name: &str, columns: u32) -> Option<u32> {
+    (1..=12 * (columns + 1)).find(|number| self::name(*number, columns) == name)
+}
+
+/// The whole table.
+pub(super) fn table() -> Table {
+    let mut table = Table::new(
+        "The paper's body numbers and the names on this page: B level.column for barrels, R level for \
+         racks. The paper lists no numbers; the rule is read off its text.",
+        &[
+            ("level", ""),
+            ("transverse, left barrel", ""),
+            ("transverse, right barrel", ""),
+            ("transverse, rack", ""),
+            ("longitudinal, barrel", ""),
+            ("longitudinal, rack", ""),
+        ],
+    );
+    let pair =
+        |number: u32, columns: u32| Cell::text(format!("{number} = {}", name(number, columns)));
+    for level in (1..=4).rev() {
+        let (first, along) = (3 * (level - 1), 2 * (level - 1));
+        table.rows.push(vec![
+            Cell::text(format!("{level}")),
+            pair(first + 1, 2),
+            pair(first + 2, 2),
+            pair(first + 3, 2),
+            pair(along + 1, 1),
+            pair(along + 2, 1),
+        ]);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{name, number};
+
+    #[test]
+    fn the_rule_meets_every_number_that_the_text_explains() {
+        assert_eq!([1, 4, 7].map(|n| name(n, 2)), ["B1.1", "B2.1", "B3.1"]);
+        assert_eq!([10, 11].map(|n| name(n, 2)), ["B4.1", "B4.2"]);
+        assert_eq!([2, 3].map(|n| name(n, 2)), ["B1.2", "R1"]);
+        assert_eq!(name(4, 1), "R2");
+    }
+
+    #[test]
+    fn numbers_and_names_are_each_others_inverse() {
+        for columns in [1, 2] {
+            for body in 1..=12 {
+                assert_eq!(number(&name(body, columns), columns), Some(body));
+            }
+        }
+        assert_eq!(number("ground", 2), None);
+    }
+}

@@ -1,0 +1,410 @@
+//! How far a run can be trusted: repeats with a finer step, finer nodes and tiny disturbances.
+//!
+//! Contact is chaotic: after enough impacts two runs that differ in the last digit go different ways.
+//! What a run says before they part is predicted; what it says later is one possible course.
+//! A verdict that all repeats share is robust even so.
+
+use std::num::NonZero;
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use serde::Serialize;
+
+use crate::assemble::PartKind;
+use crate::run::{Progress, Run, RunFailure, run};
+use crate::scenario::{
+    Basis, BodyOverride, Method, Nodes, Scenario, Scene, StackBody, StackSpec, View,
+};
+use crate::summary::{OutcomeSummary, Summary};
+
+/// Distance (m at full scale) between two runs at which a body counts as gone another way.
+pub const APART: f64 = 0.01;
+
+/// Largest difference (s at full scale) of a fall that is still the same fall.
+pub const SAME_FALL: f64 = 0.01;
+
+/// Largest displacement (m at full scale) of a body at the start of a disturbed repeat.
+pub const DISTURBANCE: f64 = 1e-9;
+
+/// How many disturbed repeats there are.
+pub const DISTURBED: u64 = 4;
+
+/// What repeats say about a run. Times in s, lengths in m, at the scale of the run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Verification {
+    /// Distance between two runs at which a body counts as gone another way.
+    pub apart: f64,
+    /// Until when no body of any repeat is that far from where the run has it; none where that holds
+    /// for all that both ran.
+    pub predictable_until: Option<f64>,
+    /// Whether all repeats, of which there are some, end as the run does: the same kind, mode and first body, and every fall
+    /// before they part at the same time.
+    pub robust: bool,
+    /// The repeats.
+    pub repeats: Vec<Repeat>,
+    /// What was not repeated.
+    pub skipped: Vec<Skipped>,
+}
+
+/// One repeat.
+#[derive(Clone, Debug, Serialize)]
+pub struct Repeat {
+    /// What is different.
+    pub change: String,
+    /// What happens.
+    pub outcome: OutcomeSummary,
+    /// Whether kind, mode and first body are those of the run.
+    pub same_outcome: bool,
+    /// When some body is first too far from where the run has it; none where that does not happen.
+    pub apart_at: Option<f64>,
+    /// Largest difference of a fall before any repeat parts from the run; none where nothing falls.
+    pub fall_difference: Option<f64>,
+    /// When each barrel had fallen.
+    #[serde(skip)]
+    falls: Vec<Option<f64>>,
+}
+
+/// A repeat that was not done.
+#[derive(Clone, Debug, Serialize)]
+pub struct Skipped {
+    /// What would have been different.
+    pub change: &'static str,
+    /// Why it says nothing here.
+    pub reason: String,
+}
+
+/// Repeats a run: with half the step, with nodes at half the spacing, and with every barrel displaced
+/// by up to a nanometer, in four ways.
+///
+/// `progress` is told how far all repeats are, in sum, and may stop them; those that were stopped are
+/// named as skipped.
+///
+/// # Errors
+/// When a repeat cannot be built or does not stand.
+pub fn verify(
+    base: &Run,
+    progress: &mut (dyn FnMut(Progress) -> ControlFlow<()> + Send),
+) -> Result<Verification, RunFailure> {
+    let (mut changes, mut skipped) = (Vec::new(), Vec::new());
+    changes.push(finer_step(base));
+    match finer_nodes(&base.scenario) {
+        Ok(scenario) => changes.push(("nodes at half the spacing".to_owned(), scenario)),
+        Err(reason) => skipped.push(Skipped { change: "nodes at half the spacing", reason }),
+    }
+    for seed in 1..=DISTURBED {
+        let change = format!("disturbed by 1 nm, {seed} of {DISTURBED}");
+        changes.push((change, disturbed(&base.scenario, seed)));
+    }
+    let mut repeats = Vec::new();
+    for (repeat, (change, _)) in repeat_all(base, &changes, progress)?.into_iter().zip(&changes) {
+        match repeat {
+            Some(repeat) => repeats.push(repeat),
+            None => skipped.push(Skipped {
+                change: if change.starts_with("disturbed") {
+                    "a disturbed repeat"
+                } else {
+                    "a finer repeat"
+                },
+                reason: "stopped before its end".into(),
+            }),
+        }
+    }
+    Ok(judge(base, repeats, skipped))
+}
+
+/// Runs all repeats on all cores; none where one was stopped.
+fn repeat_all(
+    base: &Run,
+    changes: &[(String, Scenario)],
+    progress: &mut (dyn FnMut(Progress) -> ControlFlow<()> + Send),
+) -> Result<Vec<Option<Repeat>>, RunFailure> {
+    let next = AtomicUsize::new(0);
+    let reached = Mutex::new((vec![0.0; changes.len()], progress));
+    let slots: Vec<Mutex<Option<Result<Option<Repeat>, RunFailure>>>> =
+        changes.iter().map(|_| Mutex::new(None)).collect();
+    let end_time = base.simulation.end_time * changes.len() as f64;
+    let work = || {
+        loop {
+            let at = next.fetch_add(1, Ordering::Relaxed);
+            let Some((change, scenario)) = changes.get(at) else { break };
+            let mut told = |now: Progress| match reached.lock() {
+                Ok(mut shared) => {
+                    let (times, progress) = &mut *shared;
+                    times[at] = now.time;
+                    progress(Progress { time: times.iter().sum(), end_time })
+                }
+                // Another repeat has panicked; this one is of no use any more.
+                Err(_) => ControlFlow::Break(()),
+            };
+            let done = run(scenario, &mut told)
+                .map(|run| (!run.interrupted).then(|| compare(base, &run, change)));
+            if let Ok(mut slot) = slots[at].lock() {
+                *slot = Some(done);
+            }
+        }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, NonZero::get).min(changes.len());
+    std::thread::scope(|scope| {
+        for _ in 1..threads {
+            scope.spawn(work);
+        }
+        work();
+    });
+    // A slot that was never filled belongs to a thread that panicked, which the scope passes on.
+    slots.into_iter().map(|slot| slot.into_inner().ok().flatten().unwrap_or(Ok(None))).collect()
+}
+
+/// The run with half its step; with an adaptive method, with a tenth of its tolerance.
+fn finer_step(base: &Run) -> (String, Scenario) {
+    let mut scenario = base.scenario.clone();
+    if let Method::BogackiShampine { tolerance } = &mut scenario.run.method {
+        *tolerance *= 0.1;
+        return ("a tenth of the tolerance".into(), scenario);
+    }
+    scenario.run.step = Some(0.5 * base.simulation.time_step / scenario.run.similitude.sqrt());
+    ("half the step".into(), scenario)
+}
+
+/// The scenario with nodes at half the spacing, or why that would be another stack.
+fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
+    const PER_NODE: &str = "constants are per node, so the number of nodes is part of the physics";
+    let mut finer = scenario.clone();
+    match &mut finer.scene {
+        Scene::Stack { stack, .. } => {
+            let laws = &stack.interfaces;
+            let all = [
+                laws.rack_ground,
+                laws.barrel_rack,
+                laws.barrel_barrel,
+                laws.barrel_ground,
+                laws.rack_rack,
+            ];
+            if all.iter().any(|interface| interface.basis == Basis::Node) {
+                return Err(PER_NODE.into());
+            }
+            if stack.view == View::Transverse {
+                return Err(
+                    "across the barrels single nodes (cradle supports, corners of beams, rolling \
+                            barrels) stand for one spacing, so halving it would soften them"
+                        .into(),
+                );
+            }
+            stack.rack.node_spacing *= 0.5;
+        }
+        Scene::Free(scene) => {
+            if scene.interfaces.iter().any(|interface| interface.law.basis == Basis::Node) {
+                return Err(PER_NODE.into());
+            }
+            let mut refined = false;
+            for body in &mut scene.bodies {
+                match &mut body.nodes {
+                    Nodes::Spacing(spacing) => *spacing *= 0.5,
+                    Nodes::Count(count) => *count *= 2,
+                    Nodes::Corners | Nodes::Rolling => continue,
+                }
+                refined = true;
+            }
+            if !refined {
+                return Err("no body carries nodes along its sides".into());
+            }
+        }
+    }
+    Ok(finer)
+}
+
+/// The scenario with every barrel (every body of a free scene) displaced by up to a nanometer.
+fn disturbed(scenario: &Scenario, seed: u64) -> Scenario {
+    let mut changed = scenario.clone();
+    let mut state = seed;
+    let mut offset = || DISTURBANCE * noise(&mut state);
+    match &mut changed.scene {
+        Scene::Stack { stack, .. } => {
+            let places: Vec<(u32, u32)> = places(stack);
+            stack.overrides.extend(places.into_iter().map(|(level, column)| BodyOverride {
+                body: StackBody::Barrel,
+                level,
+                column: Some(column),
+                mass: None,
+                fill: None,
+                offset_x: offset(),
+            }));
+        }
+        Scene::Free(scene) => {
+            for body in scene.bodies.iter_mut().filter(|body| !body.fixed_to_ground) {
+                body.position[0] += offset();
+            }
+        }
+    }
+    changed
+}
+
+fn places(stack: &StackSpec) -> Vec<(u32, u32)> {
+    (1..=stack.levels).flat_map(|level| (1..=stack.columns).map(move |c| (level, c))).collect()
+}
+
+/// A number between −1 and 1 from a generator with one word of state (SplitMix64 of Steele, Lea and
+/// Flood 2014).
+fn noise(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^= z >> 31;
+    // The upper 53 bits as a whole number below 2⁵³.
+    (z >> 11) as f64 / 2.0_f64.powi(52) - 1.0
+}
+
+/// One repeat against the run.
+fn compare(base: &Run, other: &Run, change: &str) -> Repeat {
+    let outcome = Summary::of(other, None).outcome;
+    let own = Summary::of(base, None).outcome;
+    let same_outcome =
+        (outcome.kind, outcome.mode, &outcome.first) == (own.kind, own.mode, &own.first);
+    Repeat {
+        change: change.to_owned(),
+        same_outcome,
+        apart_at: apart_at(base, other),
+        fall_difference: None,
+        falls: falls(other),
+        outcome,
+    }
+}
+
+/// When each barrel had fallen (s).
+fn falls(run: &Run) -> Vec<Option<f64>> {
+    run.assembly.of_kind(PartKind::Barrel).map(|body| run.fates.fate(body).fell_at).collect()
+}
+
+/// The first sample time (s) at which some body is too far from where the run has it.
+fn apart_at(base: &Run, other: &Run) -> Option<f64> {
+    let limit = APART * base.scenario.run.similitude;
+    let pairs: Vec<_> = base
+        .recording
+        .channels
+        .iter()
+        .zip(&other.recording.channels)
+        .filter(|(channel, _)| {
+            channel.name.contains(" displacement ") && !channel.name.starts_with("ground")
+        })
+        .collect();
+    let times = &other.recording.times;
+    let mut before = 0;
+    for (at, time) in base.recording.times.iter().enumerate() {
+        // Samples are taken at the first step after they are due, which differs between the runs.
+        while before + 2 < times.len() && times[before + 1] <= *time {
+            before += 1;
+        }
+        let (Some(from), Some(to)) = (times.get(before), times.get(before + 1)) else { break };
+        if *time > *to {
+            break;
+        }
+        let share = ((time - from) / (to - from)).clamp(0.0, 1.0);
+        // Displacements come as x and z of one body after the other.
+        for body in pairs.chunks_exact(2) {
+            let [x, z] = [0, 1].map(|axis| {
+                let (mine, theirs) = body[axis];
+                let (a, b) = (theirs.values[before], theirs.values[before + 1]);
+                a + (b - a) * share - mine.values[at]
+            });
+            // Written so that a number that is not finite counts as apart.
+            if !(x.hypot(z) <= limit) {
+                return Some(*time);
+            }
+        }
+    }
+    None
+}
+
+/// Puts the repeats together.
+fn judge(base: &Run, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verification {
+    let predictable_until = repeats.iter().filter_map(|repeat| repeat.apart_at).reduce(f64::min);
+    let until = predictable_until.unwrap_or(f64::INFINITY);
+    let scale = base.scenario.run.similitude;
+    let own = falls(base);
+    let mut robust = !repeats.is_empty();
+    for repeat in &mut repeats {
+        let pairs = own.iter().zip(&repeat.falls);
+        // What one run still has standing where the other has it down differs without end.
+        let differences = pairs.filter_map(|pair| match pair {
+            (Some(mine), Some(theirs)) if mine.min(*theirs) < until => Some((mine - theirs).abs()),
+            (Some(one), None) | (None, Some(one)) if *one < until => Some(f64::INFINITY),
+            _ => None,
+        });
+        repeat.fall_difference = differences.reduce(f64::max);
+        let same_falls = repeat.fall_difference.is_none_or(|most| most <= SAME_FALL * scale.sqrt());
+        robust &= repeat.same_outcome && same_falls;
+    }
+    Verification { apart: APART * scale, predictable_until, robust, repeats, skipped }
+}
+
+/// A summary with its verification, as one document.
+#[derive(Serialize)]
+struct Verified<'a> {
+    #[serde(flatten)]
+    summary: &'a Summary,
+    verification: &'a Verification,
+}
+
+impl Verification {
+    /// The summary of the run as JSON text with this as its field `verification`.
+    pub fn with_summary(&self, summary: &Summary) -> String {
+        // Only maps with keys that are not text could fail, and there is none.
+        serde_json::to_string_pretty(&Verified { summary, verification: self }).unwrap_or_default()
+    }
+
+    /// What was found, as pairs of name and value for people.
+    pub fn rows(&self) -> Vec<(String, String)> {
+        let centimeters = barrelstack_report::significant(100.0 * self.apart, 2);
+        let mut rows = vec![(
+            "predictable".to_owned(),
+            match self.predictable_until {
+                None if self.repeats.is_empty() => {
+                    "not known: no repeat reached its end".to_owned()
+                }
+                Some(time) => format!(
+                    "until {time:.2} s; then a body is more than {centimeters} cm elsewhere in a repeat"
+                ),
+                None => format!(
+                    "to the end; no body is more than {centimeters} cm elsewhere in a repeat"
+                ),
+            },
+        )];
+        let same = self.repeats.iter().filter(|repeat| repeat.same_outcome).count();
+        rows.push((
+            "outcome".to_owned(),
+            if self.repeats.is_empty() {
+                "not known: no repeat reached its end".to_owned()
+            } else if self.repeats.iter().all(|repeat| repeat.outcome.kind == "not-judged") {
+                "not judged: a free scene has no verdict that could change".to_owned()
+            } else if self.robust {
+                format!("robust: the same in all {} repeats", self.repeats.len())
+            } else {
+                format!("not robust: the same in {same} of {} repeats", self.repeats.len())
+            },
+        ));
+        for repeat in &self.repeats {
+            let outcome = &repeat.outcome;
+            let mut what = match (outcome.mode, outcome.time, &outcome.first) {
+                (Some(mode), Some(time), Some(first)) => {
+                    format!("{} by {mode} at {time:.3} s, {first} first", outcome.kind)
+                }
+                _ => outcome.kind.to_owned(),
+            };
+            if let Some(difference) = repeat.fall_difference {
+                what.push_str(&format!("; falls within {:.1} ms", 1e3 * difference));
+            }
+            if let Some(time) = repeat.apart_at {
+                what.push_str(&format!("; parts at {time:.2} s"));
+            }
+            rows.push((format!("  {}", repeat.change), what));
+        }
+        for skipped in &self.skipped {
+            rows.push((
+                format!("  {}", skipped.change),
+                format!("not repeated: {}", skipped.reason),
+            ));
+        }
+        rows
+    }
+}

@@ -1,0 +1,152 @@
+//! The page of published against ours: nothing is missing, nothing is compared that cannot be.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
+use std::io::Write as _;
+use std::path::Path;
+use std::sync::LazyLock;
+
+use barrelstack::reproduce::{
+    Comparison, Motion, Reproduction, Verdict, html, markdown, recognize, reproduce,
+};
+
+/// The page without the paper's record and without the studies, made once.
+fn found() -> &'static Reproduction {
+    static FOUND: LazyLock<Reproduction> =
+        LazyLock::new(|| reproduce(None, false, &|_, _| ()).unwrap());
+    &FOUND
+}
+
+fn row(quantity: &str) -> &'static Comparison {
+    let rows = &found().comparisons;
+    rows.iter().find(|row| row.quantity == quantity).unwrap_or_else(|| panic!("no row {quantity}"))
+}
+
+#[test]
+fn every_number_of_the_paper_has_a_row() {
+    for published in [
+        "10 s",
+        "2.9",
+        "2 cm",
+        "1.5 s",
+        "2.5 s",
+        "5.2 %",
+        "3",
+        "2 s",
+        "4.5 s",
+        "8.9 kN/cm, 19.0 N s/cm",
+    ] {
+        let rows = found().comparisons.iter().filter(|row| row.published == published);
+        assert_eq!(rows.count(), 1, "{published}");
+    }
+}
+
+#[test]
+fn what_needs_the_papers_record_is_not_compared_without_it() {
+    assert_eq!(found().motion, Motion::Bundled);
+    for row in &found().comparisons {
+        let six = row.quantity.starts_with("six barrels");
+        assert_eq!(row.verdict == Verdict::NotCompared, six, "{}", row.quantity);
+        if six {
+            assert_eq!(row.difference, None, "{}", row.quantity);
+            assert!(
+                !row.ours.contains(|c: char| c.is_ascii_digit()),
+                "{}: {}",
+                row.quantity,
+                row.ours
+            );
+        }
+    }
+    let [warning] = found().document.warnings.as_slice() else { panic!("one warning") };
+    assert!(warning.contains("--record FILE") && warning.contains("995"), "{warning}");
+}
+
+#[test]
+fn the_benchmarks_agree() {
+    for quantity in [
+        "eight barrels: collapse",
+        "eight barrels: first barrel falls",
+        "eight barrels: drift of the top",
+        "eight barrels: stress amplification",
+        "half scale at t* against full scale at √2 t*",
+        "along the barrels: collapse",
+    ] {
+        assert_eq!(row(quantity).verdict, Verdict::Agrees, "{:?}", row(quantity));
+    }
+    // measured 3.60 s, one fifth less than published
+    let along = row("along the barrels: stands for");
+    assert!(matches!(along.verdict, Verdict::Agrees | Verdict::InBand), "{along:?}");
+}
+
+#[test]
+fn what_differs_is_said_to_differ() {
+    // measured: levels 2 and 3 come down too; the test took 2 s where ours takes 1.42 s
+    for quantity in [
+        "eight barrels: what falls besides the top level",
+        "the test at half scale: top level gone after",
+    ] {
+        assert_eq!(row(quantity).verdict, Verdict::Differs, "{:?}", row(quantity));
+        assert!(!row(quantity).why.is_empty());
+    }
+    let headline = &found().document.verdict.headline;
+    let count = |verdict| found().comparisons.iter().filter(|r| r.verdict == verdict).count();
+    assert!(headline.contains(&format!("{} differ", count(Verdict::Differs))), "{headline}");
+}
+
+#[test]
+fn every_figure_of_the_paper_is_drawn() {
+    let bundle = markdown(found(), "figures");
+    for figure in [
+        "figure-6a.svg",
+        "figure-6b.svg",
+        "figure-6c-upper.svg",
+        "figure-6c-lower.svg",
+        "figure-7b-half.svg",
+        "figure-7b-full.svg",
+        "figure-7c-body-2.svg",
+        "figure-7c-body-3.svg",
+        "along.svg",
+    ] {
+        let file = bundle.files.iter().find(|file| file.name == figure);
+        assert!(file.is_some_and(|file| file.bytes.len() > 1000), "{figure}");
+        assert!(bundle.text.contains(&format!("figures/{figure}")), "{figure}");
+    }
+    let page = html(found());
+    assert!(page.contains("not the paper’s record") || page.contains("not the paper's record"));
+    assert!(!page.contains("NaN"), "a number is missing");
+}
+
+#[test]
+#[ignore = "runs every case a second time; the pool is what could break it"]
+fn the_page_is_the_same_every_time() {
+    let again = reproduce(None, false, &|_, _| ()).unwrap();
+    assert_eq!(html(&again), html(found()));
+    assert_eq!(markdown(&again, "figures"), markdown(found(), "figures"));
+}
+
+#[test]
+fn a_missing_record_is_an_error_before_any_run() {
+    let counted = std::sync::atomic::AtomicUsize::new(0);
+    let tell = |_, _| _ = counted.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+    let error =
+        reproduce(Some(Path::new("no/such/file.at2")), true, &tell).unwrap_err().to_string();
+    assert!(error.contains("no/such/file.at2"), "{error}");
+    assert_eq!(counted.into_inner(), 0);
+}
+
+#[test]
+fn the_papers_record_is_told_from_its_neighbors() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions/peer");
+    if !folder.is_dir() {
+        // Past the capture of the test runner, so that it is seen.
+        let _ = writeln!(std::io::stderr(), "SKIPPED: {} is not there", folder.display());
+        return;
+    }
+    let north = recognize(&folder.join("RSN995_NORTHR_PEL360.AT2")).unwrap();
+    assert!(north.is_papers(), "{north:?}");
+    let east = recognize(&folder.join("RSN995_NORTHR_PEL090.AT2")).unwrap();
+    assert!(
+        matches!(&east, Motion::Other { file, .. } if file == "RSN995_NORTHR_PEL090.AT2"),
+        "{east:?}"
+    );
+}

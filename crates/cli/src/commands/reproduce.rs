@@ -1,0 +1,76 @@
+//! `barrelstack reproduce`: the paper's numbers and figures beside ours.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use anyhow::Context;
+use barrelstack::reproduce::{Comparison, Reproduction, percent, reproduce as run_all};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::args::ReproduceArgs;
+use crate::printer;
+
+/// Runs every case, writes the page, prints the table.
+pub(crate) fn reproduce(args: &ReproduceArgs) -> anyhow::Result<ExitCode> {
+    prepare(&args.out)?;
+    // Hidden by itself where standard error is no terminal.
+    let bar = ProgressBar::new(0);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} runs  {elapsed}") {
+        bar.set_style(style);
+    }
+    let result = run_all(args.record.as_deref(), !args.no_studies, &|done, of| {
+        bar.set_length(of as u64);
+        bar.set_position(done as u64);
+    });
+    bar.finish_and_clear();
+    let found = result?;
+    write(&args.out, &found)?;
+    print(&found)?;
+    printer::lines(["", &format!("page: {}", args.out.join("index.html").display())])?;
+    found.document.warnings.iter().for_each(|warning| printer::warning(warning));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The folder must be there to be written to before the work is done.
+fn prepare(out: &Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))
+}
+
+fn write(out: &Path, found: &Reproduction) -> anyhow::Result<()> {
+    let put = |name: &str, bytes: &[u8]| {
+        let path = out.join(name);
+        std::fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))
+    };
+    put("index.html", barrelstack::reproduce::html(found).as_bytes())?;
+    let bundle = barrelstack::reproduce::markdown(found, "figures");
+    put("index.md", bundle.text.as_bytes())?;
+    prepare(&out.join("figures"))?;
+    for file in &bundle.files {
+        put(&format!("figures/{}", file.name), &file.bytes)?;
+    }
+    Ok(())
+}
+
+fn print(found: &Reproduction) -> anyhow::Result<()> {
+    let cells = |row: &Comparison| {
+        let difference = row.difference.map(percent);
+        [
+            row.quantity.clone(),
+            row.published.clone(),
+            row.ours.clone(),
+            difference.unwrap_or_default(),
+            row.verdict.words().to_owned(),
+        ]
+    };
+    let head = ["quantity", "published", "ours", "difference", "verdict"].map(str::to_owned);
+    let rows: Vec<[String; 5]> =
+        std::iter::once(head).chain(found.comparisons.iter().map(cells)).collect();
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
+    let widths: [usize; 5] = std::array::from_fn(|column| width(column).unwrap_or(0));
+    let lines = rows.iter().map(|row| {
+        let padded = row.iter().zip(widths).map(|(cell, width)| format!("{cell:width$}"));
+        format!("  {}", padded.collect::<Vec<_>>().join("  ")).trim_end().to_owned()
+    });
+    let headline = found.document.verdict.headline.clone();
+    printer::lines([headline, String::new()].into_iter().chain(lines))
+}

@@ -1,0 +1,119 @@
+//! The summary of a run as rows of text.
+
+use std::fmt::Write as _;
+
+use barrelstack::outcome::Outcome;
+use barrelstack::{Run, Summary};
+
+/// Width of the name of a row.
+const NAME: usize = 24;
+
+/// The rows, in reading order; `changes` are the values changed on the command line.
+pub(crate) fn rows(run: &Run, summary: &Summary, changes: &[String]) -> Vec<String> {
+    let mut rows = Vec::new();
+    let mut row = |name: &str, value: String| rows.push(format!("  {name:NAME$}{value}"));
+    for (index, change) in changes.iter().enumerate() {
+        row(if index == 0 { "changed" } else { "" }, change.clone());
+    }
+    row("outcome", verdict(summary));
+    if matches!(run.outcome, Outcome::Invalid { .. }) {
+        row("computed", format!("until {:.3} s", summary.run.end_time));
+        row("time step", format!("{} ms", three_digits(1e3 * summary.run.time_step)));
+        return rows;
+    }
+    let outcome = &summary.outcome;
+    if outcome.barrels > 0 {
+        row("barrels fallen", format!("{} of {}", outcome.barrels_fallen, outcome.barrels));
+    }
+    let mut fallen: Vec<(f64, f64, &str)> = summary
+        .bodies
+        .iter()
+        .filter(|body| body.kind == "barrel")
+        .filter_map(|body| Some((body.fell_at?, body.fall_height?, body.name.as_str())))
+        .collect();
+    fallen.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (at, height, name) in fallen {
+        row(&format!("  {name}"), format!("fell at {at:.2} s from {height:.2} m"));
+    }
+    let demands = &summary.demands;
+    if let Some(drift) = demands.top_drift_ratio {
+        let drift =
+            if drift < 1e-4 { "under 0.01".to_owned() } else { three_digits(100.0 * drift) };
+        row("drift of the top", format!("{drift} % of the height"));
+    }
+    if let Some(amplification) = demands.stress_amplification {
+        row("stress amplification", format!("{} × at rest", three_digits(amplification)));
+    }
+    if let Some(slip) = demands.base_slip_residual {
+        row("slip of the bottom rack", moved(slip));
+    }
+    if let Some(energy) = &summary.energy {
+        row(
+            "energy books",
+            format!(
+                "residual {:.1e} of the {} that went through",
+                energy.residual_ratio,
+                joules(energy.input)
+            ),
+        );
+    }
+    row("computed", computed(summary));
+    row("contact constants", format!("per {}", run.stiffness_basis()));
+    rows
+}
+
+/// The outcome in a few words.
+fn verdict(summary: &Summary) -> String {
+    let outcome = &summary.outcome;
+    match (outcome.kind, outcome.mode, outcome.time) {
+        (kind, Some(mode), Some(time)) => format!("{kind} by {mode} at {time:.3} s"),
+        ("stable", ..) if summary.run.interrupted => "stable until it was stopped".to_owned(),
+        ("not-judged", ..) => "not judged: a free scene has no seats to lose".to_owned(),
+        (kind, ..) => kind.to_owned(),
+    }
+}
+
+/// What was done, and how fast.
+fn computed(summary: &Summary) -> String {
+    let run = &summary.run;
+    let mut text = format!(
+        "{:.1} s in {} steps of {} ms ({})",
+        run.end_time,
+        run.steps,
+        three_digits(1e3 * run.time_step),
+        run.method
+    );
+    if let Some(wall) = run.wall_seconds {
+        let _ = write!(text, ", {wall:.2} s on the clock");
+    }
+    text
+}
+
+/// An energy (J) with its unit.
+fn joules(energy: f64) -> String {
+    if energy.abs() < 1e3 {
+        format!("{} J", three_digits(energy))
+    } else {
+        format!("{} kJ", three_digits(1e-3 * energy))
+    }
+}
+
+/// How far (m) and to which side something has moved.
+fn moved(distance: f64) -> String {
+    if distance.abs() < 5e-4 {
+        return "none at the end".to_owned();
+    }
+    let side = if distance > 0.0 { "right" } else { "left" };
+    format!("{:.1} cm to the {side} at the end", 100.0 * distance.abs())
+}
+
+/// A number with three significant digits.
+fn three_digits(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "a small exponent")]
+    let exponent = value.abs().log10().floor() as i32;
+    let decimals = usize::try_from((2 - exponent).max(0)).unwrap_or(0);
+    if (-3..6).contains(&exponent) { format!("{value:.decimals$}") } else { format!("{value:.2e}") }
+}

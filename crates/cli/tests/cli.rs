@@ -1,0 +1,325 @@
+//! The command as people and scripts use it: what is printed where, what is written, which status.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
+mod common;
+
+use std::fs;
+use std::io::Write as _;
+use std::path::Path;
+use std::process::Stdio;
+
+use common::{barrelstack, names, program, refused, stderr, stdout};
+use serde_json::Value;
+
+/// A run that takes a fraction of a second.
+const SHORT: [&str; 3] = ["run", "candia-8-barrels", "--set=run.stop_after_collapse=0.1 s"];
+
+/// All that a run writes.
+const FILES: [&str; 8] = [
+    "envelopes.csv",
+    "forces.csv",
+    "frames.csv",
+    "histories.csv",
+    "histories.npz",
+    "report.html",
+    "scenario.toml",
+    "summary.json",
+];
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+/// A summary without the time that it took on the clock.
+fn timeless(text: &str) -> Vec<String> {
+    let lines = text.lines().filter(|line| !line.contains("wall_seconds"));
+    lines.map(str::to_owned).collect()
+}
+
+#[test]
+fn the_summary_says_what_happened_in_words_and_rows() {
+    let output = barrelstack(SHORT);
+    let text = stdout(&output);
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(stderr(&output), "");
+    let first: Vec<&str> = text.lines().take(3).collect();
+    assert_eq!(first[0], "Eight barrels on four levels, 4 in sine");
+    assert!(first[1].starts_with("  ") && first[1].ends_with('.'), "{}", first[1]);
+    assert_eq!(first[2], "  The barrels of level 4 are thrown off the stack with their rack, R4.");
+    assert!(text.contains("\n  changed                 run.stop_after_collapse=0.1 s\n"), "{text}");
+    assert!(text.contains("\n  outcome                 collapse by ejection at "), "{text}");
+    for row in text.lines().skip_while(|line| !line.is_empty()).skip(1) {
+        // Names fill 24 characters after the margin of 2, so all values stand below each other.
+        let at: Vec<char> = row.chars().collect();
+        assert!(row.starts_with("  ") && at[25] == ' ' && at[26] != ' ', "{row:?}");
+    }
+}
+
+#[test]
+fn json_is_one_document_and_the_same_twice() {
+    let arguments = || SHORT.into_iter().chain(["--json"]);
+    let (first, second) = (barrelstack(arguments()), barrelstack(arguments()));
+    assert_eq!(stderr(&first), "");
+    let summary = json(&stdout(&first));
+    assert_eq!(summary["outcome"]["mode"], "ejection");
+    assert_eq!(summary["bodies"].as_array().unwrap().len(), 12);
+    assert!(summary["run"]["wall_seconds"].as_f64().unwrap() > 0.0);
+    assert_eq!(timeless(&stdout(&first)), timeless(&stdout(&second)));
+}
+
+#[test]
+fn a_folder_gets_all_files_and_the_same_summary() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("a/b");
+    let arguments = SHORT.into_iter().chain(["--json", "--out", out.to_str().unwrap()]);
+    let output = barrelstack(arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(names(&out).unwrap(), FILES);
+    assert_eq!(fs::read_to_string(out.join("summary.json")).unwrap(), stdout(&output));
+    // What was written out can be run again, and is the same run.
+    let scenario = out.join("scenario.toml");
+    let again = barrelstack(["run", scenario.to_str().unwrap(), "--json"]);
+    assert_eq!(timeless(&stdout(&again)), timeless(&stdout(&output)));
+}
+
+#[test]
+fn an_occupied_folder_is_left_alone_unless_told_otherwise() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    fs::write(folder.path().join("letter.txt"), "mine").unwrap();
+    let refusal = barrelstack(SHORT.into_iter().chain(["--out", out]));
+    refused("occupied", &refusal, Path::new("/nowhere"), &[out, "letter.txt", "--overwrite"]);
+    assert_eq!(names(folder.path()).unwrap(), ["letter.txt"]);
+
+    fs::write(folder.path().join("summary.json"), "old").unwrap();
+    let output = barrelstack(SHORT.into_iter().chain(["--out", out, "--overwrite"]));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(names(folder.path()).unwrap().len(), FILES.len() + 1);
+    assert_eq!(fs::read_to_string(folder.path().join("letter.txt")).unwrap(), "mine");
+    assert!(fs::read_to_string(folder.path().join("summary.json")).unwrap().starts_with("{\n"));
+}
+
+#[test]
+fn a_file_in_the_place_of_the_folder_is_refused_before_anything_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "mine").unwrap();
+    for out in [file.clone(), file.join("below")] {
+        let arguments = ["run", "demo-napa", "--out", out.to_str().unwrap()];
+        refused("file", &barrelstack(arguments), &out, &[file.to_str().unwrap(), "not a folder"]);
+    }
+    assert_eq!(fs::read_to_string(file).unwrap(), "mine");
+}
+
+#[test]
+fn a_scenario_can_come_from_standard_input() {
+    let shown = barrelstack(["scenarios", "show", "candia-8-barrels-half-scale"]);
+    let mut child = program(["run", "-", "--json", "--set=run.stop_after_collapse=0.1 s"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(&shown.stdout).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(json(&stdout(&output))["run"]["similitude"], 0.5);
+    let empty = barrelstack(["check", "-"]);
+    refused("empty input", &empty, Path::new("/nowhere"), &["standard input", "empty"]);
+}
+
+#[test]
+fn a_name_that_is_nothing_is_answered_with_the_nearest() {
+    let out = Path::new("/nowhere");
+    let near = barrelstack(["run", "candia-8-barels"]);
+    refused(
+        "near",
+        &near,
+        out,
+        &["no file \"candia-8-barels\"", "did you mean `candia-8-barrels`?"],
+    );
+    let far = barrelstack(["run", "something"]);
+    refused("far", &far, out, &["no file \"something\"", "`barrelstack scenarios`"]);
+    refused("file", &barrelstack(["check", "none.toml"]), out, &["none.toml", "no such file"]);
+}
+
+#[test]
+fn the_record_that_cannot_be_passed_on_is_told_how_to_get() {
+    let words = ["candia-6-barrels", "PEER NGA-West2", "PEL360", "--record FILE"];
+    let folder = tempfile::tempdir().unwrap();
+    let output = program(["run", "candia-6-barrels"]).current_dir(folder.path()).output().unwrap();
+    refused("record", &output, Path::new("/nowhere"), &words);
+}
+
+#[test]
+fn changes_that_cannot_be_made_are_shown_as_typed() {
+    let out = Path::new("/nowhere");
+    let with = |set: &str| barrelstack(["run", "demo-napa", "--set", set]);
+    refused("typo", &with("stack.levles=3"), out, &["stack.levles=3", "`levels`"]);
+    refused("no value", &with("stack.levels"), out, &["stack.levels", "="]);
+    refused("unit", &with("stack.barrel.mass=275"), out, &["stack.barrel.mass=275", "kg"]);
+}
+
+#[test]
+fn a_stack_that_stands_and_a_run_cut_short_say_so() {
+    let output =
+        barrelstack(["run", "demo-napa", "--set=stack.levels=1", "--set=run.duration=1 s"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(stdout(&output).contains("  The stack stands.\n"));
+    let warning = stderr(&output);
+    assert!(warning.starts_with("warning: the run ends at 1.0 s, the motion at "), "{warning}");
+    assert_eq!(warning.lines().count(), 1);
+    // In JSON the same warning is part of the document, and standard error is silent.
+    let arguments =
+        ["run", "demo-napa", "--set=stack.levels=1", "--set=run.duration=1 s", "--json"];
+    let output = barrelstack(arguments);
+    assert_eq!(stderr(&output), "");
+    assert_eq!(json(&stdout(&output))["warnings"].as_array().unwrap().len(), 1);
+}
+
+#[test]
+fn a_run_that_broke_down_is_no_verdict_and_has_a_status_of_its_own() {
+    // A step close to the critical one, and no settling that would show it.
+    let broken = ["--set=run.settle=false", "--set=run.step=2.5 ms"];
+    let output = barrelstack(["run", "candia-8-barrels"].into_iter().chain(broken));
+    let text = stdout(&output);
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(text.contains("The run broke down and says nothing about the stack."), "{text}");
+    assert!(text.contains("outcome                 invalid\n"), "{text}");
+    assert!(!text.contains("fall"), "{text}");
+    let json_run = ["run", "candia-8-barrels", "--json"].into_iter().chain(broken);
+    let summary = json(&stdout(&barrelstack(json_run)));
+    assert_eq!(summary["outcome"]["kind"], "invalid");
+    assert!(summary["outcome"]["reason"].as_str().unwrap().contains("energy books"), "{summary}");
+    assert_eq!(summary["outcome"]["mode"], Value::Null);
+}
+
+#[test]
+fn a_free_scene_is_not_judged() {
+    let text = stdout(&barrelstack(["run", "sliding-block"]));
+    assert!(text.contains("outcome                 not judged: "), "{text}");
+    assert!(!text.contains("judge a stack by many runs"), "{text}");
+}
+
+#[test]
+fn a_rack_that_walks_takes_the_levels_above_with_it() {
+    let stop = "--set=run.stop_after_collapse=0 s";
+    let text = stdout(&barrelstack(["run", "candia-8-barrels-longitudinal", stop]));
+    let walk = "Rack R2 walks along the barrels below until it is off them, and takes levels 2 to 4 \
+                with it.";
+    assert!(text.contains(walk), "{text}");
+}
+
+#[test]
+fn check_says_what_stands_there() {
+    let output = barrelstack(["check", "demo-napa"]);
+    let text = stdout(&output);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(text.contains("  bodies        10 barrels, 5 racks\n"), "{text}");
+    assert!(text.ends_with("the scenario is sound\n"), "{text}");
+}
+
+#[test]
+fn every_listed_scenario_can_be_shown_checked_and_resolved() {
+    let list = stdout(&barrelstack(["scenarios"]));
+    assert_eq!(list.lines().count(), 10);
+    for line in list.lines() {
+        let (name, title) = line.split_once("  ").unwrap();
+        let shown = stdout(&barrelstack(["scenarios", "show", name]));
+        assert!(shown.contains(title.trim()), "{name}");
+        let resolved = barrelstack(["scenarios", "show", name, "--resolved"]);
+        assert_eq!(resolved.status.code(), Some(0), "{name}: {}", stderr(&resolved));
+        if !name.starts_with("candia-6") {
+            let check = barrelstack(["check", name]);
+            assert_eq!(check.status.code(), Some(0), "{name}: {}", stderr(&check));
+        }
+    }
+    let fields = stdout(&barrelstack(["scenarios", "fields"]));
+    assert!(fields.contains("candia-2008"));
+    let schema = json(&stdout(&barrelstack(["scenarios", "schema"])));
+    assert!(schema["$defs"]["rack"].to_string().contains("candia-2008"), "{schema}");
+}
+
+#[test]
+fn the_demo_writes_its_report_and_may_be_repeated() {
+    let folder = tempfile::tempdir().unwrap();
+    for _ in 0..2 {
+        let output = program(["demo", "--set=run.duration=1 s"])
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let report = Path::new("barrelstack-demo").join("report.html");
+        let open = format!("\n\nOpen {} in a browser to watch it.\n", report.display());
+        assert!(stdout(&output).ends_with(&open), "{}", stdout(&output));
+        assert!(folder.path().join(report).is_file());
+    }
+}
+
+#[test]
+fn help_names_the_exit_statuses_and_every_command() {
+    let help = stdout(&barrelstack(["--help"]));
+    for word in ["run", "demo", "check", "scenarios", "Exit status", "130"] {
+        assert!(help.contains(word), "{word}");
+    }
+    let longest = help.lines().map(|line| line.chars().count()).max().unwrap();
+    assert!(longest <= 110, "{longest}");
+    let nothing = barrelstack([] as [&str; 0]);
+    assert_eq!(nothing.status.code(), Some(2));
+    assert_eq!(stdout(&nothing), "");
+}
+
+#[cfg(unix)]
+mod unix {
+    use super::*;
+    use std::io::Read as _;
+    use std::process::Command;
+    use std::time::Duration;
+
+    #[test]
+    fn a_reader_that_goes_away_is_no_error() {
+        let mut child =
+            program(SHORT).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let status = child.wait().unwrap();
+        let mut message = String::new();
+        child.stderr.take().unwrap().read_to_string(&mut message).unwrap();
+        assert_eq!((status.code(), message.as_str()), (Some(0), ""));
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_result_that_cannot_be_printed_is_an_error() {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let output = program(SHORT).stdout(full).output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).starts_with("error: cannot write to standard output: "));
+    }
+
+    #[test]
+    fn ctrl_c_keeps_what_was_computed() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("out");
+        // An hour in steps of 4 µs takes minutes, and is told to stop before.
+        let child = program(["run", "sliding-block", "--set=run.duration=3600 s"])
+            .args(["--set=run.step=4 us", "--json", "--out", out.to_str().unwrap()])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_secs(1));
+        let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        assert!(kill.unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+        let summary = json(&stdout(&output));
+        assert_eq!(summary["run"]["interrupted"], true);
+        let reached = summary["run"]["end_time"].as_f64().unwrap();
+        assert!(reached > 0.0 && reached < 3600.0, "{reached}");
+        let warning = summary["warnings"][0].as_str().unwrap();
+        assert!(
+            warning.starts_with("the run was stopped at ") && warning.contains("3600"),
+            "{warning}"
+        );
+        assert_eq!(names(&out).unwrap(), FILES);
+    }
+}

@@ -1,0 +1,58 @@
+//! The built program, run as a user runs it.
+
+#![allow(dead_code, reason = "each suite uses a part")]
+#![allow(clippy::print_stdout, reason = "messages are read with --nocapture")]
+
+use std::ffi::OsStr;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+/// The program, with nothing to read on standard input.
+pub(crate) fn program<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_barrelstack"));
+    command.args(arguments).stdin(Stdio::null());
+    command
+}
+
+/// Runs the program to its end.
+pub(crate) fn barrelstack<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Output {
+    program(arguments).output().unwrap()
+}
+
+/// What was printed as the result.
+pub(crate) fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+/// What was printed beside it.
+pub(crate) fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// What a folder holds, sorted; none where there is no folder.
+pub(crate) fn names(folder: &Path) -> Option<Vec<String>> {
+    let entries = std::fs::read_dir(folder).ok()?;
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    Some(names)
+}
+
+/// A user's mistake: one error that starts as errors start and contains all of `words`, status 2,
+/// nothing on standard output, nothing written to `out`.
+pub(crate) fn refused(what: &str, output: &Output, out: &Path, words: &[&str]) {
+    let message = stderr(output);
+    println!("---- {what}\n{message}");
+    assert_eq!(output.status.code(), Some(2), "{what}: {message}");
+    assert_eq!(stdout(output), "", "{what}");
+    assert!(message.starts_with("error: "), "{what}: {message}");
+    assert_eq!(message.matches("error:").count(), 1, "{what}: {message}");
+    assert!(!message.contains("warning:"), "{what}: {message}");
+    assert!(!message.contains("panicked"), "{what}: {message}");
+    let strange = message.chars().find(|c| c.is_control() && *c != '\n');
+    assert_eq!(strange, None, "{what}: {message:?}");
+    for word in words {
+        assert!(message.contains(word), "{what}: no {word:?} in {message}");
+    }
+    assert_eq!(names(out), None, "{what}: {}", out.display());
+}

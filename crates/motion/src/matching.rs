@@ -1,0 +1,346 @@
+//! Changing a motion until its response spectrum follows a target, in frequency or in time.
+
+use crate::error::MotionError;
+use crate::fourier::{apply_gain, forward_real, inverse};
+use crate::ground_motion::GroundMotion;
+use crate::history::History;
+use crate::math;
+use crate::process::{Pads, Processing};
+use crate::response::response;
+use crate::sampled::Sampled;
+use crate::target::TargetSpectrum;
+use crate::wavelets;
+
+/// How a motion is matched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MatchMethod {
+    /// Fourier amplitudes are multiplied by target over spectrum again and again, phases kept.
+    ///
+    /// Simple and quick to come near; changes the character of the motion everywhere.
+    /// Amplitudes alone stall at 5 to 9 %: what is left then is taken out by wavelets.
+    Frequency,
+    /// Wavelets are added at the times of the peak responses
+    /// (Lilhanand and Tseng 1988; Al Atik and Abrahamson 2010, Earthquake Spectra 26:601-617).
+    ///
+    /// Keeps the character of the motion; slower.
+    /// Where it stalls, rounds in the frequency domain shake it loose.
+    Time,
+}
+
+/// Settings of a match.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Matching {
+    /// The method.
+    pub method: MatchMethod,
+    /// Shortest period matched (s), at least four steps of the motion.
+    pub shortest: f64,
+    /// Longest period matched (s).
+    pub longest: f64,
+    /// Largest relative misfit accepted at any matched period.
+    pub tolerance: f64,
+    /// Most rounds.
+    pub rounds: usize,
+}
+
+impl Default for Matching {
+    /// Time domain, 0.1 to 3 s, 5 %, at most 120 rounds.
+    fn default() -> Self {
+        Self {
+            method: MatchMethod::Time,
+            shortest: 0.1,
+            longest: 3.0,
+            tolerance: 0.05,
+            rounds: 100,
+        }
+    }
+}
+
+/// Exponent of target over spectrum in one round of the frequency domain.
+const AMPLITUDE_STEP: f64 = 0.7;
+
+/// Periods to a decade at which the spectrum is matched.
+const PER_DECADE: f64 = 60.0;
+/// Periods judged to one matched, so that nothing hides between.
+const JUDGED: usize = 3;
+/// Share of the tolerance at which the rounds end.
+pub(crate) const GOOD_ENOUGH: f64 = 0.7;
+
+/// A matched motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Matched {
+    /// The motion; its horizontal component is matched, the vertical takes the same first scaling.
+    pub motion: GroundMotion,
+    /// Largest relative misfit at the matched periods.
+    pub misfit: f64,
+    /// Rounds done.
+    pub rounds: usize,
+}
+
+impl GroundMotion {
+    /// The motion with its horizontal component matched to a target spectrum.
+    ///
+    /// The motion is first scaled to the target in the mean; the vertical component, if there is
+    /// one, takes that factor only.
+    /// The last step of every round closes the ends, so the result does not drift.
+    ///
+    /// # Errors
+    /// If a setting is out of range, the motion does not move, or the tolerance is not reached.
+    ///
+    /// ```
+    /// use barrelstack_motion::{CloughPenzien, Envelope, Matching, TargetSpectrum};
+    /// let envelope = Envelope::Jennings { rise: 2.0, decay_start: 8.0, decay: 0.5 };
+    /// let motion = CloughPenzien::medium(1.0).motion(&envelope, 15.0, 0.01, 1)?;
+    /// let target = TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0 };
+    /// let settings = Matching { tolerance: 0.1, ..Matching::default() };
+    /// let matched = motion.match_spectrum(&target, &settings)?;
+    /// assert!(matched.misfit <= 0.1);
+    /// # Ok::<(), barrelstack_motion::MotionError>(())
+    /// ```
+    pub fn match_spectrum(
+        &self,
+        target: &TargetSpectrum,
+        settings: &Matching,
+    ) -> Result<Matched, MotionError> {
+        target.check()?;
+        let sampled = match &self.horizontal {
+            History::Sampled(sampled) => sampled.clone(),
+            other @ (History::Analytic(_) | History::Sum(_)) => {
+                other.sampled(other.natural_step())?
+            }
+        };
+        check(settings, sampled.time_step())?;
+        let (time_step, given) = subdivided(&sampled, settings.shortest);
+        let judged = judged_periods(settings);
+        let judged_goal = judged.iter().map(|&t| target.acceleration(t)).collect();
+        let damping = target.damping();
+        // Drift is kept out below the longest matched period.
+        let chain = Processing {
+            high_pass: Some(0.25 / settings.longest),
+            pads: Pads::Removed,
+            close: true,
+            ..Processing::none()
+        };
+        let work = Work { time_step, target, judged, judged_goal, damping, chain };
+        let now = work.spectrum(&given)?;
+        let factor = mean_ratio(&work.judged_goal, &now);
+        if !(factor.is_finite() && factor > 0.0) {
+            return Err(MotionError::Zero {
+                measure: "the response spectrum".to_owned(),
+                motion: self.name.clone(),
+                target: "the target spectrum".to_owned(),
+            });
+        }
+        let start: Vec<f64> = given.iter().map(|a| a * factor).collect();
+        let (acceleration, misfit, rounds) = work.alternate(start, settings)?;
+        if !(misfit <= settings.tolerance) {
+            return Err(MotionError::NotConverged {
+                what: "spectral matching".to_owned(),
+                reached: format!("a misfit of {:.1} %", 100.0 * misfit),
+                rounds,
+                wanted: format!("{:.1} %", 100.0 * settings.tolerance),
+                remedy: "start from a motion closer to the target, or accept a larger tolerance"
+                    .to_owned(),
+            });
+        }
+        let horizontal = History::Sampled(Sampled::new(time_step, acceleration)?);
+        let vertical = self.vertical.as_ref().map(|history| history.scaled(factor));
+        let mut motion = GroundMotion::new(self.name.clone(), horizontal, vertical);
+        motion.provenance.clone_from(&self.provenance);
+        motion.provenance.push(format!(
+            "scaled by {factor:.4} and matched in {} to {target:?} from {} to {} s: misfit at most \
+             {:.2} % after {rounds} rounds, ends closed",
+            match settings.method {
+                MatchMethod::Frequency => "the frequency domain",
+                MatchMethod::Time => "the time domain",
+            },
+            settings.shortest,
+            settings.longest,
+            100.0 * misfit
+        ));
+        Ok(Matched { motion, misfit, rounds })
+    }
+}
+
+fn check(settings: &Matching, time_step: f64) -> Result<(), MotionError> {
+    let shortest = settings.shortest;
+    if !(shortest >= 4.0 * time_step && shortest < settings.longest) {
+        return Err(MotionError::parameter(
+            "shortest matched period (s)",
+            format!("from four steps, {} s, to {} s", 4.0 * time_step, settings.longest),
+            shortest,
+        ));
+    }
+    MotionError::require_positive("matching tolerance", settings.tolerance)?;
+    MotionError::require_finite("longest matched period (s)", settings.longest)?;
+    if settings.rounds == 0 || settings.rounds > 10_000 {
+        return Err(MotionError::parameter("matching rounds", "1 to 10000", settings.rounds));
+    }
+    Ok(())
+}
+
+/// The same piecewise-linear motion in steps of at most a tenth of the shortest period, so that
+/// wavelets and peaks are resolved.
+fn subdivided(motion: &Sampled, shortest: f64) -> (f64, Vec<f64>) {
+    let parts = (10.0 * motion.time_step() / shortest * (1.0 - 1e-9)).ceil().max(1.0);
+    let a = motion.acceleration();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 3")]
+    let count = parts as usize;
+    let mut fine = Vec::with_capacity(count * a.len());
+    for pair in a.windows(2) {
+        for part in 0..count {
+            fine.push(pair[0] + (pair[1] - pair[0]) * part as f64 / parts);
+        }
+    }
+    fine.extend(a.last());
+    (motion.time_step() / parts, fine)
+}
+
+/// Intervals of [`PER_DECADE`] between the shortest and the longest period.
+fn intervals(settings: &Matching) -> usize {
+    let decades = math::log10(settings.longest / settings.shortest);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small, positive")]
+    let count = (PER_DECADE * decades).ceil().clamp(1.0, 1000.0) as usize;
+    count
+}
+
+fn judged_periods(settings: &Matching) -> Vec<f64> {
+    math::log_space(settings.shortest, settings.longest, JUDGED * intervals(settings))
+}
+
+/// Periods matched in one round: both ends, and between them a grid that shifts from round to round
+/// so that no period is left out for long.
+pub(crate) fn matched_periods(settings: &Matching, round: usize) -> Vec<f64> {
+    let count = intervals(settings);
+    let shift = (0.618_033_988_749_894_8 * (round - 1) as f64).fract();
+    let ratio = math::ln(settings.longest / settings.shortest) / count as f64;
+    let mut periods = vec![settings.shortest];
+    periods.extend(
+        (0..count)
+            .map(|k| settings.shortest * math::exp(ratio * (k as f64 + shift)))
+            .filter(|period| *period > settings.shortest * 1.000_1),
+    );
+    periods.push(settings.longest);
+    periods
+}
+
+/// Geometric mean of target over spectrum.
+fn mean_ratio(goal: &[f64], now: &[f64]) -> f64 {
+    let sum: f64 = goal.iter().zip(now).map(|(g, n)| math::ln(g / n)).sum();
+    math::exp(sum / goal.len() as f64)
+}
+
+/// What stays the same over the rounds.
+pub(crate) struct Work<'a> {
+    pub(crate) time_step: f64,
+    pub(crate) target: &'a TargetSpectrum,
+    judged: Vec<f64>,
+    judged_goal: Vec<f64>,
+    pub(crate) damping: f64,
+    pub(crate) chain: Processing,
+}
+
+impl Work<'_> {
+    /// Pseudo-accelerations at the judged periods.
+    fn spectrum(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
+        self.judged
+            .iter()
+            .map(|&period| {
+                response(self.time_step, acceleration, period, self.damping)
+                    .map(|peaks| peaks.pseudo_acceleration)
+            })
+            .collect()
+    }
+
+    fn misfit_of(&self, now: &[f64]) -> f64 {
+        self.judged_goal.iter().zip(now).map(|(g, n)| (n / g - 1.0).abs()).fold(0.0, f64::max)
+    }
+
+    /// Largest relative misfit at the judged periods.
+    pub(crate) fn misfit(&self, acceleration: &[f64]) -> Result<f64, MotionError> {
+        Ok(self.misfit_of(&self.spectrum(acceleration)?))
+    }
+
+    pub(crate) fn close(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
+        Ok(self.chain.apply(self.time_step, acceleration, 0.0)?.acceleration)
+    }
+
+    /// The chosen method first, then the other on what it left, until the tolerance is met.
+    fn alternate(
+        &self,
+        start: Vec<f64>,
+        settings: &Matching,
+    ) -> Result<(Vec<f64>, f64, usize), MotionError> {
+        use MatchMethod::{Frequency, Time};
+        let order: &[MatchMethod] = match settings.method {
+            Frequency => &[Frequency, Time, Frequency, Time],
+            Time => &[Time, Frequency, Time],
+        };
+        let (mut a, mut misfit, mut rounds) = (start, f64::INFINITY, 0);
+        for method in order {
+            let (next, reached, more) = match method {
+                Frequency => self.in_frequency(&a, settings)?,
+                Time => wavelets::match_in_time(self, &a, settings)?,
+            };
+            rounds += more;
+            (a, misfit) = (next, reached);
+            if misfit <= settings.tolerance {
+                break;
+            }
+        }
+        Ok((a, misfit, rounds))
+    }
+
+    fn in_frequency(
+        &self,
+        start: &[f64],
+        settings: &Matching,
+    ) -> Result<(Vec<f64>, f64, usize), MotionError> {
+        let length = (2 * start.len()).next_power_of_two();
+        let mut a = self.close(start)?;
+        let mut best = Best::new(&a);
+        // Ratios over the logarithm of frequency, from long periods to short ones.
+        let ln_f: Vec<f64> = self.judged.iter().rev().map(|t| -math::ln(*t)).collect();
+        for round in 1..=settings.rounds {
+            let now = self.spectrum(&a)?;
+            best.offer(&a, self.misfit_of(&now), round);
+            if best.misfit <= GOOD_ENOUGH * settings.tolerance {
+                break;
+            }
+            let ratio: Vec<f64> = self
+                .judged_goal
+                .iter()
+                .zip(&now)
+                .rev()
+                .map(|(g, n)| math::powf(g / n, AMPLITUDE_STEP).clamp(0.5, 2.0))
+                .collect();
+            let mut spectrum = forward_real(&a, length);
+            apply_gain(&mut spectrum, self.time_step, |f| {
+                if f > 0.0 { math::interpolate(&ln_f, &ratio, math::ln(f)) } else { 0.0 }
+            });
+            inverse(&mut spectrum);
+            let changed: Vec<f64> = spectrum[..a.len()].iter().map(|x| x.re).collect();
+            a = self.close(&changed)?;
+        }
+        Ok((best.acceleration, best.misfit, best.round))
+    }
+}
+
+/// The best motion so far.
+pub(crate) struct Best {
+    pub(crate) acceleration: Vec<f64>,
+    pub(crate) misfit: f64,
+    pub(crate) round: usize,
+}
+
+impl Best {
+    pub(crate) fn new(acceleration: &[f64]) -> Self {
+        Self { acceleration: acceleration.to_vec(), misfit: f64::INFINITY, round: 0 }
+    }
+
+    /// Keeps a better motion.
+    pub(crate) fn offer(&mut self, acceleration: &[f64], misfit: f64, round: usize) {
+        if misfit < self.misfit {
+            *self = Self { acceleration: acceleration.to_vec(), misfit, round };
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! The dominant velocity pulse of a motion: its period, amplitude, place and share of the energy.
+
+use crate::error::MotionError;
+use crate::fourier::{Complex, forward_real, inverse};
+use crate::history::History;
+use crate::math::{self, TAU};
+use crate::pulse::Pulse;
+use crate::sampled::Sampled;
+
+/// A velocity pulse of Mavroeidis and Papageorgiou found in a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PulseFit {
+    /// The pulse; its displacement starts from zero at [`PulseFit::start`].
+    pub pulse: Pulse,
+    /// Prevailing period (s).
+    pub period: f64,
+    /// Velocity amplitude `A` of the formula (m/s); above the peak where the phase is not zero.
+    pub amplitude: f64,
+    /// Largest velocity of the pulse (m/s).
+    pub peak_velocity: f64,
+    /// Time at which the pulse starts (s); may lie before the record.
+    pub start: f64,
+    /// Share of the squared velocity that the pulse explains, 0 to 1.
+    ///
+    /// Pulse-like near-fault records lie above about one half.
+    pub energy_share: f64,
+}
+
+/// Widths `γ` tried; below 1 the pulse has no zero crossing left, above 3 it is a wave train.
+const WIDTHS: [f64; 5] = [1.05, 1.5, 2.0, 2.5, 3.0];
+/// Periods tried to a factor of e.
+const PER_E_FOLD: f64 = 14.0;
+
+/// Finds the pulse that explains most of the squared velocity, with period from `shortest` to
+/// `longest` (s).
+///
+/// Every shift, period and width is tried by correlation with the two quadratures of the pulse; the
+/// best is refined by coordinate search.
+///
+/// # Errors
+/// If the range is empty or shorter than eight steps, or the motion does not move.
+pub fn dominant_pulse(
+    motion: &Sampled,
+    shortest: f64,
+    longest: f64,
+) -> Result<PulseFit, MotionError> {
+    MotionError::require_positive("shortest pulse period (s)", shortest)?;
+    if !(longest > shortest && longest.is_finite()) {
+        return Err(MotionError::parameter(
+            "longest pulse period (s)",
+            format!("above the shortest, {shortest} s"),
+            longest,
+        ));
+    }
+    if shortest < 8.0 * motion.time_step() {
+        return Err(MotionError::parameter(
+            "shortest pulse period (s)",
+            format!("at least eight steps, {} s", 8.0 * motion.time_step()),
+            shortest,
+        ));
+    }
+    // The correlation needs no more than a sixteenth of the shortest period.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1")]
+    let every = (shortest / 16.0 / motion.time_step()).floor().max(1.0) as usize;
+    let dt = motion.time_step() * every as f64;
+    let velocity: Vec<f64> = motion.velocity().iter().copied().step_by(every).collect();
+    let energy: f64 = velocity.iter().map(|v| v * v).sum();
+    if !(energy > 0.0) {
+        return Err(MotionError::parameter("motion", "a velocity other than zero", "zero"));
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
+    let longest_support = (WIDTHS[WIDTHS.len() - 1] * longest / dt).ceil().min(1e8) as usize;
+    let length = (velocity.len() + 2 * longest_support).next_power_of_two();
+    let spectrum = forward_real(&velocity, length);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
+    let count = (PER_E_FOLD * math::ln(longest / shortest)).ceil().clamp(1.0, 1e4) as usize;
+    let mut best = Candidate { period: shortest, gamma: WIDTHS[0], center: 0.0, explained: 0.0 };
+    for period in math::log_space(shortest, longest, count) {
+        for gamma in WIDTHS {
+            let (center, explained) = best_shift(&spectrum, dt, velocity.len(), period, gamma);
+            if explained > best.explained {
+                best = Candidate { period, gamma, center, explained };
+            }
+        }
+    }
+    let best = refine(&velocity, dt, best, shortest, longest);
+    let projection = project(&velocity, dt, &best);
+    let amplitude = math::hypot(projection.even, projection.odd);
+    let phase = math::atan2(-projection.odd, projection.even);
+    let pulse = Pulse::MavroeidisPapageorgiou {
+        velocity: amplitude,
+        period: best.period,
+        gamma: best.gamma,
+        phase,
+    };
+    Ok(PulseFit {
+        pulse,
+        peak_velocity: History::Analytic(pulse).pgv(),
+        period: best.period,
+        amplitude,
+        start: best.center - 0.5 * best.gamma * best.period,
+        energy_share: projection.explained / energy,
+    })
+}
+
+#[derive(Clone, Copy)]
+struct Candidate {
+    period: f64,
+    gamma: f64,
+    center: f64,
+    explained: f64,
+}
+
+/// The two quadratures of the pulse at `s` from its middle.
+fn quadratures(period: f64, gamma: f64, s: f64) -> (f64, f64) {
+    if s.abs() > 0.5 * gamma * period {
+        return (0.0, 0.0);
+    }
+    let theta = TAU * s / period;
+    let window = 0.5 * (1.0 + math::cos(theta / gamma));
+    let (sin, cos) = math::sin_cos(theta);
+    (window * cos, window * sin)
+}
+
+/// The shift that explains most, by correlation with both quadratures at once.
+fn best_shift(
+    spectrum: &[Complex],
+    dt: f64,
+    samples: usize,
+    period: f64,
+    gamma: f64,
+) -> (f64, f64) {
+    let length = spectrum.len();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the pads")]
+    let half = (0.5 * gamma * period / dt).floor() as usize;
+    let (mut even, mut odd) = (vec![0.0; length], vec![0.0; length]);
+    let (mut even_norm, mut odd_norm) = (0.0, 0.0);
+    for k in 0..=2 * half {
+        let s = (k as f64 - half as f64) * dt;
+        let (e, o) = quadratures(period, gamma, s);
+        let at = (k + length - half) % length;
+        even[at] = e;
+        odd[at] = o;
+        even_norm += e * e;
+        odd_norm += o * o;
+    }
+    // Even and odd are real: one complex transform carries both correlations.
+    let correlate = |series: &[f64]| -> Vec<Complex> {
+        let kernel = forward_real(series, length);
+        let mut product: Vec<Complex> = spectrum
+            .iter()
+            .zip(&kernel)
+            .map(|(a, b)| Complex { re: a.re * b.re + a.im * b.im, im: a.im * b.re - a.re * b.im })
+            .collect();
+        inverse(&mut product);
+        product
+    };
+    let (even, odd) = (correlate(&even), correlate(&odd));
+    let mut best = (0.0, 0.0);
+    for k in 0..samples {
+        let explained = even[k].re * even[k].re / even_norm + odd[k].re * odd[k].re / odd_norm;
+        if explained > best.1 {
+            best = (k as f64 * dt, explained);
+        }
+    }
+    best
+}
+
+struct Projection {
+    even: f64,
+    odd: f64,
+    explained: f64,
+}
+
+/// Least-squares amplitudes of the two quadratures, sampled at the velocity's own times.
+fn project(velocity: &[f64], dt: f64, candidate: &Candidate) -> Projection {
+    let Candidate { period, gamma, center, .. } = *candidate;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+    let index = |t: f64| (t / dt).clamp(0.0, velocity.len() as f64) as usize;
+    let (first, last) = (
+        index(center - 0.5 * gamma * period),
+        index(center + 0.5 * gamma * period + dt).min(velocity.len()),
+    );
+    let (mut ee, mut oo, mut eo, mut ve, mut vo) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for (k, v) in velocity.iter().enumerate().take(last).skip(first) {
+        let (e, o) = quadratures(period, gamma, k as f64 * dt - center);
+        ee += e * e;
+        oo += o * o;
+        eo += e * o;
+        ve += v * e;
+        vo += v * o;
+    }
+    let determinant = ee * oo - eo * eo;
+    if !(determinant > 1e-12 * ee * oo) {
+        return Projection { even: 0.0, odd: 0.0, explained: 0.0 };
+    }
+    let even = (ve * oo - vo * eo) / determinant;
+    let odd = (vo * ee - ve * eo) / determinant;
+    Projection { even, odd, explained: even * ve + odd * vo }
+}
+
+/// Coordinate search on period, width and middle with shrinking steps.
+fn refine(velocity: &[f64], dt: f64, start: Candidate, shortest: f64, longest: f64) -> Candidate {
+    let mut best = start;
+    best.explained = project(velocity, dt, &best).explained;
+    let mut size = 0.05;
+    while size > 1e-4 {
+        let mut improved = false;
+        for (dp, dg, dc) in [
+            (size, 0.0, 0.0),
+            (-size, 0.0, 0.0),
+            (0.0, size, 0.0),
+            (0.0, -size, 0.0),
+            (0.0, 0.0, size),
+            (0.0, 0.0, -size),
+        ] {
+            let mut next = Candidate {
+                period: (best.period * (1.0 + dp)).clamp(shortest, longest),
+                gamma: (best.gamma * (1.0 + dg)).clamp(WIDTHS[0], WIDTHS[WIDTHS.len() - 1]),
+                center: best.center + dc * best.period,
+                explained: 0.0,
+            };
+            next.explained = project(velocity, dt, &next).explained;
+            if next.explained > best.explained * (1.0 + 1e-12) {
+                best = next;
+                improved = true;
+            }
+        }
+        if !improved {
+            size *= 0.5;
+        }
+    }
+    best
+}

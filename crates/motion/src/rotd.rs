@@ -1,0 +1,110 @@
+//! Two horizontals taken together: median and largest response over all directions.
+
+use crate::error::MotionError;
+use crate::math::{self, PI};
+use crate::response::{Step, check_oscillator};
+
+/// Directions in half a turn.
+const DIRECTIONS: usize = 180;
+
+/// A peak over all horizontal directions, one degree apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RotatedPeak {
+    /// Median over directions (`RotD50`).
+    pub median: f64,
+    /// Largest (`RotD100`).
+    pub largest: f64,
+    /// Smallest (`RotD00`).
+    pub smallest: f64,
+    /// Direction of the largest, degrees from the first component towards the second, 0 to 179.
+    pub angle: f64,
+}
+
+/// Peaks over all directions of any pair of series: accelerations, velocities, displacements or
+/// responses (Boore 2010, BSSA 100:1830-1835).
+pub fn rotated_peak(first: &[f64], second: &[f64]) -> RotatedPeak {
+    let hull = hull(first, second);
+    let mut peaks = [0.0_f64; DIRECTIONS];
+    for (degree, peak) in peaks.iter_mut().enumerate() {
+        let (s, c) = math::sin_cos(PI * degree as f64 / DIRECTIONS as f64);
+        for (x, y) in &hull {
+            *peak = peak.max((x * c + y * s).abs());
+        }
+    }
+    let angle = (0..DIRECTIONS).fold(0, |best, k| if peaks[k] > peaks[best] { k } else { best });
+    let largest = peaks[angle];
+    peaks.sort_by(f64::total_cmp);
+    RotatedPeak {
+        median: 0.5 * (peaks[DIRECTIONS / 2 - 1] + peaks[DIRECTIONS / 2]),
+        largest,
+        smallest: peaks[0],
+        angle: angle as f64,
+    }
+}
+
+/// Corners of the convex hull of the points (x, y): no other point can be a peak in any direction.
+fn hull(first: &[f64], second: &[f64]) -> Vec<(f64, f64)> {
+    let mut points: Vec<(f64, f64)> = first.iter().copied().zip(second.iter().copied()).collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    points.dedup();
+    if points.len() < 3 {
+        return points;
+    }
+    let turn = |o: (f64, f64), a: (f64, f64), b: (f64, f64)| {
+        (a.0 - o.0) * (b.1 - o.1) - (a.1 - o.1) * (b.0 - o.0)
+    };
+    let mut corners: Vec<(f64, f64)> = Vec::new();
+    let half = |points: &mut dyn Iterator<Item = (f64, f64)>, corners: &mut Vec<(f64, f64)>| {
+        let start = corners.len();
+        for point in points {
+            while corners.len() >= start + 2
+                && turn(corners[corners.len() - 2], corners[corners.len() - 1], point) <= 0.0
+            {
+                corners.pop();
+            }
+            corners.push(point);
+        }
+    };
+    half(&mut points.iter().copied(), &mut corners);
+    half(&mut points.iter().rev().copied(), &mut corners);
+    corners
+}
+
+/// Pseudo-accelerations (m/s²) of two horizontals over all directions, one to a period (s).
+///
+/// Components of different length are cut to the shorter one.
+///
+/// # Errors
+/// As [`crate::response`].
+pub fn rotated_spectrum(
+    time_step: f64,
+    first: &[f64],
+    second: &[f64],
+    periods: &[f64],
+    damping: f64,
+) -> Result<Vec<RotatedPeak>, MotionError> {
+    MotionError::require_positive("time step (s)", time_step)?;
+    let n = first.len().min(second.len());
+    let (first, second) = (&first[..n], &second[..n]);
+    periods
+        .iter()
+        .map(|&period| {
+            check_oscillator(period, damping)?;
+            if period == 0.0 {
+                return Ok(rotated_peak(first, second));
+            }
+            let step = Step::new(period, damping, time_step);
+            let w = 2.0 * PI / period;
+            let history = |a: &[f64]| -> Vec<f64> {
+                let (mut u, mut v) = (0.0, 0.0);
+                a.windows(2)
+                    .map(|pair| {
+                        (u, v) = step.advance(u, v, -pair[0], -pair[1]);
+                        w * w * u
+                    })
+                    .collect()
+            };
+            Ok(rotated_peak(&history(first), &history(second)))
+        })
+        .collect()
+}

@@ -1,0 +1,489 @@
+//! One suite for every format, on the samples in `tests/data`.
+//!
+//! Every sample is the same decaying sine, so that the numbers expected are a formula.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by unwrap and tells by print"
+)]
+
+use std::path::{Path, PathBuf};
+
+use barrelstack_motion::{
+    AccelerationUnit, Orientation, ReadOptions, Record, Refusal, STANDARD_GRAVITY, Stage,
+    StatedPeak, read,
+};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data")
+}
+
+fn bytes(file: &str) -> Vec<u8> {
+    std::fs::read(folder().join(file)).unwrap()
+}
+
+/// Acceleration (m/s²) of component `c` (0 east or first, 1 north or second, 2 up) at time `t`.
+fn formula(c: usize, t: f64) -> f64 {
+    let c_f = c as f64;
+    [0.3, 0.2, 0.1][c]
+        * STANDARD_GRAVITY
+        * (std::f64::consts::TAU * (1.1 + 0.3 * c_f) * t + 0.2 * c_f).sin()
+        * (-0.7 * t).exp()
+}
+
+fn options(file: &str) -> ReadOptions {
+    let unit = |unit| ReadOptions { unit: Some(unit), ..ReadOptions::default() };
+    match file {
+        "columns/bare.txt" => ReadOptions { time_step: Some(0.02), ..unit(AccelerationUnit::G) },
+        "columns/count-first.txt" => unit(AccelerationUnit::G),
+        "columns/touching.acc" => {
+            ReadOptions { time_step: Some(0.01), ..unit(AccelerationUnit::MetersPerSecondSquared) }
+        }
+        _ if file.starts_with("sac/") => unit(AccelerationUnit::G),
+        "miniseed/steim2.mseed" => {
+            ReadOptions { sensitivity: Some(427_819.0 / 100.0 / 300.0), ..ReadOptions::default() }
+        }
+        _ if file.starts_with("miniseed/") => {
+            ReadOptions { sensitivity: Some(427_819.0 / 100.0), ..ReadOptions::default() }
+        }
+        _ => ReadOptions::default(),
+    }
+}
+
+/// File, stage, step, and to each channel its name, component of the formula and samples.
+type Expected =
+    (&'static str, Stage, f64, &'static [(&'static str, usize, usize)], /* tolerance */ f64);
+
+const SAMPLES: &[Expected] = &[
+    ("peer/nga-west2.AT2", Stage::Corrected, 0.02, &[("360", 0, 103)], 1e-6),
+    ("peer/poles.AT2", Stage::Corrected, 0.00244, &[("360", 0, 103)], 1e-6),
+    ("peer/values-first.AT2", Stage::Corrected, 0.02, &[("UP", 0, 103)], 1e-6),
+    ("peer/cut-header.AT2", Stage::Corrected, 0.02, &[("360", 0, 103)], 1e-6),
+    ("peer/crcrlf.at2", Stage::Corrected, 0.02, &[("360", 0, 103)], 1e-6),
+    ("peer/begin-end.at2", Stage::Corrected, 0.02, &[("begin-end", 0, 103)], 1e-4),
+    (
+        "csmip-v1/pairs.RAW",
+        Stage::Raw,
+        0.005,
+        &[("90 DEG", 0, 103), ("UP", 2, 102), ("360 DEG", 1, 102)],
+        1e-3,
+    ),
+    (
+        "csmip-v1/formatted.RAW",
+        Stage::Raw,
+        0.01,
+        &[("90 Deg", 0, 103), ("360 Deg", 1, 101), ("Up", 2, 102)],
+        1e-5,
+    ),
+    ("csmip-v1/spaced.v1", Stage::Raw, 0.005, &[("270 DEG", 0, 103)], 1e-5),
+    (
+        "renadic/example.v1",
+        Stage::Raw,
+        0.01,
+        &[("EW", 0, 103), ("V", 2, 103), ("NS", 1, 103)],
+        1e-3,
+    ),
+    ("bhrc/example.V1", Stage::Raw, 0.005, &[("L", 0, 103), ("V", 2, 103), ("T", 1, 103)], 1e-5),
+    (
+        "csmip-v2/example.V2",
+        Stage::Corrected,
+        0.01,
+        &[("H1", 0, 103), ("Up", 2, 103), ("H2", 1, 102)],
+        1e-5,
+    ),
+    ("cosmos/example.v2c", Stage::Corrected, 0.01, &[("90 deg", 0, 103)], 1e-5),
+    ("cosmos/one-a-line.v1c", Stage::Raw, 0.01, &[("90 deg", 0, 103)], 1e-5),
+    ("smc/corrected.smc", Stage::Corrected, 0.005, &[("360", 0, 103)], 1e-3),
+    (
+        "geonet/example.V2A",
+        Stage::Corrected,
+        0.02,
+        &[("N28W", 0, 103), ("S62W", 1, 103), ("Up", 2, 103)],
+        1e-3,
+    ),
+    (
+        "geonet/example.V1A",
+        Stage::Raw,
+        0.02,
+        &[("S65E", 0, 103), ("N25E", 1, 103), ("Up", 2, 103)],
+        1e-3,
+    ),
+    ("esm/example.ACC.ASC", Stage::Corrected, 0.005, &[("HNE", 0, 103)], 1e-6),
+    (
+        "afad/example.txt",
+        Stage::Raw,
+        0.01,
+        &[("N-S", 0, 103), ("E-W", 1, 103), ("U-D", 2, 103)],
+        1e-6,
+    ),
+    ("cwa/example.dat", Stage::Raw, 0.02, &[("U", 2, 100), ("N", 1, 100), ("E", 0, 100)], 1e-4),
+    (
+        "unam/example.012",
+        Stage::Raw,
+        0.004,
+        &[("V;+", 2, 103), ("N90E", 0, 103), ("N00E", 1, 103)],
+        1e-4,
+    ),
+    ("columns/bare.txt", Stage::Unknown, 0.02, &[("bare", 0, 103)], 1e-6),
+    ("columns/time-and-value.csv", Stage::Unknown, 0.02, &[("time-and-value", 0, 103)], 1e-6),
+    ("columns/count-first.txt", Stage::Unknown, 0.005, &[("count-first", 0, 103)], 1e-6),
+    ("columns/touching.acc", Stage::Unknown, 0.01, &[("touching", 0, 103)], 1e-6),
+    (
+        "columns/three.csv",
+        Stage::Unknown,
+        0.01,
+        &[("EW acceleration", 0, 103), ("NS acceleration", 1, 103), ("UD acceleration", 2, 103)],
+        1e-6,
+    ),
+    (
+        "barrelstack/example.txt",
+        Stage::Corrected,
+        0.01,
+        &[("E", 0, 103), ("N", 1, 103), ("Up", 2, 103)],
+        1e-4,
+    ),
+];
+
+/// As above, for formats whose offset is removed: compared after removing the formula's mean.
+const OFFSET: &[Expected] = &[
+    ("cosmos/counts.v0c", Stage::Raw, 0.005, &[("90 deg", 0, 103)], 1e-1),
+    ("knet/example.EW", Stage::Raw, 0.01, &[("E-W", 0, 200)], 1e-4),
+    ("knet/borehole.NS1", Stage::Raw, 0.01, &[("N-S borehole", 1, 200)], 1e-4),
+    ("sac/little.sac", Stage::Raw, 0.02, &[("HNE", 0, 103)], 1e-6),
+    ("sac/big.sac", Stage::Raw, 0.02, &[("HNE", 0, 103)], 1e-6),
+    ("miniseed/int32.mseed", Stage::Raw, 0.01, &[("HNE", 0, 103)], 2e-4),
+    ("miniseed/steim1.mseed", Stage::Raw, 0.01, &[("HNE", 0, 103)], 2e-4),
+    ("miniseed/steim2.mseed", Stage::Raw, 0.01, &[("HNE", 0, 103)], 1e-1),
+];
+
+fn check(expected: &Expected, offset: bool) -> Record {
+    let (file, stage, step, channels, tolerance) = expected;
+    let record = read(&bytes(file), file, &options(file)).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(record.format, file.split('/').next().unwrap());
+    assert_eq!(record.stage, *stage, "{file}");
+    let names: Vec<&str> = record.channels.iter().map(|c| c.name.as_str()).collect();
+    let wanted: Vec<&str> = channels.iter().map(|c| c.0).collect();
+    assert_eq!(names, wanted, "{file}");
+    for (channel, (name, component, samples)) in record.channels.iter().zip(*channels) {
+        assert!((channel.time_step / step - 1.0).abs() < 1e-9, "{file}: {}", channel.time_step);
+        assert_eq!(channel.acceleration.len(), *samples, "{file} {name}");
+        let truth: Vec<f64> = (0..*samples).map(|k| formula(*component, k as f64 * step)).collect();
+        let mean = if offset { truth.iter().sum::<f64>() / *samples as f64 } else { 0.0 };
+        let sign = if file.starts_with("cosmos/counts") {
+            // The counts of this sample stand for another sensitivity.
+            channel.pga() / truth.iter().map(|a| (a - mean).abs()).fold(0.0, f64::max)
+        } else {
+            1.0
+        };
+        for (a, b) in channel.acceleration.iter().zip(&truth) {
+            assert!(
+                (a - sign * (b - mean)).abs() <= *tolerance * STANDARD_GRAVITY,
+                "{file} {name}: {a} against {b}"
+            );
+        }
+        for peak in &channel.peaks {
+            assert!(peak.agrees(), "{file} {name}: {peak:?}");
+        }
+    }
+    record
+}
+
+#[test]
+fn every_sample_gives_the_formula_it_was_made_from() {
+    for expected in SAMPLES {
+        check(expected, false);
+    }
+    for expected in OFFSET {
+        check(expected, true);
+    }
+}
+
+#[test]
+fn directions_are_read_from_names() {
+    let of = |file: &str| -> Vec<(Option<f64>, Option<Orientation>)> {
+        let record = read(&bytes(file), file, &options(file)).unwrap();
+        record.channels.iter().map(|c| (c.direction.azimuth, c.direction.orientation)).collect()
+    };
+    let h = Some(Orientation::Horizontal);
+    let v = Some(Orientation::Vertical);
+    assert_eq!(of("csmip-v1/pairs.RAW"), [(Some(90.0), h), (None, v), (Some(0.0), h)]);
+    assert_eq!(of("geonet/example.V2A"), [(Some(332.0), h), (Some(242.0), h), (None, v)]);
+    assert_eq!(of("csmip-v2/example.V2"), [(None, h), (None, v), (None, h)]);
+    assert_eq!(of("bhrc/example.V1"), [(Some(50.0), h), (None, v), (Some(140.0), h)]);
+    assert_eq!(of("unam/example.012"), [(None, v), (Some(90.0), h), (Some(0.0), h)]);
+    assert_eq!(of("cwa/example.dat"), [(None, v), (Some(0.0), h), (Some(90.0), h)]);
+    assert_eq!(of("knet/borehole.NS1"), [(Some(0.0), h)]);
+    assert_eq!(of("usc/example.y0a"), [(Some(300.0), h)]);
+}
+
+#[test]
+fn stated_peaks_are_found() {
+    for (file, count) in [
+        ("csmip-v1/pairs.RAW", 1),
+        ("csmip-v1/formatted.RAW", 1),
+        ("renadic/example.v1", 1),
+        ("csmip-v2/example.V2", 3),
+        ("cosmos/example.v2c", 1),
+        ("cosmos/counts.v0c", 1),
+        ("smc/corrected.smc", 1),
+        ("knet/example.EW", 1),
+        ("geonet/example.V2A", 3),
+        ("geonet/example.V1A", 1),
+        ("esm/example.ACC.ASC", 1),
+        ("afad/example.txt", 1),
+        ("cwa/example.dat", 1),
+        ("unam/example.012", 1),
+    ] {
+        let record = read(&bytes(file), file, &options(file)).unwrap();
+        for channel in &record.channels {
+            assert_eq!(channel.peaks.len(), count, "{file} {}", channel.name);
+            assert!(channel.peaks.iter().all(StatedPeak::agrees), "{file}: {:?}", channel.peaks);
+        }
+    }
+}
+
+#[test]
+fn uneven_times_are_interpolated_with_a_warning() {
+    for file in ["usc/example.y0a", "smc/uncorrected.smc"] {
+        let record = read(&bytes(file), file, &options(file)).unwrap();
+        let channel = &record.channels[0];
+        assert_eq!(channel.time_step, 0.002, "{file}");
+        assert!(record.warnings.iter().any(|w| w.message.contains("uneven")), "{file}");
+        for (k, a) in channel.acceleration.iter().enumerate() {
+            let truth = 0.3
+                * STANDARD_GRAVITY
+                * (std::f64::consts::TAU * 1.1 * k as f64 * 0.002).sin()
+                * (-0.7 * k as f64 * 0.002).exp();
+            assert!((a - truth).abs() < 2e-3 * STANDARD_GRAVITY, "{file} sample {k}");
+        }
+    }
+}
+
+#[test]
+fn columns_without_time_are_channels_only_if_named() {
+    let rows: Vec<String> = (0..60).map(|k| format!("{}.5 -0.25 0.{k:02}\n", k % 7)).collect();
+    let rows = rows.concat();
+    let given = ReadOptions { time_step: Some(0.01), ..ReadOptions::default() };
+    let named = format!("unit: cm/s2\nEW NS UD\n{rows}");
+    let record = read(named.as_bytes(), "named.txt", &given).unwrap();
+    // The second column never changes and is left out with a warning.
+    let names: Vec<&str> = record.channels.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["EW", "UD"]);
+    let bare = format!("unit: cm/s2\n{rows}");
+    let record = read(bare.as_bytes(), "bare.txt", &given).unwrap();
+    assert_eq!(record.channels[0].acceleration.len(), 180);
+    assert!(record.warnings.iter().any(|w| w.message.contains("row by row")));
+}
+
+#[test]
+fn what_is_no_acceleration_is_refused_by_name() {
+    for (file, word) in [
+        ("peer/velocity.VT2", "VELOCITY"),
+        ("peer/displacement.DT2", "DISPLACEMENT"),
+        ("csmip-v2/spectra.v3", "spectra"),
+        ("cosmos/degrees.v1c", "unit code 25"),
+        ("smc/velocity.smc", "VELOCITY"),
+        ("esm/velocity.VEL.ASC", "VELOCITY"),
+        ("columns/displacement.csv", "displacement"),
+        ("slammer/EQdata.txt", "table"),
+    ] {
+        let error = read(&bytes(file), file, &options(file)).unwrap_err();
+        assert_eq!(error.refusal, Refusal::NotAcceleration, "{error}");
+        assert!(error.to_string().contains(word), "{error}");
+    }
+}
+
+#[test]
+fn what_a_format_does_not_say_must_be_given() {
+    for (file, word) in [
+        ("columns/bare.txt", "time step"),
+        ("columns/touching.acc", "time step"),
+        ("columns/count-first.txt", "unit"),
+        ("sac/little.sac", "sensitivity"),
+        ("miniseed/int32.mseed", "sensitivity"),
+        ("cosmos/no-gain.v0c", "gain"),
+    ] {
+        let error = read(&bytes(file), file, &ReadOptions::default()).unwrap_err();
+        assert_eq!(error.refusal, Refusal::Missing, "{error}");
+        assert!(error.to_string().contains(word), "{error}");
+    }
+}
+
+#[test]
+fn an_ignored_option_is_reported() {
+    let given = ReadOptions { time_step: Some(0.5), ..ReadOptions::default() };
+    for (file, ..) in SAMPLES.iter().filter(|s| !s.0.starts_with("columns")) {
+        let record = read(&bytes(file), file, &given).unwrap();
+        let said = record.warnings.iter().any(|w| w.message.contains("ignored"));
+        assert!(said, "{file}: {:?}", record.warnings);
+    }
+}
+
+#[test]
+fn a_wrong_unit_is_seen_in_the_warnings() {
+    let file = "columns/time-and-value.csv";
+    let text = String::from_utf8(bytes(file)).unwrap().replace("(g's)", "(cm/s2)");
+    let record = read(text.as_bytes(), file, &ReadOptions::default()).unwrap();
+    assert!(record.warnings.iter().any(|w| w.message.contains("check the unit")));
+    let bare = String::from_utf8(bytes("columns/bare.txt")).unwrap();
+    let tall: Vec<String> =
+        bare.lines().map(|line| format!("{}", 20.0 * line.parse::<f64>().unwrap())).collect();
+    let record =
+        read(tall.join("\n").as_bytes(), "tall.txt", &options("columns/bare.txt")).unwrap();
+    assert!(
+        record.warnings.iter().any(|w| w.message.contains("PGA is 5.")),
+        "{:?}",
+        record.warnings
+    );
+}
+
+/// Lines of a text file with their ends.
+fn lines(file: &str) -> Vec<Vec<u8>> {
+    bytes(file).split_inclusive(|b| *b == b'\n').map(<[u8]>::to_vec).collect()
+}
+
+fn text_samples() -> Vec<&'static str> {
+    SAMPLES
+        .iter()
+        .chain(OFFSET)
+        .map(|sample| sample.0)
+        .filter(|file| !file.starts_with("sac") && !file.starts_with("miniseed"))
+        .chain(["usc/example.y0a", "smc/uncorrected.smc"])
+        .collect()
+}
+
+#[test]
+fn a_file_cut_at_any_line_is_refused_or_says_so() {
+    for file in text_samples() {
+        // Plain columns state no count: a cut cannot be seen.
+        if file.starts_with("columns") && file != "columns/count-first.txt"
+            || file.starts_with("barrelstack")
+        {
+            continue;
+        }
+        let lines = lines(file);
+        let whole = read(&bytes(file), file, &options(file)).unwrap();
+        for keep in 0..lines.len() {
+            let cut: Vec<u8> = lines[..keep].concat();
+            if let Ok(record) = read(&cut, file, &options(file)) {
+                let complete = record.channels.len() <= whole.channels.len()
+                    && record
+                        .channels
+                        .iter()
+                        .zip(&whole.channels)
+                        .all(|(a, b)| a.acceleration.len() == b.acceleration.len());
+                let warned = record.warnings.len() > whole.warnings.len()
+                    || record.warnings.iter().any(|w| w.message.contains("states"));
+                assert!(complete || warned, "{file} cut after line {keep} was read in silence");
+            }
+        }
+    }
+}
+
+#[test]
+fn stars_words_and_huge_numbers_are_refused_with_their_place() {
+    for file in text_samples() {
+        let lines = lines(file);
+        // Into the first number of a line near the end of the data.
+        let numeric: Vec<usize> = (0..lines.len())
+            .filter(|&k| {
+                let text = lines[k].trim_ascii();
+                !text.is_empty() && text.iter().all(|b| b"0123456789.+-Ee, ".contains(b))
+            })
+            .collect();
+        let target = numeric[numeric.len() - 4];
+        let line = String::from_utf8_lossy(&lines[target]).into_owned();
+        let start = line.find(|c: char| c.is_ascii_digit() || c == '-' || c == '.').unwrap();
+        let body = line.as_bytes();
+        let mut end = start + 1;
+        while end < body.len()
+            && (matches!(body[end], b'0'..=b'9' | b'.' | b'E' | b'e')
+                || (matches!(body[end], b'+' | b'-') && matches!(body[end - 1], b'E' | b'e')))
+        {
+            end += 1;
+        }
+        let width = end - start;
+        for (damage, found) in [
+            ("*".repeat(width), "*"),
+            (format!("{:>width$}", "NaN"), "NaN"),
+            (format!("{:>width$}", "9E99"), "9e99"),
+        ] {
+            if damage.len() > width {
+                continue;
+            }
+            let damaged = format!("{}{damage}{}", &line[..start], &line[end..]);
+            let mut all = lines.clone();
+            all[target] = damaged.into_bytes();
+            let Err(error) = read(&all.concat(), file, &options(file)) else {
+                panic!("{file}: {found} on line {} was read", target + 1)
+            };
+            assert_eq!(error.refusal, Refusal::Damaged, "{error}");
+            assert_eq!(error.line, Some(target + 1), "{error}");
+            assert!(error.column.is_some(), "{error}");
+            let told = error.to_string().to_lowercase();
+            assert!(told.contains(&found.to_lowercase()), "{error}");
+        }
+    }
+}
+
+#[test]
+fn a_lost_line_and_a_wrong_count_are_refused() {
+    for file in text_samples() {
+        if file.starts_with("columns") && file != "columns/count-first.txt"
+            || file.starts_with("barrelstack")
+        {
+            continue;
+        }
+        let lines = lines(file);
+        let target = lines.len() * 3 / 4;
+        let mut all = lines.clone();
+        all.remove(target);
+        let whole = read(&bytes(file), file, &options(file)).unwrap();
+        match read(&all.concat(), file, &options(file)) {
+            Err(_) => {}
+            Ok(record) => assert!(
+                record.warnings.len() > whole.warnings.len()
+                    || record.warnings.iter().any(|w| w.message.contains("states")),
+                "{file}: line {} was lost in silence",
+                target + 1
+            ),
+        }
+    }
+}
+
+#[test]
+fn binary_garbage_is_refused() {
+    let garbage: Vec<u8> =
+        (0..5000_u32).map(|k| k.wrapping_mul(2_654_435_761).to_le_bytes()[2]).collect();
+    let error = read(&garbage, "garbage", &ReadOptions::default()).unwrap_err();
+    assert!(error.line.is_some() && error.column.is_some(), "{error}");
+    assert!(read(b"", "empty", &ReadOptions::default()).is_err());
+    assert!(read(b"\x89HDF\r\n\x1a\n....", "x.h5", &ReadOptions::default()).is_err());
+    for file in ["sac/little.sac", "miniseed/steim2.mseed"] {
+        let all = bytes(file);
+        for keep in [100, 500, all.len() - 1, all.len() - 4] {
+            assert!(read(&all[..keep], file, &options(file)).is_err(), "{file} {keep}");
+        }
+    }
+}
+
+#[test]
+fn the_own_text_form_survives_a_round_trip() {
+    for file in ["csmip-v2/example.V2", "knet/example.EW", "peer/values-first.AT2"] {
+        let record = read(&bytes(file), file, &options(file)).unwrap();
+        let text = record.to_text(&["a comment"]);
+        let again = read(text.as_bytes(), "copy.txt", &ReadOptions::default()).unwrap();
+        assert_eq!(again.format, "barrelstack");
+        assert_eq!(again.stage, record.stage);
+        assert_eq!(again.channels.len(), record.channels.len());
+        for (a, b) in again.channels.iter().zip(&record.channels) {
+            assert_eq!(a.name, b.name);
+            assert_eq!(a.direction, b.direction);
+            assert_eq!(a.time_step, b.time_step);
+            for (x, y) in a.acceleration.iter().zip(&b.acceleration) {
+                assert!((x - y).abs() <= 6e-6 * y.abs());
+            }
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! Intensity measures of motions with closed forms.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by unwrap and tells by print"
+)]
+
+use barrelstack_motion::{
+    FourierSpectrum, IntensityMeasure, Pulse, STANDARD_GRAVITY, Sampled, dominant_pulse, response,
+    response_subdivided, rotated_peak, rotated_spectrum,
+};
+
+const TAU: f64 = std::f64::consts::TAU;
+
+fn sine(amplitude: f64, period: f64, cycles: u32, per_cycle: u32) -> Sampled {
+    let n = cycles * per_cycle;
+    let a =
+        (0..=n).map(|k| amplitude * (TAU * f64::from(k) / f64::from(per_cycle)).sin()).collect();
+    Sampled::new(period / f64::from(per_cycle), a).unwrap()
+}
+
+#[test]
+fn a_harmonic_has_its_closed_forms_to_a_millionth() {
+    // A = 0.3 g, T = 0.5 s, 8 cycles: Arias 2.77371 m/s, CAV 7.49429 m/s, PGV 0.46839 m/s.
+    let (a, t, n) = (0.3 * STANDARD_GRAVITY, 0.5, 8.0);
+    let motion = sine(a, t, 8, 4000);
+    let of = |measure: IntensityMeasure| measure.of(&motion).unwrap();
+    let near = |value: f64, exact: f64| {
+        assert!((value / exact - 1.0).abs() < 1e-6, "{value} against {exact}"); // measured 2e-7
+    };
+    let pi = std::f64::consts::PI;
+    near(of(IntensityMeasure::Arias), pi / (2.0 * STANDARD_GRAVITY) * a * a * n * t / 2.0);
+    // The printed values are for g = 9.81 m/s2; all three are proportional to g.
+    let printed = 9.81 / STANDARD_GRAVITY;
+    assert!((of(IntensityMeasure::Arias) * printed - 2.773_71).abs() < 6e-6);
+    assert!((of(IntensityMeasure::Cav) * printed - 7.494_29).abs() < 6e-6);
+    assert!((of(IntensityMeasure::Pgv) * printed - 0.468_39).abs() < 6e-6);
+    near(of(IntensityMeasure::Cav), 2.0 / pi * a * n * t);
+    near(of(IntensityMeasure::Pgv), a * t / pi);
+    near(of(IntensityMeasure::Pga), a);
+    near(of(IntensityMeasure::Rms), a / 2.0_f64.sqrt());
+    // Every second holds |a| above the threshold, so the standardized CAV is the whole.
+    near(of(IntensityMeasure::CavStandardized), 2.0 / pi * a * n * t);
+    // Squared sines build up evenly: 5 % to 95 % takes nine tenths of the time, within a ripple of
+    // a quarter period.
+    assert!((of(IntensityMeasure::D5_95) - 0.9 * n * t).abs() < 0.25 * t);
+    // From the first crossing of 0.05 g to the last.
+    let crossing = (1.0_f64 / 6.0).asin() / TAU * t;
+    near(of(IntensityMeasure::BRACKETED), n * t - 2.0 * crossing);
+    assert!((of(IntensityMeasure::MeanPeriod) / t - 1.0).abs() < 0.02); // measured 0.01
+}
+
+#[test]
+fn the_spectrum_goes_to_pga_at_short_periods_and_to_pgd_at_long_ones() {
+    let pulse = Pulse::Ricker { acceleration: 3.0, period: 0.5 };
+    let motion = barrelstack_motion::History::Analytic(pulse).sampled(0.002).unwrap();
+    let at = |period: f64| {
+        response_subdivided(motion.time_step(), motion.acceleration(), period, 0.05, 4).unwrap()
+    };
+    let pga = motion.pga();
+    assert_eq!(at(0.0).pseudo_acceleration, pga);
+    assert!((at(0.01).pseudo_acceleration / pga - 1.0).abs() < 1e-3);
+    assert!((at(200.0).displacement / motion.pgd() - 1.0).abs() < 0.02);
+}
+
+#[test]
+fn the_recursion_is_the_exact_solution_of_a_ramp_at_any_step() {
+    // u'' + 2 z w u' + w^2 u = -k t from rest, in closed form.
+    for (period, damping) in [(0.5, 0.05), (3.0, 0.2), (1.0, 0.0), (0.05, 0.7)] {
+        let w = TAU / period;
+        let exact = |t: f64| {
+            let wd = w * (1.0_f64 - damping * damping).sqrt();
+            let (c1, k) = (2.0 * damping / (w * w * w), -1.0 / (w * w));
+            let decay = (-damping * w * t).exp();
+            let particular = k * t + c1;
+            // Homogeneous part with u(0) = 0 and u'(0) = 0.
+            let b = (-k - damping * w * c1) / wd;
+            particular + decay * (-c1 * (wd * t).cos() + b * (wd * t).sin())
+        };
+        for step in [1e-4, 1e-2, 0.3] {
+            let samples = 40;
+            let a: Vec<f64> = (0..=samples).map(|n| f64::from(n) * step).collect();
+            let peak = response(step, &a, period, damping).unwrap().displacement;
+            let truth = (1..=samples).map(|n| exact(f64::from(n) * step).abs()).fold(0.0, f64::max);
+            let off = (peak / truth - 1.0).abs();
+            assert!(off < 1e-8, "T {period}, z {damping}, step {step}: {off:e}"); // measured 2e-10
+        }
+    }
+}
+
+#[test]
+fn fourier_amplitudes_hold_the_energy() {
+    let motion = sine(1.0, 0.5, 13, 50);
+    let spectrum = FourierSpectrum::new(motion.time_step(), motion.acceleration());
+    let df = spectrum.frequency[1];
+    let in_frequency: f64 = 2.0
+        * df
+        * spectrum.amplitude[1..spectrum.amplitude.len() - 1].iter().map(|c| c * c).sum::<f64>()
+        + df * spectrum.amplitude[0].powi(2)
+        + df * spectrum.amplitude[spectrum.amplitude.len() - 1].powi(2);
+    let in_time: f64 =
+        motion.time_step() * motion.acceleration().iter().map(|a| a * a).sum::<f64>();
+    assert!((in_frequency / in_time - 1.0).abs() < 1e-12); // measured 4e-16
+}
+
+#[test]
+fn rotated_peaks_of_known_paths() {
+    let circle = |k: i32| TAU * f64::from(k) / 7200.0;
+    let x: Vec<f64> = (0..7200).map(|k| circle(k).cos()).collect();
+    let y: Vec<f64> = (0..7200).map(|k| circle(k).sin()).collect();
+    let round = rotated_peak(&x, &y);
+    assert!((round.median - 1.0).abs() < 1e-6 && (round.largest - 1.0).abs() < 1e-6);
+    // Along one line at 30 degrees: the largest is the amplitude, the median its cosine at 45.
+    let (s, c) = 30.0_f64.to_radians().sin_cos();
+    let x: Vec<f64> = (0..100).map(|k| c * (0.1 * f64::from(k)).sin()).collect();
+    let y: Vec<f64> = (0..100).map(|k| s * (0.1 * f64::from(k)).sin()).collect();
+    let line = rotated_peak(&x, &y);
+    let amplitude = (0..100).map(|k| (0.1 * f64::from(k)).sin().abs()).fold(0.0, f64::max);
+    assert!((line.largest - amplitude).abs() < 1e-12);
+    assert_eq!(line.angle, 30.0);
+    assert!((line.median / amplitude - 45.0_f64.to_radians().cos()).abs() < 0.01);
+    assert!(line.smallest < 0.01 * amplitude);
+}
+
+#[test]
+fn a_rotated_spectrum_lies_between_the_components_of_a_pair() {
+    let one = sine(2.0, 0.4, 10, 40);
+    let zero = vec![0.0; one.acceleration().len()];
+    let periods = [0.0, 0.2, 0.4, 1.0];
+    let rotated =
+        rotated_spectrum(one.time_step(), one.acceleration(), &zero, &periods, 0.05).unwrap();
+    for (period, peak) in periods.iter().zip(rotated) {
+        let single = response(one.time_step(), one.acceleration(), *period, 0.05).unwrap();
+        assert!((peak.largest / single.pseudo_acceleration - 1.0).abs() < 1e-12);
+        let ratio = peak.median / peak.largest;
+        assert!((ratio - 0.5_f64.sqrt()).abs() < 0.01, "{ratio}");
+    }
+}
+
+#[test]
+fn a_pulse_is_found_in_noise_with_its_period_and_amplitude() {
+    for (period, gamma, phase, start) in
+        [(1.2, 1.6, 0.5, 3.0), (2.5, 2.0, -1.0, 4.0), (0.8, 2.6, 2.0, 6.5)]
+    {
+        let pulse = Pulse::MavroeidisPapageorgiou { velocity: 0.9, period, gamma, phase };
+        let noise = |t: f64| 0.6 * (TAU * 5.3 * t).sin() + 0.5 * (TAU * 8.7 * t + 1.0).cos();
+        let a: Vec<f64> = (0..4000)
+            .map(|k| {
+                let t = f64::from(k) * 0.005;
+                pulse.at(t - start).acceleration + noise(t)
+            })
+            .collect();
+        let motion = Sampled::new(0.005, a).unwrap();
+        let fit = dominant_pulse(&motion, 0.4, 6.0).unwrap();
+        println!("{fit:?}");
+        assert!((fit.period / period - 1.0).abs() < 0.05, "{period}: {fit:?}");
+        assert!((fit.amplitude / 0.9 - 1.0).abs() < 0.05, "{fit:?}");
+        assert!((fit.start - start).abs() < 0.1 * period, "{fit:?}");
+        assert!(fit.energy_share > 0.8 && fit.energy_share <= 1.0, "{fit:?}");
+    }
+    let still = Sampled::new(0.01, vec![0.0; 100]).unwrap();
+    assert!(dominant_pulse(&still, 0.5, 5.0).is_err());
+}
+
+#[test]
+fn measures_print_and_parse_alike() {
+    for text in [
+        "pga",
+        "pgv",
+        "pgd",
+        "pgv/pga",
+        "arias",
+        "cav",
+        "cav-std",
+        "d5-95",
+        "d5-75",
+        "rms",
+        "housner(0.2)",
+        "asi",
+        "vsi",
+        "tm",
+        "fajfar",
+        "sa(1,0.05)",
+        "sa(0.35,0.02)",
+        "bracketed(0.5)",
+    ] {
+        let measure: IntensityMeasure = text.parse().unwrap();
+        assert_eq!(measure.to_string(), text);
+    }
+    assert_eq!(
+        "SA(2.0)".parse::<IntensityMeasure>().unwrap(),
+        IntensityMeasure::Sa { period: 2.0, damping: 0.05 }
+    );
+    for text in ["", "pgx", "sa(-1)", "sa(1,2)", "d95-5", "sa(1", "dx-y"] {
+        assert!(text.parse::<IntensityMeasure>().is_err(), "{text}");
+    }
+}

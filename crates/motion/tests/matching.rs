@@ -1,0 +1,171 @@
+//! Matched motions follow their target and come to rest; target spectra have their code values.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by unwrap and tells by print"
+)]
+
+use barrelstack_motion::{
+    ChileanZone, Component, GroundMotion, History, MatchMethod, Matching, NCh2745Soil, Processing,
+    STANDARD_GRAVITY, SiteClass, TargetSpectrum, bundled, response,
+};
+
+/// The first 20 s of the bundled record, to keep the tests quick.
+fn napa() -> GroundMotion {
+    let mut record = bundled("napa-college-2014").unwrap();
+    for channel in &mut record.channels {
+        channel.acceleration.truncate(4000);
+    }
+    record
+        .ground_motion(&Component::Horizontal1, Some(&Component::Vertical), &Processing::compact())
+        .unwrap()
+}
+
+fn targets() -> Vec<TargetSpectrum> {
+    vec![
+        TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0 },
+        TargetSpectrum::Eurocode8 {
+            ground_acceleration: 0.3,
+            site: SiteClass::B,
+            small_magnitude: false,
+            damping: 0.05,
+        },
+        TargetSpectrum::NCh433 { zone: ChileanZone::Three, site: SiteClass::D },
+        TargetSpectrum::NCh2745 { zone: ChileanZone::Two, soil: NCh2745Soil::II },
+        TargetSpectrum::Nzs1170 {
+            hazard: 0.4,
+            return_period: 1.0,
+            site: SiteClass::C,
+            fault_distance: None,
+        },
+    ]
+}
+
+/// Largest misfit on a grid of its own, finer than the matched one.
+fn misfit(motion: &GroundMotion, target: &TargetSpectrum) -> f64 {
+    let History::Sampled(sampled) = &motion.horizontal else {
+        panic!("a matched motion is sampled")
+    };
+    (0..=300)
+        .map(|k| {
+            let period = 0.1 * 30.0_f64.powf(f64::from(k) / 300.0);
+            let peaks =
+                response(sampled.time_step(), sampled.acceleration(), period, 0.05).unwrap();
+            (peaks.pseudo_acceleration / target.acceleration(period) - 1.0).abs()
+        })
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn both_methods_meet_every_code_spectrum_and_do_not_drift() {
+    let start = napa();
+    for (k, target) in targets().into_iter().enumerate() {
+        // Both methods on the first; each code once, to stay within seconds.
+        let methods = match k {
+            0 => vec![MatchMethod::Frequency, MatchMethod::Time],
+            _ if k % 2 == 0 => vec![MatchMethod::Frequency],
+            _ => vec![MatchMethod::Time],
+        };
+        for method in methods {
+            let settings = Matching { method, ..Matching::default() };
+            let matched = start.match_spectrum(&target, &settings).unwrap();
+            let between = misfit(&matched.motion, &target);
+            println!("{method:?}: {:.3} at its periods, {between:.3} between", matched.misfit);
+            assert!(matched.misfit <= 0.05);
+            assert!(between <= 0.053, "{method:?} {target:?}: {between}"); // measured 0.0512
+            let motion = &matched.motion;
+            let end = motion.horizontal.at(motion.horizontal.duration());
+            assert!(end.velocity.abs() < 1e-3 * motion.pgv());
+            assert!(end.displacement.abs() < 1e-2 * motion.pgd());
+            assert!(motion.provenance.iter().any(|step| step.contains("matched in")));
+            assert!(motion.vertical.is_some());
+        }
+    }
+}
+
+#[test]
+fn a_table_is_matched_like_a_code() {
+    let table: Vec<(f64, f64)> =
+        [0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0].iter().map(|t| (*t, 6.0 / (1.0 + 3.0 * t))).collect();
+    let target = TargetSpectrum::Table(table);
+    let matched = napa().match_spectrum(&target, &Matching::default()).unwrap();
+    assert!(matched.misfit <= 0.05);
+}
+
+#[test]
+fn impossible_matches_are_refused_in_words() {
+    let motion = napa();
+    let target = &targets()[0];
+    let short = Matching { shortest: 0.001, ..Matching::default() };
+    assert!(motion.match_spectrum(target, &short).unwrap_err().to_string().contains("four steps"));
+    let hopeless = Matching { tolerance: 1e-6, rounds: 2, ..Matching::default() };
+    let error = motion.match_spectrum(target, &hopeless).unwrap_err().to_string();
+    assert!(error.contains("misfit"), "{error}");
+    let bad = TargetSpectrum::Table(vec![(1.0, 1.0), (0.5, 1.0)]);
+    assert!(motion.match_spectrum(&bad, &Matching::default()).is_err());
+}
+
+#[test]
+fn code_spectra_have_their_published_ordinates() {
+    let g = STANDARD_GRAVITY;
+    let near = |value: f64, expected: f64| {
+        assert!((value / expected - 1.0).abs() < 2e-3, "{value} against {expected}");
+    };
+    let asce = TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0 };
+    for (t, a) in [(0.0, 0.4), (0.06, 0.7), (0.3, 1.0), (1.2, 0.5), (16.0, 0.6 * 8.0 / 256.0)] {
+        near(asce.acceleration(t), a * g);
+    }
+    let ec8 = TargetSpectrum::Eurocode8 {
+        ground_acceleration: 0.2,
+        site: SiteClass::C,
+        small_magnitude: false,
+        damping: 0.05,
+    };
+    for (t, a) in [(0.0, 0.23), (0.4, 0.575), (1.2, 0.2875), (4.0, 0.575 * 0.6 * 2.0 / 16.0)] {
+        near(ec8.acceleration(t), a * g);
+    }
+    // alpha(T0) = (1 + 4.5)/2.
+    let nch = TargetSpectrum::NCh433 { zone: ChileanZone::Three, site: SiteClass::D };
+    near(nch.acceleration(0.75), 1.2 * 0.4 * 2.75 * g);
+    near(nch.acceleration(0.0), 1.2 * 0.4 * g);
+    // The branches meet within the rounding of the code's plateaus.
+    for soil in [NCh2745Soil::I, NCh2745Soil::II, NCh2745Soil::III] {
+        let spectrum = TargetSpectrum::NCh2745 { zone: ChileanZone::Two, soil };
+        let mut previous = spectrum.acceleration(0.01);
+        for k in 1..4000 {
+            let here = spectrum.acceleration(0.01 + 0.001 * f64::from(k));
+            assert!((here / previous - 1.0).abs() < 0.05);
+            previous = here;
+        }
+    }
+    near(
+        TargetSpectrum::NCh2745 { zone: ChileanZone::Three, soil: NCh2745Soil::II }
+            .acceleration(0.3),
+        1.25 * 11.0,
+    );
+    let nzs = |site, t| {
+        TargetSpectrum::Nzs1170 { hazard: 1.0, return_period: 1.0, site, fault_distance: None }
+            .acceleration(t)
+            / g
+    };
+    for (site, t, shape) in [
+        (SiteClass::B, 0.5, 1.60),
+        (SiteClass::B, 2.0, 0.53),
+        (SiteClass::C, 0.2, 2.93),
+        (SiteClass::C, 1.0, 1.19),
+        (SiteClass::C, 4.0, 0.25),
+        (SiteClass::D, 0.56, 3.0),
+        (SiteClass::D, 1.5, 1.43),
+        (SiteClass::E, 1.5, 2.21),
+    ] {
+        assert!((nzs(site, t) - shape).abs() < 0.013, "{site:?} {t}: {}", nzs(site, t));
+    }
+    let ac = TargetSpectrum::Ac156 { sds: 1.0, height_ratio: 1.0 };
+    for (f, a) in [(2.0, 1.6), (8.3, 1.6), (33.3, 1.2), (50.0, 1.2)] {
+        near(ac.acceleration(1.0 / f), a * g);
+    }
+    let ground = TargetSpectrum::Ac156 { sds: 1.0, height_ratio: 0.0 };
+    near(ground.acceleration(0.2), g);
+    near(ground.acceleration(0.01), 0.4 * g);
+}

@@ -1,0 +1,149 @@
+//! The steps of the test command: announced, run in order, stopped at the first failure.
+
+use std::ffi::OsString;
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use anyhow::{Context as _, bail};
+
+use crate::browser;
+use crate::tally::Tally;
+
+/// One command and what to do when it fails.
+struct Step {
+    /// The command, after `cargo`.
+    arguments: &'static [&'static str],
+    /// Whether warnings of the documentation are errors.
+    strict_docs: bool,
+    /// The next move after a failure.
+    remedy: &'static str,
+}
+
+/// Cheap steps first, so that a slip shows before anything is compiled.
+const STEPS: [Step; 5] = [
+    Step {
+        arguments: &["fmt", "--all", "--check"],
+        strict_docs: false,
+        remedy: "run `cargo fmt --all`",
+    },
+    Step {
+        arguments: &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"],
+        strict_docs: false,
+        remedy: "see the lint above",
+    },
+    Step {
+        arguments: &["doc", "--workspace", "--no-deps"],
+        strict_docs: true,
+        remedy: "see the warning of rustdoc above",
+    },
+    Step {
+        arguments: &["test", "--workspace"],
+        strict_docs: false,
+        remedy: "see the failed test above",
+    },
+    Step {
+        arguments: &["test", "--workspace", "--release"],
+        strict_docs: false,
+        remedy: "see the failed test above; it passes without --release",
+    },
+];
+
+/// Runs all steps; the last line printed is the sum of all closing lines of the test runners.
+pub(crate) fn test() -> anyhow::Result<()> {
+    let root = root();
+    let start = Instant::now();
+    let mut total = Tally::default();
+    let browser = browser::find(&root);
+    let count = STEPS.len() + usize::from(browser.is_some());
+    let mut closing = Vec::new();
+    for (index, step) in STEPS.iter().enumerate() {
+        let name = format!("cargo {}", step.arguments.join(" "));
+        let heading = format!("step {} of {count}: {name}", index + 1);
+        println!("\n== {heading}");
+        let mut command = Command::new(cargo());
+        command.args(step.arguments).current_dir(&root);
+        if step.strict_docs {
+            command.env("RUSTDOCFLAGS", "-D warnings");
+        }
+        let (passed, tally) = watched(&mut command).with_context(|| format!("{heading} failed"))?;
+        total.add(tally);
+        closing.extend((tally != Tally::default()).then(|| format!("{name}: {tally}")));
+        if !passed {
+            close(&closing, total, start);
+            bail!("{heading} failed: {}", step.remedy);
+        }
+    }
+    if let Some(check) = browser {
+        let heading = format!("step {count} of {count}: {}", browser::NAME);
+        println!("\n== {heading}");
+        match check.command() {
+            Err(reason) => {
+                println!("skipped: {reason}");
+                total.skipped += 1;
+                closing.push(format!("{}: skipped, {reason}", browser::NAME));
+            }
+            Ok(mut command) => {
+                let (passed, tally) =
+                    watched(&mut command).with_context(|| format!("{heading} failed"))?;
+                total.add(tally);
+                closing.push(format!("{}: {tally}", browser::NAME));
+                if !passed {
+                    close(&closing, total, start);
+                    bail!("{heading} failed: see above");
+                }
+            }
+        }
+    }
+    close(&closing, total, start);
+    Ok(())
+}
+
+/// The sum of each step that ran tests, then the sum of all, alone on its line.
+///
+/// Says nothing where no test ran: `0 passed, 0 failed` would read like a success.
+fn close(closing: &[String], total: Tally, start: Instant) {
+    if closing.is_empty() {
+        return;
+    }
+    println!("\n== closing lines, after {:.0} s", start.elapsed().as_secs_f64());
+    for line in closing {
+        println!("{line}");
+    }
+    println!("{total}");
+}
+
+/// Runs a command with its output passed on as it comes; says whether it succeeded, and what the
+/// test runners in it counted.
+fn watched(command: &mut Command) -> anyhow::Result<(bool, Tally)> {
+    let program = Path::new(command.get_program()).display().to_string();
+    let mut child = command
+        .stdout(Stdio::piped())
+        .spawn()
+        .with_context(|| format!("cannot start {program}: is it installed and on the PATH?"))?;
+    let mut lines = Vec::new();
+    if let Some(output) = child.stdout.take() {
+        let mut shown = std::io::stdout().lock();
+        for line in BufReader::new(output).split(b'\n') {
+            let line = line.context("cannot read the output")?;
+            shown.write_all(&line)?;
+            shown.write_all(b"\n")?;
+            shown.flush()?;
+            lines.push(String::from_utf8_lossy(&line).into_owned());
+        }
+    }
+    let passed = child.wait()?.success();
+    Ok((passed, Tally::of(lines.iter().map(String::as_str))))
+}
+
+/// The cargo that started this program, so that a chosen toolchain stays chosen.
+fn cargo() -> OsString {
+    std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
+}
+
+/// The root of the repository, from wherever the task is started.
+fn root() -> PathBuf {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR"));
+    own.parent().unwrap_or(own).to_path_buf()
+}
