@@ -119,10 +119,8 @@ fn broken(name: &str, error: &CaseError) -> Problem {
 /// When the scenario or the table of the answer is not one.
 pub fn read(name: &str, text: &str) -> Result<Problem, CaseError> {
     let file = format!("{name}.toml");
-    let refuse = |problem: &dyn fmt::Display| CaseError {
-        file: file.clone(),
-        problem: problem.to_string(),
-    };
+    let refuse =
+        |problem: &dyn fmt::Display| CaseError { file: file.clone(), problem: problem.to_string() };
     let Some((scene, answer)) = text.split_once("\n[expect]\n") else {
         return Err(refuse(&"expected a line `[expect]` after the scenario, found none"));
     };
@@ -190,7 +188,8 @@ fn answer_of(file: &str, scene: &str, expect: &Expect, effort: Effort) -> Result
         _ => {
             let (run, body) = run(&[])?;
             let frames = &run.recording.frames;
-            let crossing = frames.poses.windows(2).position(|w| w[0][body][2] * w[1][body][2] <= 0.0);
+            let crossing =
+                frames.poses.windows(2).position(|w| w[0][body][2] * w[1][body][2] <= 0.0);
             let Some(i) = crossing else {
                 return Err(Failure::Absent("the body is never upright".into()));
             };

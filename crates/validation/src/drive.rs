@@ -103,10 +103,9 @@ impl Shake {
                 a / omega * (during - sin(omega * during) / omega),
                 a / omega * (1.0 - cos(omega * during)),
             ),
-            Self::Cosine { acceleration: a, omega } => (
-                a / (omega * omega) * (1.0 - cos(omega * during)),
-                a / omega * sin(omega * during),
-            ),
+            Self::Cosine { acceleration: a, omega } => {
+                (a / (omega * omega) * (1.0 - cos(omega * during)), a / omega * sin(omega * during))
+            }
             Self::Harmonic { acceleration: a, omega } => {
                 (-a / (omega * omega) * sin(omega * t), -a / omega * cos(omega * t))
             }

@@ -48,8 +48,9 @@ fn request(mut args: impl Iterator<Item = String>) -> Result<Request, String> {
             "--fast" => request.effort = Effort::Fast,
             "--threads" => {
                 let text = value()?;
-                request.threads =
-                    text.parse().map_err(|_| format!("--threads: expected a number, found {text:?}"))?;
+                request.threads = text
+                    .parse()
+                    .map_err(|_| format!("--threads: expected a number, found {text:?}"))?;
             }
             option if option.starts_with('-') => return Err(format!("unknown {option}; {USAGE}")),
             case => request.cases.push(PathBuf::from(case)),

@@ -60,8 +60,7 @@ impl Rocker {
         push: &impl Fn(f64) -> f64,
     ) -> (f64, f64) {
         let inset = 1e-9 * length;
-        let pushes =
-            [push(from + inset), push(from + 0.5 * length), push(from + length - inset)];
+        let pushes = [push(from + inset), push(from + 0.5 * length), push(from + length - inset)];
         let rate = |theta: f64, at: usize| self.spin_rate(theta, side, pushes[at]);
         let h = length;
         let (k1, l1) = (spin, rate(theta, 0));
@@ -222,7 +221,8 @@ mod tests {
     fn it_shows_the_closed_forms_without_impact() {
         let rocker = Rocker { alpha: 0.25, rate: 2.14, restitution: 0.9, slender: true };
         for ratio in [2.0, 3.0, 5.0] {
-            let half = |a: f64| Shake::Sine { acceleration: a, omega: ratio * 2.14, half_waves: 1.0 };
+            let half =
+                |a: f64| Shake::Sine { acceleration: a, omega: ratio * 2.14, half_waves: 1.0 };
             let exact = crate::theory::half_sine_overturning(ratio);
             let found = border(&rocker, half, (0.9 * exact, 1.1 * exact));
             assert!((found / exact - 1.0).abs() < 1e-4, "{found} for {exact}"); // measured 1e-5

@@ -118,8 +118,8 @@ fn said(row: &Row) -> String {
 }
 
 fn table<'a>(theory: &str, rows: impl Iterator<Item = (&'a Problem, &'a Row)>) -> Table {
-    let columns =
-        ["problem", "unit", "exact", "ours", "error", "tolerance", "order", ""].map(|name| (name, ""));
+    let columns = ["problem", "unit", "exact", "ours", "error", "tolerance", "order", ""]
+        .map(|name| (name, ""));
     let mut table = Table::new(heading(theory), &columns);
     for (problem, row) in rows {
         let (value, order) = match &row.answer {
@@ -143,8 +143,7 @@ fn table<'a>(theory: &str, rows: impl Iterator<Item = (&'a Problem, &'a Row)>) -
 
 fn note(problem: &Problem, row: &Row) -> String {
     let name = problem.id.split_once('/').map_or(problem.id.as_str(), |(_, name)| name);
-    let mut text =
-        format!("{name}: {}; {} ({})", problem.title, problem.quantity, problem.source);
+    let mut text = format!("{name}: {}; {} ({})", problem.title, problem.quantity, problem.source);
     match &row.answer {
         Ok(outcome) if outcome.note.is_empty() => {}
         Ok(outcome) => {

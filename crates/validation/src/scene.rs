@@ -107,7 +107,8 @@ pub fn block(
 
 /// Boundary nodes as the nodes of a body whose shape is centered.
 pub fn fixed(nodes: &[BoundaryNode]) -> Nodes<Planar> {
-    let node = |n: &BoundaryNode| Node { position: n.position, tributary_length: n.tributary_length };
+    let node =
+        |n: &BoundaryNode| Node { position: n.position, tributary_length: n.tributary_length };
     Nodes::Fixed(nodes.iter().map(node).collect())
 }
 
@@ -122,7 +123,11 @@ pub fn interface(normal: NormalLaw, friction: FrictionLaw) -> Interface<Planar> 
 }
 
 /// Coulomb friction with one coefficient.
-pub fn coulomb(coefficient: f64, tangential_stiffness: f64, tangential_damping: f64) -> FrictionLaw {
+pub fn coulomb(
+    coefficient: f64,
+    tangential_stiffness: f64,
+    tangential_damping: f64,
+) -> FrictionLaw {
     FrictionLaw::Coulomb {
         static_coefficient: coefficient,
         kinetic_coefficient: coefficient,

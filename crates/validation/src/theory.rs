@@ -134,7 +134,11 @@ pub fn lift_off_lost(damping_ratio: f64) -> f64 {
     let (mut low, mut high) = (0.0, 10.0);
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
-        if rebound_under_gravity(damping_ratio, middle).is_some() { low = middle } else { high = middle }
+        if rebound_under_gravity(damping_ratio, middle).is_some() {
+            low = middle
+        } else {
+            high = middle
+        }
     }
     0.5 * (low + high)
 }

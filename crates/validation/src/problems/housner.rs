@@ -21,7 +21,7 @@ pub(super) fn firm(effort: Effort, radius: f64, alpha: f64) -> RockingBlock {
 /// A slender block, for closed forms that take angles as small; stiff, so that its sinking stays small
 /// beside its angles.
 pub(super) fn slender(effort: Effort, radius: f64) -> RockingBlock {
-    let stiffer = if effort == Effort::Full { 5.0 } else { 2.0 };
+    let stiffer = if effort == Effort::Full { 2.5 } else { 2.0 };
     RockingBlock {
         contact_frequency: stiffer * contact_frequency(effort),
         ..firm(effort, radius, 0.03)
@@ -89,7 +89,9 @@ fn ratio(alpha: f64) -> Problem {
         tolerance: Tolerance::Relative(1e-3),
         fast: Some(Tolerance::Relative(5e-3)),
         run: Box::new(move |effort| {
-            refine(effort, exact, |level| firm(effort, 1.0, alpha).refined(level - 1).restitution(0.5))
+            refine(effort, exact, |level| {
+                firm(effort, 1.0, alpha).refined(level - 1).restitution(0.5)
+            })
         }),
     }
 }
@@ -177,8 +179,7 @@ fn uplift(alpha: f64, vertical: f64) -> Problem {
             let bracket = (0.98 * exact, 1.02 * exact);
             let found = border(bracket, halvings(effort), |push| {
                 let ramped = |acceleration| Shake::Ramped { acceleration, ramp: 0.2 };
-                let drive =
-                    Both { x: ramped(push * GRAVITY), z: ramped(vertical * GRAVITY) };
+                let drive = Both { x: ramped(push * GRAVITY), z: ramped(vertical * GRAVITY) };
                 let mut scene = block.scene(0.0)?;
                 scene.run(&drive, block.step(), 0.6)?;
                 Ok(scene.state.poses[1].orientation.abs() > 2e-4)

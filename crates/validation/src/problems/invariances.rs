@@ -5,9 +5,7 @@ use barrelstack_dynamics::{
 };
 
 use crate::drive::Shake;
-use crate::scene::{
-    DOWN, Scene, all_pairs, block, coulomb, disc, floor, interface, points, pose,
-};
+use crate::scene::{DOWN, Scene, all_pairs, block, coulomb, disc, floor, interface, points, pose};
 use crate::{Effort, Failure, Outcome, Problem, Tolerance};
 
 const SOURCE: &str = "symmetry of mechanics; validation.md 4.9";
@@ -307,7 +305,10 @@ fn books() -> Problem {
             Ok(Outcome {
                 value: errors[2],
                 order: Some((errors[0] / errors[2]).log2() / 2.0),
-                note: format!("steps 20, 10, 5 µs: {:.1e}, {:.1e}, {:.1e}", errors[0], errors[1], errors[2]),
+                note: format!(
+                    "steps 20, 10, 5 µs: {:.1e}, {:.1e}, {:.1e}",
+                    errors[0], errors[1], errors[2]
+                ),
             })
         }),
     }

@@ -23,12 +23,10 @@ const RADIUS: f64 = 0.1;
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     let table = [0.05, 0.0676, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 2.0];
-    let speed_gap = [
-        0.926_69, 0.903_17, 0.862_60, 0.756_13, 0.671_55, 0.546_29, 0.458_57, 0.367_88, 0.218_56,
-    ];
-    let kelvin_voigt = [
-        0.858_76, 0.815_71, 0.744_08, 0.571_74, 0.450_98, 0.298_44, 0.210_28, 0.135_34, 0.047_77,
-    ];
+    let speed_gap =
+        [0.926_69, 0.903_17, 0.862_60, 0.756_13, 0.671_55, 0.546_29, 0.458_57, 0.367_88, 0.218_56];
+    let kelvin_voigt =
+        [0.858_76, 0.815_71, 0.744_08, 0.571_74, 0.450_98, 0.298_44, 0.210_28, 0.135_34, 0.047_77];
     for (zeta, exact) in table.into_iter().zip(speed_gap) {
         list.push(rebound(Corner::SpeedGap, zeta, exact));
     }
@@ -36,9 +34,8 @@ pub(super) fn problems() -> Vec<Problem> {
         list.push(rebound(Corner::KelvinVoigt, zeta, exact));
     }
     list.extend(table.map(contact_time));
-    let inverse = [
-        (0.1, 4.807), (0.3, 1.336), (0.5, 0.5973), (0.7, 0.2639), (0.9, 0.0700), (0.95, 0.0333),
-    ];
+    let inverse =
+        [(0.1, 4.807), (0.3, 1.336), (0.5, 0.5973), (0.7, 0.2639), (0.9, 0.0700), (0.95, 0.0333)];
     list.extend(inverse.map(|(e, zeta)| inverted(e, zeta)));
     for (zeta, gamma) in [(0.0676, 0.1), (0.0676, 0.5), (0.3, 0.1), (0.3, 0.5)] {
         list.push(under_gravity(zeta, gamma));
@@ -193,8 +190,7 @@ fn stays(zeta: f64) -> Problem {
         fast: Some(Tolerance::Relative(1.2e-2)),
         run: Box::new(move |effort| {
             let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |gamma| {
-                let mut scene =
-                    striking(Corner::SpeedGap, zeta, GRAVITY / (OMEGA * gamma), DOWN)?;
+                let mut scene = striking(Corner::SpeedGap, zeta, GRAVITY / (OMEGA * gamma), DOWN)?;
                 // Every later swing is lower than the first.
                 Ok(leaving(&mut scene, step(0), 8.0 / OMEGA)?.is_none())
             })?;

@@ -53,11 +53,7 @@ fn roller(ratio: f64, friction: f64, gravity: Vec2, level: i32) -> Result<Scene,
 }
 
 /// Mean acceleration (m/s²) of the center between 0.5 s and 1 s.
-fn acceleration(
-    scene: &mut Scene,
-    drive: &impl Drive<Planar>,
-    level: i32,
-) -> Result<f64, Failure> {
+fn acceleration(scene: &mut Scene, drive: &impl Drive<Planar>, level: i32) -> Result<f64, Failure> {
     scene.run(drive, step(level), 0.5)?;
     let before = scene.state.twists[1].linear.x;
     scene.run(drive, step(level), 1.0)?;

@@ -23,7 +23,8 @@ const STIFFNESS: f64 = 1e6;
 /// The problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let (a, n, duration) = (0.5, 0.2, 0.4);
-    let half_sine = Shake::Sine { acceleration: a * GRAVITY, omega: PI / duration, half_waves: 1.0 };
+    let half_sine =
+        Shake::Sine { acceleration: a * GRAVITY, omega: PI / duration, half_waves: 1.0 };
     let mut list = vec![
         slide(
             "rectangular",

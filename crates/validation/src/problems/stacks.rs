@@ -74,9 +74,9 @@ fn least_ratio(sizes: &[(f64, f64)]) -> (f64, usize) {
         let half = 0.5 * sizes[k].0.min(below) - INSET;
         half / (sum / above.len() as f64)
     };
-    (0..sizes.len()).map(|k| (joint(k), k)).fold((f64::INFINITY, 0), |least, one| {
-        if one.0 < least.0 { one } else { least }
-    })
+    (0..sizes.len())
+        .map(|k| (joint(k), k))
+        .fold((f64::INFINITY, 0), |least, one| if one.0 < least.0 { one } else { least })
 }
 
 fn opens(name: &str, sizes: &'static [(f64, f64)]) -> Problem {
@@ -169,11 +169,8 @@ fn patterns() -> Problem {
             let mut times = [0.0; 4];
             for strength in [0.6, 0.8, 1.0] {
                 let mut scene = tower(&[(0.5, 1.0), (0.45, 1.0)], (5.0, 5.0))?;
-                let drive = Shake::Sine {
-                    acceleration: strength * GRAVITY,
-                    omega: 9.0,
-                    half_waves: 2.0,
-                };
+                let drive =
+                    Shake::Sine { acceleration: strength * GRAVITY, omega: 9.0, half_waves: 2.0 };
                 let step = if effort == Effort::Full { STEP } else { 1.5 * STEP };
                 scene.watch(&drive, step, 2.0, |state, _| {
                     let (lower, upper) = (state.poses[1].orientation, state.poses[2].orientation);

@@ -65,9 +65,8 @@ fn maxima(effort: Effort) -> Result<(Vec<f64>, Vec<f64>), Failure> {
 
 /// The largest vertical distance of two distributions of equally many samples.
 fn distance(a: &[f64], b: &[f64]) -> f64 {
-    let share = |of: &[f64], at: f64| {
-        of.iter().filter(|x| **x <= at).count() as f64 / of.len() as f64
-    };
+    let share =
+        |of: &[f64], at: f64| of.iter().filter(|x| **x <= at).count() as f64 / of.len() as f64;
     a.iter().chain(b).map(|at| (share(a, *at) - share(b, *at)).abs()).fold(0.0, f64::max)
 }
 
@@ -82,7 +81,8 @@ fn median(of: &[f64]) -> f64 {
 pub(super) fn problems() -> Vec<Problem> {
     vec![Problem {
         id: "statistics/maxima".into(),
-        title: "block of α = 0.25, R = 1 m under 200 synthetic records (10 in the fast form)".into(),
+        title: "block of α = 0.25, R = 1 m under 200 synthetic records (10 in the fast form)"
+            .into(),
         source: SOURCE.into(),
         quantity: "Kolmogorov–Smirnov distance of the maxima to those of the rigid block",
         unit: "",
