@@ -135,9 +135,9 @@ pub fn lift_off_lost(damping_ratio: f64) -> f64 {
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
         if rebound_under_gravity(damping_ratio, middle).is_some() {
-            low = middle
+            low = middle;
         } else {
-            high = middle
+            high = middle;
         }
     }
     0.5 * (low + high)

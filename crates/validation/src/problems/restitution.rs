@@ -1,5 +1,6 @@
 //! Restitution: the law's own, under gravity, and what a rocking block shows of it.
 
+use std::fmt::Write as _;
 use std::ops::ControlFlow;
 
 use barrelstack_dynamics::contact::restitution;
@@ -252,7 +253,8 @@ fn calibrated(target: f64) -> Problem {
             let mut note = format!("ζ = {:.4}", block.damping_ratio);
             if effort == Effort::Full {
                 for share in [0.1, 0.25, 0.9] {
-                    note += &format!("; at φ = {share}: {:.4}", block.restitution(share)?);
+                    let shown = block.restitution(share)?;
+                    let _ = write!(note, "; at φ = {share}: {shown:.4}");
                 }
             }
             Ok(Outcome::of(block.restitution(0.75)?).noted(note))
