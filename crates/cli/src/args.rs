@@ -39,6 +39,8 @@ pub(crate) enum Command {
     Check(CheckArgs),
     /// Run every case of the paper behind the model and set its numbers beside ours.
     Reproduce(ReproduceArgs),
+    /// Find contact parameters, with their uncertainty, from your own tests.
+    Calibrate(crate::commands::calibrate::CalibrateArgs),
     /// List the built-in scenarios, or print one.
     Scenarios(ScenariosArgs),
 }
