@@ -41,6 +41,8 @@ pub(crate) enum Command {
     Reproduce(ReproduceArgs),
     /// Read, look at, change and make ground motions.
     Motion(crate::commands::motion::MotionArgs),
+    /// Find contact parameters, with their uncertainty, from your own tests.
+    Calibrate(crate::commands::calibrate::CalibrateArgs),
     /// List the built-in scenarios, or print one.
     Scenarios(ScenariosArgs),
 }
