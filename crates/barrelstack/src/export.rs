@@ -1,7 +1,6 @@
 //! The files of a run, in one folder.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::report;
@@ -141,37 +140,9 @@ impl Folder {
             arrays.push((format!("{name}_vertical_force"), &joint.vertical));
             arrays.push((format!("{name}_horizontal_force"), &joint.horizontal));
         }
-        npz(&arrays).map_err(|error| self.refused("histories.npz", &error))
+        barrelstack_motion::write::archive(&arrays)
+            .map_err(|error| self.refused("histories.npz", &error))
     }
-}
-
-/// NumPy's archive: an uncompressed zip of one `.npy` for every array.
-fn npz(arrays: &[(String, &[f64])]) -> std::io::Result<Vec<u8>> {
-    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
-    // The default date of the archive is a constant, so equal runs give equal bytes.
-    let options =
-        zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
-    for (name, values) in arrays {
-        archive.start_file(format!("{name}.npy"), options)?;
-        archive.write_all(&npy(values))?;
-    }
-    Ok(archive.finish()?.into_inner())
-}
-
-/// NumPy's array format, version 1.0: a magic word, a padded description, the numbers.
-fn npy(values: &[f64]) -> Vec<u8> {
-    let mut description =
-        format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}", values.len());
-    // Magic, version, length, description and line feed together fill a multiple of 64 bytes.
-    while (10 + description.len() + 1) % 64 != 0 {
-        description.push(' ');
-    }
-    description.push('\n');
-    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
-    bytes.extend(u16::try_from(description.len()).unwrap_or(u16::MAX).to_le_bytes());
-    bytes.extend(description.as_bytes());
-    bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
-    bytes
 }
 
 /// Columns side by side, `time (s)` first.

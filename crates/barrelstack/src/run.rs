@@ -33,8 +33,8 @@ pub struct Run {
     pub stresses: Stresses,
     /// Frames and histories.
     pub recording: Recording,
-    /// The energy books at the end.
-    pub energy: EnergySummary,
+    /// The energy books at the end; none where numbers were lost.
+    pub energy: Option<EnergySummary>,
     /// How equilibrium was found; none where the scenario starts without.
     pub settled: Option<Settled>,
     /// How it was integrated.
@@ -99,6 +99,11 @@ pub enum RunFailure {
 /// Largest share of gravity that may be left unbalanced at rest.
 const SETTLE_TOLERANCE: f64 = 1e-10;
 
+/// Share of the energy that went through, missing from the books, above which a run is invalid.
+///
+/// A hundred times what leads to a warning, and a thousand times what a sound step leaves open.
+const BOOKS_BROKEN: f64 = 0.1;
+
 /// Most steps of a run; a stack takes some 10⁵ steps a second.
 const MOST_STEPS: f64 = 1e9;
 
@@ -109,7 +114,8 @@ const LOST_SHARE: f64 = 0.25;
 ///
 /// `progress` is told how far the run is every 0.05 s of simulated time and may stop it; what was seen
 /// until then is returned.
-/// A breakdown of the numbers is not an error but an outcome: [`Outcome::Invalid`].
+/// A breakdown of the numbers, or of the energy books, is not an error but an outcome:
+/// [`Outcome::Invalid`].
 ///
 /// # Errors
 /// When the motion cannot be read, the stack cannot be built, or it does not stand.
@@ -163,19 +169,25 @@ pub fn run(
     let (outcome, energy, steps) = match result {
         Ok(totals) => {
             let energy = totals.energy.summary(0);
-            warnings.extend(energy_warning(&energy));
+            let broken = energy.residual_ratio() > BOOKS_BROKEN;
+            warnings.extend(energy_warning(&energy).filter(|_| !broken));
             if interrupted && totals.finish == Finish::Stopped {
                 warnings.push(format!(
                     "the run was stopped at {:.3} s of {end_time:.3} s; the results hold until then",
                     state.time
                 ));
             }
-            let outcome = judge(&assembly, &fates);
+            let outcome = if broken {
+                Outcome::Invalid { reason: broken_books(&energy) }
+            } else {
+                judge(&assembly, &fates)
+            };
             warnings.extend(short_warning(&outcome, &ground, state.time).filter(|_| !interrupted));
-            (outcome, energy, totals.steps)
+            (outcome, Some(energy), totals.steps)
         }
-        Err(error @ RunError::NotFinite { .. }) => {
-            (Outcome::Invalid { reason: error.to_string() }, EnergySummary::default(), 0)
+        Err(error) => {
+            let RunError::NotFinite { steps, .. } = error;
+            (Outcome::Invalid { reason: error.to_string() }, None, steps)
         }
     };
     warnings.extend(creep_warning(&assembly));
@@ -313,6 +325,15 @@ fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
          ({MOST_STEPS:.0e}): shorten run.duration, or see whether run.step and the stiffness of the \
          contacts have the right unit"
     )))
+}
+
+/// Why a run whose energy books do not balance has no outcome.
+fn broken_books(energy: &EnergySummary) -> String {
+    format!(
+        "the energy books miss {:.2e} times the energy that went through, so the steps follow no \
+         motion of these bodies: leave out run.step, or try a tenth of it",
+        energy.residual_ratio()
+    )
 }
 
 fn energy_warning(energy: &EnergySummary) -> Option<String> {

@@ -1,5 +1,6 @@
 //! The summary of a run: one JSON document, the same numbers in print.
 
+use barrelstack_dynamics::EnergySummary;
 use serde::Serialize;
 
 use crate::assemble::PartKind;
@@ -26,8 +27,8 @@ pub struct Summary {
     pub demands: Demands,
     /// Forces between bodies.
     pub interfaces: Vec<JointSummary>,
-    /// The energy books.
-    pub energy: EnergyBooks,
+    /// The energy books; null where numbers were lost.
+    pub energy: Option<EnergyBooks>,
     /// What shook it.
     pub motion: Option<MotionSummary>,
     /// How it was computed.
@@ -101,8 +102,8 @@ pub struct BodySummary {
     pub mean_stress_amplification: Option<f64>,
 }
 
-/// Demands on the stack, while it stood unless said otherwise.
-#[derive(Clone, Debug, Serialize)]
+/// Demands on the stack, while it stood unless said otherwise; all null where the run is invalid.
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Demands {
     /// Largest displacement of the top barrels against the ground, over the height of the stack.
     pub top_drift_ratio: Option<f64>,
@@ -164,6 +165,24 @@ pub struct EnergyBooks {
     pub input: f64,
     /// |residual| / input.
     pub residual_ratio: f64,
+}
+
+impl EnergyBooks {
+    fn of(books: &EnergySummary) -> Self {
+        Self {
+            kinetic: books.kinetic,
+            potential: books.potential,
+            elastic: books.elastic,
+            stick: books.stick,
+            damped: books.damped,
+            friction: books.friction,
+            viscous: books.viscous,
+            ground_work: books.ground_work,
+            residual: books.residual,
+            input: books.throughput,
+            residual_ratio: books.residual_ratio(),
+        }
+    }
 }
 
 /// What shook it.
@@ -233,19 +252,7 @@ impl Summary {
             bodies: bodies(run),
             demands: demands(run),
             interfaces: joints(run),
-            energy: EnergyBooks {
-                kinetic: run.energy.kinetic,
-                potential: run.energy.potential,
-                elastic: run.energy.elastic,
-                stick: run.energy.stick,
-                damped: run.energy.damped,
-                friction: run.energy.friction,
-                viscous: run.energy.viscous,
-                ground_work: run.energy.ground_work,
-                residual: run.energy.residual,
-                input: run.energy.throughput,
-                residual_ratio: run.energy.residual_ratio(),
-            },
+            energy: run.energy.as_ref().map(EnergyBooks::of),
             motion: run.ground.motion.as_ref().map(|motion| MotionSummary {
                 name: motion.name.clone(),
                 pga: motion.pga(),
@@ -350,6 +357,10 @@ fn bodies(run: &Run) -> Vec<BodySummary> {
 }
 
 fn demands(run: &Run) -> Demands {
+    if matches!(run.outcome, Outcome::Invalid { .. }) {
+        // Numbers of a run that broke down look like results and are none.
+        return Demands::default();
+    }
     let assembly = &run.assembly;
     let of = |kind: PartKind, level: u32| {
         assembly.of_kind(kind).filter(move |body| assembly.parts[*body].level == Some(level))

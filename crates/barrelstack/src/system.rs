@@ -5,18 +5,19 @@ use std::path::Path;
 
 /// What the system says of a file, in words that a person can act on.
 pub(crate) fn words(error: &io::Error) -> String {
-    match error.kind() {
-        io::ErrorKind::NotFound => "there is no such file".into(),
-        io::ErrorKind::IsADirectory => "it is a folder, not a file".into(),
-        io::ErrorKind::NotADirectory => "a part of its path is a file, not a folder".into(),
-        io::ErrorKind::PermissionDenied => "permission is denied".into(),
-        io::ErrorKind::StorageFull => "no space is left".into(),
-        _ => {
-            let text = error.to_string();
-            // The number of the error says nothing that its words do not say.
-            text.split(" (os error").next().unwrap_or(&text).to_lowercase()
-        }
+    let known = [
+        (io::ErrorKind::NotFound, "there is no such file"),
+        (io::ErrorKind::IsADirectory, "it is a folder, not a file"),
+        (io::ErrorKind::NotADirectory, "a part of its path is a file, not a folder"),
+        (io::ErrorKind::PermissionDenied, "permission is denied"),
+        (io::ErrorKind::StorageFull, "no space is left"),
+    ];
+    if let Some((_, words)) = known.into_iter().find(|(kind, _)| *kind == error.kind()) {
+        return words.to_owned();
     }
+    let text = error.to_string();
+    // The number of the error says nothing that its words do not say.
+    text.split(" (os error").next().unwrap_or(&text).to_lowercase()
 }
 
 /// Reads a file of at most `limit` bytes, so that a device without end is refused and not read.

@@ -69,7 +69,7 @@ impl Observer<Planar> for Watch<'_> {
         scratch: &Scratch<Planar>,
         energy: &EnergyLedger<Planar>,
     ) -> ControlFlow<()> {
-        self.fates.observe(self.assembly, state);
+        self.fates.observe(self.assembly, state, scratch);
         // Envelopes are those of the standing stack: what falling barrels do to each other is another
         // question.
         if self.fates.collapse_time().is_none() {

@@ -12,7 +12,7 @@ fn barrel(name: &str, fill: &str) -> Barrel {
         "stack.rack.width=2 m".to_owned(),
     ];
     let scenario =
-        Scenario::builtin("candia-8-barrels", &overrides).unwrap_or_else(|error| panic!("{error}"));
+        Scenario::builtin("demo-napa", &overrides).unwrap_or_else(|error| panic!("{error}"));
     scenario.stack().unwrap().barrel.clone()
 }
 

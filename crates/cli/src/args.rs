@@ -39,6 +39,8 @@ pub(crate) enum Command {
     Check(CheckArgs),
     /// Run every case of the paper behind the model and set its numbers beside ours.
     Reproduce(ReproduceArgs),
+    /// Read, look at, change and make ground motions.
+    Motion(crate::commands::motion::MotionArgs),
     /// List the built-in scenarios, or print one.
     Scenarios(ScenariosArgs),
 }

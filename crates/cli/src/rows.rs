@@ -17,7 +17,7 @@ pub(crate) fn rows(run: &Run, summary: &Summary, changes: &[String]) -> Vec<Stri
     }
     row("outcome", verdict(summary));
     if matches!(run.outcome, Outcome::Invalid { .. }) {
-        row("computed", format!("until {:.3} s, then it broke down", summary.run.end_time));
+        row("computed", format!("until {:.3} s", summary.run.end_time));
         row("time step", format!("{} ms", three_digits(1e3 * summary.run.time_step)));
         return rows;
     }
@@ -37,7 +37,9 @@ pub(crate) fn rows(run: &Run, summary: &Summary, changes: &[String]) -> Vec<Stri
     }
     let demands = &summary.demands;
     if let Some(drift) = demands.top_drift_ratio {
-        row("drift of the top", format!("{} % of the height", three_digits(100.0 * drift)));
+        let drift =
+            if drift < 1e-4 { "under 0.01".to_owned() } else { three_digits(100.0 * drift) };
+        row("drift of the top", format!("{drift} % of the height"));
     }
     if let Some(amplification) = demands.stress_amplification {
         row("stress amplification", format!("{} × at rest", three_digits(amplification)));
@@ -45,15 +47,16 @@ pub(crate) fn rows(run: &Run, summary: &Summary, changes: &[String]) -> Vec<Stri
     if let Some(slip) = demands.base_slip_residual {
         row("slip of the bottom rack", moved(slip));
     }
-    let energy = &summary.energy;
-    row(
-        "energy books",
-        format!(
-            "residual {:.1e} of the {} that went through",
-            energy.residual_ratio,
-            joules(energy.input)
-        ),
-    );
+    if let Some(energy) = &summary.energy {
+        row(
+            "energy books",
+            format!(
+                "residual {:.1e} of the {} that went through",
+                energy.residual_ratio,
+                joules(energy.input)
+            ),
+        );
+    }
     row("computed", computed(summary));
     row("contact constants", format!("per {}", run.stiffness_basis()));
     rows

@@ -97,7 +97,12 @@ fn records_of_something_else() {
 #[test]
 fn peer_files_that_are_damaged() {
     refuse("cut", "a.at2", &peer(100).as_bytes()[..900], &["100"]);
-    refuse("wrong count", "a.at2", &changed("NPTS=    100", "NPTS=     99"), &["99", "100"]);
+    refuse(
+        "wrong count",
+        "a.at2",
+        &changed("NPTS=    100", "NPTS=    120"),
+        &["line 4", "120", "100"],
+    );
     refuse("no count", "a.at2", &changed("NPTS=    100", "NPTS=      x"), &["line 4", "NPTS"]);
     refuse("no step", "a.at2", &changed(".0100", "0.000"), &["step"]);
     refuse("minus step", "a.at2", &changed(".0100", "-.010"), &["step"]);
@@ -105,7 +110,7 @@ fn peer_files_that_are_damaged() {
     refuse("stars", "a.at2", &changed("  1.0000000E-1", "**************"), &["line 5", "*"]);
     refuse("nan", "a.at2", &changed("  1.0000000E-1", "           NaN"), &["line 5", "NaN"]);
     refuse("word", "a.at2", &changed("  1.0000000E-1", "        banana"), &["line 5", "banana"]);
-    refuse("huge", "a.at2", &changed("1.0000000E-1", "1.00000E+300"), &["m/s2", "unit"]);
+    refuse("huge", "a.at2", &changed("1.0000000E-1", "1.00000E+300"), &["line 5", "1e300", "unit"]);
     refuse(
         "infinite",
         "a.at2",
@@ -113,7 +118,9 @@ fn peer_files_that_are_damaged() {
         &["line 5", "1.00000E+999"],
     );
     refuse("one value", "a.at2", peer(1).as_bytes(), &["2 samples"]);
-    refuse("comma", "a.at2", &changed("1.0000000E-1", "1,0000000E-1"), &["line 5"]);
+    // A comma for the point all through the file, which makes two numbers of each.
+    let comma = peer(100).replace('.', ",").replacen(",0100", ".0100", 1);
+    refuse("comma", "a.at2", comma.as_bytes(), &["line 4", "100", "200"]);
 }
 
 #[test]
@@ -122,17 +129,16 @@ fn columns_that_leave_something_out() {
     let unit = &["motion.unit=1 g"][..];
     refuse_with("no step", "a.txt", b"0.1\n0.2\n-0.3\n0.1\n", unit, &["motion.time_step"]);
     refuse_with(
-        "uneven",
+        "back",
         "a.csv",
-        b"0.00 0.1\n0.01 0.2\n0.05 -0.3\n0.06 0.1\n",
+        b"0.00 0.1\n0.01 0.2\n0.00 -0.3\n0.01 0.1\n",
         unit,
-        &["line 3", "step"],
+        &["without time"],
     );
-    refuse_with("back", "a.csv", b"0.00 0.1\n0.01 0.2\n0.00 -0.3\n0.01 0.1\n", unit, &["line 3"]);
     refuse_with("ragged", "a.csv", b"0.00 0.1\n0.01\n0.02 -0.3\n", unit, &["line 2"]);
     refuse_with("text", "a.csv", b"0.00 0.1\n0.01 high\n0.02 -0.3\n", unit, &["line 2", "high"]);
     let still = b"0.00 0.0\n0.01 0.0\n0.02 0.0\n0.03 0.0\n";
-    refuse_with("still", "a.csv", still, unit, &["zero"]);
+    refuse_with("still", "a.csv", still, unit, &["a channel that moves"]);
 }
 
 #[test]
@@ -147,4 +153,34 @@ fn paths_that_are_no_files() {
     let missing = missing.to_str().unwrap();
     refused("missing", &with(missing), &out, &[missing, "no such file", "--record"]);
     refused("empty name", &with(""), &out, &["--record"]);
+}
+
+#[test]
+fn what_can_be_read_in_one_way_only_is_read_with_a_warning() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes, set, words) in [
+        ("a.at2", changed("NPTS=    100", "NPTS=     99"), "title=a", ["line 4", "99 values"]),
+        (
+            "a.csv",
+            b"0.00 0.1\n0.01 0.2\n0.05 -0.3\n0.06 0.1\n".to_vec(),
+            "motion.unit=1 g",
+            ["line 1", "unevenly spaced"],
+        ),
+    ] {
+        let file = folder.path().join(name);
+        fs::write(&file, bytes).unwrap();
+        let output = barrelstack([
+            "check",
+            "candia-6-barrels",
+            "--record",
+            file.to_str().unwrap(),
+            "--set",
+            set,
+        ]);
+        let text = common::stdout(&output);
+        assert_eq!(output.status.code(), Some(0), "{}", common::stderr(&output));
+        for word in [name].into_iter().chain(words) {
+            assert!(text.contains(word), "{name}: no {word:?} in {text}");
+        }
+    }
 }

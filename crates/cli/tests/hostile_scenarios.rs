@@ -177,8 +177,8 @@ fn bodies_where_none_can_be() {
         &["lost", "left"],
     );
     let flat = "shape = { type = \"rectangle\", width = \"1 m\", height = \"1 m\" } => \
-                shape = { type = \"polygon\", points = [[\"0 m\", \"0 m\"], [\"1 m\", \"1 m\"], [\"1 m\", \"0 m\"], [\"0 m\", \"1 m\"]] }";
-    refuse("crossed", &free(flat), &["left", "cross"]);
+                shape = { type = \"polygon\", vertices = [[\"0 m\", \"0 m\"], [\"1 m\", \"1 m\"], [\"1 m\", \"0 m\"], [\"0 m\", \"1 m\"]] }";
+    refuse("crossed", &free(flat), &[":6:", "in order"]);
 }
 
 #[test]

@@ -104,23 +104,20 @@ impl<S: Space> Elements<S> {
             (poses[g].position - self.built_for[g].position, twists[g].linear)
         });
         // The way of one step is counted too, half as long again since velocities change within it.
-        // Squares bound sums: (a + b + c)² ≤ 3 (a² + b² + c²).
-        let limit = S::Real::splat(MARGIN * MARGIN / 12.0);
-        let ahead = S::Real::splat(2.25 * dt * dt);
+        let limit = S::Real::splat(0.5 * MARGIN);
+        let ahead = S::Real::splat(1.5 * dt);
         let mut stale = <S::Real as Real>::Mask::default();
         for (i, body) in model.bodies.iter().enumerate() {
             if body.motion == Motion::Prescribed {
                 continue;
             }
-            let reach = S::Real::splat(model.reach[i]);
             let moved = poses[i].position - self.built_for[i].position - carried;
-            let turned = S::angle_between(poses[i].orientation, self.built_for[i].orientation);
             let velocity = twists[i].linear - carrier;
-            let spin = twists[i].angular * reach;
-            let speed = velocity.dot(velocity) + spin.dot(spin);
-            let turned = turned * reach;
-            // Velocity and spin add up like the ways: 2 (v² + ω² r²) bounds (v + ω r)².
-            let way = moved.dot(moved) + turned * turned + (speed + speed) * ahead;
+            let turned = S::angle_between(poses[i].orientation, self.built_for[i].orientation);
+            let spin = twists[i].angular.dot(twists[i].angular).sqrt();
+            let way = moved.dot(moved).sqrt()
+                + velocity.dot(velocity).sqrt() * ahead
+                + (turned + spin * ahead) * S::Real::splat(model.reach[i]);
             stale = stale | !way.lt(limit);
         }
         stale.any()

@@ -1,8 +1,8 @@
 //! From a state to contact forces and accelerations.
 
 use crate::body::{Motion, Nodes};
-use crate::contact::{Interface, Stick};
-use crate::elements::{Group, PairFrame};
+use crate::contact::{FrictionLaw, NormalLaw, Stick};
+use crate::elements::{Elements, Group, PairFrame};
 use crate::model::{ContactPair, Model};
 use crate::real::{Mask, Real};
 use crate::shape::{Gap, Surface};
@@ -36,17 +36,26 @@ pub struct Contact<S: Space> {
     pub friction_force: S::Tangent,
 }
 
-/// Energies (J) and powers (W) of all contacts together.
+/// Energies (J) of all contacts together.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ContactTotals<R> {
     /// Energy stored in normal springs (J).
     pub elastic: R,
     /// Energy stored in sticks (J).
     pub stick: R,
-    /// Power lost in contact dampers (W).
-    pub damped: R,
-    /// Power that bodies lose to friction, sticks included (W).
-    pub friction: R,
+}
+
+/// The forces on one body that give nothing back, with their moments about its center of mass.
+///
+/// The energy ledger multiplies them by the motion of the body.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Losses<S: Space> {
+    /// Of contact dampers.
+    pub damped: Wrench<S>,
+    /// Of friction, sticks included.
+    pub friction: Wrench<S>,
+    /// Of the body's own viscous damping.
+    pub viscous: Wrench<S>,
 }
 
 /// The sum of the contact forces of one pair.
@@ -65,10 +74,12 @@ pub struct Scratch<S: Space> {
     pub contacts: Vec<Contact<S>>,
     /// Their sums over every pair that touches, in the order of the pairs.
     pub pair_forces: Vec<PairForce<S>>,
-    /// Their energies and powers.
+    /// Their energies.
     pub totals: ContactTotals<S::Real>,
     /// Contact forces on every body and their moments about its center of mass.
     pub wrenches: Vec<Wrench<S>>,
+    /// What of the forces on every body takes energy away.
+    pub losses: Vec<Losses<S>>,
     /// Acceleration of every body; zero for prescribed ones.
     pub accelerations: Vec<Twist<S>>,
     /// Rotation of every body.
@@ -83,8 +94,17 @@ pub struct Scratch<S: Space> {
     pub(crate) old_accelerations: Vec<Twist<S>>,
     /// Slip rates of that state.
     pub(crate) old_slip_rates: Vec<S::Tangent>,
-    /// Sticks of the next accepted state, while it is made.
-    committed: Vec<Stick<S>>,
+    /// The nodes of the pair at hand that penetrate.
+    penetrating: Vec<Penetrating<S>>,
+}
+
+/// A node that penetrates a surface, in the frame of that surface.
+#[derive(Clone, Copy, Debug)]
+struct Penetrating<S: Space> {
+    element: usize,
+    /// Position of the node (m).
+    node: S::Vector,
+    gap: Gap<S>,
 }
 
 impl<S: Space> Scratch<S> {
@@ -96,6 +116,7 @@ impl<S: Space> Scratch<S> {
             pair_forces: Vec::new(),
             totals: ContactTotals::default(),
             wrenches: vec![Wrench::default(); count],
+            losses: vec![Losses::default(); count],
             accelerations: vec![Twist::default(); count],
             rotations: model.bodies.iter().map(|b| S::rotation(b.pose.orientation)).collect(),
             slip_rates: Vec::new(),
@@ -103,7 +124,7 @@ impl<S: Space> Scratch<S> {
             contact_evaluations: 0,
             old_accelerations: vec![Twist::default(); count],
             old_slip_rates: Vec::new(),
-            committed: Vec::new(),
+            penetrating: Vec::new(),
         }
     }
 }
@@ -130,10 +151,22 @@ impl<S: Space> Scratch<S> {
 
 /// Fills `scratch` with the forces and accelerations at `state`. Never changes `state`.
 pub fn evaluate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
+    evaluate_within(model, state, S::Real::zero(), scratch);
+}
+
+/// As [`evaluate`], with forces that stand for a whole step (s) of an integrator which takes them as
+/// constant for half a step before and after ([`NormalForce::within_step`](crate::contact::NormalForce::within_step)).
+pub(crate) fn evaluate_within<S: Space>(
+    model: &Model<S>,
+    state: &State<S>,
+    step: S::Real,
+    scratch: &mut Scratch<S>,
+) {
     for (rotation, pose) in scratch.rotations.iter_mut().zip(&state.poses) {
         *rotation = S::rotation(pose.orientation);
     }
     scratch.wrenches.fill(Wrench::default());
+    scratch.losses.fill(Losses::default());
     scratch.totals = ContactTotals::default();
     scratch.contacts.clear();
     scratch.pair_forces.clear();
@@ -143,143 +176,221 @@ pub fn evaluate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scra
     scratch.contact_evaluations += state.elements.len() as u64;
 
     for group in &state.elements.groups {
-        touch(model, state, group, scratch);
+        touch(model, state, step, group, scratch);
     }
     accelerate(model, state, scratch);
 }
 
 /// The contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
-fn touch<S: Space>(model: &Model<S>, state: &State<S>, group: &Group, scratch: &mut Scratch<S>) {
+#[inline]
+fn touch<S: Space>(
+    model: &Model<S>,
+    state: &State<S>,
+    step: S::Real,
+    group: &Group,
+    scratch: &mut Scratch<S>,
+) {
     let pair = &model.pairs[group.pair];
     let frame = PairFrame::new(model, pair, &state.poses, &scratch.rotations);
     let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
-    let (contactor, target) = (state.twists[pair.contactor], state.twists[pair.target]);
-    let meeting = Meeting {
-        interface: &model.interfaces[pair.interface],
-        pair: group.pair,
-        linear: S::unrotate(frame.rotation, contactor.linear - target.linear),
-        contactor_spin: S::unrotate_spin(frame.rotation, contactor.angular),
-        target_spin: S::unrotate_spin(frame.rotation, target.angular),
-        frame,
-    };
-    let before = scratch.contacts.len();
-    let mut total = PairWrench::default();
-
+    let penetrating = &mut scratch.penetrating;
+    penetrating.clear();
     match model.pair_nodes(pair) {
         Nodes::Fixed(_) => {
-            for element in group.first..group.end {
-                let node = meeting.frame.to_surface(state.elements.positions[element]);
-                if surface.may_touch(node).any() {
-                    let gap = surface.gap(node);
-                    meeting.contact(state, element, node, gap, scratch, &mut total);
-                }
-            }
+            let nodes = state.elements.positions[group.first..group.end].iter();
+            surface.penetrated_by(nodes.map(|node| frame.to_surface(*node)), |index, node, gap| {
+                penetrating.push(Penetrating { element: group.first + index, node, gap });
+            });
         }
         Nodes::Rolling { center, radius, .. } => {
-            let center = meeting.frame.to_surface(*center);
+            let center = frame.to_surface(*center);
             let mut gap = surface.gap(center);
             gap.distance -= *radius;
-            let node = center - gap.normal * *radius;
-            meeting.contact(state, group.first, node, gap, scratch, &mut total);
+            if gap.distance.lt(S::Real::zero()).any() {
+                let node = center - gap.normal * *radius;
+                penetrating.push(Penetrating { element: group.first, node, gap });
+            }
         }
     }
-
-    if scratch.contacts.len() > before {
-        let rotation = meeting.frame.rotation;
-        let force = S::rotate(rotation, total.force);
-        let on_contactor = &mut scratch.wrenches[pair.contactor];
-        on_contactor.force += force;
-        on_contactor.moment += S::rotate_spin(rotation, total.contactor_moment);
-        let on_target = &mut scratch.wrenches[pair.target];
-        on_target.force -= force;
-        on_target.moment -= S::rotate_spin(rotation, total.target_moment);
-        scratch.pair_forces.push(PairForce { pair: group.pair, force });
+    if !scratch.penetrating.is_empty() {
+        press(model, state, step, group.pair, &frame, scratch);
     }
 }
 
-/// The sum of the contact forces of a pair, in the frame of the target's surface.
+/// The forces of the nodes of a pair that penetrate.
+fn press<S: Space>(
+    model: &Model<S>,
+    state: &State<S>,
+    step: S::Real,
+    index: usize,
+    frame: &PairFrame<S>,
+    scratch: &mut Scratch<S>,
+) {
+    let pair = &model.pairs[index];
+    let interface = &model.interfaces[pair.interface];
+    let meeting = Meeting::new(frame, state.twists[pair.contactor], state.twists[pair.target]);
+    // The paper's laws have a loop of their own, in which nothing is asked at every contact.
+    let sum = match (interface.normal, interface.friction) {
+        (
+            NormalLaw::SpeedGap { stiffness, damping },
+            FrictionLaw::Coulomb {
+                static_coefficient,
+                kinetic_coefficient,
+                tangential_stiffness,
+                tangential_damping,
+            },
+        ) => {
+            let normal = NormalLaw::SpeedGap { stiffness, damping };
+            let friction = FrictionLaw::Coulomb {
+                static_coefficient,
+                kinetic_coefficient,
+                tangential_stiffness,
+                tangential_damping,
+            };
+            press_by((normal, friction), step, &meeting, index, &state.elements, scratch)
+        }
+        (normal, friction) => {
+            press_by((normal, friction), step, &meeting, index, &state.elements, scratch)
+        }
+    };
+
+    let damped = meeting.on_bodies(sum.damped);
+    let friction = meeting.on_bodies(sum.friction);
+    let (on_contactor, on_target) = meeting.on_bodies(sum.normal.plus(sum.friction));
+    scratch.wrenches[pair.contactor] += on_contactor;
+    scratch.wrenches[pair.target] += on_target;
+    let losses = &mut scratch.losses;
+    losses[pair.contactor].damped += damped.0;
+    losses[pair.target].damped += damped.1;
+    losses[pair.contactor].friction += friction.0;
+    losses[pair.target].friction += friction.1;
+    scratch.pair_forces.push(PairForce { pair: index, force: on_contactor.force });
+}
+
+/// The forces of the nodes of a pair by its laws; in the frame of the target's surface.
+#[inline(always)]
+#[expect(
+    clippy::inline_always,
+    reason = "so that laws known at the call need no choice in the loop"
+)]
+fn press_by<S: Space>(
+    (normal, friction): (NormalLaw<S::Real>, FrictionLaw<S::Real>),
+    step: S::Real,
+    meeting: &Meeting<'_, S>,
+    pair: usize,
+    elements: &Elements<S>,
+    scratch: &mut Scratch<S>,
+) -> PairWrench<S> {
+    let zero = S::Real::zero();
+    let mut sum = PairWrench::<S>::default();
+    let mut totals = scratch.totals;
+    for Penetrating { element, node, gap } in scratch.penetrating.iter().copied() {
+        let contact = meeting.contact(pair, elements, element, node, gap);
+        let weight = S::Real::select(contact.touching, elements.weights[element], zero);
+        let normal = normal.force(contact.penetration, contact.penetration_rate).within_step(
+            contact.penetration,
+            contact.penetration_rate,
+            step,
+        );
+        let normal_force = normal.total * weight;
+        let stick = elements.sticks[element];
+        let friction = friction.force::<S>(stick, contact.slip_rate, normal_force, weight);
+        totals.elastic += normal.energy * weight;
+        totals.stick += friction.energy;
+
+        let damped = normal_force - normal.elastic * weight;
+        let arm = contact.point - meeting.frame.contactor;
+        let lever = S::moment(arm, contact.normal);
+        sum.normal += Wrench { force: contact.normal * normal_force, moment: lever * normal_force };
+        sum.damped += Wrench { force: contact.normal * damped, moment: lever * damped };
+        let sliding = -S::along(friction.force, contact.normal);
+        sum.friction += Wrench { force: sliding, moment: S::moment(arm, sliding) };
+
+        scratch.slip_rates[element] = contact.slip_rate;
+        scratch.contacts.push(Contact { normal_force, friction_force: friction.force, ..contact });
+    }
+    scratch.totals = totals;
+    sum
+}
+
+/// Sums of contact forces on the contactor of a pair, in the frame of the target's surface, with their
+/// moments about the contactor's center of mass.
 #[derive(Clone, Copy, Default)]
 struct PairWrench<S: Space> {
-    /// On the contactor (N); the target feels the opposite.
-    force: S::Vector,
-    /// Moment of that force about the contactor's center of mass (N·m).
-    contactor_moment: S::Spin,
-    /// Moment of that force about the target's center of mass (N·m).
-    target_moment: S::Spin,
+    normal: Wrench<S>,
+    /// The part of the normal forces that dampers make.
+    damped: Wrench<S>,
+    friction: Wrench<S>,
 }
 
 /// Two bodies at their contact, seen from the target's surface.
 struct Meeting<'a, S: Space> {
-    interface: &'a Interface<S>,
-    pair: usize,
-    frame: PairFrame<S>,
-    /// Velocity of the contactor's center of mass less that of the target's (m/s).
+    frame: &'a PairFrame<S>,
+    /// Center of mass of the contactor from that of the target (m).
+    apart: S::Vector,
+    /// Velocity (m/s), at the contactor's center of mass, of the contactor relative to the target.
     linear: S::Vector,
-    contactor_spin: S::Spin,
-    target_spin: S::Spin,
+    /// Spin (rad/s) of the contactor relative to the target.
+    spin: S::Spin,
 }
 
-impl<S: Space> Meeting<'_, S> {
-    /// One element; `node` is its position (m) in the surface's frame.
+impl<'a, S: Space> Meeting<'a, S> {
     #[inline]
+    fn new(frame: &'a PairFrame<S>, contactor: Twist<S>, target: Twist<S>) -> Self {
+        let apart = frame.contactor - frame.target;
+        let target_spin = S::unrotate_spin(frame.rotation, target.angular);
+        Self {
+            frame,
+            apart,
+            linear: S::unrotate(frame.rotation, contactor.linear - target.linear)
+                - S::velocity_at(target_spin, apart),
+            spin: S::unrotate_spin(frame.rotation, contactor.angular) - target_spin,
+        }
+    }
+
+    /// Where and how fast a node at `node` (m, in the surface's frame) touches; no forces yet.
+    ///
+    /// Both bodies feel the force at the companion point, and both velocities are taken there:
+    /// so the pair conserves momentum, and force times relative velocity is the power it loses.
+    #[inline(always)]
     fn contact(
         &self,
-        state: &State<S>,
+        pair: usize,
+        elements: &Elements<S>,
         element: usize,
         node: S::Vector,
         gap: Gap<S>,
-        scratch: &mut Scratch<S>,
-        total: &mut PairWrench<S>,
-    ) {
+    ) -> Contact<S> {
         let zero = S::Real::zero();
         let touching = gap.distance.lt(zero);
-        if !touching.any() {
-            return;
-        }
-        let weight = S::Real::select(touching, state.elements.weights[element], zero);
-
-        // Both bodies feel the force at the companion point, and both velocities are taken there:
-        // so the pair conserves momentum, and force times relative velocity is the power it loses.
         let point = node - gap.normal * gap.distance;
-        let contactor_arm = point - self.frame.contactor;
-        let target_arm = point - self.frame.target;
-        let velocity = self.linear + S::velocity_at(self.contactor_spin, contactor_arm)
-            - S::velocity_at(self.target_spin, target_arm);
-        let penetration = S::Real::select(touching, -gap.distance, zero);
-        let penetration_rate = -velocity.dot(gap.normal);
-        let slip_rate = S::tangential(velocity, gap.normal);
-
-        let normal = self.interface.normal.force(penetration, penetration_rate);
-        let normal_force = normal.total * weight;
-        let stick = state.elements.sticks[element];
-        let friction = self.interface.friction.force::<S>(stick, slip_rate, normal_force, weight);
-
-        let force = gap.normal * normal_force - S::along(friction.force, gap.normal);
-        total.force += force;
-        total.contactor_moment += S::moment(contactor_arm, force);
-        total.target_moment += S::moment(target_arm, force);
-
-        let totals = &mut scratch.totals;
-        totals.elastic += normal.energy * weight;
-        totals.stick += friction.energy;
-        totals.damped += (normal_force - normal.elastic * weight) * penetration_rate;
-        totals.friction += friction.force.dot(slip_rate);
-
+        let velocity = self.linear + S::velocity_at(self.spin, point - self.frame.contactor);
         let counted = S::Real::select(touching, S::Real::splat(1.0), zero);
-        scratch.slip_rates[element] = slip_rate * counted;
-        scratch.contacts.push(Contact {
+        Contact {
             element,
-            pair: self.pair,
-            node: state.elements.nodes[element],
+            pair,
+            node: elements.nodes[element],
             touching,
             point,
             normal: gap.normal,
-            penetration,
-            penetration_rate,
-            normal_force,
-            slip_rate,
-            friction_force: friction.force,
-        });
+            penetration: S::Real::select(touching, -gap.distance, zero),
+            penetration_rate: -velocity.dot(gap.normal),
+            normal_force: zero,
+            slip_rate: S::tangential(velocity, gap.normal) * counted,
+            friction_force: S::Tangent::default(),
+        }
+    }
+
+    /// What a wrench of [`PairWrench`] does to contactor and target, in the inertial frame.
+    #[inline]
+    fn on_bodies(&self, wrench: Wrench<S>) -> (Wrench<S>, Wrench<S>) {
+        let rotation = self.frame.rotation;
+        let force = S::rotate(rotation, wrench.force);
+        let about_target = wrench.moment + S::moment(self.apart, wrench.force);
+        (
+            Wrench { force, moment: S::rotate_spin(rotation, wrench.moment) },
+            Wrench { force: -force, moment: -S::rotate_spin(rotation, about_target) },
+        )
     }
 }
 
@@ -293,8 +404,9 @@ fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratc
         let mut wrench = scratch.wrenches[i];
         if let Some(damping) = body.damping {
             let (force, moment) = S::damp(damping, state.twists[i].linear, state.twists[i].angular);
-            wrench.force += force;
-            wrench.moment += moment;
+            let viscous = Wrench { force, moment };
+            scratch.losses[i].viscous = viscous;
+            wrench += viscous;
         }
         let inverse_mass = S::Real::splat(1.0) / body.mass;
         scratch.accelerations[i] = Twist {
@@ -311,25 +423,61 @@ fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratc
 
 /// Accepts the state that `scratch` was evaluated at: the memory of every stick is cut back to what
 /// friction can hold, and elements that do not touch forget.
-pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &mut Scratch<S>) {
-    scratch.committed.clear();
-    scratch.committed.resize(state.elements.len(), Stick::default());
-    let elements = &mut state.elements;
-    for contact in &scratch.contacts {
+pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
+    let Elements { sticks, weights, .. } = &mut state.elements;
+    let mut next = 0;
+    for contacts in scratch.contacts.chunk_by(|a, b| a.pair == b.pair) {
+        let interface = &model.interfaces[model.pairs[contacts[0].pair].interface];
+        // Asked once for a pair, not at every contact.
+        match interface.friction {
+            FrictionLaw::Coulomb {
+                static_coefficient,
+                kinetic_coefficient,
+                tangential_stiffness,
+                tangential_damping,
+            } => {
+                let law = FrictionLaw::Coulomb {
+                    static_coefficient,
+                    kinetic_coefficient,
+                    tangential_stiffness,
+                    tangential_damping,
+                };
+                commit_pair(law, contacts, sticks, weights, &mut next);
+            }
+            law => commit_pair(law, contacts, sticks, weights, &mut next),
+        }
+    }
+    sticks[next..].fill(Stick::default());
+}
+
+/// Commits the sticks of a pair; those between its contacts, and those before them that no pair has
+/// reached yet, forget.
+#[inline(always)]
+#[expect(
+    clippy::inline_always,
+    reason = "so that a law known at the call needs no choice in the loop"
+)]
+fn commit_pair<S: Space>(
+    law: FrictionLaw<S::Real>,
+    contacts: &[Contact<S>],
+    sticks: &mut [Stick<S>],
+    weights: &[S::Real],
+    next: &mut usize,
+) {
+    for contact in contacts {
         let element = contact.element;
-        let law = &model.interfaces[model.pairs[contact.pair].interface].friction;
-        let mut stick = elements.sticks[element].commit(
-            law,
-            contact.slip_rate,
-            contact.normal_force,
-            elements.weights[element],
-        );
+        while *next < element {
+            sticks[*next] = Stick::default();
+            *next += 1;
+        }
+        *next = element + 1;
+
+        let stick = &mut sticks[element];
+        *stick = stick.commit(&law, contact.slip_rate, contact.normal_force, weights[element]);
         let counted = S::Real::select(contact.touching, S::Real::splat(1.0), S::Real::zero());
         stick.displacement = stick.displacement * counted;
         stick.slipping = stick.slipping & contact.touching;
-        scratch.committed[element] = stick;
     }
-    std::mem::swap(&mut elements.sticks, &mut scratch.committed);
 }
 
 /// The length of boundary (m) that a node of a pair stands for.

@@ -49,5 +49,5 @@ pub use model::{ContactPair, InterfaceId, Model, ModelError};
 pub use settle::{SettleError, Settled, settle};
 pub use shape::Shape;
 pub use simulate::{Finish, Observer, RunError, Simulation, simulate};
-pub use space::{Planar, Pose, Space, Twist, Vec2};
+pub use space::{Linear, Planar, Pose, Space, Twist, Vec2};
 pub use state::State;

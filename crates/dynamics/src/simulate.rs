@@ -57,6 +57,8 @@ pub enum RunError {
         body: String,
         /// The step that was used (s).
         time_step: f64,
+        /// Steps that had been accepted before.
+        steps: u64,
     },
 }
 
@@ -111,7 +113,7 @@ pub fn simulate<S: Space>(
         steps += 1;
         energy.enter(model, state, scratch);
         if !energy.is_finite() {
-            return Err(lost_body(model, state, simulation.time_step));
+            return Err(lost_body(model, state, simulation.time_step, steps - 1));
         }
         if observer.observe(model, state, scratch, &energy).is_break() {
             finish = Finish::Stopped;
@@ -120,15 +122,26 @@ pub fn simulate<S: Space>(
     Ok(RunTotals { finish, steps, energy })
 }
 
-/// Names the first body that is not where a finite number says.
-fn lost_body<S: Space>(model: &Model<S>, state: &State<S>, time_step: f64) -> RunError {
-    let lost = |i: &usize| {
-        let (pose, twist) = (state.poses[*i], state.twists[*i]);
+/// Names the first body that is not where a finite number says, or else the one that moves most: its
+/// energy is the first to leave the finite numbers.
+fn lost_body<S: Space>(model: &Model<S>, state: &State<S>, time_step: f64, steps: u64) -> RunError {
+    let size = |i: usize| {
+        let (pose, twist) = (state.poses[i], state.twists[i]);
         let size = pose.position.dot(pose.position)
             + twist.linear.dot(twist.linear)
             + twist.angular.dot(twist.angular);
-        (0..S::Real::LANES).any(|lane| !size.lane(lane).is_finite())
+        // The worst lane; a lost number counts as infinite.
+        let lanes = (0..S::Real::LANES).map(|lane| size.lane(lane));
+        lanes.map(|s| if s.is_finite() { s } else { f64::INFINITY }).fold(0.0, f64::max)
     };
-    let body = (0..model.bodies.len()).find(lost).unwrap_or(0);
-    RunError::NotFinite { time: state.time, body: model.bodies[body].name.clone(), time_step }
+    let bodies = || 0..model.bodies.len();
+    let lost = bodies().find(|i| size(*i).is_infinite());
+    let fastest = || bodies().max_by(|a, b| size(*a).total_cmp(&size(*b)));
+    let body = lost.or_else(fastest).unwrap_or(0);
+    RunError::NotFinite {
+        time: state.time,
+        body: model.bodies[body].name.clone(),
+        time_step,
+        steps,
+    }
 }

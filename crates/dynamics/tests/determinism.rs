@@ -127,7 +127,7 @@ fn a_step_far_too_long_ends_with_the_time_and_the_body() {
                 ControlFlow::Continue(())
             })
             .unwrap_err();
-        let RunError::NotFinite { time, body, time_step } = &error;
+        let RunError::NotFinite { time, body, time_step, .. } = &error;
         assert_eq!(body, "squeezed", "{}", method.name());
         assert_eq!(*time_step, step);
         assert!((*time - last - step).abs() < 1e-12 && *time > 0.0);

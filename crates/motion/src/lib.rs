@@ -67,6 +67,7 @@ mod synthesis;
 mod target;
 mod units;
 mod wavelets;
+pub mod write;
 
 pub use bundled::{BUNDLED, bundled};
 pub use direction::{Direction, Orientation};

@@ -1,6 +1,6 @@
 // The player: time, controls, keyboard, and the strip of ground motion and events under the stage.
 
-const LANE = 46, EVENT_LANE = 18, SIDE = 8;
+const LANE = 44, LABEL = 14, EVENT_LANE = 18, SIDE = 8;
 
 function makePlayer(raw, figure, dashes) {
   const forces = raw.forces && Object.fromEntries(
@@ -206,12 +206,18 @@ function makePlayer(raw, figure, dashes) {
       }
     }
 
+    // A line of words, then the curve.
+    function laneAt(top) {
+      const reach = 0.5 * (LANE - LABEL) - 2;
+      return { middle: top + LABEL + reach, reach };
+    }
+
     function drawHistory(context, history, top) {
       let peak = 0, when = 0;
       for (let k = 0; k < history.v.length; k++) {
         if (Math.abs(history.v[k]) > Math.abs(peak)) [peak, when] = [history.v[k], history.t[k]];
       }
-      const middle = top + 0.5 * LANE, reach = 0.5 * LANE - 4;
+      const { middle, reach } = laneAt(top);
       context.strokeStyle = color("rule");
       context.lineWidth = 1;
       context.strokeRect(SIDE, middle, width - 2 * SIDE, 0);
@@ -260,7 +266,8 @@ function makePlayer(raw, figure, dashes) {
         if (!isFinite(value) || peak === 0) return;
         const top = (data.events.length > 0 ? EVENT_LANE : 4) + at * LANE;
         context.beginPath();
-        context.arc(toX(time), top + 0.5 * LANE - (value / peak) * (0.5 * LANE - 4), 3.5, 0, 7);
+        const { middle, reach } = laneAt(top);
+        context.arc(toX(time), middle - (value / peak) * reach, 3.5, 0, 7);
         context.fill();
       });
     }
@@ -277,6 +284,7 @@ function makePlayer(raw, figure, dashes) {
     redraw();
   }
 
+  stage.resize();
   redraw();
   return {
     seek, play, pause, refresh,

@@ -1,6 +1,9 @@
 // The stage: bodies, paths, forces and events of one frame drawn on a canvas.
 
-const FORCE_SHARE = 0.2; // length of a strong force over the height of the view
+const FOOT = 30; // room below the lowest body for the hatch of the ground and the scales (px)
+const HATCH = 12; // distance of the strokes of the hatch (px)
+const HEAD = 34; // room above the highest body for the clock and the news (px)
+const FORCE_SHARE = 0.3; // length of a strong force over the height of the view
 
 function bodyShape(body) {
   const trace = (line) => {
@@ -10,7 +13,7 @@ function bodyShape(body) {
       else path.lineTo(line.points[k], line.points[k + 1]);
     }
     if (line.closed) path.closePath();
-    return { path, closed: line.closed };
+    return { path, closed: line.closed, points: line.points };
   };
   let reach = 0;
   for (const line of body.outlines) {
@@ -41,10 +44,13 @@ function makeStage(data, canvas) {
 
   function resize() {
     const box = canvas.parentElement.getBoundingClientRect();
-    const aspect = Math.min(Math.max((top - bottom) / (right - left), 0.3), 1.1);
-    const limit = Math.max(220, Math.min(window.innerHeight * 0.5, 520));
+    // A player that opens the page fills the first screen, controls included; others take less.
+    const above = box.top + window.scrollY;
+    const below = canvas.closest(".screen").offsetHeight - canvas.offsetHeight;
+    const room = above < 0.5 * window.innerHeight ? window.innerHeight - above - below - 8 : 0.6 * window.innerHeight;
     width = Math.max(200, Math.floor(box.width));
-    height = Math.round(Math.min(limit, Math.max(220, width * aspect)));
+    const wanted = (width * (top - bottom)) / (right - left) + FOOT + HEAD;
+    height = Math.round(Math.min(Math.max(room, 280), 640, Math.max(wanted, 220)));
     dpr = Math.min(window.devicePixelRatio || 1, 3);
     canvas.width = Math.round(width * dpr);
     canvas.height = Math.round(height * dpr);
@@ -53,7 +59,7 @@ function makeStage(data, canvas) {
 
   // Meters to pixels: scale and the world point at the middle of the foot of the canvas.
   function viewAt(frame) {
-    const scale = Math.min(width / (right - left), height / (top - bottom));
+    const scale = Math.min(width / (right - left), (height - FOOT - HEAD) / (top - bottom));
     let x = 0.5 * (left + right), z = bottom;
     const pose = (body, k) => [data.poses[3 * body][k], data.poses[3 * body + 1][k]];
     if (stage.camera === "ground" && ground >= 0) {
@@ -84,7 +90,7 @@ function makeStage(data, canvas) {
     }
     const view = viewAt(frame);
     const toX = (x) => 0.5 * width + (x - view.x) * view.scale;
-    const toY = (z) => height - (z - view.z) * view.scale;
+    const toY = (z) => height - FOOT - (z - view.z) * view.scale;
     for (let body = 0; body < shapes.length; body++) drawBody(context, body, frame, view, toX, toY);
     if (stage.traces) drawTraces(context, frame, toX, toY);
     if (stage.names) drawNames(context, frame, view, toX, toY);
@@ -104,19 +110,38 @@ function makeStage(data, canvas) {
     context.scale(s, -s);
     context.lineJoin = context.lineCap = "round";
     context.strokeStyle = role === "ground" ? paint.soft : paint.line;
-    for (const { path, closed } of shapes[body].outlines) {
+    for (const { path, closed, points } of shapes[body].outlines) {
       context.lineWidth = (closed ? 1.2 : 2) / s;
       if (closed) {
         context.fillStyle = paint[role];
         context.fill(path);
       }
       context.stroke(path);
+      if (role === "ground" && !closed) drawHatch(context, points, s, view.x - x);
     }
     shapes[body].marks.forEach(({ path }, at) => {
       context.lineWidth = (role !== "ground" && at === 0 ? 3 : 0.9) / s;
       context.stroke(path);
     });
     context.restore();
+  }
+
+  // Strokes at even x of the ground's own frame, so that they move with it; only those in sight.
+  function drawHatch(context, points, s, middle) {
+    const spacing = HATCH / s, reach = 0.5 * width / s + 2 * spacing;
+    context.beginPath();
+    for (let k = 0; k + 3 < points.length; k += 2) {
+      const flip = points[k] > points[k + 2];
+      const [ax, az, bx, bz] = flip ? [points[k + 2], points[k + 3], points[k], points[k + 1]] : points.slice(k, k + 4);
+      const low = Math.max(ax, middle - reach), high = Math.min(bx, middle + reach);
+      for (let x = Math.ceil(low / spacing) * spacing; x < high; x += spacing) {
+        const z = az + ((bz - az) * (x - ax)) / (bx - ax);
+        context.moveTo(x, z);
+        context.lineTo(x - 0.7 * spacing, z - 0.7 * spacing);
+      }
+    }
+    context.lineWidth = 0.9 / s;
+    context.stroke();
   }
 
   function drawNames(context, frame, view, toX, toY) {
@@ -128,8 +153,14 @@ function makeStage(data, canvas) {
       const size = Math.min(13, 0.62 * shapes[body].reach * view.scale);
       if (!isFinite(x + z) || role === "rack" || size < 8) continue;
       context.font = `600 ${size}px system-ui, sans-serif`;
+      // Below the middle, where a path starts and runs.
+      const y = toY(z) + (stage.traces && data.traces.length > 0 ? 1.15 * size : 0);
+      context.lineWidth = 3;
+      context.lineJoin = "round";
+      context.strokeStyle = paint[role];
+      context.strokeText(name, toX(x), y);
       context.fillStyle = paint.line;
-      context.fillText(name, toX(x), toY(z));
+      context.fillText(name, toX(x), y);
     }
   }
 
@@ -224,11 +255,17 @@ function makeStage(data, canvas) {
       if (event.body === null) continue;
       const [x, z] = [data.poses[3 * event.body][frame], data.poses[3 * event.body + 1][frame]];
       if (!isFinite(x + z) || data.bodies[event.body].role === "ground") continue;
-      context.beginPath();
-      context.arc(toX(x), toY(z), shapes[event.body].reach * view.scale + 5, 0, 7);
+      const angle = data.poses[3 * event.body + 2][frame];
+      if (!isFinite(angle)) continue;
+      context.save();
+      context.translate(toX(x), toY(z));
+      context.rotate(-angle);
+      context.scale(view.scale, -view.scale);
       context.strokeStyle = paint.accent;
-      context.lineWidth = 2.5;
-      context.stroke();
+      context.lineJoin = "round";
+      context.lineWidth = 3.5 / view.scale;
+      for (const { path } of shapes[event.body].outlines) context.stroke(path);
+      context.restore();
     }
   }
 
@@ -271,7 +308,7 @@ function forcesAt(data, frame) {
   return list;
 }
 
-// The force that 98 of 100 stay below: a short impact may leave the picture, the rest is legible.
+// The force that 95 of 100 stay below: a short impact may leave the picture, the rest is legible.
 function strongForce(data) {
   const sizes = [];
   const stride = Math.max(1, Math.floor(data.count / 300));
@@ -279,5 +316,5 @@ function strongForce(data) {
     for (const force of forcesAt(data, k)) sizes.push(Math.hypot(force.fx, force.fz));
   }
   sizes.sort((a, b) => a - b);
-  return sizes.length > 0 ? sizes[Math.floor(0.98 * (sizes.length - 1))] : 0;
+  return sizes.length > 0 ? sizes[Math.floor(0.95 * (sizes.length - 1))] : 0;
 }

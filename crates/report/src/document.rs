@@ -66,6 +66,10 @@ impl Tone {
 }
 
 /// One piece of content. All text is plain: it is escaped, never interpreted.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a document holds tens of blocks; a box in every literal costs more than it saves"
+)]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Block {
     /// A heading. Levels outside 2 to 4 are brought into that range; level 1 is the verdict's.

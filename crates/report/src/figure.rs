@@ -63,16 +63,22 @@ pub struct Attachment {
 }
 
 /// Every figure of a document as `<id>.svg` and `<id>.csv`, every table as `table-<n>.csv`,
-/// every player as the SVG and CSV of its strip, in reading order.
+/// every player as the SVG and CSV of its picture on paper, in reading order.
 pub fn attachments(document: &Document) -> Vec<Attachment> {
     let mut files = Vec::new();
     let mut names = Names::default();
     let mut tables = 0;
-    gather(&document.blocks, &mut names, &mut tables, &mut files);
+    gather(document, &document.blocks, &mut names, &mut tables, &mut files);
     files
 }
 
-fn gather(blocks: &[Block], names: &mut Names, tables: &mut usize, files: &mut Vec<Attachment>) {
+fn gather(
+    document: &Document,
+    blocks: &[Block],
+    names: &mut Names,
+    tables: &mut usize,
+    files: &mut Vec<Attachment>,
+) {
     for block in blocks {
         match block {
             Block::Figure(figure) => {
@@ -82,7 +88,7 @@ fn gather(blocks: &[Block], names: &mut Names, tables: &mut usize, files: &mut V
             }
             Block::Player(player) => {
                 let id = names.take(&player.id);
-                let figure = player.strip_figure();
+                let figure = player.paper_figure(&document.blocks);
                 files.push(Attachment::text(format!("{id}.svg"), figure.to_svg()));
                 files.push(Attachment::text(format!("{id}.csv"), figure.to_csv()));
             }
@@ -90,7 +96,7 @@ fn gather(blocks: &[Block], names: &mut Names, tables: &mut usize, files: &mut V
                 *tables += 1;
                 files.push(Attachment::text(format!("table-{tables}.csv"), table.to_csv()));
             }
-            Block::Details { blocks, .. } => gather(blocks, names, tables, files),
+            Block::Details { blocks, .. } => gather(document, blocks, names, tables, files),
             Block::Heading { .. } | Block::Paragraph(_) | Block::List(_) => {}
         }
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::{
-    Block, Document, Figure, FigureKind, Player, Strip, Table, Tone, escape,
+    Block, Document, Event, Figure, FigureKind, Player, Strip, Table, Tone, escape,
     figure::Names,
     number,
     page::{Payload, assemble},
@@ -15,7 +15,7 @@ use crate::{
 /// open the content when there is none); provenance closes the page. Players and interactive
 /// plots run in the page; without scripts, and on paper, they are SVG.
 pub fn html(document: &Document) -> String {
-    let mut writer = Writer::default();
+    let mut writer = Writer::of(document);
     writer.header(document);
     writer.out.push_str("<main id=\"content\">\n");
     let first_player = document.blocks.iter().position(|b| matches!(b, Block::Player(_)));
@@ -46,8 +46,8 @@ fn anchor(names: &mut Names, text: &str) -> String {
     names.take(&format!("section {text}"))
 }
 
-#[derive(Default)]
-struct Writer {
+struct Writer<'a> {
+    document: &'a Document,
     out: String,
     payload: Payload,
     names: Names,
@@ -57,7 +57,20 @@ struct Writer {
     folded: usize,
 }
 
-impl Writer {
+impl<'a> Writer<'a> {
+    fn of(document: &'a Document) -> Self {
+        Self {
+            document,
+            out: String::new(),
+            payload: Payload::default(),
+            names: Names::default(),
+            anchors: Names::default(),
+            tables: 0,
+            figures: 0,
+            folded: 0,
+        }
+    }
+
     /// Appends `markup`, which holds only escaped text.
     fn put(&mut self, markup: &str) {
         self.out.push_str(markup);
@@ -203,7 +216,7 @@ impl Writer {
         let id = self.names.take(&figure.id);
         let live = match &figure.kind {
             FigureKind::Plot(plot) if plot.is_live() => Some(self.payload.add_plot(&id, plot)),
-            _ => None,
+            FigureKind::Plot(_) | FigureKind::Strip(_) | FigureKind::Envelope(_) => None,
         };
         let kind = match &figure.kind {
             FigureKind::Plot(_) => "plot",
@@ -233,8 +246,10 @@ impl Writer {
     }
 
     fn strip(&mut self, strip: &Strip, id: &str) {
-        self.put("<div class=\"panels\">\n");
-        for drawing in strip.drawings(id) {
+        let drawings = strip.drawings(id);
+        let width = drawings.first().map_or(0.0, |drawing| drawing.width.round());
+        self.put(&format!("<div class=\"panels\" style=\"--panel:{width}px\">\n"));
+        for drawing in drawings {
             self.put(&drawing.inline());
             self.put("\n");
         }
@@ -250,7 +265,9 @@ impl Writer {
         ));
         self.put(PLAYER_CONTROLS);
         self.put("<div class=\"paper\">\n");
-        self.strip(&Strip::of_run(std::sync::Arc::clone(&player.scene), 6), &id);
+        if let FigureKind::Strip(strip) = player.paper_figure(&self.document.blocks).kind {
+            self.strip(&strip, &id);
+        }
         self.put("</div>\n");
         self.caption(&player.caption);
         self.events(player);
@@ -258,12 +275,27 @@ impl Writer {
     }
 
     fn events(&mut self, player: &Player) {
-        let events = || player.scene.events.iter().filter(|event| event.time.is_finite());
-        if events().next().is_none() {
+        let events: Vec<_> = player.scene.events.iter().filter(|e| e.time.is_finite()).collect();
+        if events.is_empty() {
             return;
         }
+        // A fold that hides a single line would cost that line.
+        let open = if events.len() > OPEN_EVENTS + 1 { OPEN_EVENTS } else { events.len() };
+        let (first, rest) = events.split_at(open);
+        self.event_list(first);
+        if !rest.is_empty() {
+            self.put(&format!(
+                "<details class=\"more\">\n<summary>{} more events</summary>\n",
+                rest.len()
+            ));
+            self.event_list(rest);
+            self.put("</details>\n");
+        }
+    }
+
+    fn event_list(&mut self, events: &[&Event]) {
         self.put("<ol class=\"events\" aria-label=\"Events\">\n");
-        for event in events() {
+        for event in events {
             self.put(&format!(
                 "<li><button type=\"button\" data-time=\"{}\"><i class=\"event {}\" aria-hidden=\"true\"></i><span class=\"when\">{} s</span><span class=\"what\">{}</span>",
                 event.time,
@@ -276,6 +308,9 @@ impl Writer {
         self.put("</ol>\n");
     }
 }
+
+/// Events shown without unfolding.
+const OPEN_EVENTS: usize = 4;
 
 /// A shape for each tone, so that color only repeats what it says.
 fn sign(tone: Tone) -> &'static str {

@@ -26,11 +26,14 @@ pub fn significant(value: f64, digits: usize) -> String {
     // Rust's own exponent form does the rounding, so 9.996 becomes 1.00e1 and not 10.00.
     let scientific = format!("{:.*e}", digits - 1, value.abs());
     let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
-    let exponent: i32 = exponent.parse().unwrap_or(0);
+    let exponent: i64 = exponent.parse().unwrap_or(0);
     let sign = if value < 0.0 { "−" } else { "" };
     if (-4..6).contains(&exponent) {
         let rounded: f64 = scientific.parse().unwrap_or(value.abs());
-        let decimals = usize::try_from(digits as i64 - 1 - i64::from(exponent)).unwrap_or(0);
+        let decimals = i64::try_from(digits)
+            .ok()
+            .and_then(|digits| usize::try_from(digits - 1 - exponent).ok())
+            .unwrap_or(0);
         format!("{sign}{rounded:.decimals$}")
     } else {
         format!("{sign}{mantissa}×10{}", superscript(exponent))
@@ -55,7 +58,7 @@ pub(crate) fn csv_number(value: f64) -> String {
     if value.is_finite() { format!("{value}") } else { String::new() }
 }
 
-pub(crate) fn superscript(exponent: i32) -> String {
+pub(crate) fn superscript(exponent: i64) -> String {
     exponent
         .to_string()
         .chars()

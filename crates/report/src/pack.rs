@@ -124,11 +124,11 @@ mod tests {
     use super::*;
 
     fn unbase64(text: &str) -> Vec<u8> {
-        let digit = |c: u8| ALPHABET.iter().position(|a| *a == c).unwrap_or(0) as u32;
+        let digit = |c: u8| (0..).zip(ALPHABET).find(|(_, a)| **a == c).map_or(0_u32, |(k, _)| k);
         let mut out = Vec::new();
         for chunk in text.as_bytes().chunks(4) {
             let bits = chunk.iter().fold(0, |bits, c| bits << 6 | digit(*c));
-            let kept = 3 - chunk.iter().filter(|c| **c == b'=').count();
+            let kept = chunk.iter().position(|c| *c == b'=').unwrap_or(4) - 1;
             out.extend_from_slice(&bits.to_be_bytes()[1..=kept]);
         }
         out

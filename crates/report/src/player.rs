@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use crate::{
-    ContactForce, Figure, FigureKind, History, Polyline, Scene, Strip, Trace,
+    Block, ContactForce, Figure, FigureKind, History, Polyline, Scene, Strip, Trace,
     pack::{self, POSE_QUANTUM, TIME_QUANTUM},
     scene::window,
 };
@@ -24,12 +24,16 @@ pub struct Player {
 }
 
 impl Player {
-    /// The player where nothing can play: a strip of six frames.
-    pub fn strip_figure(&self) -> Figure {
+    /// The player where nothing can play, in a document of these blocks: a strip of six frames,
+    /// or the first frame with names when the document shows a strip of this scene anyway.
+    pub fn paper_figure(&self, blocks: &[Block]) -> Figure {
+        let scene = Arc::clone(&self.scene);
+        let strip =
+            if shows_strip(blocks, &scene) { Strip::still(scene) } else { Strip::of_run(scene, 6) };
         Figure {
             id: self.id.clone(),
             caption: self.caption.clone(),
-            kind: FigureKind::Strip(Strip::of_run(Arc::clone(&self.scene), 6)),
+            kind: FigureKind::Strip(strip),
         }
     }
 
@@ -94,6 +98,21 @@ impl Player {
             "view": [view.lower[0], view.lower[1], view.upper[0], view.upper[1]],
         })
     }
+}
+
+fn shows_strip(blocks: &[Block], scene: &Arc<Scene>) -> bool {
+    blocks.iter().any(|block| match block {
+        Block::Figure(Figure { kind: FigureKind::Strip(strip), .. }) => {
+            Arc::ptr_eq(&strip.scene, scene)
+        }
+        Block::Details { blocks, .. } => shows_strip(blocks, scene),
+        Block::Figure(_)
+        | Block::Player(_)
+        | Block::Table(_)
+        | Block::Heading { .. }
+        | Block::Paragraph(_)
+        | Block::List(_) => false,
+    })
 }
 
 fn polyline(line: &Polyline) -> Value {

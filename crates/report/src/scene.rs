@@ -273,15 +273,29 @@ impl Extent {
 
     pub(crate) fn add(&mut self, point: Point) {
         if point.iter().all(|v| v.is_finite()) {
-            for axis in 0..2 {
-                self.lower[axis] = self.lower[axis].min(point[axis]);
-                self.upper[axis] = self.upper[axis].max(point[axis]);
+            for (axis, value) in point.into_iter().enumerate() {
+                self.lower[axis] = self.lower[axis].min(value);
+                self.upper[axis] = self.upper[axis].max(value);
             }
         }
     }
 
     pub(crate) fn is_empty(&self) -> bool {
         self.lower[0] > self.upper[0]
+    }
+
+    fn join(&mut self, other: &Self) {
+        self.add(other.lower);
+        self.add(other.upper);
+    }
+
+    fn holds(&self, point: Point) -> bool {
+        (0..2).all(|axis| (self.lower[axis]..=self.upper[axis]).contains(&point[axis]))
+    }
+
+    /// Not finite when the extent is empty.
+    fn center(&self) -> Point {
+        [0.5 * (self.lower[0] + self.upper[0]), 0.5 * (self.lower[1] + self.upper[1])]
     }
 
     pub(crate) fn width(&self) -> f64 {
@@ -298,47 +312,82 @@ pub(crate) fn place(pose: Pose2, point: Point) -> Point {
     [pose[0] + cos * point[0] - sin * point[1], pose[1] + sin * point[0] + cos * point[1]]
 }
 
-/// Extent of all bodies but the ground at frame `frame`.
-pub(crate) fn frame_extent(scene: &Scene, frame: usize) -> Extent {
+/// Extent of body `body` at frame `frame`; empty when it is not drawn there.
+fn body_extent(scene: &Scene, frame: usize, body: usize) -> Extent {
     let mut extent = Extent::EMPTY;
-    for (at, body) in scene.bodies.iter().enumerate() {
-        if body.role == Role::Ground {
-            continue;
-        }
-        if let Some(pose) = scene.frames.pose(frame, at) {
-            for point in body.outlines.iter().flat_map(|line| &line.points) {
-                extent.add(place(pose, *point));
-            }
+    if let (Some(drawn), Some(pose)) = (scene.bodies.get(body), scene.frames.pose(frame, body)) {
+        for point in drawn.outlines.iter().flat_map(|line| &line.points) {
+            extent.add(place(pose, *point));
         }
     }
     extent
 }
 
-/// The window that shows `frames`: their extent, never wider than the first frame's grown by
-/// its own larger side on the left and the right, so that one body far away does not shrink all.
+fn moving(scene: &Scene) -> impl Iterator<Item = usize> {
+    (0..scene.bodies.len()).filter(|&at| scene.bodies[at].role != Role::Ground)
+}
+
+/// Highest share of the larger side of the first frame by which a window grows to the left and
+/// the right, and upward.
+const REACH: [f64; 2] = [0.4, 0.15];
+
+/// The window that shows `frames`: the place of the first frame and what stays or lands near it.
+///
+/// A body that goes far leaves the picture; it never shrinks what remains.
 pub(crate) fn window(scene: &Scene, frames: &[usize]) -> Extent {
-    let first = frame_extent(scene, 0);
-    let mut all = first;
+    let mut all = Extent::EMPTY;
+    for body in moving(scene) {
+        all.join(&body_extent(scene, 0, body));
+    }
+    let limit = (!all.is_empty()).then(|| {
+        let size = all.width().max(all.height());
+        Extent {
+            lower: [all.lower[0] - REACH[0] * size, all.lower[1] - 0.05 * size],
+            upper: [all.upper[0] + REACH[0] * size, all.upper[1] + REACH[1] * size],
+        }
+    });
     for &frame in frames {
-        let extent = frame_extent(scene, frame);
-        all.add(extent.lower);
-        all.add(extent.upper);
+        for body in moving(scene) {
+            let extent = body_extent(scene, frame, body);
+            if limit.is_none_or(|limit| limit.holds(extent.center())) {
+                all.join(&extent);
+            }
+        }
     }
     if all.is_empty() {
         return Extent { lower: [-1.0, 0.0], upper: [1.0, 1.0] };
     }
-    if !first.is_empty() {
-        let reach = first.width().max(first.height());
-        all.lower =
-            [all.lower[0].max(first.lower[0] - reach), all.lower[1].max(first.lower[1] - 0.5)];
-        all.upper = [
-            all.upper[0].min(first.upper[0] + reach),
-            all.upper[1].min(first.upper[1] + 0.5 * reach),
-        ];
+    if let Some(limit) = limit {
+        for axis in 0..2 {
+            all.lower[axis] = all.lower[axis].max(limit.lower[axis]);
+            all.upper[axis] = all.upper[axis].min(limit.upper[axis]);
+        }
     }
     let pad = 0.04 * all.width().max(all.height()).max(0.1);
     Extent {
-        lower: [all.lower[0] - pad, all.lower[1] - 2.0 * pad],
+        lower: [all.lower[0] - pad, all.lower[1]],
         upper: [all.upper[0] + pad, all.upper[1] + pad],
     }
+}
+
+/// Short strokes below the line of the ground, `spacing` (m) apart and as long, between `from` and
+/// `to` (m) along x, in the frame of the line.
+pub(crate) fn hatch(line: &Polyline, spacing: f64, [from, to]: [f64; 2]) -> Vec<[Point; 2]> {
+    let mut strokes = Vec::new();
+    let finite = [spacing, from, to].iter().all(|v| v.is_finite());
+    // The bound keeps a wrong window from asking for a forest.
+    if !(finite && spacing > 0.0 && (to - from) / spacing < 5000.0) {
+        return strokes;
+    }
+    for pair in line.points.windows(2) {
+        let (a, b) = if pair[0][0] <= pair[1][0] { (pair[0], pair[1]) } else { (pair[1], pair[0]) };
+        let (low, high) = (a[0].max(from), b[0].min(to));
+        let mut x = (low / spacing).ceil() * spacing;
+        while x < high {
+            let z = a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]);
+            strokes.push([[x, z], [x - 0.7 * spacing, z - 0.7 * spacing]]);
+            x += spacing;
+        }
+    }
+    strokes
 }

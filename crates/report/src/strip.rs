@@ -4,7 +4,7 @@ use std::{fmt::Write as _, sync::Arc};
 
 use crate::{
     Polyline, Role, Scene, escape, number,
-    scene::{Extent, window},
+    scene::{Extent, hatch, window},
     svg::{Anchor, Svg, coordinate, text_width},
 };
 
@@ -26,13 +26,30 @@ pub struct Panel {
     pub note: String,
 }
 
-const PANEL_WIDTH: f64 = 220.0;
+/// Largest width and height of a panel's picture (px); the widest strip of one row.
+const PANEL: [f64; 2] = [165.0, 235.0];
+const STILL: [f64; 2] = [480.0, 380.0];
+const ROW: f64 = 760.0;
+const GAP: f64 = 12.0;
+/// Room below the lowest body for the ground's hatch, and for the caption (px).
+const FOOT: f64 = 13.0;
 const CAPTION: f64 = 38.0;
+/// Distance of the strokes of the ground's hatch (px).
+const HATCH: f64 = 10.0;
+
+/// One window and one scale for all panels.
+struct Frame {
+    extent: Extent,
+    /// Pixels for a meter.
+    scale: f64,
+    width: f64,
+    height: f64,
+}
 
 impl Strip {
     /// A strip of `count` panels that tell the run: the first and the last frame, the events
     /// that matter most (falls before losses of seat before others, earlier before later), and
-    /// even steps in time where events are too few.
+    /// instants amid the widest gaps where events are too few.
     pub fn of_run(scene: Arc<Scene>, count: usize) -> Self {
         use crate::EventKind::{Fall, LossOfSeat, Note, Slip, Uplift};
         let times = &scene.frames.times[..scene.frames.len()];
@@ -57,18 +74,33 @@ impl Strip {
                 }
             }
         }
-        let mut parts = count;
-        while panels.len() < count && span > 0.0 && parts > 1 {
-            for k in 1..parts {
-                let time = first + span * k as f64 / parts as f64;
-                if panels.len() < count && far(&panels, time, 0.5 * span / count as f64) {
-                    panels.push(Panel { time, note: String::new() });
-                }
-            }
-            parts -= 1;
-        }
         panels.sort_by(|a, b| a.time.total_cmp(&b.time));
+        // From the first event on there is more to see than before it.
+        let quiet = usize::from(panels.len() > 2);
+        while panels.len() < count && span > 0.0 {
+            let gap = |k: usize| panels[k + 1].time - panels[k].time;
+            let widest = (quiet..panels.len() - 1).max_by(|&a, &b| gap(a).total_cmp(&gap(b)));
+            let Some(widest) = widest else { break };
+            let time = panels[widest].time + 0.5 * gap(widest);
+            panels.insert(widest + 1, Panel { time, note: String::new() });
+        }
         Self { scene, panels }
+    }
+
+    /// One large picture of the first frame, with the names of the bodies.
+    pub(crate) fn still(scene: Arc<Scene>) -> Self {
+        let first = scene.frames.times[..scene.frames.len()].first().copied();
+        let panels = first.map(|time| Panel { time, note: "start".into() });
+        Self { scene, panels: panels.into_iter().collect() }
+    }
+
+    fn frame(&self, shown: &[usize]) -> Frame {
+        let most = if self.panels.len() == 1 { STILL } else { PANEL };
+        let extent = window(&self.scene, shown);
+        let (wide, high) = (extent.width().max(1e-6), extent.height().max(1e-6));
+        let scale = (most[0] / wide).min(most[1] / high);
+        let [width, height] = [(wide * scale).max(120.0), (high * scale + FOOT).max(50.0)];
+        Frame { extent, scale, width, height }
     }
 
     /// Panels as drawings of equal size. Bodies are defined in the first one that is drawn, under
@@ -77,9 +109,7 @@ impl Strip {
         let frames: Vec<Option<usize>> =
             self.panels.iter().map(|p| self.scene.frames.nearest(p.time)).collect();
         let shown: Vec<usize> = frames.iter().copied().flatten().collect();
-        let extent = window(&self.scene, &shown);
-        let scale = PANEL_WIDTH / extent.width().max(extent.height() * 0.75).max(1e-6);
-        let height = (extent.height() * scale).max(60.0);
+        let view = self.frame(&shown);
         self.panels
             .iter()
             .zip(frames)
@@ -88,73 +118,111 @@ impl Strip {
                 let time = frame.and_then(|f| self.scene.frames.times.get(f)).copied();
                 let heading = format!("t = {} s", number::fixed(time.unwrap_or(f64::NAN), 2));
                 let title = format!("{heading}. {}", panel.note);
-                let mut svg = Svg::new(PANEL_WIDTH, height + CAPTION, title.trim_end());
+                let (width, height) = (view.width, view.height);
+                let mut svg = Svg::new(width, height + CAPTION, title.trim_end());
                 if at == 0 {
-                    self.define_bodies(&mut svg, id, scale);
+                    self.define_bodies(&mut svg, id, &view, &shown);
                 }
-                let mut picture = Svg::new(PANEL_WIDTH, height, "");
-                picture.rect("frame", [0.5, 0.5], [PANEL_WIDTH - 1.0, height - 1.0]);
+                let mut picture = Svg::new(width, height, "");
+                picture.rect("frame", [0.5, 0.5], [width - 1.0, height - 1.0]);
                 if let Some(frame) = frame {
-                    self.place_bodies(&mut picture, id, frame, &extent, scale);
+                    self.place_bodies(&mut picture, id, frame, &view);
                 }
                 svg.nest([0.0, 0.0], &picture);
                 svg.text("label strong", [1.0, height + 16.0], Anchor::Start, &heading);
-                svg.text("note", [1.0, height + 31.0], Anchor::Start, &fit(&panel.note));
+                let note = fit(&panel.note, width);
+                svg.text("note", [1.0, height + 31.0], Anchor::Start, &note);
                 svg
             })
             .collect()
     }
 
-    fn define_bodies(&self, svg: &mut Svg, id: &str, scale: f64) {
+    fn define_bodies(&self, svg: &mut Svg, id: &str, view: &Frame, shown: &[usize]) {
+        let scale = view.scale;
         svg.raw("<defs>");
         for (at, body) in self.scene.bodies.iter().enumerate() {
             svg.raw(&format!(r#"<g id="{id}-b{at}">"#));
             for line in &body.outlines {
-                let open = if line.closed { "" } else { " open" };
-                shape(svg, &format!("body {}{open}", body.role.class()), line, 1.1 / scale);
+                let open = if line.closed { "" } else { " bs-open" };
+                let class = format!("bs-body bs-{}{open}", body.role.class());
+                shape(svg, &class, line, 1.1 / scale);
+                if body.role == Role::Ground && !line.closed {
+                    self.hatch(svg, at, line, view, shown);
+                }
             }
             for (place, line) in body.marks.iter().enumerate() {
-                let wide = if place == 0 { 2.4 } else { 0.7 };
-                shape(svg, "body open", line, wide / scale);
+                let wide = if place == 0 && body.role != Role::Ground { 2.4 } else { 0.7 };
+                shape(svg, "bs-body bs-open", line, wide / scale);
             }
             svg.raw("</g>");
         }
         svg.raw("</defs>");
     }
 
-    fn place_bodies(&self, svg: &mut Svg, id: &str, frame: usize, extent: &Extent, scale: f64) {
-        let height = svg.height;
+    /// The hatch under the part of the ground that some panel shows.
+    fn hatch(&self, svg: &mut Svg, body: usize, line: &Polyline, view: &Frame, shown: &[usize]) {
+        let mut reach = [f64::INFINITY, f64::NEG_INFINITY];
+        let spare = view.width / view.scale;
+        for pose in shown.iter().filter_map(|&frame| self.scene.frames.pose(frame, body)) {
+            reach[0] = reach[0].min(view.extent.lower[0] - pose[0] - spare);
+            reach[1] = reach[1].max(view.extent.upper[0] - pose[0] + spare);
+        }
+        let mut data = String::new();
+        for [from, to] in hatch(line, HATCH / view.scale, reach) {
+            // Writing to a String cannot fail.
+            let _ = write!(data, "M{:.3} {:.3}L{:.3} {:.3}", from[0], from[1], to[0], to[1]);
+        }
+        if !data.is_empty() {
+            let width = 0.8 / view.scale;
+            svg.raw(&format!(
+                r#"<path class="bs-body bs-ground bs-open" stroke-width="{width:.5}" d="{data}"/>"#
+            ));
+        }
+    }
+
+    fn place_bodies(&self, svg: &mut Svg, id: &str, frame: usize, view: &Frame) {
+        let (extent, scale) = (&view.extent, view.scale);
         // Centered across when the window is narrower than the panel.
-        let x0 = 0.5 * (PANEL_WIDTH - extent.width() * scale) - extent.lower[0] * scale;
-        let z0 = height + extent.lower[1] * scale;
-        let [x0, z0] = [x0, z0].map(coordinate);
-        svg.raw(&format!(r#"<g transform="matrix({scale:.6} 0 0 {:.6} {x0} {z0})">"#, -scale));
-        for (at, body) in self.scene.bodies.iter().enumerate() {
-            let Some([x, z, angle]) = self.scene.frames.pose(frame, at) else { continue };
+        let x0 = 0.5 * (view.width - extent.width() * scale) - extent.lower[0] * scale;
+        let z0 = view.height - FOOT + extent.lower[1] * scale;
+        let [left, foot] = [x0, z0].map(coordinate);
+        svg.raw(&format!(r#"<g transform="matrix({scale:.6} 0 0 {:.6} {left} {foot})">"#, -scale));
+        let poses: Vec<_> = (0..self.scene.bodies.len())
+            .filter_map(|at| Some((at, self.scene.frames.pose(frame, at)?)))
+            .collect();
+        for (at, [x, z, angle]) in &poses {
             let degrees = angle.to_degrees();
-            let class = if body.role == Role::Ground { "ground" } else { "moving" };
+            let ground = self.scene.bodies[*at].role == Role::Ground;
+            let class = if ground { "ground" } else { "moving" };
             svg.raw(&format!(
                 r##"<use class="{class}" href="#{id}-b{at}" transform="translate({x:.4} {z:.4}) rotate({degrees:.3})"/>"##
             ));
         }
         svg.raw("</g>");
+        for (at, [x, z, _]) in poses.iter().filter(|_| self.panels.len() == 1) {
+            let body = &self.scene.bodies[*at];
+            if matches!(body.role, Role::Barrel | Role::Block) {
+                let place = [x0 + x * scale, z0 - z * scale + 4.0];
+                svg.text("label", place, Anchor::Middle, &body.name);
+            }
+        }
     }
 
     pub(crate) fn draw(&self, id: &str, title: &str) -> Svg {
         let drawings = self.drawings(id);
-        let per_row = drawings.len().clamp(1, 3);
-        let height = drawings.first().map_or(0.0, |d| d.height);
-        let rows = drawings.len().div_ceil(per_row);
-        let gap = 12.0;
+        let (wide, high) = drawings.first().map_or((PANEL[0], 0.0), |d| (d.width, d.height));
+        let most = (1..drawings.len()).take_while(|n| *n as f64 * (wide + GAP) + wide <= ROW);
+        // As many as fit a row, and no last row that holds a single one where two rows could share.
+        let rows = drawings.len().div_ceil(most.count() + 1).max(1);
+        let per_row = drawings.len().div_ceil(rows).max(1);
         let mut svg = Svg::new(
-            per_row as f64 * (PANEL_WIDTH + gap) + gap,
-            (rows as f64 * (height + gap) + gap).max(40.0),
+            per_row as f64 * (wide + GAP) + GAP,
+            (rows as f64 * (high + GAP) + GAP).max(40.0),
             title,
         );
         for (at, drawing) in drawings.iter().enumerate() {
             let (row, column) = (at / per_row, at % per_row);
-            let corner =
-                [gap + column as f64 * (PANEL_WIDTH + gap), gap + row as f64 * (height + gap)];
+            let corner = [GAP + column as f64 * (wide + GAP), GAP + row as f64 * (high + GAP)];
             svg.nest(corner, drawing);
         }
         svg
@@ -192,10 +260,11 @@ fn shape(svg: &mut Svg, class: &str, line: &Polyline, width: f64) {
 }
 
 /// A note that fits under its panel.
-fn fit(note: &str) -> String {
-    if text_width(note, 11.0) <= PANEL_WIDTH {
+fn fit(note: &str, width: f64) -> String {
+    if text_width(note, 11.0) <= width {
         return note.into();
     }
-    let kept: String = note.chars().take(33).collect();
+    let mut kept = note.to_owned();
+    while kept.pop().is_some() && text_width(&kept, 11.0) + 8.0 > width {}
     format!("{}…", kept.trim_end())
 }

@@ -1,5 +1,7 @@
 //! A small SVG writer and the palette that figures and page share.
 
+use std::fmt::{Arguments, Write as _};
+
 use crate::escape;
 
 /// Colors by name: on white (and paper), and on the dark page.
@@ -75,9 +77,14 @@ impl Svg {
         self.body.push_str(markup);
     }
 
+    fn put(&mut self, markup: Arguments<'_>) {
+        // Writing to a String cannot fail, here and below.
+        let _ = self.body.write_fmt(markup);
+    }
+
     pub(crate) fn line(&mut self, class: &str, from: [f64; 2], to: [f64; 2]) {
         let [x1, y1, x2, y2] = [from[0], from[1], to[0], to[1]].map(coordinate);
-        self.body.push_str(&format!(
+        self.put(format_args!(
             r#"<line class="{class}" x1="{x1}" y1="{y1}" x2="{x2}" y2="{y2}"/>"#
         ));
     }
@@ -85,14 +92,14 @@ impl Svg {
     pub(crate) fn rect(&mut self, class: &str, lower: [f64; 2], size: [f64; 2]) {
         let [x, y] = lower.map(coordinate);
         let [w, h] = size.map(|v| coordinate(v.max(0.0)));
-        self.body.push_str(&format!(
+        self.put(format_args!(
             r#"<rect class="{class}" x="{x}" y="{y}" width="{w}" height="{h}"/>"#
         ));
     }
 
     pub(crate) fn circle(&mut self, class: &str, center: [f64; 2], radius: f64) {
         let [x, y, r] = [center[0], center[1], radius].map(coordinate);
-        self.body.push_str(&format!(r#"<circle class="{class}" cx="{x}" cy="{y}" r="{r}"/>"#));
+        self.put(format_args!(r#"<circle class="{class}" cx="{x}" cy="{y}" r="{r}"/>"#));
     }
 
     /// A path through runs of points; nothing when there is none.
@@ -103,7 +110,7 @@ impl Svg {
         }
         let dash =
             if dash.is_empty() { String::new() } else { format!(r#" stroke-dasharray="{dash}""#) };
-        self.body.push_str(&format!(r#"<path class="{class}"{dash} d="{data}"/>"#));
+        self.put(format_args!(r#"<path class="{class}"{dash} d="{data}"/>"#));
     }
 
     pub(crate) fn text(&mut self, class: &str, at: [f64; 2], anchor: Anchor, text: &str) {
@@ -133,7 +140,7 @@ impl Svg {
             format!(r#" transform="rotate({degrees} {x} {y})""#)
         };
         let text = escape::html(text);
-        self.body.push_str(&format!(
+        self.put(format_args!(
             r#"<text class="{class}" x="{x}" y="{y}" text-anchor="{anchor}"{turn}>{text}</text>"#
         ));
     }
@@ -141,7 +148,7 @@ impl Svg {
     /// Places another drawing inside this one.
     pub(crate) fn nest(&mut self, at: [f64; 2], inner: &Self) {
         let [x, y, w, h] = [at[0], at[1], inner.width, inner.height].map(coordinate);
-        self.body.push_str(&format!(
+        self.put(format_args!(
             r#"<svg x="{x}" y="{y}" width="{w}" height="{h}" viewBox="0 0 {w} {h}">{}</svg>"#,
             inner.body
         ));
@@ -199,7 +206,7 @@ pub(crate) fn path_data(runs: &[Vec<[f64; 2]>], closed: bool) -> String {
         let mut points = run.iter().filter(|p| p.iter().all(|v| v.is_finite()));
         let Some(start) = points.next() else { continue };
         let mut pen = start.map(snap);
-        out.push_str(&format!("M{} {}", coordinate(pen[0]), coordinate(pen[1])));
+        let _ = write!(out, "M{} {}", coordinate(pen[0]), coordinate(pen[1]));
         let mut drawn = false;
         for point in points {
             let next = point.map(snap);

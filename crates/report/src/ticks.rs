@@ -57,9 +57,12 @@ pub fn linear_ticks(low: f64, high: f64, target: usize) -> Ticks {
         index += 1.0;
     }
     let largest = low.abs().max(high.abs());
-    let labels = if largest >= 1e6 || largest < 1e-4 {
+    let labels = if (1e-4..1e6).contains(&largest) {
+        let decimals = usize::try_from(to_i32(-exponent)).unwrap_or(0);
+        values.iter().map(|v| number::fixed(*v, decimals)).collect()
+    } else {
         let scale = 10_f64.powf(exponent);
-        let power = number::superscript(to_i32(exponent));
+        let power = number::superscript(i64::from(to_i32(exponent)));
         values
             .iter()
             .map(|v| match number::fixed(v / scale, 0) {
@@ -67,9 +70,6 @@ pub fn linear_ticks(low: f64, high: f64, target: usize) -> Ticks {
                 text => format!("{text}×10{power}"),
             })
             .collect()
-    } else {
-        let decimals = usize::try_from(to_i32(-exponent)).unwrap_or(0);
-        values.iter().map(|v| number::fixed(*v, decimals)).collect()
     };
     Ticks { values, labels }
 }
@@ -100,8 +100,8 @@ pub fn log_ticks(low: f64, high: f64) -> Ticks {
             ticks.labels.push(match exponent {
                 _ if !labeled => String::new(),
                 -3..=4 => format!("{value}"),
-                _ if factor == 1.0 => format!("10{}", number::superscript(exponent)),
-                _ => format!("{factor}×10{}", number::superscript(exponent)),
+                _ if factor == 1.0 => format!("10{}", number::superscript(i64::from(exponent))),
+                _ => format!("{factor}×10{}", number::superscript(i64::from(exponent))),
             });
         }
     }

@@ -114,7 +114,7 @@ pub enum AssembleError {
     },
     /// Two bodies stand in each other.
     #[error(
-        "\"{first}\" and \"{second}\" overlap by {depth:.4} m at the start: move them apart, or \
+        "\"{first}\" and \"{second}\" overlap by {depth:.3} m or more at the start: move them apart, or \
          let them touch without overlap"
     )]
     Overlap {

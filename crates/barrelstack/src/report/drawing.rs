@@ -55,8 +55,11 @@ fn body(assembly: &Assembly, index: usize) -> SceneBody {
         }
         (PartKind::Barrel, Some(Shape::BarrelProfile(profile))) => {
             let mut body = SceneBody::new(&part.name, Role::Barrel, outlines(assembly, index));
-            // Hoops, where coopers drive them: at the heads and on both sides of the bilge.
-            for share in [0.12, 0.42, -0.42, -0.12, 0.92, -0.92] {
+            // The bung, at the top of the bilge, then hoops, where coopers drive them: at the heads
+            // and on both sides of the bilge.
+            let bilge = profile.radius_at(0.0);
+            body.marks.push(Polyline::open(vec![[0.0, 0.9 * bilge], [0.0, bilge]]));
+            for share in [0.28, 0.6, -0.6, -0.28, 0.94, -0.94] {
                 let x = share * profile.half_length;
                 let z = profile.radius_at(x);
                 body.marks.push(Polyline::open(vec![[x, -z], [x, z]]));

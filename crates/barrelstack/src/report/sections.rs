@@ -356,7 +356,7 @@ fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
             Some(Series::new(*name, recording.times.clone(), values))
         })
         .collect();
-    let books = &summary.energy;
+    let Some(books) = &summary.energy else { return Vec::new() };
     vec![
         Block::Paragraph(format!(
             "What the ground gave and what the stack lost in height equals what is stored and what is \

@@ -21,20 +21,18 @@ pub(super) fn headline(run: &Run, summary: &Summary) -> String {
         (Outcome::Collapse { time, .. }, until) => {
             let until = until.map(|until| format!("; {until}")).unwrap_or_default();
             let (fallen, barrels) = (summary.outcome.barrels_fallen, summary.outcome.barrels);
-            match fallen {
-                0 => {
-                    format!("The stack comes apart after {time:.1} s, but no barrel falls{until}.")
-                }
-                _ => {
-                    let who = match fallen {
-                        1 if barrels == 1 => "The barrel falls".to_owned(),
-                        1 => format!("One of {barrels} barrels falls"),
-                        _ if fallen == barrels => format!("All {barrels} barrels fall"),
-                        _ => format!("{fallen} of {barrels} barrels fall"),
-                    };
-                    format!("{who}: the stack gives way after {time:.1} s{until}.")
-                }
+            if fallen == 0 {
+                return format!(
+                    "The stack comes apart after {time:.1} s, but no barrel falls{until}."
+                );
             }
+            let who = match fallen {
+                1 if barrels == 1 => "The barrel falls".to_owned(),
+                1 => format!("One of {barrels} barrels falls"),
+                _ if fallen == barrels => format!("All {barrels} barrels fall"),
+                _ => format!("{fallen} of {barrels} barrels fall"),
+            };
+            format!("{who}: the stack gives way after {time:.1} s{until}.")
         }
     }
 }
@@ -154,9 +152,14 @@ pub(super) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> 
         ),
         (
             "energy books".to_owned(),
-            format!(
-                "residual {:.2e} of the {:.0} J that went through",
-                summary.energy.residual_ratio, summary.energy.input
+            summary.energy.as_ref().map_or_else(
+                || "lost with the numbers".to_owned(),
+                |books| {
+                    format!(
+                        "residual {:.2e} of the {:.0} J that went through",
+                        books.residual_ratio, books.input
+                    )
+                },
             ),
         ),
     ];

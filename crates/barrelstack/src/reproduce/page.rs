@@ -339,11 +339,14 @@ fn provenance(results: &Results) -> Vec<(String, String)> {
         pairs.push((
             name.to_owned(),
             format!(
-                "{}, step {} ms, constants per {}, energy residual {:.0e}",
+                "{}, step {} ms, constants per {}, energy residual {}",
                 summary.run.method,
                 barrelstack_report::significant(1e3 * summary.run.time_step, 3),
                 summary.run.stiffness_basis,
-                summary.energy.residual_ratio
+                summary.energy.as_ref().map_or_else(
+                    || "lost".to_owned(),
+                    |books| format!("{:.0e}", books.residual_ratio)
+                )
             ),
         ));
     }

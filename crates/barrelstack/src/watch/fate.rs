@@ -1,7 +1,6 @@
 //! The fate of every body: whether it kept its seat, when it left it, how far it fell.
 
-use barrelstack_dynamics::space::Rotation2;
-use barrelstack_dynamics::{BodyId, Planar, State, Vec2};
+use barrelstack_dynamics::{BodyId, Linear, Planar, Scratch, State, Vec2};
 
 use crate::assemble::{Assembly, PartKind};
 use crate::scenario::OutcomeSpec;
@@ -124,7 +123,12 @@ impl Fates {
     }
 
     /// Looks at an accepted state.
-    pub(super) fn observe(&mut self, assembly: &Assembly, state: &State<Planar>) {
+    pub(super) fn observe(
+        &mut self,
+        assembly: &Assembly,
+        state: &State<Planar>,
+        scratch: &Scratch<Planar>,
+    ) {
         let ground = state.poses[Assembly::GROUND].position;
         let standing = self.collapse.is_none();
         for (i, part) in assembly.parts.iter().enumerate() {
@@ -132,7 +136,7 @@ impl Fates {
                 continue;
             }
             let moved = state.poses[i].position - ground - self.rest[i];
-            let slip = self.slip(assembly, state, i);
+            let slip = self.slip(assembly, state, scratch, i);
             let tilt = state.poses[i].orientation;
             let fate = &mut self.bodies[i];
             fate.drop = fate.drop.max(-moved.z);
@@ -167,13 +171,18 @@ impl Fates {
 
     /// Displacement (m) of a body relative to what it stands on: a barrel in the frame of its rack, a
     /// rack against the mean of the barrels below, the rest against the ground.
-    fn slip(&self, assembly: &Assembly, state: &State<Planar>, body: BodyId) -> Vec2 {
+    fn slip(
+        &self,
+        assembly: &Assembly,
+        state: &State<Planar>,
+        scratch: &Scratch<Planar>,
+        body: BodyId,
+    ) -> Vec2 {
         let part = &assembly.parts[body];
         let ground = state.poses[Assembly::GROUND].position;
         let here = state.poses[body].position;
         if let Some(rack) = part.carrier {
-            let turned = Rotation2::new(state.poses[rack].orientation);
-            let place = turned.unapply(here - state.poses[rack].position);
+            let place = scratch.rotations[rack].unapply(here - state.poses[rack].position);
             return place - (self.rest[body] - self.rest[rack]);
         }
         if part.supports.is_empty() {
@@ -210,7 +219,8 @@ impl Fates {
         match part.kind {
             PartKind::Ground | PartKind::Body => None,
             PartKind::Barrel => {
-                let away = slip.length() > limits.seat_loss_ratio * part.size;
+                let seat = limits.seat_loss_ratio * part.size;
+                let away = slip.dot(slip) > seat * seat;
                 if away { Some(Loss::Displaced) } else { fell.then_some(Loss::Dropped) }
             }
             PartKind::Rack => {

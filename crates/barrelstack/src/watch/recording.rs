@@ -64,6 +64,8 @@ pub struct Recording {
     rest: Vec<Vec2>,
     /// Which joint a pair of the model belongs to, and whether its contactor is the lower body.
     joint_of_pair: Vec<Option<(usize, bool)>>,
+    /// Force (N) on the upper body of every joint, in the step at hand.
+    sums: Vec<Vec2>,
     started: bool,
 }
 
@@ -119,10 +121,11 @@ impl Recording {
             frames: Frames::default(),
             times: Vec::new(),
             channels,
-            joints,
             frame_rate,
             history_rate,
             rest: state.poses.iter().map(|p| p.position - ground).collect(),
+            sums: vec![Vec2::default(); joints.len()],
+            joints,
             joint_of_pair,
             started: false,
         }
@@ -147,8 +150,8 @@ impl Recording {
         scratch: &Scratch<Planar>,
         energy: &EnergyLedger<Planar>,
     ) {
-        let sums = self.joint_sums(scratch);
-        for (joint, force) in self.joints.iter_mut().zip(&sums) {
+        self.sum_joints(scratch);
+        for (joint, force) in self.joints.iter_mut().zip(&self.sums) {
             if !self.started {
                 joint.at_rest = force.z;
             }
@@ -166,20 +169,18 @@ impl Recording {
             self.take_frame(model, state, scratch);
         }
         if due(self.times.len(), self.history_rate) {
-            self.take_sample(assembly, ground, state, energy, &sums);
+            self.take_sample(assembly, ground, state, energy);
         }
     }
 
-    /// Force (N) on the upper body of every joint.
-    fn joint_sums(&self, scratch: &Scratch<Planar>) -> Vec<Vec2> {
-        let mut sums = vec![Vec2::default(); self.joints.len()];
+    /// Sums the forces of the step on the upper body of every joint.
+    fn sum_joints(&mut self, scratch: &Scratch<Planar>) {
+        self.sums.fill(Vec2::default());
         for pair in &scratch.pair_forces {
             if let Some((joint, lower_touches)) = self.joint_of_pair[pair.pair] {
-                let force = if lower_touches { -pair.force } else { pair.force };
-                sums[joint] += force;
+                self.sums[joint] += if lower_touches { -pair.force } else { pair.force };
             }
         }
-        sums
     }
 
     fn take_frame(
@@ -224,7 +225,6 @@ impl Recording {
         ground: &Ground,
         state: &State<Planar>,
         energy: &EnergyLedger<Planar>,
-        sums: &[Vec2],
     ) {
         self.times.push(state.time);
         let mut values: Vec<f64> = Vec::with_capacity(self.channels.len());
@@ -257,7 +257,7 @@ impl Recording {
         for (channel, value) in self.channels.iter_mut().zip(values) {
             channel.values.push(value);
         }
-        for (joint, force) in self.joints.iter_mut().zip(sums) {
+        for (joint, force) in self.joints.iter_mut().zip(&self.sums) {
             joint.vertical.push(force.z);
             joint.horizontal.push(force.x);
         }

@@ -6,7 +6,10 @@
 //! A rack's stress sits at its nodes. On a barrel it sits wherever a node presses, so the barrel's
 //! boundary is divided into cells, and a node presses on all the cells of its own length.
 
-use barrelstack_dynamics::forces::{Contact, tributary_length};
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
+
+use barrelstack_dynamics::forces::tributary_length;
 use barrelstack_dynamics::{BodyId, Model, Nodes, Planar, Scratch, Shape, Vec2, math};
 
 use crate::assemble::{Assembly, PartKind};
@@ -83,15 +86,65 @@ pub struct Stresses {
     pub envelopes: Vec<StressEnvelope>,
     /// Index of a body's envelope.
     of_body: Vec<Option<usize>>,
+    /// Where every node of every pair presses; one entry per node, pair after pair.
+    presses: Vec<Press>,
+    /// The first entry of every pair.
+    first_press: Vec<usize>,
+}
+
+/// Where a node presses on a target, and how hard it must press to raise an envelope.
+///
+/// As long as the companion point stays in one place, the node presses on the same cells, and a force
+/// that does not exceed the lowest of their peaks changes nothing: most contacts of most steps are
+/// done with a few comparisons.
+#[derive(Clone, Debug)]
+struct Press {
+    /// Length (m) that the node stands for.
+    length: f64,
+    place: Place,
+    /// The cells of the target; past the last one they go on with the first.
+    cells: Range<usize>,
+    /// No force (N) up to this one raises an envelope.
+    floor: f64,
+}
+
+/// Companion points that press on the same cells.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    /// No point yet.
+    Nowhere,
+    /// All points: the target has no cells.
+    Everywhere,
+    /// Those between two directions, counterclockwise.
+    Wedge(Vec2, Vec2),
+    /// Those between two values of `x` (m) above the axis, or below it.
+    Strip(f64, f64, bool),
+}
+
+impl Place {
+    #[inline]
+    fn holds(self, point: Vec2) -> bool {
+        match self {
+            Self::Nowhere => false,
+            Self::Everywhere => true,
+            Self::Wedge(from, to) => {
+                from.x * point.z >= from.z * point.x && point.x * to.z > point.z * to.x
+            }
+            Self::Strip(from, to, above) => {
+                from <= point.x && point.x < to && (point.z >= 0.0) == above
+            }
+        }
+    }
 }
 
 impl Stresses {
     /// Starts with the stresses at rest in `scratch`.
     pub(super) fn new(assembly: &Assembly, scratch: &Scratch<Planar>) -> Self {
+        let model = &assembly.model;
         let mut envelopes = Vec::new();
         let mut of_body = vec![None; assembly.parts.len()];
         for (i, part) in assembly.parts.iter().enumerate() {
-            let body = &assembly.model.bodies()[i];
+            let body = &model.bodies()[i];
             let made = match part.kind {
                 PartKind::Barrel => body.surfaces.first().and_then(|s| on_surface(i, &s.surface)),
                 PartKind::Rack => on_nodes(i, &body.nodes),
@@ -102,8 +155,22 @@ impl Stresses {
                 envelopes.push(envelope);
             }
         }
-        let mut stresses = Self { envelopes, of_body };
-        stresses.observe(&assembly.model, scratch);
+        let (mut presses, mut first_press) = (Vec::new(), Vec::new());
+        for pair in model.pairs() {
+            first_press.push(presses.len());
+            let nodes = match &model.bodies()[pair.contactor].nodes[pair.nodes] {
+                Nodes::Fixed(nodes) => nodes.len(),
+                Nodes::Rolling { .. } => 1,
+            };
+            presses.extend((0..nodes).map(|node| Press {
+                length: tributary_length(model, pair, node),
+                place: Place::Nowhere,
+                cells: 0..0,
+                floor: 0.0,
+            }));
+        }
+        let mut stresses = Self { envelopes, of_body, presses, first_press };
+        stresses.observe(model, scratch);
         for envelope in &mut stresses.envelopes {
             envelope.at_rest.clone_from(&envelope.peak);
         }
@@ -118,70 +185,94 @@ impl Stresses {
     /// Raises the envelopes to the stresses of an accepted state.
     pub(super) fn observe(&mut self, model: &Model<Planar>, scratch: &Scratch<Planar>) {
         for contact in &scratch.contacts {
+            let press = &mut self.presses[self.first_press[contact.pair] + contact.node as usize];
+            let placed = press.place.holds(contact.point);
+            if placed && contact.normal_force <= press.floor {
+                continue;
+            }
             let pair = &model.pairs()[contact.pair];
-            let length = tributary_length(model, pair, contact.node as usize);
-            let stress = contact.normal_force / length;
+            let stress = contact.normal_force / press.length;
+            let mut lowest = f64::INFINITY;
             if let Some(at) = self.of_body[pair.target] {
-                self.envelopes[at].press(contact, length, stress);
+                let envelope = &mut self.envelopes[at];
+                if !placed {
+                    (press.place, press.cells) = envelope.place(contact.point, press.length);
+                }
+                let count = envelope.peak.len();
+                for cell in press.cells.clone() {
+                    let peak = &mut envelope.peak[if cell < count { cell } else { cell - count }];
+                    *peak = peak.max(stress);
+                    lowest = lowest.min(*peak);
+                }
+            } else {
+                press.place = Place::Everywhere;
             }
             if let Some(at) = self.of_body[pair.contactor]
                 && matches!(self.envelopes[at].cells, Cells::Nodes)
             {
                 let peak = &mut self.envelopes[at].peak[contact.node as usize];
                 *peak = peak.max(stress);
+                lowest = lowest.min(*peak);
             }
+            press.floor = lowest * press.length;
         }
     }
 }
 
 impl StressEnvelope {
-    /// A node of a length presses on the cells around its companion point.
-    fn press(&mut self, contact: &Contact<Planar>, length: f64, stress: f64) {
-        let point = contact.point;
+    /// The cells on which a node of a length (m) presses around a companion point (m), and the points
+    /// for which they stay the same.
+    fn place(&self, point: Vec2, length: f64) -> (Place, Range<usize>) {
         match self.cells {
             Cells::Around(radius) => {
-                let turn = fast_angle(point) / std::f64::consts::TAU;
-                let half = 0.5 * length / (radius * std::f64::consts::TAU);
-                let count = self.peak.len();
-                let cell = |turn: f64| (turn * count as f64).floor();
-                let (first, last) = (
-                    cell(turn - half + 0.5 / count as f64),
-                    cell(turn + half - 0.5 / count as f64),
-                );
-                let mut at = first;
-                while at <= last.max(first) {
-                    #[expect(
-                        clippy::cast_possible_truncation,
-                        clippy::cast_sign_loss,
-                        reason = "rem_euclid of a whole number below the count"
-                    )]
-                    let index = at.rem_euclid(count as f64) as usize;
-                    self.peak[index] = self.peak[index].max(stress);
-                    at += 1.0;
-                }
+                let count = self.peak.len() as f64;
+                let width = TAU / count;
+                let angle = math::atan2(point.z, point.x).rem_euclid(TAU);
+                let (first, last, from, to) = span(angle, length / radius, width);
+                let direction = |angle: f64| {
+                    let (sin, cos) = math::sin_cos(angle);
+                    Vec2::new(cos, sin)
+                };
+                let first_cell = whole(first.rem_euclid(count));
+                let cells = whole((last - first + 1.0).min(count));
+                (Place::Wedge(direction(from), direction(to)), first_cell..first_cell + cells)
             }
             Cells::Along(half_length) => {
                 let cells = self.peak.len() / 2;
+                let most = cells as f64 - 1.0;
                 let width = 2.0 * half_length / cells as f64;
-                let from = ((point.x - 0.5 * length + half_length) / width + 0.5).floor().max(0.0);
-                let to = ((point.x + 0.5 * length + half_length) / width - 0.5).floor();
-                let to = to.min(cells as f64 - 1.0);
-                let side = if point.z >= 0.0 { 0 } else { cells };
-                let mut at = from.min(cells as f64 - 1.0);
-                while at <= to.max(from) && at < cells as f64 {
-                    #[expect(
-                        clippy::cast_possible_truncation,
-                        clippy::cast_sign_loss,
-                        reason = "between zero and the number of cells"
-                    )]
-                    let index = side + at as usize;
-                    self.peak[index] = self.peak[index].max(stress);
-                    at += 1.0;
-                }
+                let (first, last, from, to) = span(point.x + half_length, length, width);
+                let first = whole(first.clamp(0.0, most));
+                let last = whole(last.clamp(0.0, most));
+                let above = point.z >= 0.0;
+                let side = if above { 0 } else { cells };
+                let place = Place::Strip(from - half_length, to - half_length, above);
+                (place, side + first..side + last + 1)
             }
-            Cells::Nodes => {}
+            // Its nodes press on others; what presses on them leaves no stress.
+            Cells::Nodes => (Place::Everywhere, 0..0),
         }
     }
+}
+
+/// The first and the last cell of a width whose middle is covered by a length about a coordinate (at
+/// least one), and the coordinates from which and up to which that stays so.
+fn span(coordinate: f64, length: f64, width: f64) -> (f64, f64, f64, f64) {
+    let half = 0.5 * length;
+    let first = ((coordinate - half) / width + 0.5).floor();
+    let last = ((coordinate + half) / width - 0.5).floor();
+    let from = ((first - 0.5) * width + half).max((last + 0.5) * width - half);
+    let to = ((first + 0.5) * width + half).min((last + 1.5) * width - half);
+    (first, last.max(first), from, to)
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "between zero and the number of cells"
+)]
+fn whole(number: f64) -> usize {
+    number as usize
 }
 
 fn empty(body: BodyId, points: Vec<BoundaryPoint>, closed: bool, cells: Cells) -> StressEnvelope {
@@ -208,17 +299,13 @@ fn on_surface(body: BodyId, shape: &Shape) -> Option<StressEnvelope> {
         Shape::Circle(circle) => {
             let points = (0..CELLS)
                 .map(|i| {
-                    let angle = std::f64::consts::TAU * (i as f64 + 0.5) / CELLS as f64;
+                    let angle = TAU * (i as f64 + 0.5) / CELLS as f64;
                     let (sin, cos) = math::sin_cos(angle);
                     let normal = Vec2::new(cos, sin);
                     BoundaryPoint {
                         position: normal * circle.radius,
                         normal,
-                        coordinate: if angle > std::f64::consts::PI {
-                            angle - std::f64::consts::TAU
-                        } else {
-                            angle
-                        },
+                        coordinate: if angle > PI { angle - TAU } else { angle },
                     }
                 })
                 .collect();
@@ -260,20 +347,4 @@ fn on_nodes(body: BodyId, nodes: &[Nodes<Planar>]) -> Option<StressEnvelope> {
         .collect();
     let lengths = nodes.iter().map(|node| node.tributary_length).collect();
     Some(StressEnvelope { lengths, ..empty(body, points, false, Cells::Nodes) })
-}
-
-/// The angle of a vector from `x`, between 0 and 2π, good to 2e-4 rad: fine enough to find a cell.
-fn fast_angle(v: Vec2) -> f64 {
-    use std::f64::consts::{FRAC_PI_2, PI, TAU};
-    let (a, b) = (v.x.abs(), v.z.abs());
-    let ratio = a.min(b) / a.max(b).max(f64::MIN_POSITIVE);
-    let square = ratio * ratio;
-    let octant = ratio
-        * (0.999_866
-            + square
-                * (-0.330_299_5
-                    + square * (0.180_141 + square * (-0.085_133 + 0.020_835_1 * square))));
-    let quadrant = if b > a { FRAC_PI_2 - octant } else { octant };
-    let half = if v.x < 0.0 { PI - quadrant } else { quadrant };
-    if v.z < 0.0 { TAU - half } else { half }
 }

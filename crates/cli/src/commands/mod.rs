@@ -2,6 +2,7 @@
 
 mod check;
 mod demo;
+pub(crate) mod motion;
 mod reproduce;
 mod run;
 mod scenarios;
@@ -27,6 +28,7 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
         Command::Demo(args) => demo::demo(&args),
         Command::Check(args) => check::check(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
+        Command::Motion(args) => motion::motion(&args),
         Command::Scenarios(args) => scenarios::scenarios(&args),
     }
 }
@@ -70,9 +72,10 @@ fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
 
 /// A name that is neither a file nor a built-in scenario, with the one that looks most like it.
 fn no_such(name: &str, error: &ScenarioError) -> anyhow::Error {
-    let next = match error.problem() {
-        Problem::UnknownName { nearest: Some(nearest), .. } => format!("did you mean `{nearest}`?"),
-        _ => "`barrelstack scenarios` lists those".to_owned(),
+    let next = if let Problem::UnknownName { nearest: Some(nearest), .. } = error.problem() {
+        format!("did you mean `{nearest}`?")
+    } else {
+        "`barrelstack scenarios` lists those".to_owned()
     };
     anyhow::anyhow!("there is no file {name:?} and no built-in scenario of that name; {next}")
 }
@@ -80,16 +83,15 @@ fn no_such(name: &str, error: &ScenarioError) -> anyhow::Error {
 /// An error of a run with the scenario it comes from; a record named on the command line comes from
 /// none.
 fn placed(error: RunFailure, args: &ScenarioArgs) -> anyhow::Error {
-    match error {
-        RunFailure::Ground(GroundError::Unreadable { path, reason, .. })
-            if args.record.is_some() =>
-        {
-            anyhow::anyhow!(
-                "cannot read {}: {reason}; correct the path after --record",
-                path.display()
-            )
-        }
-        RunFailure::Ground(error) if args.record.is_some() => error.into(),
-        error => anyhow::Error::from(error).context(args.scenario.clone()),
+    if args.record.is_some()
+        && let RunFailure::Ground(error) = error
+    {
+        return if let GroundError::Unreadable { path, reason, .. } = error {
+            let path = path.display();
+            anyhow::anyhow!("cannot read {path}: {reason}; correct the path after --record")
+        } else {
+            error.into()
+        };
     }
+    anyhow::Error::from(error).context(args.scenario.clone())
 }

@@ -1,35 +1,36 @@
 //! The built program, run as a user runs it.
 
 #![allow(dead_code, reason = "each suite uses a part")]
+#![allow(clippy::print_stdout, reason = "messages are read with --nocapture")]
 
 use std::ffi::OsStr;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 /// The program, with nothing to read on standard input.
-pub fn program<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Command {
+pub(crate) fn program<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_barrelstack"));
     command.args(arguments).stdin(Stdio::null());
     command
 }
 
 /// Runs the program to its end.
-pub fn barrelstack<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Output {
+pub(crate) fn barrelstack<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Output {
     program(arguments).output().unwrap()
 }
 
 /// What was printed as the result.
-pub fn stdout(output: &Output) -> String {
+pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
 /// What was printed beside it.
-pub fn stderr(output: &Output) -> String {
+pub(crate) fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
 /// What a folder holds, sorted; none where there is no folder.
-pub fn names(folder: &Path) -> Option<Vec<String>> {
+pub(crate) fn names(folder: &Path) -> Option<Vec<String>> {
     let entries = std::fs::read_dir(folder).ok()?;
     let mut names: Vec<String> =
         entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
@@ -39,7 +40,7 @@ pub fn names(folder: &Path) -> Option<Vec<String>> {
 
 /// A user's mistake: one error that starts as errors start and contains all of `words`, status 2,
 /// nothing on standard output, nothing written to `out`.
-pub fn refused(what: &str, output: &Output, out: &Path, words: &[&str]) {
+pub(crate) fn refused(what: &str, output: &Output, out: &Path, words: &[&str]) {
     let message = stderr(output);
     println!("---- {what}\n{message}");
     assert_eq!(output.status.code(), Some(2), "{what}: {message}");

@@ -1,6 +1,6 @@
 //! Normal contact force as a function of penetration and penetration rate.
 
-use crate::real::Real;
+use crate::real::{Mask, Real};
 
 /// A law for the compressive force of one node, δ its penetration (m) and δ̇ the rate (m/s,
 /// positive while approaching). No law ever pulls.
@@ -65,6 +65,38 @@ pub struct NormalForce<R> {
     pub elastic: R,
     /// Energy stored in the spring (J).
     pub energy: R,
+}
+
+impl<R: Real> NormalForce<R> {
+    /// The force where the contact begins or ends within a step (s) of central differences.
+    ///
+    /// The method takes a force as constant for half a step before and after its instant.
+    /// A spring met at a rate δ̇ has then pushed only for the time `δ/δ̇` of the half before, one that
+    /// is left will push only for the time `δ/|δ̇|` of the half after, with half its force in the mean:
+    ///
+    /// ```text
+    /// elastic · ½ (1 + δ / |δ̇| Δt)   where δ < |δ̇| Δt
+    /// ```
+    ///
+    /// So a linear spring met at a steady rate takes exactly the energy that it stores, wherever in
+    /// the step it is met, and the error of a bounce falls by orders of magnitude.
+    /// A step of zero leaves the force as it is.
+    #[inline]
+    #[must_use]
+    pub fn within_step(self, depth: R, rate: R, step: R) -> Self {
+        let way = rate.abs() * step;
+        let partly = depth.lt(way);
+        if !partly.any() {
+            return self;
+        }
+        let missing = R::splat(0.5) - R::splat(0.5) * depth / R::select(partly, way, R::splat(1.0));
+        let missing = self.elastic * R::select(partly, missing, R::zero());
+        Self {
+            total: (self.total - missing).max(R::zero()),
+            elastic: self.elastic - missing,
+            energy: self.energy,
+        }
+    }
 }
 
 impl<R: Real> NormalLaw<R> {

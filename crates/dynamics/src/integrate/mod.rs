@@ -156,7 +156,7 @@ fn free<S: Space>(model: &Model<S>) -> impl Iterator<Item = usize> + '_ {
 }
 
 /// Ends a step: the state that `scratch` was evaluated at is accepted.
-fn accept<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &mut Scratch<S>) {
+fn accept<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
     forces::commit(model, state, scratch);
 }
 

@@ -1,7 +1,7 @@
 //! The one-evaluation methods: symplectic Euler and velocity Verlet.
 
 use super::{Drive, accept, advance_sticks, free, place_prescribed};
-use crate::forces::{Scratch, evaluate};
+use crate::forces::{Scratch, evaluate, evaluate_within};
 use crate::model::Model;
 use crate::real::Real;
 use crate::space::Space;
@@ -26,7 +26,7 @@ pub(super) fn semi_implicit_euler<S: Space>(
         state.poses[i] = state.poses[i].moved(state.twists[i], step);
     }
     advance_sticks(state, &scratch.slip_rates, dt);
-    scratch.old_slip_rates.clone_from(&scratch.slip_rates);
+    std::mem::swap(&mut scratch.old_slip_rates, &mut scratch.slip_rates);
     state.time = until;
     place_prescribed(model, drive, state);
     evaluate(model, state, scratch);
@@ -38,6 +38,8 @@ pub(super) fn semi_implicit_euler<S: Space>(
 ///
 /// Those forces depend on the velocity, which is predicted from the old acceleration and corrected
 /// afterwards; sticks likewise, from the old slip rate.
+/// Springs met or left within the step push for a part of it only
+/// ([`NormalForce::within_step`](crate::contact::NormalForce::within_step)).
 /// Prediction errors are of second order and do not add up, since the corrected values are kept.
 pub(super) fn velocity_verlet<S: Space>(
     model: &Model<S>,
@@ -57,10 +59,10 @@ pub(super) fn velocity_verlet<S: Space>(
         scratch.old_accelerations[i] = kick;
     }
     advance_sticks(state, &scratch.slip_rates, dt);
-    scratch.old_slip_rates.clone_from(&scratch.slip_rates);
+    std::mem::swap(&mut scratch.old_slip_rates, &mut scratch.slip_rates);
     state.time = until;
     place_prescribed(model, drive, state);
-    evaluate(model, state, scratch);
+    evaluate_within(model, state, step, scratch);
 
     for i in free(model) {
         let new = scratch.accelerations[i];

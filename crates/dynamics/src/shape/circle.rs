@@ -17,17 +17,29 @@ pub struct Circle<R = f64> {
 impl<R: Real> Circle<R> {
     #[inline]
     pub(super) fn gap(&self, point: Vec2<R>) -> Gap<Planar<R>> {
-        let length = point.length();
+        self.gap_from(point, point.dot(point))
+    }
+
+    /// The gap of a point whose squared distance (m²) from the center is known.
+    #[inline]
+    pub(super) fn gap_from(&self, point: Vec2<R>, squared: R) -> Gap<Planar<R>> {
+        let length = squared.sqrt();
         let at_center = length.le(R::zero());
         let inverse = R::splat(1.0) / R::select(at_center, R::splat(1.0), length);
         let up = Vec2::new(R::zero(), R::splat(1.0));
         Gap { distance: length - self.radius, normal: Vec2::select(at_center, up, point * inverse) }
     }
 
+    /// The squared distance (m²) from the center below which a point may penetrate.
+    #[inline]
+    pub(super) fn within(&self) -> R {
+        // A hair of slack, so that rounding never hides a node that the square root would find.
+        self.radius * self.radius * R::splat(1.0 + 1e-14)
+    }
+
     #[inline]
     pub(super) fn may_touch(&self, point: Vec2<R>) -> R::Mask {
-        // A hair of slack, so that rounding never hides a node that the square root would find.
-        point.dot(point).lt(self.radius * self.radius * R::splat(1.0 + 1e-14))
+        point.dot(point).lt(self.within())
     }
 }
 

@@ -11,8 +11,8 @@ mod half_plane;
 mod polygon;
 mod profile;
 
-use crate::real::Real;
-use crate::space::{Planar, Space, Vec2};
+use crate::real::{Mask, Real};
+use crate::space::{Linear, Planar, Space, Vec2};
 
 pub use circle::Circle;
 pub use cradle::Cradle;
@@ -37,6 +37,24 @@ pub trait Surface<S: Space>: Clone + std::fmt::Debug + Send + Sync + 'static {
     /// A cheap test that holds wherever `gap(point).distance < 0`, and may hold elsewhere.
     fn may_touch(&self, point: S::Vector) -> <S::Real as Real>::Mask {
         self.gap(point).distance.lt(S::Real::zero())
+    }
+
+    /// Visits the points (m) that penetrate in at least one lane, in order: how many came before it,
+    /// the point, and its gap.
+    #[inline]
+    fn penetrated_by(
+        &self,
+        points: impl Iterator<Item = S::Vector>,
+        mut visit: impl FnMut(usize, S::Vector, Gap<S>),
+    ) {
+        for (index, point) in points.enumerate() {
+            if self.may_touch(point).any() {
+                let gap = self.gap(point);
+                if gap.distance.lt(S::Real::zero()).any() {
+                    visit(index, point, gap);
+                }
+            }
+        }
     }
 
     /// Radius (m) of a ball about the origin that holds the surface; infinite for a half-plane.
@@ -97,6 +115,56 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
             Self::HalfPlane(_) => point.z.lt(R::zero()),
             Self::Polygon(shape) => shape.may_touch(point),
             Self::Cradle(_) | Self::BarrelProfile(_) => self.gap(point).distance.lt(R::zero()),
+        }
+    }
+
+    /// Asks once which shape it is, not at every point.
+    #[inline]
+    fn penetrated_by(
+        &self,
+        points: impl Iterator<Item = Vec2<R>>,
+        mut visit: impl FnMut(usize, Vec2<R>, Gap<Planar<R>>),
+    ) {
+        let zero = R::zero();
+        match self {
+            Self::Circle(shape) => {
+                let within = shape.within();
+                for (index, point) in points.enumerate() {
+                    let squared = point.dot(point);
+                    if squared.lt(within).any() {
+                        let gap = shape.gap_from(point, squared);
+                        if gap.distance.lt(zero).any() {
+                            visit(index, point, gap);
+                        }
+                    }
+                }
+            }
+            Self::HalfPlane(shape) => {
+                for (index, point) in points.enumerate() {
+                    let gap = shape.gap(point);
+                    if gap.distance.lt(zero).any() {
+                        visit(index, point, gap);
+                    }
+                }
+            }
+            Self::Polygon(shape) => {
+                for (index, point) in points.enumerate() {
+                    if shape.may_touch(point).any() {
+                        let gap = shape.gap(point);
+                        if gap.distance.lt(zero).any() {
+                            visit(index, point, gap);
+                        }
+                    }
+                }
+            }
+            Self::Cradle(_) | Self::BarrelProfile(_) => {
+                for (index, point) in points.enumerate() {
+                    let gap = self.gap(point);
+                    if gap.distance.lt(zero).any() {
+                        visit(index, point, gap);
+                    }
+                }
+            }
         }
     }
 

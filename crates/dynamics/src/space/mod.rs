@@ -78,6 +78,8 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         spin: Self::Spin,
         time: Self::Real,
     ) -> Self::Orientation;
+    /// The turn (rad) from one orientation to another near it: the spin that does it in a unit of time.
+    fn turn_between(from: Self::Orientation, to: Self::Orientation) -> Self::Spin;
     /// How far apart two orientations are (rad); an upper bound will do.
     fn angle_between(a: Self::Orientation, b: Self::Orientation) -> Self::Real;
     /// Angular acceleration under a moment.
@@ -155,6 +157,16 @@ impl<S: Space> Pose<S> {
             orientation: S::turn(self.orientation, twist.angular, time),
         }
     }
+
+    /// The way to another pose near it (m and rad): the twist that goes it in a unit of time.
+    #[inline]
+    #[must_use]
+    pub fn way_to(self, other: Self) -> Twist<S> {
+        Twist {
+            linear: other.position - self.position,
+            angular: S::turn_between(self.orientation, other.orientation),
+        }
+    }
 }
 
 /// Force (N) and moment about the center of mass (N·m).
@@ -164,4 +176,26 @@ pub struct Wrench<S: Space> {
     pub force: S::Vector,
     /// Moment about the center of mass (N·m).
     pub moment: S::Spin,
+}
+
+impl<S: Space> Wrench<S> {
+    /// The sum of both.
+    #[inline]
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self { force: self.force + other.force, moment: self.moment + other.moment }
+    }
+
+    /// Power (W) on a body that moves with a twist; work (J) on one that went a way.
+    #[inline]
+    pub fn power(self, twist: Twist<S>) -> S::Real {
+        self.force.dot(twist.linear) + self.moment.dot(twist.angular)
+    }
+}
+
+impl<S: Space> AddAssign for Wrench<S> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = self.plus(other);
+    }
 }

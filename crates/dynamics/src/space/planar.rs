@@ -192,6 +192,10 @@ impl<R: Real> Space for Planar<R> {
         orientation + spin * time
     }
     #[inline]
+    fn turn_between(from: R, to: R) -> R {
+        to - from
+    }
+    #[inline]
     fn angle_between(a: R, b: R) -> R {
         (a - b).abs()
     }

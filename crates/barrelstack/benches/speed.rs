@@ -1,0 +1,227 @@
+//! How fast a stack is computed: one run on one core, and how its cost grows with the stack.
+//!
+//! `cargo bench -p barrelstack` prints the figures; nothing is asserted, since they are the machine's.
+#![expect(clippy::print_stdout, reason = "printing is what it is for")]
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use barrelstack::Scenario;
+use barrelstack::assemble::{Assembly, assemble};
+use barrelstack::ground::{Ground, ground};
+use barrelstack::scenario::Scene;
+use barrelstack::step::default_step;
+use barrelstack::watch::{Thresholds, Watch};
+use barrelstack_dynamics::{
+    EnergyLedger, Method, Model, Observer, Planar, Scratch, Simulation, State, settle, simulate,
+};
+
+/// How often each figure is measured; the median is printed.
+const REPEATS: usize = 7;
+
+type Failure = Box<dyn std::error::Error>;
+
+fn main() -> Result<(), Failure> {
+    // `cargo test --benches` runs benches, too, and wants no figures.
+    if std::env::args().any(|argument| argument == "--test") {
+        return Ok(());
+    }
+    whole_run()?;
+    println!();
+    growth("levels", 2..=8)?;
+    println!();
+    growth("columns", [2, 4, 8])
+}
+
+/// The eight-barrel case from its scenario to its outcome, and what the watching costs.
+fn whole_run() -> Result<(), Failure> {
+    let scenario = Scenario::builtin("candia-8-barrels", &[])?;
+    let mut end_time = 0.0;
+    let mut seconds = Vec::new();
+    for _ in 0..REPEATS {
+        let start = Instant::now();
+        let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(()))?;
+        seconds.push(start.elapsed().as_secs_f64());
+        end_time = run.end_time;
+    }
+    let whole = median(seconds);
+
+    let stage = Stage::new(&scenario)?;
+    let after = scenario.run.stop_after_collapse;
+    let watched = stage.measure(|stage, state, scratch| stage.watched(state, scratch, after));
+    let blind =
+        stage.measure(|stage, state, scratch| stage.shaken(state, scratch, end_time, &mut Blind));
+    let mut counting = Counting(0);
+    let (mut state, mut scratch) = (stage.state.clone(), stage.scratch.clone());
+    stage.shaken(&mut state, &mut scratch, end_time, &mut counting);
+
+    println!("candia-8-barrels, one run on one core, median of {REPEATS}");
+    println!("  time step                      {:10.1} µs", 1e6 * stage.step);
+    println!("  simulated                      {end_time:10.3} s");
+    println!("  from scenario to outcome       {:10.1} ms", 1e3 * whole);
+    println!("  ... times real time            {:10.1}", end_time / whole);
+    println!("  shaking alone, watched         {:10.1} ms", 1e3 * watched.seconds);
+    println!("  ... times real time            {:10.1}", end_time / watched.seconds);
+    println!("  ... a step                     {:10.3} µs", 1e6 * watched.seconds / watched.steps);
+    println!(
+        "  ... share of the watching      {:10.1} %",
+        100.0 * (1.0 - blind.seconds / watched.seconds)
+    );
+    println!(
+        "  contact elements tested        {:10.1} million/s",
+        1e-6 * watched.elements / watched.seconds
+    );
+    println!(
+        "  contacts that touch            {:10.1} million/s",
+        1e-6 * counting.0 as f64 / watched.seconds
+    );
+    Ok(())
+}
+
+/// The cost of a step while the stack stands, against the number of its levels or columns.
+fn growth(what: &str, values: impl IntoIterator<Item = u32>) -> Result<(), Failure> {
+    /// The stack still stands then (s).
+    const STANDING: f64 = 0.5;
+    println!("a step of the standing stack against its {what}");
+    println!("  {what:>8}   bodies   tested   touching   µs/step   ns/touching contact");
+    for value in values {
+        let scenario = Scenario::builtin("candia-8-barrels", &[format!("stack.{what}={value}")])?;
+        let stage = Stage::new(&scenario)?;
+        let cost = stage
+            .measure(|stage, state, scratch| stage.shaken(state, scratch, STANDING, &mut Blind));
+        let mut counting = Counting(0);
+        let (mut state, mut scratch) = (stage.state.clone(), stage.scratch.clone());
+        stage.shaken(&mut state, &mut scratch, STANDING, &mut counting);
+        let touching = counting.0 as f64 / cost.steps;
+        println!(
+            "  {value:8} {:8} {:8.1} {touching:10.1} {:9.3} {:21.1}",
+            stage.assembly.parts.len() - 1,
+            cost.elements / cost.steps,
+            1e6 * cost.seconds / cost.steps,
+            1e9 * cost.seconds / cost.steps / touching,
+        );
+    }
+    Ok(())
+}
+
+/// A stack at rest, ready to be shaken again and again.
+struct Stage {
+    scenario: Scenario,
+    assembly: Assembly,
+    ground: Ground,
+    state: State<Planar>,
+    scratch: Scratch<Planar>,
+    step: f64,
+}
+
+/// What shaking took.
+struct Cost {
+    seconds: f64,
+    steps: f64,
+    /// Contact elements tested.
+    elements: f64,
+}
+
+impl Stage {
+    fn new(scenario: &Scenario) -> Result<Self, Failure> {
+        let assembly = assemble(scenario)?;
+        let ground = ground(scenario)?;
+        let step = default_step(&assembly);
+        let mut state = State::initial(&assembly.model);
+        let mut scratch = Scratch::new(&assembly.model);
+        settle(&assembly.model, &mut state, &mut scratch, step, 1e-10)?;
+        Ok(Self { scenario: scenario.clone(), assembly, ground, state, scratch, step })
+    }
+
+    /// The median cost of shaking from rest; `shake` returns the steps it took.
+    fn measure(
+        &self,
+        shake: impl Fn(&Self, &mut State<Planar>, &mut Scratch<Planar>) -> u64,
+    ) -> Cost {
+        let (mut seconds, mut steps, mut elements) = (Vec::new(), 0, 0);
+        for _ in 0..REPEATS {
+            let (mut state, mut scratch) = (self.state.clone(), self.scratch.clone());
+            let before = scratch.contact_evaluations;
+            let start = Instant::now();
+            steps = shake(self, &mut state, &mut scratch);
+            seconds.push(start.elapsed().as_secs_f64());
+            elements = scratch.contact_evaluations - before;
+        }
+        Cost { seconds: median(seconds), steps: steps as f64, elements: elements as f64 }
+    }
+
+    /// Shakes before an observer until `end_time` (s).
+    fn shaken(
+        &self,
+        state: &mut State<Planar>,
+        scratch: &mut Scratch<Planar>,
+        end_time: f64,
+        observer: &mut impl Observer<Planar>,
+    ) -> u64 {
+        let simulation =
+            Simulation { method: Method::VelocityVerlet, time_step: self.step, end_time };
+        simulate(&self.assembly.model, &self.ground, state, scratch, &simulation, observer)
+            .map_or(0, |totals| totals.steps)
+    }
+
+    /// Shakes as a run does, with all its watching, until `after` (s) from the collapse.
+    fn watched(
+        &self,
+        state: &mut State<Planar>,
+        scratch: &mut Scratch<Planar>,
+        after: Option<f64>,
+    ) -> u64 {
+        let Scene::Stack { outcome, .. } = &self.scenario.scene else { return 0 };
+        let record = &self.scenario.record;
+        let mut progress = |_| ControlFlow::Continue(());
+        let mut watch = Watch::new(
+            &self.assembly,
+            &self.ground,
+            state,
+            scratch,
+            Thresholds::of(outcome, 1.0),
+            (record.frame_rate, record.history_rate),
+            after,
+            &mut progress,
+        );
+        let end_time = self.scenario.run.duration.unwrap_or(12.0);
+        self.shaken(state, scratch, end_time, &mut watch)
+    }
+}
+
+/// Watches nothing.
+struct Blind;
+
+impl Observer<Planar> for Blind {
+    fn observe(
+        &mut self,
+        _: &Model<Planar>,
+        _: &State<Planar>,
+        _: &Scratch<Planar>,
+        _: &EnergyLedger<Planar>,
+    ) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+/// Counts the contacts that touch.
+struct Counting(u64);
+
+impl Observer<Planar> for Counting {
+    fn observe(
+        &mut self,
+        _: &Model<Planar>,
+        _: &State<Planar>,
+        scratch: &Scratch<Planar>,
+        _: &EnergyLedger<Planar>,
+    ) -> ControlFlow<()> {
+        self.0 += scratch.contacts.len() as u64;
+        ControlFlow::Continue(())
+    }
+}
+
+/// The middle of an odd number of measurements.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}

@@ -1,0 +1,231 @@
+//! `barrelstack motion info`: what a file holds, so that a wrong unit or step is seen.
+
+use barrelstack_motion::{
+    Channel, FORMATS, Orientation, Quantity, Record, STANDARD_GRAVITY, Stage,
+};
+use serde_json::{Value, json};
+
+use super::input::Input;
+use super::measures::{self, FURTHER, Shown, USUAL};
+use super::table::{Table, number};
+use crate::printer;
+
+/// Arguments of `info`.
+#[derive(Debug, clap::Args)]
+pub(super) struct InfoArgs {
+    #[command(flatten)]
+    input: Input,
+    /// Also CAV standardized, RMS, Housner, ASI, VSI, Fajfar, Sa, `RotD50` and `RotD100`, and the
+    /// dominant velocity pulse.
+    #[arg(long)]
+    all_measures: bool,
+    /// Print one JSON document, in SI units.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Prints header, channels, stated peaks and measures of every record.
+pub(super) fn info(args: &InfoArgs) -> anyhow::Result<()> {
+    let records = args.input.read_each()?;
+    let records =
+        if args.input.join { vec![args.input.unite(&records)?] } else { together(&records)? };
+    let shown: Vec<&Shown> =
+        USUAL.iter().chain(if args.all_measures { FURTHER } else { &[] }).collect();
+    if args.json {
+        let documents: Vec<Value> =
+            records.iter().map(|record| document(record, &shown)).collect::<Result<_, _>>()?;
+        let whole = json!({ "units": "m, s, degrees clockwise from north", "records": documents });
+        printer::lines([serde_json::to_string_pretty(&whole)?])?;
+    } else {
+        let mut lines = Vec::new();
+        for record in &records {
+            if !lines.is_empty() {
+                lines.push(String::new());
+            }
+            lines.extend(block(record, &shown, args.all_measures)?);
+        }
+        printer::lines(lines)?;
+    }
+    for record in &records {
+        warn(record);
+    }
+    Ok(())
+}
+
+/// Neighboring files of one event, station and step are one record.
+fn together(records: &[Record]) -> anyhow::Result<Vec<Record>> {
+    let mut groups: Vec<Vec<Record>> = Vec::new();
+    for record in records {
+        let fits = |group: &Vec<Record>| {
+            let first = &group[0];
+            let same_step =
+                |a: &Channel, b: &Channel| (a.time_step / b.time_step - 1.0).abs() < 1e-9;
+            first.format == record.format
+                && first.event == record.event
+                && first.station == record.station
+                && !(first.event.is_empty() && first.station.is_empty())
+                && same_step(&first.channels[0], &record.channels[0])
+        };
+        match groups.last_mut() {
+            Some(group) if fits(group) => group.push(record.clone()),
+            _ => groups.push(vec![record.clone()]),
+        }
+    }
+    groups.iter().map(|group| Ok(Record::gather(group)?)).collect()
+}
+
+/// What should be known of a record beside its numbers.
+fn cautions(record: &Record) -> Vec<String> {
+    let mut cautions: Vec<String> =
+        record.warnings.iter().map(|warning| format!("{}: {warning}", record.file)).collect();
+    if record.stage == Stage::Raw {
+        cautions.push(format!(
+            "{}: a raw record; its PGV and PGD are drift until it is processed (barrelstack motion \
+             process)",
+            record.file
+        ));
+    }
+    cautions
+}
+
+/// Prints the cautions.
+pub(super) fn warn(record: &Record) {
+    for caution in cautions(record) {
+        printer::warning(&caution);
+    }
+}
+
+fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<String>> {
+    let title = FORMATS.iter().find(|format| format.name == record.format);
+    let mut lines = vec![record.file.clone()];
+    let mut row = |name: &str, value: &str| {
+        let value = if value.is_empty() { "not stated" } else { value };
+        lines.push(format!("  {name:10}{value}"));
+    };
+    row("format", title.map_or(record.format, |format| format.title));
+    row("event", &record.event);
+    row("station", &record.station);
+    row("stage", stage(record.stage));
+    lines.push(String::new());
+    let head = ["channel", "direction", "samples", "step (s)", "length (s)"];
+    let mut channels = Table::new(2, head.map(str::to_owned));
+    for channel in &record.channels {
+        channels.row([
+            channel.name.clone(),
+            direction(channel),
+            channel.acceleration.len().to_string(),
+            format!("{}", channel.time_step),
+            number(channel.duration()),
+        ]);
+    }
+    lines.extend(channels.lines());
+    let stated = stated(record);
+    if !stated.is_empty() {
+        lines.push(String::new());
+        lines.extend(stated.lines());
+    }
+    lines.push(String::new());
+    let columns: Vec<(String, &Channel)> =
+        record.channels.iter().map(|channel| (channel.name.clone(), channel)).collect();
+    lines.extend(measures::table(&columns, shown)?.lines());
+    if all {
+        if let Some(table) = measures::rotated(record)? {
+            lines.push(String::new());
+            lines.extend(table.lines());
+        }
+        lines.push(String::new());
+        lines.extend(measures::pulses(record).into_iter().map(|line| format!("  {line}")));
+    }
+    if !record.notes.is_empty() {
+        lines.push(String::new());
+        lines.extend(record.notes.iter().map(|note| format!("  {note}")));
+    }
+    Ok(lines)
+}
+
+fn stage(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Raw => "raw, as recorded",
+        Stage::Corrected => "corrected by its publisher",
+        Stage::Unknown => "not stated",
+    }
+}
+
+/// Where a channel points, in words.
+pub(super) fn direction(channel: &Channel) -> String {
+    match (channel.direction.azimuth, channel.direction.orientation) {
+        (Some(azimuth), _) => format!("azimuth {azimuth}°"),
+        (None, Some(Orientation::Vertical)) => "up".to_owned(),
+        (None, Some(Orientation::Horizontal)) => "horizontal".to_owned(),
+        (None, None) => "unknown".to_owned(),
+    }
+}
+
+/// Peaks of the header beside those of the numbers.
+fn stated(record: &Record) -> Table {
+    let head = ["channel", "stated peak", "unit", "header", "numbers", "agree"];
+    let mut table = Table::new(3, head.map(str::to_owned));
+    for channel in &record.channels {
+        for peak in &channel.peaks {
+            let (unit, factor) = match peak.quantity {
+                Quantity::Acceleration => ("g", 1.0 / STANDARD_GRAVITY),
+                Quantity::Velocity => ("cm/s", 100.0),
+                Quantity::Displacement => ("cm", 100.0),
+            };
+            table.row([
+                channel.name.clone(),
+                peak.quantity.to_string(),
+                unit.to_owned(),
+                number(factor * peak.stated),
+                number(factor * peak.measured),
+                if peak.agrees() { "yes" } else { "NO" }.to_owned(),
+            ]);
+        }
+    }
+    table
+}
+
+fn document(record: &Record, shown: &[&Shown]) -> anyhow::Result<Value> {
+    let mut channels = Vec::new();
+    for channel in &record.channels {
+        let motion = measures::sampled(channel)?;
+        let mut values = serde_json::Map::new();
+        for Shown { measure, .. } in shown {
+            let value = json!({ "value": measure.of(&motion)?, "unit": measure.unit() });
+            values.insert(measure.to_string(), value);
+        }
+        let peaks: Vec<Value> = channel
+            .peaks
+            .iter()
+            .map(|peak| {
+                json!({
+                    "quantity": peak.quantity.to_string(),
+                    "stated": peak.stated,
+                    "measured": peak.measured,
+                    "agrees": peak.agrees(),
+                })
+            })
+            .collect();
+        channels.push(json!({
+            "name": channel.name,
+            "azimuth": channel.direction.azimuth,
+            "vertical": channel.is_vertical(),
+            "samples": channel.acceleration.len(),
+            "time_step": channel.time_step,
+            "duration": channel.duration(),
+            "initial_velocity": channel.initial_velocity,
+            "stated_peaks": peaks,
+            "measures": values,
+        }));
+    }
+    Ok(json!({
+        "file": record.file,
+        "format": record.format,
+        "event": record.event,
+        "station": record.station,
+        "stage": record.stage.to_string(),
+        "channels": channels,
+        "warnings": record.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "notes": record.notes,
+    }))
+}

@@ -1,0 +1,263 @@
+//! What the commands read: files, joined or gathered, and the components chosen from them.
+
+use std::io::Read as _;
+use std::path::Path;
+
+use anyhow::{Context as _, anyhow, bail};
+use barrelstack::scenario::{Dimension, Quantity};
+use barrelstack_motion::{
+    AccelerationUnit, Component, MotionError, ReadOptions, Record, Refusal, Stage, bundled, read,
+};
+use clap::ValueEnum;
+
+use barrelstack_motion::{Pads, Processing};
+
+/// Largest file (bytes) that is read; the longest strong-motion files have a tenth of it.
+const LIMIT: u64 = 256 << 20;
+
+/// Files, and what they may not say of themselves.
+#[derive(Debug, clap::Args)]
+pub(super) struct Input {
+    /// Motion files of any known format, or napa-college-2014, which comes with the program; several
+    /// are taken as components of one record.
+    #[arg(required = true, value_name = "FILE")]
+    pub(super) files: Vec<String>,
+    /// Take several files as parts of one long record and join them where they overlap.
+    #[arg(long)]
+    pub(super) join: bool,
+    /// Unit of acceleration where the file states none: g, g/10, m/s2, cm/s2, gal or mm/s2.
+    #[arg(long, value_name = "UNIT")]
+    unit: Option<String>,
+    /// Step where the file states none, such as "0.005 s".
+    #[arg(long, value_name = "TIME")]
+    time_step: Option<String>,
+    /// Counts to one m/s2, where the file holds counts.
+    #[arg(long, value_name = "NUMBER")]
+    sensitivity: Option<f64>,
+}
+
+/// Which components, and what is done to them first.
+#[derive(Debug, clap::Args)]
+pub(super) struct Choice {
+    /// A component: its name in the file, an azimuth in degrees (rotated if no channel has it), h1,
+    /// h2 or vertical; may be repeated. Without it all components are taken.
+    #[arg(long, value_name = "NAME")]
+    pub(super) component: Vec<String>,
+    /// Process the record first.
+    #[arg(long, value_enum, default_value_t = Chain::None)]
+    pub(super) processing: Chain,
+}
+
+/// Chains of processing under one name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Chain {
+    /// The numbers as read.
+    None,
+    /// What a scenario does: `compact` for raw records, nothing for the others.
+    Default,
+    /// Pre-event mean, taper of 2 %, zero-phase high-pass at 0.1 Hz without its pads, ends closed.
+    Compact,
+    /// As `compact` with the pads of the filter kept: quiet before and after the shaking.
+    Padded,
+}
+
+impl Chain {
+    /// The chain for a record of this stage.
+    pub(super) fn of(self, stage: Stage) -> Processing {
+        match (self, stage) {
+            (Self::Default, Stage::Raw) | (Self::Compact, _) => Processing::compact(),
+            (Self::Padded, _) => Processing { pads: Pads::Kept, ..Processing::raw() },
+            (Self::None, _) | (Self::Default, Stage::Corrected | Stage::Unknown) => {
+                Processing::none()
+            }
+        }
+    }
+}
+
+impl Input {
+    /// Every file by itself.
+    pub(super) fn read_each(&self) -> anyhow::Result<Vec<Record>> {
+        let options = ReadOptions {
+            unit: self
+                .unit
+                .as_deref()
+                .map(str::parse::<AccelerationUnit>)
+                .transpose()
+                .map_err(|error| anyhow!("--unit: {error}"))?,
+            time_step: self
+                .time_step
+                .as_deref()
+                .map(|text| quantity("--time-step", text, Dimension::TIME))
+                .transpose()?,
+            sensitivity: self.sensitivity,
+        };
+        self.files.iter().map(|file| read_file(file, &options)).collect()
+    }
+
+    /// All files as one record.
+    pub(super) fn read(&self) -> anyhow::Result<Record> {
+        self.unite(&self.read_each()?)
+    }
+
+    /// Several records as one.
+    pub(super) fn unite(&self, records: &[Record]) -> anyhow::Result<Record> {
+        if self.join {
+            return Ok(Record::join(records)?);
+        }
+        Ok(Record::gather(records)?)
+    }
+}
+
+impl Choice {
+    /// The chosen components of a record, cut to the shortest and processed; what was done stands in
+    /// the notes.
+    pub(super) fn take(&self, record: &Record) -> anyhow::Result<Record> {
+        let mut chosen = record.clone();
+        if !self.component.is_empty() {
+            chosen.channels = Vec::new();
+            for name in &self.component {
+                let channel = record.component(&component(record, name)?)?;
+                if chosen.channels.iter().any(|other| other.name == channel.name) {
+                    bail!("--component {name}: channel {} is chosen already", channel.name);
+                }
+                if !record.channels.contains(&channel) {
+                    chosen.notes.push(format!(
+                        "{} is rotated from two horizontals of known azimuth",
+                        channel.name
+                    ));
+                }
+                chosen.channels.push(channel);
+            }
+        }
+        chosen.notes.insert(
+            0,
+            format!(
+                "read from {}, format {}, stage {}",
+                base_names(record),
+                record.format,
+                record.stage
+            ),
+        );
+        cut_to_shortest(&mut chosen);
+        if self.processing == Chain::None {
+            return Ok(chosen);
+        }
+        Ok(processed(&chosen, &self.processing.of(record.stage))?)
+    }
+}
+
+/// All channels after a chain, every step of it in the notes.
+pub(super) fn processed(record: &Record, chain: &Processing) -> Result<Record, MotionError> {
+    let mut out = record.clone();
+    for channel in &mut out.channels {
+        let done =
+            chain.apply(channel.time_step, &channel.acceleration, channel.initial_velocity)?;
+        channel.acceleration = done.acceleration;
+        channel.initial_velocity = done.initial_velocity;
+        for step in done.steps {
+            out.notes.push(format!("{}: {step}", channel.name));
+        }
+        if !chain.is_none() {
+            // What the header stated is true of other numbers.
+            channel.peaks.clear();
+        }
+    }
+    if !chain.is_none() {
+        out.stage = Stage::Corrected;
+    }
+    Ok(out)
+}
+
+/// Channels of one record end together; the longer ones lose their last samples.
+fn cut_to_shortest(record: &mut Record) {
+    let shortest = record.channels.iter().map(|c| c.acceleration.len()).min().unwrap_or(0);
+    for channel in &mut record.channels {
+        let extra = channel.acceleration.len() - shortest;
+        if extra > 0 {
+            channel.acceleration.truncate(shortest);
+            record.notes.push(format!(
+                "{}: the last {extra} samples cut, as the shortest channel ends there",
+                channel.name
+            ));
+        }
+    }
+}
+
+/// File names without folders.
+fn base_names(record: &Record) -> String {
+    let names: Vec<&str> = record
+        .file
+        .split(", ")
+        .map(|file| file.rsplit(['/', '\\']).next().unwrap_or(file))
+        .collect();
+    names.join(", ")
+}
+
+/// A component as people name it: the channel's own name first, then an azimuth in degrees.
+pub(super) fn component(record: &Record, name: &str) -> anyhow::Result<Component> {
+    let by_name = Component::Name(name.to_owned());
+    if record.component(&by_name).is_ok() {
+        return Ok(by_name);
+    }
+    Ok(match name.trim().parse::<f64>() {
+        Ok(azimuth) if azimuth.is_finite() => Component::Azimuth(azimuth),
+        _ if name.eq_ignore_ascii_case("up") => Component::Vertical,
+        _ => name.parse()?,
+    })
+}
+
+/// A quantity with its unit in SI; the option is named where it is wrong.
+pub(super) fn quantity(option: &str, text: &str, dimension: Dimension) -> anyhow::Result<f64> {
+    Quantity::parse_as(text, &[dimension]).map(|quantity| quantity.value).map_err(|error| {
+        anyhow!("{option}: {error}; write a number and a unit, such as \"{}\"", dimension.example())
+    })
+}
+
+/// Reads one file, or a bundled record if there is no file of that name.
+fn read_file(file: &str, options: &ReadOptions) -> anyhow::Result<Record> {
+    let path = Path::new(file);
+    if let (false, Some(record)) = (path.exists(), bundled(file)) {
+        return Ok(record);
+    }
+    let bytes = bytes(path)?;
+    read(&bytes, file, options).map_err(|error| {
+        if error.refusal != Refusal::Missing {
+            return error.into();
+        }
+        // The reader knows what is missing, this program where to state it.
+        let option = if error.expected.contains("unit") {
+            "add --unit g, or the unit it is"
+        } else if error.expected.contains("step") {
+            "add --time-step \"0.01 s\", or the step it is"
+        } else if error.expected.contains("sensitivity") || error.expected.contains("counts") {
+            "add --sensitivity with the counts to one m/s2"
+        } else {
+            return error.into();
+        };
+        anyhow!("{error}: {option}")
+    })
+}
+
+/// The bytes of a file of at most 256 MB.
+pub(super) fn bytes(path: &Path) -> anyhow::Result<Vec<u8>> {
+    let refused = || format!("cannot read {}", path.display());
+    if path.is_dir() {
+        bail!("{}: it is a folder, not a file", refused());
+    }
+    let file = std::fs::File::open(path).map_err(plain).with_context(refused)?;
+    let mut bytes = Vec::new();
+    file.take(LIMIT + 1).read_to_end(&mut bytes).map_err(plain).with_context(refused)?;
+    if bytes.len() as u64 > LIMIT {
+        bail!("{}: it has more than 256 MB, more than any strong-motion file", refused());
+    }
+    Ok(bytes)
+}
+
+/// What the system says, in words.
+pub(super) fn plain(error: std::io::Error) -> anyhow::Error {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => anyhow!("there is no such file"),
+        std::io::ErrorKind::PermissionDenied => anyhow!("permission is denied"),
+        _ => anyhow::Error::from(error),
+    }
+}

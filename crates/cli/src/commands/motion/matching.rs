@@ -1,0 +1,183 @@
+//! `barrelstack motion match`: a motion whose response spectrum follows a target.
+
+use anyhow::bail;
+use barrelstack::scenario::Dimension;
+use barrelstack_motion::{
+    GroundMotion, History, MatchMethod, Matching, Record, STANDARD_GRAVITY, Sampled, Stage,
+    TargetSpectrum, response,
+};
+use clap::ValueEnum;
+
+use super::input::{self, Choice, Input, quantity};
+use super::measures::{self, sampled};
+use super::output::Output;
+use super::process::share;
+use super::table::{Table, number};
+use super::target;
+
+/// Arguments of `match`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = target::CODES)]
+pub(super) struct MatchArgs {
+    #[command(flatten)]
+    input: Input,
+    #[command(flatten)]
+    choice: Choice,
+    /// The target spectrum, at 5 % damping unless it says another; the list is below.
+    #[arg(long, value_name = "TARGET")]
+    to: String,
+    /// The component that is matched; the first horizontal if none is named. All other components
+    /// take its first scaling only.
+    #[arg(long, value_name = "NAME")]
+    of: Option<String>,
+    /// How the motion is changed.
+    #[arg(long, value_enum, default_value_t = Method::Time)]
+    method: Method,
+    /// Shortest period matched.
+    #[arg(long, value_name = "TIME", default_value = "0.1 s")]
+    shortest: String,
+    /// Longest period matched.
+    #[arg(long, value_name = "TIME", default_value = "3 s")]
+    longest: String,
+    /// Largest misfit accepted at any matched period.
+    #[arg(long, value_name = "SHARE", default_value = "5 %")]
+    tolerance: String,
+    #[command(flatten)]
+    output: Output,
+}
+
+/// How the motion is changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Method {
+    /// Wavelets at the times of the peak responses; keeps the character of the motion.
+    Time,
+    /// Fourier amplitudes, phases kept; changes the character everywhere.
+    Frequency,
+}
+
+/// Matches and writes.
+pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<()> {
+    let target = args.output.prepare()?;
+    let spectrum = target::target(&args.to)?;
+    let settings = Matching {
+        method: match args.method {
+            Method::Time => MatchMethod::Time,
+            Method::Frequency => MatchMethod::Frequency,
+        },
+        shortest: quantity("--shortest", &args.shortest, Dimension::TIME)?,
+        longest: quantity("--longest", &args.longest, Dimension::TIME)?,
+        tolerance: share("--tolerance", &args.tolerance)?,
+        ..Matching::default()
+    };
+    let read = args.input.read()?;
+    let before = args.choice.take(&read)?;
+    let after = matched(args, &before, &spectrum, &settings)?;
+    let mut lines = measures::before_after(&before, &after)?.lines();
+    lines.push(String::new());
+    lines.extend(comparison(args, &before, &after, &spectrum, &settings)?.lines());
+    super::change::finish(&target, &read, &after, lines)
+}
+
+/// Which channel is matched.
+fn place(args: &MatchArgs, record: &Record) -> anyhow::Result<usize> {
+    let Some(name) = &args.of else {
+        return Ok(record.channels.iter().position(|c| !c.is_vertical()).unwrap_or(0));
+    };
+    let channel = record.component(&input::component(record, name)?)?;
+    match record.channels.iter().position(|other| other.name == channel.name) {
+        Some(place) => Ok(place),
+        None => bail!("--of {name}: choose it with --component {name} first"),
+    }
+}
+
+fn matched(
+    args: &MatchArgs,
+    before: &Record,
+    spectrum: &TargetSpectrum,
+    settings: &Matching,
+) -> anyhow::Result<Record> {
+    let place = place(args, before)?;
+    let channel = &before.channels[place];
+    let horizontal = History::Sampled(sampled(channel)?);
+    // A second component takes the first scaling and nothing else, so one of height 1 comes back as
+    // the factor for all others.
+    let probe = History::Sampled(Sampled::new(1.0, vec![1.0, 1.0])?);
+    let given = GroundMotion::new(channel.name.clone(), horizontal, Some(probe));
+    let matched = given.match_spectrum(spectrum, settings)?;
+    let (History::Sampled(series), Some(probe)) =
+        (&matched.motion.horizontal, &matched.motion.vertical)
+    else {
+        bail!("the matched motion is not sampled");
+    };
+    let factor = probe.at(0.0).acceleration;
+    let step = series.time_step();
+    let mut after = before.clone();
+    for (k, other) in after.channels.iter_mut().enumerate() {
+        other.peaks.clear();
+        if k == place {
+            other.acceleration = series.acceleration().to_vec();
+            other.initial_velocity = 0.0;
+        } else {
+            let scaled = History::Sampled(sampled(other)?.scaled(factor));
+            other.acceleration = scaled.sampled(step)?.acceleration().to_vec();
+            other.initial_velocity *= factor;
+        }
+        other.time_step = step;
+    }
+    after.stage = Stage::Corrected;
+    after.notes.push(format!(
+        "{}: scaled by {factor:.4} and matched in the {} domain to {} from {} to {} s: misfit at most \
+         {:.2} % after {} rounds, ends closed",
+        channel.name,
+        match args.method {
+            Method::Time => "time",
+            Method::Frequency => "frequency",
+        },
+        args.to,
+        settings.shortest,
+        settings.longest,
+        100.0 * matched.misfit,
+        matched.rounds
+    ));
+    if after.channels.len() > 1 {
+        after.notes.push(format!("all other components scaled by {factor:.4}"));
+    }
+    if step != channel.time_step {
+        after.notes.push(format!(
+            "step cut from {} to {step} s, so that the shortest matched period has ten",
+            channel.time_step
+        ));
+    }
+    Ok(after)
+}
+
+/// Spectra before, after and wanted at some periods.
+fn comparison(
+    args: &MatchArgs,
+    before: &Record,
+    after: &Record,
+    spectrum: &TargetSpectrum,
+    settings: &Matching,
+) -> anyhow::Result<Table> {
+    let place = place(args, before)?;
+    let damping = spectrum.damping();
+    let head = ["period (s)", "target Sa (g)", "before (g)", "after (g)", "misfit"];
+    let mut table = Table::new(0, head.map(str::to_owned));
+    let within = |period: &&f64| (settings.shortest..=settings.longest).contains(*period);
+    for period in [0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0].iter().filter(within) {
+        let at = |record: &Record| {
+            let channel = &record.channels[place];
+            response(channel.time_step, &channel.acceleration, *period, damping)
+                .map(|peaks| peaks.pseudo_acceleration)
+        };
+        let (goal, old, new) = (spectrum.acceleration(*period), at(before)?, at(after)?);
+        table.row([
+            number(*period),
+            number(goal / STANDARD_GRAVITY),
+            number(old / STANDARD_GRAVITY),
+            number(new / STANDARD_GRAVITY),
+            format!("{:+.1} %", 100.0 * (new / goal - 1.0)),
+        ]);
+    }
+    Ok(table)
+}

@@ -1,0 +1,168 @@
+//! Measures in the units that people read, and tables of them.
+
+use barrelstack_motion::{
+    Channel, IntensityMeasure, MotionError, Record, STANDARD_GRAVITY, Sampled, dominant_pulse,
+    rotated_peak, rotated_spectrum,
+};
+
+use super::table::{Table, number};
+
+/// A measure with the name and the unit it is shown with.
+pub(super) struct Shown {
+    /// The measure.
+    pub(super) measure: IntensityMeasure,
+    /// As printed.
+    name: &'static str,
+}
+
+const fn shown(name: &'static str, measure: IntensityMeasure) -> Shown {
+    Shown { measure, name }
+}
+
+/// What is always shown.
+pub(super) const USUAL: &[Shown] = &[
+    shown("PGA", IntensityMeasure::Pga),
+    shown("PGV", IntensityMeasure::Pgv),
+    shown("PGD", IntensityMeasure::Pgd),
+    shown("PGV/PGA", IntensityMeasure::PgvOverPga),
+    shown("Arias intensity", IntensityMeasure::Arias),
+    shown("CAV", IntensityMeasure::Cav),
+    shown("duration D5-75", IntensityMeasure::D5_75),
+    shown("duration D5-95", IntensityMeasure::D5_95),
+    shown("bracketed at 0.05 g", IntensityMeasure::BRACKETED),
+    shown("mean period Tm", IntensityMeasure::MeanPeriod),
+];
+
+/// What is shown in addition when all is asked for.
+pub(super) const FURTHER: &[Shown] = &[
+    shown("CAV, standardized", IntensityMeasure::CavStandardized),
+    shown("RMS acceleration", IntensityMeasure::Rms),
+    shown("Housner, 5 %", IntensityMeasure::Housner { damping: 0.05 }),
+    shown("ASI, 5 %", IntensityMeasure::Asi),
+    shown("VSI, 5 %", IntensityMeasure::Vsi),
+    shown("Fajfar index", IntensityMeasure::Fajfar),
+    shown("Sa(0.2 s), 5 %", IntensityMeasure::Sa { period: 0.2, damping: 0.05 }),
+    shown("Sa(0.5 s), 5 %", IntensityMeasure::Sa { period: 0.5, damping: 0.05 }),
+    shown("Sa(1.0 s), 5 %", IntensityMeasure::Sa { period: 1.0, damping: 0.05 }),
+];
+
+/// The unit in which people read a measure, and how many of it are one SI unit.
+pub(super) fn reading(measure: &IntensityMeasure) -> (&'static str, f64) {
+    match measure {
+        IntensityMeasure::Pga | IntensityMeasure::Rms | IntensityMeasure::Sa { .. } => {
+            ("g", 1.0 / STANDARD_GRAVITY)
+        }
+        IntensityMeasure::Pgv => ("cm/s", 100.0),
+        IntensityMeasure::Pgd | IntensityMeasure::Housner { .. } | IntensityMeasure::Vsi => {
+            ("cm", 100.0)
+        }
+        other => (other.unit(), 1.0),
+    }
+}
+
+/// A channel as sampled motion, with the velocity it starts with.
+pub(super) fn sampled(channel: &Channel) -> Result<Sampled, MotionError> {
+    Sampled::with_initial_velocity(
+        channel.time_step,
+        channel.acceleration.clone(),
+        channel.initial_velocity,
+    )
+}
+
+/// Every measure (rows) of every column.
+pub(super) fn table(
+    columns: &[(String, &Channel)],
+    measures: &[&Shown],
+) -> Result<Table, MotionError> {
+    let names = columns.iter().map(|(name, _)| name.clone());
+    let head = ["measure".to_owned(), "unit".to_owned()];
+    let mut table = Table::new(2, head.into_iter().chain(names));
+    let motions: Vec<Sampled> =
+        columns.iter().map(|(_, channel)| sampled(channel)).collect::<Result<_, _>>()?;
+    let lengths = motions.iter().map(|motion| number(motion.duration()));
+    table.row(["length".to_owned(), "s".to_owned()].into_iter().chain(lengths));
+    for Shown { measure, name } in measures {
+        let (unit, factor) = reading(measure);
+        let values = motions
+            .iter()
+            .map(|motion| measure.of(motion).map(|value| number(factor * value)))
+            .collect::<Result<Vec<_>, _>>()?;
+        table.row([(*name).to_owned(), unit.to_owned()].into_iter().chain(values));
+    }
+    Ok(table)
+}
+
+/// Measures before and after, side by side for every channel that is in both.
+pub(super) fn before_after(before: &Record, after: &Record) -> Result<Table, MotionError> {
+    let mut columns = Vec::new();
+    for (k, new) in after.channels.iter().enumerate() {
+        if let Some(old) = before.channels.get(k) {
+            columns.push((format!("{} before", old.name), old));
+        }
+        columns.push(("after".to_owned(), new));
+    }
+    table(&columns, &USUAL.iter().collect::<Vec<_>>())
+}
+
+/// The dominant velocity pulse of every channel, one sentence each.
+pub(super) fn pulses(record: &Record) -> Vec<String> {
+    record
+        .channels
+        .iter()
+        .map(|channel| {
+            let fit = sampled(channel).and_then(|motion| {
+                let longest = (0.5 * motion.duration()).min(12.0);
+                dominant_pulse(&motion, (8.0 * motion.time_step()).max(0.3), longest)
+            });
+            match fit {
+                Ok(fit) => format!(
+                    "{}: a velocity pulse of {} s and {} cm/s from {} s holds {:.0} % of the \
+                     squared velocity{}",
+                    channel.name,
+                    number(fit.period),
+                    number(100.0 * fit.peak_velocity),
+                    number(fit.start),
+                    100.0 * fit.energy_share,
+                    if fit.energy_share > 0.5 { ": pulse-like" } else { "" }
+                ),
+                Err(error) => format!("{}: no velocity pulse: {error}", channel.name),
+            }
+        })
+        .collect()
+}
+
+/// The first two horizontals, if there are two of one step.
+pub(super) fn horizontals(record: &Record) -> Option<(&Channel, &Channel)> {
+    let mut flat = record.channels.iter().filter(|channel| !channel.is_vertical());
+    let (one, two) = (flat.next()?, flat.next()?);
+    let even = (one.time_step / two.time_step - 1.0).abs() < 1e-9;
+    even.then_some((one, two))
+}
+
+/// `RotD50` and `RotD100` of the two horizontals; none if there are not two.
+pub(super) fn rotated(record: &Record) -> Result<Option<Table>, MotionError> {
+    let Some((one, two)) = horizontals(record) else { return Ok(None) };
+    let (first, second) = (sampled(one)?, sampled(two)?);
+    let head = ["over all directions", "unit", "RotD50", "RotD100"];
+    let mut table = Table::new(2, head.map(str::to_owned));
+    let mut row = |name: &str, unit: &str, factor: f64, median: f64, largest: f64| {
+        table.row([
+            name.to_owned(),
+            unit.to_owned(),
+            number(factor * median),
+            number(factor * largest),
+        ]);
+    };
+    let in_g = 1.0 / STANDARD_GRAVITY;
+    let peak = rotated_peak(first.acceleration(), second.acceleration());
+    row("PGA", "g", in_g, peak.median, peak.largest);
+    let peak = rotated_peak(first.velocity(), second.velocity());
+    row("PGV", "cm/s", 100.0, peak.median, peak.largest);
+    let periods = [0.2, 0.5, 1.0];
+    let (a, b) = (first.acceleration(), second.acceleration());
+    let spectrum = rotated_spectrum(one.time_step, a, b, &periods, 0.05)?;
+    for (period, peak) in periods.iter().zip(spectrum) {
+        row(&format!("Sa({period} s), 5 %"), "g", in_g, peak.median, peak.largest);
+    }
+    Ok(Some(table))
+}

@@ -1,0 +1,76 @@
+//! `barrelstack motion`: read, look at, change and make ground motions.
+
+mod change;
+mod info;
+mod input;
+mod matching;
+mod measures;
+mod output;
+mod plot;
+mod process;
+mod pulses;
+mod scale;
+mod spectrum;
+mod synth;
+mod table;
+mod target;
+
+use std::process::ExitCode;
+
+use clap::Subcommand;
+
+/// What `motion --help` ends with.
+const AFTER_HELP: &str = "\
+Start with:
+  barrelstack motion info my-site.AT2                    duration, PGA, PGV, PGD: is the unit right?
+  barrelstack motion plot my-site.AT2 -o pictures        accelerations, velocities, spectra as SVG
+  barrelstack motion scale my-site.AT2 --to \"pgv=60 cm/s\" -o strong.txt
+  barrelstack run demo-napa --record strong.txt
+
+Quantities carry their unit: \"60 cm/s\", \"0.35 g\", \"0.1 Hz\", \"0.8 s\".
+Every step that is done to a motion is printed, and written into the header of the file.";
+
+/// Arguments of `motion`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = AFTER_HELP)]
+pub(crate) struct MotionArgs {
+    /// What to do.
+    #[command(subcommand)]
+    command: MotionCommand,
+}
+
+/// What to do with a motion.
+#[derive(Debug, Subcommand)]
+enum MotionCommand {
+    /// Say what a file holds: header, channels, peaks stated and found, measures of intensity.
+    Info(info::InfoArgs),
+    /// Draw acceleration, velocity, displacement, Arias build-up and spectra as SVG, CSV beside.
+    Plot(plot::PlotArgs),
+    /// Write a record as AT2, CSV, NPZ or the program's own text.
+    Convert(change::ConvertArgs),
+    /// Remove means, taper, filter and close the ends, each step printed.
+    Process(process::ProcessArgs),
+    /// Scale to a measure of intensity or by a factor, all components alike; or to another length.
+    Scale(scale::ScaleArgs),
+    /// Match the response spectrum to a code's or a table's.
+    Match(matching::MatchArgs),
+    /// Compute response spectra at any damping, also over all directions.
+    Spectrum(spectrum::SpectrumArgs),
+    /// Make a motion from a formula or from random numbers of a stated seed.
+    Synth(synth::SynthArgs),
+}
+
+/// Does what was typed.
+pub(crate) fn motion(args: &MotionArgs) -> anyhow::Result<ExitCode> {
+    match &args.command {
+        MotionCommand::Info(args) => info::info(args),
+        MotionCommand::Plot(args) => plot::plot(args),
+        MotionCommand::Convert(args) => change::convert(args),
+        MotionCommand::Process(args) => process::process(args),
+        MotionCommand::Scale(args) => scale::scale(args),
+        MotionCommand::Match(args) => matching::match_spectrum(args),
+        MotionCommand::Spectrum(args) => spectrum::spectrum(args),
+        MotionCommand::Synth(args) => synth::synth(args),
+    }?;
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,134 @@
+//! What the commands write: motion files by their ending, never half there, never over another.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail};
+use barrelstack_motion::{Record, Stage, write};
+
+/// Where a motion goes.
+#[derive(Debug, clap::Args)]
+pub(super) struct Output {
+    /// The file to write; its ending says the form: .at2 (PEER, g, one component), .csv, .npz (NumPy)
+    /// or .txt (the program's own, exact).
+    #[arg(long, short, value_name = "FILE")]
+    pub(super) output: PathBuf,
+    /// Replace the file if it is there.
+    #[arg(long)]
+    pub(super) overwrite: bool,
+}
+
+/// Forms that can be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    At2,
+    Csv,
+    Npz,
+    Text,
+}
+
+/// A motion file that may be written.
+#[derive(Debug)]
+pub(super) struct Target {
+    path: PathBuf,
+    form: Form,
+}
+
+impl Output {
+    /// Checks the file before the work is done.
+    pub(super) fn prepare(&self) -> anyhow::Result<Target> {
+        let ending = self.output.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let form = match ending.as_str() {
+            "at2" => Form::At2,
+            "csv" => Form::Csv,
+            "npz" => Form::Npz,
+            "txt" => Form::Text,
+            _ => bail!(
+                "{}: its ending does not say how to write it; use .at2, .csv, .npz or .txt",
+                self.output.display()
+            ),
+        };
+        vacant(&self.output, self.overwrite)?;
+        Ok(Target { path: self.output.clone(), form })
+    }
+}
+
+impl Target {
+    /// Writes the record and gives what the reader of the file should know.
+    pub(super) fn write(&self, record: &Record) -> anyhow::Result<Vec<String>> {
+        let bytes = match self.form {
+            Form::At2 if record.channels.len() != 1 => {
+                let names: Vec<&str> = record.channels.iter().map(|c| c.name.as_str()).collect();
+                bail!(
+                    "{}: an AT2 file holds one component, and there are {}: name one with \
+                     --component ({}), or write .txt, .csv or .npz",
+                    self.path.display(),
+                    names.len(),
+                    names.join(", ")
+                )
+            }
+            Form::At2 => write::at2(record)?.into_bytes(),
+            Form::Csv => write::csv(record)?.into_bytes(),
+            Form::Text => write::text(record)?.into_bytes(),
+            Form::Npz => write::npz(record)?,
+        };
+        store(&self.path, &bytes)?;
+        Ok(self.losses(record))
+    }
+
+    /// What the file does not say.
+    fn losses(&self, record: &Record) -> Vec<String> {
+        let mut losses = Vec::new();
+        if self.form == Form::At2 && record.stage == Stage::Raw {
+            losses.push(
+                "AT2 files are taken for corrected records and this one is raw: write .txt, or \
+                 process it first"
+                    .to_owned(),
+            );
+        }
+        for channel in &record.channels {
+            if channel.initial_velocity != 0.0 && self.form != Form::Npz {
+                losses.push(format!(
+                    "channel {} starts with a velocity of {} cm/s, for which the file has no place: \
+                     read back, it starts from rest",
+                    channel.name,
+                    super::table::number(100.0 * channel.initial_velocity)
+                ));
+            }
+        }
+        losses
+    }
+
+    /// What is printed at the end.
+    pub(super) fn sentence(&self) -> String {
+        format!("written: {}", self.path.display())
+    }
+}
+
+/// Refuses a file that is there, and one whose folder is not.
+pub(super) fn vacant(path: &Path, overwrite: bool) -> anyhow::Result<()> {
+    if path.is_dir() {
+        bail!("{} is a folder, not a file", path.display());
+    }
+    if path.exists() && !overwrite {
+        bail!("{} is there already: name another file, or add --overwrite", path.display());
+    }
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+            bail!("cannot write {}: there is no folder {}", path.display(), folder.display())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes under a temporary name and renames, so that the file is never half there.
+pub(super) fn store(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".part");
+    let part = path.with_file_name(name);
+    let written = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, path));
+    if written.is_err() {
+        // It may never have been made, and that is well.
+        let _ = std::fs::remove_file(&part);
+    }
+    written.map_err(super::input::plain).with_context(|| format!("cannot write {}", path.display()))
+}

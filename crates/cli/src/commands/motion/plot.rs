@@ -1,0 +1,218 @@
+//! `barrelstack motion plot`: a record as pictures, with their numbers beside.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail};
+use barrelstack_motion::{
+    Channel, FourierSpectrum, Record, ResponseSpectrum, STANDARD_GRAVITY, arias, husid,
+    standard_periods,
+};
+use barrelstack_report::{Axis, Band, Figure, FigureKind, Plot, Series};
+use clap::ValueEnum;
+
+use super::info;
+use super::input::{self, Choice, Input};
+use super::measures::sampled;
+use super::output::{store, vacant};
+use super::process::share;
+use crate::printer;
+
+/// Arguments of `plot`.
+#[derive(Debug, clap::Args)]
+pub(super) struct PlotArgs {
+    #[command(flatten)]
+    input: Input,
+    #[command(flatten)]
+    choice: Choice,
+    /// A folder for all figures, or one .svg file; the numbers go beside each as .csv. For PNG open
+    /// the SVG in a browser.
+    #[arg(long, short, value_name = "DIR|FILE.svg")]
+    output: PathBuf,
+    /// Which figure; may be repeated. Without it a folder gets all, a file the accelerations.
+    #[arg(long, value_enum)]
+    figure: Vec<Kind>,
+    /// Damping ratio of the response spectra; may be repeated.
+    #[arg(long, value_name = "SHARE", default_value = "5 %")]
+    damping: Vec<String>,
+    /// Replace figures that are there.
+    #[arg(long)]
+    overwrite: bool,
+}
+
+/// Figures of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// Acceleration over time (g).
+    Acceleration,
+    /// Velocity over time (cm/s).
+    Velocity,
+    /// Displacement over time (cm).
+    Displacement,
+    /// Build-up of the Arias intensity (m/s).
+    Arias,
+    /// Pseudo-spectral acceleration over period (g).
+    Response,
+    /// Fourier amplitudes of the acceleration over frequency (m/s).
+    Fourier,
+}
+
+impl Kind {
+    fn file(self) -> &'static str {
+        match self {
+            Self::Acceleration => "acceleration",
+            Self::Velocity => "velocity",
+            Self::Displacement => "displacement",
+            Self::Arias => "arias",
+            Self::Response => "response-spectrum",
+            Self::Fourier => "fourier-spectrum",
+        }
+    }
+}
+
+/// Draws and writes.
+pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<()> {
+    let files = files(args)?;
+    for (_, path) in &files {
+        let in_folder =
+            path.parent().is_none_or(|folder| folder.as_os_str().is_empty() || folder.is_dir());
+        for path in [path.clone(), path.with_extension("csv")] {
+            if in_folder {
+                vacant(&path, args.overwrite)?;
+            }
+        }
+    }
+    let damping: Vec<f64> =
+        args.damping.iter().map(|text| share("--damping", text)).collect::<Result<_, _>>()?;
+    let read = args.input.read()?;
+    let record = args.choice.take(&read)?;
+    let figures: Vec<(Figure, &Path)> = files
+        .iter()
+        .map(|(kind, path)| Ok((figure(*kind, &record, &damping)?, path.as_path())))
+        .collect::<anyhow::Result<_>>()?;
+    if !is_file(&args.output) {
+        std::fs::create_dir_all(&args.output)
+            .map_err(input::plain)
+            .with_context(|| format!("cannot make the folder {}", args.output.display()))?;
+    }
+    let mut lines = Vec::new();
+    for (figure, path) in figures {
+        store(path, figure.to_svg().as_bytes())?;
+        store(&path.with_extension("csv"), figure.to_csv().as_bytes())?;
+        lines.push(format!("written: {} (numbers in .csv beside it)", path.display()));
+    }
+    printer::lines(lines)?;
+    info::warn(&Record { stage: record.stage, ..read });
+    Ok(())
+}
+
+fn is_file(output: &Path) -> bool {
+    output.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"))
+}
+
+/// Which figure goes into which file.
+fn files(args: &PlotArgs) -> anyhow::Result<Vec<(Kind, PathBuf)>> {
+    let mut kinds = args.figure.clone();
+    if is_file(&args.output) {
+        vacant(&args.output, true)?;
+        let kind = match kinds.as_slice() {
+            [] => Kind::Acceleration,
+            [kind] => *kind,
+            _ => bail!("{} holds one figure: name one, or a folder", args.output.display()),
+        };
+        return Ok(vec![(kind, args.output.clone())]);
+    }
+    if args.output.is_file() {
+        bail!("{} is a file, not a folder, and does not end in .svg", args.output.display());
+    }
+    if let Some(ending) = args.output.extension().filter(|_| !args.output.is_dir()) {
+        bail!(
+            "{}: figures are written as .svg, not as .{}; name a file of that ending or a folder",
+            args.output.display(),
+            ending.to_string_lossy()
+        );
+    }
+    if kinds.is_empty() {
+        kinds = Kind::value_variants().to_vec();
+    }
+    Ok(kinds
+        .into_iter()
+        .map(|kind| (kind, args.output.join(kind.file()).with_extension("svg")))
+        .collect())
+}
+
+fn figure(kind: Kind, record: &Record, damping: &[f64]) -> anyhow::Result<Figure> {
+    let mut plot = Plot::default();
+    for channel in &record.channels {
+        plot.series.extend(series(kind, channel, damping)?);
+    }
+    let time = || Axis::new("time", "s");
+    (plot.x, plot.y) = match kind {
+        Kind::Acceleration => (time(), Axis::new("acceleration", "g")),
+        Kind::Velocity => (time(), Axis::new("velocity", "cm/s")),
+        Kind::Displacement => (time(), Axis::new("displacement", "cm")),
+        Kind::Arias => (time(), Axis::new("Arias intensity", "m/s")),
+        Kind::Response => {
+            (Axis::new("period", "s").log(), Axis::new("pseudo-spectral acceleration", "g"))
+        }
+        Kind::Fourier => {
+            (Axis::new("frequency", "Hz").log(), Axis::new("Fourier amplitude", "m/s").log())
+        }
+    };
+    if let (Kind::Arias, Some(first)) = (kind, record.channels.first()) {
+        plot.bands.extend(strong_part(first));
+    }
+    let caption = format!("{}, {}", title(record), plot.y.label);
+    Ok(Figure { id: kind.file().to_owned(), caption, kind: FigureKind::Plot(plot) })
+}
+
+/// What the record is called in a caption.
+fn title(record: &Record) -> String {
+    let parts: Vec<&str> = [record.event.as_str(), record.station.as_str()]
+        .into_iter()
+        .filter(|p| !p.is_empty())
+        .collect();
+    if parts.is_empty() { record.file.clone() } else { parts.join(", ") }
+}
+
+/// From 5 to 95 % of the Arias intensity.
+fn strong_part(channel: &Channel) -> Option<Band> {
+    let build_up = husid(&channel.acceleration);
+    let time = |share: f64| {
+        let sample = build_up.iter().position(|value| *value >= share)?;
+        Some(sample as f64 * channel.time_step)
+    };
+    Some(Band { from: time(0.05)?, to: time(0.95)?, label: format!("{}: 5 to 95 %", channel.name) })
+}
+
+fn series(kind: Kind, channel: &Channel, damping: &[f64]) -> anyhow::Result<Vec<Series>> {
+    let (step, a) = (channel.time_step, &channel.acceleration);
+    let name = channel.name.as_str();
+    let times = || (0..a.len()).map(|k| k as f64 * step).collect::<Vec<_>>();
+    let over_time = |values: &[f64], factor: f64| {
+        vec![Series::new(name, times(), values.iter().map(|value| factor * value).collect())]
+    };
+    Ok(match kind {
+        Kind::Acceleration => over_time(a, 1.0 / STANDARD_GRAVITY),
+        Kind::Velocity => over_time(sampled(channel)?.velocity(), 100.0),
+        Kind::Displacement => over_time(sampled(channel)?.displacement(), 100.0),
+        Kind::Arias => over_time(&husid(a), arias(step, a)),
+        Kind::Response => {
+            let periods = standard_periods(40);
+            let mut lines = Vec::new();
+            for damping in damping {
+                let spectrum = ResponseSpectrum::new(step, a, &periods, *damping)?;
+                let label = format!("{name}, {} %", super::table::number(100.0 * damping));
+                let values = spectrum.pseudo_acceleration();
+                let in_g = values.iter().map(|value| value / STANDARD_GRAVITY).collect();
+                lines.push(Series::new(label, periods.clone(), in_g));
+            }
+            lines
+        }
+        Kind::Fourier => {
+            let spectrum = FourierSpectrum::new(step, a);
+            // The logarithm has no place for frequency 0.
+            let (f, c) = (&spectrum.frequency[1..], &spectrum.amplitude[1..]);
+            vec![Series::new(name, f.to_vec(), c.to_vec())]
+        }
+    })
+}

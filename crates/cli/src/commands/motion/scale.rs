@@ -1,0 +1,133 @@
+//! `barrelstack motion scale`: to a measure, by a factor, to another length; all components alike.
+
+use anyhow::{anyhow, bail};
+use barrelstack::scenario::Dimension;
+use barrelstack_motion::{GroundMotion, History, IntensityMeasure, Record};
+
+use super::input::{self, Choice, Input, quantity};
+use super::measures::{self, reading, sampled};
+use super::output::Output;
+use super::table::number;
+
+/// Arguments of `scale`.
+#[derive(Debug, clap::Args)]
+#[command(group = clap::ArgGroup::new("how").required(true).multiple(true).args(["to", "factor", "froude"]))]
+pub(super) struct ScaleArgs {
+    #[command(flatten)]
+    input: Input,
+    #[command(flatten)]
+    choice: Choice,
+    /// Scale until a measure of one component has a value, such as "pgv=60 cm/s", "pga=0.4 g",
+    /// "arias=2 m/s", "sa(1.0)=0.5 g" (period in s, damping 5 %) or "sa(1.0,0.02)=0.5 g".
+    #[arg(long, value_name = "MEASURE=VALUE", conflicts_with = "factor")]
+    to: Option<String>,
+    /// The component that --to is about; the first horizontal if none is named.
+    #[arg(long, value_name = "NAME", requires = "to")]
+    of: Option<String>,
+    /// Multiply the accelerations.
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
+    factor: Option<f64>,
+    /// Make the motion for a model this many times the size: time times its square root,
+    /// acceleration as it is.
+    #[arg(long, value_name = "LENGTH")]
+    froude: Option<f64>,
+    #[command(flatten)]
+    output: Output,
+}
+
+/// Scales and writes.
+pub(super) fn scale(args: &ScaleArgs) -> anyhow::Result<()> {
+    let target = args.output.prepare()?;
+    let goal = args.to.as_deref().map(goal).transpose()?;
+    let read = args.input.read()?;
+    let before = args.choice.take(&read)?;
+    let mut after = before.clone();
+    if let Some((measure, value)) = goal {
+        let (factor, of) = factor_to(args, &before, measure, value)?;
+        let (unit, readable) = reading(&measure);
+        multiply(&mut after, factor);
+        after.notes.push(format!(
+            "scaled by {factor:.6}, which brings {measure} of {of} to {} {unit}; one factor for all \
+             components",
+            number(readable * value)
+        ));
+    }
+    if let Some(factor) = args.factor {
+        if !factor.is_finite() || factor == 0.0 {
+            bail!("--factor: expected a number other than 0, found {factor}");
+        }
+        multiply(&mut after, factor);
+        after.notes.push(format!("scaled by {factor}; one factor for all components"));
+    }
+    if let Some(length) = args.froude {
+        froude(&mut after, length)?;
+    }
+    let table = measures::before_after(&before, &after)?;
+    super::change::finish(&target, &read, &after, table.lines())
+}
+
+/// The factor, and the name of the component it comes from.
+fn factor_to(
+    args: &ScaleArgs,
+    record: &Record,
+    measure: IntensityMeasure,
+    value: f64,
+) -> anyhow::Result<(f64, String)> {
+    let channel = match &args.of {
+        Some(name) => record.component(&input::component(record, name)?)?,
+        None => record
+            .channels
+            .iter()
+            .find(|channel| !channel.is_vertical())
+            .unwrap_or(&record.channels[0])
+            .clone(),
+    };
+    let motion =
+        GroundMotion::new(channel.name.clone(), History::Sampled(sampled(&channel)?), None);
+    // The library checks the measure, its zero and the target.
+    motion.scale_to(measure, value)?;
+    Ok((motion.scale_factor(measure, value)?, channel.name))
+}
+
+fn multiply(record: &mut Record, factor: f64) {
+    for channel in &mut record.channels {
+        for value in &mut channel.acceleration {
+            *value *= factor;
+        }
+        channel.initial_velocity *= factor;
+        channel.peaks.clear();
+    }
+}
+
+fn froude(record: &mut Record, length: f64) -> anyhow::Result<()> {
+    if !(length.is_finite() && length > 0.0) {
+        bail!("--froude: expected a ratio of lengths above 0, found {length}");
+    }
+    let time = length.sqrt();
+    for channel in &mut record.channels {
+        channel.time_step *= time;
+        channel.initial_velocity *= time;
+        channel.peaks.clear();
+    }
+    record.notes.push(format!(
+        "Froude-scaled to {length} times the length: time and velocity times {time:.6}, displacement \
+         times {length}, acceleration unchanged"
+    ));
+    Ok(())
+}
+
+/// `MEASURE=VALUE` in SI units.
+fn goal(text: &str) -> anyhow::Result<(IntensityMeasure, f64)> {
+    let (name, value) = text.rsplit_once('=').ok_or_else(|| {
+        anyhow!("--to {text}: expected a measure and its value, such as \"pgv=60 cm/s\"")
+    })?;
+    let measure: IntensityMeasure = name.parse()?;
+    let dimension = match measure.unit() {
+        "m/s2" => Dimension::ACCELERATION,
+        "m/s" => Dimension::VELOCITY,
+        "m" => Dimension::LENGTH,
+        "s" => Dimension::TIME,
+        unit => bail!("--to {text}: a value in {unit} cannot be written; choose another measure"),
+    };
+    Ok((measure, quantity(&format!("--to {}", name.trim()), value, dimension)?))
+}

@@ -1,0 +1,191 @@
+//! `barrelstack motion spectrum`: peak responses of oscillators, by component and over all directions.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use anyhow::bail;
+use barrelstack::scenario::Dimension;
+use barrelstack_motion::{
+    Record, ResponsePeaks, RotatedPeak, STANDARD_GRAVITY, response, rotated_spectrum,
+    standard_periods,
+};
+
+use super::info;
+use super::input::{Choice, Input, quantity};
+use super::measures::horizontals;
+use super::output::{store, vacant};
+use super::process::share;
+use super::table::{Table, number};
+use crate::printer;
+
+/// Arguments of `spectrum`.
+#[derive(Debug, clap::Args)]
+pub(super) struct SpectrumArgs {
+    #[command(flatten)]
+    input: Input,
+    #[command(flatten)]
+    choice: Choice,
+    /// Damping ratio, such as 0.05 or "5 %"; may be repeated.
+    #[arg(long, value_name = "SHARE", default_value = "5 %")]
+    damping: Vec<String>,
+    /// Periods in seconds between commas, or with a unit each, such as "100 ms,0.2,1"; 0 is the ground.
+    /// Without them, 16 are printed and 121 written.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    periods: Vec<String>,
+    /// Also `RotD50` and `RotD100`, the median and the largest over all horizontal directions.
+    #[arg(long)]
+    rotd: bool,
+    /// Write the spectrum as .csv, in SI units.
+    #[arg(long, short, value_name = "FILE.csv")]
+    output: Option<PathBuf>,
+    /// Replace the file if it is there.
+    #[arg(long, requires = "output")]
+    overwrite: bool,
+}
+
+const PRINTED: [f64; 16] =
+    [0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 10.0];
+
+/// The spectra of one record at one damping.
+struct Spectra {
+    periods: Vec<f64>,
+    damping: f64,
+    channels: Vec<(String, Vec<ResponsePeaks>)>,
+    rotated: Option<Vec<RotatedPeak>>,
+}
+
+impl Spectra {
+    fn of(record: &Record, periods: &[f64], damping: f64, rotd: bool) -> anyhow::Result<Self> {
+        let mut channels = Vec::new();
+        for channel in &record.channels {
+            let peaks = periods
+                .iter()
+                .map(|period| response(channel.time_step, &channel.acceleration, *period, damping))
+                .collect::<Result<Vec<_>, _>>()?;
+            channels.push((channel.name.clone(), peaks));
+        }
+        let rotated = match horizontals(record) {
+            _ if !rotd => None,
+            Some((one, two)) => Some(rotated_spectrum(
+                one.time_step,
+                &one.acceleration,
+                &two.acceleration,
+                periods,
+                damping,
+            )?),
+            None => bail!("--rotd needs two horizontal components, and {} has fewer", record.file),
+        };
+        Ok(Self { periods: periods.to_vec(), damping, channels, rotated })
+    }
+
+    fn table(&self) -> Vec<String> {
+        let mut head = vec!["period (s)".to_owned()];
+        for (name, _) in &self.channels {
+            head.extend([format!("{name} Sa (g)"), "PSV (cm/s)".to_owned(), "Sd (cm)".to_owned()]);
+        }
+        if self.rotated.is_some() {
+            head.extend(["RotD50 Sa (g)", "RotD100 Sa (g)", "at (°)"].map(str::to_owned));
+        }
+        let mut table = Table::new(0, head);
+        for (k, period) in self.periods.iter().enumerate() {
+            let mut row = vec![number(*period)];
+            for (_, peaks) in &self.channels {
+                row.push(number(peaks[k].pseudo_acceleration / STANDARD_GRAVITY));
+                row.push(number(100.0 * peaks[k].pseudo_velocity));
+                row.push(number(100.0 * peaks[k].displacement));
+            }
+            if let Some(rotated) = &self.rotated {
+                row.push(number(rotated[k].median / STANDARD_GRAVITY));
+                row.push(number(rotated[k].largest / STANDARD_GRAVITY));
+                row.push(format!("{:.0}", rotated[k].angle));
+            }
+            table.row(row);
+        }
+        let title = format!("pseudo-spectra at {} % damping", number(100.0 * self.damping));
+        std::iter::once(title).chain(table.lines()).collect()
+    }
+
+    fn csv(&self, text: &mut String) {
+        let damping = self.damping;
+        let mut head = vec!["damping".to_owned(), "period (s)".to_owned()];
+        for (name, _) in &self.channels {
+            let name = name.replace(',', " ");
+            head.extend([
+                format!("{name} pseudo-acceleration (m/s2)"),
+                format!("{name} pseudo-velocity (m/s)"),
+                format!("{name} displacement (m)"),
+                format!("{name} absolute acceleration (m/s2)"),
+            ]);
+        }
+        if self.rotated.is_some() {
+            head.extend(
+                ["RotD50 (m/s2)", "RotD100 (m/s2)", "direction of RotD100 (deg from the first)"]
+                    .map(str::to_owned),
+            );
+        }
+        if text.is_empty() {
+            text.push_str(&head.join(","));
+            text.push('\n');
+        }
+        for (k, period) in self.periods.iter().enumerate() {
+            // Writing to a String cannot fail.
+            let _ = write!(text, "{damping},{period}");
+            for (_, peaks) in &self.channels {
+                let p = &peaks[k];
+                let _ = write!(
+                    text,
+                    ",{},{},{},{}",
+                    p.pseudo_acceleration, p.pseudo_velocity, p.displacement, p.acceleration
+                );
+            }
+            if let Some(rotated) = &self.rotated {
+                let r = &rotated[k];
+                let _ = write!(text, ",{},{},{}", r.median, r.largest, r.angle);
+            }
+            text.push('\n');
+        }
+    }
+}
+
+/// Computes, prints and writes.
+pub(super) fn spectrum(args: &SpectrumArgs) -> anyhow::Result<()> {
+    if let Some(output) = &args.output {
+        if output.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("csv")) {
+            bail!("{}: spectra are written as .csv", output.display());
+        }
+        vacant(output, args.overwrite)?;
+    }
+    let given = args.periods.iter().map(|text| period(text)).collect::<Result<Vec<_>, _>>()?;
+    let or = |other: Vec<f64>| if given.is_empty() { other } else { given.clone() };
+    let dampings: Vec<f64> =
+        args.damping.iter().map(|text| share("--damping", text)).collect::<Result<_, _>>()?;
+    let read = args.input.read()?;
+    let record = args.choice.take(&read)?;
+    let mut lines = Vec::new();
+    let mut text = String::new();
+    for damping in dampings {
+        if !lines.is_empty() {
+            lines.push(String::new());
+        }
+        lines.extend(Spectra::of(&record, &or(PRINTED.to_vec()), damping, args.rotd)?.table());
+        if args.output.is_some() {
+            let periods = or(standard_periods(40));
+            Spectra::of(&record, &periods, damping, args.rotd)?.csv(&mut text);
+        }
+    }
+    if let Some(output) = &args.output {
+        store(output, text.as_bytes())?;
+        lines.extend([String::new(), format!("written: {}", output.display())]);
+    }
+    printer::lines(lines)?;
+    info::warn(&Record { stage: record.stage, ..read });
+    Ok(())
+}
+
+/// A period (s), with or without its unit.
+fn period(text: &str) -> anyhow::Result<f64> {
+    match text.trim().parse::<f64>() {
+        Ok(value) => Ok(value),
+        Err(_) => quantity("--periods", text, Dimension::TIME),
+    }
+}

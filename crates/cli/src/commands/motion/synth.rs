@@ -1,0 +1,281 @@
+//! `barrelstack motion synth`: motions from formulas and from random numbers of a stated seed.
+
+use barrelstack::scenario::Dimension;
+use barrelstack_motion::{
+    BooreSource, Channel, CloughPenzien, Direction, Envelope, GroundMotion, NearFault, Pulse,
+    Record, Stage,
+};
+use clap::{Subcommand, ValueEnum};
+
+use super::input::quantity;
+use super::measures::{self, USUAL};
+use super::output::Output;
+use super::pulses::{Cycles, MainCycles, Shape, Size, Wavelet};
+
+/// Arguments of `synth`.
+#[derive(Debug, clap::Args)]
+pub(super) struct SynthArgs {
+    /// What is made.
+    #[command(subcommand)]
+    kind: Kind,
+}
+
+/// What every synthetic motion has.
+#[derive(Debug, clap::Args)]
+struct Common {
+    /// Step of the file; without it 0.005 s for random motions, a 400th of the period for pulses.
+    #[arg(long, value_name = "TIME")]
+    time_step: Option<String>,
+    /// Make it a vertical component.
+    #[arg(long)]
+    vertical: bool,
+    #[command(flatten)]
+    output: Output,
+}
+
+/// What is drawn at random.
+#[derive(Debug, clap::Args)]
+struct Seed {
+    /// Seed of the random numbers: the same seed gives the same motion on every machine.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    seed: u64,
+}
+
+/// What is made.
+#[derive(Debug, Subcommand)]
+enum Kind {
+    /// Harmonic displacement with ramps at both ends.
+    Sine(Made<Cycles>),
+    /// Half a sine wave of acceleration; leaves with a velocity.
+    HalfSine(Made<Size>),
+    /// One sine wave of acceleration; leaves with a displacement.
+    OneSine(Made<Size>),
+    /// One cosine wave of acceleration.
+    OneCosine(Made<Size>),
+    /// Constant acceleration; leaves with a velocity.
+    Rectangular(Made<Size>),
+    /// Ricker wavelet of acceleration: ends at rest where it began.
+    Ricker(Made<Size>),
+    /// Gabor wavelet of velocity.
+    Gabor(Made<Wavelet>),
+    /// Cycloidal pulse A: a forward step.
+    CycloidA(Made<Size>),
+    /// Cycloidal pulse B: forth and back.
+    CycloidB(Made<Size>),
+    /// Cycloidal pulse C: several cycles.
+    CycloidC(Made<MainCycles>),
+    /// Near-fault velocity pulse of Mavroeidis and Papageorgiou.
+    MavroeidisPapageorgiou(Made<Wavelet>),
+    /// Filtered white noise under an envelope (Clough and Penzien).
+    CloughPenzien(Made<Noise>),
+    /// Stochastic method for a point source (Boore).
+    Boore(Made<Source>),
+    /// A velocity pulse on top of a stochastic motion.
+    NearFault(Made<Fault>),
+}
+
+/// Arguments of one kind with those of all.
+#[derive(Debug, clap::Args)]
+struct Made<T: clap::Args> {
+    #[command(flatten)]
+    kind: T,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Soils of Der Kiureghian and Neuenhofer (1992).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Soil {
+    /// Ground frequency 15 rad/s.
+    Firm,
+    /// Ground frequency 10 rad/s.
+    Medium,
+    /// Ground frequency 5 rad/s.
+    Soft,
+}
+
+/// Filtered noise.
+#[derive(Debug, clap::Args)]
+struct Noise {
+    /// Soil.
+    #[arg(long, value_enum, default_value_t = Soil::Medium)]
+    soil: Soil,
+    /// Root mean square of the acceleration at full strength.
+    #[arg(long, value_name = "ACCELERATION", default_value = "0.1 g")]
+    rms: String,
+    /// Length.
+    #[arg(long, value_name = "TIME", default_value = "20 s")]
+    duration: String,
+    /// End of the rise to full strength.
+    #[arg(long, value_name = "TIME", default_value = "2 s")]
+    rise: String,
+    /// Start of the decay.
+    #[arg(long, value_name = "TIME", default_value = "10 s")]
+    decay_start: String,
+    /// Time in which the motion then falls to 1/e.
+    #[arg(long, value_name = "TIME", default_value = "2.5 s")]
+    decay: String,
+    #[command(flatten)]
+    seed: Seed,
+}
+
+/// A point source in western North America, changed where options say so.
+#[derive(Debug, clap::Args)]
+struct Source {
+    /// Moment magnitude.
+    #[arg(long, value_name = "NUMBER")]
+    magnitude: f64,
+    /// Distance from source to site.
+    #[arg(long, value_name = "LENGTH")]
+    distance: String,
+    /// Stress parameter.
+    #[arg(long, value_name = "STRESS", default_value = "7 MPa")]
+    stress: String,
+    /// High-frequency attenuation at the site.
+    #[arg(long, value_name = "TIME", default_value = "0.04 s")]
+    kappa: String,
+    #[command(flatten)]
+    seed: Seed,
+}
+
+/// A pulse and the rest around it.
+#[derive(Debug, clap::Args)]
+struct Fault {
+    #[command(flatten)]
+    source: Source,
+    /// Velocity amplitude of the pulse.
+    #[arg(long, value_name = "VELOCITY")]
+    pulse_velocity: String,
+    /// Period of the pulse.
+    #[arg(long, value_name = "TIME")]
+    pulse_period: String,
+    /// Width of the pulse, above 1; sets its number of cycles.
+    #[arg(long, value_name = "NUMBER", default_value_t = 2.0)]
+    gamma: f64,
+    /// Phase of the pulse.
+    #[arg(long, value_name = "ANGLE", default_value = "0 deg", allow_hyphen_values = true)]
+    phase: String,
+    /// Start of the pulse.
+    #[arg(long, value_name = "TIME", default_value = "2 s")]
+    start: String,
+    /// The rest holds frequencies above this many times the pulse's.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1.0)]
+    crossover: f64,
+}
+
+impl Source {
+    fn build(&self) -> anyhow::Result<BooreSource> {
+        let kilometers = quantity("--distance", &self.distance, Dimension::LENGTH)? / 1000.0;
+        let mut source = BooreSource::western(self.magnitude, kilometers);
+        // The formula has its stress in bar.
+        let pascal = quantity("--stress", &self.stress, Dimension::STIFFNESS_PER_LENGTH)?;
+        source.stress = pascal / 1e5;
+        source.path.kappa = quantity("--kappa", &self.kappa, Dimension::TIME)?;
+        Ok(source)
+    }
+}
+
+impl Noise {
+    fn motion(&self, step: f64) -> anyhow::Result<GroundMotion> {
+        let rms = quantity("--rms", &self.rms, Dimension::ACCELERATION)?;
+        let soil = match self.soil {
+            Soil::Firm => CloughPenzien::firm(rms),
+            Soil::Medium => CloughPenzien::medium(rms),
+            Soil::Soft => CloughPenzien::soft(rms),
+        };
+        let time = |option: &str, text: &str| quantity(option, text, Dimension::TIME);
+        let envelope = Envelope::Jennings {
+            rise: time("--rise", &self.rise)?,
+            decay_start: time("--decay-start", &self.decay_start)?,
+            decay: 1.0 / time("--decay", &self.decay)?,
+        };
+        Ok(soil.motion(&envelope, time("--duration", &self.duration)?, step, self.seed.seed)?)
+    }
+}
+
+impl Fault {
+    fn motion(&self, step: f64) -> anyhow::Result<GroundMotion> {
+        let near_fault = NearFault {
+            pulse: Pulse::MavroeidisPapageorgiou {
+                velocity: quantity("--pulse-velocity", &self.pulse_velocity, Dimension::VELOCITY)?,
+                period: quantity("--pulse-period", &self.pulse_period, Dimension::TIME)?,
+                gamma: self.gamma,
+                phase: quantity("--phase", &self.phase, Dimension::ANGLE)?,
+            },
+            start: quantity("--start", &self.start, Dimension::TIME)?,
+            rest: self.source.build()?,
+            crossover: self.crossover,
+        };
+        Ok(near_fault.motion(step, self.source.seed.seed)?)
+    }
+}
+
+/// Makes and writes.
+pub(super) fn synth(args: &SynthArgs) -> anyhow::Result<()> {
+    let formula =
+        |made: &Common, name: &str, shape: &Shape<'_>| write(made, |_| shape.motion(name));
+    match &args.kind {
+        Kind::Sine(made) => formula(&made.common, "sine", &Shape::Sine(&made.kind)),
+        Kind::HalfSine(made) => formula(&made.common, "half sine", &Shape::HalfSine(&made.kind)),
+        Kind::OneSine(made) => formula(&made.common, "one sine", &Shape::OneSine(&made.kind)),
+        Kind::OneCosine(made) => formula(&made.common, "one cosine", &Shape::OneCosine(&made.kind)),
+        Kind::Rectangular(made) => {
+            formula(&made.common, "rectangle", &Shape::Rectangular(&made.kind))
+        }
+        Kind::Ricker(made) => formula(&made.common, "Ricker", &Shape::Ricker(&made.kind)),
+        Kind::Gabor(made) => formula(&made.common, "Gabor", &Shape::Gabor(&made.kind)),
+        Kind::CycloidA(made) => formula(&made.common, "cycloid A", &Shape::CycloidA(&made.kind)),
+        Kind::CycloidB(made) => formula(&made.common, "cycloid B", &Shape::CycloidB(&made.kind)),
+        Kind::CycloidC(made) => formula(&made.common, "cycloid C", &Shape::CycloidC(&made.kind)),
+        Kind::MavroeidisPapageorgiou(made) => formula(
+            &made.common,
+            "Mavroeidis-Papageorgiou",
+            &Shape::MavroeidisPapageorgiou(&made.kind),
+        ),
+        Kind::CloughPenzien(made) => write(&made.common, |step| made.kind.motion(step)),
+        Kind::Boore(made) => {
+            write(&made.common, |step| Ok(made.kind.build()?.motion(step, made.kind.seed.seed)?))
+        }
+        Kind::NearFault(made) => write(&made.common, |step| made.kind.motion(step)),
+    }
+}
+
+/// Step of random motions when none is given (s).
+const RANDOM_STEP: f64 = 0.005;
+
+/// Makes a motion with a step (s), samples it and writes it.
+fn write(
+    common: &Common,
+    make: impl FnOnce(f64) -> anyhow::Result<GroundMotion>,
+) -> anyhow::Result<()> {
+    let target = common.output.prepare()?;
+    let given = common
+        .time_step
+        .as_deref()
+        .map(|text| quantity("--time-step", text, Dimension::TIME))
+        .transpose()?;
+    let motion = make(given.unwrap_or(RANDOM_STEP))?;
+    let step = given.unwrap_or_else(|| motion.horizontal.natural_step());
+    let sampled = motion.horizontal.sampled(step)?;
+    let (name, direction) = if common.vertical {
+        ("UP", Direction::up())
+    } else {
+        ("H1", Direction::some_horizontal())
+    };
+    let mut channel =
+        Channel::new(name, direction, sampled.time_step(), sampled.acceleration().to_vec());
+    channel.initial_velocity = sampled.velocity()[0];
+    let record = Record {
+        format: "synthetic",
+        file: common.output.output.display().to_string(),
+        event: motion.name.clone(),
+        station: "synthetic".to_owned(),
+        stage: Stage::Corrected,
+        channels: vec![channel],
+        warnings: Vec::new(),
+        notes: motion.provenance,
+    };
+    let columns: Vec<_> = record.channels.iter().map(|c| (c.name.clone(), c)).collect();
+    let table = measures::table(&columns, &USUAL.iter().collect::<Vec<_>>())?;
+    super::change::finish(&target, &record, &record, table.lines())
+}

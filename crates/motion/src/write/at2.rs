@@ -1,0 +1,114 @@
+//! PEER AT2: one component in g, five numbers to a line.
+//!
+//! Spec: header lines of the NGA and NGA-West2 flat files, as in the reader.
+
+use std::fmt::Write as _;
+
+use crate::direction::{Direction, Orientation};
+use crate::error::MotionError;
+use crate::math::STANDARD_GRAVITY;
+use crate::record::{Channel, Record};
+
+/// Longest component name that readers tell from a part of the event.
+const LONGEST_NAME: usize = 12;
+
+/// A record of one channel as PEER AT2, in g with eight significant digits.
+///
+/// The four header lines are the provenance; event, station, component; quantity and unit; count and
+/// step (s) at full precision.
+/// Commas and parentheses have a meaning to readers of the format, as have some words: they are
+/// replaced in texts that come from elsewhere.
+///
+/// ```
+/// use barrelstack_motion::{ReadOptions, bundled, read, write};
+/// let mut napa = bundled("napa-college-2014").unwrap();
+/// napa.channels.truncate(1);
+/// let file = write::at2(&napa)?;
+/// let again = read(file.as_bytes(), "copy.at2", &ReadOptions::default()).unwrap();
+/// assert!((again.channels[0].pga() / napa.channels[0].pga() - 1.0).abs() < 5e-8);
+/// # Ok::<(), barrelstack_motion::MotionError>(())
+/// ```
+///
+/// # Errors
+/// If there is not exactly one channel.
+pub fn at2(record: &Record) -> Result<String, MotionError> {
+    let [channel] = record.channels.as_slice() else {
+        let names = super::names(&record.channels).join(", ");
+        return Err(MotionError::Parameter {
+            what: "components for AT2".to_owned(),
+            expected: "one, because the format holds one".to_owned(),
+            found: format!("{} ({names})", record.channels.len()),
+        });
+    };
+    let mut title = String::from("WRITTEN BY BARRELSTACK");
+    for note in super::provenance(record) {
+        let _ = write!(title, "; {note}");
+    }
+    let or = |text: &str, missing: &str| {
+        let plain = harmless(text);
+        if plain.is_empty() { missing.to_owned() } else { plain }
+    };
+    let a = &channel.acceleration;
+    let mut text = format!(
+        "{}\n{}, {}, {}\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= {}, DT= {} SEC\n",
+        harmless(&title),
+        or(&record.event, "EVENT NOT STATED"),
+        or(&record.station, "STATION NOT STATED"),
+        component(channel),
+        a.len(),
+        channel.time_step,
+    );
+    for row in a.chunks(5) {
+        for value in row {
+            text.push_str(&number(value / STANDARD_GRAVITY));
+        }
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+/// A text without the signs and words that readers take for the header's own.
+fn harmless(text: &str) -> String {
+    let plain = super::line(text).replace(',', ";").replace(['(', ')'], "");
+    let mut out = String::with_capacity(plain.len());
+    let mut rest = plain.as_str();
+    'next: while let Some(first) = rest.chars().next() {
+        for word in ["NPTS", "SPECTR", "UNITS", "VELOCITY", "DISPLACEMENT", "ACCEL"] {
+            if rest.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word)) {
+                // Two letters, a hyphen, the others: still legible, no longer the word.
+                out.push_str(&rest[..2]);
+                out.push('-');
+                out.push_str(&rest[2..word.len()]);
+                rest = &rest[word.len()..];
+                continue 'next;
+            }
+        }
+        out.push(if first.is_ascii() { first } else { '?' });
+        rest = &rest[first.len_utf8()..];
+    }
+    out.trim().to_owned()
+}
+
+/// The component's name if it still tells its direction, else its azimuth or `UP`.
+fn component(channel: &Channel) -> String {
+    let name = harmless(&channel.name);
+    let fits = !name.is_empty() && name.len() <= LONGEST_NAME;
+    if fits && Direction::parse(&name) == channel.direction {
+        return name;
+    }
+    match (channel.direction.azimuth, channel.direction.orientation) {
+        (Some(azimuth), _) => format!("{azimuth:.1}").trim_end_matches(".0").to_owned(),
+        (None, Some(Orientation::Vertical)) => "UP".to_owned(),
+        _ if fits => name,
+        _ => name.chars().take(LONGEST_NAME).collect::<String>().trim().to_owned(),
+    }
+}
+
+/// C's `%15.7E`; what is too small for an exponent of two digits is zero.
+fn number(value: f64) -> String {
+    let value = if value.abs() < 1e-98 { 0.0 } else { value };
+    let text = format!("{value:.7e}");
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let (sign, digits) = exponent.strip_prefix('-').map_or(('+', exponent), |d| ('-', d));
+    format!("{:>15}", format!("{mantissa}E{sign}{digits:0>2}"))
+}

@@ -1,0 +1,60 @@
+//! Columns of time and acceleration between commas.
+
+use std::fmt::Write as _;
+
+use crate::error::MotionError;
+use crate::record::Record;
+
+/// A record as CSV: comment lines that start with `#`, then `time (s),NAME (m/s2),…`, then one row
+/// to a sample.
+///
+/// Accelerations are the shortest decimals that read back to the same double; times are rounded to
+/// a nanosecond.
+///
+/// ```
+/// use barrelstack_motion::{ReadOptions, bundled, read, write};
+/// let napa = bundled("napa-college-2014").unwrap();
+/// let table = write::csv(&napa)?;
+/// let again = read(table.as_bytes(), "copy.csv", &ReadOptions::default()).unwrap();
+/// assert_eq!(again.channels[2].acceleration, napa.channels[2].acceleration);
+/// # Ok::<(), barrelstack_motion::MotionError>(())
+/// ```
+///
+/// # Errors
+/// If there is no channel or the steps differ.
+pub fn csv(record: &Record) -> Result<String, MotionError> {
+    let (step, rows) = super::common(record)?;
+    // The first line names quantity and unit, so that no word further down is taken for them.
+    let mut text = String::from("# acceleration (m/s2)\n");
+    for (key, value) in [("event", &record.event), ("station", &record.station)] {
+        if !value.is_empty() {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "# {key}: {}", super::line(value));
+        }
+    }
+    let _ = writeln!(text, "# stage: {}", record.stage);
+    for note in super::provenance(record) {
+        let _ = writeln!(text, "# processing: {note}");
+    }
+    text.push_str("time (s)");
+    for name in super::names(&record.channels) {
+        let _ = write!(text, ",{name} (m/s2)");
+    }
+    text.push('\n');
+    for row in 0..rows {
+        text.push_str(&nanoseconds(row as f64 * step));
+        for channel in &record.channels {
+            let value = channel.acceleration[row];
+            let tiny = value != 0.0 && value.abs() < 1e-4;
+            let _ = if tiny { write!(text, ",{value:e}") } else { write!(text, ",{value}") };
+        }
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+/// A time (s) to nine decimals without trailing zeros.
+fn nanoseconds(time: f64) -> String {
+    let digits = format!("{time:.9}");
+    digits.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

@@ -1,0 +1,89 @@
+//! The crate's own text form at full precision: what is read back has the same bits.
+//!
+//! ```text
+//! # barrelstack motion 1
+//! # station: Napa College, Napa
+//! # event: South Napa, 2014-08-24, M 6.0
+//! # processing: one line for every step that was done
+//! # stage: raw, corrected or unknown
+//! # unit: m/s2
+//! # time_step: 0.005
+//! # channels: E az=90, N az=0, UP vertical
+//! 1.2345e-3 -2.3456e-4 0e0
+//! ```
+//!
+//! One column stands for each channel, numbers as the shortest decimals that read back to the same
+//! double.
+//! `az=` is the azimuth (degrees clockwise from north); `vertical` means positive upward;
+//! `horizontal` a horizontal of unknown azimuth; a name alone an unknown direction.
+
+use std::fmt::Write as _;
+
+use crate::direction::Orientation;
+use crate::error::MotionError;
+use crate::record::{Channel, Record};
+
+/// A record in the crate's own text form; [`crate::read`] gives the accelerations back bit for bit.
+///
+/// ```
+/// use barrelstack_motion::{ReadOptions, bundled, read, write};
+/// let napa = bundled("napa-college-2014").unwrap();
+/// let text = write::text(&napa)?;
+/// let again = read(text.as_bytes(), "copy.txt", &ReadOptions::default()).unwrap();
+/// assert_eq!(again.channels, napa.channels);
+/// # Ok::<(), barrelstack_motion::MotionError>(())
+/// ```
+///
+/// # Errors
+/// If there is no channel or the steps differ.
+pub fn text(record: &Record) -> Result<String, MotionError> {
+    let (step, rows) = super::common(record)?;
+    let mut text = String::from("# barrelstack motion 1\n");
+    let mut head = |key: &str, value: &str| {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "# {key}: {}", super::line(value));
+    };
+    head("station", &record.station);
+    head("event", &record.event);
+    for note in super::provenance(record) {
+        match own_key(&note) {
+            Some((key, value)) => head(key, value),
+            None => head("processing", &note),
+        }
+    }
+    head("stage", &record.stage.to_string());
+    head("unit", "m/s2");
+    head("time_step", &format!("{step}"));
+    let channels: Vec<String> = record
+        .channels
+        .iter()
+        .zip(super::names(&record.channels))
+        .map(|(channel, name)| with_direction(channel, &name))
+        .collect();
+    head("channels", &channels.join(", "));
+    for row in 0..rows {
+        for (k, channel) in record.channels.iter().enumerate() {
+            let gap = if k == 0 { "" } else { " " };
+            // Writing to a String cannot fail.
+            let _ = write!(text, "{gap}{:e}", channel.acceleration[row]);
+        }
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+/// Notes that a header of this form gave under a key of their own.
+fn own_key(note: &str) -> Option<(&'static str, &str)> {
+    ["source", "attribution", "licence"]
+        .into_iter()
+        .find_map(|key| Some((key, note.strip_prefix(key)?.strip_prefix(": ")?)))
+}
+
+fn with_direction(channel: &Channel, name: &str) -> String {
+    match (channel.direction.azimuth, channel.direction.orientation) {
+        (Some(azimuth), _) => format!("{name} az={azimuth}"),
+        (None, Some(Orientation::Vertical)) => format!("{name} vertical"),
+        (None, Some(Orientation::Horizontal)) => format!("{name} horizontal"),
+        (None, None) => name.to_owned(),
+    }
+}

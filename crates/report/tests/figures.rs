@@ -1,0 +1,234 @@
+//! Figures as SVG and CSV: well formed whatever the data, with gaps where numbers are missing.
+
+mod common;
+
+use std::sync::Arc;
+
+use barrelstack_report::{
+    Axis, Band, BoundarySample, Envelope, Figure, FigureKind, Mark, Panel, Plot, Polyline, Scene,
+    Series, SeriesStyle, Strip, attachments,
+};
+use common::{HOSTILE, document, player, scene};
+
+fn figure(kind: FigureKind) -> Figure {
+    Figure { id: "figure 1".into(), caption: HOSTILE.into(), kind }
+}
+
+fn parsed(svg: &str) -> roxmltree::Document<'_> {
+    roxmltree::Document::parse(svg).unwrap_or_else(|error| panic!("{error}\n{svg}"))
+}
+
+fn plot(series: Vec<Series>) -> Plot {
+    Plot { x: Axis::new("time", "s"), y: Axis::new("slip", "cm"), series, ..Plot::default() }
+}
+
+fn full_plot() -> Plot {
+    let style = SeriesStyle { area: true, dots: true, ..SeriesStyle::default() };
+    let muted = SeriesStyle { muted: true, ..SeriesStyle::default() };
+    Plot {
+        series: vec![
+            Series { style, ..Series::new(HOSTILE, vec![0.0, 1.0, 2.0], vec![1.0, -1.0, 3.0]) },
+            Series { style: muted, ..Series::new("", vec![0.0, 2.0], vec![0.5, 0.5]) },
+        ],
+        marks: vec![Mark { at: 1.0, label: HOSTILE.into() }],
+        levels: vec![Mark { at: 0.5, label: HOSTILE.into() }],
+        bands: vec![Band { from: 0.5, to: 1.5, label: HOSTILE.into() }],
+        ..plot(vec![])
+    }
+}
+
+fn envelope(stress: Vec<f64>) -> Envelope {
+    let sample = |k: usize| {
+        let (nz, nx) = (0.1 * k as f64).sin_cos();
+        BoundarySample { x: 0.3 * nx, z: 0.3 * nz, nx, nz, coordinate: 0.1 * k as f64 }
+    };
+    Envelope {
+        outline: vec![Polyline::circle(0.3, 24)],
+        samples: (0..stress.len()).map(sample).collect(),
+        closed: true,
+        static_stress: stress.clone(),
+        dynamic_stress: stress.iter().map(|s| 2.0 * s).collect(),
+        unit: "kN/m".into(),
+        amplification: Some(2.0),
+        coordinate: ("angle".into(), "rad".into()),
+    }
+}
+
+#[test]
+fn every_figure_is_well_formed_xml_whatever_it_holds() {
+    let nothing = Series::new("", vec![], vec![]);
+    let infinite = Series::new("x", vec![f64::INFINITY, f64::NAN], vec![f64::NAN, 1.0]);
+    let log = Plot {
+        x: Axis::new("period", "s").log(),
+        y: Axis::new("acceleration", "g").log(),
+        ..plot(vec![Series::new("a", vec![0.0, 0.1, 10.0], vec![-1.0, 1e-9, 1e9])])
+    };
+    let kinds = vec![
+        FigureKind::Plot(Plot::default()),
+        FigureKind::Plot(full_plot()),
+        FigureKind::Plot(plot(vec![nothing])),
+        FigureKind::Plot(plot(vec![infinite])),
+        FigureKind::Plot(plot(vec![Series::new("one", vec![3.0], vec![3.0])])),
+        FigureKind::Plot(plot(vec![Series::new("flat", vec![0.0, 1.0], vec![1e300, 1e300])])),
+        FigureKind::Plot(log),
+        FigureKind::Strip(Strip { scene: Arc::new(Scene::default()), panels: vec![] }),
+        FigureKind::Strip(Strip {
+            scene: Arc::new(Scene::default()),
+            panels: vec![Panel { time: f64::NAN, note: HOSTILE.repeat(9) }],
+        }),
+        FigureKind::Strip(Strip::of_run(Arc::new(scene(3, 1)), 6)),
+        FigureKind::Strip(Strip::of_run(Arc::new(scene(3, 90)), 6)),
+        FigureKind::Envelope(Envelope::default()),
+        FigureKind::Envelope(envelope(vec![1.0; 63])),
+        FigureKind::Envelope(envelope(vec![f64::NAN, 0.0, 1.0, f64::INFINITY, -1.0, 2.0])),
+    ];
+    for kind in kinds {
+        let svg = figure(kind.clone()).to_svg();
+        let tree = parsed(&svg);
+        let root = tree.root_element();
+        assert_eq!(root.tag_name().name(), "svg");
+        for side in ["width", "height"] {
+            let length: f64 = root.attribute(side).unwrap().parse().unwrap();
+            assert!(length > 0.0 && length < 5000.0, "{length} {kind:?}");
+        }
+        for node in tree.descendants() {
+            for attribute in node.attributes() {
+                let value = attribute.value();
+                assert!(!value.contains("NaN") && !value.contains("inf"), "{value} in {kind:?}");
+            }
+        }
+        assert!(!svg.contains("var(--"), "a file on its own knows its colors");
+    }
+}
+
+#[test]
+fn a_hostile_caption_is_the_title_word_for_word() {
+    let svg = figure(FigureKind::Plot(full_plot())).to_svg();
+    let tree = parsed(&svg);
+    let title = tree.descendants().find(|n| n.has_tag_name("title")).unwrap();
+    let wanted = HOSTILE.replace(['\u{0}', '\u{7}'], "\u{fffd}");
+    assert_eq!(title.text().unwrap(), wanted);
+}
+
+#[test]
+fn a_missing_value_divides_a_line_in_two() {
+    let moves = |y: Vec<f64>| {
+        let x = (0..y.len()).map(|k| k as f64).collect();
+        let svg = figure(FigureKind::Plot(plot(vec![Series::new("", x, y)]))).to_svg();
+        let tree = parsed(&svg);
+        let path = tree.descendants().find(|n| n.attribute("class") == Some("series s0")).unwrap();
+        path.attribute("d").unwrap().matches('M').count()
+    };
+    assert_eq!(moves(vec![0.0, 1.0, 0.0, 1.0]), 1);
+    assert_eq!(moves(vec![0.0, 1.0, f64::NAN, 0.0, 1.0]), 2);
+    assert_eq!(moves(vec![f64::NAN, 1.0, f64::NAN, 0.0, f64::INFINITY]), 2);
+}
+
+#[test]
+fn plot_csv_reads_back_to_the_same_bits_with_gaps_empty() {
+    let values = vec![0.1 + 0.2, f64::NAN, -1e-300];
+    let shared = vec![0.0, 1.0, 2.0];
+    let csv = figure(FigureKind::Plot(plot(vec![
+        Series::new("a, \"b\"", shared.clone(), values.clone()),
+        Series::new("c", shared, vec![1.0, 2.0, 3.0]),
+        Series::new("short", vec![5.0], vec![6.0]),
+    ])))
+    .to_csv();
+    let lines: Vec<&str> = csv.lines().collect();
+    // Series over the same x share its column.
+    assert_eq!(lines[0], "time (s),\"a, \"\"b\"\" (cm)\",c (cm),time (s),short (cm)");
+    assert_eq!(lines[2], "1,,2,,");
+    let cell: f64 = lines[1].split(',').nth(1).unwrap().parse().unwrap();
+    assert_eq!(cell.to_bits(), values[0].to_bits());
+    assert_eq!(lines[3].split(',').nth(1).unwrap().parse::<f64>().unwrap(), -1e-300);
+}
+
+#[test]
+fn strips_color_their_bodies_with_rules_that_reach_into_use() {
+    let svg = figure(FigureKind::Strip(Strip::of_run(Arc::new(scene(2, 60)), 4))).to_svg();
+    let tree = parsed(&svg);
+    let style = tree.descendants().find(|n| n.has_tag_name("style")).unwrap().text().unwrap();
+    let drawn: Vec<&str> = tree
+        .descendants()
+        .filter(|n| n.has_tag_name("path") && n.ancestors().any(|a| a.has_tag_name("defs")))
+        .filter_map(|n| n.attribute("class"))
+        .collect();
+    assert!(drawn.contains(&"bs-body bs-barrel"));
+    for class in drawn.iter().flat_map(|class| class.split(' ')) {
+        // A selector with an ancestor in front matches nothing inside <use>.
+        assert!(
+            style.lines().any(|line| line.starts_with(&format!(".{class} {{"))),
+            "no rule of its own for {class}"
+        );
+    }
+}
+
+#[test]
+fn all_panels_of_a_strip_have_one_scale_and_one_size() {
+    let mut moving = scene(4, 120);
+    for frame in 60..120 {
+        moving.frames.poses[frame][2] = [40.0, 0.3, 1.0];
+    }
+    let svg = figure(FigureKind::Strip(Strip::of_run(Arc::new(moving), 6))).to_svg();
+    let tree = parsed(&svg);
+    let of = |name: &'static str, with: &str| -> Vec<String> {
+        tree.descendants()
+            .filter_map(|n| n.attribute(name))
+            .filter(|value| value.starts_with(with))
+            .map(|value| value.rsplit_once(' ').map_or(value, |(head, _)| head).to_owned())
+            .collect()
+    };
+    let transforms = of("transform", "matrix(");
+    assert_eq!(transforms.len(), 6);
+    assert!(transforms.windows(2).all(|pair| pair[0] == pair[1]), "{transforms:?}");
+    // 4 barrels are 1.8 m high: what has gone 40 m away does not shrink them below 60 px a meter.
+    let scale: f64 = transforms[0]["matrix(".len()..].split(' ').next().unwrap().parse().unwrap();
+    assert!(scale > 60.0, "{scale}"); // measured 71
+}
+
+#[test]
+fn the_hatch_of_the_ground_covers_the_picture_and_not_the_county() {
+    let svg = figure(FigureKind::Strip(Strip::of_run(Arc::new(scene(2, 60)), 3))).to_svg();
+    let tree = parsed(&svg);
+    let hatch = tree
+        .descendants()
+        .filter(|n| n.attribute("class") == Some("bs-body bs-ground bs-open"))
+        .filter_map(|n| n.attribute("d"))
+        .map(|d| d.matches('M').count())
+        .max()
+        .unwrap();
+    assert!((10..120).contains(&hatch), "{hatch}");
+}
+
+#[test]
+fn a_strip_shows_first_and_last_and_what_happened() {
+    let strip = Strip::of_run(Arc::new(scene(2, 600)), 4);
+    let times: Vec<f64> = strip.panels.iter().map(|p| p.time).collect();
+    assert_eq!(times.len(), 4);
+    assert!(times.windows(2).all(|pair| pair[0] < pair[1]));
+    assert_eq!((times[0], times[3]), (0.0, 599.0 / 60.0));
+    let short = Strip::of_run(Arc::new(scene(2, 60)), 4);
+    assert!(short.panels.iter().any(|p| p.time == 0.1 && p.note == "B1: fall"));
+    assert_eq!(Strip::of_run(Arc::new(scene(2, 1)), 4).panels.len(), 1);
+    assert!(Strip::of_run(Arc::new(Scene::default()), 4).panels.is_empty());
+}
+
+#[test]
+fn attachments_have_names_that_differ_and_are_safe() {
+    let twice = figure(FigureKind::Plot(full_plot()));
+    let blocks = vec![
+        player(scene(1, 10)),
+        barrelstack_report::Block::Figure(twice.clone()),
+        barrelstack_report::Block::Figure(Figure { id: "../σ/é".into(), ..twice.clone() }),
+        barrelstack_report::Block::Figure(twice),
+    ];
+    let names: Vec<String> = attachments(&document(blocks)).into_iter().map(|a| a.name).collect();
+    let mut unique = names.clone();
+    unique.sort();
+    unique.dedup();
+    assert_eq!(unique.len(), names.len(), "{names:?}");
+    for name in &names {
+        let safe = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "-.".contains(c);
+        assert!(name.chars().all(safe) && !name.starts_with('.'), "{name}");
+    }
+}

@@ -1,0 +1,187 @@
+//! Pages: nothing in a text can become markup, nothing asks the network, nothing empty breaks.
+
+mod common;
+
+use std::sync::Arc;
+
+use barrelstack_report::{
+    Axis, Block, Cell, Figure, FigureKind, Frames, Plot, Scene, Series, Strip, Table, Tone, html,
+};
+use common::{HOSTILE, document, payload, player, scene};
+
+/// A page without the contents of its scripts and styles.
+fn markup(page: &str) -> String {
+    let mut out = String::new();
+    let mut rest = page;
+    while let Some(at) = [rest.find("<script"), rest.find("<style")].into_iter().flatten().min() {
+        let close = if rest[at..].starts_with("<script") { "</script>" } else { "</style>" };
+        out.push_str(&rest[..at]);
+        let end = at + rest[at..].find(close).expect("every script and style ends");
+        rest = &rest[end + close.len()..];
+    }
+    out + rest
+}
+
+fn hostile_page() -> String {
+    let mut moving = scene(2, 30);
+    moving.bodies[1].name = HOSTILE.into();
+    moving.events[0].text = HOSTILE.into();
+    moving.ground[0].label = HOSTILE.into();
+    let mut table = Table::new(HOSTILE, &[(HOSTILE, HOSTILE)]);
+    table.rows.push(vec![Cell::text(HOSTILE)]);
+    let series = Series::new(HOSTILE, vec![0.0, 1.0], vec![0.0, 1.0]);
+    let x = Axis::new(HOSTILE, HOSTILE);
+    let plot = Plot { x, series: vec![series], interactive: true, ..Plot::default() };
+    let mut doc = document(vec![
+        Block::Heading { level: 2, text: HOSTILE.into() },
+        Block::Paragraph(HOSTILE.into()),
+        Block::List(vec![HOSTILE.into()]),
+        player(moving),
+        Block::Table(table),
+        Block::Figure(Figure {
+            id: HOSTILE.into(),
+            caption: HOSTILE.into(),
+            kind: FigureKind::Plot(plot),
+        }),
+        Block::Details { summary: HOSTILE.into(), blocks: vec![Block::Paragraph("x".into())] },
+    ]);
+    doc.title = HOSTILE.into();
+    doc.verdict.headline = HOSTILE.into();
+    doc.verdict.sentences = vec![HOSTILE.into()];
+    doc.warnings = vec![HOSTILE.into()];
+    doc.provenance = vec![(HOSTILE.into(), HOSTILE.into())];
+    html(&doc)
+}
+
+#[test]
+fn hostile_text_never_becomes_markup() {
+    let page = hostile_page();
+    let markup = markup(&page);
+    assert!(!markup.contains("<i>c</i>"));
+    assert!(!markup.contains("<!--"));
+    assert!(!markup.contains("\"a\""), "a quote would end an attribute");
+    assert!(markup.contains("&lt;/script&gt;"));
+    assert!(!page.contains('\u{0}') && !page.contains('\u{7}'));
+    // Data, library, own code: three scripts, whatever the texts say.
+    assert_eq!(page.matches("<script").count(), 3);
+    assert_eq!(page.matches("</script").count(), 3);
+}
+
+#[test]
+fn hostile_text_reads_back_from_the_data_as_it_was() {
+    let data = payload(&hostile_page());
+    assert_eq!(data["players"][0]["bodies"][1]["name"], HOSTILE);
+    assert_eq!(data["players"][0]["events"][0]["text"], HOSTILE);
+    assert_eq!(data["plots"][0]["series"][0]["label"], HOSTILE);
+}
+
+#[test]
+fn a_page_asks_the_network_for_nothing() {
+    let page = hostile_page();
+    let markup = markup(&page);
+    assert!(markup.split("url(").skip(1).all(|place| place.starts_with('#')));
+    for word in [" src=", "@import", "<link rel=\"stylesheet\""] {
+        assert!(!markup.contains(word), "{word}");
+    }
+    assert!(page.contains("default-src 'none'"));
+    let links = markup.split("href=\"").skip(1);
+    assert!(links.clone().count() > 2);
+    assert!(links.clone().all(|to| to.starts_with('#') || to.starts_with("data:,")));
+}
+
+#[test]
+fn every_link_of_a_page_has_a_target() {
+    let section = |text: &str| Block::Heading { level: 2, text: text.into() };
+    let mut doc =
+        document(vec![section("Forces"), section("Forces"), section("力"), player(scene(1, 9))]);
+    doc.warnings = vec!["mind the gap".into()];
+    let markup = markup(&html(&doc));
+    for link in markup.split("href=\"#").skip(1) {
+        let id = link.split('"').next().unwrap();
+        assert_eq!(markup.matches(&format!(" id=\"{id}\"")).count(), 1, "{id}");
+    }
+    assert!(markup.contains("href=\"#warnings\""));
+}
+
+#[test]
+fn every_tone_shows_a_word_and_a_sign() {
+    for (tone, word) in [
+        (Tone::Stands, "Stands"),
+        (Tone::Falls, "Falls"),
+        (Tone::Invalid, "Not valid"),
+        (Tone::Neutral, "Summary"),
+    ] {
+        let mut doc = document(vec![]);
+        doc.verdict.tone = tone;
+        let page = html(&doc);
+        assert!(page.contains(&format!("<span>{word}</span>")));
+        assert!(page.contains("<svg class=\"sign\""));
+    }
+}
+
+#[test]
+fn scenes_with_nothing_or_one_of_everything_make_a_page() {
+    let empty = Scene::default();
+    let no_body = Scene {
+        frames: Frames { times: vec![0.0, 1.0], poses: vec![vec![], vec![]], forces: vec![] },
+        ..Scene::default()
+    };
+    let no_pose = Scene { frames: Frames::default(), ..scene(2, 1) };
+    for (scene, frames) in [(empty, 0), (no_body, 2), (no_pose, 0), (scene(2, 1), 1)] {
+        let data = payload(&html(&document(vec![player(scene)])));
+        assert_eq!(data["players"][0]["times"]["n"], frames);
+        let view = data["players"][0]["view"].as_array().unwrap();
+        let corner = |at: usize| view[at].as_f64().expect("a finite view");
+        assert!(corner(2) > corner(0) && corner(3) > corner(1));
+    }
+}
+
+#[test]
+fn a_page_without_players_and_live_plots_has_no_script() {
+    assert!(!html(&document(vec![Block::Paragraph("words".into())])).contains("<script"));
+}
+
+#[test]
+fn a_plot_whose_x_turns_back_is_drawn_and_never_live() {
+    let figure = |x: Vec<f64>| {
+        let series = Series::new("loop", x, vec![0.0, 1.0, 0.0]);
+        let plot = Plot { series: vec![series], interactive: true, ..Plot::default() };
+        Block::Figure(Figure { id: "a".into(), caption: "A.".into(), kind: FigureKind::Plot(plot) })
+    };
+    let page = html(&document(vec![figure(vec![0.0, 1.0, 0.5])]));
+    assert!(!page.contains("data-plot=") && page.contains("<div class=\"drawing\"><svg"));
+    assert!(html(&document(vec![figure(vec![0.0, 0.5, 1.0])])).contains("data-plot=\"0\""));
+}
+
+#[test]
+fn few_events_are_shown_and_the_rest_folded() {
+    let page = |count: usize| {
+        let mut scene = scene(2, 30);
+        let event = scene.events[0].clone();
+        scene.events = vec![event; count];
+        html(&document(vec![player(scene)]))
+    };
+    assert!(!page(5).contains("<details"));
+    let many = page(9);
+    assert!(many.contains("<summary>5 more events</summary>"));
+    assert_eq!(many.matches("data-time=\"0.1\"").count(), 9);
+}
+
+#[test]
+fn on_paper_a_player_beside_a_strip_of_the_same_scene_is_one_picture() {
+    let shared = Arc::new(scene(2, 60));
+    let block = player(Scene::clone(&shared));
+    let Block::Player(mut alone) = block else { panic!("a player was made") };
+    alone.scene = Arc::clone(&shared);
+    let strip = Block::Figure(Figure {
+        id: "strip".into(),
+        caption: "A strip.".into(),
+        kind: FigureKind::Strip(Strip::of_run(shared, 6)),
+    });
+    let pictures = |page: &str| markup(page).matches("<svg class=\"bs\"").count();
+    let with = html(&document(vec![Block::Player(alone.clone()), strip]));
+    let without = html(&document(vec![Block::Player(alone)]));
+    assert_eq!((pictures(&with), pictures(&without)), (1 + 6, 6));
+    // The single picture is large enough for names.
+    assert!(with.contains(">B1</text>"));
+}
