@@ -371,7 +371,11 @@ fn scales(results: &Results) -> Vec<Comparison> {
             "section 4, Fig. 7b",
             "half scale at t* against full scale at √2 t*",
             "similar",
-            format!("{} mm apart at most", digits(1e3 * apart)),
+            if apart < 1e-6 {
+                "less than 0.001 mm apart".into()
+            } else {
+                format!("{} mm apart at most", digits(1e3 * apart))
+            },
             apart < 1e-3 && full.outcome.first == half.outcome.first,
             "Largest distance of any body at full scale up to the first loss of seat. The paper sets \
              its model beside photographs of the test; here both are the model, which similitude makes \
