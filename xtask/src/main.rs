@@ -16,7 +16,8 @@ const USAGE: &str = "\
 usage: cargo xtask TASK
 
 tasks:
-  test   formatting, lints, documentation, and all tests in both profiles; stops at the first failure";
+  test       formatting, lints, documentation, and all tests in both profiles; stops at the first failure
+  validate   every problem with an exact answer, in full, with a report; `--out DIR`, `--only TEXT`, `--fast`";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -29,6 +30,7 @@ fn main() -> ExitCode {
                 ExitCode::FAILURE
             }
         },
+        ["validate", rest @ ..] => validate(rest),
         [] | ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             ExitCode::SUCCESS
@@ -36,6 +38,20 @@ fn main() -> ExitCode {
         other => {
             eprintln!("xtask: there is no task `{}`\n\n{USAGE}", other.join(" "));
             ExitCode::from(2)
+        }
+    }
+}
+
+/// Runs the validation program in release and passes its words and its status on.
+fn validate(words: &[&str]) -> ExitCode {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let run = ["run", "--quiet", "--release", "--package", "barrelstack-validation", "--"];
+    match std::process::Command::new(cargo).args(run).args(words).status() {
+        Ok(status) if status.success() => ExitCode::SUCCESS,
+        Ok(_) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("xtask: cargo does not start: {error}");
+            ExitCode::FAILURE
         }
     }
 }

@@ -126,7 +126,7 @@ impl Stage {
     fn new(scenario: &Scenario) -> Result<Self, Failure> {
         let assembly = assemble(scenario)?;
         let ground = ground(scenario)?;
-        let step = default_step(&assembly);
+        let step = default_step(&assembly, 1.0);
         let mut state = State::initial(&assembly.model);
         let mut scratch = Scratch::new(&assembly.model);
         settle(&assembly.model, &mut state, &mut scratch, step, 1e-10)?;

@@ -10,6 +10,7 @@
 //! ```
 
 pub mod assemble;
+pub mod calibrate;
 pub mod check;
 pub mod export;
 pub mod ground;

@@ -43,17 +43,17 @@ pub struct Reproduction {
 pub enum ReproduceError {
     /// A built-in case cannot be read with its changes.
     #[error(transparent)]
-    Scenario(#[from] ScenarioError),
+    Scenario(Box<ScenarioError>),
     /// The record cannot be used.
     #[error(transparent)]
-    Record(#[from] GroundError),
+    Record(Box<GroundError>),
     /// A case does not run.
     #[error("{case}: {source}")]
     Run {
         /// The case.
         case: String,
         /// Why.
-        source: RunFailure,
+        source: Box<RunFailure>,
     },
     /// A case gave nothing back.
     #[error("{case}: the run was lost")]
@@ -61,6 +61,18 @@ pub enum ReproduceError {
         /// The case.
         case: String,
     },
+}
+
+impl From<ScenarioError> for ReproduceError {
+    fn from(error: ScenarioError) -> Self {
+        Self::Scenario(Box::new(error))
+    }
+}
+
+impl From<GroundError> for ReproduceError {
+    fn from(error: GroundError) -> Self {
+        Self::Record(Box::new(error))
+    }
 }
 
 /// Runs every case of the paper, and the studies around them, on all cores.

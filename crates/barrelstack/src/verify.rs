@@ -4,6 +4,7 @@
 //! What a run says before they part is predicted; what it says later is one possible course.
 //! A verdict that all repeats share is robust even so.
 
+use std::fmt::Write as _;
 use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -113,6 +114,9 @@ pub fn verify(
     Ok(judge(base, repeats, skipped))
 }
 
+/// Where a thread leaves what came of a repeat; none inside where the repeat was stopped.
+type Slot = Mutex<Option<Result<Option<Repeat>, RunFailure>>>;
+
 /// Runs all repeats on all cores; none where one was stopped.
 fn repeat_all(
     base: &Run,
@@ -121,8 +125,7 @@ fn repeat_all(
 ) -> Result<Vec<Option<Repeat>>, RunFailure> {
     let next = AtomicUsize::new(0);
     let reached = Mutex::new((vec![0.0; changes.len()], progress));
-    let slots: Vec<Mutex<Option<Result<Option<Repeat>, RunFailure>>>> =
-        changes.iter().map(|_| Mutex::new(None)).collect();
+    let slots: Vec<Slot> = changes.iter().map(|_| Mutex::new(None)).collect();
     let end_time = base.simulation.end_time * changes.len() as f64;
     let work = || {
         loop {
@@ -243,7 +246,7 @@ fn places(stack: &StackSpec) -> Vec<(u32, u32)> {
     (1..=stack.levels).flat_map(|level| (1..=stack.columns).map(move |c| (level, c))).collect()
 }
 
-/// A number between −1 and 1 from a generator with one word of state (SplitMix64 of Steele, Lea and
+/// A number between −1 and 1 from a generator with one word of state (`SplitMix64` of Steele, Lea and
 /// Flood 2014).
 fn noise(state: &mut u64) -> f64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -307,8 +310,9 @@ fn apart_at(base: &Run, other: &Run) -> Option<f64> {
                 let (a, b) = (theirs.values[before], theirs.values[before + 1]);
                 a + (b - a) * share - mine.values[at]
             });
-            // Written so that a number that is not finite counts as apart.
-            if !(x.hypot(z) <= limit) {
+            // A number that is not finite is apart too.
+            let distance = x.hypot(z);
+            if distance > limit || distance.is_nan() {
                 return Some(*time);
             }
         }
@@ -392,10 +396,11 @@ impl Verification {
                 _ => outcome.kind.to_owned(),
             };
             if let Some(difference) = repeat.fall_difference {
-                what.push_str(&format!("; falls within {:.1} ms", 1e3 * difference));
+                // Writing to a String cannot fail.
+                let _ = write!(what, "; falls within {:.1} ms", 1e3 * difference);
             }
             if let Some(time) = repeat.apart_at {
-                what.push_str(&format!("; parts at {time:.2} s"));
+                let _ = write!(what, "; parts at {time:.2} s");
             }
             rows.push((format!("  {}", repeat.change), what));
         }

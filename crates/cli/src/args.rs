@@ -41,6 +41,8 @@ pub(crate) enum Command {
     Reproduce(ReproduceArgs),
     /// Read, look at, change and make ground motions.
     Motion(crate::commands::motion::MotionArgs),
+    /// Find contact parameters, with their uncertainty, from your own tests.
+    Calibrate(crate::commands::calibrate::CalibrateArgs),
     /// List the built-in scenarios, or print one.
     Scenarios(ScenariosArgs),
 }
@@ -61,6 +63,7 @@ pub(crate) struct ScenarioArgs {
 
 /// Arguments of `run`.
 #[derive(Debug, clap::Args)]
+#[expect(clippy::struct_excessive_bools, reason = "one for every switch")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) scenario: ScenarioArgs,
@@ -103,7 +106,7 @@ pub(crate) struct CheckArgs {
 /// Arguments of `reproduce`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ReproduceArgs {
-    /// The paper's record, RSN995_NORTHR_PEL360.AT2 of the PEER database; without it the bundled
+    /// The paper's record, `RSN995_NORTHR_PEL360.AT2` of the PEER database; without it the bundled
     /// record shakes the six barrels and nothing that depends on the motion is compared.
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,

@@ -12,7 +12,7 @@ use crate::state::State;
 /// One contact element that touches.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact<S: Space> {
-    /// Which element of [`Elements`](crate::elements::Elements).
+    /// Which element of [`Elements`].
     pub element: usize,
     /// Which pair of the model.
     pub pair: usize,
@@ -352,7 +352,7 @@ impl<'a, S: Space> Meeting<'a, S> {
     ///
     /// Both bodies feel the force at the companion point, and both velocities are taken there:
     /// so the pair conserves momentum, and force times relative velocity is the power it loses.
-    #[inline(always)]
+    #[inline]
     fn contact(
         &self,
         pair: usize,
@@ -444,7 +444,9 @@ pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: 
                 };
                 commit_pair(law, contacts, sticks, weights, &mut next);
             }
-            law => commit_pair(law, contacts, sticks, weights, &mut next),
+            law @ (FrictionLaw::Frictionless | FrictionLaw::Regularized { .. }) => {
+                commit_pair(law, contacts, sticks, weights, &mut next);
+            }
         }
     }
     sticks[next..].fill(Stick::default());

@@ -50,7 +50,7 @@ function makeStage(data, canvas) {
     const room = above < 0.5 * window.innerHeight ? window.innerHeight - above - below - 8 : 0.6 * window.innerHeight;
     width = Math.max(200, Math.floor(box.width));
     const wanted = (width * (top - bottom)) / (right - left) + FOOT + HEAD;
-    height = Math.round(Math.min(Math.max(room, 280), 640, Math.max(wanted, 220)));
+    height = Math.round(Math.min(Math.max(room, 320), 640, Math.max(wanted, 220)));
     dpr = Math.min(window.devicePixelRatio || 1, 3);
     canvas.width = Math.round(width * dpr);
     canvas.height = Math.round(height * dpr);

@@ -186,8 +186,8 @@ impl<'a> Writer<'a> {
         self.put("<div class=\"table\" tabindex=\"0\" role=\"region\"");
         let label = escape::html(&table.caption);
         self.put(&format!(" aria-label=\"Table {}. {label}\">\n<table>\n", self.tables));
-        let number = format!("<caption><b>Table {}.</b> ", self.tables);
-        self.element(&number, &table.caption, "</caption>");
+        let number = format!("<caption><span><b>Table {}.</b> ", self.tables);
+        self.element(&number, &table.caption, "</span></caption>");
         let numeric: Vec<bool> = (0..table.columns.len()).map(|c| table.is_numeric(c)).collect();
         let class = |column: usize| if numeric[column] { " class=\"number\"" } else { "" };
         self.put("<thead><tr>");

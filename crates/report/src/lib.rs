@@ -1,4 +1,4 @@
-//! Documents, figures and a player for moving rigid bodies, as HTML, Markdown, SVG and CSV.
+//! Documents, figures and a player for moving rigid bodies, as HTML, Markdown, SVG, CSV and VTK.
 //!
 //! A [`Document`] is data: a verdict, [`Block`]s in reading order, warnings, provenance.
 //! [`html`] turns it into one page that needs no network, [`markdown`] into text with figures
@@ -34,6 +34,7 @@ mod document;
 mod envelope;
 mod escape;
 mod figure;
+mod film;
 mod html;
 mod markdown;
 mod number;
@@ -48,10 +49,12 @@ mod strip;
 mod svg;
 mod table;
 mod ticks;
+mod vtk;
 
 pub use document::{Block, Document, Tone, Verdict};
 pub use envelope::{BoundarySample, Envelope};
 pub use figure::{Attachment, Figure, FigureKind, attachments};
+pub use film::Film;
 pub use html::html;
 pub use markdown::{MarkdownBundle, markdown};
 pub use number::significant;
@@ -65,3 +68,4 @@ pub use scene::{
 pub use strip::{Panel, Strip};
 pub use table::{Cell, Column, Table};
 pub use ticks::{Ticks, linear_ticks, log_ticks};
+pub use vtk::paraview;

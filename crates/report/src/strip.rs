@@ -37,13 +37,27 @@ const CAPTION: f64 = 38.0;
 /// Distance of the strokes of the ground's hatch (px).
 const HATCH: f64 = 10.0;
 
-/// One window and one scale for all panels.
-struct Frame {
+/// One window and one scale for all pictures of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct View {
     extent: Extent,
     /// Pixels for a meter.
     scale: f64,
-    width: f64,
-    height: f64,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
+    /// Whether bodies are named.
+    names: bool,
+}
+
+impl View {
+    /// What shows these frames of a scene in at most `most` (px) across and up.
+    pub(crate) fn of(scene: &Scene, shown: &[usize], most: [f64; 2], names: bool) -> Self {
+        let extent = window(scene, shown);
+        let (wide, high) = (extent.width().max(1e-6), extent.height().max(1e-6));
+        let scale = (most[0] / wide).min(most[1] / high);
+        let [width, height] = [(wide * scale).max(120.0), (high * scale + FOOT).max(50.0)];
+        Self { extent, scale, width, height, names }
+    }
 }
 
 impl Strip {
@@ -94,22 +108,14 @@ impl Strip {
         Self { scene, panels: panels.into_iter().collect() }
     }
 
-    fn frame(&self, shown: &[usize]) -> Frame {
-        let most = if self.panels.len() == 1 { STILL } else { PANEL };
-        let extent = window(&self.scene, shown);
-        let (wide, high) = (extent.width().max(1e-6), extent.height().max(1e-6));
-        let scale = (most[0] / wide).min(most[1] / high);
-        let [width, height] = [(wide * scale).max(120.0), (high * scale + FOOT).max(50.0)];
-        Frame { extent, scale, width, height }
-    }
-
     /// Panels as drawings of equal size. Bodies are defined in the first one that is drawn, under
     /// names that start with `id`, and used by all.
     pub(crate) fn drawings(&self, id: &str) -> Vec<Svg> {
         let frames: Vec<Option<usize>> =
             self.panels.iter().map(|p| self.scene.frames.nearest(p.time)).collect();
         let shown: Vec<usize> = frames.iter().copied().flatten().collect();
-        let view = self.frame(&shown);
+        let alone = self.panels.len() == 1;
+        let view = View::of(&self.scene, &shown, if alone { STILL } else { PANEL }, alone);
         self.panels
             .iter()
             .zip(frames)
@@ -121,91 +127,15 @@ impl Strip {
                 let (width, height) = (view.width, view.height);
                 let mut svg = Svg::new(width, height + CAPTION, title.trim_end());
                 if at == 0 {
-                    self.define_bodies(&mut svg, id, &view, &shown);
+                    define_bodies(&mut svg, &self.scene, id, &view, &shown);
                 }
-                let mut picture = Svg::new(width, height, "");
-                picture.rect("frame", [0.5, 0.5], [width - 1.0, height - 1.0]);
-                if let Some(frame) = frame {
-                    self.place_bodies(&mut picture, id, frame, &view);
-                }
-                svg.nest([0.0, 0.0], &picture);
+                svg.nest([0.0, 0.0], &picture(&self.scene, id, frame, &view));
                 svg.text("label strong", [1.0, height + 16.0], Anchor::Start, &heading);
                 let note = fit(&panel.note, width);
                 svg.text("note", [1.0, height + 31.0], Anchor::Start, &note);
                 svg
             })
             .collect()
-    }
-
-    fn define_bodies(&self, svg: &mut Svg, id: &str, view: &Frame, shown: &[usize]) {
-        let scale = view.scale;
-        svg.raw("<defs>");
-        for (at, body) in self.scene.bodies.iter().enumerate() {
-            svg.raw(&format!(r#"<g id="{id}-b{at}">"#));
-            for line in &body.outlines {
-                let open = if line.closed { "" } else { " bs-open" };
-                let class = format!("bs-body bs-{}{open}", body.role.class());
-                shape(svg, &class, line, 1.1 / scale);
-                if body.role == Role::Ground && !line.closed {
-                    self.hatch(svg, at, line, view, shown);
-                }
-            }
-            for (place, line) in body.marks.iter().enumerate() {
-                let wide = if place == 0 && body.role != Role::Ground { 2.4 } else { 0.7 };
-                shape(svg, "bs-body bs-open", line, wide / scale);
-            }
-            svg.raw("</g>");
-        }
-        svg.raw("</defs>");
-    }
-
-    /// The hatch under the part of the ground that some panel shows.
-    fn hatch(&self, svg: &mut Svg, body: usize, line: &Polyline, view: &Frame, shown: &[usize]) {
-        let mut reach = [f64::INFINITY, f64::NEG_INFINITY];
-        let spare = view.width / view.scale;
-        for pose in shown.iter().filter_map(|&frame| self.scene.frames.pose(frame, body)) {
-            reach[0] = reach[0].min(view.extent.lower[0] - pose[0] - spare);
-            reach[1] = reach[1].max(view.extent.upper[0] - pose[0] + spare);
-        }
-        let mut data = String::new();
-        for [from, to] in hatch(line, HATCH / view.scale, reach) {
-            // Writing to a String cannot fail.
-            let _ = write!(data, "M{:.3} {:.3}L{:.3} {:.3}", from[0], from[1], to[0], to[1]);
-        }
-        if !data.is_empty() {
-            let width = 0.8 / view.scale;
-            svg.raw(&format!(
-                r#"<path class="bs-body bs-ground bs-open" stroke-width="{width:.5}" d="{data}"/>"#
-            ));
-        }
-    }
-
-    fn place_bodies(&self, svg: &mut Svg, id: &str, frame: usize, view: &Frame) {
-        let (extent, scale) = (&view.extent, view.scale);
-        // Centered across when the window is narrower than the panel.
-        let x0 = 0.5 * (view.width - extent.width() * scale) - extent.lower[0] * scale;
-        let z0 = view.height - FOOT + extent.lower[1] * scale;
-        let [left, foot] = [x0, z0].map(coordinate);
-        svg.raw(&format!(r#"<g transform="matrix({scale:.6} 0 0 {:.6} {left} {foot})">"#, -scale));
-        let poses: Vec<_> = (0..self.scene.bodies.len())
-            .filter_map(|at| Some((at, self.scene.frames.pose(frame, at)?)))
-            .collect();
-        for (at, [x, z, angle]) in &poses {
-            let degrees = angle.to_degrees();
-            let ground = self.scene.bodies[*at].role == Role::Ground;
-            let class = if ground { "ground" } else { "moving" };
-            svg.raw(&format!(
-                r##"<use class="{class}" href="#{id}-b{at}" transform="translate({x:.4} {z:.4}) rotate({degrees:.3})"/>"##
-            ));
-        }
-        svg.raw("</g>");
-        for (at, [x, z, _]) in poses.iter().filter(|_| self.panels.len() == 1) {
-            let body = &self.scene.bodies[*at];
-            if matches!(body.role, Role::Barrel | Role::Block) {
-                let place = [x0 + x * scale, z0 - z * scale + 4.0];
-                svg.text("label", place, Anchor::Middle, &body.name);
-            }
-        }
     }
 
     pub(crate) fn draw(&self, id: &str, title: &str) -> Svg {
@@ -242,6 +172,90 @@ impl Strip {
             }
         }
         out
+    }
+}
+
+/// Defines every body of a scene, under names that start with `id`.
+pub(crate) fn define_bodies(svg: &mut Svg, scene: &Scene, id: &str, view: &View, shown: &[usize]) {
+    let scale = view.scale;
+    svg.raw("<defs>");
+    for (at, body) in scene.bodies.iter().enumerate() {
+        svg.raw(&format!(r#"<g id="{id}-b{at}">"#));
+        for line in &body.outlines {
+            let open = if line.closed { "" } else { " bs-open" };
+            let class = format!("bs-body bs-{}{open}", body.role.class());
+            shape(svg, &class, line, 1.1 / scale);
+        }
+        if body.role == Role::Ground {
+            ground_hatch(svg, scene, at, view, shown);
+        }
+        for (place, line) in body.marks.iter().enumerate() {
+            let wide = if place == 0 && body.role != Role::Ground { 2.4 } else { 0.7 };
+            shape(svg, "bs-body bs-open", line, wide / scale);
+        }
+        svg.raw("</g>");
+    }
+    svg.raw("</defs>");
+}
+
+/// The hatch under the part of the ground that some frame shows.
+fn ground_hatch(svg: &mut Svg, scene: &Scene, body: usize, view: &View, shown: &[usize]) {
+    let mut reach = [f64::INFINITY, f64::NEG_INFINITY];
+    let spare = view.width / view.scale;
+    for pose in shown.iter().filter_map(|&frame| scene.frames.pose(frame, body)) {
+        reach[0] = reach[0].min(view.extent.lower[0] - pose[0] - spare);
+        reach[1] = reach[1].max(view.extent.upper[0] - pose[0] + spare);
+    }
+    let mut data = String::new();
+    for line in scene.bodies[body].outlines.iter().filter(|line| !line.closed) {
+        for [from, to] in hatch(line, HATCH / view.scale, reach) {
+            // Writing to a String cannot fail.
+            let _ = write!(data, "M{:.3} {:.3}L{:.3} {:.3}", from[0], from[1], to[0], to[1]);
+        }
+    }
+    if !data.is_empty() {
+        let width = 0.8 / view.scale;
+        svg.raw(&format!(
+            r#"<path class="bs-body bs-ground bs-open" stroke-width="{width:.5}" d="{data}"/>"#
+        ));
+    }
+}
+
+/// The bodies of a scene as they stand at a frame, in a frame of their own.
+pub(crate) fn picture(scene: &Scene, id: &str, frame: Option<usize>, view: &View) -> Svg {
+    let mut svg = Svg::new(view.width, view.height, "");
+    svg.rect("frame", [0.5, 0.5], [view.width - 1.0, view.height - 1.0]);
+    if let Some(frame) = frame {
+        place_bodies(&mut svg, scene, id, frame, view);
+    }
+    svg
+}
+
+fn place_bodies(svg: &mut Svg, scene: &Scene, id: &str, frame: usize, view: &View) {
+    let (extent, scale) = (&view.extent, view.scale);
+    // Centered across when the window is narrower than the panel.
+    let x0 = 0.5 * (view.width - extent.width() * scale) - extent.lower[0] * scale;
+    let z0 = view.height - FOOT + extent.lower[1] * scale;
+    let [left, foot] = [x0, z0].map(coordinate);
+    svg.raw(&format!(r#"<g transform="matrix({scale:.6} 0 0 {:.6} {left} {foot})">"#, -scale));
+    let poses: Vec<_> = (0..scene.bodies.len())
+        .filter_map(|at| Some((at, scene.frames.pose(frame, at)?)))
+        .collect();
+    for (at, [x, z, angle]) in &poses {
+        let degrees = angle.to_degrees();
+        let ground = scene.bodies[*at].role == Role::Ground;
+        let class = if ground { "ground" } else { "moving" };
+        svg.raw(&format!(
+            r##"<use class="{class}" href="#{id}-b{at}" transform="translate({x:.4} {z:.4}) rotate({degrees:.3})"/>"##
+        ));
+    }
+    svg.raw("</g>");
+    for (at, [x, z, _]) in poses.iter().filter(|_| view.names) {
+        let body = &scene.bodies[*at];
+        if matches!(body.role, Role::Barrel | Role::Block) {
+            let place = [x0 + x * scale, z0 - z * scale + 4.0];
+            svg.text("label", place, Anchor::Middle, &body.name);
+        }
     }
 }
 

@@ -37,7 +37,7 @@ fn full_plot() -> Plot {
     }
 }
 
-fn envelope(stress: Vec<f64>) -> Envelope {
+fn envelope(stress: &[f64]) -> Envelope {
     let sample = |k: usize| {
         let (nz, nx) = (0.1 * k as f64).sin_cos();
         BoundarySample { x: 0.3 * nx, z: 0.3 * nz, nx, nz, coordinate: 0.1 * k as f64 }
@@ -46,7 +46,7 @@ fn envelope(stress: Vec<f64>) -> Envelope {
         outline: vec![Polyline::circle(0.3, 24)],
         samples: (0..stress.len()).map(sample).collect(),
         closed: true,
-        static_stress: stress.clone(),
+        static_stress: stress.to_vec(),
         dynamic_stress: stress.iter().map(|s| 2.0 * s).collect(),
         unit: "kN/m".into(),
         amplification: Some(2.0),
@@ -79,8 +79,8 @@ fn every_figure_is_well_formed_xml_whatever_it_holds() {
         FigureKind::Strip(Strip::of_run(Arc::new(scene(3, 1)), 6)),
         FigureKind::Strip(Strip::of_run(Arc::new(scene(3, 90)), 6)),
         FigureKind::Envelope(Envelope::default()),
-        FigureKind::Envelope(envelope(vec![1.0; 63])),
-        FigureKind::Envelope(envelope(vec![f64::NAN, 0.0, 1.0, f64::INFINITY, -1.0, 2.0])),
+        FigureKind::Envelope(envelope(&[1.0; 63])),
+        FigureKind::Envelope(envelope(&[f64::NAN, 0.0, 1.0, f64::INFINITY, -1.0, 2.0])),
     ];
     for kind in kinds {
         let svg = figure(kind.clone()).to_svg();

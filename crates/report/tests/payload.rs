@@ -80,10 +80,9 @@ fn a_body_that_rolls_away_does_not_widen_the_view() {
 fn a_minute_of_twenty_bodies_stays_below_three_megabytes() {
     let page = html(&document(vec![player(scene(20, 3601))]));
     let megabytes = page.len() as f64 / 1e6;
-    println!("60 s at 60 frames a second, 20 bodies, 40 forces: {megabytes:.2} MB");
     let mut bare = scene(20, 3601);
     bare.frames.forces.clear();
     let without = html(&document(vec![player(bare)])).len() as f64 / 1e6;
-    println!("without forces: {without:.2} MB");
+    // measured 1.59 with two forces for every body, 0.54 without
     assert!(megabytes < 3.0 && without < 1.0, "{megabytes} {without}");
 }

@@ -24,7 +24,11 @@ pub(crate) fn scene(run: &Run) -> Arc<Scene> {
                 .iter()
                 .map(|list| {
                     list.iter()
-                        .map(|f| ContactForce { x: f[0], z: f[1], fx: f[2], fz: f[3] })
+                        .map(|&[x, z, fx, fz]| {
+                            // Of the two that push each other, the one that is pushed up.
+                            let sign = if fz < 0.0 { -1.0 } else { 1.0 };
+                            ContactForce { x, z, fx: sign * fx, fz: sign * fz }
+                        })
                         .collect()
                 })
                 .collect(),

@@ -43,7 +43,10 @@ fn player(run: &Run, scene: &Arc<Scene>) -> Player {
         .filter(|body| run.assembly.parts[*body].level == Some(run.assembly.levels));
     Player {
         id: "player".into(),
-        caption: "The run as computed, to scale. Arrows are contact forces.".into(),
+        caption:
+            "The run as computed, to scale. Arrows are contact forces, each on the body that it \
+                  pushes up."
+                .into(),
         scene: Arc::clone(scene),
         traces: top
             .map(|body| Trace {

@@ -39,13 +39,19 @@ impl Motion {
         matches!(self, Self::Paper { .. })
     }
 
-    /// A few words for captions.
-    pub(super) fn words(&self) -> String {
+    /// The motion in a few words.
+    pub(super) fn name(&self) -> String {
         match self {
             Self::Paper { .. } => "Hollywood Storage N-S at 60 cm/s".into(),
-            Self::Other { file, .. } => format!("{file} at 60 cm/s, not the paper's record"),
-            Self::Bundled => "South Napa at 60 cm/s, not the paper's record".into(),
+            Self::Other { file, .. } => format!("{file} at 60 cm/s"),
+            Self::Bundled => "South Napa at 60 cm/s".into(),
         }
+    }
+
+    /// The motion for captions, which must not be mistaken.
+    pub(super) fn words(&self) -> String {
+        let name = self.name();
+        if self.is_papers() { name } else { format!("{name}, not the paper's record") }
     }
 }
 

@@ -12,7 +12,7 @@ pub enum Verdict {
     InBand,
     /// Outside both, or another thing happens.
     Differs,
-    /// Not compared, since the paper's record was not given.
+    /// Not compared: the paper's record was not given, or the paper states no result.
     NotCompared,
 }
 

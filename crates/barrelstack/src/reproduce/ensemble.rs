@@ -72,6 +72,8 @@ pub(super) struct Agreement {
     pub(super) members: usize,
     /// How many collapse in the same mode as the base case.
     pub(super) same_mode: usize,
+    /// In how many every barrel of the top level falls.
+    pub(super) top_down: usize,
     /// In how many a barrel of the top level is the first to have fallen.
     pub(super) top_first: usize,
     /// Least and greatest first fall (s).
@@ -80,6 +82,12 @@ pub(super) struct Agreement {
     pub(super) drift: [f64; 2],
     /// Least and greatest stress amplification.
     pub(super) amplification: [f64; 2],
+}
+
+fn top_falls(summary: &Summary) -> bool {
+    let top = summary.bodies.iter().filter_map(|b| b.level).max();
+    let mut barrels = summary.bodies.iter().filter(|b| b.kind == "barrel" && b.level == top);
+    barrels.all(|b| b.fell_at.is_some())
 }
 
 fn top_falls_first(summary: &Summary) -> bool {
@@ -101,6 +109,7 @@ pub(super) fn agreement(base: &Summary, members: &[Summary]) -> Agreement {
     Agreement {
         members: members.len(),
         same_mode: same_mode.count(),
+        top_down: members.iter().filter(|m| top_falls(m)).count(),
         top_first: members.iter().filter(|m| top_falls_first(m)).count(),
         fall: range(&|m| m.outcome.first_fall),
         drift: range(&|m| m.demands.top_drift_ratio),

@@ -1,5 +1,6 @@
 //! The page: the paper's numbers and figures in its order, ours beside them, and why they differ.
 
+use std::fmt::Write as _;
 use std::sync::Arc;
 
 use barrelstack_report::{Block, Cell, Document, Scene, Table, Tone, Verdict as Headline};
@@ -36,13 +37,14 @@ pub(super) fn document(results: &Results, rows: &[Comparison]) -> Document {
 pub(super) fn headline(rows: &[Comparison]) -> String {
     let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
     let compared = rows.len() - count(Verdict::NotCompared);
+    // Writing to a String cannot fail.
     let mut text = format!("{} of {compared} published results agree", count(Verdict::Agrees));
     if count(Verdict::InBand) > 0 {
-        text.push_str(&format!(", {} more within a wider band", count(Verdict::InBand)));
+        let _ = write!(text, ", {} more within a wider band", count(Verdict::InBand));
     }
-    text.push_str(&format!(", {} differ", count(Verdict::Differs)));
+    let _ = write!(text, ", {} differ", count(Verdict::Differs));
     if count(Verdict::NotCompared) > 0 {
-        text.push_str(&format!("; {} need the paper's record", count(Verdict::NotCompared)));
+        let _ = write!(text, "; not compared: {}", count(Verdict::NotCompared));
     }
     text.push('.');
     text
@@ -215,7 +217,7 @@ fn stand_in(results: &Results) -> String {
     format!(
         "This is not the paper's motion, so none of its numbers can be read here. Under {} the six \
          barrels give: with μ 0.4 {} and {} cm of slip left, with μ 0.1 {} and {} cm.",
-        results.motion.words(),
+        results.motion.name(),
         what(six),
         slip(six),
         what(slippery),

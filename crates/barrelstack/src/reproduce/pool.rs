@@ -69,8 +69,9 @@ pub(super) fn run_all(
 }
 
 fn run_one(job: &Job) -> Result<Done, ReproduceError> {
-    let run = run(&job.scenario, &mut |_| ControlFlow::Continue(()))
-        .map_err(|source| ReproduceError::Run { case: job.label.clone(), source })?;
+    let run = run(&job.scenario, &mut |_| ControlFlow::Continue(())).map_err(|source| {
+        ReproduceError::Run { case: job.label.clone(), source: Box::new(source) }
+    })?;
     let summary = Summary::of(&run, None);
     Ok(Done { summary, run: job.keep.then(|| Box::new(run)) })
 }

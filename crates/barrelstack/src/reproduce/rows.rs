@@ -43,6 +43,17 @@ fn fell(summary: &Summary, body: &str) -> Option<f64> {
     summary.bodies.iter().find(|b| b.name == body)?.fell_at
 }
 
+/// When (s) both barrels of the top of four levels had fallen.
+fn top_gone(summary: &Summary) -> Option<f64> {
+    Some(fell(summary, "B4.1")?.max(fell(summary, "B4.2")?))
+}
+
+/// Whether both barrels of the top of four levels fall before any other.
+fn top_falls_before_others(summary: &Summary) -> bool {
+    let others = summary.bodies.iter().filter(|b| b.kind == "barrel" && b.level != Some(4));
+    top_gone(summary).is_some_and(|top| others.filter_map(|b| b.fell_at).all(|other| other > top))
+}
+
 /// What a study says about a published time: the changes that reach it, or those that come nearest.
 fn reasons(study: Option<&Study>, published: f64) -> String {
     let Some(study) = study else { return String::new() };
@@ -68,6 +79,7 @@ fn reasons(study: Option<&Study>, published: f64) -> String {
     }
 }
 
+#[expect(clippy::too_many_lines, reason = "a table, one row after the other")]
 fn six(results: &Results) -> Vec<Comparison> {
     let (summary, slippery) = (&results.six.summary, &results.slippery.summary);
     let outcome = &summary.outcome;
@@ -203,13 +215,14 @@ fn six(results: &Results) -> Vec<Comparison> {
     rows
 }
 
+#[expect(clippy::too_many_lines, reason = "a table, one row after the other")]
 fn eight(results: &Results) -> Vec<Comparison> {
     let summary = &results.eight.summary;
     let (outcome, demands) = (&summary.outcome, &summary.demands);
     let study = results.study(Subject::Eight);
     let (left, right) = (fell(summary, "B4.1"), fell(summary, "B4.2"));
     let first = [left, right].into_iter().flatten().reduce(f64::min);
-    let second = left.zip(right).map(|(a, b)| a.max(b));
+    let second = top_gone(summary);
     let others: Vec<&str> = summary
         .bodies
         .iter()
@@ -227,6 +240,13 @@ fn eight(results: &Results) -> Vec<Comparison> {
         body.map_or(f64::NAN, |b| b.residual_displacement)
     });
     let sides = places[0] * places[1] < 0.0;
+    let alone = study.map(|study| {
+        let changes = study.holding(top_falls_before_others);
+        let changes = if changes.is_empty() { "none".into() } else { changes.join(", ") };
+        format!(
+            " Changes of the study with which both top barrels fall before any other: {changes}."
+        )
+    });
     vec![
         finding(
             "section 4, Fig. 7b",
@@ -287,9 +307,11 @@ fn eight(results: &Results) -> Vec<Comparison> {
             "nothing is mentioned",
             if others.is_empty() { "nothing".into() } else { others.join(", ") },
             others.is_empty(),
-            "The run goes on for 4 s after the first loss of seat with the ground still moving; the \
-             paper does not say when its run ends."
-                .into(),
+            format!(
+                "The run goes on for 4 s after the first loss of seat with the ground still moving; the \
+                 paper does not say when its run ends.{}",
+                alone.unwrap_or_default()
+            ),
         ),
         Number {
             place: "section 4",
@@ -323,11 +345,17 @@ fn scales(results: &Results) -> Vec<Comparison> {
     let until = full.outcome.time.unwrap_or(results.eight.run.end_time);
     let apart = figures::scale_difference(&results.eight.run, &results.half.run, until);
     let accelerations = [full, half].map(|s| s.motion.as_ref().map_or(0.0, |m| m.pga));
-    let second = ["B4.1", "B4.2"]
-        .into_iter()
-        .map(|body| fell(half, body))
-        .reduce(|a, b| Some(a?.max(b?)))
-        .flatten();
+    let second = top_gone(half);
+    let root = 2.0_f64.sqrt();
+    let nearest = results
+        .study(Subject::Eight)
+        .and_then(|study| study.nearest(2.0 * root, top_gone))
+        .map(|(change, time)| {
+            format!(
+                " Of the changes of the study {change} comes nearest: {}.",
+                seconds(time / root)
+            )
+        });
     vec![
         finding(
             "section 4",
@@ -358,8 +386,9 @@ fn scales(results: &Results) -> Vec<Comparison> {
             unit: "s",
             band: None,
             why: format!(
-                "Second barrel of the top level at half scale. The paper's own model has 2.5/√2 = {}.",
-                seconds(2.5 / 2.0_f64.sqrt())
+                "Second barrel of the top level at half scale. The paper's own model has 2.5/√2 = {}.{}",
+                seconds(2.5 / root),
+                nearest.unwrap_or_default()
             ),
         }
         .judged(),
@@ -384,12 +413,14 @@ fn parameters(results: &Results) -> Vec<Comparison> {
             format!("{} of {} in the same mode", agreement.same_mode, agreement.members),
             agreement.same_mode == agreement.members,
             format!(
-                "A barrel of the top level falls first in {} of {}, at {} s; drift {} %, stress \
+                "The top level comes down in {} of {}, one of its barrels first of all in {}; the first \
+                 fall is at {} s; drift {} %, stress \
                  amplification {}. The mode is named by the rack that leaves its seat first. As stated \
                  it is R4, while R3 has walked {} cm of the {} cm at which a rack counts as off its \
                  seat: both give way, and small changes decide which is first.",
-                agreement.top_first,
+                agreement.top_down,
                 agreement.members,
+                agreement.top_first,
                 span(agreement.fall, 1.0),
                 span(agreement.drift, 100.0),
                 span(agreement.amplification, 1.0),
@@ -398,23 +429,25 @@ fn parameters(results: &Results) -> Vec<Comparison> {
             ),
         ));
     }
-    rows.push(finding(
-            "section 4",
-            "eight barrels: measured k and c",
-            "8.9 kN/cm, 19.0 N s/cm",
-            format!(
-                "{}, first fall {}",
-                mode_of(measured),
-                measured.outcome.first_fall.map_or_else(|| "none".into(), seconds)
-            ),
-            measured.outcome.mode == base.outcome.mode,
-            format!(
-                "The calibrated ones are 10 % and 16 % greater: 9.8 kN/cm / 1.10, 22.0 N s/cm / 1.16. The paper gives no result for them; with the \
-                 calibrated ones: {}, first fall {}.",
-                mode_of(base),
-                base.outcome.first_fall.map_or_else(|| "none".into(), seconds)
-            ),
-    ));
+    rows.push(Comparison {
+        place: "section 4",
+        quantity: "eight barrels: measured k and c".into(),
+        published: "8.9 kN/cm, 19.0 N s/cm".into(),
+        ours: format!(
+            "{}, first fall {}",
+            mode_of(measured),
+            measured.outcome.first_fall.map_or_else(|| "none".into(), seconds)
+        ),
+        difference: None,
+        band: None,
+        verdict: Verdict::NotCompared,
+        why: format!(
+            "The calibrated ones are 10 % and 16 % greater: 9.8 kN/cm / 1.10, 22.0 N s/cm / 1.16. The \
+             paper gives no result for the measured ones; with the calibrated ones: {}, first fall {}.",
+            mode_of(base),
+            base.outcome.first_fall.map_or_else(|| "none".into(), seconds)
+        ),
+    });
     rows
 }
 

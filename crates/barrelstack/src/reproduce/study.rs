@@ -47,7 +47,7 @@ impl Subject {
     fn duration(self) -> (f64, f64) {
         match self {
             Self::Six => (20.0, 0.1),
-            Self::Eight => (12.0, 1.2),
+            Self::Eight => (12.0, 1.6),
             Self::Along => (10.0, 0.1),
         }
     }
@@ -97,6 +97,9 @@ pub(super) struct Study {
     pub(super) effects: Vec<Effect>,
 }
 
+/// What a quantity is changed to, each with its name.
+type Ends<'a> = [(&'a str, &'a dyn Fn(&mut StackSpec)); 2];
+
 /// The factors of a case.
 pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
     let mut base = base.clone();
@@ -111,17 +114,16 @@ pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
     let rack = &stack.rack;
 
     let mut list = Vec::new();
-    let mut change = |name: String, ends: [(&str, &dyn Fn(&mut StackSpec)); 2]| {
+    let mut change = |name: String, ends: Ends<'_>| {
         let ends = ends.map(|(label, change)| (label.to_owned(), with(base, change)));
         list.push(Factor { name, ends: ends.into() });
     };
     let centimeters = |value: f64| barrelstack_report::significant(100.0 * value, 3);
     let share =
         |change: fn(&mut StackSpec, f64), by: f64| move |stack: &mut StackSpec| change(stack, by);
-    let percent =
-        |list: &mut dyn FnMut(String, [(&str, &dyn Fn(&mut StackSpec)); 2]), name: &str, f| {
-            list(name.to_owned(), [("−10 %", &share(f, 0.9)), ("+10 %", &share(f, 1.1))]);
-        };
+    let percent = |list: &mut dyn FnMut(String, Ends<'_>), name: &str, f| {
+        list(name.to_owned(), [("−10 %", &share(f, 0.9)), ("+10 %", &share(f, 1.1))]);
+    };
 
     if subject == Subject::Along {
         change(
@@ -190,10 +192,7 @@ pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
 }
 
 /// The runs of factors, in order.
-pub(super) fn jobs<'a>(
-    subject: Subject,
-    factors: &'a [Factor],
-) -> impl Iterator<Item = Job> + use<'a> {
+pub(super) fn jobs(subject: Subject, factors: &[Factor]) -> impl Iterator<Item = Job> {
     factors.iter().flat_map(move |factor| {
         factor.ends.iter().map(move |(label, scenario)| Job {
             label: format!("{}, {}: {label}", subject.name(), factor.name),
@@ -260,6 +259,38 @@ impl Study {
             }
         }
         found
+    }
+
+    /// The changes with which something holds, in words.
+    pub(super) fn holding(&self, what: impl Fn(&Summary) -> bool) -> Vec<String> {
+        let mut found = Vec::new();
+        for effect in &self.effects {
+            for (label, _) in effect.ends.iter().filter(|(_, summary)| what(summary)) {
+                found.push(format!("{} ({label})", effect.name));
+            }
+        }
+        found
+    }
+
+    /// The change that brings a quantity nearest to a published value, in words, and what it is then.
+    pub(super) fn nearest(
+        &self,
+        published: f64,
+        of: impl Fn(&Summary) -> Option<f64>,
+    ) -> Option<(String, f64)> {
+        let mut best: Option<(String, f64)> = None;
+        for effect in &self.effects {
+            for (label, summary) in &effect.ends {
+                let Some(value) = of(summary) else { continue };
+                let farther = |(_, known): &(String, f64)| {
+                    (known - published).abs() > (value - published).abs()
+                };
+                if best.as_ref().is_none_or(farther) {
+                    best = Some((format!("{} ({label})", effect.name), value));
+                }
+            }
+        }
+        best
     }
 
     /// The changes that move a quantity most, at most `count`, in words with what becomes of it.

@@ -1,5 +1,6 @@
 //! One file for every subcommand.
 
+pub(crate) mod calibrate;
 mod check;
 mod demo;
 pub(crate) mod motion;
@@ -26,6 +27,7 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
     match args.command {
         Command::Run(args) => run::run(&args),
         Command::Demo(args) => demo::demo(&args),
+        Command::Calibrate(args) => calibrate::calibrate(&args),
         Command::Check(args) => check::check(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::Motion(args) => motion::motion(&args),

@@ -1,0 +1,28 @@
+//! Calibration: from a user's tests to contact parameters, each with its 95 % interval.
+//!
+//! | test | file | gives |
+//! |---|---|---|
+//! | [`stiffness`] | penetration and force | `k` |
+//! | [`drop`] | drop and rebound heights, or times of impact | restitution, `c` |
+//! | [`friction`] | pull forces, or tilt angles | static and kinetic μ |
+//! | [`response`] | histories of a shaken stack | `k`, `c`, μ together |
+//!
+//! Files are CSV with a header whose columns carry their unit, such as `penetration (mm),force (kN)`.
+//! Intervals hold what scatters in the file; what is given as exact (a mass, the model itself) is not
+//! in them.
+
+pub mod drop;
+mod error;
+pub mod friction;
+mod impact;
+pub mod least_squares;
+pub mod response;
+mod result;
+pub mod statistics;
+pub mod stiffness;
+mod table;
+
+pub use error::CalibrateError;
+pub use impact::{Impact, impact};
+pub use result::{Calibration, Estimate};
+pub use table::Table;

@@ -1,0 +1,306 @@
+//! Stiffness, damping and friction together from the recorded response of a shaken stack.
+
+mod simulate;
+
+use barrelstack_dynamics::math;
+
+use self::simulate::{Measured, Simulator};
+use super::least_squares::{Fit, condition, fit, normalized};
+use super::result::{quoted, rounded, short};
+use super::statistics::student;
+use super::{CalibrateError, Calibration, Estimate, Table};
+use crate::run::RunFailure;
+use crate::scenario::Scenario;
+
+/// A parameter that a response may be fitted by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parameter {
+    /// Stiffness of barrel–rack; that of rack–ground keeps its ratio to it.
+    Stiffness,
+    /// Damping of barrel–rack; that of rack–ground keeps its ratio to it.
+    Damping,
+    /// Friction of barrel–rack; static and kinetic keep their ratio.
+    FrictionBarrelRack,
+    /// Friction of rack–ground; static and kinetic keep their ratio.
+    FrictionRackGround,
+}
+
+impl Parameter {
+    /// All parameters, with the word that names them on the command line.
+    pub const NAMES: [(&'static str, Self); 4] = [
+        ("k", Self::Stiffness),
+        ("c", Self::Damping),
+        ("mu-br", Self::FrictionBarrelRack),
+        ("mu-rg", Self::FrictionRackGround),
+    ];
+
+    /// What tables call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stiffness => "stiffness k",
+            Self::Damping => "damping c",
+            Self::FrictionBarrelRack => "friction barrel-rack",
+            Self::FrictionRackGround => "friction rack-ground",
+        }
+    }
+}
+
+/// Differences of the logarithms of the parameters over which sensitivities are taken: wide enough
+/// that single nodes coming into contact average out.
+const WIDTH: f64 = 0.01;
+
+/// Share of a channel's own size below which its residuals are taken as rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Correlation above which two parameters cannot be told apart.
+const ALIKE: f64 = 0.95;
+
+/// Largest ratio of eigenvalues of a test that determines its parameters.
+const ILL: f64 = 1e3;
+
+/// Fits parameters of a stack to its recorded histories.
+///
+/// The table has a column `time` from the start of the scenario's motion and further columns named as
+/// in `histories.csv`, such as `B1.1 displacement x (m)` (relative to the ground and to the place at
+/// rest) or `R1 rotation (rad)`; `until` (s) leaves out later rows.
+///
+/// The sum of squares of simulated less recorded values, each over the scatter of its channel, is
+/// minimized over the logarithms of the parameters; the scatter is that of a first fit.
+/// The covariance is that of the last sensitivities and residuals. Where residuals follow one another
+/// (lag-one correlation ρ), it is widened by (1 + ρ)/(1 − ρ).
+///
+/// The fit starts from the scenario and finds the minimum next to it.
+/// Impacts, slips and falls make responses chaotic within seconds: short windows of mild shaking that
+/// still slide a little keep the response smooth.
+///
+/// # Errors
+/// When the scenario is no stack of linear laws, the table does not go with it, or the first
+/// simulation fails.
+pub fn response(
+    scenario: &Scenario,
+    table: &Table,
+    parameters: &[Parameter],
+    until: Option<f64>,
+) -> Result<Calibration, CalibrateError> {
+    let measured = Measured::read(table, until)?;
+    let simulator = Simulator::new(scenario, &measured, parameters)?;
+    let simulated = simulator.first()?;
+    let rows = measured.times.len();
+    let values = rows * measured.channels.len();
+    if values <= parameters.len() + 1 {
+        return Err(table.unsuited(format!(
+            "{values} recorded values do not determine {} parameters and their scatter",
+            parameters.len()
+        )));
+    }
+    let sizes: Vec<f64> = measured.channels.iter().map(|(_, values)| rms(values)).collect();
+    if let Some(still) = sizes.iter().position(|size| *size == 0.0) {
+        let name = &measured.channels[still].0;
+        return Err(table.unsuited(format!("column \"{name}\" is zero throughout: remove it")));
+    }
+
+    let start = vec![0.0; parameters.len()];
+    let mut scatter = sizes.clone();
+    let mut found = weighted(&simulator, &start, &measured, &scatter)?;
+    if measured.channels.len() > 1 {
+        scatter = by_channel(&found.residuals, rows)
+            .zip(scatter.iter().zip(&sizes))
+            .map(|(residuals, (scatter, size))| (scatter * rms(residuals)).max(ROUNDING * size))
+            .collect();
+        let from = found.parameters.clone();
+        found = weighted(&simulator, &from, &measured, &scatter)?;
+    }
+
+    let mut warnings = simulated.warnings;
+    if !found.converged {
+        warnings.push(
+            "the fit did not settle: start closer (--set), shorten the window (--until) or fit fewer \
+             parameters (--fit)"
+                .to_owned(),
+        );
+    }
+    let follow = correlation_in_time(&found.residuals, rows);
+    // Chance alone shows a correlation of 2/√n.
+    let widening = if follow > 2.0 / (values as f64).sqrt() {
+        let follow = follow.min(0.999);
+        warnings.push(format!(
+            "residuals follow one another (correlation {follow:.2} from sample to sample): the model does \
+             not show all that was recorded, or it was filtered; the intervals are widened for it"
+        ));
+        ((1.0 + follow) / (1.0 - follow)).sqrt()
+    } else {
+        1.0
+    };
+    let (estimates, correlation) = estimates(&simulator, parameters, &found, widening);
+    let condition = condition(&normalized(&found.information));
+    warnings.extend(identifiability(&estimates, &correlation, condition, &found.matters));
+
+    let mut facts = vec![
+        ("window".to_owned(), format!("{} s, {rows} rows", short(measured.end()))),
+        ("condition number".to_owned(), short(condition)),
+        ("simulations".to_owned(), simulator.count().to_string()),
+    ];
+    for (((name, _), scatter), residuals) in
+        measured.channels.iter().zip(&scatter).zip(by_channel(&found.residuals, rows))
+    {
+        facts.push((format!("scatter of {name}"), short(scatter * rms(residuals))));
+    }
+    Ok(Calibration {
+        title: format!("response {}: fitted by simulations", table.file()),
+        scenario: scenario_lines(&simulator, parameters, &found),
+        estimates,
+        correlation,
+        condition: Some(condition),
+        facts,
+        warnings,
+    })
+}
+
+fn weighted(
+    simulator: &Simulator<'_>,
+    start: &[f64],
+    measured: &Measured,
+    scatter: &[f64],
+) -> Result<Fit, CalibrateError> {
+    let residuals = |simulated: Vec<Vec<f64>>| -> Vec<f64> {
+        let channel =
+            |((values, (_, recorded)), scatter): ((&Vec<f64>, &(String, Vec<f64>)), &f64)| {
+                values.iter().zip(recorded).map(|(a, b)| (a - b) / scatter).collect::<Vec<_>>()
+            };
+        simulated.iter().zip(&measured.channels).zip(scatter).flat_map(channel).collect()
+    };
+    let evaluate = |points: &[Vec<f64>]| -> Vec<Option<Vec<f64>>> {
+        simulator.batch(points).into_iter().map(|found| found.map(residuals)).collect()
+    };
+    fit(start, WIDTH, &evaluate).ok_or_else(|| {
+        CalibrateError::Run(RunFailure::Duration(
+            "the stack does not stand for values 1 % from those of the scenario: start from a sounder \
+             scenario"
+                .to_owned(),
+        ))
+    })
+}
+
+/// Estimates and their correlations, both in the order of `parameters`.
+fn estimates(
+    simulator: &Simulator<'_>,
+    parameters: &[Parameter],
+    found: &Fit,
+    widening: f64,
+) -> (Vec<Estimate>, Vec<Vec<f64>>) {
+    let t = student(0.95, found.freedom) * widening;
+    let place = |at: usize| found.matters[..at].iter().filter(|matters| **matters).count();
+    let known = |at: usize| found.covariance.as_ref().filter(|_| found.matters[at]);
+    let estimate = |(at, parameter): (usize, &Parameter)| {
+        let half = known(at).map_or(f64::INFINITY, |c| t * c[place(at)][place(at)].sqrt());
+        let value = |log: f64| simulator.start(*parameter) * math::exp(log);
+        let log = found.parameters[at];
+        Estimate {
+            name: parameter.name().to_owned(),
+            value: value(log),
+            low: value(log - half),
+            high: value(log + half),
+            dimension: simulator.dimension(*parameter),
+        }
+    };
+    let estimates = parameters.iter().enumerate().map(estimate).collect();
+    let correlation = found.covariance.as_ref().map(|covariance| normalized(covariance));
+    let entry = |i: usize, j: usize| match &correlation {
+        _ if i == j => 1.0,
+        Some(correlation) if found.matters[i] && found.matters[j] => {
+            correlation[place(i)][place(j)]
+        }
+        _ => 0.0,
+    };
+    let count = parameters.len();
+    let rows = (0..count).map(|i| (0..count).map(|j| entry(i, j)).collect()).collect();
+    (estimates, rows)
+}
+
+/// What the test cannot tell, one sentence each.
+fn identifiability(
+    estimates: &[Estimate],
+    correlation: &[Vec<f64>],
+    condition: f64,
+    matters: &[bool],
+) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (estimate, matters) in estimates.iter().zip(matters) {
+        if !matters {
+            warnings.push(format!(
+                "{} leaves no trace in this test and keeps the value of the scenario: nothing depends on \
+                 it here",
+                estimate.name
+            ));
+        } else if estimate.high > 4.0 * estimate.low {
+            warnings.push(format!(
+                "this test hardly determines {}: its interval spans a factor of {}",
+                estimate.name,
+                short(estimate.high / estimate.low)
+            ));
+        }
+    }
+    for (i, row) in correlation.iter().enumerate() {
+        for (j, value) in row.iter().enumerate().skip(i + 1).filter(|(_, v)| v.abs() > ALIKE) {
+            warnings.push(format!(
+                "{} and {} cannot be told apart by this test: correlation {value:.3}; state one of them \
+                 from a test of its own (--fit without it)",
+                estimates[i].name, estimates[j].name
+            ));
+        }
+    }
+    if condition > ILL {
+        warnings.push(format!(
+            "the parameters together are ill determined (condition number {}): fit fewer of them, or \
+             record more channels",
+            short(condition)
+        ));
+    }
+    warnings
+}
+
+/// The lines for a scenario: each interface with all that was fitted of it.
+fn scenario_lines(simulator: &Simulator<'_>, parameters: &[Parameter], found: &Fit) -> String {
+    let point: Vec<f64> = found.parameters.clone();
+    let mut text = String::new();
+    let has = |parameter| parameters.contains(&parameter);
+    for (name, own) in [
+        ("barrel-rack", Parameter::FrictionBarrelRack),
+        ("rack-ground", Parameter::FrictionRackGround),
+    ] {
+        let constants = simulator.constants(name == "barrel-rack", &point);
+        if has(Parameter::Stiffness) || has(Parameter::Damping) {
+            text += &format!(
+                "[interface.{name}]\nstiffness = {}\ndamping = {}\n",
+                quoted(constants.stiffness, simulator.dimension(Parameter::Stiffness)),
+                quoted(constants.damping, simulator.dimension(Parameter::Damping)),
+            );
+        }
+        if has(own) {
+            text += &format!(
+                "[interface.{name}.friction]\ncoefficient = {}\n",
+                rounded(constants.kinetic)
+            );
+            if constants.rest > constants.kinetic {
+                text += &format!("static_coefficient = {}\n", rounded(constants.rest));
+            }
+        }
+    }
+    text
+}
+
+fn by_channel(residuals: &[f64], rows: usize) -> impl Iterator<Item = &[f64]> {
+    residuals.chunks_exact(rows)
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+/// Correlation of residuals with those of the sample before, over all channels.
+fn correlation_in_time(residuals: &[f64], rows: usize) -> f64 {
+    let pairs = by_channel(residuals, rows).flat_map(|channel| channel.windows(2));
+    let together: f64 = pairs.map(|pair| pair[0] * pair[1]).sum();
+    let own: f64 = residuals.iter().map(|value| value * value).sum();
+    if own > 0.0 { together / own } else { 0.0 }
+}

@@ -1,0 +1,314 @@
+//! A scenario with changed constants, simulated at the times of a recording.
+
+use std::num::NonZero;
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use barrelstack_dynamics::math;
+
+use super::Parameter;
+use crate::assemble::assemble;
+use crate::calibrate::{CalibrateError, Table};
+use crate::outcome::Outcome;
+use crate::run::{Run, run, time_step};
+use crate::scenario::{Basis, Damping, Dimension, Friction, Interface, NormalLaw, Scenario, Scene};
+
+/// A recording: times (s) and channels by name.
+pub(super) struct Measured {
+    pub(super) times: Vec<f64>,
+    pub(super) channels: Vec<(String, Vec<f64>)>,
+}
+
+impl Measured {
+    pub(super) fn read(table: &Table, until: Option<f64>) -> Result<Self, CalibrateError> {
+        let mut times = table.required("time", Dimension::TIME)?;
+        if let Some(row) = times.iter().position(|time| *time < 0.0) {
+            let found = table.cell(row, "time");
+            let remedy = "count time from the start of the scenario's motion";
+            return Err(table.at(row, "time", "a time of at least zero", &found, remedy));
+        }
+        if let Some(row) = times.windows(2).position(|pair| pair[1] <= pair[0]) {
+            let expected = format!("a time after {} of the row above", table.cell(row, "time"));
+            let found = table.cell(row + 1, "time");
+            return Err(table.at(row + 1, "time", &expected, &found, "sort the rows by time"));
+        }
+        let kept =
+            times.iter().take_while(|time| until.is_none_or(|until| **time <= until)).count();
+        times.truncate(kept);
+        if kept < 3 {
+            return Err(table.unsuited(format!("{kept} rows are left in the window: lengthen it")));
+        }
+        let mut channels = Vec::new();
+        for name in table.names().filter(|name| !name.eq_ignore_ascii_case("time")) {
+            let dimension =
+                if name.ends_with("rotation") { Dimension::ANGLE } else { Dimension::LENGTH };
+            let mut values = table.required(name, dimension)?;
+            values.truncate(kept);
+            channels.push((name.to_owned(), values));
+        }
+        if channels.is_empty() {
+            return Err(table.unsuited(
+                "there is no channel beside the time: add columns such as `B1.1 displacement x (m)`",
+            ));
+        }
+        Ok(Self { times, channels })
+    }
+
+    /// Time (s) of the last row.
+    pub(super) fn end(&self) -> f64 {
+        self.times.last().copied().unwrap_or(0.0)
+    }
+}
+
+/// Constants of one interface.
+#[derive(Clone, Copy)]
+pub(super) struct Constants {
+    pub(super) stiffness: f64,
+    pub(super) damping: f64,
+    pub(super) kinetic: f64,
+    pub(super) rest: f64,
+}
+
+/// Simulates a scenario for sets of logarithms of factors on its constants.
+pub(super) struct Simulator<'a> {
+    scenario: Scenario,
+    measured: &'a Measured,
+    parameters: &'a [Parameter],
+    barrel_rack: Constants,
+    rack_ground: Constants,
+    basis: Basis,
+    count: AtomicUsize,
+}
+
+/// What the first simulation says.
+pub(super) struct First {
+    pub(super) warnings: Vec<String>,
+}
+
+impl<'a> Simulator<'a> {
+    pub(super) fn new(
+        scenario: &Scenario,
+        measured: &'a Measured,
+        parameters: &'a [Parameter],
+    ) -> Result<Self, CalibrateError> {
+        let refuse = |reason: &str| CalibrateError::Scenario(reason.to_owned());
+        let Scene::Stack { stack, .. } = &scenario.scene else {
+            return Err(refuse(
+                "a response is fitted to a stack, and this scenario is a free scene",
+            ));
+        };
+        let interfaces = &stack.interfaces;
+        let barrel_rack = constants("barrel-rack", &interfaces.barrel_rack)?;
+        let rack_ground = constants("rack-ground", &interfaces.rack_ground)?;
+        let basis = interfaces.barrel_rack.basis;
+        if interfaces.rack_ground.basis != basis {
+            return Err(refuse(
+                "interface barrel-rack and rack-ground differ in `basis`: state both per node or both \
+                 per length",
+            ));
+        }
+        let mut scenario = scenario.clone();
+        scenario.run.stop_after_collapse = None;
+        let scale = scenario.run.similitude.sqrt();
+        // One step for all simulations, so that a change of step does not pass for an effect of a
+        // parameter; the step of a run is a small share of the critical one.
+        let assembly = assemble(&scenario).map_err(crate::run::RunFailure::from)?;
+        let step = time_step(&scenario, &assembly)? / scale;
+        scenario.run.step = Some(step);
+        // Two steps more, so that the last row lies between samples.
+        scenario.run.duration = Some(measured.end() / scale + 2.0 * step);
+        // Every step is sampled, so that interpolation adds nothing to the residuals.
+        scenario.record.history_rate = 1.0 / step;
+        scenario.record.frame_rate = 1.0;
+        let count = AtomicUsize::new(0);
+        Ok(Self { scenario, measured, parameters, barrel_rack, rack_ground, basis, count })
+    }
+
+    /// The value that a parameter starts from (SI).
+    pub(super) fn start(&self, parameter: Parameter) -> f64 {
+        match parameter {
+            Parameter::Stiffness => self.barrel_rack.stiffness,
+            Parameter::Damping => self.barrel_rack.damping,
+            Parameter::FrictionBarrelRack => self.barrel_rack.kinetic,
+            Parameter::FrictionRackGround => self.rack_ground.kinetic,
+        }
+    }
+
+    pub(super) fn dimension(&self, parameter: Parameter) -> Dimension {
+        match (parameter, self.basis) {
+            (Parameter::Stiffness, Basis::Node) => Dimension::STIFFNESS,
+            (Parameter::Stiffness, Basis::Length) => Dimension::STIFFNESS_PER_LENGTH,
+            (Parameter::Damping, Basis::Node) => Dimension::DAMPING,
+            (Parameter::Damping, Basis::Length) => Dimension::DAMPING_PER_LENGTH,
+            (Parameter::FrictionBarrelRack | Parameter::FrictionRackGround, _) => Dimension::NONE,
+        }
+    }
+
+    /// How many simulations were run.
+    pub(super) fn count(&self) -> usize {
+        self.count.load(Ordering::Relaxed)
+    }
+
+    /// The constants of barrel–rack or of rack–ground at a point.
+    pub(super) fn constants(&self, barrel_rack: bool, point: &[f64]) -> Constants {
+        let mut constants = if barrel_rack { self.barrel_rack } else { self.rack_ground };
+        for (parameter, log) in self.parameters.iter().zip(point) {
+            let factor = math::exp(*log);
+            match parameter {
+                Parameter::Stiffness => constants.stiffness *= factor,
+                Parameter::Damping => constants.damping *= factor,
+                Parameter::FrictionBarrelRack if barrel_rack => {
+                    constants.kinetic *= factor;
+                    constants.rest *= factor;
+                }
+                Parameter::FrictionRackGround if !barrel_rack => {
+                    constants.kinetic *= factor;
+                    constants.rest *= factor;
+                }
+                Parameter::FrictionBarrelRack | Parameter::FrictionRackGround => {}
+            }
+        }
+        constants
+    }
+
+    /// Runs the scenario as it is, and checks that it shows the channels that were recorded.
+    pub(super) fn first(&self) -> Result<First, CalibrateError> {
+        let run = self.run(&vec![0.0; self.parameters.len()])?;
+        for (name, _) in &self.measured.channels {
+            if run.recording.channel(name).is_none() {
+                let bodies = run.recording.channels.iter().map(|channel| channel.name.as_str());
+                let names: Vec<&str> = bodies
+                    .filter(|name| name.contains(" displacement ") || name.ends_with(" rotation"))
+                    .filter(|name| !name.starts_with("ground "))
+                    .collect();
+                return Err(CalibrateError::Scenario(format!(
+                    "the scenario has no channel \"{name}\"; it has {}",
+                    names.join(", ")
+                )));
+            }
+        }
+        let mut warnings = Vec::new();
+        match &run.outcome {
+            Outcome::Collapse { time, .. } => warnings.push(format!(
+                "with the values of the scenario the stack collapses at {time:.2} s, within the window: end \
+                 it before (--until)"
+            )),
+            Outcome::Invalid { reason } => {
+                return Err(CalibrateError::Scenario(reason.clone()));
+            }
+            Outcome::Stable | Outcome::NotJudged => {}
+        }
+        Ok(First { warnings })
+    }
+
+    fn run(&self, point: &[f64]) -> Result<Run, crate::run::RunFailure> {
+        self.count.fetch_add(1, Ordering::Relaxed);
+        let mut scenario = self.scenario.clone();
+        if let Scene::Stack { stack, .. } = &mut scenario.scene {
+            set(&mut stack.interfaces.barrel_rack, &self.constants(true, point));
+            set(&mut stack.interfaces.rack_ground, &self.constants(false, point));
+        }
+        run(&scenario, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// All channels at the recorded times; none where the stack cannot be simulated.
+    fn channels(&self, point: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let run = self.run(point).ok()?;
+        if matches!(run.outcome, Outcome::Invalid { .. }) {
+            return None;
+        }
+        let times = &run.recording.times;
+        let channel = |(name, _): &(String, Vec<f64>)| {
+            let values = &run.recording.channel(name)?.values;
+            Some(
+                self.measured.times.iter().map(|time| interpolated(times, values, *time)).collect(),
+            )
+        };
+        self.measured.channels.iter().map(channel).collect()
+    }
+
+    /// Several points on all cores; which thread runs which changes nothing.
+    pub(super) fn batch(&self, points: &[Vec<f64>]) -> Vec<Option<Vec<Vec<f64>>>> {
+        let next = AtomicUsize::new(0);
+        let slots: Vec<Mutex<Option<Vec<Vec<f64>>>>> =
+            points.iter().map(|_| Mutex::new(None)).collect();
+        let work = || {
+            loop {
+                let at = next.fetch_add(1, Ordering::Relaxed);
+                let Some(point) = points.get(at) else { break };
+                let found = self.channels(point);
+                if let Ok(mut slot) = slots[at].lock() {
+                    *slot = found;
+                }
+            }
+        };
+        let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
+        std::thread::scope(|scope| {
+            for _ in 1..threads.min(points.len()) {
+                scope.spawn(work);
+            }
+            work();
+        });
+        slots.into_iter().map(|slot| slot.into_inner().ok().flatten()).collect()
+    }
+}
+
+/// The constants of an interface, which must be such that a factor can change them.
+fn constants(name: &str, interface: &Interface) -> Result<Constants, CalibrateError> {
+    let refuse =
+        |reason: &str| Err(CalibrateError::Scenario(format!("interface.{name}: {reason}")));
+    let (NormalLaw::SpeedGap { stiffness, damping }
+    | NormalLaw::KelvinVoigt { stiffness, damping }) = interface.normal
+    else {
+        return refuse(
+            "k and c are those of a linear law: law = \"speed-gap\" or \"kelvin-voigt\"",
+        );
+    };
+    let Damping::Coefficient(damping) = damping else {
+        return refuse("state `damping` in place of `restitution`, so that c is not tied to k");
+    };
+    let (kinetic, rest) = match interface.friction {
+        Friction::Coulomb { coefficient, static_coefficient, .. } => {
+            (coefficient, static_coefficient)
+        }
+        Friction::Regularized { coefficient, .. } => (coefficient, coefficient),
+        Friction::None => return refuse("a fit needs a law of friction: law = \"coulomb\""),
+    };
+    if [stiffness, damping, kinetic].iter().any(|value| *value <= 0.0) {
+        return refuse("a fit needs stiffness, damping and friction above zero to start from");
+    }
+    Ok(Constants { stiffness, damping, kinetic, rest })
+}
+
+fn set(interface: &mut Interface, to: &Constants) {
+    match &mut interface.normal {
+        NormalLaw::SpeedGap { stiffness, damping }
+        | NormalLaw::KelvinVoigt { stiffness, damping } => {
+            *stiffness = to.stiffness;
+            *damping = Damping::Coefficient(to.damping);
+        }
+        NormalLaw::HuntCrossley { .. } | NormalLaw::Hertz { .. } => {}
+    }
+    match &mut interface.friction {
+        Friction::Coulomb { coefficient, static_coefficient, .. } => {
+            *coefficient = to.kinetic;
+            *static_coefficient = to.rest;
+        }
+        Friction::Regularized { coefficient, .. } => *coefficient = to.kinetic,
+        Friction::None => {}
+    }
+}
+
+/// Linear between samples, constant beyond the last.
+fn interpolated(times: &[f64], values: &[f64], time: f64) -> f64 {
+    let above = times.partition_point(|sample| *sample < time);
+    match (above.checked_sub(1), values.get(above)) {
+        (None, _) => values.first().copied().unwrap_or(0.0),
+        (Some(below), None) => values[below],
+        (Some(below), Some(high)) => {
+            let share = (time - times[below]) / (times[above] - times[below]);
+            values[below] + share * (high - values[below])
+        }
+    }
+}

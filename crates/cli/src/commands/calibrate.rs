@@ -1,0 +1,255 @@
+//! `barrelstack calibrate`: from a user's tests to contact parameters with their uncertainty.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Context as _;
+use barrelstack::calibrate::drop::{GRAVITY, Striker};
+use barrelstack::calibrate::response::Parameter;
+use barrelstack::calibrate::{
+    CalibrateError, Calibration, Table, drop, friction, response, stiffness,
+};
+use barrelstack::scenario::{Dimension, Quantity};
+use clap::{Subcommand, ValueEnum};
+
+use crate::args::ScenarioArgs;
+use crate::printer;
+
+/// What the help ends with.
+const AFTER_HELP: &str = "\
+Files are CSV with a header whose columns carry their unit, such as
+  penetration (mm),force (kN)
+Lines that start with # are skipped; the decimal mark is a point.
+
+Intervals are of 95 % and hold what scatters in the file.
+A mass or a stiffness given as an option, and the model itself, are taken as exact.";
+
+/// Arguments of `calibrate`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = AFTER_HELP)]
+pub(crate) struct CalibrateArgs {
+    /// The test.
+    #[command(subcommand)]
+    test: Test,
+}
+
+/// The test.
+#[derive(Debug, Subcommand)]
+enum Test {
+    /// Stiffness k from a press test: columns `penetration (mm),force (kN)`.
+    Stiffness(StiffnessArgs),
+    /// Restitution and damping c from drops: columns `drop height (mm),rebound height (mm)`, or
+    /// `time (s)` of the impacts of one bounce sequence.
+    Drop(DropArgs),
+    /// Friction from pulls: columns `normal force (N),breakaway force (N)` and, if measured,
+    /// `sliding force (N)`; or from tilts: `angle (deg)` of first slip and, if measured,
+    /// `sliding distance (m),sliding time (s)` from rest at that angle.
+    Friction(FrictionArgs),
+    /// Stiffness, damping and friction together from the recorded response of a shaken stack.
+    ///
+    /// The file has a column `time (s)` from the start of the scenario's motion, and columns named as
+    /// in histories.csv, such as `B1.1 displacement x (mm)`.
+    /// Simulations are fitted to it from the values of the scenario on, to the minimum next to them.
+    ///
+    /// Impacts, slips and falls make responses chaotic within seconds: take a short window of mild
+    /// shaking in which things still slide a little (--until), and no collapse.
+    Response(ResponseArgs),
+}
+
+/// How the result is printed, and what for.
+#[derive(Debug, clap::Args)]
+struct ResultArgs {
+    /// Print one JSON document, in SI units, in place of the table.
+    #[arg(long)]
+    json: bool,
+}
+
+/// The pair of bodies that was tested.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Pair {
+    BarrelRack,
+    RackGround,
+    BarrelBarrel,
+    BarrelGround,
+    RackRack,
+}
+
+impl Pair {
+    fn name(self) -> &'static str {
+        match self {
+            Self::BarrelRack => "barrel-rack",
+            Self::RackGround => "rack-ground",
+            Self::BarrelBarrel => "barrel-barrel",
+            Self::BarrelGround => "barrel-ground",
+            Self::RackRack => "rack-rack",
+        }
+    }
+}
+
+#[derive(Debug, clap::Args)]
+struct StiffnessArgs {
+    /// The measurements (CSV).
+    file: PathBuf,
+    /// Contact nodes that share the force; k is that of one.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    nodes: u32,
+    /// The pair that was tested, for the lines to paste.
+    #[arg(long, value_enum, default_value = "barrel-rack")]
+    interface: Pair,
+    #[command(flatten)]
+    result: ResultArgs,
+}
+
+#[derive(Debug, clap::Args)]
+struct DropArgs {
+    /// The measurements (CSV).
+    file: PathBuf,
+    /// Mass that falls, such as "275 kg".
+    #[arg(long, requires = "stiffness", value_name = "MASS")]
+    mass: Option<String>,
+    /// Stiffness k of one contact node, such as "9.8 kN/cm".
+    #[arg(long, requires = "mass", value_name = "K")]
+    stiffness: Option<String>,
+    /// Contact nodes that it falls on at once; k and c are those of one.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    nodes: u32,
+    /// The pair that was tested, for the lines to paste.
+    #[arg(long, value_enum, default_value = "barrel-rack")]
+    interface: Pair,
+    #[command(flatten)]
+    result: ResultArgs,
+}
+
+#[derive(Debug, clap::Args)]
+struct FrictionArgs {
+    /// The measurements (CSV).
+    file: PathBuf,
+    /// The pair that was tested, for the lines to paste.
+    #[arg(long, value_enum, default_value = "barrel-rack")]
+    interface: Pair,
+    #[command(flatten)]
+    result: ResultArgs,
+}
+
+#[derive(Debug, clap::Args)]
+struct ResponseArgs {
+    /// The scenario of the test: a file (TOML), or the name of a built-in scenario.
+    scenario: String,
+    /// The recorded histories (CSV).
+    file: PathBuf,
+    /// What to fit: k and c (of barrel-rack; those of rack-ground keep their ratio to them), mu-br
+    /// (barrel-rack), mu-rg (rack-ground).
+    #[arg(long, value_delimiter = ',', default_value = "k,c,mu-br,mu-rg", value_name = "NAMES")]
+    fit: Vec<Fitted>,
+    /// Leave out rows after this time, such as "1.5 s".
+    #[arg(long, value_name = "TIME")]
+    until: Option<String>,
+    /// Change a value of the scenario, such as stack.levels=2; may be repeated.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    set: Vec<String>,
+    /// The file of the ground motion, in place of the scenario's.
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    #[command(flatten)]
+    result: ResultArgs,
+}
+
+/// A parameter, by its word.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum Fitted {
+    K,
+    C,
+    MuBr,
+    MuRg,
+}
+
+impl Fitted {
+    fn parameter(self) -> Parameter {
+        match self {
+            Self::K => Parameter::Stiffness,
+            Self::C => Parameter::Damping,
+            Self::MuBr => Parameter::FrictionBarrelRack,
+            Self::MuRg => Parameter::FrictionRackGround,
+        }
+    }
+}
+
+/// Reads the test, fits, prints.
+pub(crate) fn calibrate(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
+    let (found, json) = match &args.test {
+        Test::Stiffness(args) => {
+            let table = Table::load(&args.file)?;
+            let found = stiffness::stiffness(&table, args.nodes, args.interface.name())?;
+            (found, args.result.json)
+        }
+        Test::Drop(args) => {
+            let striker = striker(args)?;
+            let table = Table::load(&args.file)?;
+            (drop::drop(&table, striker, args.interface.name())?, args.result.json)
+        }
+        Test::Friction(args) => {
+            let table = Table::load(&args.file)?;
+            (friction::friction(&table, args.interface.name())?, args.result.json)
+        }
+        Test::Response(args) => (fitted(args)?, args.result.json),
+    };
+    print(&found, json)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn print(found: &Calibration, json: bool) -> anyhow::Result<()> {
+    if json {
+        return printer::lines([serde_json::to_string_pretty(&found.to_json())?]);
+    }
+    printer::lines(found.lines())?;
+    found.warnings.iter().for_each(|warning| printer::warning(warning));
+    Ok(())
+}
+
+fn striker(args: &DropArgs) -> anyhow::Result<Option<Striker>> {
+    let (Some(mass), Some(stiffness)) = (&args.mass, &args.stiffness) else { return Ok(None) };
+    Ok(Some(Striker {
+        mass: positive("--mass", mass, Dimension::MASS)?,
+        stiffness: positive("--stiffness", stiffness, Dimension::STIFFNESS)?,
+        nodes: args.nodes,
+        gravity: GRAVITY,
+    }))
+}
+
+/// The value (SI) of an option that is a positive quantity.
+fn positive(option: &str, text: &str, dimension: Dimension) -> anyhow::Result<f64> {
+    let example = || format!("{option}: expected {dimension} such as \"{}\"", dimension.example());
+    let value = Quantity::parse_as(text, &[dimension]).with_context(example)?.value;
+    anyhow::ensure!(value > 0.0, "{}, above zero; found \"{text}\"", example());
+    Ok(value)
+}
+
+fn fitted(args: &ResponseArgs) -> anyhow::Result<Calibration> {
+    let mut parameters: Vec<Parameter> = Vec::new();
+    for fitted in &args.fit {
+        let parameter = fitted.parameter();
+        anyhow::ensure!(
+            !parameters.contains(&parameter),
+            "--fit names {} twice; name it once",
+            parameter.name()
+        );
+        parameters.push(parameter);
+    }
+    let until = args
+        .until
+        .as_deref()
+        .map(|until| positive("--until", until, Dimension::TIME))
+        .transpose()?;
+    let scenario_args = ScenarioArgs {
+        scenario: args.scenario.clone(),
+        set: args.set.clone(),
+        record: args.record.clone(),
+    };
+    let scenario = super::load(&scenario_args)?;
+    let table = Table::load(&args.file)?;
+    response::response(&scenario, &table, &parameters, until).map_err(|error| match error {
+        CalibrateError::Run(failure) => super::placed(failure, &scenario_args),
+        CalibrateError::Scenario(reason) => anyhow::anyhow!("{}: {reason}", args.scenario),
+        error => error.into(),
+    })
+}

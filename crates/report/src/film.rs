@@ -1,0 +1,74 @@
+//! A film: a scene as numbered pictures of one size, window and scale, one SVG for each.
+
+use std::sync::Arc;
+
+use crate::{
+    Scene, number,
+    strip::{View, define_bodies, picture},
+    svg::{Anchor, Svg},
+};
+
+/// A scene as pictures that follow each other at even steps of time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    scene: Arc<Scene>,
+    frames: Vec<usize>,
+    view: View,
+}
+
+const MOST: [f64; 2] = [900.0, 560.0];
+const HEADING: f64 = 26.0;
+
+impl Film {
+    /// Pictures `1/rate` (s) apart from the first frame to the last; each shows the frame nearest
+    /// to its time. A rate above that of the frames, or one that is not above zero, shows every
+    /// frame once.
+    pub fn of_run(scene: Arc<Scene>, rate: f64) -> Self {
+        let frames = sampled(&scene, rate);
+        let view = View::of(&scene, &frames, MOST, true);
+        Self { scene, frames, view }
+    }
+
+    /// Count of pictures.
+    pub fn len(&self) -> usize {
+        self.frames.len()
+    }
+
+    /// Whether there is nothing to show.
+    pub fn is_empty(&self) -> bool {
+        self.frames.is_empty()
+    }
+
+    /// Time (s) of picture `at`; `None` beyond the last.
+    pub fn time(&self, at: usize) -> Option<f64> {
+        self.scene.frames.times.get(*self.frames.get(at)?).copied()
+    }
+
+    /// Picture `at` as a standalone SVG document; `None` beyond the last.
+    pub fn svg(&self, at: usize) -> Option<String> {
+        let frame = *self.frames.get(at)?;
+        let heading = format!("t = {} s", number::fixed(self.time(at)?, 2));
+        let mut svg = Svg::new(self.view.width, self.view.height + HEADING, &heading);
+        define_bodies(&mut svg, &self.scene, "film", &self.view, &self.frames);
+        svg.text("label strong", [1.0, 16.0], Anchor::Start, &heading);
+        svg.nest([0.0, HEADING], &picture(&self.scene, "film", Some(frame), &self.view));
+        Some(svg.standalone())
+    }
+}
+
+/// Frames nearest to even steps of time, each once.
+pub(crate) fn sampled(scene: &Scene, rate: f64) -> Vec<usize> {
+    let times = &scene.frames.times[..scene.frames.len()];
+    let mut frames = Vec::new();
+    let mut due = f64::NEG_INFINITY;
+    for (frame, &time) in times.iter().enumerate() {
+        // The nearest of two frames is the later one once the middle between them is passed.
+        let next = times.get(frame + 1).copied().unwrap_or(f64::INFINITY);
+        if due == f64::NEG_INFINITY || 0.5 * (time + next) > due {
+            frames.push(frame);
+            let from = if due == f64::NEG_INFINITY { time } else { due };
+            due = if rate > 0.0 { (from + 1.0 / rate).max(time) } else { time };
+        }
+    }
+    frames
+}

@@ -1,0 +1,222 @@
+//! A scene as a time series for ParaView: VTK `PolyData` in XML, text throughout.
+
+use std::fmt::Write as _;
+
+use crate::{
+    Attachment, Polyline, Role, Scene, escape,
+    film::sampled,
+    number,
+    scene::{Point, Pose2, place, window},
+};
+
+/// The files of a scene for ParaView, for a folder of their own: `stack.pvd`, which is the one to
+/// open, a `bodies-*.vtp` and a `forces-*.vtp` for each of its times, and `bodies.csv` with the
+/// names behind the numbers of the bodies.
+///
+/// Times are `1/rate` (s) apart, as for [`Film`](crate::Film).
+/// The plane of the scene is y = 0, z up, lengths in m.
+///
+/// - Bodies: closed outlines are polygons, open ones and marks are lines. Cells carry `body` (its
+///   place in the scene) and `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device), points carry
+///   `displacement` (m) from the first frame. A body without a finite pose is left out.
+/// - Forces: a vertex at each point of contact, with `force` (N) as a vector.
+pub fn paraview(scene: &Scene, rate: f64) -> Vec<Attachment> {
+    let frames = sampled(scene, rate);
+    let digits = frames.len().to_string().len().max(4);
+    let mut index = String::from(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" \
+         byte_order=\"LittleEndian\">\n<Collection>\n",
+    );
+    // The ground goes on for hundreds of meters; a viewer fits its first picture to all of it.
+    let view = window(scene, &frames);
+    let sight = [view.lower[0] - view.width(), view.upper[0] + view.width()];
+    let mut files = Vec::new();
+    for (at, &frame) in frames.iter().enumerate() {
+        let time = scene.frames.times[frame];
+        let parts = [("bodies", bodies(scene, frame, sight)), ("forces", forces(scene, frame))];
+        for (part, (name, text)) in parts.into_iter().enumerate() {
+            let name = format!("{name}-{at:0digits$}.vtp");
+            // Writing to a String cannot fail, here and below.
+            let _ = writeln!(
+                index,
+                "<DataSet timestep=\"{time}\" group=\"\" part=\"{part}\" file=\"{name}\"/>"
+            );
+            files.push(Attachment { name, bytes: text.into_bytes() });
+        }
+    }
+    index.push_str("</Collection>\n</VTKFile>\n");
+    let mut names = String::from("body,name,role\n");
+    for (at, body) in scene.bodies.iter().enumerate() {
+        let _ = writeln!(names, "{at},{},{}", escape::csv(&body.name), body.role.class());
+    }
+    files.push(Attachment { name: "bodies.csv".into(), bytes: names.into_bytes() });
+    files.push(Attachment { name: "stack.pvd".into(), bytes: index.into_bytes() });
+    files
+}
+
+/// Points, cells and their data, gathered before they are written.
+#[derive(Default)]
+struct Mesh {
+    points: Vec<Point>,
+    displacements: Vec<Point>,
+    lines: Vec<Cell>,
+    polygons: Vec<Cell>,
+}
+
+/// A run of points that belongs to a body.
+struct Cell {
+    points: Vec<usize>,
+    body: usize,
+    role: u8,
+}
+
+fn bodies(scene: &Scene, frame: usize, sight: [f64; 2]) -> String {
+    let mut mesh = Mesh::default();
+    for (at, body) in scene.bodies.iter().enumerate() {
+        let Some(pose) = scene.frames.pose(frame, at) else { continue };
+        let start = scene.frames.pose(0, at);
+        for line in body.outlines.iter().chain(&body.marks) {
+            if body.role == Role::Ground && !line.closed {
+                mesh.add(&shortened(line, sight), (at, role(body.role)), pose, start);
+            } else {
+                mesh.add(line, (at, role(body.role)), pose, start);
+            }
+        }
+    }
+    mesh.write()
+}
+
+/// The part of a line between `from` and `to` along x.
+fn shortened(line: &Polyline, [from, to]: [f64; 2]) -> Polyline {
+    let mut points: Vec<Point> = Vec::new();
+    for pair in line.points.windows(2) {
+        let [a, b] = [pair[0], pair[1]];
+        if a[0].max(b[0]) < from || a[0].min(b[0]) > to {
+            continue;
+        }
+        for end in [a, b] {
+            let x = end[0].clamp(from, to);
+            let slope = if a[0] == b[0] { 0.0 } else { (b[1] - a[1]) / (b[0] - a[0]) };
+            let point = if x == end[0] { end } else { [x, a[1] + slope * (x - a[0])] };
+            if points.last() != Some(&point) {
+                points.push(point);
+            }
+        }
+    }
+    Polyline::open(points)
+}
+
+fn role(role: Role) -> u8 {
+    match role {
+        Role::Ground => 0,
+        Role::Barrel => 1,
+        Role::Rack => 2,
+        Role::Block => 3,
+        Role::Device => 4,
+    }
+}
+
+impl Mesh {
+    fn add(
+        &mut self,
+        line: &Polyline,
+        (body, role): (usize, u8),
+        pose: Pose2,
+        start: Option<Pose2>,
+    ) {
+        let from = self.points.len();
+        for point in line.points.iter().filter(|p| p.iter().all(|v| v.is_finite())) {
+            let now = place(pose, *point);
+            let then = start.map_or(now, |start| place(start, *point));
+            self.points.push(now);
+            self.displacements.push([now[0] - then[0], now[1] - then[1]]);
+        }
+        let cell = Cell { points: (from..self.points.len()).collect(), body, role };
+        let cells = if line.closed { &mut self.polygons } else { &mut self.lines };
+        if cell.points.len() > 1 {
+            cells.push(cell);
+        }
+    }
+
+    fn write(&self) -> String {
+        let mut piece = String::new();
+        let _ = writeln!(
+            piece,
+            "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{}\" \
+             NumberOfStrips=\"0\" NumberOfPolys=\"{}\">",
+            self.points.len(),
+            self.lines.len(),
+            self.polygons.len()
+        );
+        piece.push_str("<PointData Vectors=\"displacement\">\n");
+        vectors(&mut piece, "displacement", &self.displacements);
+        piece.push_str("</PointData>\n<CellData Scalars=\"body\">\n");
+        let cells = || self.lines.iter().chain(&self.polygons);
+        whole(&mut piece, "Int32", "body", cells().map(|cell| cell.body));
+        whole(&mut piece, "Int32", "role", cells().map(|cell| usize::from(cell.role)));
+        piece.push_str("</CellData>\n<Points>\n");
+        vectors(&mut piece, "points", &self.points);
+        piece.push_str("</Points>\n");
+        topology(&mut piece, "Lines", &self.lines);
+        topology(&mut piece, "Polys", &self.polygons);
+        poly_data(&piece)
+    }
+}
+
+fn forces(scene: &Scene, frame: usize) -> String {
+    let list = scene.frames.forces.get(frame).map_or(&[][..], Vec::as_slice);
+    let finite = |f: &&crate::ContactForce| [f.x, f.z, f.fx, f.fz].iter().all(|v| v.is_finite());
+    let list: Vec<_> = list.iter().filter(finite).collect();
+    let count = list.len();
+    let mut piece = format!(
+        "<Piece NumberOfPoints=\"{count}\" NumberOfVerts=\"{count}\" NumberOfLines=\"0\" \
+         NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData Vectors=\"force\">\n"
+    );
+    vectors(&mut piece, "force", &list.iter().map(|f| [f.fx, f.fz]).collect::<Vec<_>>());
+    piece.push_str("</PointData>\n<Points>\n");
+    vectors(&mut piece, "points", &list.iter().map(|f| [f.x, f.z]).collect::<Vec<_>>());
+    piece.push_str("</Points>\n<Verts>\n");
+    whole(&mut piece, "Int64", "connectivity", 0..count);
+    whole(&mut piece, "Int64", "offsets", 1..=count);
+    piece.push_str("</Verts>\n");
+    poly_data(&piece)
+}
+
+fn poly_data(piece: &str) -> String {
+    format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" \
+         byte_order=\"LittleEndian\">\n<PolyData>\n{piece}</Piece>\n</PolyData>\n</VTKFile>\n"
+    )
+}
+
+/// Vectors of the plane as vectors of space, with every digit they have.
+fn vectors(out: &mut String, name: &str, values: &[Point]) {
+    let _ = writeln!(
+        out,
+        "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfComponents=\"3\" format=\"ascii\">"
+    );
+    for [x, z] in values {
+        let _ = writeln!(out, "{} 0 {}", number::csv_number(*x), number::csv_number(*z));
+    }
+    out.push_str("</DataArray>\n");
+}
+
+fn whole(out: &mut String, kind: &str, name: &str, values: impl Iterator<Item = usize>) {
+    let _ = writeln!(out, "<DataArray type=\"{kind}\" Name=\"{name}\" format=\"ascii\">");
+    for value in values {
+        let _ = write!(out, "{value} ");
+    }
+    out.push_str("\n</DataArray>\n");
+}
+
+fn topology(out: &mut String, name: &str, cells: &[Cell]) {
+    let _ = writeln!(out, "<{name}>");
+    whole(out, "Int64", "connectivity", cells.iter().flat_map(|cell| cell.points.iter().copied()));
+    let mut end = 0;
+    let ends = cells.iter().map(|cell| {
+        end += cell.points.len();
+        end
+    });
+    whole(out, "Int64", "offsets", ends);
+    let _ = writeln!(out, "</{name}>");
+}

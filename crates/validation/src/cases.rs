@@ -1,0 +1,215 @@
+//! Problems that are files: a scenario of bodies, and after it what is asked and the answer.
+//!
+//! A case is a free-scene scenario followed by a table `[expect]`; no code belongs to it.
+//!
+//! ```toml
+//! [expect]
+//! source = "Housner 1963"
+//! body = "block"
+//! quantity = "overturning-border"    # see Quantity
+//! vary = "motion.pulse.amplitude"    # what a border is looked for in
+//! unit = "g"                         # its unit
+//! between = [0.5, 0.6]               # stands at the first, not at the second
+//! exact = 0.55
+//! tolerance = 0.01                   # relative
+//! ```
+
+use std::fmt;
+use std::ops::ControlFlow;
+
+use barrelstack::{Run, Scenario};
+use serde::Deserialize;
+
+use crate::oracle::OVERTURNED;
+use crate::problem::border;
+use crate::{Effort, Failure, Outcome, Problem, Tolerance};
+
+/// What a case may ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Quantity {
+    /// When (s) the body is first upright.
+    FirstUpright,
+    /// How far (m) along `x` the body has moved on the ground at the end.
+    Way,
+    /// The value of `vary` from which the body turns over.
+    OverturningBorder,
+    /// The value of `vary` from which the body lifts a corner.
+    UpliftBorder,
+}
+
+impl Quantity {
+    fn words(self) -> &'static str {
+        match self {
+            Self::FirstUpright => "time to be upright",
+            Self::Way => "way on the ground",
+            Self::OverturningBorder => "what turns the body over",
+            Self::UpliftBorder => "what lifts a corner",
+        }
+    }
+
+    /// Rotation (rad) beyond the border.
+    fn beyond(self) -> Option<f64> {
+        match self {
+            Self::FirstUpright | Self::Way => None,
+            Self::OverturningBorder => Some(OVERTURNED),
+            Self::UpliftBorder => Some(2e-4),
+        }
+    }
+}
+
+/// The table at the end of a case.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Expect {
+    source: String,
+    body: String,
+    quantity: Quantity,
+    vary: Option<String>,
+    unit: Option<String>,
+    between: Option<[f64; 2]>,
+    exact: f64,
+    tolerance: f64,
+}
+
+/// Why a file is not a case.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}: {problem}")]
+pub struct CaseError {
+    file: String,
+    problem: String,
+}
+
+/// The cases shipped with the crate.
+pub(crate) fn shipped() -> Vec<Problem> {
+    let files = [
+        ("housner-period", include_str!("../cases/housner-period.toml")),
+        ("housner-uplift", include_str!("../cases/housner-uplift.toml")),
+        ("half-sine-4", include_str!("../cases/half-sine-4.toml")),
+        ("one-sine-4-starts", include_str!("../cases/one-sine-4-starts.toml")),
+        ("one-sine-4-without-impact", include_str!("../cases/one-sine-4-without-impact.toml")),
+        ("sliding-rectangular", include_str!("../cases/sliding-rectangular.toml")),
+        ("sliding-half-sine", include_str!("../cases/sliding-half-sine.toml")),
+    ];
+    // A case that cannot be read becomes a problem that fails, so that none is passed over.
+    files
+        .into_iter()
+        .map(|(name, text)| read(name, text).unwrap_or_else(|error| broken(name, &error)))
+        .collect()
+}
+
+fn broken(name: &str, error: &CaseError) -> Problem {
+    let message = error.to_string();
+    Problem {
+        id: format!("cases/{name}"),
+        title: "a case that cannot be read".into(),
+        source: String::new(),
+        quantity: "",
+        unit: "",
+        exact: f64::NAN,
+        tolerance: Tolerance::Relative(0.0),
+        fast: None,
+        run: Box::new(move |_| Err(Failure::Absent(message.clone()))),
+    }
+}
+
+/// Reads a case.
+///
+/// # Errors
+/// When the scenario or the table of the answer is not one.
+pub fn read(name: &str, text: &str) -> Result<Problem, CaseError> {
+    let file = format!("{name}.toml");
+    let refuse =
+        |problem: &dyn fmt::Display| CaseError { file: file.clone(), problem: problem.to_string() };
+    let Some((scene, answer)) = text.split_once("\n[expect]\n") else {
+        return Err(refuse(&"expected a line `[expect]` after the scenario, found none"));
+    };
+    let expect: Expect = toml::from_str(answer).map_err(|e| refuse(&e.message()))?;
+    let scenario = Scenario::parse(&file, scene, &[]).map_err(|e| refuse(&e.sentence()))?;
+    let unit = match (expect.quantity, expect.unit.as_deref()) {
+        (Quantity::FirstUpright, None) => "s",
+        (Quantity::Way, None) => "m",
+        (Quantity::OverturningBorder | Quantity::UpliftBorder, Some("g")) => "g",
+        (Quantity::OverturningBorder | Quantity::UpliftBorder, Some("m/s")) => "m/s",
+        (quantity, unit) => {
+            return Err(refuse(&format!(
+                "expect.unit: a border needs \"g\" or \"m/s\", a time or a way none; found {unit:?} \
+                 for {quantity:?}"
+            )));
+        }
+    };
+    if expect.quantity.beyond().is_some() && (expect.vary.is_none() || expect.between.is_none()) {
+        return Err(refuse(&"expect: a border needs `vary` and `between`"));
+    }
+    let scene = scene.to_owned();
+    Ok(Problem {
+        id: format!("cases/{name}"),
+        title: scenario.title,
+        source: expect.source.clone(),
+        quantity: expect.quantity.words(),
+        unit,
+        exact: expect.exact,
+        tolerance: Tolerance::Relative(expect.tolerance),
+        fast: Some(Tolerance::Relative(expect.tolerance.max(1e-2))),
+        run: Box::new(move |effort| answer_of(&file, &scene, &expect, effort).map(Outcome::of)),
+    })
+}
+
+fn answer_of(file: &str, scene: &str, expect: &Expect, effort: Effort) -> Result<f64, Failure> {
+    let run = |overrides: &[String]| -> Result<(Run, usize), Failure> {
+        let scenario = Scenario::parse(file, scene, overrides)?;
+        let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(()))?;
+        let body = run
+            .assembly
+            .model
+            .body_named(&expect.body)
+            .ok_or_else(|| Failure::Absent(format!("there is no body {:?}", expect.body)))?;
+        Ok((run, body))
+    };
+    match (expect.quantity.beyond(), &expect.vary, expect.between) {
+        (Some(limit), Some(vary), Some([low, high])) => {
+            let halvings = if effort == Effort::Full { 9 } else { 2 };
+            border((low, high), halvings, |value| {
+                let unit = expect.unit.as_deref().unwrap_or_default();
+                let (run, body) = run(&[format!("{vary}=\"{value} {unit}\"")])?;
+                let start = run.recording.frames.poses[0][body][2];
+                let turned = |pose: &Vec<[f64; 3]>| (pose[body][2] - start).abs() > limit;
+                Ok(run.recording.frames.poses.iter().any(turned))
+            })
+        }
+        _ if expect.quantity == Quantity::Way => {
+            let (run, body) = run(&[])?;
+            let place = |pose: &[[f64; 3]]| pose[body][0] - pose[0][0];
+            match (run.recording.frames.poses.first(), run.recording.frames.poses.last()) {
+                (Some(first), Some(last)) => Ok((place(last) - place(first)).abs()),
+                _ => Err(Failure::Absent("nothing was recorded".into())),
+            }
+        }
+        _ => {
+            let (run, body) = run(&[])?;
+            let frames = &run.recording.frames;
+            let crossing =
+                frames.poses.windows(2).position(|w| w[0][body][2] * w[1][body][2] <= 0.0);
+            let Some(i) = crossing else {
+                return Err(Failure::Absent("the body is never upright".into()));
+            };
+            let (a, b) = (frames.poses[i][body][2], frames.poses[i + 1][body][2]);
+            Ok(frames.times[i] + a / (a - b) * (frames.times[i + 1] - frames.times[i]))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::read;
+
+    #[test]
+    fn a_file_that_is_no_case_says_what_it_lacks() {
+        let said = |text: &str| read("x", text).err().map(|e| e.to_string()).unwrap_or_default();
+        assert_eq!(
+            said("schema = 1"),
+            "x.toml: expected a line `[expect]` after the scenario, found none"
+        );
+        assert!(said("schema = 1\n[expect]\nsource = 3\n").starts_with("x.toml: invalid type"));
+    }
+}

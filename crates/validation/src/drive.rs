@@ -1,0 +1,199 @@
+//! Ground motions with exact displacement, velocity and acceleration.
+
+use std::f64::consts::PI;
+
+use barrelstack_dynamics::math::{cos, sin};
+use barrelstack_dynamics::{Drive, Planar, Vec2};
+
+/// A horizontal ground motion given by displacement (m), velocity (m/s) and acceleration (m/s²).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shake {
+    /// Constant velocity (m/s).
+    Cruise(f64),
+    /// Acceleration (m/s²) that grows in proportion to time until `ramp` (s) and then stays.
+    Ramped {
+        /// (m/s²).
+        acceleration: f64,
+        /// (s).
+        ramp: f64,
+    },
+    /// Constant acceleration for a duration, then constant velocity.
+    Rectangular {
+        /// (m/s²).
+        acceleration: f64,
+        /// (s).
+        duration: f64,
+    },
+    /// `a sin ωt` for a number of half waves, then constant velocity.
+    Sine {
+        /// (m/s²).
+        acceleration: f64,
+        /// ω (rad/s).
+        omega: f64,
+        /// 1 for a half-sine, 2 for one sine.
+        half_waves: f64,
+    },
+    /// `a cos ωt` for one wave, then rest.
+    Cosine {
+        /// (m/s²).
+        acceleration: f64,
+        /// ω (rad/s).
+        omega: f64,
+    },
+    /// `a sin ωt` for ever, about a place that stays.
+    Harmonic {
+        /// (m/s²).
+        acceleration: f64,
+        /// ω (rad/s).
+        omega: f64,
+    },
+    /// Displacement `A sin ωt` for ever: the ground starts with a velocity.
+    Swing {
+        /// A (m).
+        amplitude: f64,
+        /// ω (rad/s).
+        omega: f64,
+    },
+}
+
+impl Shake {
+    /// When (s) the acceleration has ended for good; infinity for motions that go on.
+    pub fn end(&self) -> f64 {
+        match *self {
+            Self::Cruise(_) => 0.0,
+            Self::Ramped { .. } | Self::Harmonic { .. } | Self::Swing { .. } => f64::INFINITY,
+            Self::Rectangular { duration, .. } => duration,
+            Self::Sine { omega, half_waves, .. } => half_waves * PI / omega,
+            Self::Cosine { omega, .. } => 2.0 * PI / omega,
+        }
+    }
+
+    /// Acceleration (m/s²); at its end that from before.
+    pub fn acceleration(&self, t: f64) -> f64 {
+        if t > self.end() {
+            return 0.0;
+        }
+        match *self {
+            Self::Cruise(_) => 0.0,
+            Self::Ramped { acceleration, ramp } => acceleration * (t / ramp).min(1.0),
+            Self::Rectangular { acceleration, .. } => acceleration,
+            Self::Sine { acceleration, omega, .. } | Self::Harmonic { acceleration, omega } => {
+                acceleration * sin(omega * t)
+            }
+            Self::Cosine { acceleration, omega } => acceleration * cos(omega * t),
+            Self::Swing { amplitude, omega } => -amplitude * omega * omega * sin(omega * t),
+        }
+    }
+
+    /// Displacement (m) and velocity (m/s).
+    pub fn place(&self, t: f64) -> (f64, f64) {
+        let during = t.min(self.end());
+        let (x, v) = match *self {
+            Self::Cruise(velocity) => return (velocity * t, velocity),
+            Self::Ramped { acceleration: a, ramp } => {
+                if t < ramp {
+                    (a * t * t * t / (6.0 * ramp), a * t * t / (2.0 * ramp))
+                } else {
+                    let (start, speed, s) = (a * ramp * ramp / 6.0, 0.5 * a * ramp, t - ramp);
+                    (start + speed * s + 0.5 * a * s * s, speed + a * s)
+                }
+            }
+            Self::Rectangular { acceleration: a, .. } => (0.5 * a * during * during, a * during),
+            Self::Sine { acceleration: a, omega, .. } => (
+                a / omega * (during - sin(omega * during) / omega),
+                a / omega * (1.0 - cos(omega * during)),
+            ),
+            Self::Cosine { acceleration: a, omega } => {
+                (a / (omega * omega) * (1.0 - cos(omega * during)), a / omega * sin(omega * during))
+            }
+            Self::Harmonic { acceleration: a, omega } => {
+                (-a / (omega * omega) * sin(omega * t), -a / omega * cos(omega * t))
+            }
+            Self::Swing { amplitude, omega } => {
+                (amplitude * sin(omega * t), amplitude * omega * cos(omega * t))
+            }
+        };
+        (x + v * (t - during), v)
+    }
+}
+
+impl Drive<Planar> for Shake {
+    fn at(&self, time: f64) -> (Vec2, Vec2) {
+        let (x, v) = self.place(time);
+        (Vec2::new(x, 0.0), Vec2::new(v, 0.0))
+    }
+}
+
+/// A horizontal motion with a vertical one.
+pub struct Both {
+    /// Along `x`.
+    pub x: Shake,
+    /// Along `z`.
+    pub z: Shake,
+}
+
+impl Drive<Planar> for Both {
+    fn at(&self, time: f64) -> (Vec2, Vec2) {
+        let ((x, vx), (z, vz)) = (self.x.place(time), self.z.place(time));
+        (Vec2::new(x, z), Vec2::new(vx, vz))
+    }
+}
+
+/// A record: acceleration straight between samples, displacement and velocity its exact integrals.
+#[derive(Clone, Debug)]
+pub struct Sampled {
+    step: f64,
+    acceleration: Vec<f64>,
+    velocity: Vec<f64>,
+    displacement: Vec<f64>,
+}
+
+impl Sampled {
+    /// From samples (m/s²) at a step (s), starting at rest.
+    pub fn new(step: f64, acceleration: Vec<f64>) -> Self {
+        let (mut velocity, mut displacement) = (vec![0.0], vec![0.0]);
+        for (i, pair) in acceleration.windows(2).enumerate() {
+            let (x, v) = advance(pair[0], pair[1], step, step, velocity[i], displacement[i]);
+            displacement.push(x);
+            velocity.push(v);
+        }
+        Self { step, acceleration, velocity, displacement }
+    }
+
+    /// Duration (s).
+    pub fn duration(&self) -> f64 {
+        (self.acceleration.len() - 1) as f64 * self.step
+    }
+
+    /// The sample before a time and the time since (s).
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "times from 0 on")]
+    fn cell(&self, t: f64) -> (usize, f64) {
+        let i = ((t / self.step) as usize).min(self.acceleration.len() - 2);
+        (i, t - i as f64 * self.step)
+    }
+
+    /// Acceleration (m/s²), zero after the end.
+    pub fn acceleration(&self, t: f64) -> f64 {
+        if t > self.duration() {
+            return 0.0;
+        }
+        let (i, s) = self.cell(t);
+        self.acceleration[i] + (self.acceleration[i + 1] - self.acceleration[i]) * s / self.step
+    }
+}
+
+/// Displacement and velocity after `s` of a cell in which the acceleration goes from `a` to `b`.
+fn advance(a: f64, b: f64, step: f64, s: f64, v: f64, x: f64) -> (f64, f64) {
+    let slope = (b - a) / step;
+    (x + v * s + 0.5 * a * s * s + slope * s * s * s / 6.0, v + a * s + 0.5 * slope * s * s)
+}
+
+impl Drive<Planar> for Sampled {
+    fn at(&self, time: f64) -> (Vec2, Vec2) {
+        let during = time.min(self.duration());
+        let (i, s) = self.cell(during);
+        let (a, b) = (self.acceleration[i], self.acceleration[i + 1]);
+        let (x, v) = advance(a, b, self.step, s, self.velocity[i], self.displacement[i]);
+        (Vec2::new(x + v * (time - during), 0.0), Vec2::new(v, 0.0))
+    }
+}

@@ -1,0 +1,38 @@
+//! Problems with exact answers, and how near the contact code comes to them.
+//!
+//! A [`Problem`] holds the scene, the exact or published answer with its source, and the tolerance,
+//! side by side. The crate's tests run all of them in a fast form, the program in full:
+//!
+//! ```sh
+//! cargo xtask validate
+//! ```
+//!
+//! # Order of convergence
+//!
+//! Penalty contact has two small numbers, the time step and the time of a contact.
+//! A refinement halves both: the step is halved and the contact made four times as stiff, with the
+//! damping ratio kept, so that the limit is the rigid body of the closed form and the order is that
+//! of the error against the exact answer. Bisected thresholds have none to show.
+//!
+//! # Adding a problem
+//!
+//! A problem that needs only bodies, a motion and one of the known quantities is a file in `cases/`
+//! ([`cases`]); anything else is a function in one of the [`problems`].
+
+pub mod cases;
+pub mod drive;
+pub mod execute;
+pub mod oracle;
+pub mod page;
+pub mod problem;
+pub mod problems;
+pub mod rocking;
+pub mod scene;
+pub mod theory;
+
+pub use execute::{Row, execute};
+pub use problem::{Effort, Failure, Outcome, Problem, Tolerance};
+pub use problems::all;
+
+/// Standard gravity (m/s²).
+pub const GRAVITY: f64 = 9.806_65;

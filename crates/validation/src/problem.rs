@@ -1,0 +1,174 @@
+//! A problem: what is asked, the exact answer, and how the code is made to answer.
+
+use barrelstack_dynamics::{ModelError, RunError, SettleError};
+
+/// How much work a problem may take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// For the test suite: coarser contacts, wider brackets, smaller ensembles.
+    Fast,
+    /// For the report: converged, with the order of convergence.
+    Full,
+}
+
+/// How far an answer may be from the exact one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tolerance {
+    /// As a share of the exact answer.
+    Relative(f64),
+    /// In the unit of the quantity.
+    Absolute(f64),
+}
+
+impl Tolerance {
+    /// The error of an answer in the measure of this tolerance.
+    pub fn error(self, value: f64, exact: f64) -> f64 {
+        match self {
+            Self::Relative(_) => (value - exact).abs() / exact.abs(),
+            Self::Absolute(_) => (value - exact).abs(),
+        }
+    }
+
+    /// The largest error allowed.
+    pub fn limit(self) -> f64 {
+        match self {
+            Self::Relative(limit) | Self::Absolute(limit) => limit,
+        }
+    }
+
+    /// Whether an answer is near enough; one that is not a number never is.
+    pub fn admits(self, value: f64, exact: f64) -> bool {
+        self.error(value, exact) <= self.limit()
+    }
+}
+
+/// What the code answers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// In the unit of the problem.
+    pub value: f64,
+    /// Order of convergence to the exact answer, see the crate's documentation.
+    pub order: Option<f64>,
+    /// What the reader should know.
+    pub note: String,
+}
+
+impl Outcome {
+    /// A value alone.
+    pub fn of(value: f64) -> Self {
+        Self { value, order: None, note: String::new() }
+    }
+
+    /// The same with a note.
+    #[must_use]
+    pub fn noted(mut self, note: impl Into<String>) -> Self {
+        self.note = note.into();
+        self
+    }
+}
+
+/// Why there is no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// The bodies do not make a model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The numbers broke down.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// The bodies do not stand.
+    #[error(transparent)]
+    Settle(#[from] SettleError),
+    /// A scenario cannot be read.
+    #[error(transparent)]
+    Scenario(#[from] barrelstack::scenario::ScenarioError),
+    /// A scenario cannot be run.
+    #[error(transparent)]
+    Scene(#[from] barrelstack::RunFailure),
+    /// What was looked for did not happen.
+    #[error("{0}")]
+    Absent(String),
+}
+
+/// What a problem runs.
+pub type Run = Box<dyn Fn(Effort) -> Result<Outcome, Failure> + Send + Sync>;
+
+/// A question with an exact answer.
+pub struct Problem {
+    /// Unique, such as `housner/quarter-period-0.50`; the part before the slash is the theory.
+    pub id: String,
+    /// The scene in a few words.
+    pub title: String,
+    /// Author, year and section of the theory.
+    pub source: String,
+    /// What is asked for.
+    pub quantity: &'static str,
+    /// Its unit; empty for pure numbers.
+    pub unit: &'static str,
+    /// The exact or published answer.
+    pub exact: f64,
+    /// How far the full answer may be from it.
+    pub tolerance: Tolerance,
+    /// The same for the fast answer, where it is coarser.
+    pub fast: Option<Tolerance>,
+    /// How the code is made to answer.
+    pub run: Run,
+}
+
+impl Problem {
+    /// The tolerance at an effort.
+    pub fn tolerance(&self, effort: Effort) -> Tolerance {
+        match effort {
+            Effort::Full => self.tolerance,
+            Effort::Fast => self.fast.unwrap_or(self.tolerance),
+        }
+    }
+
+    /// The theory it belongs to.
+    pub fn theory(&self) -> &str {
+        self.id.split_once('/').map_or(self.id.as_str(), |(theory, _)| theory)
+    }
+}
+
+/// Answers of successive refinements (0, 1, 2) in full, the coarsest alone in the fast form.
+///
+/// # Errors
+/// Those of `answer`.
+pub fn refine(
+    effort: Effort,
+    exact: f64,
+    mut answer: impl FnMut(i32) -> Result<f64, Failure>,
+) -> Result<Outcome, Failure> {
+    if effort == Effort::Fast {
+        return answer(0).map(Outcome::of);
+    }
+    let values = [answer(0)?, answer(1)?, answer(2)?];
+    let errors = values.map(|value| (value - exact).abs());
+    // Errors at the level of rounding have no order.
+    let floor = 1e-11 * exact.abs();
+    let order = (errors[2] > floor && errors[1] > floor).then(|| (errors[1] / errors[2]).log2());
+    Ok(Outcome {
+        value: values[2],
+        order,
+        note: format!("errors {:.1e}, {:.1e}, {:.1e}", errors[0], errors[1], errors[2]),
+    })
+}
+
+/// The border between `false` below and `true` above, by bisection between two brackets.
+///
+/// # Errors
+/// When the brackets do not hold a border, and those of `above`.
+pub fn border(
+    (mut low, mut high): (f64, f64),
+    halvings: u32,
+    mut above: impl FnMut(f64) -> Result<bool, Failure>,
+) -> Result<f64, Failure> {
+    if above(low)? || !above(high)? {
+        return Err(Failure::Absent(format!("no border between {low} and {high}")));
+    }
+    for _ in 0..halvings {
+        let middle = 0.5 * (low + high);
+        if above(middle)? { high = middle } else { low = middle }
+    }
+    Ok(0.5 * (low + high))
+}

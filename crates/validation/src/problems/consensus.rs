@@ -1,0 +1,217 @@
+//! Eight barrels on four levels, a scene that five independent codes agree on.
+//!
+//! Two mappings. *Bodies*: the scene of those codes as it is, one contact point where a barrel's crown
+//! meets a flat underside. *Scenario*: the nearest stack of the scenario language, whose underside is
+//! a row of nodes, several of which share a sunken crown, so that a joint is stiffer.
+//!
+//! The ground's displacement is A sin ωt from the first instant, so that it starts with a jolt, as
+//! "sine base motion of 0.1016 m" reads. What those codes call a fall is not on record; here a barrel
+//! has fallen once it is one level lower, 0.76 m.
+
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+use barrelstack::Scenario;
+use barrelstack_dynamics::math::{cos, sin};
+use barrelstack_dynamics::{
+    Body, ContactPair, Model, Motion, NormalLaw, Planar, Shape, Twist, Vec2,
+};
+
+use crate::drive::Shake;
+use crate::scene::{
+    DOWN, Scene, centered, coulomb, disc, floor, interface, points, pose, rectangle,
+};
+use crate::{Effort, Failure, Outcome, Problem, Tolerance};
+
+const SOURCE: &str = "MuJoCo (penalty), YADE, Drake, PyBullet (spring) and a plain penalty code; \
+                      peers.md";
+
+const RADIUS: f64 = 0.35;
+const PITCH: f64 = 0.76;
+const CLEARANCE: f64 = 0.06;
+const WIDTH: f64 = 1.50;
+const BEAM: f64 = 0.04;
+const LEVELS: usize = 4;
+const STIFFNESS: f64 = 9.8e5;
+const DAMPING: f64 = 2200.0;
+
+/// Drops (m): one from which a barrel counts as fallen, one that shows what the choice matters.
+const FALLS: [f64; 2] = [0.76, 0.2];
+
+/// Length of the runs (s).
+const END: f64 = 10.0;
+
+/// The problems of this theory.
+pub(super) fn problems() -> Vec<Problem> {
+    vec![
+        first_fall(),
+        verdict("a-scenario", "scene A (±20°) as a scenario", true, |end| scenario(20.0, end)),
+        verdict("c-bodies", "scene C (±35°) from bodies", false, |end| {
+            bodies(35.0, end).map(|times| times[0])
+        }),
+        verdict("c-scenario", "scene C (±35°) as a scenario", false, |end| scenario(35.0, end)),
+    ]
+}
+
+fn first_fall() -> Problem {
+    Problem {
+        id: "consensus/a-bodies".into(),
+        title: "scene A (±20°) from bodies".into(),
+        source: SOURCE.into(),
+        quantity: "first fall of a barrel",
+        unit: "s",
+        // The five codes: 1.64, 1.73, 1.75 to 1.85, 2.0, 1.69 s; the middle of their range, and half
+        // of it.
+        exact: 1.82,
+        tolerance: Tolerance::Absolute(0.18),
+        fast: None,
+        run: Box::new(move |_| match bodies(20.0, 3.0)? {
+            [Some(time), Some(earlier)] => Ok(Outcome::of(time).noted(format!(
+                "five codes: 1.64 s to 2.0 s; a drop of 0.2 m is passed at {earlier:.2} s"
+            ))),
+            _ => Err(Failure::Absent("nothing falls in 3 s".into())),
+        }),
+    }
+}
+
+fn verdict(
+    id: &str,
+    title: &str,
+    falls: bool,
+    run: fn(f64) -> Result<Option<f64>, Failure>,
+) -> Problem {
+    Problem {
+        id: format!("consensus/{id}"),
+        title: title.into(),
+        source: SOURCE.into(),
+        quantity: "whether a barrel falls in 10 s, 0 or 1",
+        unit: "",
+        exact: f64::from(u8::from(falls)),
+        tolerance: Tolerance::Absolute(0.0),
+        fast: None,
+        run: Box::new(move |effort| {
+            let end = if effort == Effort::Full { END } else { 3.0 };
+            Ok(match run(end)? {
+                None => Outcome::of(0.0).noted(format!("nothing falls in {end} s")),
+                Some(time) => Outcome::of(1.0).noted(format!("falls at {time:.2} s")),
+            })
+        }),
+    }
+}
+
+/// A rack: a beam whose underside the crowns below touch, feet, and two points for each barrel.
+fn rack(level: usize, underside: f64, angle: f64) -> Body<Planar> {
+    let mass = 30.0;
+    let beam = rectangle(WIDTH, BEAM);
+    let center = CLEARANCE + RADIUS - 0.5 * BEAM;
+    let mut supports = vec![];
+    for side in [-1.0, 1.0] {
+        for support in [-1.0, 1.0] {
+            supports.push(Vec2::new(
+                0.5 * side * PITCH + support * RADIUS * sin(angle),
+                center - RADIUS * cos(angle),
+            ));
+        }
+    }
+    let foot = |x: f64| Vec2::new(x * WIDTH, -0.5 * BEAM);
+    Body {
+        name: format!("R{level}"),
+        motion: Motion::Free,
+        mass,
+        inertia: mass * (WIDTH * WIDTH + BEAM * BEAM) / 12.0,
+        damping: None,
+        pose: pose(0.0, underside + 0.5 * BEAM, 0.0),
+        twist: Twist::default(),
+        surfaces: vec![centered(Shape::Polygon(beam))],
+        nodes: vec![points(&supports), points(&[foot(-0.5), foot(0.5)])],
+    }
+}
+
+/// When (s) the first barrel falls in the scene made of bodies, for either drop.
+fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
+    let angle = degrees.to_radians();
+    let mut bodies = vec![floor()];
+    let pitch = CLEARANCE + 2.0 * RADIUS;
+    for level in 0..LEVELS {
+        let underside = pitch * level as f64;
+        bodies.push(rack(level + 1, underside, angle));
+        for (column, side) in [-0.5, 0.5].into_iter().enumerate() {
+            let center = Vec2::new(side * PITCH, underside + CLEARANCE + RADIUS);
+            let name = format!("B{}.{}", level + 1, column + 1);
+            bodies.push(disc(&name, RADIUS, 275.0, 0.5 * RADIUS * RADIUS, center));
+        }
+    }
+    let is_rack = |i: usize| i > 0 && i % 3 == 1;
+    let pair = |contactor, nodes, target, interface| ContactPair {
+        contactor,
+        nodes,
+        target,
+        surface: 0,
+        interface,
+    };
+    let mut pairs = vec![];
+    for i in 1..bodies.len() {
+        // Feet and barrels on the ground.
+        pairs.push(pair(i, usize::from(is_rack(i)), 0, 0));
+        for j in 1..bodies.len() {
+            match (is_rack(i), is_rack(j)) {
+                // Cradle supports on barrels.
+                (true, false) => pairs.push(pair(i, 0, j, 1)),
+                // Crowns on undersides above; a barrel meets its own rack at the supports alone.
+                (false, true) if i.div_ceil(3) != j.div_ceil(3) => pairs.push(pair(i, 0, j, 1)),
+                (false, false) if i < j => pairs.push(pair(i, 0, j, 1)),
+                _ => {}
+            }
+        }
+    }
+    let law = |friction| {
+        let normal = NormalLaw::SpeedGap { stiffness: STIFFNESS, damping: DAMPING };
+        interface(normal, coulomb(friction, STIFFNESS, DAMPING))
+    };
+    let model = Model::new(bodies, vec![law(0.5), law(0.22)], pairs, DOWN)?;
+    let step = 1e-4;
+    let mut scene = Scene::of(model).settled(step, 1e-9)?;
+    let rest: Vec<f64> = scene.state.poses.iter().map(|p| p.position.z).collect();
+    let drive = Shake::Swing { amplitude: 0.1016, omega: TAU / 1.0748 };
+    let mut fallen = [None; 2];
+    scene.watch(&drive, step, end, |state, _| {
+        let dropped = |i: usize| {
+            if is_rack(i) { 0.0 } else { rest[i] - state.poses[i].position.z }
+        };
+        let most = (1..rest.len()).map(dropped).fold(0.0, f64::max);
+        for (fallen, drop) in fallen.iter_mut().zip(FALLS) {
+            if fallen.is_none() && most > drop {
+                *fallen = Some(state.time);
+            }
+        }
+        if fallen[0].is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
+    Ok(fallen)
+}
+
+/// When (s) the first barrel falls in the nearest stack scenario.
+fn scenario(degrees: f64, end: f64) -> Result<Option<f64>, Failure> {
+    // Rows of ±0.37 m about crowns 0.76 m apart make one row from end to end but for 2 cm.
+    let text = format!(
+        r#"
+schema = 1
+title = "Consensus scene, supports at ±{degrees}°"
+extends = "candia-8-barrels"
+
+[stack]
+rack = {{ base = "candia-2008", bearing_half_length = "0.37 m", cradle = {{ type = "supports", angle = "{degrees} deg" }} }}
+
+[motion.sine]
+amplitude = "0.1016 m"
+period = "1.0748 s"
+cycles = 12
+
+[run]
+duration = "{end} s"
+stop_after_collapse = "1 s"
+"#
+    );
+    let scenario = Scenario::parse("consensus.toml", &text, &[])?;
+    let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(()))?;
+    Ok(run.fates.first_fall())
+}

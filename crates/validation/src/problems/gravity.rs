@@ -1,0 +1,203 @@
+//! Equilibrium under gravity: forces, sinking, overhangs, and rest that stays.
+
+use std::ops::ControlFlow;
+
+use barrelstack_dynamics::contact::restitution;
+use barrelstack_dynamics::math::{atan2, cos, sin};
+use barrelstack_dynamics::shape::Polygon;
+use barrelstack_dynamics::{Body, FrictionLaw, NormalLaw, Planar, Shape, Still, Vec2, settle};
+
+use crate::problem::border;
+use crate::scene::{
+    DOWN, Scene, block, centered, coulomb, disc, fixed, floor, ground_of, interface, points, pose,
+    rectangle,
+};
+use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
+
+const SOURCE: &str = "statics; validation.md 4.9";
+const MASS: f64 = 40.0;
+const STIFFNESS: f64 = 1e7;
+
+/// How far (m) nodes are in from the ends, so that equal bricks can stand on each other.
+pub(super) const INSET: f64 = 0.02;
+
+fn firm() -> NormalLaw {
+    NormalLaw::SpeedGap { stiffness: STIFFNESS, damping: 2e4 }
+}
+
+fn rough() -> FrictionLaw {
+    coulomb(0.5, STIFFNESS, 1e4)
+}
+
+/// A brick whose nodes are a little in from its ends.
+pub(super) fn brick(
+    name: &str,
+    (length, height): (f64, f64),
+    mass: f64,
+    (x, z): (f64, f64),
+) -> Body<Planar> {
+    let mut body = block(name, (length, height), mass, pose(x, z, 0.0));
+    let inner: Polygon = rectangle(length - 2.0 * INSET, height);
+    body.nodes = vec![fixed(&inner.corner_nodes())];
+    body
+}
+
+fn column(count: u32) -> Result<Scene, Failure> {
+    let mut bodies = vec![floor()];
+    for i in 0..count {
+        let place = (0.0, 0.1 + 0.2 * f64::from(i));
+        bodies.push(brick(&format!("brick {i}"), (0.5, 0.2), MASS, place));
+    }
+    Scene::new(bodies, interface(firm(), rough()), DOWN)?.settled(2e-4, 1e-9)
+}
+
+/// The problems of this theory.
+pub(super) fn problems() -> Vec<Problem> {
+    let mut list = vec![];
+    list.extend((1..=5).map(level_force));
+    list.push(sink());
+    list.extend([0.2, 0.5, 0.8, 1.1].map(cradle));
+    list.push(rest());
+    list.extend((1..=5).map(overhang));
+    list
+}
+
+/// The sum of normal forces (N) between two bodies, whichever carries the nodes.
+fn force_between(scene: &Scene, a: usize, b: usize) -> f64 {
+    let joins = |pair: usize| {
+        let pair = scene.model.pairs()[pair];
+        (pair.contactor, pair.target) == (a, b) || (pair.contactor, pair.target) == (b, a)
+    };
+    scene.scratch.contacts.iter().filter(|c| joins(c.pair)).map(|c| c.normal_force).sum()
+}
+
+fn level_force(level: usize) -> Problem {
+    let exact = (6 - level) as f64 * MASS * GRAVITY;
+    Problem {
+        id: format!("gravity/level-{level}"),
+        title: format!("five bricks in a column, force under level {level}"),
+        source: SOURCE.into(),
+        quantity: "normal force",
+        unit: "N",
+        exact,
+        tolerance: Tolerance::Relative(1e-8), // measured 9e-10
+        fast: None,
+        run: Box::new(move |_| Ok(Outcome::of(force_between(&column(5)?, level - 1, level)))),
+    }
+}
+
+fn sink() -> Problem {
+    let exact = 5.0 * MASS * GRAVITY / (2.0 * STIFFNESS);
+    Problem {
+        id: "gravity/sink".into(),
+        title: "five bricks in a column, the lowest on two nodes".into(),
+        source: SOURCE.into(),
+        quantity: "sinking of the lowest",
+        unit: "m",
+        exact,
+        tolerance: Tolerance::Relative(1e-8), // measured 3e-10
+        fast: None,
+        run: Box::new(|_| Ok(Outcome::of(0.1 - column(5)?.state.poses[1].position.z))),
+    }
+}
+
+fn cradle(angle: f64) -> Problem {
+    let mass = 275.0;
+    let exact = mass * GRAVITY / (2.0 * cos(angle));
+    Problem {
+        id: format!("gravity/cradle-{angle}"),
+        title: format!("disc of 275 kg on two smooth points at ±{angle} rad"),
+        source: SOURCE.into(),
+        quantity: "normal force of one",
+        unit: "N",
+        exact,
+        // The points lie a little higher on the sunken disc; stiffness decides.
+        tolerance: Tolerance::Relative(1e-4),
+        fast: None,
+        run: Box::new(move |_| {
+            let (radius, stiffness) = (0.35, 1e9);
+            let mut ground = ground_of(vec![]);
+            let point = |side: f64| Vec2::new(side * radius * sin(angle), -radius * cos(angle));
+            ground.nodes = vec![points(&[point(-1.0), point(1.0)])];
+            let mut barrel = disc("barrel", radius, mass, 0.06, Vec2::default());
+            barrel.nodes = vec![];
+            let damping = restitution::damping(stiffness, 0.5, mass);
+            let normal = NormalLaw::SpeedGap { stiffness, damping };
+            let laws = interface(normal, FrictionLaw::Frictionless);
+            let scene = Scene::new(vec![ground, barrel], laws, DOWN)?.settled(1e-4, 1e-10)?;
+            let found = scene.scratch.contacts.iter().map(|c| c.normal_force).fold(0.0, f64::max);
+            let sunk = -scene.state.poses[1].position.z;
+            let steeper = atan2(radius * sin(angle), radius * cos(angle) - sunk);
+            let there = mass * GRAVITY / (2.0 * cos(steeper));
+            Ok(Outcome::of(found).noted(format!(
+                "of the force at the sunken place: {:.1e}",
+                (found / there - 1.0).abs()
+            )))
+        }),
+    }
+}
+
+fn rest() -> Problem {
+    Problem {
+        id: "gravity/rest".into(),
+        title: "five bricks in a column, one minute (six seconds in the fast form)".into(),
+        source: SOURCE.into(),
+        quantity: "largest drift",
+        unit: "m",
+        exact: 0.0,
+        tolerance: Tolerance::Absolute(1e-6), // measured 1.2e-13
+        fast: None,
+        run: Box::new(|effort| {
+            let mut scene = column(5)?;
+            let start: Vec<Vec2> = scene.state.poses.iter().map(|p| p.position).collect();
+            let mut drift = 0.0_f64;
+            let end = if effort == Effort::Full { 60.0 } else { 6.0 };
+            scene.watch(&Still, 2e-4, end, |state, _| {
+                for (pose, start) in state.poses.iter().zip(&start) {
+                    drift = drift.max((pose.position - *start).length());
+                }
+                ControlFlow::Continue(())
+            })?;
+            Ok(Outcome::of(drift))
+        }),
+    }
+}
+
+/// The harmonic stack: the topmost of `n` bricks hangs out by a share of the farthest overhang.
+fn stands(n: u32, share: f64) -> Result<bool, Failure> {
+    let (length, height) = (1.0, 0.2);
+    // The lowest lies on a table that ends at x = 0; brick i from the top hangs out by L/2i over the
+    // one below.
+    let table = rectangle(4.0, 1.0);
+    let mut ground = ground_of(vec![centered(Shape::Polygon(table.clone()))]);
+    ground.pose = pose(-2.0, -0.5, 0.0);
+    ground.nodes = vec![fixed(&table.corner_nodes())];
+    let mut bodies = vec![ground];
+    let mut edge = 0.0;
+    for i in (1..=n).rev() {
+        edge += share * 0.5 * length / f64::from(i);
+        let at = pose(edge - 0.5 * length, height * (f64::from(n - i) + 0.5), 0.0);
+        bodies.push(block(&format!("brick {i}"), (length, height), MASS, at));
+    }
+    let mut scene = Scene::new(bodies, interface(firm(), rough()), DOWN)?;
+    Ok(settle(&scene.model, &mut scene.state, &mut scene.scratch, 2e-4, 1e-7).is_ok())
+}
+
+fn overhang(n: u32) -> Problem {
+    let exact = theory::overhang(n, 1.0);
+    Problem {
+        id: format!("gravity/overhang-{n}"),
+        title: format!("{n} equal bricks of 1 m over the end of a table"),
+        source: "the harmonic stack; validation.md 4.9".into(),
+        quantity: "farthest overhang",
+        unit: "m",
+        exact,
+        tolerance: Tolerance::Relative(5e-3),
+        fast: Some(Tolerance::Relative(1.2e-2)),
+        run: Box::new(move |effort| {
+            let halvings = if effort == Effort::Full { 6 } else { 0 };
+            let found = border((0.99, 1.01), halvings, |share| Ok(!stands(n, share)?))?;
+            Ok(Outcome::of(found * exact))
+        }),
+    }
+}

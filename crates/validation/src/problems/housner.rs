@@ -1,0 +1,237 @@
+//! Free rocking: period and amplitude, loss at impacts, uplift, and overturning by one push.
+
+use barrelstack_dynamics::math::{cos, tan};
+
+use crate::drive::{Both, Shake};
+use crate::problem::{border, refine};
+use crate::rocking::{RockingBlock, contact_frequency};
+use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
+
+const SOURCE: &str = "Housner 1963; validation.md 4.1";
+
+/// A block whose corners are damped enough to show Housner's ratio (see `restitution`).
+pub(super) fn firm(effort: Effort, radius: f64, alpha: f64) -> RockingBlock {
+    RockingBlock {
+        damping_ratio: 3.0,
+        contact_frequency: contact_frequency(effort),
+        ..RockingBlock::new(radius, alpha)
+    }
+}
+
+/// A slender block, for closed forms that take angles as small; stiff, so that its sinking stays small
+/// beside its angles.
+pub(super) fn slender(effort: Effort, radius: f64) -> RockingBlock {
+    let stiffer = if effort == Effort::Full { 2.5 } else { 2.0 };
+    RockingBlock {
+        contact_frequency: stiffer * contact_frequency(effort),
+        ..firm(effort, radius, 0.03)
+    }
+}
+
+/// How many halvings a bisection takes.
+pub(super) fn halvings(effort: Effort) -> u32 {
+    match effort {
+        Effort::Fast => 2,
+        Effort::Full => 11,
+    }
+}
+
+/// The problems of this theory.
+pub(super) fn problems() -> Vec<Problem> {
+    let mut list = vec![];
+    for alpha in [0.10, 0.25, 0.40] {
+        list.extend([0.10, 0.25, 0.50, 0.75, 0.90].map(|share| quarter_period(alpha, share)));
+    }
+    list.extend([0.10, 0.25, 0.40].map(ratio));
+    for (alpha, count) in [(0.25, 5), (0.40, 3)] {
+        list.extend((1..=count).map(|n| decay(alpha, n)));
+        list.push(half_period(alpha, 1));
+        list.push(half_period(alpha, count));
+    }
+    list.extend([0.10, 0.15, 0.25, 0.40].map(|alpha| uplift(alpha, 0.0)));
+    list.extend([-0.3, 0.3].map(|vertical| uplift(0.25, vertical)));
+    list.extend([0.25, 0.5, 1.0, 2.0].map(rectangular));
+    list.push(impulse());
+    list
+}
+
+fn quarter_period(alpha: f64, share: f64) -> Problem {
+    let exact = theory::quarter_period(alpha, share);
+    Problem {
+        id: format!("housner/quarter-period-{alpha:.2}-{share:.2}"),
+        title: format!("block of α = {alpha} let go at φ = {share}"),
+        source: SOURCE.into(),
+        quantity: "p times the quarter period",
+        unit: "",
+        exact,
+        tolerance: Tolerance::Relative(1e-3), // measured: see the report
+        fast: Some(Tolerance::Relative(5e-3)),
+        run: Box::new(move |effort| {
+            let block = firm(effort, 1.0, alpha);
+            let slender = theory::slender_quarter_period(share);
+            let mut outcome =
+                refine(effort, exact, |level| block.refined(level - 1).quarter_period(share))?;
+            outcome.note = format!("{}; slender block {slender:.5}", outcome.note);
+            Ok(outcome)
+        }),
+    }
+}
+
+fn ratio(alpha: f64) -> Problem {
+    let exact = theory::housner_restitution(alpha);
+    Problem {
+        id: format!("housner/impact-{alpha:.2}"),
+        title: format!("first impact of a block of α = {alpha} let go at φ = 0.5"),
+        source: SOURCE.into(),
+        quantity: "ratio of angular velocities η",
+        unit: "",
+        exact,
+        tolerance: Tolerance::Relative(1e-3),
+        fast: Some(Tolerance::Relative(5e-3)),
+        run: Box::new(move |effort| {
+            refine(effort, exact, |level| {
+                firm(effort, 1.0, alpha).refined(level - 1).restitution(0.5)
+            })
+        }),
+    }
+}
+
+/// Lean over α after impacts, exact for any α, from φ = ½.
+fn peaks(alpha: f64, impacts: usize) -> f64 {
+    let eta = theory::housner_restitution(alpha);
+    (0..impacts).fold(0.5, |share, _| theory::next_peak(alpha, share, eta * eta))
+}
+
+fn decay(alpha: f64, impacts: usize) -> Problem {
+    let exact = peaks(alpha, impacts);
+    Problem {
+        id: format!("housner/decay-{alpha:.2}-{impacts}"),
+        title: format!("block of α = {alpha} let go at φ = 0.5"),
+        source: SOURCE.into(),
+        quantity: "lean over α after the impacts counted in the name",
+        unit: "",
+        exact,
+        tolerance: Tolerance::Relative(1e-2),
+        fast: Some(Tolerance::Relative(3e-2)),
+        run: Box::new(move |effort| {
+            let ratio = theory::housner_restitution(alpha).powi(2);
+            let n = i32::try_from(impacts).unwrap_or(i32::MAX);
+            let slender = 1.0 - (1.0 - ratio.powi(n) * 0.75).sqrt();
+            let mut outcome = refine(effort, exact, |level| {
+                let block = firm(effort, 1.0, alpha).refined(level - 1);
+                nth(&block.timed_swings(0.5, impacts, 10.0)?, impacts).map(|swing| swing.1)
+            })?;
+            outcome.note = format!("{}; slender block {slender:.4}", outcome.note);
+            Ok(outcome)
+        }),
+    }
+}
+
+/// The swing after a number of impacts.
+fn nth(swings: &[(f64, f64)], impacts: usize) -> Result<(f64, f64), Failure> {
+    swings
+        .get(impacts - 1)
+        .copied()
+        .ok_or_else(|| Failure::Absent(format!("only {} impacts of {impacts}", swings.len())))
+}
+
+fn half_period(alpha: f64, impacts: usize) -> Problem {
+    let exact = 2.0 * theory::quarter_period(alpha, peaks(alpha, impacts));
+    Problem {
+        id: format!("housner/half-period-{alpha:.2}-{impacts}"),
+        title: format!("block of α = {alpha} let go at φ = 0.5"),
+        source: SOURCE.into(),
+        quantity: "p times the time to the next impact",
+        unit: "",
+        exact,
+        tolerance: Tolerance::Relative(5e-3),
+        fast: Some(Tolerance::Relative(2e-2)),
+        run: Box::new(move |effort| {
+            refine(effort, exact, |level| {
+                let block = firm(effort, 1.0, alpha).refined(level - 1);
+                let swings = block.timed_swings(0.5, impacts + 1, 12.0)?;
+                let way = nth(&swings, impacts + 1)?.0 - nth(&swings, impacts)?.0;
+                Ok(way * block.rate())
+            })
+        }),
+    }
+}
+
+/// Uplift under a ground acceleration that comes slowly; `vertical` (g) acts all the while.
+fn uplift(alpha: f64, vertical: f64) -> Problem {
+    let exact = tan(alpha) * (1.0 + vertical);
+    let name = if vertical == 0.0 {
+        format!("{alpha:.2}")
+    } else {
+        format!("{alpha:.2}-vertical-{vertical:+.1}")
+    };
+    Problem {
+        id: format!("housner/uplift-{name}"),
+        title: format!("block of α = {alpha}, vertical ground acceleration {vertical} g"),
+        source: SOURCE.into(),
+        quantity: "ground acceleration that lifts a corner",
+        unit: "g",
+        exact,
+        tolerance: Tolerance::Relative(5e-3),
+        fast: Some(Tolerance::Relative(1.2e-2)),
+        run: Box::new(move |effort| {
+            let block = firm(effort, 1.0, alpha);
+            let bracket = (0.98 * exact, 1.02 * exact);
+            let found = border(bracket, halvings(effort), |push| {
+                let ramped = |acceleration| Shake::Ramped { acceleration, ramp: 0.2 };
+                let drive = Both { x: ramped(push * GRAVITY), z: ramped(vertical * GRAVITY) };
+                let mut scene = block.scene(0.0)?;
+                scene.run(&drive, block.step(), 0.6)?;
+                Ok(scene.state.poses[1].orientation.abs() > 2e-4)
+            })?;
+            Ok(Outcome::of(found))
+        }),
+    }
+}
+
+fn rectangular(product: f64) -> Problem {
+    let exact = theory::rectangular_overturning(product);
+    Problem {
+        id: format!("housner/rectangular-{product}"),
+        title: format!("slender block (α = 0.03), constant push of p t₁ = {product}"),
+        source: SOURCE.into(),
+        quantity: "strength over g tan α that overturns",
+        unit: "",
+        exact,
+        tolerance: Tolerance::Relative(1e-2),
+        fast: Some(Tolerance::Relative(2e-2)),
+        run: Box::new(move |effort| {
+            let block = slender(effort, 1.0);
+            let duration = product / block.rate();
+            let found = border((0.97 * exact, 1.03 * exact), halvings(effort), |strength| {
+                let push = Shake::Rectangular { acceleration: strength * block.uplift(), duration };
+                block.overturns(&push, duration)
+            })?;
+            Ok(Outcome::of(found))
+        }),
+    }
+}
+
+fn impulse() -> Problem {
+    let (radius, alpha) = (1.0, 0.25);
+    let exact = (8.0 * GRAVITY * radius * (1.0 - cos(alpha)) / 3.0).sqrt() / cos(alpha);
+    Problem {
+        id: "housner/impulse".into(),
+        title: "block of α = 0.25, ground velocity reached within 2 ms".into(),
+        source: SOURCE.into(),
+        quantity: "sudden ground velocity that overturns",
+        unit: "m/s",
+        exact,
+        tolerance: Tolerance::Relative(1e-2),
+        fast: Some(Tolerance::Relative(2e-2)),
+        run: Box::new(move |effort| {
+            let block = firm(effort, radius, alpha);
+            let duration = 2e-3;
+            let found = border((0.97 * exact, 1.03 * exact), halvings(effort), |velocity| {
+                let push = Shake::Rectangular { acceleration: velocity / duration, duration };
+                block.overturns(&push, duration)
+            })?;
+            Ok(Outcome::of(found))
+        }),
+    }
+}

@@ -1,0 +1,353 @@
+//! What must hold in every scene: symmetry, similitude, invariance, and books that close.
+
+use barrelstack_dynamics::{
+    Body, ContactPair, Interface, Model, Nodes, NormalLaw, Planar, Shape, State, Still, Twist, Vec2,
+};
+
+use crate::drive::Shake;
+use crate::scene::{DOWN, Scene, all_pairs, block, coulomb, disc, floor, interface, points, pose};
+use crate::{Effort, Failure, Outcome, Problem, Tolerance};
+
+const SOURCE: &str = "symmetry of mechanics; validation.md 4.9";
+const BOOKS: &str = "balance of energy; validation.md 4.6";
+
+/// Heaps that a problem looks at.
+fn seeds(effort: Effort) -> u64 {
+    match effort {
+        Effort::Fast => 2,
+        Effort::Full => 12,
+    }
+}
+
+/// A small generator (splitmix64), so that a seed gives the same scene on every machine.
+pub(super) struct Random(pub(super) u64);
+
+impl Random {
+    /// A number in a range.
+    pub(super) fn within(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        low + (high - low) * ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// A floor, discs and blocks above it, in a loose heap that falls, turns and collides.
+fn heap(seed: u64) -> Vec<Body<Planar>> {
+    let mut random = Random(seed);
+    let mut bodies = vec![floor()];
+    for i in 0..6 {
+        let (column, row) = (f64::from(i % 3), f64::from(i / 3));
+        let x = 0.55 * (column - 1.0) + random.within(-0.1, 0.1);
+        let z = 0.45 + 0.6 * row + random.within(-0.05, 0.05);
+        let mass = random.within(20.0, 80.0);
+        let name = format!("body {i}");
+        let mut body = if random.within(0.0, 1.0) < 0.5 {
+            let radius = random.within(0.12, 0.2);
+            disc(&name, radius, mass, 0.5 * radius * radius, Vec2::new(x, z))
+        } else {
+            let size = (random.within(0.15, 0.3), random.within(0.1, 0.25));
+            block(&name, size, mass, pose(x, z, random.within(-1.0, 1.0)))
+        };
+        body.twist = Twist {
+            linear: Vec2::new(random.within(-1.0, 1.0), random.within(-1.0, 0.0)),
+            angular: random.within(-2.0, 2.0),
+        };
+        bodies.push(body);
+    }
+    bodies
+}
+
+/// Contact and friction of a heap; `factor` multiplies stiffness, `damping` the dampers.
+fn rough(factor: f64, damping: f64) -> Interface<Planar> {
+    interface(
+        NormalLaw::SpeedGap { stiffness: 2.0e5 * factor, damping: 600.0 * damping },
+        coulomb(0.4, 1.5e5 * factor, 300.0 * damping),
+    )
+}
+
+fn shaken(acceleration: f64) -> Shake {
+    Shake::Harmonic { acceleration, omega: 9.0 }
+}
+
+/// The six numbers of each body's motion.
+fn numbers(state: &State<Planar>) -> Vec<[f64; 6]> {
+    let bodies = state.poses.iter().zip(&state.twists);
+    bodies
+        .map(|(p, t)| {
+            [p.position.x, p.position.z, p.orientation, t.linear.x, t.linear.z, t.angular]
+        })
+        .collect()
+}
+
+/// The largest difference of two scenes, the first scaled number by number.
+fn apart(a: &State<Planar>, scale: [f64; 6], b: &State<Planar>) -> f64 {
+    numbers(a)
+        .iter()
+        .zip(numbers(b))
+        .flat_map(|(x, y)| (0..6).map(move |k| (scale[k] * x[k] - y[k]).abs()))
+        .fold(0.0, f64::max)
+}
+
+/// The problems of this theory.
+pub(super) fn problems() -> Vec<Problem> {
+    vec![
+        invariance("mirror", "mirrored heap on mirrored ground", 1e-10, mirror),
+        invariance("froude", "heap four times as large, gravity kept", 0.0, froude),
+        invariance("mass-unit", "heap and contacts 1024 times as heavy", 0.0, mass_unit),
+        invariance("galilean", "heap on ground that moves at 3 m/s", 1e-8, galilean),
+        invariance("order", "heap with bodies and nodes in reverse order", 1e-10, order),
+        invariance("time-shift", "heap at rest ground, clock started at 64 s", 1e-9, time_shift),
+        invariance("repeat", "the same heap run twice", 0.0, repeat),
+        books(),
+        elastic_row(),
+    ]
+}
+
+fn invariance(
+    name: &str,
+    title: &str,
+    limit: f64,
+    difference: fn(u64) -> Result<f64, Failure>,
+) -> Problem {
+    Problem {
+        id: format!("invariances/{name}"),
+        title: title.into(),
+        source: SOURCE.into(),
+        quantity: "largest difference in m, rad, m/s, rad/s",
+        unit: "",
+        exact: 0.0,
+        tolerance: Tolerance::Absolute(limit),
+        fast: None,
+        run: Box::new(move |effort| {
+            let mut worst = 0.0_f64;
+            for seed in 0..seeds(effort) {
+                let found = difference(seed)?;
+                worst = if found.is_nan() { f64::NAN } else { worst.max(found) };
+            }
+            Ok(Outcome::of(worst).noted(format!("worst of {} heaps", seeds(effort))))
+        }),
+    }
+}
+
+/// Time step (s) and end (s) of the heaps.
+const STEP: f64 = 2e-4;
+const END: f64 = 0.5;
+
+fn mirror(seed: u64) -> Result<f64, Failure> {
+    let flip = |v: Vec2| Vec2::new(-v.x, v.z);
+    let mirrored = |body: &Body<Planar>| {
+        let mut body = body.clone();
+        body.pose.position = flip(body.pose.position);
+        body.pose.orientation = -body.pose.orientation;
+        body.twist = Twist { linear: flip(body.twist.linear), angular: -body.twist.angular };
+        // Rectangles, discs and floors are their own mirror images; their nodes are not.
+        for nodes in &mut body.nodes {
+            if let Nodes::Fixed(nodes) = nodes {
+                for node in nodes {
+                    node.position = flip(node.position);
+                }
+            }
+        }
+        body
+    };
+    let bodies = heap(seed);
+    let image = bodies.iter().map(mirrored).collect();
+    let mut here = Scene::new(bodies, rough(1.0, 1.0), DOWN)?;
+    let mut there = Scene::new(image, rough(1.0, 1.0), DOWN)?;
+    here.run(&shaken(3.0), STEP, END)?;
+    there.run(&shaken(-3.0), STEP, END)?;
+    Ok(apart(&here.state, [-1.0, 1.0, -1.0, -1.0, 1.0, -1.0], &there.state))
+}
+
+/// A body four times as large in the same gravity.
+fn four_times(body: &Body<Planar>) -> Body<Planar> {
+    let mut body = body.clone();
+    body.mass *= 64.0;
+    body.inertia *= 1024.0;
+    body.pose.position = body.pose.position * 4.0;
+    body.twist = Twist { linear: body.twist.linear * 2.0, angular: body.twist.angular * 0.5 };
+    for placed in &mut body.surfaces {
+        match &mut placed.surface {
+            Shape::Circle(circle) => circle.radius *= 4.0,
+            Shape::Polygon(polygon) => *polygon = polygon.scaled(4.0),
+            // Half-planes have no size, and heaps hold nothing else.
+            Shape::HalfPlane(_) | Shape::Cradle(_) | Shape::BarrelProfile(_) => {}
+        }
+    }
+    for nodes in &mut body.nodes {
+        match nodes {
+            Nodes::Fixed(nodes) => {
+                for node in nodes {
+                    node.position = node.position * 4.0;
+                }
+            }
+            Nodes::Rolling { radius, .. } => *radius *= 4.0,
+        }
+    }
+    body
+}
+
+/// All factors are powers of two, so that the runs must agree to the last bit.
+fn froude(seed: u64) -> Result<f64, Failure> {
+    let bodies = heap(seed);
+    let large = bodies.iter().map(four_times).collect();
+    let mut small = Scene::new(bodies, rough(1.0, 1.0), DOWN)?;
+    let mut large = Scene::new(large, rough(16.0, 32.0), DOWN)?;
+    small.run(&shaken(0.0), STEP, END)?;
+    large.run(&shaken(0.0), 2.0 * STEP, 2.0 * END)?;
+    Ok(apart(&small.state, [4.0, 4.0, 1.0, 2.0, 2.0, 0.5], &large.state))
+}
+
+fn mass_unit(seed: u64) -> Result<f64, Failure> {
+    let bodies = heap(seed);
+    let mut heavy = bodies.clone();
+    for body in &mut heavy {
+        body.mass *= 1024.0;
+        body.inertia *= 1024.0;
+    }
+    let mut light = Scene::new(bodies, rough(1.0, 1.0), DOWN)?;
+    let mut heavy = Scene::new(heavy, rough(1024.0, 1024.0), DOWN)?;
+    light.run(&shaken(3.0), STEP, END)?;
+    heavy.run(&shaken(3.0), STEP, END)?;
+    Ok(apart(&light.state, [1.0; 6], &heavy.state))
+}
+
+fn galilean(seed: u64) -> Result<f64, Failure> {
+    let speed = 3.0;
+    let mut rest = Scene::new(heap(seed), rough(1.0, 1.0), DOWN)?;
+    let mut riding = Scene::new(heap(seed), rough(1.0, 1.0), DOWN)?;
+    for twist in &mut riding.state.twists {
+        twist.linear.x += speed;
+    }
+    rest.run(&Still, STEP, END)?;
+    riding.run(&Shake::Cruise(speed), STEP, END)?;
+    for (pose, twist) in riding.state.poses.iter_mut().zip(&mut riding.state.twists) {
+        pose.position.x -= speed * END;
+        twist.linear.x -= speed;
+    }
+    riding.state.twists[0] = rest.state.twists[0];
+    Ok(apart(&rest.state, [1.0; 6], &riding.state))
+}
+
+fn order(seed: u64) -> Result<f64, Failure> {
+    let bodies = heap(seed);
+    let last = bodies.len();
+    // The ground stays first; body i changes places with body last − i.
+    let place = |i: usize| if i == 0 { 0 } else { last - i };
+    let mut turned: Vec<Body<Planar>> = (0..last).map(|i| bodies[place(i)].clone()).collect();
+    for nodes in turned.iter_mut().flat_map(|body| &mut body.nodes) {
+        if let Nodes::Fixed(nodes) = nodes {
+            nodes.reverse();
+        }
+    }
+    // The same two bodies meet in the same roles, whatever their numbers.
+    let pairs = all_pairs(&bodies)
+        .into_iter()
+        .map(|p| ContactPair { contactor: place(p.contactor), target: place(p.target), ..p })
+        .collect();
+    let mut here = Scene::new(bodies, rough(1.0, 1.0), DOWN)?;
+    let mut there = Scene::of(Model::new(turned, vec![rough(1.0, 1.0)], pairs, DOWN)?);
+    here.run(&Still, STEP, END)?;
+    there.run(&Still, STEP, END)?;
+    let mut back = there.state.clone();
+    for i in 0..last {
+        back.poses[i] = there.state.poses[place(i)];
+        back.twists[i] = there.state.twists[place(i)];
+    }
+    Ok(apart(&here.state, [1.0; 6], &back))
+}
+
+fn time_shift(seed: u64) -> Result<f64, Failure> {
+    let start = 64.0;
+    let mut now = Scene::new(heap(seed), rough(1.0, 1.0), DOWN)?;
+    let mut later = Scene::new(heap(seed), rough(1.0, 1.0), DOWN)?;
+    later.state.time = start;
+    now.run(&Still, STEP, END)?;
+    later.run(&Still, STEP, start + END)?;
+    Ok(apart(&now.state, [1.0; 6], &later.state))
+}
+
+fn repeat(seed: u64) -> Result<f64, Failure> {
+    let run = || -> Result<Scene, Failure> {
+        let mut scene = Scene::new(heap(seed), rough(1.0, 1.0), DOWN)?;
+        scene.run(&shaken(3.0), STEP, END)?;
+        Ok(scene)
+    };
+    Ok(apart(&run()?.state, [1.0; 6], &run()?.state))
+}
+
+fn books() -> Problem {
+    Problem {
+        id: "invariances/energy-books".into(),
+        title: "heap on shaking ground, one second".into(),
+        source: BOOKS.into(),
+        quantity: "what the books miss over what went through",
+        unit: "",
+        exact: 0.0,
+        tolerance: Tolerance::Absolute(1e-4),
+        fast: Some(Tolerance::Absolute(1e-3)),
+        run: Box::new(|effort| {
+            let worst = |step: f64| -> Result<f64, Failure> {
+                let mut worst = 0.0_f64;
+                for seed in 0..seeds(effort) {
+                    let mut scene = Scene::new(heap(seed), rough(1.0, 1.0), DOWN)?;
+                    let totals = scene.run(&shaken(3.0), step, 1.0)?;
+                    worst = worst.max(totals.energy.summary(0).residual_ratio());
+                }
+                Ok(worst)
+            };
+            if effort == Effort::Fast {
+                return worst(1e-4).map(Outcome::of);
+            }
+            let errors = [worst(2e-5)?, worst(1e-5)?, worst(5e-6)?];
+            Ok(Outcome {
+                value: errors[2],
+                order: Some((errors[0] / errors[2]).log2() / 2.0),
+                note: format!(
+                    "steps 20, 10, 5 µs: {:.1e}, {:.1e}, {:.1e}",
+                    errors[0], errors[1], errors[2]
+                ),
+            })
+        }),
+    }
+}
+
+/// Newton's cradle with elastic contacts, on a frictionless line.
+fn elastic_row() -> Problem {
+    Problem {
+        id: "invariances/elastic-row".into(),
+        title: "disc that strikes a row of four, elastic contacts, no gravity".into(),
+        source: BOOKS.into(),
+        quantity: "kinetic energy after over before",
+        unit: "",
+        exact: 1.0,
+        tolerance: Tolerance::Relative(1e-6),
+        fast: Some(Tolerance::Relative(1e-4)),
+        run: Box::new(|effort| {
+            let energy = |step: f64| -> Result<f64, Failure> {
+                let mut bodies = vec![floor()];
+                bodies[0].surfaces.clear();
+                bodies[0].nodes = vec![points(&[])];
+                for i in 0..5 {
+                    let x = if i == 0 { -0.3 } else { 0.2 * f64::from(i) };
+                    let mut ball = disc(&format!("ball {i}"), 0.1, 1.0, 0.005, Vec2::new(x, 0.0));
+                    if i == 0 {
+                        ball.twist.linear.x = 1.0;
+                    }
+                    bodies.push(ball);
+                }
+                let law = NormalLaw::SpeedGap { stiffness: 1e5, damping: 0.0 };
+                let laws = interface(law, coulomb(0.0, 1e5, 0.0));
+                let mut scene = Scene::new(bodies, laws, Vec2::default())?;
+                scene.run(&Still, step, 1.0)?;
+                Ok(scene.state.twists.iter().map(|t| t.linear.length().powi(2)).sum())
+            };
+            crate::problem::refine(effort, 1.0, |level| {
+                let coarse = if effort == Effort::Full { 1e-5 } else { 4e-5 };
+                energy(coarse / 2.0_f64.powi(level))
+            })
+        }),
+    }
+}

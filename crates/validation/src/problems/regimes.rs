@@ -1,0 +1,154 @@
+//! How a block on accelerating ground begins to move: at rest, sliding, rocking, or both.
+
+use barrelstack_dynamics::contact::restitution;
+use barrelstack_dynamics::{Drive, NormalLaw, Planar};
+
+use crate::drive::Shake;
+use crate::problem::{border, refine};
+use crate::scene::{DOWN, Scene, block, coulomb, floor, interface, pose};
+use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
+
+use super::housner::halvings;
+
+const SOURCE: &str = "Shao and Tung 1999, Taniguchi 2002; validation.md 4.3";
+const MASS: f64 = 100.0;
+
+/// A block on near rigid corners, at rest on the ground.
+pub(super) fn standing(
+    (width, height): (f64, f64),
+    friction: f64,
+    stiffness: f64,
+) -> Result<Scene, Failure> {
+    let sunk = MASS * GRAVITY / (2.0 * stiffness);
+    let damping = restitution::damping(stiffness, 0.7, 0.5 * MASS);
+    let body = block("block", (width, height), MASS, pose(0.0, 0.5 * height - sunk, 0.0));
+    let laws = interface(
+        NormalLaw::KelvinVoigt { stiffness, damping },
+        coulomb(friction, stiffness, damping),
+    );
+    Scene::new(vec![floor(), body], laws, DOWN)
+}
+
+/// How a block of height 2 m and slenderness `s` has begun to move: whether it slid, whether it
+/// turned.
+fn start(s: f64, beta: f64, friction: f64, refinement: i32) -> Result<(bool, bool), Failure> {
+    let finer = 2.0_f64.powi(refinement);
+    let mut scene = standing((2.0 * s, 2.0), friction, 1e10 * finer * finer)?;
+    // The acceleration comes slowly for the contact and at once for the block (p = 2.6 /s).
+    let ramp = 0.004;
+    let drive = Shake::Ramped { acceleration: beta * GRAVITY, ramp };
+    scene.run(&drive, 5e-6 / finer, ramp + 0.02)?;
+    let at = scene.state.poses[1];
+    // The ground runs to the right, so the block turns about its left lower corner.
+    let (sin, cos) = barrelstack_dynamics::math::sin_cos(at.orientation);
+    let slip = scene.relative(1) - cos * s + sin + s;
+    // Sticks stretch and unload by micrometers, less so the stiffer they are.
+    Ok((slip.abs() > 4e-6 / finer, at.orientation.abs() > 1e-5))
+}
+
+/// The problems of this theory.
+pub(super) fn problems() -> Vec<Problem> {
+    let mut list = vec![];
+    for s in [0.2, 0.25, 1.0] {
+        list.extend([1.25, 1.5, 2.0, 3.0, 5.0].map(|share| least_friction(s, share)));
+    }
+    list.extend([0.1, 0.22, 0.4].map(slide));
+    list.extend([(0.25, 0.5), (0.25, 1.0), (1.0, 2.0)].map(|(s, beta)| first_spin(s, beta)));
+    list
+}
+
+fn least_friction(s: f64, share: f64) -> Problem {
+    let exact = theory::least_friction_for_rocking(share * s, s);
+    Problem {
+        id: format!("regimes/friction-for-rocking-{s}-{share}"),
+        title: format!("block of s = {s} on ground that accelerates at {share} s g"),
+        source: SOURCE.into(),
+        quantity: "friction coefficient from which it rocks without sliding",
+        unit: "",
+        exact,
+        tolerance: Tolerance::Relative(4e-3),
+        fast: Some(Tolerance::Relative(1.2e-2)),
+        run: Box::new(move |effort| {
+            refine(effort, exact, |level| {
+                border((0.98 * exact, 1.02 * exact), halvings(effort), |friction| {
+                    Ok(!start(s, share * s, friction, level)?.0)
+                })
+            })
+        }),
+    }
+}
+
+fn slide(friction: f64) -> Problem {
+    Problem {
+        id: format!("regimes/slide-{friction}"),
+        title: "low block on ground whose acceleration grows".into(),
+        source: SOURCE.into(),
+        quantity: "ground acceleration from which it slides",
+        unit: "g",
+        exact: friction,
+        tolerance: Tolerance::Relative(2e-3),
+        fast: Some(Tolerance::Relative(1.2e-2)),
+        run: Box::new(move |effort| {
+            let found = border((0.98 * friction, 1.02 * friction), halvings(effort), |beta| {
+                let mut scene = standing((2.0, 0.2), friction, 1e9)?;
+                let drive = Shake::Ramped { acceleration: beta * GRAVITY, ramp: 0.2 };
+                scene.run(&drive, 2e-5, 0.5)?;
+                Ok(scene.relative(1).abs() > 2e-5)
+            })?;
+            Ok(Outcome::of(found))
+        }),
+    }
+}
+
+fn first_spin(s: f64, beta: f64) -> Problem {
+    // Half-height 1 m: R² = 1 + s².
+    let exact = 3.0 * GRAVITY * (beta - s) / (4.0 * (1.0 + s * s));
+    Problem {
+        id: format!("regimes/first-spin-{s}-{beta}"),
+        title: format!("block of s = {s} under {beta} g from the start, no sliding"),
+        source: SOURCE.into(),
+        quantity: "angular acceleration at the start of rocking",
+        unit: "rad/s2",
+        exact,
+        tolerance: Tolerance::Relative(5e-3),
+        fast: Some(Tolerance::Relative(2e-2)),
+        run: Box::new(move |effort| {
+            refine(effort, exact, |level| {
+                let finer = 2.0_f64.powi(level);
+                let mut scene = standing((2.0 * s, 2.0), 10.0, 1e10 * finer * finer)?;
+                let drive = Shake::Ramped { acceleration: beta * GRAVITY, ramp: 1e-9 };
+                // The spin between two instants, when the springs have come to rest and the block has
+                // hardly turned.
+                let step = 5e-6 / finer;
+                scene.run(&drive, step, 0.004)?;
+                let before = scene.state.twists[1].angular;
+                scene.run(&drive, step, 0.008)?;
+                Ok((scene.state.twists[1].angular - before).abs() / 0.004)
+            })
+        }),
+    }
+}
+
+/// A flat block, too low to rock, after a ride on the ground.
+///
+/// # Errors
+/// When the numbers break down.
+pub(super) fn ridden(
+    friction: f64,
+    drive: &impl Drive<Planar>,
+    end: f64,
+    refinement: i32,
+) -> Result<Scene, Failure> {
+    let finer = 2.0_f64.powi(refinement);
+    let mut scene = standing((2.0, 0.2), friction, 1e9 * finer * finer)?;
+    scene.run(drive, 2e-5 / finer, end)?;
+    Ok(scene)
+}
+
+/// Refinements that a fast run starts from.
+pub(super) fn base(effort: Effort) -> i32 {
+    match effort {
+        Effort::Fast => -1,
+        Effort::Full => 0,
+    }
+}

@@ -1,0 +1,263 @@
+//! Restitution: the law's own, under gravity, and what a rocking block shows of it.
+
+use std::fmt::Write as _;
+use std::ops::ControlFlow;
+
+use barrelstack_dynamics::contact::restitution;
+use barrelstack_dynamics::{FrictionLaw, Method, NormalLaw, Still, Twist, Vec2};
+
+use crate::problem::{border, refine};
+use crate::rocking::{Corner, RockingBlock, contact_frequency};
+use crate::scene::{DOWN, Scene, disc, floor, interface};
+use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
+
+use super::housner::halvings;
+
+const SOURCE: &str = "damped oscillator on approach; validation.md 4.6";
+const ROCKING: &str = "calibration of viscous damping, as Vlachakis et al. 2021; validation.md 4.7";
+
+/// √(k/m) (rad/s) of the mass on its node.
+const OMEGA: f64 = 100.0;
+const RADIUS: f64 = 0.1;
+
+/// The problems of this theory.
+pub(super) fn problems() -> Vec<Problem> {
+    let mut list = vec![];
+    let table = [0.05, 0.0676, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 2.0];
+    let speed_gap =
+        [0.926_69, 0.903_17, 0.862_60, 0.756_13, 0.671_55, 0.546_29, 0.458_57, 0.367_88, 0.218_56];
+    let kelvin_voigt =
+        [0.858_76, 0.815_71, 0.744_08, 0.571_74, 0.450_98, 0.298_44, 0.210_28, 0.135_34, 0.047_77];
+    for (zeta, exact) in table.into_iter().zip(speed_gap) {
+        list.push(rebound(Corner::SpeedGap, zeta, exact));
+    }
+    for (zeta, exact) in table.into_iter().zip(kelvin_voigt) {
+        list.push(rebound(Corner::KelvinVoigt, zeta, exact));
+    }
+    list.extend(table.map(contact_time));
+    let inverse =
+        [(0.1, 4.807), (0.3, 1.336), (0.5, 0.5973), (0.7, 0.2639), (0.9, 0.0700), (0.95, 0.0333)];
+    list.extend(inverse.map(|(e, zeta)| inverted(e, zeta)));
+    for (zeta, gamma) in [(0.0676, 0.1), (0.0676, 0.5), (0.3, 0.1), (0.3, 0.5)] {
+        list.push(under_gravity(zeta, gamma));
+    }
+    list.extend([0.0676, 0.2, 0.3].map(stays));
+    list.extend([0.0, 0.07, 0.5, 1.0].map(stability));
+    list.extend([0.92, 0.94, 0.96].map(calibrated));
+    list
+}
+
+/// A mass of 1 kg that meets the floor at a speed (m/s).
+fn striking(law: Corner, zeta: f64, speed: f64, gravity: Vec2) -> Result<Scene, Failure> {
+    let stiffness = OMEGA * OMEGA;
+    let damping = restitution::damping(stiffness, zeta, 1.0);
+    let normal = match law {
+        Corner::SpeedGap => NormalLaw::SpeedGap { stiffness, damping },
+        Corner::KelvinVoigt => NormalLaw::KelvinVoigt { stiffness, damping },
+    };
+    let mut body = disc("mass", RADIUS, 1.0, 0.01, Vec2::new(0.0, RADIUS));
+    body.twist = Twist { linear: Vec2::new(0.0, -speed), angular: 0.0 };
+    Scene::new(vec![floor(), body], interface(normal, FrictionLaw::Frictionless), gravity)
+}
+
+/// When (s) and how fast (m/s) a mass leaves the floor again; none when it stays for `patience` (s).
+fn leaving(scene: &mut Scene, step: f64, patience: f64) -> Result<Option<(f64, f64)>, Failure> {
+    let mut before = (0.0, 0.0);
+    let mut left = None;
+    scene.watch(&Still, step, patience, |state, _| {
+        let gap = state.poses[1].position.z - RADIUS;
+        if gap >= 0.0 && before.1 < 0.0 {
+            let part = -before.1 / (gap - before.1);
+            left = Some((before.0 + part * (state.time - before.0), state.twists[1].linear.z));
+            return ControlFlow::Break(());
+        }
+        before = (state.time, gap);
+        ControlFlow::Continue(())
+    })?;
+    Ok(left)
+}
+
+/// The step (s); here a refinement halves the step alone, since the answer is the law's own.
+fn step(level: i32) -> f64 {
+    1e-4 / OMEGA / 2.0_f64.powi(level)
+}
+
+fn gone(left: Option<(f64, f64)>) -> Result<(f64, f64), Failure> {
+    left.ok_or_else(|| Failure::Absent("the mass does not leave the floor".into()))
+}
+
+fn rebound(law: Corner, zeta: f64, exact: f64) -> Problem {
+    let name = match law {
+        Corner::SpeedGap => "speed-gap",
+        Corner::KelvinVoigt => "kelvin-voigt",
+    };
+    Problem {
+        id: format!("restitution/{name}-{zeta}"),
+        title: format!("mass on one node, {name} law, ζ = {zeta}, no gravity"),
+        source: SOURCE.into(),
+        quantity: "restitution",
+        unit: "",
+        exact,
+        // The published values have five digits.
+        tolerance: Tolerance::Relative(2e-4),
+        fast: Some(Tolerance::Relative(5e-4)),
+        run: Box::new(move |effort| {
+            let true_value = match law {
+                Corner::SpeedGap => restitution::speed_gap(zeta),
+                Corner::KelvinVoigt => restitution::kelvin_voigt(zeta),
+            };
+            refine(effort, true_value, |level| {
+                let mut scene = striking(law, zeta, 1.0, Vec2::default())?;
+                // The Kelvin–Voigt node lets go before the mass is back at the surface; by then it
+                // flies at the speed with which it left.
+                Ok(gone(leaving(&mut scene, step(level), 60.0 / OMEGA)?)?.1)
+            })
+        }),
+    }
+}
+
+fn contact_time(zeta: f64) -> Problem {
+    let exact = theory::contact_phase(zeta);
+    Problem {
+        id: format!("restitution/contact-time-{zeta}"),
+        title: format!("mass on one node, speed-gap law, ζ = {zeta}, no gravity"),
+        source: SOURCE.into(),
+        quantity: "ω times the time of contact",
+        unit: "",
+        exact,
+        tolerance: Tolerance::Relative(2e-4),
+        fast: Some(Tolerance::Relative(5e-4)),
+        run: Box::new(move |effort| {
+            refine(effort, exact, |level| {
+                let mut scene = striking(Corner::SpeedGap, zeta, 1.0, Vec2::default())?;
+                Ok(OMEGA * gone(leaving(&mut scene, step(level), 60.0 / OMEGA)?)?.0)
+            })
+        }),
+    }
+}
+
+fn inverted(e: f64, published: f64) -> Problem {
+    Problem {
+        id: format!("restitution/damping-for-{e}"),
+        title: format!("damping ratio of the speed-gap law for e = {e}, checked by a drop"),
+        source: SOURCE.into(),
+        quantity: "damping ratio ζ",
+        unit: "",
+        exact: published,
+        // The published values have three or four digits.
+        tolerance: Tolerance::Relative(2e-3),
+        fast: None,
+        run: Box::new(move |_| {
+            let zeta = restitution::speed_gap_damping_ratio(e)
+                .ok_or_else(|| Failure::Absent(format!("no damping ratio for e = {e}")))?;
+            let mut scene = striking(Corner::SpeedGap, zeta, 1.0, Vec2::default())?;
+            let shown = gone(leaving(&mut scene, step(0), 1.0)?)?.1;
+            Ok(Outcome::of(zeta).noted(format!("a mass that meets this node shows e = {shown:.4}")))
+        }),
+    }
+}
+
+fn under_gravity(zeta: f64, gamma: f64) -> Problem {
+    let exact = theory::rebound_under_gravity(zeta, gamma).unwrap_or(f64::NAN);
+    Problem {
+        id: format!("restitution/gravity-{zeta}-{gamma}"),
+        title: format!("mass on one speed-gap node, ζ = {zeta}, Γ = g/ωv = {gamma}"),
+        source: SOURCE.into(),
+        quantity: "restitution",
+        unit: "",
+        exact,
+        tolerance: Tolerance::Relative(5e-4),
+        fast: Some(Tolerance::Relative(1e-3)),
+        run: Box::new(move |effort| {
+            let speed = GRAVITY / (OMEGA * gamma);
+            refine(effort, exact, |level| {
+                let mut scene = striking(Corner::SpeedGap, zeta, speed, DOWN)?;
+                Ok(gone(leaving(&mut scene, step(level), 60.0 / OMEGA)?)?.1 / speed)
+            })
+        }),
+    }
+}
+
+fn stays(zeta: f64) -> Problem {
+    let exact = theory::lift_off_lost(zeta);
+    Problem {
+        id: format!("restitution/stays-{zeta}"),
+        title: format!("mass on one speed-gap node under gravity, ζ = {zeta}"),
+        source: SOURCE.into(),
+        quantity: "Γ = g/ωv from which it does not lift off",
+        unit: "",
+        exact,
+        tolerance: Tolerance::Relative(2e-3),
+        fast: Some(Tolerance::Relative(1.2e-2)),
+        run: Box::new(move |effort| {
+            let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |gamma| {
+                let mut scene = striking(Corner::SpeedGap, zeta, GRAVITY / (OMEGA * gamma), DOWN)?;
+                // Every later swing is lower than the first.
+                Ok(leaving(&mut scene, step(0), 8.0 / OMEGA)?.is_none())
+            })?;
+            Ok(Outcome::of(found))
+        }),
+    }
+}
+
+/// The longest step at which symplectic Euler keeps a mass quiet on its node.
+fn stability(zeta: f64) -> Problem {
+    let exact = 2.0 * ((1.0 + zeta * zeta).sqrt() - zeta);
+    Problem {
+        id: format!("restitution/stable-step-{zeta}"),
+        title: format!("mass that rests on a damped node, ζ = {zeta}, symplectic Euler"),
+        source: "root of the step's polynomial at −1; validation.md 4.6".into(),
+        quantity: "ω times the longest stable step",
+        unit: "",
+        exact,
+        tolerance: Tolerance::Relative(5e-3),
+        fast: Some(Tolerance::Relative(1.2e-2)),
+        run: Box::new(move |effort| {
+            let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |step| {
+                let mut scene = striking(Corner::KelvinVoigt, zeta, 0.0, DOWN)?;
+                scene.method = Method::SemiImplicitEuler;
+                let sunk = GRAVITY / (OMEGA * OMEGA);
+                scene.state.poses[1].position.z = RADIUS - sunk * (1.0 + 1e-6);
+                let mut swing = 0.0_f64;
+                scene.watch(&Still, step / OMEGA, 3000.0 * step / OMEGA, |state, _| {
+                    swing = swing.max((state.poses[1].position.z - RADIUS + sunk).abs());
+                    ControlFlow::Continue(())
+                })?;
+                Ok(swing > 0.1 * sunk)
+            })?;
+            Ok(Outcome::of(found))
+        }),
+    }
+}
+
+/// A damping chosen at one swing shows the target at another.
+fn calibrated(target: f64) -> Problem {
+    let alpha = 0.25;
+    Problem {
+        id: format!("restitution/rocking-target-{target}"),
+        title: format!("block of α = {alpha}, damping chosen at φ = 0.5, shown at φ = 0.75"),
+        source: ROCKING.into(),
+        quantity: "ratio of angular velocities η",
+        unit: "",
+        exact: target,
+        tolerance: Tolerance::Relative(5e-3),
+        fast: Some(Tolerance::Relative(1.2e-2)),
+        run: Box::new(move |effort| {
+            let block = RockingBlock {
+                contact_frequency: contact_frequency(effort),
+                ..RockingBlock::new(1.0, alpha)
+            };
+            let Some(block) = block.calibrated(target)? else {
+                return Err(Failure::Absent(format!("no damping ratio shows η = {target}")));
+            };
+            let mut note = format!("ζ = {:.4}", block.damping_ratio);
+            if effort == Effort::Full {
+                for share in [0.1, 0.25, 0.9] {
+                    let shown = block.restitution(share)?;
+                    let _ = write!(note, "; at φ = {share}: {shown:.4}");
+                }
+            }
+            Ok(Outcome::of(block.restitution(0.75)?).noted(note))
+        }),
+    }
+}

@@ -1,0 +1,190 @@
+//! Stacked blocks: which joint opens or slides first, and the four ways in which two blocks rock.
+
+use std::ops::ControlFlow;
+
+use barrelstack_dynamics::contact::restitution;
+use barrelstack_dynamics::{ContactPair, Model, NormalLaw};
+
+use crate::drive::Shake;
+use crate::problem::border;
+use crate::scene::{DOWN, Scene, all_pairs, coulomb, floor, interface};
+use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance};
+
+use super::gravity::{INSET, brick};
+use super::housner::halvings;
+
+const UPLIFT: &str = "quasi-static balance, least c/h over the joints; validation.md 4.9";
+const PATTERNS: &str = "Psycharis 1990; validation.md 4.9";
+const MASS: f64 = 100.0;
+
+/// Stiffness (N/m) of a joint's nodes.
+const STIFFNESS: f64 = 1e9;
+
+/// Blocks of sizes (m) on each other, from the ground up, with a friction coefficient of the ground
+/// and one of all other joints.
+fn tower(sizes: &[(f64, f64)], frictions: (f64, f64)) -> Result<Scene, Failure> {
+    let mut bodies = vec![floor()];
+    let mut top = 0.0;
+    for (i, size) in sizes.iter().enumerate() {
+        bodies.push(brick(&format!("block {i}"), *size, MASS, (0.0, top + 0.5 * size.1)));
+        top += size.1;
+    }
+    let damping = restitution::damping(STIFFNESS, 0.5, MASS);
+    let laws = [frictions.0, frictions.1].map(|friction| {
+        let normal = NormalLaw::SpeedGap { stiffness: STIFFNESS, damping };
+        interface(normal, coulomb(friction, STIFFNESS, damping))
+    });
+    let on_ground = |pair: &ContactPair| pair.contactor == 0 || pair.target == 0;
+    let pairs = all_pairs(&bodies)
+        .into_iter()
+        .map(|pair| ContactPair { interface: usize::from(!on_ground(&pair)), ..pair })
+        .collect();
+    Scene::of(Model::new(bodies, laws.to_vec(), pairs, DOWN)?).settled(STEP, 1e-6)
+}
+
+/// Time step (s).
+const STEP: f64 = 1e-5;
+
+/// The problems of this theory.
+pub(super) fn problems() -> Vec<Problem> {
+    vec![
+        opens("one", &[(0.4, 1.2)]),
+        opens("two", &[(0.4, 0.8), (0.4, 0.8)]),
+        opens("three", &[(0.5, 0.6), (0.5, 0.6), (0.5, 0.6)]),
+        opens("upper-of-two", &[(1.2, 0.4), (0.4, 1.4)]),
+        opens("lower-of-two", &[(0.4, 1.0), (0.5, 0.4)]),
+        slides(0.5, 0.22, 0.22),
+        slides(0.2, 0.4, 0.2),
+        patterns(),
+    ]
+}
+
+/// Least half-width of a joint over the height of the center of mass above it; the joint's number.
+fn least_ratio(sizes: &[(f64, f64)]) -> (f64, usize) {
+    let joint = |k: usize| {
+        // Equal masses: the mean of the heights of the centers above the joint.
+        let above = &sizes[k..];
+        let (mut base, mut sum) = (0.0, 0.0);
+        for (_, height) in above {
+            sum += base + 0.5 * height;
+            base += height;
+        }
+        // The joint turns about the outermost node of the narrower face.
+        let below = if k == 0 { f64::INFINITY } else { sizes[k - 1].0 };
+        let half = 0.5 * sizes[k].0.min(below) - INSET;
+        half / (sum / above.len() as f64)
+    };
+    (0..sizes.len())
+        .map(|k| (joint(k), k))
+        .fold((f64::INFINITY, 0), |least, one| if one.0 < least.0 { one } else { least })
+}
+
+fn opens(name: &str, sizes: &'static [(f64, f64)]) -> Problem {
+    let (exact, joint) = least_ratio(sizes);
+    Problem {
+        id: format!("stacks/opens-{name}"),
+        title: format!("{} blocks on each other, joint {} opens first", sizes.len(), joint + 1),
+        source: UPLIFT.into(),
+        quantity: "ground acceleration that opens a joint",
+        unit: "g",
+        exact,
+        tolerance: Tolerance::Relative(5e-3),
+        fast: Some(Tolerance::Relative(1.2e-2)),
+        run: Box::new(move |effort| {
+            let mut wrong = None;
+            let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |push| {
+                let mut scene = tower(sizes, (5.0, 5.0))?;
+                let drive = Shake::Ramped { acceleration: push * GRAVITY, ramp: 0.3 };
+                scene.run(&drive, STEP, 1.0)?;
+                let tilt = |body: usize| scene.state.poses[body].orientation;
+                let turn = |k: usize| (tilt(k + 1) - tilt(k)).abs();
+                let first = (0..sizes.len()).find(|k| turn(*k) > 2e-4);
+                if first.is_some_and(|k| k != joint) {
+                    wrong = first;
+                }
+                Ok(first.is_some())
+            })?;
+            match wrong {
+                Some(k) => Err(Failure::Absent(format!("joint {} opens instead", k + 1))),
+                None => Ok(Outcome::of(found)),
+            }
+        }),
+    }
+}
+
+fn slides(ground: f64, between: f64, exact: f64) -> Problem {
+    let upper = between < ground;
+    Problem {
+        id: format!("stacks/slides-{ground}-{between}"),
+        title: format!("two low blocks, μ = {ground} on the ground and {between} between them"),
+        source: UPLIFT.into(),
+        quantity: "ground acceleration from which the weaker joint slides",
+        unit: "g",
+        exact,
+        tolerance: Tolerance::Relative(2e-3),
+        fast: Some(Tolerance::Relative(1.2e-2)),
+        run: Box::new(move |effort| {
+            let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |push| {
+                let mut scene = tower(&[(2.0, 0.2), (2.0, 0.2)], (ground, between))?;
+                let drive = Shake::Ramped { acceleration: push * GRAVITY, ramp: 0.2 };
+                scene.run(&drive, STEP, 0.5)?;
+                let slip = [scene.relative(1), scene.relative(2) - scene.relative(1)];
+                let weaker = usize::from(upper);
+                if slip[1 - weaker].abs() > 2e-5 {
+                    return Err(Failure::Absent("the stronger joint slides".into()));
+                }
+                Ok(slip[weaker].abs() > 2e-5)
+            })?;
+            Ok(Outcome::of(found))
+        }),
+    }
+}
+
+/// Names of the patterns of Psycharis, in his order of appearance here.
+const NAMES: [&str; 4] = ["together", "upper alone", "same sense", "opposite senses"];
+
+/// The pattern of two blocks that lean by `lower` and `upper` (rad), if both are clear of rest.
+fn pattern(lower: f64, upper: f64) -> Option<usize> {
+    let (open, hair) = (2e-3, 2e-4);
+    let between = upper - lower;
+    match (lower.abs() > open, between.abs() > open) {
+        (true, false) if between.abs() < hair => Some(0),
+        (false, true) if lower.abs() < hair => Some(1),
+        (true, true) => Some(if lower * between > 0.0 { 2 } else { 3 }),
+        _ => None,
+    }
+}
+
+fn patterns() -> Problem {
+    Problem {
+        id: "stacks/four-patterns".into(),
+        title: "two equal slender blocks under one sine of 0.6 g to 1 g".into(),
+        source: PATTERNS.into(),
+        quantity: "rocking patterns that occur",
+        unit: "",
+        exact: 4.0,
+        tolerance: Tolerance::Absolute(0.0),
+        fast: None,
+        run: Box::new(|effort| {
+            let mut times = [0.0; 4];
+            for strength in [0.6, 0.8, 1.0] {
+                let mut scene = tower(&[(0.5, 1.0), (0.45, 1.0)], (5.0, 5.0))?;
+                let drive =
+                    Shake::Sine { acceleration: strength * GRAVITY, omega: 9.0, half_waves: 2.0 };
+                let step = if effort == Effort::Full { STEP } else { 1.5 * STEP };
+                scene.watch(&drive, step, 2.0, |state, _| {
+                    let (lower, upper) = (state.poses[1].orientation, state.poses[2].orientation);
+                    if let Some(at) = pattern(lower, upper) {
+                        times[at] += step;
+                    }
+                    let fallen = lower.abs().max(upper.abs()) > 0.6;
+                    if fallen { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                })?;
+            }
+            let seen = times.iter().filter(|time| **time > 5e-3).count();
+            let said: Vec<String> =
+                NAMES.iter().zip(times).map(|(name, time)| format!("{name} {time:.2} s")).collect();
+            Ok(Outcome::of(seen as f64).noted(said.join(", ")))
+        }),
+    }
+}

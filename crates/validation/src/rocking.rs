@@ -1,0 +1,323 @@
+//! A rocking block on penalty corners, and the damping that makes it rock as Housner says.
+
+use std::ops::ControlFlow;
+
+use barrelstack_dynamics::contact::restitution;
+use barrelstack_dynamics::math::{cos, sin, tan};
+use barrelstack_dynamics::{Drive, NormalLaw, Planar, Still, Vec2};
+
+use crate::oracle::{OVERTURNED, Rocker};
+use crate::scene::{DOWN, Scene, block, coulomb, floor, interface, pose};
+use crate::{Effort, Failure, GRAVITY, theory};
+
+/// Mass (kg); no answer depends on it.
+const MASS: f64 = 100.0;
+
+/// Which law carries the corners.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Corner {
+    /// Damped on approach only, the element of Candia et al. (2008).
+    SpeedGap,
+    /// Damped both ways, without tension.
+    KelvinVoigt,
+}
+
+/// What became of a block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ride {
+    /// Whether it turned over.
+    pub overturned: bool,
+    /// Largest lean (rad).
+    pub peak: f64,
+}
+
+/// A block on two stiff corners that cannot slide.
+#[derive(Clone, Copy, Debug)]
+pub struct RockingBlock {
+    /// Half-diagonal R (m).
+    pub radius: f64,
+    /// Slenderness angle α (rad).
+    pub alpha: f64,
+    /// The law.
+    pub corner: Corner,
+    /// ω = √(k/m) (rad/s), the stiffness of a corner as a frequency of the whole mass.
+    pub contact_frequency: f64,
+    /// ζ = c/(2√(km)) of a corner against the whole mass.
+    pub damping_ratio: f64,
+    /// Nodes along the base: 2 corners, or more.
+    pub base_nodes: u32,
+}
+
+impl RockingBlock {
+    /// A block on speed-gap corners of a stiffness that suits its size.
+    pub fn new(radius: f64, alpha: f64) -> Self {
+        Self {
+            radius,
+            alpha,
+            corner: Corner::SpeedGap,
+            contact_frequency: 3000.0,
+            damping_ratio: 1.0,
+            base_nodes: 2,
+        }
+    }
+
+    /// The same with corners four times as stiff for each refinement.
+    #[must_use]
+    pub fn refined(mut self, refinements: i32) -> Self {
+        self.contact_frequency *= 2.0_f64.powi(refinements);
+        self
+    }
+
+    /// p (rad/s).
+    pub fn rate(&self) -> f64 {
+        theory::rocking_rate(self.radius)
+    }
+
+    /// The rigid block with a restitution.
+    pub fn rigid(&self, restitution: f64) -> Rocker {
+        Rocker { alpha: self.alpha, rate: self.rate(), restitution, slender: false }
+    }
+
+    /// The time step (s): well below what the damped corner allows.
+    pub fn step(&self) -> f64 {
+        // Along the base a corner moves 1/m + (R cos α)²/I, about 4/m; the tangential damping stays at
+        // ζ = 1 or less, so the normal direction decides only above it.
+        let zeta = 2.0 * self.damping_ratio.max(0.5);
+        let limit = (1.0 + zeta * zeta).sqrt() - zeta;
+        0.4 * limit / self.contact_frequency
+    }
+
+    fn stiffness(&self) -> f64 {
+        MASS * self.contact_frequency * self.contact_frequency
+    }
+
+    /// The block at a lean (rad, clockwise positive) on its loaded corners, sunk to rest.
+    ///
+    /// # Errors
+    /// When its numbers do not make a body.
+    pub fn scene(&self, lean: f64) -> Result<Scene, Failure> {
+        let stiffness = self.stiffness();
+        let (half_width, half_height) =
+            (self.radius * sin(self.alpha), self.radius * cos(self.alpha));
+        let damping = restitution::damping(stiffness, self.damping_ratio, MASS);
+        let tangential = restitution::damping(stiffness, self.damping_ratio.min(1.0), MASS);
+        let corners = if lean > 0.0 { 1.0 } else { f64::from(self.base_nodes) };
+        let sunk = MASS * GRAVITY / (corners * stiffness);
+        let (x, z) = if lean > 0.0 {
+            let direction = self.alpha - lean;
+            (half_width - self.radius * sin(direction), self.radius * cos(direction))
+        } else {
+            (0.0, half_height)
+        };
+        let mut body =
+            block("block", (2.0 * half_width, 2.0 * half_height), MASS, pose(x, z - sunk, -lean));
+        let parts = f64::from(self.base_nodes - 1);
+        let mut nodes: Vec<Vec2> = (0..self.base_nodes)
+            .map(|i| Vec2::new(half_width * (2.0 * f64::from(i) / parts - 1.0), -half_height))
+            .collect();
+        nodes.extend([Vec2::new(half_width, half_height), Vec2::new(-half_width, half_height)]);
+        body.nodes = vec![crate::scene::points(&nodes)];
+        let normal = match self.corner {
+            Corner::SpeedGap => NormalLaw::SpeedGap { stiffness, damping },
+            Corner::KelvinVoigt => NormalLaw::KelvinVoigt { stiffness, damping },
+        };
+        // Rigid-block theory knows no sliding, whatever the push.
+        let laws = interface(normal, coulomb(20.0, stiffness, tangential));
+        Scene::new(vec![floor(), body], laws, DOWN)
+    }
+
+    /// p times the time from a lean of `share · α` to upright.
+    ///
+    /// # Errors
+    /// When it does not come down.
+    pub fn quarter_period(&self, share: f64) -> Result<f64, Failure> {
+        let (end, peaks) = self.swings(share, 1, 20.0)?;
+        match peaks.first() {
+            Some(_) => Ok(end * self.rate()),
+            None => Err(Failure::Absent("the block does not come down".into())),
+        }
+    }
+
+    /// Lets the block go at a lean of `share · α`; the time (s) at which it is first upright, and the
+    /// peaks of the lean over α after each impact.
+    ///
+    /// # Errors
+    /// When the numbers break down.
+    pub fn swings(
+        &self,
+        share: f64,
+        impacts: usize,
+        patience: f64,
+    ) -> Result<(f64, Vec<f64>), Failure> {
+        let swings = self.timed_swings(share, impacts, patience)?;
+        let first = swings.first().map_or(f64::NAN, |swing| swing.0);
+        Ok((first, swings.into_iter().map(|swing| swing.1).collect()))
+    }
+
+    /// For each impact: when (s) the block is upright, and the peak of the lean over α that follows.
+    ///
+    /// # Errors
+    /// When the numbers break down.
+    pub fn timed_swings(
+        &self,
+        share: f64,
+        impacts: usize,
+        patience: f64,
+    ) -> Result<Vec<(f64, f64)>, Failure> {
+        let mut scene = self.scene(share * self.alpha)?;
+        let (mut before, mut peak) = ((0.0, share * self.alpha), 0.0_f64);
+        let mut swings: Vec<(f64, f64)> = vec![];
+        // Bounces of the corners turn the block by less than this while it changes over.
+        let slack = 1e-3 * self.alpha;
+        let mut side = 1.0;
+        let mut crossing = f64::NAN;
+        scene.watch(&Still, self.step(), patience, |state, _| {
+            let lean = -state.poses[1].orientation;
+            if before.1 * lean < 0.0 {
+                crossing = before.0 + before.1 / (before.1 - lean) * (state.time - before.0);
+            }
+            if side * lean < -slack {
+                // On the other side for good: the last crossing was the impact.
+                if let Some(last) = swings.last_mut() {
+                    last.1 = peak / self.alpha;
+                }
+                if swings.len() == impacts {
+                    return ControlFlow::Break(());
+                }
+                swings.push((crossing, f64::NAN));
+                side = -side;
+                peak = 0.0;
+            }
+            peak = peak.max(side * lean);
+            before = (state.time, lean);
+            ControlFlow::Continue(())
+        })?;
+        if let Some(last) = swings.last_mut()
+            && last.1.is_nan()
+        {
+            last.1 = peak / self.alpha;
+        }
+        Ok(swings)
+    }
+
+    /// Ratio of angular velocities that the first impact shows: the root of the energy that is left,
+    /// read from the next peak.
+    ///
+    /// # Errors
+    /// When the block does not swing.
+    pub fn restitution(&self, share: f64) -> Result<f64, Failure> {
+        let height = |share: f64| {
+            let theta = share * self.alpha;
+            2.0 * sin(self.alpha - 0.5 * theta) * sin(0.5 * theta)
+        };
+        let patience = 6.0 / self.rate();
+        match self.swings(share, 1, patience)?.1.first() {
+            Some(peak) => Ok((height(*peak) / height(share)).sqrt()),
+            None => Err(Failure::Absent("the block does not come down".into())),
+        }
+    }
+
+    /// The same block with the damping ratio at which its first impact from `φ = ½` shows a ratio of
+    /// angular velocities; none when no damping ratio up to 12 does.
+    ///
+    /// # Errors
+    /// When a block does not swing.
+    pub fn calibrated(mut self, target: f64) -> Result<Option<Self>, Failure> {
+        let (mut low, mut high) = (0.02, 12.0);
+        let mut shows = |zeta: f64| {
+            self.damping_ratio = zeta;
+            self.restitution(0.5)
+        };
+        if shows(low)? < target || shows(high)? > target {
+            return Ok(None);
+        }
+        for _ in 0..14 {
+            let middle = (low * high).sqrt();
+            if shows(middle)? > target { low = middle } else { high = middle }
+        }
+        self.damping_ratio = (low * high).sqrt();
+        Ok(Some(self))
+    }
+
+    /// Whether a ground motion turns the block over.
+    ///
+    /// `acceleration_end` (s) is when the ground no longer pushes.
+    ///
+    /// # Errors
+    /// When the numbers break down.
+    pub fn overturns(
+        &self,
+        drive: &impl Drive<Planar>,
+        acceleration_end: f64,
+    ) -> Result<bool, Failure> {
+        self.ride(drive, acceleration_end, 15.0).map(|ride| ride.overturned)
+    }
+
+    /// Whether a ground motion turns the block over before it comes back upright.
+    ///
+    /// # Errors
+    /// When the numbers break down.
+    pub fn overturns_at_once(
+        &self,
+        drive: &impl Drive<Planar>,
+        acceleration_end: f64,
+    ) -> Result<bool, Failure> {
+        let mut scene = self.scene(0.0)?;
+        let (mut fell, mut side) = (false, 0.0);
+        // What the corners sway before uplift.
+        let slack = 0.01 * self.alpha;
+        scene.watch(drive, self.step(), acceleration_end + 15.0, |state, _| {
+            let lean = state.poses[1].orientation;
+            if side == 0.0 && lean.abs() > slack {
+                side = lean.signum();
+            }
+            fell = lean.abs() > OVERTURNED;
+            let back = side * lean < 0.0;
+            if fell || back { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })?;
+        Ok(fell)
+    }
+
+    /// What becomes of the block under a ground motion.
+    ///
+    /// # Errors
+    /// When the numbers break down.
+    pub fn ride(
+        &self,
+        drive: &impl Drive<Planar>,
+        acceleration_end: f64,
+        patience: f64,
+    ) -> Result<Ride, Failure> {
+        let mut scene = self.scene(0.0)?;
+        let rate = self.rate();
+        let (mut fell, mut peak, mut last) = (false, 0.0_f64, 0.0_f64);
+        let until = acceleration_end + patience;
+        scene.watch(drive, self.step(), until, |state, _| {
+            let (lean, spin) = (state.poses[1].orientation, state.twists[1].angular);
+            last = lean.abs();
+            peak = peak.max(last);
+            fell = last > OVERTURNED;
+            let left = self.alpha - last;
+            // It only loses energy from here on, and swings no further than this.
+            let safe = state.time > acceleration_end
+                && left > 0.0
+                && 0.5 * spin * spin < rate * rate * (1.0 - cos(left))
+                && (spin * lean <= 0.0 || last < 1e-5);
+            if fell || safe { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })?;
+        Ok(Ride { overturned: fell || last > self.alpha, peak })
+    }
+
+    /// Acceleration (m/s²) that lifts a corner.
+    pub fn uplift(&self) -> f64 {
+        GRAVITY * tan(self.alpha)
+    }
+}
+
+/// Contact frequency (rad/s) at an effort.
+pub fn contact_frequency(effort: Effort) -> f64 {
+    match effort {
+        Effort::Fast => 1500.0,
+        Effort::Full => 3000.0,
+    }
+}

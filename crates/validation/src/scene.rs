@@ -1,0 +1,251 @@
+//! Scenes: floors, blocks and discs, run while a function looks at every step.
+
+use std::ops::ControlFlow;
+
+use barrelstack_dynamics::shape::{BoundaryNode, Circle, HalfPlane, Polygon};
+use barrelstack_dynamics::simulate::RunTotals;
+use barrelstack_dynamics::space::Rotation2;
+use barrelstack_dynamics::{
+    Basis, Body, ContactPair, Drive, EnergyLedger, FrictionLaw, Interface, Method, Model, Motion,
+    Node, Nodes, NormalLaw, Observer, Placed, Planar, Pose, Scratch, Shape, Simulation, State,
+    Twist, Vec2, math, settle, simulate,
+};
+
+use crate::{Failure, GRAVITY};
+
+/// Free fall straight down (m/s²).
+pub const DOWN: Vec2 = Vec2::new(0.0, -GRAVITY);
+
+/// Free fall as felt on a plane that falls to the right at an angle (rad): a slope is a level floor
+/// under turned gravity.
+pub fn gravity_on_slope(angle: f64) -> Vec2 {
+    Vec2::new(GRAVITY * math::sin(angle), -GRAVITY * math::cos(angle))
+}
+
+/// A shape at the origin of its body.
+pub fn centered(shape: Shape) -> Placed<Planar> {
+    Placed { surface: shape, offset: Vec2::default(), rotation: Rotation2::identity() }
+}
+
+/// The ground with what is fixed to it.
+pub fn ground_of(surfaces: Vec<Placed<Planar>>) -> Body<Planar> {
+    Body {
+        name: "ground".into(),
+        motion: Motion::Prescribed,
+        mass: 1.0,
+        inertia: 1.0,
+        damping: None,
+        pose: pose(0.0, 0.0, 0.0),
+        twist: Twist::default(),
+        surfaces,
+        nodes: vec![],
+    }
+}
+
+/// A level floor at `z = 0`.
+pub fn floor() -> Body<Planar> {
+    ground_of(vec![centered(Shape::HalfPlane(HalfPlane))])
+}
+
+/// A pose from a position (m) and an angle (rad).
+pub fn pose(x: f64, z: f64, orientation: f64) -> Pose<Planar> {
+    Pose { position: Vec2::new(x, z), orientation }
+}
+
+/// A free disc with one rolling node; `gyration_squared` is k² (m²), ½ r² for a solid one.
+pub fn disc(
+    name: &str,
+    radius: f64,
+    mass: f64,
+    gyration_squared: f64,
+    center: Vec2,
+) -> Body<Planar> {
+    Body {
+        name: name.into(),
+        motion: Motion::Free,
+        mass,
+        inertia: mass * gyration_squared,
+        damping: None,
+        pose: Pose { position: center, orientation: 0.0 },
+        twist: Twist::default(),
+        surfaces: vec![centered(Shape::Circle(Circle { radius }))],
+        nodes: vec![Nodes::Rolling { center: Vec2::default(), radius, tributary_length: 1.0 }],
+    }
+}
+
+/// A sharp rectangle about its middle, corners counterclockwise from the lower left.
+///
+/// # Panics
+/// When a side is not a positive number, which is a mistake in a problem.
+pub fn rectangle(width: f64, height: f64) -> Polygon {
+    match Polygon::rectangle(width, height, 0.0) {
+        Ok(polygon) => polygon,
+        Err(problem) => panic!("a rectangle of {width} m by {height} m: {problem}"),
+    }
+}
+
+/// A free rectangular block with sharp corners; nodes are its corners.
+pub fn block(
+    name: &str,
+    (width, height): (f64, f64),
+    mass: f64,
+    pose: Pose<Planar>,
+) -> Body<Planar> {
+    let rectangle = rectangle(width, height);
+    Body {
+        name: name.into(),
+        motion: Motion::Free,
+        mass,
+        inertia: mass * (width * width + height * height) / 12.0,
+        damping: None,
+        pose,
+        twist: Twist::default(),
+        nodes: vec![fixed(&rectangle.corner_nodes())],
+        surfaces: vec![centered(Shape::Polygon(rectangle))],
+    }
+}
+
+/// Boundary nodes as the nodes of a body whose shape is centered.
+pub fn fixed(nodes: &[BoundaryNode]) -> Nodes<Planar> {
+    let node =
+        |n: &BoundaryNode| Node { position: n.position, tributary_length: n.tributary_length };
+    Nodes::Fixed(nodes.iter().map(node).collect())
+}
+
+/// Nodes at points (m) of a body.
+pub fn points(points: &[Vec2]) -> Nodes<Planar> {
+    Nodes::Fixed(points.iter().map(|p| Node { position: *p, tributary_length: 1.0 }).collect())
+}
+
+/// An interface with constants per node.
+pub fn interface(normal: NormalLaw, friction: FrictionLaw) -> Interface<Planar> {
+    Interface { name: "contact".into(), normal, friction, basis: Basis::Node }
+}
+
+/// Coulomb friction with one coefficient.
+pub fn coulomb(
+    coefficient: f64,
+    tangential_stiffness: f64,
+    tangential_damping: f64,
+) -> FrictionLaw {
+    FrictionLaw::Coulomb {
+        static_coefficient: coefficient,
+        kinetic_coefficient: coefficient,
+        tangential_stiffness,
+        tangential_damping,
+    }
+}
+
+/// Every body with nodes against every other body's first surface; two discs meet once.
+pub fn all_pairs(bodies: &[Body<Planar>]) -> Vec<ContactPair> {
+    let round = |i: usize| matches!(bodies[i].nodes.first(), Some(Nodes::Rolling { .. }));
+    let mut pairs = vec![];
+    for contactor in 0..bodies.len() {
+        for target in 0..bodies.len() {
+            let meets_twice = round(contactor) && round(target) && contactor > target;
+            if contactor != target
+                && !bodies[contactor].nodes.is_empty()
+                && !bodies[target].surfaces.is_empty()
+                && !meets_twice
+            {
+                pairs.push(ContactPair { contactor, nodes: 0, target, surface: 0, interface: 0 });
+            }
+        }
+    }
+    pairs
+}
+
+/// A model with its state and working memory.
+pub struct Scene {
+    /// What does not change.
+    pub model: Model<Planar>,
+    /// Where everything is.
+    pub state: State<Planar>,
+    /// The forces there.
+    pub scratch: Scratch<Planar>,
+    /// How it is integrated; velocity Verlet unless changed.
+    pub method: Method,
+}
+
+impl Scene {
+    /// Bodies that all may meet, with one interface.
+    ///
+    /// # Errors
+    /// When the bodies do not make a model.
+    pub fn new(
+        bodies: Vec<Body<Planar>>,
+        interface: Interface<Planar>,
+        gravity: Vec2,
+    ) -> Result<Self, Failure> {
+        let pairs = all_pairs(&bodies);
+        Ok(Self::of(Model::new(bodies, vec![interface], pairs, gravity)?))
+    }
+
+    /// The initial state of a model.
+    pub fn of(model: Model<Planar>) -> Self {
+        let state = State::initial(&model);
+        let scratch = Scratch::new(&model);
+        Self { model, state, scratch, method: Method::VelocityVerlet }
+    }
+
+    /// Settles the scene.
+    ///
+    /// # Errors
+    /// When it does not stand.
+    pub fn settled(mut self, time_step: f64, tolerance: f64) -> Result<Self, Failure> {
+        settle(&self.model, &mut self.state, &mut self.scratch, time_step, tolerance)?;
+        Ok(self)
+    }
+
+    /// Runs to a time (s).
+    ///
+    /// # Errors
+    /// When the numbers break down.
+    pub fn run(
+        &mut self,
+        drive: &impl Drive<Planar>,
+        time_step: f64,
+        end_time: f64,
+    ) -> Result<RunTotals<Planar>, Failure> {
+        self.watch(drive, time_step, end_time, |_, _| ControlFlow::Continue(()))
+    }
+
+    /// Runs to a time (s) while `look` sees every accepted step.
+    ///
+    /// # Errors
+    /// When the numbers break down.
+    pub fn watch(
+        &mut self,
+        drive: &impl Drive<Planar>,
+        time_step: f64,
+        end_time: f64,
+        look: impl FnMut(&State<Planar>, &Scratch<Planar>) -> ControlFlow<()>,
+    ) -> Result<RunTotals<Planar>, Failure> {
+        let simulation = Simulation { method: self.method, time_step, end_time };
+        let Self { model, state, scratch, .. } = self;
+        Ok(simulate(model, drive, state, scratch, &simulation, &mut Watch(look))?)
+    }
+
+    /// Place of a body along `x` (m) relative to body 0, the ground.
+    pub fn relative(&self, body: usize) -> f64 {
+        self.state.poses[body].position.x - self.state.poses[0].position.x
+    }
+}
+
+/// An observer made of a function.
+struct Watch<F>(F);
+
+impl<F> Observer<Planar> for Watch<F>
+where
+    F: FnMut(&State<Planar>, &Scratch<Planar>) -> ControlFlow<()>,
+{
+    fn observe(
+        &mut self,
+        _model: &Model<Planar>,
+        state: &State<Planar>,
+        scratch: &Scratch<Planar>,
+        _energy: &EnergyLedger<Planar>,
+    ) -> ControlFlow<()> {
+        (self.0)(state, scratch)
+    }
+}

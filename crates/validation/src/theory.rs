@@ -1,0 +1,172 @@
+//! Closed forms, each with where it comes from.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use barrelstack_dynamics::math::{acos, acosh, atan, atan2, cos, exp, sin};
+
+use crate::GRAVITY;
+
+/// p = √(3g/4R) (rad/s) of a rectangle of half-diagonal R (m) (Housner 1963).
+pub fn rocking_rate(radius: f64) -> f64 {
+    (0.75 * GRAVITY / radius).sqrt()
+}
+
+/// η = 1 − (3/2) sin² α of a rectangle: angular momentum about the new corner is kept
+/// (Housner 1963).
+pub fn housner_restitution(alpha: f64) -> f64 {
+    1.0 - 1.5 * sin(alpha) * sin(alpha)
+}
+
+/// p times the time from rest at a lean of `share · α` to upright, exact for any α.
+///
+/// From energy, θ'²/2p² = cos(α − θ₀) − cos(α − θ), with θ = θ₀ (1 − s²), which takes the root out
+/// of the integrand, by the midpoint rule.
+pub fn quarter_period(alpha: f64, share: f64) -> f64 {
+    let start = share * alpha;
+    let parts = 20_000;
+    (0..parts)
+        .map(|i| {
+            let s = (f64::from(i) + 0.5) / f64::from(parts);
+            let theta = start * (1.0 - s * s);
+            // The difference of cosines, free of cancellation.
+            let fall = 2.0 * sin(alpha - 0.5 * (start + theta)) * sin(0.5 * (start - theta));
+            2.0 * start * s / (2.0 * fall).sqrt() / f64::from(parts)
+        })
+        .sum()
+}
+
+/// The same for a slender block: arcosh[1/(1 − φ)] (Housner 1963).
+pub fn slender_quarter_period(share: f64) -> f64 {
+    acosh(1.0 / (1.0 - share))
+}
+
+/// Peak lean over α after an impact that keeps `ratio` = η² of the energy, exact for any α.
+pub fn next_peak(alpha: f64, share: f64, ratio: f64) -> f64 {
+    // cos(α − θ) − cos α shrinks by the ratio; written with half angles.
+    let height = |theta: f64| 2.0 * sin(alpha - 0.5 * theta) * sin(0.5 * theta);
+    let left = ratio * height(share * alpha);
+    let (mut low, mut high) = (0.0, share * alpha);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if height(middle) < left { low = middle } else { high = middle }
+    }
+    0.5 * (low + high) / alpha
+}
+
+/// Strength over gα at which a rectangular push of `p t₁` overturns a slender block (Housner 1963).
+pub fn rectangular_overturning(rate_times_duration: f64) -> f64 {
+    1.0 / (1.0 - exp(-rate_times_duration))
+}
+
+/// Strength over gα at which a half-sine of ω/p = ρ overturns a slender block: the root of
+/// cos ψ + e^{−(π−ψ)/ρ} = ρ sin ψ with sin ψ = gα/A (Makris and Roussos 2000).
+pub fn half_sine_overturning(ratio: f64) -> f64 {
+    sine_root(ratio, |psi| cos(psi) + exp(-(PI - psi) / ratio))
+}
+
+/// The same for one sine without impact: cos ψ − e^{−(2π−ψ)/ρ} = ρ sin ψ.
+pub fn one_sine_overturning(ratio: f64) -> f64 {
+    sine_root(ratio, |psi| cos(psi) - exp(-(TAU - psi) / ratio))
+}
+
+/// 1/sin of the angle at which `side(ψ) = ρ sin ψ`, ψ below π/2.
+fn sine_root(ratio: f64, side: impl Fn(f64) -> f64) -> f64 {
+    let (mut low, mut high) = (1e-9, FRAC_PI_2);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if side(middle) > ratio * sin(middle) { low = middle } else { high = middle }
+    }
+    1.0 / sin(0.5 * (low + high))
+}
+
+/// The same for one cosine without impact: (1 + ρ²)/(1 − e^{−2π/ρ}) (Makris and Roussos 2000).
+pub fn one_cosine_overturning(ratio: f64) -> f64 {
+    (1.0 + ratio * ratio) / (1.0 - exp(-TAU / ratio))
+}
+
+/// The friction coefficient from which a block of slenderness `s` rocks without sliding on a base
+/// that accelerates at `β g`, β > s (Shao and Tung 1999, Taniguchi 2002).
+pub fn least_friction_for_rocking(beta: f64, s: f64) -> f64 {
+    (beta * (1.0 + 4.0 * s * s) + 3.0 * s) / (4.0 + s * s + 3.0 * beta * s)
+}
+
+/// Way (m) of a block of yield acceleration `N g` in a rectangular pulse `A g` (Newmark 1965).
+pub fn slide_in_rectangular_pulse(a: f64, n: f64, duration: f64) -> f64 {
+    let speed = a * GRAVITY * duration;
+    speed * speed / (2.0 * GRAVITY * n) * (1.0 - n / a)
+}
+
+/// The same in a half-sine pulse, by integration.
+pub fn slide_in_half_sine(a: f64, n: f64, duration: f64) -> f64 {
+    let omega = PI / duration;
+    let start = atan(n / (a * a - n * n).sqrt());
+    let rest = duration - start / omega;
+    let speed = a * GRAVITY / omega * (1.0 + cos(start)) - n * GRAVITY * rest;
+    let way = a * GRAVITY / omega * cos(start) * rest + a * GRAVITY / (omega * omega) * sin(start)
+        - 0.5 * n * GRAVITY * rest * rest;
+    way + speed * speed / (2.0 * n * GRAVITY)
+}
+
+/// Relative amplitude (m) of a block that slides all the while on ground that shakes with
+/// `A g sin ωt` (Den Hartog 1931).
+pub fn steady_slide_amplitude(a: f64, n: f64, omega: f64) -> f64 {
+    let share = PI * n / (2.0 * a);
+    a * GRAVITY / (omega * omega) * (1.0 - share * share).sqrt()
+}
+
+/// Restitution under gravity of a node with a damper on approach only; none when the mass stays.
+///
+/// `gravity_number` is Γ = g/(ωv₀). Approach is damped motion about the sunken rest position Γ (in
+/// units of v₀/ω), the way out undamped: e = √(x² − 2Γx) with x the deepest penetration.
+pub fn rebound_under_gravity(damping_ratio: f64, gravity_number: f64) -> Option<f64> {
+    let (zeta, gamma) = (damping_ratio, gravity_number);
+    let omega = (1.0 - zeta * zeta).sqrt();
+    // x = Γ + e^{−ζt} (−Γ cos ωt + B sin ωt), with x(0) = 0 and x'(0) = 1.
+    let b = (1.0 - zeta * gamma) / omega;
+    let t = atan2(zeta * gamma + b * omega, -(gamma * omega - zeta * b)) / omega;
+    let deepest = gamma + exp(-zeta * t) * (b * sin(omega * t) - gamma * cos(omega * t));
+    let square = deepest * deepest - 2.0 * gamma * deepest;
+    (square > 0.0).then(|| square.sqrt())
+}
+
+/// Γ from which a mass stays down.
+pub fn lift_off_lost(damping_ratio: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 10.0);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if rebound_under_gravity(damping_ratio, middle).is_some() {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// ω t of a contact with a damper on approach only: a damped way in, an undamped quarter out.
+pub fn contact_phase(damping_ratio: f64) -> f64 {
+    let zeta = damping_ratio;
+    let way_in = if (zeta - 1.0).abs() < 1e-9 {
+        1.0
+    } else if zeta < 1.0 {
+        acos(zeta) / (1.0 - zeta * zeta).sqrt()
+    } else {
+        acosh(zeta) / (zeta * zeta - 1.0).sqrt()
+    };
+    way_in + FRAC_PI_2
+}
+
+/// Share of the base acceleration that a rolling body of `ratio` = k²/r² takes.
+pub fn rolling_share(ratio: f64) -> f64 {
+    ratio / (1.0 + ratio)
+}
+
+/// ω (rad/s) of small rolling swings of a cylinder in a round cradle, without slip.
+pub fn swing_in_cradle(cradle_radius: f64, radius: f64, ratio: f64) -> f64 {
+    (GRAVITY / ((cradle_radius - radius) * (1.0 + ratio))).sqrt()
+}
+
+/// Farthest overhang (m) of `n` equal bricks of a length (m): the harmonic stack.
+pub fn overhang(n: u32, length: f64) -> f64 {
+    0.5 * length * (1..=n).map(|i| 1.0 / f64::from(i)).sum::<f64>()
+}
