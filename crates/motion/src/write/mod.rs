@@ -58,17 +58,14 @@ fn broken(text: &str, words: &[&str]) -> String {
         let starts = |word: &&&str| {
             rest.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word))
         };
-        let length = match words.iter().find(starts) {
-            Some(word) => {
-                out.push_str(&rest[..2]);
-                out.push('-');
-                out.push_str(&rest[2..word.len()]);
-                word.len()
-            }
-            None => {
-                out.push(first);
-                first.len_utf8()
-            }
+        let length = if let Some(word) = words.iter().find(starts) {
+            out.push_str(&rest[..2]);
+            out.push('-');
+            out.push_str(&rest[2..word.len()]);
+            word.len()
+        } else {
+            out.push(first);
+            first.len_utf8()
         };
         rest = &rest[length..];
     }

@@ -95,6 +95,7 @@ pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<()> {
             .with_context(|| format!("cannot make the folder {}", args.output.display()))?;
     }
     let mut lines = record.notes.clone();
+    lines.push(String::new());
     for (figure, path) in figures {
         store(path, figure.to_svg().as_bytes())?;
         store(&path.with_extension("csv"), figure.to_csv().as_bytes())?;
