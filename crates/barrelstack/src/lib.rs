@@ -14,6 +14,7 @@ pub mod check;
 pub mod export;
 pub mod ground;
 pub mod outcome;
+pub mod render;
 pub mod report;
 pub mod run;
 pub mod scenario;

@@ -7,6 +7,8 @@ mod words;
 
 use barrelstack_report::{Document, Tone, Verdict};
 
+pub(crate) use drawing::scene;
+
 use crate::outcome::Outcome;
 use crate::run::Run;
 use crate::summary::Summary;
@@ -26,7 +28,7 @@ pub fn document(run: &Run, summary: &Summary) -> Document {
         Outcome::NotJudged => Tone::Neutral,
         Outcome::Invalid { .. } => Tone::Invalid,
     };
-    let scene = drawing::scene(run);
+    let scene = scene(run);
     Document {
         title: run.scenario.title.clone(),
         verdict: Verdict {

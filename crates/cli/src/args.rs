@@ -22,6 +22,8 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// Read a scenario, build the stack and let it settle, without shaking it.
     Check(CheckArgs),
+    /// Run a scenario and write its figures, numbered pictures and a ParaView series.
+    Render(crate::commands::render::RenderArgs),
     /// List the built-in scenarios, or print one.
     Scenarios(ScenariosArgs),
 }

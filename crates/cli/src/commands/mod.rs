@@ -2,6 +2,7 @@
 
 mod check;
 mod demo;
+pub(crate) mod render;
 mod run;
 mod scenarios;
 
@@ -19,6 +20,7 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
         Command::Run(args) => run::run(&args),
         Command::Demo(args) => demo::demo(&args),
         Command::Check(args) => check::check(&args),
+        Command::Render(args) => render::render(&args),
         Command::Scenarios(args) => scenarios::scenarios(&args),
     }
 }
