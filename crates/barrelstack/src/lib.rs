@@ -16,6 +16,7 @@ pub mod export;
 pub mod ground;
 pub mod outcome;
 mod overlap;
+pub mod render;
 pub mod report;
 pub mod reproduce;
 pub mod run;

@@ -7,6 +7,8 @@ mod words;
 
 use barrelstack_report::{Document, Tone, Verdict};
 
+pub(crate) use drawing::scene;
+
 use crate::outcome::Outcome;
 use crate::run::Run;
 use crate::summary::Summary;

@@ -43,6 +43,8 @@ pub(crate) enum Command {
     Motion(crate::commands::motion::MotionArgs),
     /// Find contact parameters, with their uncertainty, from your own tests.
     Calibrate(crate::commands::calibrate::CalibrateArgs),
+    /// Run a scenario and write its figures, numbered pictures and a ParaView series.
+    Render(crate::commands::render::RenderArgs),
     /// List the built-in scenarios, or print one.
     Scenarios(ScenariosArgs),
 }

@@ -1,6 +1,6 @@
 // The stage: bodies, paths, forces and events of one frame drawn on a canvas.
 
-const FOOT = 30; // room below the lowest body for the hatch of the ground and the scales (px)
+const FOOT = 36; // room below the lowest body for the hatch of the ground and the scales (px)
 const HATCH = 12; // distance of the strokes of the hatch (px)
 const HEAD = 34; // room above the highest body for the clock and the news (px)
 const FORCE_SHARE = 0.3; // length of a strong force over the height of the view

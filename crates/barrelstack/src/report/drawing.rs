@@ -91,7 +91,11 @@ fn events(run: &Run) -> Vec<Event> {
     let mut events = Vec::new();
     for (i, part) in run.assembly.parts.iter().enumerate() {
         let fate = run.fates.fate(i);
-        if let Some((time, loss)) = fate.left_seat {
+        // A barrel that leaves its seat by falling is one thing that happens, not two.
+        let falls_with_it = |time: f64| {
+            part.kind == PartKind::Barrel && fate.fell_at.is_some_and(|fell| fell <= time)
+        };
+        if let Some((time, loss)) = fate.left_seat.filter(|(time, _)| !falls_with_it(*time)) {
             let text = match loss {
                 Loss::Displaced => format!("{} leaves its cradle", part.name),
                 Loss::Slid => format!("{} has slid off the barrels below", part.name),

@@ -5,6 +5,7 @@ mod check;
 mod demo;
 pub(crate) mod motion;
 mod reproduce;
+pub(crate) mod render;
 mod run;
 mod scenarios;
 
@@ -31,6 +32,7 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
         Command::Check(args) => check::check(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::Motion(args) => motion::motion(&args),
+        Command::Render(args) => render::render(&args),
         Command::Scenarios(args) => scenarios::scenarios(&args),
     }
 }
