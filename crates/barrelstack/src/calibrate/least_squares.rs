@@ -152,7 +152,9 @@ fn damped_step(normal: &[Vec<f64>], gradient: &[f64], lambda: f64) -> Option<Vec
     let mut step = solve(&factor, &gradient.iter().map(|g| -g).collect::<Vec<_>>());
     let longest = step.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     if longest > LONGEST {
-        step.iter_mut().for_each(|value| *value *= LONGEST / longest);
+        for value in &mut step {
+            *value *= LONGEST / longest;
+        }
     }
     Some(step)
 }
@@ -226,7 +228,9 @@ pub fn condition(matrix: &[Vec<f64>]) -> f64 {
         for _ in 0..200 {
             vector = matrix.iter().map(|row| dot(row, &vector)).collect();
             value = dot(&vector, &vector).sqrt();
-            vector.iter_mut().for_each(|entry| *entry /= value);
+            for entry in &mut vector {
+                *entry /= value;
+            }
         }
         value
     };

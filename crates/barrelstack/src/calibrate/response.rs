@@ -2,6 +2,8 @@
 
 mod simulate;
 
+use std::fmt::Write as _;
+
 use barrelstack_dynamics::math;
 
 use self::simulate::{Measured, Simulator};
@@ -119,7 +121,9 @@ pub fn response(
             .zip(scatter.iter().zip(&sizes))
             .map(|(residuals, (scatter, size))| rms(residuals).max(ROUNDING * size / scatter))
             .collect();
-        scatter.iter_mut().zip(&factors).for_each(|(scatter, factor)| *scatter *= factor);
+        for (scatter, factor) in scatter.iter_mut().zip(&factors) {
+            *scatter *= factor;
+        }
         // Other weights scale sensitivities; the stack need not be simulated for them again.
         let scaled = |slope: &Vec<f64>| -> Vec<f64> {
             let channels = by_channel(slope, rows).zip(&factors);
@@ -186,11 +190,11 @@ fn weighted(
     scatter: &[f64],
 ) -> Result<Fit, CalibrateError> {
     let residuals = |simulated: Vec<Vec<f64>>| -> Vec<f64> {
-        let channel =
-            |((values, (_, recorded)), scatter): ((&Vec<f64>, &(String, Vec<f64>)), &f64)| {
-                values.iter().zip(recorded).map(|(a, b)| (a - b) / scatter).collect::<Vec<_>>()
-            };
-        simulated.iter().zip(&measured.channels).zip(scatter).flat_map(channel).collect()
+        let mut residuals = Vec::new();
+        for ((values, recorded), scatter) in simulated.iter().zip(&measured.channels).zip(scatter) {
+            residuals.extend(values.iter().zip(&recorded.1).map(|(a, b)| (a - b) / scatter));
+        }
+        residuals
     };
     let evaluate = |points: &[Vec<f64>]| -> Vec<Option<Vec<f64>>> {
         simulator.batch(points).into_iter().map(|found| found.map(residuals)).collect()
@@ -293,19 +297,21 @@ fn scenario_lines(simulator: &Simulator<'_>, parameters: &[Parameter], found: &F
     ] {
         let constants = simulator.constants(name == "barrel-rack", &point);
         if has(Parameter::Stiffness) || has(Parameter::Damping) {
-            text += &format!(
-                "[interface.{name}]\nstiffness = {}\ndamping = {}\n",
+            let _ = writeln!(
+                text,
+                "[interface.{name}]\nstiffness = {}\ndamping = {}",
                 quoted(constants.stiffness, simulator.dimension(Parameter::Stiffness)),
                 quoted(constants.damping, simulator.dimension(Parameter::Damping)),
             );
         }
         if has(own) {
-            text += &format!(
-                "[interface.{name}.friction]\ncoefficient = {}\n",
+            let _ = writeln!(
+                text,
+                "[interface.{name}.friction]\ncoefficient = {}",
                 rounded(constants.kinetic)
             );
             if constants.rest > constants.kinetic {
-                text += &format!("static_coefficient = {}\n", rounded(constants.rest));
+                let _ = writeln!(text, "static_coefficient = {}", rounded(constants.rest));
             }
         }
     }
