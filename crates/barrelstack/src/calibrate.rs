@@ -3,7 +3,7 @@
 //! | test | file | gives |
 //! |---|---|---|
 //! | [`stiffness`] | penetration and force | `k` |
-//! | [`drop`] | drop and rebound heights, or times of impact | restitution, `c` |
+//! | [`mod@drop`] | drop and rebound heights, or times of impact | restitution, `c` |
 //! | [`friction`] | pull forces, or tilt angles | static and kinetic μ |
 //! | [`response`] | histories of a shaken stack | `k`, `c`, μ together |
 //!

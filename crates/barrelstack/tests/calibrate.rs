@@ -1,6 +1,7 @@
 //! Calibration: parameters come back from noisy synthetic tests within their stated intervals.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+#![allow(clippy::print_stdout, reason = "the coverage is shown")]
 
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
@@ -51,7 +52,7 @@ fn stiffness_and_seating_lie_within_their_intervals() {
         }
         stiffness(&Table::parse("press.csv", &text).unwrap(), 2, "barrel-rack").unwrap()
     });
-    assert_covered(&covered); // measured STIFF
+    assert_covered(&covered); // measured 95 and 94
 }
 
 #[test]
@@ -79,7 +80,7 @@ fn an_impact_with_gravity_agrees_with_the_closed_form() {
         [(0.0676, 0.1, 0.88988), (0.0676, 0.5, 0.80881), (0.3, 0.1, 0.62674), (0.3, 0.5, 0.24616)]
     {
         let found = impact(1.0, 1.0, 2.0 * ratio, gamma, 1.0);
-        assert!((found.speed - e).abs() < 1e-5, "{ratio} {gamma}: {found:?}"); // measured 5e-6
+        assert!((found.speed - e).abs() < 1e-5, "{ratio} {gamma}: {found:?}"); // measured 4.7e-6
     }
     // Beyond Γ = 0.555 nothing leaves at ζ = 0.3.
     assert_eq!(impact(1.0, 1.0, 0.6, 0.56, 1.0).speed, 0.0);
@@ -106,7 +107,7 @@ fn damping_lies_within_its_interval_from_heights() {
         }
         drop(&Table::parse("drop.csv", &text).unwrap(), Some(STRIKER), "barrel-rack").unwrap()
     });
-    assert_covered(&covered); // measured HEIGHTS
+    assert_covered(&covered); // measured 98
 }
 
 #[test]
@@ -123,7 +124,7 @@ fn damping_lies_within_its_interval_from_times() {
         }
         drop(&Table::parse("bounce.csv", &text).unwrap(), Some(STRIKER), "barrel-rack").unwrap()
     });
-    assert_covered(&covered); // measured TIMES
+    assert_covered(&covered); // measured 96
 }
 
 #[test]
@@ -139,7 +140,7 @@ fn friction_lies_within_its_intervals_from_pulls() {
         }
         friction(&Table::parse("pull.csv", &text).unwrap(), "rack-ground").unwrap()
     });
-    assert_covered(&covered); // measured PULLS
+    assert_covered(&covered); // measured 97 and 95
 }
 
 #[test]
@@ -156,7 +157,7 @@ fn friction_lies_within_its_intervals_from_tilts() {
         }
         friction(&Table::parse("tilt.csv", &text).unwrap(), "barrel-rack").unwrap()
     });
-    assert_covered(&covered); // measured TILTS
+    assert_covered(&covered); // measured 93 and 98
 }
 
 #[test]
@@ -207,14 +208,14 @@ fn a_table_is_refused_at_its_place() {
     assert!(error.starts_with(words), "{error}");
 }
 
-/// Two barrels on one rack, shaken for half a second at 7 Hz so that they roll and slide in their
+/// Two barrels on one rack, shaken for 0.3 s at 7 Hz so that they roll and slide in their
 /// cradles and the rack slides on the ground.
 fn shaken() -> Scenario {
     let changes = [
         "stack.levels=1",
         "motion.sine.amplitude=0.5 cm",
         "motion.sine.period=0.15 s",
-        "run.duration=0.5 s",
+        "run.duration=0.3 s",
         "interface.rack-ground.friction.coefficient=0.4",
     ];
     Scenario::builtin("candia-8-barrels", &changes.map(str::to_owned)).unwrap()
@@ -275,14 +276,28 @@ fn a_response_gives_its_parameters_back_within_their_intervals() {
         ("friction barrel-rack", 0.22),
         ("friction rack-ground", 0.4),
     ];
-    let mut campaigns = 0;
     let covered = coverage(&values, |random| {
-        let found = response(&start, &noisy(&exact, 0.1, random), &ALL, None).unwrap();
-        campaigns += 1;
-        if campaigns <= 3 {
-            println!("{}\n{:#?}", found.lines().join("\n"), found.warnings);
-        }
-        found
+        response(&start, &noisy(&exact, 0.1, random), &ALL, None).unwrap()
     });
-    assert_covered(&covered); // measured RESPONSE
+    assert_covered(&covered); // measured 92, 96, 93 and 91
+}
+
+#[test]
+fn a_response_says_what_it_cannot_tell() {
+    // Shaken so mildly that the rack sticks to the ground: its friction leaves no trace.
+    let mut scenario = shaken();
+    scenario.motion = Scenario::builtin(
+        "candia-8-barrels",
+        &["motion.sine.amplitude=0.02 cm", "motion.sine.period=0.15 s"].map(str::to_owned),
+    )
+    .unwrap()
+    .motion;
+    let table = noisy(&recorded(&scenario), 1e-3, &mut Random::new(1));
+    let fitted = [Parameter::Stiffness, Parameter::FrictionRackGround];
+    let found = response(&scenario, &table, &fitted, None).unwrap();
+    let friction = found.estimate("friction rack-ground").unwrap();
+    assert!(friction.high > 4.0 * friction.low, "{friction:?}");
+    let told = |warning: &String| warning.contains("friction rack-ground");
+    assert!(found.warnings.iter().any(told), "{:?}", found.warnings);
+    assert!(found.estimate("stiffness k").unwrap().relative() < 0.05, "{found:?}");
 }

@@ -3,7 +3,7 @@
 use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::math;
 
-use super::least_squares::{Fit, fit};
+use super::least_squares::{self, Fit, Start};
 use super::result::{quoted, rounded, short};
 use super::statistics::{mean, student};
 use super::{CalibrateError, Calibration, Estimate, Table, impact};
@@ -25,8 +25,11 @@ pub struct Striker {
 /// Standard gravity (m/s²).
 pub const GRAVITY: f64 = 9.80665;
 
-/// Differences of the fits, whose parameters are about 1.
-const WIDTH: f64 = 1e-4;
+/// Fits from a start; parameters are about 1, and differences and the last step small.
+fn fit(start: &[f64], evaluate: &least_squares::Evaluate<'_>) -> Option<Fit> {
+    let parameters = start.to_vec();
+    least_squares::fit(Start { parameters, slopes: None, width: 1e-4, share: 0.01 }, evaluate)
+}
 
 /// Restitution, and with a striker the damping, from a table with the columns `drop height` and
 /// `rebound height`, or `time` of the impacts of one bounce sequence.
@@ -143,7 +146,7 @@ fn from_heights(table: &Table, striker: Option<Striker>) -> Result<Found, Calibr
         };
         Some(from.iter().zip(&shown).map(residual).collect())
     };
-    let found = fit(&[start], WIDTH, &|points| points.iter().map(residuals).collect());
+    let found = fit(&[start], &|points| points.iter().map(residuals).collect());
     let log_ratio =
         log_interval(found.as_ref(), 0).ok_or_else(|| table.unsuited(no_rebound(&striker)))?;
     let slow = from.iter().fold(f64::INFINITY, |least, from| least.min(*from));
@@ -185,8 +188,7 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, Calibrat
         };
         Some(times.iter().enumerate().map(residual).collect())
     };
-    let plain =
-        fit(&[0.0, 0.0, math::log(e)], WIDTH, &|points| points.iter().map(bounce).collect());
+    let plain = fit(&[0.0, 0.0, math::log(e)], &|points| points.iter().map(bounce).collect());
     let (log_e, half) = log_interval(plain.as_ref(), 2)
         .ok_or_else(|| table.unsuited("the times do not follow a bounce sequence"))?;
     let restitution = Estimate {
@@ -214,7 +216,7 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, Calibrat
         Some(residuals)
     };
     let start = [0.0, 0.0, start_ratio(restitution.value)];
-    let found = fit(&start, WIDTH, &|points| points.iter().map(solved).collect());
+    let found = fit(&start, &|points| points.iter().map(solved).collect());
     let log_ratio =
         log_interval(found.as_ref(), 2).ok_or_else(|| table.unsuited(no_rebound(&striker)))?;
     let last = 0.5 * striker.gravity * flights[flights.len() - 1];

@@ -16,7 +16,7 @@ pub enum CalibrateError {
         reason: String,
     },
     /// A place of the file is not what it should be.
-    #[error("{file}, line {line}{place}: expected {expected}, found {found}; {remedy}", place = in_column(column))]
+    #[error("{file}, line {line}{place}: expected {expected}, found {found}; {remedy}", place = in_column(column.as_deref()))]
     Table {
         /// The file.
         file: String,
@@ -25,11 +25,11 @@ pub enum CalibrateError {
         /// The column, as the header names it; none where the whole line is meant.
         column: Option<String>,
         /// What should stand there.
-        expected: String,
+        expected: Box<str>,
         /// What stands there.
-        found: String,
+        found: Box<str>,
         /// The next move.
-        remedy: String,
+        remedy: Box<str>,
     },
     /// The file is sound, and no parameter can be had from it.
     #[error("{file}: {reason}")]
@@ -47,6 +47,6 @@ pub enum CalibrateError {
     Run(#[from] RunFailure),
 }
 
-fn in_column(column: &Option<String>) -> String {
-    column.as_ref().map(|name| format!(", column \"{name}\"")).unwrap_or_default()
+fn in_column(column: Option<&str>) -> String {
+    column.map(|name| format!(", column \"{name}\"")).unwrap_or_default()
 }

@@ -1,5 +1,7 @@
 //! Friction coefficients from pull tests or tilt tests.
 
+use std::fmt::Write as _;
+
 use barrelstack_dynamics::math;
 
 use super::drop::GRAVITY;
@@ -58,9 +60,9 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
                 short(kinetic.value)
             )));
         }
-        scenario += &format!("coefficient = {}\n", rounded(kinetic.value));
+        let _ = writeln!(scenario, "coefficient = {}", rounded(kinetic.value));
         if at_rest > kinetic.value {
-            scenario += &format!("static_coefficient = {}\n", rounded(at_rest));
+            let _ = writeln!(scenario, "static_coefficient = {}", rounded(at_rest));
         } else {
             warnings.push(
                 "sliding takes no less than breaking away: static_coefficient is left out, so that both \
@@ -70,7 +72,7 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
         }
         estimates.push(kinetic);
     } else {
-        scenario += &format!("coefficient = {}\n", rounded(at_rest));
+        let _ = writeln!(scenario, "coefficient = {}", rounded(at_rest));
         warnings.push(
             "there is no test of sliding: the kinetic coefficient is taken as the static one, which is \
              the larger of the two"

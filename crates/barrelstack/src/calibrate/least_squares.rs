@@ -14,9 +14,6 @@ const MOST_STEPS: usize = 30;
 /// be about 1.
 const LONGEST: f64 = 0.5;
 
-/// A step is the last one when it is shorter than this share of the standard error.
-const SHARE: f64 = 0.01;
-
 /// Where a fit ended.
 #[derive(Clone, Debug)]
 pub struct Fit {
@@ -24,6 +21,8 @@ pub struct Fit {
     pub parameters: Vec<f64>,
     /// Residuals there.
     pub residuals: Vec<f64>,
+    /// Sensitivities of the residuals to every parameter, at most one last step away.
+    pub slopes: Vec<Vec<f64>>,
     /// Whether any residual depends on the parameter.
     pub matters: Vec<bool>,
     /// Covariance of the parameters that matter, in their order; none where they cannot be told apart.
@@ -36,15 +35,31 @@ pub struct Fit {
     pub converged: bool,
 }
 
-/// Minimizes the sum of squared residuals from `start`, with differences over `±width`.
+/// Where a fit starts and how it goes.
+#[derive(Clone, Debug)]
+pub struct Start {
+    /// Parameters.
+    pub parameters: Vec<f64>,
+    /// Sensitivities there, where they are known.
+    pub slopes: Option<Vec<Vec<f64>>>,
+    /// Differences are taken this far to either side.
+    pub width: f64,
+    /// A step shorter than this share of the standard error is the last one.
+    pub share: f64,
+}
+
+/// Minimizes the sum of squared residuals.
 ///
 /// Returns none when the model has no answer at the start or around it.
-pub fn fit(start: &[f64], width: f64, evaluate: &Evaluate<'_>) -> Option<Fit> {
-    let mut parameters = start.to_vec();
+pub fn fit(start: Start, evaluate: &Evaluate<'_>) -> Option<Fit> {
+    let Start { mut parameters, slopes, width, share } = start;
     let mut residuals = evaluate(std::slice::from_ref(&parameters)).pop()??;
     let mut lambda = 1e-3;
     let mut converged = false;
-    let mut slopes = jacobian(&parameters, width, evaluate)?;
+    let mut slopes = match slopes {
+        Some(slopes) => slopes,
+        None => jacobian(&parameters, width, evaluate)?,
+    };
     for _ in 0..MOST_STEPS {
         let normal = products(&slopes);
         let gradient: Vec<f64> = slopes.iter().map(|slope| dot(slope, &residuals)).collect();
@@ -58,7 +73,7 @@ pub fn fit(start: &[f64], width: f64, evaluate: &Evaluate<'_>) -> Option<Fit> {
             // δᵀ JᵀJ δ / s² is the squared length of the step in standard errors.
             let length = quadratic(&normal, &step);
             let trial: Vec<f64> = parameters.iter().zip(&step).map(|(p, d)| p + d).collect();
-            short = length <= SHARE * SHARE * variance || length == 0.0;
+            short = length <= share * share * variance || length == 0.0;
             let found = evaluate(std::slice::from_ref(&trial)).pop().flatten();
             if let Some(found) = found.filter(|found| dot(found, found) < cost) {
                 better = Some((trial, found));
@@ -83,10 +98,15 @@ pub fn fit(start: &[f64], width: f64, evaluate: &Evaluate<'_>) -> Option<Fit> {
         }
         slopes = jacobian(&parameters, width, evaluate)?;
     }
-    Some(finish(parameters, residuals, &slopes, converged))
+    Some(finish(parameters, residuals, slopes, converged))
 }
 
-fn finish(parameters: Vec<f64>, residuals: Vec<f64>, slopes: &[Vec<f64>], converged: bool) -> Fit {
+fn finish(
+    parameters: Vec<f64>,
+    residuals: Vec<f64>,
+    slopes: Vec<Vec<f64>>,
+    converged: bool,
+) -> Fit {
     let matters: Vec<bool> = slopes.iter().map(|slope| dot(slope, slope) > 0.0).collect();
     let kept: Vec<Vec<f64>> =
         slopes.iter().zip(&matters).filter(|(_, m)| **m).map(|(slope, _)| slope.clone()).collect();
@@ -96,7 +116,7 @@ fn finish(parameters: Vec<f64>, residuals: Vec<f64>, slopes: &[Vec<f64>], conver
     let covariance = inverse(&information).map(|inverse| {
         inverse.iter().map(|row| row.iter().map(|value| value * variance).collect()).collect()
     });
-    Fit { parameters, residuals, matters, covariance, information, freedom, converged }
+    Fit { parameters, residuals, slopes, matters, covariance, information, freedom, converged }
 }
 
 /// Sensitivities: for every parameter the change of all residuals with it.
@@ -132,7 +152,9 @@ fn damped_step(normal: &[Vec<f64>], gradient: &[f64], lambda: f64) -> Option<Vec
     let mut step = solve(&factor, &gradient.iter().map(|g| -g).collect::<Vec<_>>());
     let longest = step.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     if longest > LONGEST {
-        step.iter_mut().for_each(|value| *value *= LONGEST / longest);
+        for value in &mut step {
+            *value *= LONGEST / longest;
+        }
     }
     Some(step)
 }
@@ -206,7 +228,9 @@ pub fn condition(matrix: &[Vec<f64>]) -> f64 {
         for _ in 0..200 {
             vector = matrix.iter().map(|row| dot(row, &vector)).collect();
             value = dot(&vector, &vector).sqrt();
-            vector.iter_mut().for_each(|entry| *entry /= value);
+            for entry in &mut vector {
+                *entry /= value;
+            }
         }
         value
     };
@@ -230,7 +254,9 @@ mod tests {
             };
             points.iter().map(|p| Some(residual(p))).collect()
         };
-        let fit = fit(&[0.0, 0.0, 7.0], 1e-4, &evaluate).unwrap();
+        let start =
+            Start { parameters: vec![0.0, 0.0, 7.0], slopes: None, width: 1e-4, share: 0.01 };
+        let fit = fit(start, &evaluate).unwrap();
         assert!(fit.converged);
         assert_eq!(
             (fit.parameters[2], fit.matters.as_slice()),

@@ -99,9 +99,9 @@ impl Table {
                     file: file.to_owned(),
                     line,
                     column: None,
-                    expected: format!("{} columns as in the header", columns.len()),
-                    found: row.len().to_string(),
-                    remedy: "complete the row or remove it".to_owned(),
+                    expected: format!("{} columns as in the header", columns.len()).into(),
+                    found: row.len().to_string().into(),
+                    remedy: "complete the row or remove it".into(),
                 });
             }
             rows.push((line, row));
@@ -141,8 +141,9 @@ impl Table {
     pub fn required(&self, name: &str, dimension: Dimension) -> Result<Vec<f64>, CalibrateError> {
         let mut found = self.columns.iter().enumerate().filter(|(_, column)| column.is(name));
         let example = || format!("`{name} ({})`", dimension.si_unit());
-        let at_header = |column: Option<String>, expected, found, remedy: &str| {
-            let (file, line, remedy) = (self.file.clone(), self.header_line, remedy.to_owned());
+        let at_header = |column: Option<String>, expected: String, found: String, remedy: &str| {
+            let (file, line) = (self.file.clone(), self.header_line);
+            let (expected, found, remedy) = (expected.into(), found.into(), remedy.into());
             CalibrateError::Table { file, line, column, expected, found, remedy }
         };
         let listed = || {
@@ -248,9 +249,9 @@ impl Table {
             file: self.file.clone(),
             line,
             column: Some(column.to_owned()),
-            expected: expected.to_owned(),
-            found: found.to_owned(),
-            remedy: remedy.to_owned(),
+            expected: expected.into(),
+            found: found.into(),
+            remedy: remedy.into(),
         }
     }
 

@@ -250,6 +250,8 @@ fn fitted(args: &ResponseArgs) -> anyhow::Result<Calibration> {
     response::response(&scenario, &table, &parameters, until).map_err(|error| match error {
         CalibrateError::Run(failure) => super::placed(failure, &scenario_args),
         CalibrateError::Scenario(reason) => anyhow::anyhow!("{}: {reason}", args.scenario),
-        error => error.into(),
+        error @ (CalibrateError::Unreadable { .. }
+        | CalibrateError::Table { .. }
+        | CalibrateError::Unsuited { .. }) => error.into(),
     })
 }
