@@ -158,7 +158,7 @@ fn pattern(lower: f64, upper: f64) -> Option<usize> {
 fn patterns() -> Problem {
     Problem {
         id: "stacks/four-patterns".into(),
-        title: "two equal slender blocks under one sine of 0.6 g to 1 g".into(),
+        title: "two slender blocks under one sine of 0.4 g to 1.6 g, the upper wider or narrower".into(),
         source: PATTERNS.into(),
         quantity: "rocking patterns that occur",
         unit: "",
