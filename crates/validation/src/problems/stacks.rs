@@ -158,7 +158,7 @@ fn pattern(lower: f64, upper: f64) -> Option<usize> {
 fn patterns() -> Problem {
     Problem {
         id: "stacks/four-patterns".into(),
-        title: "two slender blocks under one sine of 0.4 g to 1.6 g, the upper wider or narrower".into(),
+        title: "two blocks 1 m high, of several widths, under one sine of 0.33 g to 1.6 g".into(),
         source: PATTERNS.into(),
         quantity: "rocking patterns that occur",
         unit: "",
