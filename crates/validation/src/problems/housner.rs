@@ -23,7 +23,7 @@ pub(super) fn firm(effort: Effort, radius: f64, alpha: f64) -> RockingBlock {
 /// A slender block, for closed forms that take angles as small; stiff, so that its sinking stays small
 /// beside its angles.
 pub(super) fn slender(effort: Effort, radius: f64) -> RockingBlock {
-    let stiffer = if effort == Effort::Full { 5.0 } else { 2.0 };
+    let stiffer = if effort == Effort::Full { 5.0 } else { 4.0 };
     RockingBlock {
         contact_frequency: stiffer * contact_frequency(effort),
         ..firm(effort, radius, 0.03)
@@ -147,7 +147,7 @@ fn half_period(alpha: f64, impacts: usize) -> Problem {
         unit: "",
         exact,
         tolerance: Tolerance::Relative(5e-3),
-        fast: Some(Tolerance::Relative(2e-2)),
+        fast: Some(Tolerance::Relative(2.5e-2)),
         run: Box::new(move |effort| {
             refine(effort, exact, |level| {
                 let block = firm(effort, 1.0, alpha).refined(level - 1);
@@ -201,11 +201,12 @@ fn rectangular(product: f64) -> Problem {
         unit: "",
         exact,
         tolerance: Tolerance::Relative(1e-2),
-        fast: Some(Tolerance::Relative(2e-2)),
+        fast: Some(Tolerance::Relative(2.5e-2)),
         run: Box::new(move |effort| {
             // The jump of the push sets the springs swinging, by less the stiffer they are.
             refine(effort, exact, |level| {
-                let block = slender(effort, 1.0).refined(level - 2);
+                let softer = if effort == Effort::Full { 2 } else { 0 };
+                let block = slender(effort, 1.0).refined(level - softer);
                 let duration = product / block.rate();
                 border((0.97 * exact, 1.03 * exact), halvings(effort), |strength| {
                     let acceleration = strength * block.uplift();
@@ -228,7 +229,7 @@ fn impulse() -> Problem {
         unit: "m/s",
         exact,
         tolerance: Tolerance::Relative(1e-2),
-        fast: Some(Tolerance::Relative(2e-2)),
+        fast: Some(Tolerance::Relative(2.5e-2)),
         run: Box::new(move |effort| {
             let block = firm(effort, radius, alpha);
             let duration = 2e-3;
