@@ -35,8 +35,10 @@ pub fn execute(
         for _ in 0..threads.max(1) {
             scope.spawn(|| {
                 loop {
-                    let at = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(problem) = problems.get(at) else { break };
+                    // The longest stand at the end of the list and begin first.
+                    let taken = next.fetch_add(1, Ordering::Relaxed) + 1;
+                    let Some(at) = problems.len().checked_sub(taken) else { break };
+                    let problem = &problems[at];
                     let row = judge(problem, effort);
                     done(at, &row);
                     // A thread that panicked left no half-written row behind.

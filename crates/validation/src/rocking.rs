@@ -298,11 +298,14 @@ impl RockingBlock {
             peak = peak.max(last);
             fell = last > OVERTURNED;
             let left = self.alpha - last;
-            // It only loses energy from here on, and swings no further than this.
+            // It only loses energy from here on. Within an impact springs hold part of it, so only a
+            // block that clearly swings back, or rests, is judged.
+            let back = spin * lean < 0.0 && last > 0.01 * self.alpha;
+            let rests = last < 1e-5 && spin.abs() < 1e-4;
             let safe = state.time > acceleration_end
                 && left > 0.0
                 && 0.5 * spin * spin < rate * rate * (1.0 - cos(left))
-                && (spin * lean <= 0.0 || last < 1e-5);
+                && (back || rests);
             if fell || safe { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })?;
         Ok(Ride { overturned: fell || last > self.alpha, peak })

@@ -94,7 +94,7 @@ fn closed(form: Form, ratio: f64) -> Problem {
         unit: "",
         exact,
         tolerance: Tolerance::Relative(1e-2),
-        fast: Some(Tolerance::Relative(2e-2)),
+        fast: Some(Tolerance::Relative(2.5e-2)),
         run: Box::new(move |effort| {
             let block = slender(effort, 1.0);
             let omega = ratio * block.rate();
@@ -131,7 +131,7 @@ fn tabulated(
         unit: "",
         exact,
         tolerance: Tolerance::Relative(1e-2),
-        fast: Some(Tolerance::Relative(2e-2)),
+        fast: Some(Tolerance::Relative(2.5e-2)),
         run: Box::new(move |effort| {
             let radius = 0.75 * GRAVITY / (RATE * RATE);
             let block = match effort {

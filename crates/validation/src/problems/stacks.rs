@@ -158,7 +158,7 @@ fn pattern(lower: f64, upper: f64) -> Option<usize> {
 fn patterns() -> Problem {
     Problem {
         id: "stacks/four-patterns".into(),
-        title: "two equal slender blocks under one sine of 0.6 g to 1 g".into(),
+        title: "two blocks 1 m high, of several widths, under one sine of 0.33 g to 0.8 g".into(),
         source: PATTERNS.into(),
         quantity: "rocking patterns that occur",
         unit: "",
@@ -167,10 +167,13 @@ fn patterns() -> Problem {
         fast: None,
         run: Box::new(|effort| {
             let mut times = [0.0; 4];
-            for strength in [0.6, 0.8, 1.0] {
-                let mut scene = tower(&[(0.5, 1.0), (0.45, 1.0)], (5.0, 5.0))?;
+            // Strength (g), ω (rad/s), widths of the lower and the upper block (m).
+            for (strength, omega, lower, upper) in
+                [(0.33, 6.0, 0.8, 0.3), (0.4, 6.0, 0.5, 0.5), (0.8, 9.0, 0.5, 0.45)]
+            {
+                let mut scene = tower(&[(lower, 1.0), (upper, 1.0)], (5.0, 5.0))?;
                 let drive =
-                    Shake::Sine { acceleration: strength * GRAVITY, omega: 9.0, half_waves: 2.0 };
+                    Shake::Sine { acceleration: strength * GRAVITY, omega, half_waves: 2.0 };
                 let step = if effort == Effort::Full { STEP } else { 1.5 * STEP };
                 scene.watch(&drive, step, 2.0, |state, _| {
                     let (lower, upper) = (state.poses[1].orientation, state.poses[2].orientation);
