@@ -4,8 +4,8 @@ pub(crate) mod calibrate;
 mod check;
 mod demo;
 pub(crate) mod motion;
-mod reproduce;
 pub(crate) mod render;
+mod reproduce;
 mod run;
 mod scenarios;
 
