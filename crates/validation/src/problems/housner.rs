@@ -66,7 +66,7 @@ fn quarter_period(alpha: f64, share: f64) -> Problem {
         quantity: "p times the quarter period",
         unit: "",
         exact,
-        tolerance: Tolerance::Relative(1e-3), // measured: see the report
+        tolerance: Tolerance::Relative(1e-3), // measured 1e-6
         fast: Some(Tolerance::Relative(5e-3)),
         run: Box::new(move |effort| {
             let block = firm(effort, 1.0, alpha);
