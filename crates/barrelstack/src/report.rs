@@ -13,7 +13,6 @@ use crate::outcome::Outcome;
 use crate::run::Run;
 use crate::summary::Summary;
 
-pub(crate) use drawing::scene;
 pub(crate) use sections::{standing_range, stress_figure};
 
 /// What happened, in three plain sentences: the verdict, the why, and how far to trust it.

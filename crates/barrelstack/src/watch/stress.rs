@@ -278,7 +278,7 @@ fn whole(number: f64) -> usize {
 fn empty(body: BodyId, points: Vec<BoundaryPoint>, closed: bool, cells: Cells) -> StressEnvelope {
     let count = points.len();
     let length = match cells {
-        Cells::Around(radius) => std::f64::consts::TAU * radius / count as f64,
+        Cells::Around(radius) => TAU * radius / count as f64,
         Cells::Along(half_length) => 4.0 * half_length / count as f64,
         Cells::Nodes => 0.0,
     };

@@ -75,8 +75,9 @@ pub(crate) fn render(args: &RenderArgs) -> anyhow::Result<ExitCode> {
     // The folder is looked at before the work is done, not after.
     let folder = RenderFolder::prepare(&args.out, &parts, args.overwrite)?;
     let (run, summary) = super::run::watched(&scenario, !args.quiet)?;
-    for part in folder.write(&run, &summary, args.rate)? {
-        printer::line(&format!("{}: {} files", part.folder.display(), part.files));
-    }
+    let written = folder.write(&run, &summary, args.rate)?;
+    printer::lines(
+        written.iter().map(|part| format!("{}: {} files", part.folder.display(), part.files)),
+    )?;
     Ok(if run.interrupted { ExitCode::from(130) } else { ExitCode::SUCCESS })
 }
