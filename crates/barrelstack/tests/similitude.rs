@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use barrelstack::{Run, Scenario, run};
 
+#[expect(clippy::unwrap_used, reason = "a built-in scenario runs")]
 fn run_of(name: &str, overrides: &[&str]) -> Run {
     let overrides: Vec<String> = overrides.iter().map(|o| (*o).to_owned()).collect();
     let scenario = Scenario::builtin(name, &overrides).unwrap();

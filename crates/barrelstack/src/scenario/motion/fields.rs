@@ -115,7 +115,6 @@ pub static SINE: Section = Section {
             Default::Value("0.0"),
             "Cycles over which the amplitude grows from zero, and again falls to zero.",
         ),
-        PHASE_FIELD,
         DIRECTION_FIELD,
     ],
     variants: None,

@@ -112,8 +112,6 @@ pub struct Sine {
     pub cycles: f64,
     /// Cycles over which the amplitude grows from zero, and again falls to zero.
     pub ramp_cycles: f64,
-    /// Phase (rad).
-    pub phase: f64,
     /// Direction.
     pub direction: Direction,
 }

@@ -131,7 +131,6 @@ fn read_sine(reader: Reader<'_>) -> Result<Sine, ScenarioError> {
         period,
         cycles,
         ramp_cycles,
-        phase: reader.quantity("phase")?,
         direction: reader.choice("direction")?,
     };
     reader.finish();
@@ -238,7 +237,6 @@ fn write_sine(sine: &Sine) -> Table {
     writer.quantity("period", sine.period);
     writer.number("cycles", sine.cycles);
     writer.number("ramp_cycles", sine.ramp_cycles);
-    writer.quantity("phase", sine.phase);
     writer.choice("direction", sine.direction);
     writer.omit(&["frequency", "duration"]);
     writer.finish()
