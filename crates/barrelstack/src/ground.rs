@@ -51,6 +51,12 @@ pub enum GroundError {
     /// The record has no such component, or cannot be scaled so.
     #[error(transparent)]
     Motion(#[from] MotionError),
+    /// The record has no vertical component of the name that the scenario asks for.
+    #[error("{error}; for a record without one: --set motion.vertical=false")]
+    Vertical {
+        /// What is missing, and what there is.
+        error: MotionError,
+    },
     /// There is no bundled record of that name.
     #[error("there is no bundled record \"{name}\"; the bundled ones are: {known}")]
     UnknownBundled {
@@ -145,6 +151,10 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
         Vertical::None => record.ground_motion(&horizontal, None, &processing)?,
         Vertical::Component(name) => {
             let vertical = component_of(&record, Some(name))?;
+            // Looked for by itself first: only the scenario knows that it can do without.
+            if let Err(error) = record.component(&vertical) {
+                return Err(GroundError::Vertical { error });
+            }
             record.ground_motion(&horizontal, Some(&vertical), &processing)?
         }
         Vertical::File(file) => {
