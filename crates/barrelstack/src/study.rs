@@ -146,7 +146,10 @@ pub fn json_schema() -> serde_json::Value {
 
 /// Every table and field of a study file in Markdown; those of `[base]` are those of a scenario file.
 pub fn reference() -> String {
-    let fields = crate::scenario::reference::of_tables(&STUDY, &["root", "motion", "sine", "pulse", "scale"]);
+    let fields = crate::scenario::reference::of_tables(
+        &STUDY,
+        &["root", "motion", "sine", "pulse", "scale"],
+    );
     format!("# Fields of a study file\n\n{fields}")
 }
 
@@ -159,10 +162,8 @@ impl Study {
 
     /// How many cases there are; of an adaptive design, at most.
     pub fn cases(&self) -> u64 {
-        match &self.design {
-            Design::Ida(hunt) => self.cases.count(self) * u64::from(hunt.runs),
-            _ => self.cases.count(self),
-        }
+        let runs = if let Design::Ida(hunt) = &self.design { hunt.runs } else { 1 };
+        self.cases.count(self) * u64::from(runs)
     }
 
     /// Whether the number of cases depends on what becomes of them.

@@ -29,7 +29,7 @@ pub fn markdown() -> String {
 pub(crate) fn of_tables(top: &'static Section, elsewhere: &[&'static str]) -> String {
     let mut text = String::new();
     let mut seen: Vec<(&str, String)> =
-        elsewhere.iter().map(|name| (*name, format!("{name} of a scenario file"))).collect();
+        elsewhere.iter().map(|name| (*name, "a scenario file has there".to_owned())).collect();
     table(&mut text, &mut seen, "", top);
     text
 }
@@ -60,9 +60,9 @@ fn table(text: &mut String, seen: &mut Vec<(&str, String)>, path: &str, section:
             if path.is_empty() { field.name.to_owned() } else { format!("{path}.{}", field.name) };
         let Some(inner) = field.kind.section() else { continue };
         if let Some((_, first)) = seen.iter().find(|(name, _)| *name == inner.name) {
-            let _ = writeln!(text, "`[{inner_path}]` has the same fields as `[{first}]`.\n");
+            let _ = writeln!(text, "`[{inner_path}]` has the same fields as {first}.\n");
         } else {
-            seen.push((inner.name, inner_path.clone()));
+            seen.push((inner.name, format!("`[{inner_path}]`")));
             table(text, seen, &inner_path, inner);
         }
     }

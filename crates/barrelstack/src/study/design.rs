@@ -141,10 +141,9 @@ impl Cases {
                 Self::Sampled(Sampling::LatinHypercube(axes.iter().map(permutation).collect()))
             }
             Design::Sobol { .. } => {
-                #[expect(clippy::cast_possible_truncation, reason = "the high half of 64 bits")]
                 let axis = |(dimension, axis): (usize, &String)| {
                     let shift = seed_of(study.seed, &format!("shift of {axis}")) >> 32;
-                    Axis::new(dimension, shift as u32)
+                    Axis::new(dimension, u32::try_from(shift).unwrap_or_default())
                 };
                 Self::Sampled(Sampling::Sobol(axes.iter().enumerate().map(axis).collect()))
             }
@@ -256,14 +255,11 @@ fn sampled(study: &Study, sampling: &Sampling, number: u64) -> Case {
         }
     };
     let motion = pick(coordinate(0), study.motions.len());
-    let level = match &study.intensity {
-        None => None,
-        Some(intensity) => Some(match &intensity.levels {
-            Levels::List(levels) => levels[pick(coordinate(1), levels.len())],
-            Levels::Distribution(distribution) => distribution.quantile(coordinate(1)).number(),
-            Levels::Hunted => 0.0,
-        }),
-    };
+    let level = study.intensity.as_ref().and_then(|intensity| match &intensity.levels {
+        Levels::List(levels) => Some(levels[pick(coordinate(1), levels.len())]),
+        Levels::Distribution(distribution) => Some(distribution.quantile(coordinate(1)).number()),
+        Levels::Hunted => None,
+    });
     let setting = |(index, factor): (usize, &Factor)| {
         let u = coordinate(2 + index);
         Some(match &factor.variation {
@@ -289,16 +285,14 @@ impl Study {
 
     /// The identity of a case of a crossed design: what it is, not where it stands.
     fn identity(&self, motion: usize, level: Option<f64>, settings: &[Option<Setting>]) -> u64 {
-        let mut words = format!("case of {}", self.motions[motion].name);
-        if let Some(level) = level {
-            words += &format!(" at {}", crate::scenario::quantity::plain(level));
-        }
-        for (factor, setting) in self.factors.iter().zip(settings) {
-            if let Some(setting) = setting {
-                words += &format!("|{} = {}", factor.name, setting.word());
-            }
-        }
-        seed_of(self.seed, &words)
+        let mut words = vec![format!("case of {}", self.motions[motion].name)];
+        words.extend(
+            level.map(|level| format!("level {}", crate::scenario::quantity::plain(level))),
+        );
+        words.extend(self.factors.iter().zip(settings).filter_map(|(factor, setting)| {
+            setting.as_ref().map(|setting| format!("{} = {}", factor.name, setting.word()))
+        }));
+        seed_of(self.seed, &words.join("|"))
     }
 
     /// The value of a factor in a case, as the table has it.

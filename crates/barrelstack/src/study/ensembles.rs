@@ -141,12 +141,10 @@ fn matching(
     let entries = match std::fs::read_dir(folder) {
         Ok(entries) => entries,
         Err(error) => {
-            let reason = match error.kind() {
-                std::io::ErrorKind::NotFound => "there is no such folder".to_owned(),
-                std::io::ErrorKind::NotADirectory => {
-                    "it is a file; name it in `records`".to_owned()
-                }
-                _ => system::words(&error),
+            let reason = if error.kind() == std::io::ErrorKind::NotFound {
+                "there is no such folder".to_owned()
+            } else {
+                system::words(&error)
             };
             return refuse(format!("cannot list the folder {}: {reason}", folder.display()));
         }

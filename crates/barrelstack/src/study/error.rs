@@ -40,8 +40,7 @@ pub enum StudyError {
     },
     /// A shard is damaged.
     #[error(
-        "the shard {path} is damaged: {reason}; remove that file and run its chunk again (barrelstack study does \
-         so by itself)",
+        "the shard {path} is damaged: {reason}; run the study again, which sets it aside and makes it anew",
         path = path.display()
     )]
     Shard {

@@ -37,6 +37,8 @@ pub struct Progress {
     pub chunks: usize,
     /// Chunks that are done.
     pub chunks_done: usize,
+    /// Damaged shards that were found and set aside; their chunks are run again.
+    pub damaged: usize,
 }
 
 /// What threads share.
@@ -83,13 +85,14 @@ impl Study {
         self.try_motions(&shelf)?;
         let place = Folder::open(folder, self)?;
         place.clean()?;
-        let done = self.done(&place)?;
+        let (done, damaged) = self.done(&place)?;
         let rule = self.provenance()?.stop;
         let mut progress =
             Progress { cases: self.cases(), chunks: self.chunk_count(), ..Progress::default() };
         progress.tally = done.values().fold(Tally::default(), |sum, tally| sum.plus(*tally));
         progress.before = progress.tally.cases;
         progress.chunks_done = done.len();
+        progress.damaged = damaged;
         let open: Vec<usize> =
             (0..self.chunk_count()).rev().filter(|chunk| !done.contains_key(chunk)).collect();
         let threads = options.threads.or_else(|| std::thread::available_parallelism().ok());
@@ -153,22 +156,25 @@ impl Study {
         Ok(true)
     }
 
-    /// How the cases of each chunk that is done ended; a damaged shard is removed, and its chunk is not done.
-    fn done(&self, folder: &Folder) -> Result<BTreeMap<usize, Tally>, StudyError> {
+    /// How the cases of each chunk that is done ended, and how many shards are damaged: they are set aside under
+    /// another name, and their chunks are not done.
+    fn done(&self, folder: &Folder) -> Result<(BTreeMap<usize, Tally>, usize), StudyError> {
         let columns = self.columns();
         let mut done = BTreeMap::new();
+        let mut damaged = 0;
         for (chunk, path) in folder.shards()? {
             match read_shard(&path, &columns) {
                 Ok(table) => drop(done.insert(chunk, Tally::of(&table))),
                 Err(StudyError::Shard { path, .. }) => {
-                    std::fs::remove_file(&path).map_err(|error| {
-                        StudyError::system("remove the damaged shard", &path, &error)
+                    damaged += 1;
+                    std::fs::rename(&path, path.with_extension("damaged")).map_err(|error| {
+                        StudyError::system("set aside the damaged shard", &path, &error)
                     })?;
                 }
                 Err(error) => return Err(error),
             }
         }
-        Ok(done)
+        Ok((done, damaged))
     }
 }
 

@@ -8,7 +8,7 @@ use crate::scenario::field::Range;
 use crate::scenario::reader::{Reader, nearest};
 use crate::scenario::template::{Opened, Template};
 use crate::scenario::tree::{Node, Origin};
-use crate::scenario::{Dimension, Problem, Scenario, ScenarioError};
+use crate::scenario::{Dimension, MotionSource, Problem, Scenario, ScenarioError};
 
 use super::column::{ColumnSpec, Role};
 use super::design::{Cases, Design};
@@ -109,6 +109,12 @@ fn read(opened: &Opened, stem: &str, folder: &Path) -> Result<Study, StudyError>
         factors.push(factor);
     }
     let intensity = top.optional_section("intensity")?.map(read_intensity).transpose()?;
+    if intensity.is_some() && own && scenario.motion.source == MotionSource::None {
+        let message =
+            "there is no motion to scale: the ground of the base stays at rest; add [[motion]]"
+                .to_owned();
+        return Err(top.inconsistent("intensity", message).into());
+    }
     let (design, chunk, intensity) = read_design(top.section("design")?, intensity, &factors)?;
     let levels = match &intensity {
         Some(Intensity { levels: Levels::List(levels), .. }) => {
@@ -438,10 +444,6 @@ fn read_design(
     }
     reader.finish();
     let usual = if kind == DesignKind::Ida { 8 } else { 64 };
-    let intensity = intensity.map(|intensity| match kind {
-        DesignKind::Ida => Intensity { levels: Levels::Hunted, ..intensity },
-        _ => intensity,
-    });
     Ok((design, chunk.unwrap_or(usual), intensity))
 }
 

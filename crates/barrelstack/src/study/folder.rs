@@ -142,9 +142,12 @@ impl Folder {
         if !manifest.is_file() {
             let text = serde_json::to_string_pretty(&study.provenance()?)
                 .map_err(|error| StudyError::Table(error.to_string()))?;
-            write_whole(&path.join("study.toml"), study.text.as_bytes())?;
-            // Last, so that a folder with this file has all that belongs to it.
             write_whole(&manifest, format!("{text}\n").as_bytes())?;
+        }
+        // After the manifest, so that a folder without one holds nothing of ours but shards.
+        let copy = path.join("study.toml");
+        if !copy.is_file() {
+            write_whole(&copy, study.text.as_bytes())?;
         }
         Ok(folder)
     }
@@ -321,6 +324,9 @@ fn sync_folder(_: &Path) -> std::io::Result<()> {
 
 impl Study {
     /// What the rows of the study come from, before there are any.
+    ///
+    /// # Errors
+    /// When a record cannot be read.
     pub fn provenance(&self) -> Result<Provenance, StudyError> {
         let base = self.template.with([])?;
         let motions = self.motions.iter().map(|motion| {
@@ -340,12 +346,12 @@ impl Study {
             Ok(MotionSource { name: motion.name.clone(), source, hash })
         });
         let motions = motions.collect::<Result<_, StudyError>>()?;
-        let stop = match self.design {
-            Design::MonteCarlo { half_width: Some(half_width), least, .. } => {
+        let stop =
+            if let Design::MonteCarlo { half_width: Some(half_width), least, .. } = self.design {
                 Some(StopRule { half_width, least })
-            }
-            _ => None,
-        };
+            } else {
+                None
+            };
         Ok(Provenance {
             schema: LAYOUT,
             program: "barrelstack".to_owned(),

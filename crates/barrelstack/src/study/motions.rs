@@ -251,11 +251,11 @@ fn measure(motion: &GroundMotion) -> Result<[f64; 9], MotionError> {
 /// How measures grow with the factor: Arias with its square, a ratio and a time not at all, the rest with itself.
 fn scaled_measures(mut values: [f64; 9], factor: f64) -> [f64; 9] {
     for (value, (_, measure)) in values.iter_mut().zip(MEASURES) {
-        *value *= match measure {
-            IntensityMeasure::PgvOverPga | IntensityMeasure::SignificantDuration { .. } => 1.0,
-            IntensityMeasure::Arias => factor * factor,
-            _ => factor.abs(),
-        };
+        if measure == IntensityMeasure::Arias {
+            *value *= factor * factor;
+        } else if measure != IntensityMeasure::PgvOverPga && measure != IntensityMeasure::D5_95 {
+            *value *= factor.abs();
+        }
     }
     values
 }

@@ -74,11 +74,11 @@ impl Study {
     ) -> Vec<Option<Value>> {
         let mut row = vec![
             Some(Value::Integer(i64::try_from(case.number).unwrap_or(i64::MAX))),
-            text(format!("{:016x}", case.id)),
+            text(&format!("{:016x}", case.id)),
             count(chunk),
         ];
         row.extend((0..self.factors.len()).map(|factor| self.told(case, factor)));
-        row.push(text(self.motions[case.motion].name.clone()));
+        row.push(text(&self.motions[case.motion].name));
         row.push(case.level.map(Value::Number));
         row.push(shaken.map(|shaken| Value::Number(shaken.factor)));
         let measures = shaken.and_then(|shaken| shaken.measures);
@@ -92,11 +92,11 @@ impl Study {
 fn results(result: &CaseResult) -> [Option<Value>; 18] {
     let (kind, mode, first_loss, error) = match &result.outcome {
         Ok(Outcome::Collapse { mode, time, .. }) => {
-            ("collapse", text(mode.name().to_owned()), number(Some(*time)), None)
+            ("collapse", text(mode.name()), number(Some(*time)), None)
         }
-        Ok(Outcome::Invalid { reason }) => ("invalid", None, None, text(reason.clone())),
+        Ok(Outcome::Invalid { reason }) => ("invalid", None, None, text(reason)),
         Ok(outcome @ (Outcome::Stable | Outcome::NotJudged)) => (outcome.kind(), None, None, None),
-        Err(reason) => ("error", None, None, text(reason.clone())),
+        Err(reason) => ("error", None, None, text(reason)),
     };
     let judged = matches!(&result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }));
     let heights: Vec<String> = result
@@ -106,13 +106,13 @@ fn results(result: &CaseResult) -> [Option<Value>; 18] {
         .collect();
     let demands = &result.demands;
     [
-        text(kind.to_owned()),
+        text(kind),
         mode,
         first_loss,
         number(result.first_fall),
         count(result.barrels).filter(|_| result.outcome.is_ok()),
         count(heights.len()).filter(|_| judged),
-        text(heights.join(";")).filter(|_| !heights.is_empty()),
+        text(&heights.join(";")),
         number(demands.top_drift_ratio),
         number(demands.base_slip_peak),
         number(demands.base_slip_residual),
@@ -127,8 +127,9 @@ fn results(result: &CaseResult) -> [Option<Value>; 18] {
     ]
 }
 
-fn text(text: String) -> Option<Value> {
-    Some(Value::Text(text))
+/// A text; none when it is empty.
+fn text(text: &str) -> Option<Value> {
+    (!text.is_empty()).then(|| Value::Text(text.to_owned()))
 }
 
 /// A number, unless it is none: a NaN in a table looks like a value and is none.

@@ -100,10 +100,12 @@ impl Domain {
 
     /// What a column of its values holds.
     pub(super) fn column_kind(self) -> ValueKind {
-        match self.kind {
-            Kind::Integer(..) => ValueKind::Integer,
-            Kind::Number(_) | Kind::Quantity(..) => ValueKind::Number,
-            _ => ValueKind::Text,
+        if self.continuous() {
+            ValueKind::Number
+        } else if let Kind::Integer(..) = self.kind {
+            ValueKind::Integer
+        } else {
+            ValueKind::Text
         }
     }
 
@@ -177,10 +179,10 @@ impl Domain {
     ) -> Result<f64, ScenarioError> {
         let Some(node) = reader.node(name)? else { return Err(reader.missing(name)) };
         // A range or a deviation may lie where a value itself may not, so that only its unit is looked at.
-        let open = match self.kind {
-            Kind::Quantity(dimensions, _) => Kind::Quantity(dimensions, Range::ANY),
-            Kind::Number(_) => Kind::Number(Range::ANY),
-            other => other,
+        let open = if let Kind::Quantity(dimensions, _) = self.kind {
+            Kind::Quantity(dimensions, Range::ANY)
+        } else {
+            Kind::Number(Range::ANY)
         };
         Ok(Self { kind: open, ..self }.read(reader, name, &node)?.number())
     }
@@ -233,8 +235,10 @@ impl Domain {
             match (at, spacing) {
                 (0, _) => from,
                 (at, _) if at + 1 == count => to,
-                (_, Spacing::Linear) => from + share * (to - from),
-                (_, Spacing::Logarithmic) => from * libm::exp(share * libm::log(to / from)),
+                (_, Spacing::Linear) => rounded(from + share * (to - from)),
+                (_, Spacing::Logarithmic) => {
+                    rounded(from * libm::exp(share * libm::log(to / from)))
+                }
             }
         };
         let mut settings = Vec::new();
@@ -275,4 +279,10 @@ impl Domain {
             _ => None,
         }
     }
+}
+
+/// A number of twelve digits: 0.4 and not 0.39999999999999997, as anyone would write it.
+fn rounded(value: f64) -> f64 {
+    // What is written in twelve digits is a number.
+    format!("{value:.11e}").parse().unwrap_or(value)
 }

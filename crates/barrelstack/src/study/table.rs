@@ -163,7 +163,7 @@ impl StudyTable {
                     None => {}
                     Some(Value::Integer(value)) => drop(write!(text, "{value}")),
                     Some(Value::Number(value)) => {
-                        text.push_str(&crate::scenario::quantity::plain(value))
+                        text.push_str(&crate::scenario::quantity::plain(value));
                     }
                     Some(Value::Text(value)) => text.push_str(&field(&value)),
                 }

@@ -176,7 +176,14 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         }
         Err(error) => return Err(error.into()),
     };
+    let damaged = live.damaged();
     drop(live);
+    if damaged > 0 {
+        printer::warning(&format!(
+            "{damaged} damaged shards were found in {}; they were set aside there with the ending .damaged and made anew",
+            out.join("shards").display()
+        ));
+    }
     if args.json {
         printer::lines([answer::json(&collected)?])?;
     } else {
@@ -221,7 +228,10 @@ fn plan(args: &PlanArgs) -> anyhow::Result<()> {
         format!("  {:>8}  {unit:>8}  {:>10}  {:>10}", "chunk", "first", "last"),
     ];
     lines.extend(study.plan().map(|chunk| {
-        format!("  {:>8}  {:>8}  {:>10}  {:>10}", chunk.number, chunk.cases, chunk.first, chunk.last)
+        format!(
+            "  {:>8}  {:>8}  {:>10}  {:>10}",
+            chunk.number, chunk.cases, chunk.first, chunk.last
+        )
     }));
     printer::lines(lines)
 }

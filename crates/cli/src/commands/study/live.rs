@@ -3,7 +3,7 @@
 use std::io::IsTerminal as _;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
 use barrelstack::study::Progress;
@@ -13,6 +13,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 pub(super) struct Live {
     bar: Option<ProgressBar>,
     stop: Arc<AtomicBool>,
+    damaged: AtomicUsize,
 }
 
 impl Live {
@@ -25,7 +26,6 @@ impl Live {
         // Without a handler Ctrl-C ends the program, which loses the chunks at work and nothing else.
         drop(ctrlc::set_handler(move || {
             if asked.swap(true, Ordering::Relaxed) {
-                #[expect(clippy::exit, reason = "the user asked twice")]
                 std::process::exit(130);
             }
         }));
@@ -35,7 +35,7 @@ impl Live {
             bar.enable_steady_tick(Duration::from_millis(200));
             bar
         });
-        Self { bar, stop }
+        Self { bar, stop, damaged: AtomicUsize::new(0) }
     }
 
     /// Whether the user asked to stop.
@@ -43,11 +43,19 @@ impl Live {
         self.stop.load(Ordering::Relaxed)
     }
 
+    /// How many shards were damaged and set aside.
+    pub(super) fn damaged(&self) -> usize {
+        self.damaged.load(Ordering::Relaxed)
+    }
+
     /// Shows how far it is.
     pub(super) fn at(&self, progress: &Progress) -> ControlFlow<()> {
+        self.damaged.store(progress.damaged, Ordering::Relaxed);
         if let Some(bar) = &self.bar {
             if bar.length().is_none() {
-                bar.set_style(style("{spinner} {bar:30} {pos} of {len} cases, {per_sec}, {eta} to go; {msg}"));
+                bar.set_style(style(
+                    "{spinner} {bar:30} {pos} of {len} cases, {per_sec}, {eta} to go; {msg}",
+                ));
                 bar.set_position(progress.before);
                 // The rate is that of this run.
                 bar.reset_eta();
