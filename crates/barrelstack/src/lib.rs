@@ -12,6 +12,7 @@
 pub mod assemble;
 pub mod calibrate;
 pub mod check;
+pub mod ensemble;
 pub mod export;
 pub mod ground;
 pub mod outcome;

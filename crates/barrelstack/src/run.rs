@@ -149,8 +149,9 @@ pub fn run(
     let result = simulate(model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
     let Watch { recording, stresses, fates, interrupted, .. } = watch;
     let stopped = interrupted && matches!(&result, Ok(totals) if totals.finish == Finish::Stopped);
+    let ended = result.map(|totals| Ended::of(&totals));
     let Verdict { outcome, energy, steps, mut warnings } =
-        conclude(&assembly, &ground, &fates, result, state.time, interrupted);
+        conclude(&assembly, &ground, &fates, ended, state.time, interrupted);
     if stopped {
         warnings.push(format!(
             "the run was stopped at {:.3} s of {end_time:.3} s; the results hold until then",
@@ -217,6 +218,18 @@ pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunF
     Ok(Standing { assembly, state, scratch, settled, step })
 }
 
+/// What a run that came to its end leaves behind.
+pub(crate) struct Ended {
+    pub(crate) energy: EnergySummary,
+    pub(crate) steps: u64,
+}
+
+impl Ended {
+    pub(crate) fn of(totals: &RunTotals<Planar>) -> Self {
+        Self { energy: totals.energy.summary(0), steps: totals.steps }
+    }
+}
+
 /// What the end of a run says of it.
 pub(crate) struct Verdict {
     pub(crate) outcome: Outcome,
@@ -230,14 +243,13 @@ pub(crate) fn conclude(
     assembly: &Assembly,
     ground: &Ground,
     fates: &Fates,
-    result: Result<RunTotals<Planar>, RunError>,
+    ended: Result<Ended, RunError>,
     time: f64,
     interrupted: bool,
 ) -> Verdict {
     let mut warnings = ground.warnings.clone();
-    let (outcome, energy, steps) = match result {
-        Ok(totals) => {
-            let energy = totals.energy.summary(0);
+    let (outcome, energy, steps) = match ended {
+        Ok(Ended { energy, steps }) => {
             let broken = energy.residual_ratio() > BOOKS_BROKEN;
             warnings.extend(energy_warning(&energy).filter(|_| !broken));
             let outcome = if broken {
@@ -246,7 +258,7 @@ pub(crate) fn conclude(
                 judge(assembly, fates)
             };
             warnings.extend(short_warning(&outcome, ground, time).filter(|_| !interrupted));
-            (outcome, Some(energy), totals.steps)
+            (outcome, Some(energy), steps)
         }
         Err(error) => {
             let RunError::NotFinite { steps, .. } = error;

@@ -1,7 +1,7 @@
 //! Studies: one scenario run many times, with other values and other motions.
 //!
 //! ```text
-//! STUDY.toml ─▶ Study ─ design ─▶ cases ─ plan ─▶ chunks ─ engine ─▶ one Parquet shard a chunk
+//! STUDY.toml ─▶ Study ─ design ─▶ cases ─ plan ─▶ chunks ─ ensemble ─▶ one Parquet shard a chunk
 //!                                                                    │ collect
 //!                                                  StudyTable: one row a case ─▶ CSV, Parquet
 //! ```
@@ -26,7 +26,6 @@ mod builtin;
 mod column;
 mod design;
 mod distribution;
-mod engine;
 mod ensembles;
 mod error;
 mod execute;
@@ -50,7 +49,6 @@ pub use builtin::{get as builtin, names as builtin_names};
 pub use column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
 pub use design::Design;
 pub use distribution::Distribution;
-pub use engine::{CaseResult, Prepared, simulate};
 pub use error::StudyError;
 pub use execute::{Progress, RunOptions};
 pub use fields::STUDY;

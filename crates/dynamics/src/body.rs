@@ -8,7 +8,7 @@ use crate::space::{Pose, Space, Twist};
 pub type BodyId = usize;
 
 /// Who decides how a body moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Motion {
     /// Forces do.
     Free,

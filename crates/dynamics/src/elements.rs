@@ -1,20 +1,28 @@
 //! The contact elements that could touch soon, and what they remember.
 //!
 //! A contact element is a node of a contactor and the surface of a target.
-//! Of all elements of a model only those within a margin are kept in the list; the list is built
+//! Of all elements of a model only those within reach are kept in the list; the list is built
 //! anew before any body can have moved so far that a missing element touches.
 //! It is therefore a matter of speed alone: the forces are those of testing every node in every step,
 //! in the same order, with the same bits.
 
-use crate::body::{Motion, Nodes};
+use crate::body::{Body, Motion, Nodes};
 use crate::contact::{Basis, Stick};
+use crate::lanes::Lanewise;
 use crate::model::{ContactPair, Model};
 use crate::real::{Mask, Real};
 use crate::shape::Surface;
-use crate::space::{Linear, Pose, Space, Twist};
+use crate::space::{Linear, Planar, Pose, Space, Twist};
 
-/// Elements closer than this (m) to touching are kept in the list.
-const MARGIN: f64 = 0.03;
+/// How far (m) every body may move before the list is built anew.
+const LEAST_ALLOWANCE: f64 = 0.015;
+
+/// A body that moves may go on for this time (s), so that what falls does not ask for a new list in
+/// every other step.
+const HORIZON: f64 = 0.012;
+
+/// No body is allowed more (m): long lists cost, too.
+const MOST_ALLOWANCE: f64 = 0.15;
 
 /// The elements of one contact pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +50,9 @@ pub struct Elements<S: Space> {
     pub(crate) sticks: Vec<Stick<S>>,
     /// The poses for which the list was built.
     built_for: Vec<Pose<S>>,
+    /// How far (m) every body may move from there: the list holds all elements that are not further
+    /// apart than both their bodies may move.
+    allowances: Vec<f64>,
     /// Whether the list holds every element there is.
     exhaustive: bool,
 }
@@ -55,6 +66,7 @@ impl<S: Space> Default for Elements<S> {
             weights: Vec::new(),
             sticks: Vec::new(),
             built_for: Vec::new(),
+            allowances: Vec::new(),
             exhaustive: false,
         }
     }
@@ -80,7 +92,7 @@ impl<S: Space> Elements<S> {
     /// Keeps every element in the list from now on: the plain path that the list is proved against.
     pub fn make_exhaustive(&mut self, model: &Model<S>, poses: &[Pose<S>]) {
         self.exhaustive = true;
-        self.rebuild(model, poses);
+        self.rebuild(model, poses, &vec![Twist::default(); poses.len()]);
     }
 
     /// Builds the list anew where a body may have moved so far, or may move so far within `dt` (s),
@@ -91,21 +103,31 @@ impl<S: Space> Elements<S> {
         model: &Model<S>,
         poses: &[Pose<S>],
         twists: &[Twist<S>],
-        dt: f64,
+        dt: S::Real,
     ) -> Option<Vec<Option<usize>>> {
-        let stale = !self.exhaustive && self.is_stale(model, poses, twists, dt);
-        stale.then(|| self.rebuild(model, poses))
+        let stale = !self.exhaustive
+            && S::Real::scope(
+                #[inline(always)]
+                || self.is_stale(model, poses, twists, dt),
+            );
+        stale.then(|| self.rebuild(model, poses, twists))
     }
 
-    fn is_stale(&self, model: &Model<S>, poses: &[Pose<S>], twists: &[Twist<S>], dt: f64) -> bool {
+    #[inline(always)]
+    fn is_stale(
+        &self,
+        model: &Model<S>,
+        poses: &[Pose<S>],
+        twists: &[Twist<S>],
+        dt: S::Real,
+    ) -> bool {
         // Bodies are followed relative to the ground, which moves all of them together.
         let ground = model.bodies.iter().position(|b| b.motion == Motion::Prescribed);
         let (carried, carrier) = ground.map_or_else(Default::default, |g| {
             (poses[g].position - self.built_for[g].position, twists[g].linear)
         });
         // The way of one step is counted too, half as long again since velocities change within it.
-        let limit = S::Real::splat(0.5 * MARGIN);
-        let ahead = S::Real::splat(1.5 * dt);
+        let ahead = S::Real::splat(1.5) * dt;
         let mut stale = <S::Real as Real>::Mask::default();
         for (i, body) in model.bodies.iter().enumerate() {
             if body.motion == Motion::Prescribed {
@@ -114,11 +136,11 @@ impl<S: Space> Elements<S> {
             let moved = poses[i].position - self.built_for[i].position - carried;
             let velocity = twists[i].linear - carrier;
             let turned = S::angle_between(poses[i].orientation, self.built_for[i].orientation);
-            let spin = twists[i].angular.dot(twists[i].angular).sqrt();
-            let way = moved.dot(moved).sqrt()
-                + velocity.dot(velocity).sqrt() * ahead
+            let spin = S::spin_magnitude(twists[i].angular);
+            let way = S::at_most(moved)
+                + S::at_most(velocity) * ahead
                 + (turned + spin * ahead) * S::Real::splat(model.reach[i]);
-            stale = stale | !way.lt(limit);
+            stale = stale | !way.lt(S::Real::splat(self.allowances[i]));
         }
         stale.any()
     }
@@ -126,17 +148,36 @@ impl<S: Space> Elements<S> {
     /// Lists the elements within the margin and hands their memory over.
     ///
     /// Returns the origins: for every element of the new list, which one of the old list it was.
-    pub(crate) fn rebuild(&mut self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<Option<usize>> {
+    pub(crate) fn rebuild(
+        &mut self,
+        model: &Model<S>,
+        poses: &[Pose<S>],
+        twists: &[Twist<S>],
+    ) -> Vec<Option<usize>> {
         let old = std::mem::replace(self, Self { exhaustive: self.exhaustive, ..Self::default() });
         self.built_for = poses.to_vec();
-        let rotations: Vec<S::Rotation> =
-            poses.iter().map(|p| S::rotation(p.orientation)).collect();
+        self.allowances = allowances(model, twists);
+        let rotations: Vec<S::Rotation> = S::Real::scope(
+            #[inline(always)]
+            || {
+                let mut rotations = Vec::with_capacity(poses.len());
+                for pose in poses {
+                    rotations.push(S::rotation(pose.orientation));
+                }
+                rotations
+            },
+        );
         let mut remembered = Remembered { old: &old, group: 0 };
         let mut origins = Vec::new();
         for (index, pair) in model.pairs.iter().enumerate() {
-            let frame = PairFrame::new(model, pair, poses, &rotations);
             let first = self.nodes.len();
-            self.list_pair(model, pair, &frame);
+            S::Real::scope(
+                #[inline(always)]
+                || {
+                    let frame = PairFrame::new(model, pair, poses, &rotations);
+                    self.list_pair(model, pair, &frame);
+                },
+            );
             let end = self.nodes.len();
             if end > first {
                 self.groups.push(Group { pair: index, first, end });
@@ -150,18 +191,22 @@ impl<S: Space> Elements<S> {
         origins
     }
 
+    /// Whether a ball (m) about a point comes within a margin (m) of a surface in any lane.
+    #[inline(always)]
+    fn near(&self, surface: &S::Surface, point: S::Vector, radius: S::Real, margin: f64) -> bool {
+        let distance = surface.gap(point).distance - radius;
+        self.exhaustive || (!S::Real::splat(margin).lt(distance)).any()
+    }
+
+    #[inline(always)]
     fn list_pair(&mut self, model: &Model<S>, pair: &ContactPair, frame: &PairFrame<S>) {
         let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
-        let margin = S::Real::splat(MARGIN);
-        let near = |point: S::Vector, radius: S::Real| {
-            let distance = surface.gap(point).distance - radius;
-            self.exhaustive || (!margin.lt(distance)).any()
-        };
+        let margin = self.allowances[pair.contactor] + self.allowances[pair.target];
         // Balls about the bodies first: most pairs are far apart.
         let apart = frame.contactor - frame.target;
         let touch = model.reach[pair.contactor]
             + surface.reach()
-            + MARGIN
+            + margin
             + frame.target.dot(frame.target).sqrt().largest_lane();
         let far = S::Real::splat(touch * touch).lt(apart.dot(apart));
         if !self.exhaustive && !(!far).any() {
@@ -174,11 +219,13 @@ impl<S: Space> Elements<S> {
         };
         match model.pair_nodes(pair) {
             Nodes::Fixed(nodes) => {
-                if !near(frame.contactor, S::Real::splat(model.reach[pair.contactor])) {
+                let reach = S::Real::splat(model.reach[pair.contactor]);
+                if !self.near(surface, frame.contactor, reach, margin) {
                     return;
                 }
                 for (index, node) in nodes.iter().enumerate() {
-                    if near(frame.to_surface(node.position), S::Real::zero()) {
+                    if self.near(surface, frame.to_surface(node.position), S::Real::zero(), margin)
+                    {
                         self.nodes.push(u32::try_from(index).unwrap_or(u32::MAX));
                         self.positions.push(node.position);
                         self.weights.push(weight(node.tributary_length));
@@ -186,7 +233,7 @@ impl<S: Space> Elements<S> {
                 }
             }
             Nodes::Rolling { center, radius, tributary_length } => {
-                if near(frame.to_surface(*center), *radius) {
+                if self.near(surface, frame.to_surface(*center), *radius, margin) {
                     self.nodes.push(0);
                     self.positions.push(*center);
                     self.weights.push(weight(*tributary_length));
@@ -194,6 +241,52 @@ impl<S: Space> Elements<S> {
             }
         }
     }
+}
+
+impl<R: Real> Elements<Planar<R>> {
+    /// Puts the memory of a single state's elements into one lane, and their slip rates into that of
+    /// `slip_rates`; elements that the single state does not list remember nothing.
+    pub(crate) fn put_memory(
+        &mut self,
+        lane: usize,
+        slip_rates: &mut [R],
+        single: &Elements<Planar>,
+        single_slip_rates: &[f64],
+    ) {
+        let mut remembered = Remembered { old: single, group: 0 };
+        for group in &self.groups {
+            let elements = group.first..group.end;
+            let sticks = &mut self.sticks[elements.clone()];
+            let rates = &mut slip_rates[elements.clone()];
+            for ((node, stick), rate) in self.nodes[elements].iter().zip(sticks).zip(rates) {
+                let origin = remembered.origin(group.pair, *node);
+                let memory = origin.map_or_else(Stick::default, |o| single.sticks[o]);
+                stick.put(lane, &memory);
+                rate.put(lane, &origin.map_or(0.0, |o| single_slip_rates[o]));
+            }
+        }
+    }
+}
+
+/// How far (m) every body may move before a list is stale, by how fast it moves: in the worst lane,
+/// and relative to the ground, which moves all of them together.
+fn allowances<S: Space>(model: &Model<S>, twists: &[Twist<S>]) -> Vec<f64> {
+    let ground = model.bodies.iter().position(|body| body.motion == Motion::Prescribed);
+    let carrier = ground.map_or_else(S::Vector::default, |ground| twists[ground].linear);
+    let allowance = |(i, body): (usize, &Body<S>)| {
+        if body.motion == Motion::Prescribed {
+            return 0.0;
+        }
+        let speed = S::Real::scope(
+            #[inline(always)]
+            || {
+                S::at_most(twists[i].linear - carrier)
+                    + S::spin_magnitude(twists[i].angular) * S::Real::splat(model.reach[i])
+            },
+        );
+        (LEAST_ALLOWANCE + HORIZON * speed.largest_lane().max(0.0)).min(MOST_ALLOWANCE)
+    };
+    model.bodies.iter().enumerate().map(allowance).collect()
 }
 
 /// Walks an old list in step with a new one; both are sorted by pair and node.
@@ -230,7 +323,7 @@ pub(crate) struct PairFrame<S: Space> {
 }
 
 impl<S: Space> PairFrame<S> {
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(
         model: &Model<S>,
         pair: &ContactPair,
@@ -251,7 +344,7 @@ impl<S: Space> PairFrame<S> {
     }
 
     /// A point of the contactor's body frame, in the surface's frame.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn to_surface(&self, position: S::Vector) -> S::Vector {
         self.contactor + S::rotate(self.relative, position)
     }

@@ -2,9 +2,10 @@
 
 use crate::body::Motion;
 use crate::forces::{Losses, Scratch};
+use crate::lanes::Lanewise;
 use crate::model::Model;
 use crate::real::Real;
-use crate::space::{Linear, Pose, Space, Wrench};
+use crate::space::{Linear, Planar, Pose, Space, Wrench};
 use crate::state::State;
 
 /// Energies and works at one time (J), since the start of the run.
@@ -111,6 +112,14 @@ impl<S: Space> EnergyLedger<S> {
 
     /// Enters an accepted step.
     pub fn enter(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
+        S::Real::scope(
+            #[inline(always)]
+            || self.book(model, state, scratch),
+        );
+    }
+
+    #[inline(always)]
+    fn book(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
         let half = S::Real::splat(0.5);
         let mut step = Works::<S::Real>::default();
         for (i, body) in model.bodies.iter().enumerate() {
@@ -138,9 +147,9 @@ impl<S: Space> EnergyLedger<S> {
     }
 
     /// Whether every body's kinetic and potential energy is a finite number.
-    pub(crate) fn is_finite(&self) -> bool {
-        let sum = self.stored.kinetic + self.stored.potential;
-        (0..S::Real::LANES).all(|lane| sum.lane(lane).is_finite())
+    #[inline(always)]
+    pub(crate) fn finite(&self) -> <S::Real as Real>::Mask {
+        (self.stored.kinetic + self.stored.potential).is_finite_mask()
     }
 
     /// The books of one lane.
@@ -166,6 +175,31 @@ impl<S: Space> EnergyLedger<S> {
     }
 }
 
+impl<R: Real> EnergyLedger<Planar<R>> {
+    /// Puts the ledger of a case that begins into one lane.
+    pub(crate) fn put(&mut self, lane: usize, single: &EnergyLedger<Planar>) {
+        self.initial.put(lane, &single.initial);
+        self.potential_start.put(lane, &single.potential_start);
+        self.stick_start.put(lane, &single.stick_start);
+        let (works, from) = (&mut self.works, &single.works);
+        works.damped.put(lane, &from.damped);
+        works.friction.put(lane, &from.friction);
+        works.viscous.put(lane, &from.viscous);
+        works.ground.put(lane, &from.ground);
+        self.poses.put(lane, &single.poses);
+        self.losses.put(lane, &single.losses);
+        self.wrenches.put(lane, &single.wrenches);
+        let (stored, from) = (&mut self.stored, &single.stored);
+        stored.kinetic.put(lane, &from.kinetic);
+        stored.potential.put(lane, &from.potential);
+        stored.elastic.put(lane, &from.elastic);
+        stored.stick.put(lane, &from.stick);
+        self.ground_flow.put(lane, &single.ground_flow);
+        self.deepest.put(lane, &single.deepest);
+    }
+}
+
+#[inline(always)]
 fn stored<S: Space>(model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) -> Stored<S::Real> {
     let mut stored = Stored::default();
     for (i, body) in model.bodies.iter().enumerate() {

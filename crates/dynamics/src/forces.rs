@@ -48,7 +48,7 @@ pub struct ContactTotals<R> {
 /// The forces on one body that give nothing back, with their moments about its center of mass.
 ///
 /// The energy ledger multiplies them by the motion of the body.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Losses<S: Space> {
     /// Of contact dampers.
     pub damped: Wrench<S>,
@@ -56,6 +56,14 @@ pub struct Losses<S: Space> {
     pub friction: Wrench<S>,
     /// Of the body's own viscous damping.
     pub viscous: Wrench<S>,
+}
+
+impl<S: Space> Default for Losses<S> {
+    #[inline(always)]
+    fn default() -> Self {
+        let none = Wrench::default();
+        Self { damped: none, friction: none, viscous: none }
+    }
 }
 
 /// The sum of the contact forces of one pair.
@@ -70,8 +78,11 @@ pub struct PairForce<S: Space> {
 /// What can be computed anew from a state; may be dropped at any time.
 #[derive(Clone, Debug)]
 pub struct Scratch<S: Space> {
-    /// The contacts of the last evaluation, in the order of their elements.
+    /// The contacts of the last evaluation, in the order of their elements; empty where
+    /// [`Scratch::keeps_contacts`] says so.
     pub contacts: Vec<Contact<S>>,
+    /// Whether `contacts` are written down. Forces do not need them, only who looks at contacts does.
+    pub keeps_contacts: bool,
     /// Their sums over every pair that touches, in the order of the pairs.
     pub pair_forces: Vec<PairForce<S>>,
     /// Their energies.
@@ -94,17 +105,18 @@ pub struct Scratch<S: Space> {
     pub(crate) old_accelerations: Vec<Twist<S>>,
     /// Slip rates of that state.
     pub(crate) old_slip_rates: Vec<S::Tangent>,
-    /// The nodes of the pair at hand that penetrate.
-    penetrating: Vec<Penetrating<S>>,
+    /// What of the contacts their sticks must know once the step is accepted.
+    pressed: Vec<Pressed<S>>,
 }
 
-/// A node that penetrates a surface, in the frame of that surface.
+/// An element that touches in at least one lane.
 #[derive(Clone, Copy, Debug)]
-struct Penetrating<S: Space> {
+struct Pressed<S: Space> {
     element: usize,
-    /// Position of the node (m).
-    node: S::Vector,
-    gap: Gap<S>,
+    pair: usize,
+    touching: <S::Real as Real>::Mask,
+    /// Compressive force (N).
+    normal_force: S::Real,
 }
 
 impl<S: Space> Scratch<S> {
@@ -113,6 +125,7 @@ impl<S: Space> Scratch<S> {
         let count = model.bodies.len();
         Self {
             contacts: Vec::new(),
+            keeps_contacts: true,
             pair_forces: Vec::new(),
             totals: ContactTotals::default(),
             wrenches: vec![Wrench::default(); count],
@@ -124,12 +137,17 @@ impl<S: Space> Scratch<S> {
             contact_evaluations: 0,
             old_accelerations: vec![Twist::default(); count],
             old_slip_rates: Vec::new(),
-            penetrating: Vec::new(),
+            pressed: Vec::new(),
         }
     }
 }
 
 impl<S: Space> Scratch<S> {
+    /// How many elements touch in at least one lane.
+    pub fn touching(&self) -> usize {
+        self.pressed.len()
+    }
+
     /// Follows a new list of elements; `origins` tells for each which one of the old list it was.
     ///
     /// Every contact keeps its element, since what touches is within the margin of any list.
@@ -143,9 +161,9 @@ impl<S: Space> Scratch<S> {
             }
         }
         self.slip_rates = slip_rates;
-        self.contacts.retain_mut(|contact| {
-            numbers[contact.element].map(|number| contact.element = number).is_some()
-        });
+        let follow =
+            |element: &mut usize| numbers[*element].map(|number| *element = number).is_some();
+        self.contacts.retain_mut(|contact| follow(&mut contact.element));
     }
 }
 
@@ -162,6 +180,25 @@ pub(crate) fn evaluate_within<S: Space>(
     step: S::Real,
     scratch: &mut Scratch<S>,
 ) {
+    S::Real::scope(
+        #[inline(always)]
+        || clear(state, scratch),
+    );
+    for group in &state.elements.groups {
+        S::Real::scope(
+            #[inline(always)]
+            || touch(model, state, step, group, scratch),
+        );
+    }
+    S::Real::scope(
+        #[inline(always)]
+        || accelerate(model, state, scratch),
+    );
+}
+
+/// Rotations of the state at hand, and nothing else yet.
+#[inline(always)]
+fn clear<S: Space>(state: &State<S>, scratch: &mut Scratch<S>) {
     for (rotation, pose) in scratch.rotations.iter_mut().zip(&state.poses) {
         *rotation = S::rotation(pose.orientation);
     }
@@ -169,20 +206,18 @@ pub(crate) fn evaluate_within<S: Space>(
     scratch.losses.fill(Losses::default());
     scratch.totals = ContactTotals::default();
     scratch.contacts.clear();
+    scratch.pressed.clear();
     scratch.pair_forces.clear();
     scratch.slip_rates.clear();
     scratch.slip_rates.resize(state.elements.len(), S::Tangent::default());
     scratch.evaluations += 1;
     scratch.contact_evaluations += state.elements.len() as u64;
-
-    for group in &state.elements.groups {
-        touch(model, state, step, group, scratch);
-    }
-    accelerate(model, state, scratch);
 }
 
 /// The contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
-#[inline]
+///
+/// The paper's laws have a loop of their own, in which nothing is asked at every contact.
+#[inline(always)]
 fn touch<S: Space>(
     model: &Model<S>,
     state: &State<S>,
@@ -190,47 +225,8 @@ fn touch<S: Space>(
     group: &Group,
     scratch: &mut Scratch<S>,
 ) {
-    let pair = &model.pairs[group.pair];
-    let frame = PairFrame::new(model, pair, &state.poses, &scratch.rotations);
-    let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
-    let penetrating = &mut scratch.penetrating;
-    penetrating.clear();
-    match model.pair_nodes(pair) {
-        Nodes::Fixed(_) => {
-            let nodes = state.elements.positions[group.first..group.end].iter();
-            surface.penetrated_by(nodes.map(|node| frame.to_surface(*node)), |index, node, gap| {
-                penetrating.push(Penetrating { element: group.first + index, node, gap });
-            });
-        }
-        Nodes::Rolling { center, radius, .. } => {
-            let center = frame.to_surface(*center);
-            let mut gap = surface.gap(center);
-            gap.distance -= *radius;
-            if gap.distance.lt(S::Real::zero()).any() {
-                let node = center - gap.normal * *radius;
-                penetrating.push(Penetrating { element: group.first, node, gap });
-            }
-        }
-    }
-    if !scratch.penetrating.is_empty() {
-        press(model, state, step, group.pair, &frame, scratch);
-    }
-}
-
-/// The forces of the nodes of a pair that penetrate.
-fn press<S: Space>(
-    model: &Model<S>,
-    state: &State<S>,
-    step: S::Real,
-    index: usize,
-    frame: &PairFrame<S>,
-    scratch: &mut Scratch<S>,
-) {
-    let pair = &model.pairs[index];
-    let interface = &model.interfaces[pair.interface];
-    let meeting = Meeting::new(frame, state.twists[pair.contactor], state.twists[pair.target]);
-    // The paper's laws have a loop of their own, in which nothing is asked at every contact.
-    let sum = match (interface.normal, interface.friction) {
+    let interface = &model.interfaces[model.pairs[group.pair].interface];
+    match (interface.normal, interface.friction) {
         (
             NormalLaw::SpeedGap { stiffness, damping },
             FrictionLaw::Coulomb {
@@ -247,13 +243,64 @@ fn press<S: Space>(
                 tangential_stiffness,
                 tangential_damping,
             };
-            press_by((normal, friction), step, &meeting, index, &state.elements, scratch)
+            touch_by(normal, friction, model, state, step, group, scratch);
         }
-        (normal, friction) => {
-            press_by((normal, friction), step, &meeting, index, &state.elements, scratch)
-        }
-    };
+        (normal, friction) => touch_by(normal, friction, model, state, step, group, scratch),
+    }
+}
 
+/// The contacts of one pair by its laws.
+#[inline(always)]
+fn touch_by<S: Space>(
+    normal: NormalLaw<S::Real>,
+    friction: FrictionLaw<S::Real>,
+    model: &Model<S>,
+    state: &State<S>,
+    step: S::Real,
+    group: &Group,
+    scratch: &mut Scratch<S>,
+) {
+    let pair = &model.pairs[group.pair];
+    let frame = PairFrame::new(model, pair, &state.poses, &scratch.rotations);
+    let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
+    let mut press = Press {
+        normal,
+        friction,
+        step,
+        frame: &frame,
+        twists: (state.twists[pair.contactor], state.twists[pair.target]),
+        meeting: None,
+        pair: group.pair,
+        elements: &state.elements,
+        sum: PairWrench::default(),
+        totals: scratch.totals,
+        slip_rates: &mut scratch.slip_rates,
+        pressed: &mut scratch.pressed,
+        contacts: scratch.keeps_contacts.then_some(&mut scratch.contacts),
+    };
+    match model.pair_nodes(pair) {
+        Nodes::Fixed(_) => {
+            let nodes = &state.elements.positions[group.first..group.end];
+            surface.penetrated_by(
+                nodes.len(),
+                #[inline(always)]
+                |index| frame.to_surface(nodes[index]),
+                #[inline(always)]
+                |index, node, gap| press.node(group.first + index, node, gap),
+            );
+        }
+        Nodes::Rolling { center, radius, .. } => {
+            let center = frame.to_surface(*center);
+            let mut gap = surface.gap(center);
+            gap.distance -= *radius;
+            if gap.distance.lt(S::Real::zero()).any() {
+                press.node(group.first, center - gap.normal * *radius, gap);
+            }
+        }
+    }
+    let Press { meeting, sum, totals, .. } = press;
+    let Some(meeting) = meeting else { return };
+    scratch.totals = totals;
     let damped = meeting.on_bodies(sum.damped);
     let friction = meeting.on_bodies(sum.friction);
     let (on_contactor, on_target) = meeting.on_bodies(sum.normal.plus(sum.friction));
@@ -264,53 +311,64 @@ fn press<S: Space>(
     losses[pair.target].damped += damped.1;
     losses[pair.contactor].friction += friction.0;
     losses[pair.target].friction += friction.1;
-    scratch.pair_forces.push(PairForce { pair: index, force: on_contactor.force });
+    scratch.pair_forces.push(PairForce { pair: group.pair, force: on_contactor.force });
 }
 
-/// The forces of the nodes of a pair by its laws; in the frame of the target's surface.
-#[inline(always)]
-#[expect(
-    clippy::inline_always,
-    reason = "so that laws known at the call need no choice in the loop"
-)]
-fn press_by<S: Space>(
-    (normal, friction): (NormalLaw<S::Real>, FrictionLaw<S::Real>),
+/// Nodes of a pair that press into a surface, one after the other.
+struct Press<'a, S: Space> {
+    normal: NormalLaw<S::Real>,
+    friction: FrictionLaw<S::Real>,
+    /// The step (s) that the forces stand for.
     step: S::Real,
-    meeting: &Meeting<'_, S>,
+    frame: &'a PairFrame<S>,
+    /// Twists of contactor and target.
+    twists: (Twist<S>, Twist<S>),
+    /// How the bodies meet; asked for by the first node that presses.
+    meeting: Option<Meeting<'a, S>>,
     pair: usize,
-    elements: &Elements<S>,
-    scratch: &mut Scratch<S>,
-) -> PairWrench<S> {
-    let zero = S::Real::zero();
-    let mut sum = PairWrench::<S>::default();
-    let mut totals = scratch.totals;
-    for Penetrating { element, node, gap } in scratch.penetrating.iter().copied() {
-        let contact = meeting.contact(pair, elements, element, node, gap);
-        let weight = S::Real::select(contact.touching, elements.weights[element], zero);
-        let normal = normal.force(contact.penetration, contact.penetration_rate).within_step(
-            contact.penetration,
-            contact.penetration_rate,
-            step,
-        );
+    elements: &'a Elements<S>,
+    sum: PairWrench<S>,
+    totals: ContactTotals<S::Real>,
+    slip_rates: &'a mut [S::Tangent],
+    pressed: &'a mut Vec<Pressed<S>>,
+    contacts: Option<&'a mut Vec<Contact<S>>>,
+}
+
+impl<S: Space> Press<'_, S> {
+    /// The forces of a node at `node` (m), which penetrates in at least one lane; in the frame of the
+    /// target's surface.
+    #[inline(always)]
+    fn node(&mut self, element: usize, node: S::Vector, gap: Gap<S>) {
+        if self.meeting.is_none() {
+            self.meeting = Some(Meeting::new(self.frame, self.twists.0, self.twists.1));
+        }
+        let Some(meeting) = &self.meeting else { return };
+        let contact = meeting.contact(self.pair, self.elements, element, node, gap);
+        let touching = contact.touching;
+        let weight = S::Real::select(touching, self.elements.weights[element], S::Real::zero());
+        let (depth, rate) = (contact.penetration, contact.penetration_rate);
+        let normal = self.normal.force(depth, rate).within_step(depth, rate, self.step);
         let normal_force = normal.total * weight;
-        let stick = elements.sticks[element];
-        let friction = friction.force::<S>(stick, contact.slip_rate, normal_force, weight);
-        totals.elastic += normal.energy * weight;
-        totals.stick += friction.energy;
+        let stick = self.elements.sticks[element];
+        let friction = self.friction.force::<S>(stick, contact.slip_rate, normal_force, weight);
+        self.totals.elastic += normal.energy * weight;
+        self.totals.stick += friction.energy;
 
         let damped = normal_force - normal.elastic * weight;
-        let arm = contact.point - meeting.frame.contactor;
+        let arm = contact.point - self.frame.contactor;
         let lever = S::moment(arm, contact.normal);
+        let sum = &mut self.sum;
         sum.normal += Wrench { force: contact.normal * normal_force, moment: lever * normal_force };
         sum.damped += Wrench { force: contact.normal * damped, moment: lever * damped };
         let sliding = -S::along(friction.force, contact.normal);
         sum.friction += Wrench { force: sliding, moment: S::moment(arm, sliding) };
 
-        scratch.slip_rates[element] = contact.slip_rate;
-        scratch.contacts.push(Contact { normal_force, friction_force: friction.force, ..contact });
+        self.slip_rates[element] = contact.slip_rate;
+        self.pressed.push(Pressed { element, pair: self.pair, touching, normal_force });
+        if let Some(contacts) = &mut self.contacts {
+            contacts.push(Contact { normal_force, friction_force: friction.force, ..contact });
+        }
     }
-    scratch.totals = totals;
-    sum
 }
 
 /// Sums of contact forces on the contactor of a pair, in the frame of the target's surface, with their
@@ -335,7 +393,7 @@ struct Meeting<'a, S: Space> {
 }
 
 impl<'a, S: Space> Meeting<'a, S> {
-    #[inline]
+    #[inline(always)]
     fn new(frame: &'a PairFrame<S>, contactor: Twist<S>, target: Twist<S>) -> Self {
         let apart = frame.contactor - frame.target;
         let target_spin = S::unrotate_spin(frame.rotation, target.angular);
@@ -352,7 +410,7 @@ impl<'a, S: Space> Meeting<'a, S> {
     ///
     /// Both bodies feel the force at the companion point, and both velocities are taken there:
     /// so the pair conserves momentum, and force times relative velocity is the power it loses.
-    #[inline]
+    #[inline(always)]
     fn contact(
         &self,
         pair: usize,
@@ -382,7 +440,7 @@ impl<'a, S: Space> Meeting<'a, S> {
     }
 
     /// What a wrench of [`PairWrench`] does to contactor and target, in the inertial frame.
-    #[inline]
+    #[inline(always)]
     fn on_bodies(&self, wrench: Wrench<S>) -> (Wrench<S>, Wrench<S>) {
         let rotation = self.frame.rotation;
         let force = S::rotate(rotation, wrench.force);
@@ -395,6 +453,7 @@ impl<'a, S: Space> Meeting<'a, S> {
 }
 
 /// Newton's law for every free body: contact, gravity and viscous damping (eq. 2.8).
+#[inline(always)]
 fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
     for (i, body) in model.bodies.iter().enumerate() {
         if body.motion == Motion::Prescribed {
@@ -424,10 +483,18 @@ fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratc
 /// Accepts the state that `scratch` was evaluated at: the memory of every stick is cut back to what
 /// friction can hold, and elements that do not touch forget.
 pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
-    let Elements { sticks, weights, .. } = &mut state.elements;
+    S::Real::scope(
+        #[inline(always)]
+        || commit_all(model, &mut state.elements, scratch),
+    );
+}
+
+#[inline(always)]
+fn commit_all<S: Space>(model: &Model<S>, elements: &mut Elements<S>, scratch: &Scratch<S>) {
+    let Elements { sticks, weights, .. } = elements;
     let mut next = 0;
-    for contacts in scratch.contacts.chunk_by(|a, b| a.pair == b.pair) {
-        let interface = &model.interfaces[model.pairs[contacts[0].pair].interface];
+    for pressed in scratch.pressed.chunk_by(|a, b| a.pair == b.pair) {
+        let interface = &model.interfaces[model.pairs[pressed[0].pair].interface];
         // Asked once for a pair, not at every contact.
         match interface.friction {
             FrictionLaw::Coulomb {
@@ -442,10 +509,10 @@ pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: 
                     tangential_stiffness,
                     tangential_damping,
                 };
-                commit_pair(law, contacts, sticks, weights, &mut next);
+                commit_pair(law, pressed, &scratch.slip_rates, sticks, weights, &mut next);
             }
             law @ (FrictionLaw::Frictionless | FrictionLaw::Regularized { .. }) => {
-                commit_pair(law, contacts, sticks, weights, &mut next);
+                commit_pair(law, pressed, &scratch.slip_rates, sticks, weights, &mut next);
             }
         }
     }
@@ -455,18 +522,15 @@ pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: 
 /// Commits the sticks of a pair; those between its contacts, and those before them that no pair has
 /// reached yet, forget.
 #[inline(always)]
-#[expect(
-    clippy::inline_always,
-    reason = "so that a law known at the call needs no choice in the loop"
-)]
 fn commit_pair<S: Space>(
     law: FrictionLaw<S::Real>,
-    contacts: &[Contact<S>],
+    pressed: &[Pressed<S>],
+    slip_rates: &[S::Tangent],
     sticks: &mut [Stick<S>],
     weights: &[S::Real],
     next: &mut usize,
 ) {
-    for contact in contacts {
+    for contact in pressed {
         let element = contact.element;
         while *next < element {
             sticks[*next] = Stick::default();
@@ -475,7 +539,7 @@ fn commit_pair<S: Space>(
         *next = element + 1;
 
         let stick = &mut sticks[element];
-        *stick = stick.commit(&law, contact.slip_rate, contact.normal_force, weights[element]);
+        *stick = stick.commit(&law, slip_rates[element], contact.normal_force, weights[element]);
         let counted = S::Real::select(contact.touching, S::Real::splat(1.0), S::Real::zero());
         stick.displacement = stick.displacement * counted;
         stick.slipping = stick.slipping & contact.touching;

@@ -25,12 +25,18 @@
 //! - Slip is that of the contactor relative to the target; on a level floor, positive to the right.
 //! - A friction force is given along the slip; the contactor feels its opposite.
 
+#![allow(
+    clippy::inline_always,
+    reason = "bundles of lanes are fast only where their code is inlined into the scope of a vector unit"
+)]
+
 pub mod body;
 pub mod contact;
 pub mod elements;
 pub mod energy;
 pub mod forces;
 pub mod integrate;
+pub mod lanes;
 pub mod math;
 pub mod model;
 pub mod real;

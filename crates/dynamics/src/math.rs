@@ -10,7 +10,7 @@ pub use libm::{acos, acosh, atan, atan2, cos, exp, log, log1p, pow, sin, tan};
 /// remainder is evaluated with the minimax polynomials of the FreeBSD mathematics library's kernel
 /// coefficients.
 /// Measured error below 1 ulp for |angle| up to 1e5 rad, which is more turns than a barrel makes.
-#[inline]
+#[inline(always)]
 pub fn sin_cos<R: Real>(angle: R) -> (R, R) {
     // Adding and subtracting 1.5·2^52 rounds to the nearest integer without a rounding instruction.
     const ROUNDER: f64 = 6_755_399_441_055_744.0;

@@ -10,7 +10,7 @@ use crate::space::Space;
 pub type InterfaceId = usize;
 
 /// Nodes of the contactor are tested against a surface of the target.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ContactPair {
     /// The body that carries the nodes.
     pub contactor: BodyId,

@@ -78,7 +78,7 @@ pub fn settle<S: Space>(
         if steps >= MOST_STEPS || !kinetic.is_finite() {
             return Err(most_moved(model, state, &start));
         }
-        let until = state.time + time_step;
+        let until = state.time + S::Real::splat(time_step);
         integrator.step(model, &Still, state, scratch, until);
         steps += 1;
         if steps % 1000 == 0 && has_left(model, state, &start) {

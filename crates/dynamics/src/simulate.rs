@@ -81,7 +81,7 @@ pub struct RunTotals<S: Space> {
 ///
 /// # Errors
 /// When a pose or twist leaves the finite numbers; `state` is then the state it happened in.
-pub fn simulate<S: Space>(
+pub fn simulate<S: Space<Real = f64>>(
     model: &Model<S>,
     drive: &impl Drive<S>,
     state: &mut State<S>,
@@ -112,8 +112,8 @@ pub fn simulate<S: Space>(
         next_step = integrator.step(model, drive, state, scratch, until);
         steps += 1;
         energy.enter(model, state, scratch);
-        if !energy.is_finite() {
-            return Err(lost_body(model, state, simulation.time_step, steps - 1));
+        if !energy.finite() {
+            return Err(lost_body(model, state, 0, simulation.time_step, steps - 1));
         }
         if observer.observe(model, state, scratch, &energy).is_break() {
             finish = Finish::Stopped;
@@ -122,24 +122,29 @@ pub fn simulate<S: Space>(
     Ok(RunTotals { finish, steps, energy })
 }
 
-/// Names the first body that is not where a finite number says, or else the one that moves most: its
-/// energy is the first to leave the finite numbers.
-fn lost_body<S: Space>(model: &Model<S>, state: &State<S>, time_step: f64, steps: u64) -> RunError {
+/// Names the first body of a lane that is not where a finite number says, or else the one that moves
+/// most: its energy is the first to leave the finite numbers.
+pub(crate) fn lost_body<S: Space>(
+    model: &Model<S>,
+    state: &State<S>,
+    lane: usize,
+    time_step: f64,
+    steps: u64,
+) -> RunError {
     let size = |i: usize| {
         let (pose, twist) = (state.poses[i], state.twists[i]);
         let size = pose.position.dot(pose.position)
             + twist.linear.dot(twist.linear)
             + twist.angular.dot(twist.angular);
-        // The worst lane; a lost number counts as infinite.
-        let lanes = (0..S::Real::LANES).map(|lane| size.lane(lane));
-        lanes.map(|s| if s.is_finite() { s } else { f64::INFINITY }).fold(0.0, f64::max)
+        // A lost number counts as infinite.
+        if size.lane(lane).is_finite() { size.lane(lane) } else { f64::INFINITY }
     };
     let bodies = || 0..model.bodies.len();
     let lost = bodies().find(|i| size(*i).is_infinite());
     let fastest = || bodies().max_by(|a, b| size(*a).total_cmp(&size(*b)));
     let body = lost.or_else(fastest).unwrap_or(0);
     RunError::NotFinite {
-        time: state.time,
+        time: state.time.lane(lane),
         body: model.bodies[body].name.clone(),
         time_step,
         steps,

@@ -2,13 +2,14 @@
 
 use crate::elements::Elements;
 use crate::model::Model;
+use crate::real::Real;
 use crate::space::{Pose, Space, Twist};
 
 /// Where everything is, how it moves, and what the contacts remember.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State<S: Space> {
-    /// Time (s).
-    pub time: f64,
+    /// Time (s); lanes may be at different times.
+    pub time: S::Real,
     /// Pose of every body.
     pub poses: Vec<Pose<S>>,
     /// Twist of every body.
@@ -21,12 +22,12 @@ impl<S: Space> State<S> {
     /// The state in which a model starts, at time zero.
     pub fn initial(model: &Model<S>) -> Self {
         let mut state = Self {
-            time: 0.0,
+            time: S::Real::zero(),
             poses: model.bodies.iter().map(|b| b.pose).collect(),
             twists: model.bodies.iter().map(|b| b.twist).collect(),
             elements: Elements::default(),
         };
-        state.elements.rebuild(model, &state.poses);
+        state.elements.rebuild(model, &state.poses, &state.twists);
         state
     }
 }

@@ -8,12 +8,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::Study;
-use super::engine::CaseResult;
 use super::error::StudyError;
 use super::folder::{Collected, Folder, read_shard};
 use super::motions::Shelf;
 use super::prepare::Bench;
 use super::stop::{StopRule, Tally};
+use crate::ensemble::CaseResult;
 
 /// How a study is run.
 #[derive(Clone, Copy, Debug, Default)]

@@ -157,7 +157,7 @@ fn read(opened: &Opened, stem: &str, folder: &Path) -> Result<Study, StudyError>
 
 /// The fingerprint of everything that rows depend on.
 fn hash(study: &Study, scenario: Option<&Scenario>) -> Result<u64, StudyError> {
-    let mut all = vec![env!("CARGO_PKG_VERSION").to_owned(), super::engine::VERSION.to_string()];
+    let mut all = vec![env!("CARGO_PKG_VERSION").to_owned(), crate::ensemble::VERSION.to_string()];
     all.extend(study.template.texts().map(str::to_owned));
     for motion in &study.motions {
         let files = motion.shaking.files(scenario.map(|scenario| &scenario.motion));

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use crate::scenario::{Scenario, ScenarioError};
 
 use super::design::{Case, Design, seed_of};
-use super::engine::{CaseResult, Prepared, simulate};
 use super::error::StudyError;
 use super::ida::{Hunt, Seen};
 use super::motions::{Shaken, Shelf};
 use super::setting::Setting;
 use super::table::StudyTable;
 use super::{Study, Value};
+use crate::ensemble::{Audience, CaseResult, Prepared, simulate};
 use crate::outcome::Outcome;
 
 /// Most cases that are built at once: many enough to run in lockstep, few enough to hold their motions.
@@ -111,7 +111,8 @@ impl Study {
         let built = self.build(cases, bench.shelf);
         let ready: Vec<Prepared> =
             built.iter().filter_map(|built| built.prepared.as_ref().ok()).cloned().collect();
-        let mut results = simulate(&ready, bench.tell, bench.stop)?.into_iter();
+        let mut audience = Audience { tell: &mut *bench.tell, stop: bench.stop };
+        let mut results = simulate(&ready, &mut audience)?.into_iter();
         let mut done = Vec::with_capacity(cases.len());
         for Built { shaken, prepared } in built {
             let result = match prepared {

@@ -5,8 +5,8 @@ use crate::outcome::Outcome;
 use super::Study;
 use super::column::{ColumnSpec, Role, Value, ValueKind};
 use super::design::Case;
-use super::engine::CaseResult;
 use super::motions::{MEASURES, Shaken};
+use crate::ensemble::CaseResult;
 
 /// Columns of every table before those of the factors.
 const KEYS: [(&str, ValueKind); 3] =

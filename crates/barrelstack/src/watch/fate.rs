@@ -1,8 +1,9 @@
 //! The fate of every body: whether it kept its seat, when it left it, how far it fell.
 
+use barrelstack_dynamics::real::{Mask, Real};
 use barrelstack_dynamics::{BodyId, Linear, Planar, Scratch, State, Vec2};
 
-use crate::assemble::{Assembly, PartKind};
+use crate::assemble::{Assembly, Part, PartKind};
 use crate::scenario::OutcomeSpec;
 
 /// When a body counts as having left its seat, or fallen; all definitions are here.
@@ -73,173 +74,370 @@ pub struct Fate {
     pub peak_uplift: f64,
 }
 
-/// Follows all bodies through a run; sees every step.
+/// Follows all bodies through a run, or through as many runs as there are lanes; sees every step.
 #[derive(Clone, Debug)]
-pub struct Fates {
-    thresholds: Thresholds,
-    /// Positions at rest, relative to the ground.
-    rest: Vec<Vec2>,
-    bodies: Vec<Fate>,
-    collapse: Option<(f64, BodyId)>,
-    first_fall: Option<f64>,
+pub struct Fates<R: Real = f64> {
+    /// Drop (m) at which a body has fallen.
+    fall_drop: R,
+    bodies: Vec<Followed<R>>,
+    /// When (s) the first body left its seat; infinite while none has.
+    collapse: R,
+    /// Which body that was, lane by lane.
+    first: Vec<Option<BodyId>>,
+    /// When (s) the first barrel had fallen; infinite while none has.
+    first_fall: R,
+}
+
+/// A body, its limits, and what became of it until now.
+#[derive(Clone, Debug)]
+struct Followed<R: Real> {
+    kind: PartKind,
+    carrier: Option<BodyId>,
+    supports: Vec<BodyId>,
+    /// The rack below, against which a rack's tilt is measured.
+    below: Option<BodyId>,
+    /// Position at rest (m), relative to the ground.
+    rest: Vec2<R>,
+    /// How far (m) it may go on what it stands on.
+    most_slip: R,
+    /// How far (rad) a rack may tilt.
+    most_tilt: R,
+    /// When (s) it left its seat; infinite while it has not.
+    left_seat: R,
+    /// How, lane by lane.
+    loss: Vec<Loss>,
+    /// When (s) it had fallen; infinite while it has not.
+    fell_at: R,
+    drop: R,
+    peak_displacement: R,
+    residual_displacement: R,
+    displacement_at_collapse: R,
+    peak_slip: R,
+    residual_slip: R,
+    peak_tilt: R,
+    peak_uplift: R,
 }
 
 impl Fates {
     /// Starts at rest.
     pub fn new(assembly: &Assembly, state: &State<Planar>, thresholds: Thresholds) -> Self {
         let ground = state.poses[Assembly::GROUND].position;
+        let follow = |(i, part): (usize, &Part)| {
+            let below = part.supports.first().copied();
+            let foot = part.supports.is_empty();
+            let most_slip = match part.kind {
+                PartKind::Barrel => thresholds.seat_loss_ratio * part.size,
+                PartKind::Rack if !foot => thresholds.rack_slide_ratio * assembly.rack_reach,
+                PartKind::Rack | PartKind::Ground | PartKind::Body => f64::INFINITY,
+            };
+            let most_tilt =
+                if foot { thresholds.overturning_angle } else { thresholds.rocking_angle };
+            Followed {
+                kind: part.kind,
+                carrier: part.carrier,
+                supports: part.supports.clone(),
+                below: below.map(|body| assembly.parts[body].carrier.unwrap_or(body)),
+                rest: state.poses[i].position - ground,
+                most_slip,
+                most_tilt,
+                left_seat: f64::INFINITY,
+                loss: vec![Loss::Dropped],
+                fell_at: f64::INFINITY,
+                drop: 0.0,
+                peak_displacement: 0.0,
+                residual_displacement: 0.0,
+                displacement_at_collapse: 0.0,
+                peak_slip: 0.0,
+                residual_slip: 0.0,
+                peak_tilt: 0.0,
+                peak_uplift: 0.0,
+            }
+        };
         Self {
-            thresholds,
-            rest: state.poses.iter().map(|pose| pose.position - ground).collect(),
-            bodies: vec![Fate::default(); assembly.parts.len()],
-            collapse: None,
-            first_fall: None,
+            fall_drop: thresholds.fall_drop,
+            bodies: assembly.parts.iter().enumerate().map(follow).collect(),
+            collapse: f64::INFINITY,
+            first: vec![None],
+            first_fall: f64::INFINITY,
         }
     }
 
     /// Position at rest (m) of a body, relative to the ground.
     pub fn rest(&self, body: BodyId) -> Vec2 {
-        self.rest[body]
+        self.bodies[body].rest
     }
 
     /// The fate of a body.
-    pub fn fate(&self, body: BodyId) -> &Fate {
-        &self.bodies[body]
+    pub fn fate(&self, body: BodyId) -> Fate {
+        let followed = &self.bodies[body];
+        Fate {
+            left_seat: known(followed.left_seat).map(|time| (time, followed.loss[0])),
+            fell_at: known(followed.fell_at),
+            drop: followed.drop,
+            peak_displacement: followed.peak_displacement,
+            residual_displacement: followed.residual_displacement,
+            displacement_at_collapse: followed.displacement_at_collapse,
+            peak_slip: followed.peak_slip,
+            residual_slip: followed.residual_slip,
+            peak_tilt: followed.peak_tilt,
+            peak_uplift: followed.peak_uplift,
+        }
     }
 
     /// When (s) the first body left its seat.
     pub fn collapse_time(&self) -> Option<f64> {
-        self.collapse.map(|(time, _)| time)
+        known(self.collapse)
     }
 
     /// The first body that left its seat.
     pub fn first(&self) -> Option<BodyId> {
-        self.collapse.map(|(_, body)| body)
+        self.first[0]
     }
 
     /// When (s) the first barrel had fallen.
     pub fn first_fall(&self) -> Option<f64> {
-        self.first_fall
+        known(self.first_fall)
+    }
+}
+
+/// A time (s) that has come.
+fn known(time: f64) -> Option<f64> {
+    time.is_finite().then_some(time)
+}
+
+impl<R: Real> Fates<R> {
+    /// When (s) the first body left its seat; infinite in lanes where none has.
+    pub fn collapse(&self) -> R {
+        self.collapse
     }
 
     /// Looks at an accepted state.
-    pub(super) fn observe(
-        &mut self,
-        assembly: &Assembly,
-        state: &State<Planar>,
-        scratch: &Scratch<Planar>,
-    ) {
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    pub fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) {
         let ground = state.poses[Assembly::GROUND].position;
-        let standing = self.collapse.is_none();
-        for (i, part) in assembly.parts.iter().enumerate() {
-            if part.kind == PartKind::Ground {
+        let standing = !self.collapse.lt(R::splat(f64::INFINITY));
+        for i in 0..self.bodies.len() {
+            if self.bodies[i].kind == PartKind::Ground {
                 continue;
             }
-            let moved = state.poses[i].position - ground - self.rest[i];
-            let slip = self.slip(assembly, state, scratch, i);
-            let tilt = state.poses[i].orientation;
-            let fate = &mut self.bodies[i];
-            fate.drop = fate.drop.max(-moved.z);
-            fate.residual_displacement = moved.x;
-            fate.residual_slip = slip.x;
-            if standing {
-                fate.displacement_at_collapse = moved.x;
-                fate.peak_displacement = fate.peak_displacement.max(moved.x.abs());
-                fate.peak_slip = fate.peak_slip.max(slip.x.abs());
-                fate.peak_uplift = fate.peak_uplift.max(moved.z);
-                if part.kind == PartKind::Rack {
-                    fate.peak_tilt = fate.peak_tilt.max(tilt.abs());
+            let moved = state.poses[i].position - ground - self.bodies[i].rest;
+            let slip = self.slip(state, scratch, i);
+            let body = &mut self.bodies[i];
+            raise(&mut body.drop, -moved.z);
+            body.residual_displacement = moved.x;
+            body.residual_slip = slip.x;
+            if standing.any() {
+                let now = R::select(standing, moved.x, body.displacement_at_collapse);
+                body.displacement_at_collapse = now;
+                raise(&mut body.peak_displacement, seen(standing, moved.x.abs()));
+                raise(&mut body.peak_slip, seen(standing, slip.x.abs()));
+                raise(&mut body.peak_uplift, seen(standing, moved.z));
+                if body.kind == PartKind::Rack {
+                    raise(&mut body.peak_tilt, seen(standing, state.poses[i].orientation.abs()));
                 }
             }
-            if fate.fell_at.is_none() && -moved.z > self.thresholds.fall_drop {
-                fate.fell_at = Some(state.time);
-                if part.kind == PartKind::Barrel && self.first_fall.is_none() {
-                    self.first_fall = Some(state.time);
+            let fallen = self.fall_drop.lt(-moved.z);
+            if fallen.any() {
+                let first = fallen & !body.fell_at.lt(R::splat(f64::INFINITY));
+                body.fell_at = R::select(first, state.time, body.fell_at);
+                if body.kind == PartKind::Barrel {
+                    let first = first & !self.first_fall.lt(R::splat(f64::INFINITY));
+                    self.first_fall = R::select(first, state.time, self.first_fall);
                 }
             }
-            let fell = self.bodies[i].fell_at.is_some();
-            if self.bodies[i].left_seat.is_none()
-                && let Some(loss) = self.loss(assembly, state, i, slip, fell)
-            {
-                self.bodies[i].left_seat = Some((state.time, loss));
-                if self.collapse.is_none() {
-                    self.collapse = Some((state.time, i));
-                }
+            self.seat(state, i, slip);
+        }
+    }
+
+    /// Whether a body has left its seat now, and how.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    fn seat(&mut self, state: &State<Planar<R>>, i: BodyId, slip: Vec2<R>) {
+        let never = R::splat(f64::INFINITY);
+        let body = &self.bodies[i];
+        let fell = body.fell_at.lt(never);
+        let (slid, tilted) = match body.kind {
+            PartKind::Ground | PartKind::Body => return,
+            PartKind::Barrel => {
+                ((body.most_slip * body.most_slip).lt(slip.dot(slip)), R::Mask::default())
+            }
+            PartKind::Rack => {
+                let below = body.below.map_or(R::zero(), |rack| state.poses[rack].orientation);
+                let tilt = (state.poses[i].orientation - below).abs();
+                (body.most_slip.lt(slip.x.abs()), body.most_tilt.lt(tilt))
+            }
+        };
+        let left = (slid | tilted | fell) & !body.left_seat.lt(never);
+        if !left.any() {
+            return;
+        }
+        let collapses = left & !self.collapse.lt(never);
+        for lane in (0..R::LANES).filter(|lane| left.lane(*lane)) {
+            let body = &mut self.bodies[i];
+            body.loss[lane] = match (slid.lane(lane), tilted.lane(lane)) {
+                (true, _) if body.kind == PartKind::Barrel => Loss::Displaced,
+                (true, _) => Loss::Slid,
+                (false, true) => Loss::Tilted,
+                (false, false) => Loss::Dropped,
+            };
+            if collapses.lane(lane) {
+                self.first[lane] = Some(i);
             }
         }
+        let body = &mut self.bodies[i];
+        body.left_seat = R::select(left, state.time, body.left_seat);
+        self.collapse = R::select(collapses, state.time, self.collapse);
     }
 
     /// Displacement (m) of a body relative to what it stands on: a barrel in the frame of its rack, a
     /// rack against the mean of the barrels below, the rest against the ground.
-    fn slip(
-        &self,
-        assembly: &Assembly,
-        state: &State<Planar>,
-        scratch: &Scratch<Planar>,
-        body: BodyId,
-    ) -> Vec2 {
-        let part = &assembly.parts[body];
-        let ground = state.poses[Assembly::GROUND].position;
-        let here = state.poses[body].position;
-        if let Some(rack) = part.carrier {
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    fn slip(&self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>, i: BodyId) -> Vec2<R> {
+        let body = &self.bodies[i];
+        let here = state.poses[i].position;
+        if let Some(rack) = body.carrier {
             let place = scratch.rotations[rack].unapply(here - state.poses[rack].position);
-            return place - (self.rest[body] - self.rest[rack]);
+            return place - (body.rest - self.bodies[rack].rest);
         }
-        if part.supports.is_empty() {
-            return here - ground - self.rest[body];
+        if body.supports.is_empty() {
+            return here - state.poses[Assembly::GROUND].position - body.rest;
         }
-        let share = 1.0 / part.supports.len() as f64;
+        let share = R::splat(1.0 / body.supports.len() as f64);
         let mut below = Vec2::default();
         let mut below_rest = Vec2::default();
-        for support in &part.supports {
+        for support in &body.supports {
             below += state.poses[*support].position * share;
-            below_rest += self.rest[*support] * share;
+            below_rest += self.bodies[*support].rest * share;
         }
-        (here - below) - (self.rest[body] - below_rest)
+        (here - below) - (body.rest - below_rest)
     }
 
-    /// Tilt (rad) of a rack against the rack it stands on, directly or by way of barrels; of the rest
-    /// against the ground.
-    fn tilt(assembly: &Assembly, state: &State<Planar>, body: BodyId) -> f64 {
-        let below = assembly.parts[body].supports.first().copied();
-        let rack = below.map(|support| assembly.parts[support].carrier.unwrap_or(support));
-        state.poses[body].orientation - rack.map_or(0.0, |rack| state.poses[rack].orientation)
+    /// All lanes as one case begins.
+    pub(crate) fn in_all(single: &Fates) -> Self {
+        let mut fates = Self {
+            fall_drop: R::splat(single.fall_drop),
+            bodies: single.bodies.iter().map(Followed::in_all).collect(),
+            collapse: R::zero(),
+            first: vec![None; R::LANES],
+            first_fall: R::zero(),
+        };
+        for lane in 0..R::LANES {
+            fates.put(lane, single);
+        }
+        fates
     }
 
-    fn loss(
-        &self,
-        assembly: &Assembly,
-        state: &State<Planar>,
-        body: BodyId,
-        slip: Vec2,
-        fell: bool,
-    ) -> Option<Loss> {
-        let part = &assembly.parts[body];
-        let limits = &self.thresholds;
-        match part.kind {
-            PartKind::Ground | PartKind::Body => None,
-            PartKind::Barrel => {
-                let seat = limits.seat_loss_ratio * part.size;
-                let away = slip.dot(slip) > seat * seat;
-                if away { Some(Loss::Displaced) } else { fell.then_some(Loss::Dropped) }
-            }
-            PartKind::Rack => {
-                let tilt = Self::tilt(assembly, state, body).abs();
-                let limit = if part.supports.is_empty() {
-                    limits.overturning_angle
-                } else {
-                    limits.rocking_angle
-                };
-                let slid = !part.supports.is_empty()
-                    && slip.x.abs() > limits.rack_slide_ratio * assembly.rack_reach;
-                if slid {
-                    Some(Loss::Slid)
-                } else if tilt > limit {
-                    Some(Loss::Tilted)
-                } else {
-                    fell.then_some(Loss::Dropped)
-                }
-            }
+    /// Puts a case into one lane.
+    pub(crate) fn put(&mut self, lane: usize, single: &Fates) {
+        self.fall_drop = self.fall_drop.with_lane(lane, single.fall_drop);
+        self.collapse = self.collapse.with_lane(lane, single.collapse);
+        self.first[lane] = single.first[0];
+        self.first_fall = self.first_fall.with_lane(lane, single.first_fall);
+        for (body, single) in self.bodies.iter_mut().zip(&single.bodies) {
+            body.put(lane, single);
+        }
+    }
+
+    /// The case in one lane.
+    pub(crate) fn of_lane(&self, lane: usize) -> Fates {
+        Fates {
+            fall_drop: self.fall_drop.lane(lane),
+            bodies: self.bodies.iter().map(|body| body.of_lane(lane)).collect(),
+            collapse: self.collapse.lane(lane),
+            first: vec![self.first[lane]],
+            first_fall: self.first_fall.lane(lane),
+        }
+    }
+}
+
+/// Raises a peak to a value above it.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+fn raise<R: Real>(peak: &mut R, value: R) {
+    *peak = R::select(peak.lt(value), value, *peak);
+}
+
+/// A value while the stack stands; nothing afterwards.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+fn seen<R: Real>(standing: R::Mask, value: R) -> R {
+    R::select(standing, value, R::zero())
+}
+
+impl<R: Real> Followed<R> {
+    /// The numbers of a body, with those of a body of a single run.
+    fn numbers<'a>(&'a mut self, single: &Followed<f64>) -> [(&'a mut R, f64); 14] {
+        [
+            (&mut self.rest.x, single.rest.x),
+            (&mut self.rest.z, single.rest.z),
+            (&mut self.most_slip, single.most_slip),
+            (&mut self.most_tilt, single.most_tilt),
+            (&mut self.left_seat, single.left_seat),
+            (&mut self.fell_at, single.fell_at),
+            (&mut self.drop, single.drop),
+            (&mut self.peak_displacement, single.peak_displacement),
+            (&mut self.residual_displacement, single.residual_displacement),
+            (&mut self.displacement_at_collapse, single.displacement_at_collapse),
+            (&mut self.peak_slip, single.peak_slip),
+            (&mut self.residual_slip, single.residual_slip),
+            (&mut self.peak_tilt, single.peak_tilt),
+            (&mut self.peak_uplift, single.peak_uplift),
+        ]
+    }
+
+    fn in_all(single: &Followed<f64>) -> Self {
+        let zero = R::zero();
+        Self {
+            kind: single.kind,
+            carrier: single.carrier,
+            supports: single.supports.clone(),
+            below: single.below,
+            rest: Vec2::default(),
+            most_slip: zero,
+            most_tilt: zero,
+            left_seat: zero,
+            loss: vec![Loss::Dropped; R::LANES],
+            fell_at: zero,
+            drop: zero,
+            peak_displacement: zero,
+            residual_displacement: zero,
+            displacement_at_collapse: zero,
+            peak_slip: zero,
+            residual_slip: zero,
+            peak_tilt: zero,
+            peak_uplift: zero,
+        }
+    }
+
+    fn put(&mut self, lane: usize, single: &Followed<f64>) {
+        self.loss[lane] = single.loss[0];
+        for (bundle, number) in self.numbers(single) {
+            *bundle = bundle.with_lane(lane, number);
+        }
+    }
+
+    fn of_lane(&self, lane: usize) -> Followed<f64> {
+        Followed {
+            kind: self.kind,
+            carrier: self.carrier,
+            supports: self.supports.clone(),
+            below: self.below,
+            rest: Vec2::new(self.rest.x.lane(lane), self.rest.z.lane(lane)),
+            most_slip: self.most_slip.lane(lane),
+            most_tilt: self.most_tilt.lane(lane),
+            left_seat: self.left_seat.lane(lane),
+            loss: vec![self.loss[lane]],
+            fell_at: self.fell_at.lane(lane),
+            drop: self.drop.lane(lane),
+            peak_displacement: self.peak_displacement.lane(lane),
+            residual_displacement: self.residual_displacement.lane(lane),
+            displacement_at_collapse: self.displacement_at_collapse.lane(lane),
+            peak_slip: self.peak_slip.lane(lane),
+            residual_slip: self.residual_slip.lane(lane),
+            peak_tilt: self.peak_tilt.lane(lane),
+            peak_uplift: self.peak_uplift.lane(lane),
         }
     }
 }

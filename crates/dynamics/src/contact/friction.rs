@@ -69,7 +69,7 @@ impl<R: Real> FrictionLaw<R> {
     ///
     /// `weight` multiplies the tangential constants: 1 for constants per node, the tributary length
     /// (m) for constants per length.
-    #[inline]
+    #[inline(always)]
     pub fn force<S: Space<Real = R>>(
         &self,
         stick: Stick<S>,
@@ -122,7 +122,7 @@ impl<S: Space> Stick<S> {
     ///
     /// `self` carries the displacement reached by the step, `weight` is that of
     /// [`FrictionLaw::force`].
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn commit(
         self,

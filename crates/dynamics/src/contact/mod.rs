@@ -14,7 +14,7 @@ pub use normal::{Exponent, NormalForce, NormalLaw};
 /// With constants per node, refining the nodes of a boundary stiffens the interface, so the number
 /// of nodes is then part of the physics (the paper states its constants this way).
 /// With constants per length, each node acts for its tributary length and refinement converges.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Basis {
     /// Constants of one node (N/m, N·s/m).
     Node,

@@ -48,7 +48,7 @@ pub enum NormalLaw<R = f64> {
 }
 
 /// How an elastic force grows with penetration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Exponent {
     /// In proportion, `n = 1`.
     Linear,
@@ -81,7 +81,7 @@ impl<R: Real> NormalForce<R> {
     /// So a linear spring met at a steady rate takes exactly the energy that it stores, wherever in
     /// the step it is met, and the error of a bounce falls by orders of magnitude.
     /// A step of zero leaves the force as it is.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn within_step(self, depth: R, rate: R, step: R) -> Self {
         let way = rate.abs() * step;
@@ -102,7 +102,7 @@ impl<R: Real> NormalForce<R> {
 impl<R: Real> NormalLaw<R> {
     /// The force of a node with penetration `depth` (m, positive) and penetration rate `rate`
     /// (m/s, positive while approaching).
-    #[inline]
+    #[inline(always)]
     pub fn force(&self, depth: R, rate: R) -> NormalForce<R> {
         let zero = R::zero();
         match *self {

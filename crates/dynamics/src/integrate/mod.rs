@@ -11,14 +11,19 @@ mod verlet;
 use crate::body::Motion;
 use crate::forces::{self, Scratch, evaluate};
 use crate::model::Model;
-use crate::real::Real;
 use crate::space::{Pose, Space, Twist};
 use crate::state::State;
 
 /// How the ground moves.
 pub trait Drive<S: Space> {
     /// Displacement (m) and velocity (m/s) of the ground at a time (s); one the derivative of the other.
-    fn at(&self, time: f64) -> (S::Vector, S::Vector);
+    fn at(&self, time: S::Real) -> (S::Vector, S::Vector);
+}
+
+impl<S: Space, D: Drive<S> + ?Sized> Drive<S> for &D {
+    fn at(&self, time: S::Real) -> (S::Vector, S::Vector) {
+        (**self).at(time)
+    }
 }
 
 /// Ground that does not move.
@@ -26,7 +31,7 @@ pub trait Drive<S: Space> {
 pub struct Still;
 
 impl<S: Space> Drive<S> for Still {
-    fn at(&self, _time: f64) -> (S::Vector, S::Vector) {
+    fn at(&self, _time: S::Real) -> (S::Vector, S::Vector) {
         (S::Vector::default(), S::Vector::default())
     }
 }
@@ -87,7 +92,7 @@ impl<S: Space> Integrator<S> {
         scratch: &mut Scratch<S>,
     ) {
         place_prescribed(model, drive, state);
-        state.elements.rebuild(model, &state.poses);
+        state.elements.rebuild(model, &state.poses, &state.twists);
         evaluate(model, state, scratch);
     }
 
@@ -100,8 +105,8 @@ impl<S: Space> Integrator<S> {
         drive: &impl Drive<S>,
         state: &mut State<S>,
         scratch: &mut Scratch<S>,
-        until: f64,
-    ) -> f64 {
+        until: S::Real,
+    ) -> S::Real {
         let dt = until - state.time;
         refresh(model, state, scratch, dt);
         match self.method {
@@ -130,7 +135,12 @@ impl<S: Space> Integrator<S> {
 ///
 /// The forces in `scratch` stay as they are: evaluating them anew, at corrected velocities and
 /// committed sticks, would give other ones, and the list would no longer be a matter of speed alone.
-fn refresh<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &mut Scratch<S>, dt: f64) {
+fn refresh<S: Space>(
+    model: &Model<S>,
+    state: &mut State<S>,
+    scratch: &mut Scratch<S>,
+    dt: S::Real,
+) {
     if let Some(origins) = state.elements.refresh(model, &state.poses, &state.twists, dt) {
         scratch.renumber(&origins);
     }
@@ -161,9 +171,8 @@ fn accept<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>
 }
 
 /// Adds a multiple of the slip rates to the stick displacements.
-#[inline]
-fn advance_sticks<S: Space>(state: &mut State<S>, slip_rates: &[S::Tangent], time: f64) {
-    let time = S::Real::splat(time);
+#[inline(always)]
+fn advance_sticks<S: Space>(state: &mut State<S>, slip_rates: &[S::Tangent], time: S::Real) {
     for (stick, rate) in state.elements.sticks.iter_mut().zip(slip_rates) {
         stick.displacement += *rate * time;
     }

@@ -69,7 +69,7 @@ impl<S: Space> Stages<S> {
         drive: &impl Drive<S>,
         state: &mut State<S>,
         scratch: &mut Scratch<S>,
-        until: f64,
+        until: S::Real,
     ) {
         self.begin(state);
         self.attempt(tableau, model, drive, state, scratch, until);
@@ -78,7 +78,7 @@ impl<S: Space> Stages<S> {
 
     /// One step that is as long as the tolerance allows, and ends at `until` at the latest.
     ///
-    /// Returns the step (s) to try next.
+    /// Returns the step (s) to try next. Lanes share the step that the worst of them needs.
     #[expect(clippy::too_many_arguments, reason = "the method, its tolerance, and what it acts on")]
     pub(super) fn adaptive(
         &mut self,
@@ -88,14 +88,14 @@ impl<S: Space> Stages<S> {
         drive: &impl Drive<S>,
         state: &mut State<S>,
         scratch: &mut Scratch<S>,
-        until: f64,
-    ) -> f64 {
+        until: S::Real,
+    ) -> S::Real {
         let start = state.time;
         let mut until = until;
         self.begin(state);
         loop {
             self.attempt(tableau, model, drive, state, scratch, until);
-            let dt = until - start;
+            let dt = (until - start).largest_lane();
             let error = self.error(tableau, model, scratch, state, dt) / tolerance;
             // A step that can hardly move the clock is accepted: at a touch-down the damper's force
             // jumps, and no step is short enough to make a jump smooth.
@@ -103,13 +103,14 @@ impl<S: Space> Stages<S> {
             if error <= 1.0 || dt <= smallest {
                 accept(model, state, scratch);
                 let growth = 0.9 / error.max(1e-6).cbrt();
-                return dt * growth.clamp(0.2, 4.0);
+                return S::Real::splat(dt * growth.clamp(0.2, 4.0));
             }
             if !error.is_finite() {
                 accept(model, state, scratch);
-                return dt;
+                return S::Real::splat(dt);
             }
-            until = start + (dt * (0.9 / error.cbrt()).clamp(0.1, 0.9)).max(smallest);
+            let shorter = (dt * (0.9 / error.cbrt()).clamp(0.1, 0.9)).max(smallest);
+            until = start + S::Real::splat(shorter);
             self.restore(state, start);
         }
     }
@@ -121,7 +122,7 @@ impl<S: Space> Stages<S> {
         self.rates.clear();
     }
 
-    fn restore(&mut self, state: &mut State<S>, time: f64) {
+    fn restore(&mut self, state: &mut State<S>, time: S::Real) {
         state.time = time;
         state.poses.clone_from(&self.poses);
         state.twists.clone_from(&self.twists);
@@ -138,7 +139,7 @@ impl<S: Space> Stages<S> {
         drive: &impl Drive<S>,
         state: &mut State<S>,
         scratch: &mut Scratch<S>,
-        until: f64,
+        until: S::Real,
     ) {
         let start = state.time;
         let dt = until - start;
@@ -147,7 +148,7 @@ impl<S: Space> Stages<S> {
         }
         for (row, time) in tableau.rows.iter().zip(&tableau.times[1..]) {
             self.combine(model, state, row, dt);
-            state.time = start + time * dt;
+            state.time = start + S::Real::splat(*time) * dt;
             place_prescribed(model, drive, state);
             evaluate(model, state, scratch);
             self.keep(state, scratch);
@@ -167,12 +168,12 @@ impl<S: Space> Stages<S> {
     }
 
     /// The start plus a weighted sum of the rates.
-    fn combine(&self, model: &Model<S>, state: &mut State<S>, weights: &[f64], dt: f64) {
+    fn combine(&self, model: &Model<S>, state: &mut State<S>, weights: &[f64], dt: S::Real) {
         for i in free(model) {
             let mut velocity = Twist::default();
             let mut twist = self.twists[i];
             for (rates, weight) in self.rates.iter().zip(weights) {
-                let share = S::Real::splat(weight * dt);
+                let share = S::Real::splat(*weight) * dt;
                 velocity = velocity.plus(rates.twists[i], share);
                 twist = twist.plus(rates.accelerations[i], share);
             }
@@ -182,7 +183,7 @@ impl<S: Space> Stages<S> {
         for (element, stick) in state.elements.sticks.iter_mut().enumerate() {
             let mut displacement = self.sticks[element].displacement;
             for (rates, weight) in self.rates.iter().zip(weights) {
-                displacement += rates.slip_rates[element] * S::Real::splat(weight * dt);
+                displacement += rates.slip_rates[element] * (S::Real::splat(*weight) * dt);
             }
             *stick = Stick { displacement, slipping: self.sticks[element].slipping };
         }

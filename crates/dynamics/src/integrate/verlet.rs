@@ -17,15 +17,14 @@ pub(super) fn semi_implicit_euler<S: Space>(
     drive: &impl Drive<S>,
     state: &mut State<S>,
     scratch: &mut Scratch<S>,
-    until: f64,
+    until: S::Real,
 ) {
-    let dt = until - state.time;
-    let step = S::Real::splat(dt);
+    let step = until - state.time;
     for i in free(model) {
         state.twists[i] = state.twists[i].plus(scratch.accelerations[i], step);
         state.poses[i] = state.poses[i].moved(state.twists[i], step);
     }
-    advance_sticks(state, &scratch.slip_rates, dt);
+    advance_sticks(state, &scratch.slip_rates, step);
     std::mem::swap(&mut scratch.old_slip_rates, &mut scratch.slip_rates);
     state.time = until;
     place_prescribed(model, drive, state);
@@ -46,10 +45,32 @@ pub(super) fn velocity_verlet<S: Space>(
     drive: &impl Drive<S>,
     state: &mut State<S>,
     scratch: &mut Scratch<S>,
-    until: f64,
+    until: S::Real,
 ) {
-    let dt = until - state.time;
-    let (step, half) = (S::Real::splat(dt), S::Real::splat(0.5 * dt));
+    let step = until - state.time;
+    S::Real::scope(
+        #[inline(always)]
+        || predict(model, state, scratch, step),
+    );
+    state.time = until;
+    place_prescribed(model, drive, state);
+    evaluate_within(model, state, step, scratch);
+    S::Real::scope(
+        #[inline(always)]
+        || correct(model, state, scratch, step),
+    );
+    accept(model, state, scratch);
+}
+
+/// Places at the end of the step, and velocities and sticks as the old forces would have them.
+#[inline(always)]
+fn predict<S: Space>(
+    model: &Model<S>,
+    state: &mut State<S>,
+    scratch: &mut Scratch<S>,
+    step: S::Real,
+) {
+    let half = S::Real::splat(0.5) * step;
     for i in free(model) {
         let kick = scratch.accelerations[i];
         let middle = state.twists[i].plus(kick, half);
@@ -58,22 +79,24 @@ pub(super) fn velocity_verlet<S: Space>(
         // Until the new forces are known, the old acceleration waits here for the correction.
         scratch.old_accelerations[i] = kick;
     }
-    advance_sticks(state, &scratch.slip_rates, dt);
+    advance_sticks(state, &scratch.slip_rates, step);
     std::mem::swap(&mut scratch.old_slip_rates, &mut scratch.slip_rates);
-    state.time = until;
-    place_prescribed(model, drive, state);
-    evaluate_within(model, state, step, scratch);
+}
 
+/// Trades half of the old accelerations and slip rates for the new ones.
+#[inline(always)]
+fn correct<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>, step: S::Real) {
+    let half = S::Real::splat(0.5) * step;
     for i in free(model) {
         let new = scratch.accelerations[i];
         let old = scratch.old_accelerations[i];
         state.twists[i] = state.twists[i].plus(new, half).plus(old, -half);
     }
     correct_sticks(state, scratch, half);
-    accept(model, state, scratch);
 }
 
 /// Trades a share (s) of the old slip rates for the new ones.
+#[inline(always)]
 fn correct_sticks<S: Space>(state: &mut State<S>, scratch: &Scratch<S>, share: S::Real) {
     for ((stick, new), old) in
         state.elements.sticks.iter_mut().zip(&scratch.slip_rates).zip(&scratch.old_slip_rates)

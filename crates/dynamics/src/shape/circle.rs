@@ -15,13 +15,13 @@ pub struct Circle<R = f64> {
 }
 
 impl<R: Real> Circle<R> {
-    #[inline]
+    #[inline(always)]
     pub(super) fn gap(&self, point: Vec2<R>) -> Gap<Planar<R>> {
         self.gap_from(point, point.dot(point))
     }
 
     /// The gap of a point whose squared distance (m²) from the center is known.
-    #[inline]
+    #[inline(always)]
     pub(super) fn gap_from(&self, point: Vec2<R>, squared: R) -> Gap<Planar<R>> {
         let length = squared.sqrt();
         let at_center = length.le(R::zero());
@@ -31,13 +31,13 @@ impl<R: Real> Circle<R> {
     }
 
     /// The squared distance (m²) from the center below which a point may penetrate.
-    #[inline]
+    #[inline(always)]
     pub(super) fn within(&self) -> R {
         // A hair of slack, so that rounding never hides a node that the square root would find.
         self.radius * self.radius * R::splat(1.0 + 1e-14)
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn may_touch(&self, point: Vec2<R>) -> R::Mask {
         point.dot(point).lt(self.within())
     }

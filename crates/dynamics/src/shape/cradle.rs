@@ -22,6 +22,7 @@ pub struct Cradle<R = f64> {
 }
 
 impl<R: Real> Cradle<R> {
+    #[inline(always)]
     pub(super) fn gap(&self, point: Vec2<R>) -> Gap<Planar<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
         let length = point.length();

@@ -35,19 +35,22 @@ pub trait Surface<S: Space>: Clone + std::fmt::Debug + Send + Sync + 'static {
     fn gap(&self, point: S::Vector) -> Gap<S>;
 
     /// A cheap test that holds wherever `gap(point).distance < 0`, and may hold elsewhere.
+    #[inline(always)]
     fn may_touch(&self, point: S::Vector) -> <S::Real as Real>::Mask {
         self.gap(point).distance.lt(S::Real::zero())
     }
 
-    /// Visits the points (m) that penetrate in at least one lane, in order: how many came before it,
-    /// the point, and its gap.
-    #[inline]
+    /// Visits the points (m) that penetrate in at least one lane, in order: which of `count` points it
+    /// is, where, and its gap.
+    #[inline(always)]
     fn penetrated_by(
         &self,
-        points: impl Iterator<Item = S::Vector>,
+        count: usize,
+        point: impl Fn(usize) -> S::Vector,
         mut visit: impl FnMut(usize, S::Vector, Gap<S>),
     ) {
-        for (index, point) in points.enumerate() {
+        for index in 0..count {
+            let point = point(index);
             if self.may_touch(point).any() {
                 let gap = self.gap(point);
                 if gap.distance.lt(S::Real::zero()).any() {
@@ -97,7 +100,7 @@ pub enum Shape<R = f64> {
 }
 
 impl<R: Real> Surface<Planar<R>> for Shape<R> {
-    #[inline]
+    #[inline(always)]
     fn gap(&self, point: Vec2<R>) -> Gap<Planar<R>> {
         match self {
             Self::Circle(shape) => shape.gap(point),
@@ -108,7 +111,7 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn may_touch(&self, point: Vec2<R>) -> R::Mask {
         match self {
             Self::Circle(shape) => shape.may_touch(point),
@@ -119,17 +122,19 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
     }
 
     /// Asks once which shape it is, not at every point.
-    #[inline]
+    #[inline(always)]
     fn penetrated_by(
         &self,
-        points: impl Iterator<Item = Vec2<R>>,
+        count: usize,
+        point: impl Fn(usize) -> Vec2<R>,
         mut visit: impl FnMut(usize, Vec2<R>, Gap<Planar<R>>),
     ) {
         let zero = R::zero();
         match self {
             Self::Circle(shape) => {
                 let within = shape.within();
-                for (index, point) in points.enumerate() {
+                for index in 0..count {
+                    let point = point(index);
                     let squared = point.dot(point);
                     if squared.lt(within).any() {
                         let gap = shape.gap_from(point, squared);
@@ -140,7 +145,8 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
                 }
             }
             Self::HalfPlane(shape) => {
-                for (index, point) in points.enumerate() {
+                for index in 0..count {
+                    let point = point(index);
                     let gap = shape.gap(point);
                     if gap.distance.lt(zero).any() {
                         visit(index, point, gap);
@@ -148,7 +154,8 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
                 }
             }
             Self::Polygon(shape) => {
-                for (index, point) in points.enumerate() {
+                for index in 0..count {
+                    let point = point(index);
                     if shape.may_touch(point).any() {
                         let gap = shape.gap(point);
                         if gap.distance.lt(zero).any() {
@@ -158,7 +165,8 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
                 }
             }
             Self::Cradle(_) | Self::BarrelProfile(_) => {
-                for (index, point) in points.enumerate() {
+                for index in 0..count {
+                    let point = point(index);
                     let gap = self.gap(point);
                     if gap.distance.lt(zero).any() {
                         visit(index, point, gap);

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::{BoundaryNode, Gap, Piece, Section, nodes_along};
+use crate::lanes::Lanewise;
 use crate::math;
 use crate::real::Real;
 use crate::space::{Linear, Planar, Vec2};
@@ -75,6 +76,7 @@ pub enum PolygonError {
 }
 
 impl<R: Real> Polygon<R> {
+    #[inline(always)]
     pub(super) fn gap(&self, point: Vec2<R>) -> Gap<Planar<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
         // Inside: the side that is nearest decides. Outside: the nearest point of any side.
@@ -105,7 +107,7 @@ impl<R: Real> Polygon<R> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn may_touch(&self, point: Vec2<R>) -> R::Mask {
         let mut highest = R::splat(f64::NEG_INFINITY);
         for side in &self.sides {
@@ -121,7 +123,44 @@ impl<R: Real> Polygon<R> {
     }
 }
 
+impl<R: Real> Lanewise for Polygon<R> {
+    type Single = Polygon;
+    fn in_all(single: &Polygon) -> Self {
+        Self {
+            sides: Lanewise::in_all(&single.sides),
+            corner_radius: Lanewise::in_all(&single.corner_radius),
+        }
+    }
+    fn put(&mut self, lane: usize, single: &Polygon) {
+        self.sides.put(lane, &single.sides);
+        self.corner_radius.put(lane, &single.corner_radius);
+    }
+}
+
+impl<R: Real> Lanewise for Side<R> {
+    type Single = Side<f64>;
+    fn in_all(single: &Side<f64>) -> Self {
+        Self {
+            start: Lanewise::in_all(&single.start),
+            along: Lanewise::in_all(&single.along),
+            outward: Lanewise::in_all(&single.outward),
+            length: Lanewise::in_all(&single.length),
+        }
+    }
+    fn put(&mut self, lane: usize, single: &Side<f64>) {
+        self.start.put(lane, &single.start);
+        self.along.put(lane, &single.along);
+        self.outward.put(lane, &single.outward);
+        self.length.put(lane, &single.length);
+    }
+}
+
 impl Polygon {
+    /// How many sides it has.
+    pub(crate) fn side_count(&self) -> usize {
+        self.sides.len()
+    }
+
     /// A convex polygon from its sharp corners (m), counterclockwise, and a corner radius (m).
     ///
     /// # Errors

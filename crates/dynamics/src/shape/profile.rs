@@ -24,6 +24,7 @@ pub struct BarrelProfile<R = f64> {
 }
 
 impl<R: Real> BarrelProfile<R> {
+    #[inline(always)]
     pub(super) fn gap(&self, point: Vec2<R>) -> Gap<Planar<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
         // By symmetry only the quarter of positive x and z is looked at.

@@ -70,6 +70,11 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn rotate_spin(rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
     /// Velocity that a spin gives to a point at `arm` from the axis.
     fn velocity_at(spin: Self::Spin, arm: Self::Vector) -> Self::Vector;
+    /// A bound that no vector of these components is longer than, and few are much shorter: cheaper
+    /// than the length.
+    fn at_most(vector: Self::Vector) -> Self::Real;
+    /// The magnitude of a spin.
+    fn spin_magnitude(spin: Self::Spin) -> Self::Real;
     /// Moment of a force that acts at `arm`.
     fn moment(arm: Self::Vector, force: Self::Vector) -> Self::Spin;
     /// The orientation after turning at a spin for a time.
@@ -127,7 +132,7 @@ pub struct Pose<S: Space> {
 }
 
 /// How a body moves: velocity of its center of mass (m/s) and angular velocity (rad/s).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Twist<S: Space> {
     /// Velocity of the center of mass (m/s).
     pub linear: S::Vector,
@@ -135,9 +140,16 @@ pub struct Twist<S: Space> {
     pub angular: S::Spin,
 }
 
+impl<S: Space> Default for Twist<S> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self { linear: S::Vector::default(), angular: S::Spin::default() }
+    }
+}
+
 impl<S: Space> Twist<S> {
     /// `self + other · factor`.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn plus(self, other: Self, factor: S::Real) -> Self {
         Self {
@@ -149,7 +161,7 @@ impl<S: Space> Twist<S> {
 
 impl<S: Space> Pose<S> {
     /// The pose after moving with a twist for a time (s).
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn moved(self, twist: Twist<S>, time: S::Real) -> Self {
         Self {
@@ -159,7 +171,7 @@ impl<S: Space> Pose<S> {
     }
 
     /// The way to another pose near it (m and rad): the twist that goes it in a unit of time.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn way_to(self, other: Self) -> Twist<S> {
         Twist {
@@ -170,7 +182,7 @@ impl<S: Space> Pose<S> {
 }
 
 /// Force (N) and moment about the center of mass (N·m).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wrench<S: Space> {
     /// Force (N).
     pub force: S::Vector,
@@ -178,23 +190,30 @@ pub struct Wrench<S: Space> {
     pub moment: S::Spin,
 }
 
+impl<S: Space> Default for Wrench<S> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self { force: S::Vector::default(), moment: S::Spin::default() }
+    }
+}
+
 impl<S: Space> Wrench<S> {
     /// The sum of both.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         Self { force: self.force + other.force, moment: self.moment + other.moment }
     }
 
     /// Power (W) on a body that moves with a twist; work (J) on one that went a way.
-    #[inline]
+    #[inline(always)]
     pub fn power(self, twist: Twist<S>) -> S::Real {
         self.force.dot(twist.linear) + self.moment.dot(twist.angular)
     }
 }
 
 impl<S: Space> AddAssign for Wrench<S> {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = self.plus(other);
     }

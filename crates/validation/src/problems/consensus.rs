@@ -14,7 +14,7 @@ use std::ops::ControlFlow;
 use barrelstack::Scenario;
 use barrelstack_dynamics::math::{cos, sin};
 use barrelstack_dynamics::{
-    Body, ContactPair, Model, Motion, NormalLaw, Planar, Shape, Twist, Vec2,
+    Body, ContactPair, Model, ModelError, Motion, NormalLaw, Planar, Shape, Twist, Vec2,
 };
 
 use crate::drive::Shake;
@@ -127,8 +127,11 @@ fn rack(level: usize, underside: f64, angle: f64) -> Body<Planar> {
     }
 }
 
-/// When (s) the first barrel falls in the scene made of bodies, for either drop.
-fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
+/// The scene made of bodies, with cradle supports at ± an angle (degrees).
+///
+/// # Errors
+/// When the bodies make no model.
+pub fn eight_barrels(degrees: f64) -> Result<Model<Planar>, ModelError> {
     let angle = degrees.to_radians();
     let mut bodies = vec![floor()];
     let pitch = CLEARANCE + 2.0 * RADIUS;
@@ -141,7 +144,6 @@ fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
             bodies.push(disc(&name, RADIUS, 275.0, 0.5 * RADIUS * RADIUS, center));
         }
     }
-    let is_rack = |i: usize| i > 0 && i % 3 == 1;
     let pair = |contactor, nodes, target, interface| ContactPair {
         contactor,
         nodes,
@@ -168,9 +170,18 @@ fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
         let normal = NormalLaw::SpeedGap { stiffness: STIFFNESS, damping: DAMPING };
         interface(normal, coulomb(friction, STIFFNESS, DAMPING))
     };
-    let model = Model::new(bodies, vec![law(0.5), law(0.22)], pairs, DOWN)?;
+    Model::new(bodies, vec![law(0.5), law(0.22)], pairs, DOWN)
+}
+
+/// Whether a body of the scene is a rack; its barrels follow it.
+fn is_rack(body: usize) -> bool {
+    body > 0 && body % 3 == 1
+}
+
+/// When (s) the first barrel falls in the scene made of bodies, for either drop.
+fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
     let step = 1e-4;
-    let mut scene = Scene::of(model).settled(step, 1e-9)?;
+    let mut scene = Scene::of(eight_barrels(degrees)?).settled(step, 1e-9)?;
     let rest: Vec<f64> = scene.state.poses.iter().map(|p| p.position.z).collect();
     let drive = Shake::Swing { amplitude: 0.1016, omega: TAU / 1.0748 };
     let mut fallen = [None; 2];

@@ -1,6 +1,6 @@
 //! The problems, grouped by theory.
 
-mod consensus;
+pub mod consensus;
 mod gravity;
 mod housner;
 mod invariances;

@@ -1,0 +1,149 @@
+//! Work and precision: how far from the converged motion each method and step is, and what it costs.
+
+use std::ops::ControlFlow;
+
+use barrelstack_dynamics::{
+    EnergyLedger, Method, Model, Observer, Planar, Scratch, Simulation, State, simulate,
+};
+
+use crate::scene::Scene;
+use crate::{Failure, time};
+
+/// A step (s) so short that a shorter one changes nothing that is printed.
+const CONVERGED: f64 = 0.015_625e-3;
+
+/// Drop (m) at which a barrel counts as fallen.
+const DROP: f64 = 0.2;
+
+/// Times (s) at which trajectories are compared.
+const SAMPLE: f64 = 4e-3;
+
+/// What is asked of a step: error of the motion before the fall, and of the time of the fall (s).
+const MOST_ERROR: f64 = 0.01;
+const MOST_DELAY: f64 = 0.010;
+
+/// Prints the table and gives the longest step (s) of the default method that is precise enough.
+pub(crate) fn work_and_precision(scene: &Scene) -> Result<f64, Failure> {
+    let exact = watched(scene, Method::VelocityVerlet, CONVERGED)?;
+    let fall = exact.fall.ok_or("nothing falls in the converged run")?;
+    println!(
+        "work and precision: eight barrels, supports at ±20°, against velocity Verlet with steps \
+         of {:.4} ms",
+        1e3 * CONVERGED
+    );
+    println!("  the first barrel falls after {fall:.4} s");
+    println!("  method                 step     largest error of any barrel   fall    × real time");
+    println!("                         ms       before the fall, % of its way  ms later  one run");
+    let mut chosen = CONVERGED;
+    let methods = [Method::VelocityVerlet, Method::SemiImplicitEuler, Method::RungeKutta4];
+    for method in methods {
+        for step in [0.0625e-3, 0.125e-3, 0.25e-3, 0.5e-3, 1e-3] {
+            let seen = watched(scene, method, step)?;
+            let error = seen.error_against(&exact, fall);
+            let late = seen.fall.map_or(f64::INFINITY, |time| time - fall);
+            let cost = cost(scene, method, step, fall);
+            println!(
+                "  {:20} {:8.4} {:12.4} {:26.3} {:12.1}",
+                method.name(),
+                1e3 * step,
+                100.0 * error,
+                1e3 * late,
+                fall / cost
+            );
+            let precise = error < MOST_ERROR && late.abs() < MOST_DELAY;
+            if precise && method == Method::VelocityVerlet {
+                chosen = step;
+            }
+        }
+    }
+    println!(
+        "  the longest of these steps of the default method within {} % and {} ms: {} ms",
+        100.0 * MOST_ERROR,
+        1e3 * MOST_DELAY,
+        1e3 * chosen
+    );
+    Ok(chosen)
+}
+
+fn cost(scene: &Scene, method: Method, step: f64, end_time: f64) -> f64 {
+    let simulation = Simulation { method, time_step: step, end_time };
+    time::least(|| {
+        let (mut state, mut scratch) = (scene.rest.clone(), Scratch::new(&scene.model));
+        let ground = Scene::ground(1.0);
+        let ended =
+            simulate(&scene.model, &ground, &mut state, &mut scratch, &simulation, &mut Blind);
+        assert!(ended.is_ok(), "the run breaks down");
+    })
+}
+
+/// Where the bodies were, and when the first one fell.
+struct Seen {
+    /// Heights (m) at rest.
+    rest: Vec<f64>,
+    /// Displacements (m) of all bodies along x against the ground at every sample.
+    ways: Vec<Vec<f64>>,
+    fall: Option<f64>,
+}
+
+impl Seen {
+    /// The largest difference of any body before a time (s), as a share of the largest way of that body.
+    fn error_against(&self, exact: &Self, until: f64) -> f64 {
+        let samples = (until / SAMPLE) as usize;
+        let bodies = exact.rest.len();
+        (1..bodies)
+            .map(|body| {
+                let pairs = || self.ways.iter().zip(&exact.ways).take(samples);
+                let error = pairs().map(|(a, b)| (a[body] - b[body]).abs()).fold(0.0, f64::max);
+                let way = pairs().map(|(_, b)| b[body].abs()).fold(0.0, f64::max);
+                error / way
+            })
+            .fold(0.0, f64::max)
+    }
+}
+
+fn watched(scene: &Scene, method: Method, step: f64) -> Result<Seen, Failure> {
+    let (mut state, mut scratch) = (scene.rest.clone(), Scratch::new(&scene.model));
+    let rest = state.poses.iter().map(|pose| pose.position.z).collect();
+    let mut seen = Seen { rest, ways: Vec::new(), fall: None };
+    let simulation = Simulation { method, time_step: step, end_time: 3.0 };
+    simulate(&scene.model, &Scene::ground(1.0), &mut state, &mut scratch, &simulation, &mut seen)?;
+    Ok(seen)
+}
+
+impl Observer<Planar> for Seen {
+    fn observe(
+        &mut self,
+        _: &Model<Planar>,
+        state: &State<Planar>,
+        _: &Scratch<Planar>,
+        _: &EnergyLedger<Planar>,
+    ) -> ControlFlow<()> {
+        // Samples fall on steps: all steps compared divide the sampling time.
+        if state.time > (self.ways.len() as f64 - 1e-6) * SAMPLE {
+            let ground = state.poses[0].position.x;
+            self.ways.push(state.poses.iter().map(|pose| pose.position.x - ground).collect());
+        }
+        let fallen =
+            state.poses.iter().zip(&self.rest).any(|(pose, rest)| rest - pose.position.z > DROP);
+        if fallen {
+            self.fall = Some(state.time);
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// Watches nothing.
+pub(crate) struct Blind;
+
+impl Observer<Planar> for Blind {
+    fn observe(
+        &mut self,
+        _: &Model<Planar>,
+        _: &State<Planar>,
+        _: &Scratch<Planar>,
+        _: &EnergyLedger<Planar>,
+    ) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}

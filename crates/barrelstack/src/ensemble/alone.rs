@@ -1,0 +1,80 @@
+//! Runs that choose their own steps, one after the other: they cannot march.
+
+use std::ops::ControlFlow;
+
+use barrelstack_dynamics::{
+    EnergyLedger, Model, Observer, Planar, Scratch, Simulation, State, simulate,
+};
+
+use super::{Audience, CaseResult, Run, Stack};
+use crate::run::{Ended, conclude, method, thresholds};
+use crate::watch::Fates;
+
+/// Runs a group; none when asked to stop.
+pub(super) fn run(
+    group: &[Run<'_>],
+    stacks: &[Stack],
+    audience: &mut Audience<'_>,
+) -> Option<Vec<(usize, CaseResult)>> {
+    let mut results = Vec::with_capacity(group.len());
+    for run in group {
+        let Ok((standing, _)) = &stacks[run.stack].standing else { continue };
+        let scenario = &*run.case.scenario;
+        let (mut state, mut scratch) = (standing.state.clone(), standing.scratch.clone());
+        let simulation = Simulation {
+            method: method(scenario),
+            time_step: standing.step,
+            end_time: run.end_time,
+        };
+        let mut watch = Watch {
+            fates: Fates::new(&standing.assembly, &state, thresholds(scenario)),
+            after_collapse: run.after_collapse(),
+            stop: audience.stop,
+            next_ask: 0.0,
+            interrupted: false,
+        };
+        let ground = &*run.case.ground;
+        let model = &standing.assembly.model;
+        let ended = simulate(model, ground, &mut state, &mut scratch, &simulation, &mut watch);
+        if watch.interrupted {
+            return None;
+        }
+        let ended = ended.map(|totals| Ended::of(&totals));
+        let verdict = conclude(&standing.assembly, ground, &watch.fates, ended, state.time, false);
+        let result = CaseResult::of(&standing.assembly, &watch.fates, verdict, state.time);
+        (audience.tell)(&result);
+        results.push((run.index, result));
+    }
+    Some(results)
+}
+
+/// Watches what becomes of every body, and nothing else.
+struct Watch<'a> {
+    fates: Fates,
+    /// How long (s) to go on after a collapse.
+    after_collapse: f64,
+    stop: &'a dyn Fn() -> bool,
+    /// When to ask next whether to stop (s).
+    next_ask: f64,
+    interrupted: bool,
+}
+
+impl Observer<Planar> for Watch<'_> {
+    fn observe(
+        &mut self,
+        _: &Model<Planar>,
+        state: &State<Planar>,
+        scratch: &Scratch<Planar>,
+        _: &EnergyLedger<Planar>,
+    ) -> ControlFlow<()> {
+        self.fates.observe(state, scratch);
+        if state.time >= self.next_ask {
+            self.next_ask = state.time + 0.05;
+            self.interrupted = (self.stop)();
+        }
+        if self.interrupted || self.fates.collapse() + self.after_collapse <= state.time {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    }
+}

@@ -1,0 +1,86 @@
+//! A case of an ensemble: what it is made of, and what became of it.
+
+use std::sync::Arc;
+
+use crate::assemble::{Assembly, PartKind};
+use crate::ground::Ground;
+use crate::outcome::Outcome;
+use crate::run::Verdict;
+use crate::scenario::Scenario;
+use crate::summary::{Demands, demands};
+use crate::watch::Fates;
+
+/// A case that is ready to run.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The scenario; its own motion is not looked at.
+    pub scenario: Arc<Scenario>,
+    /// What shakes it, shared by all cases of one motion and level.
+    pub ground: Arc<Ground>,
+}
+
+/// What became of a case.
+#[derive(Clone, Debug)]
+pub struct CaseResult {
+    /// What happened, or why the case could not run.
+    pub outcome: Result<Outcome, String>,
+    /// When (s) the first barrel had fallen.
+    pub first_fall: Option<f64>,
+    /// How many barrels there are.
+    pub barrels: usize,
+    /// Largest drop (m) of each barrel that fell, in the order of the barrels.
+    pub fall_heights: Vec<f64>,
+    /// Demands on the stack; all none where it could not run or broke down.
+    pub demands: Demands,
+    /// Largest displacement (m) of a barrel along x against the ground, left at the end.
+    pub residual_displacement: Option<f64>,
+    /// Time (s) that the run reached.
+    pub end_time: Option<f64>,
+    /// Accepted steps.
+    pub steps: Option<u64>,
+    /// Energy missing from the books over the energy that went through.
+    pub energy_residual_ratio: Option<f64>,
+    /// What the reader of the result should know.
+    pub warnings: Vec<String>,
+}
+
+impl CaseResult {
+    /// What a verdict and the fates of the bodies say of a case that ran until a time (s).
+    pub(super) fn of(assembly: &Assembly, fates: &Fates, verdict: Verdict, time: f64) -> Self {
+        let sound = !matches!(verdict.outcome, Outcome::Invalid { .. });
+        let barrels: Vec<usize> = assembly.of_kind(PartKind::Barrel).collect();
+        let all = || barrels.iter().map(|body| fates.fate(*body));
+        let heights = || all().filter(|fate| fate.fell_at.is_some()).map(|fate| fate.drop);
+        let residual = all().map(|fate| fate.residual_displacement);
+        let largest = |most: f64, value: f64| if value.abs() > most.abs() { value } else { most };
+        Self {
+            first_fall: fates.first_fall().filter(|_| sound),
+            barrels: barrels.len(),
+            fall_heights: if sound { heights().collect() } else { Vec::new() },
+            demands: if sound { demands(assembly, fates, None) } else { Demands::default() },
+            residual_displacement: (sound && !barrels.is_empty())
+                .then(|| residual.fold(0.0, largest)),
+            end_time: Some(time),
+            steps: Some(verdict.steps),
+            energy_residual_ratio: verdict.energy.map(|energy| energy.residual_ratio()),
+            warnings: verdict.warnings,
+            outcome: Ok(verdict.outcome),
+        }
+    }
+
+    /// A case that could not run.
+    pub fn failed(reason: String) -> Self {
+        Self {
+            outcome: Err(reason),
+            first_fall: None,
+            barrels: 0,
+            fall_heights: Vec::new(),
+            demands: Demands::default(),
+            residual_displacement: None,
+            end_time: None,
+            steps: None,
+            energy_residual_ratio: None,
+            warnings: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Runs in lanes: who loads them, watches them, and writes down what became of them.
+
+use barrelstack_dynamics::lanes::{self, Case, End, Task, Width, march};
+use barrelstack_dynamics::real::Real;
+use barrelstack_dynamics::{Method, Planar, Scratch, State};
+
+use super::{Audience, CaseResult, Run, Stack};
+use crate::ground::Ground;
+use crate::run::{Ended, Standing, conclude, thresholds};
+use crate::watch::Fates;
+
+/// Steps between two questions whether to stop.
+const PATIENCE: u32 = 1024;
+
+/// Runs a group of one topology and method in lanes; none when asked to stop.
+pub(super) fn run(
+    width: Width,
+    method: Method,
+    group: &[Run<'_>],
+    stacks: &[Stack],
+    audience: &mut Audience<'_>,
+) -> Option<Vec<(usize, CaseResult)>> {
+    let width = if width.is_here() { width } else { Width::Scalar };
+    width.run(Marching { method, group, stacks, audience })?
+}
+
+struct Marching<'a, 'b> {
+    method: Method,
+    group: &'a [Run<'a>],
+    stacks: &'a [Stack],
+    audience: &'a mut Audience<'b>,
+}
+
+impl Task for Marching<'_, '_> {
+    type Output = Option<Vec<(usize, CaseResult)>>;
+
+    fn run<R: Real>(self) -> Self::Output {
+        let Self { method, group, stacks, audience } = self;
+        let mut crew = Crew::<R> {
+            group,
+            stacks,
+            audience,
+            next: 0,
+            runs: vec![0; R::LANES],
+            fates: None,
+            after_collapse: R::splat(f64::INFINITY),
+            steps: 0,
+            interrupted: false,
+            results: Vec::with_capacity(group.len()),
+        };
+        march(method, &mut crew);
+        (!crew.interrupted).then_some(crew.results)
+    }
+}
+
+struct Crew<'a, 'b, R: Real> {
+    group: &'a [Run<'a>],
+    stacks: &'a [Stack],
+    audience: &'a mut Audience<'b>,
+    /// The next run of the group.
+    next: usize,
+    /// Which run every lane has.
+    runs: Vec<usize>,
+    /// What becomes of the bodies of every lane; none before the first run is loaded.
+    fates: Option<Fates<R>>,
+    /// How long (s) every lane goes on after its collapse.
+    after_collapse: R,
+    /// Steps since the audience was asked.
+    steps: u32,
+    interrupted: bool,
+    results: Vec<(usize, CaseResult)>,
+}
+
+impl<R: Real> Crew<'_, '_, R> {
+    fn standing(&self, lane: usize) -> Option<(&Run<'_>, &Standing)> {
+        let run = &self.group[self.runs[lane]];
+        self.stacks[run.stack].standing.as_ref().ok().map(|(standing, _)| (run, standing))
+    }
+}
+
+impl<'a, R: Real> lanes::Crew<'a, R> for Crew<'a, '_, R> {
+    type Drive = &'a Ground;
+
+    fn next(&mut self, lane: usize) -> Option<Case<'a, &'a Ground>> {
+        let run = self.group.get(self.next).filter(|_| !self.interrupted)?;
+        self.runs[lane] = self.next;
+        self.next += 1;
+        let (standing, _) = self.stacks[run.stack].standing.as_ref().ok()?;
+        Some(Case {
+            model: &standing.assembly.model,
+            state: standing.state.clone(),
+            drive: &*run.case.ground,
+            time_step: standing.step,
+            end_time: run.end_time,
+        })
+    }
+
+    fn start(&mut self, lane: usize, state: &State<Planar>, scratch: &Scratch<Planar>) {
+        let Some((run, standing)) = self.standing(lane) else { return };
+        let after = run.after_collapse();
+        let rest = &standing.state;
+        let mut fates = Fates::new(&standing.assembly, rest, thresholds(&run.case.scenario));
+        fates.observe(state, scratch);
+        self.fates.get_or_insert_with(|| Fates::in_all(&fates)).put(lane, &fates);
+        self.after_collapse = self.after_collapse.with_lane(lane, after);
+    }
+
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) -> R::Mask {
+        self.steps += 1;
+        if self.steps == PATIENCE {
+            self.steps = 0;
+            if (self.audience.stop)() {
+                self.interrupted = true;
+                return !R::Mask::default();
+            }
+        }
+        let Some(fates) = &mut self.fates else { return R::Mask::default() };
+        fates.observe(state, scratch);
+        (fates.collapse() + self.after_collapse).le(state.time)
+    }
+
+    fn end(&mut self, lane: usize, end: End) {
+        let Some(fates) = self.fates.as_ref().filter(|_| !self.interrupted) else { return };
+        let fates = fates.of_lane(lane);
+        let Some((run, standing)) = self.standing(lane) else { return };
+        let ended = end.finish.map(|_| Ended { energy: end.energy, steps: end.steps });
+        let assembly = &standing.assembly;
+        let verdict = conclude(assembly, &run.case.ground, &fates, ended, end.time, false);
+        let result = CaseResult::of(assembly, &fates, verdict, end.time);
+        let index = run.index;
+        (self.audience.tell)(&result);
+        self.results.push((index, result));
+    }
+}

@@ -1,0 +1,140 @@
+//! Cases in lanes come to the same bits as alone.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use barrelstack::Scenario;
+use barrelstack::ensemble::{Audience, CaseResult, Prepared, simulate_in};
+use barrelstack::ground::ground;
+use barrelstack_dynamics::lanes::Width;
+
+/// How many random cases: all of them with optimization, a share of them without.
+const CASES: u64 = if cfg!(debug_assertions) { 64 } else { 1000 };
+
+/// Numbers between 0 and 1, the same on every machine (SplitMix64).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        (z ^ (z >> 31)) as f64 / 18_446_744_073_709_551_616.0
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+}
+
+/// A stack of two to four levels with random friction, mass and stiffness under a random sine that
+/// topples about half of them.
+fn random_case(seed: u64) -> Scenario {
+    let mut random = Random(seed);
+    let levels = 2 + seed % 3;
+    let settings = [
+        format!("stack.levels={levels}"),
+        format!("motion.sine.period=\"{:.4} s\"", random.between(0.5, 1.3)),
+        format!("motion.sine.amplitude=\"{:.4} cm\"", random.between(3.0, 16.0)),
+        "motion.sine.ramp_cycles=0".to_owned(),
+        format!("interface.rack-ground.friction.coefficient={:.4}", random.between(0.1, 0.6)),
+        format!("interface.barrel-rack.friction.coefficient={:.4}", random.between(0.1, 0.6)),
+        "run.duration=\"1.6 s\"".to_owned(),
+        "run.stop_after_collapse=\"0.2 s\"".to_owned(),
+    ];
+    Scenario::builtin("candia-8-barrels", &settings).unwrap()
+}
+
+fn prepared(scenario: Scenario) -> Prepared {
+    let ground = Arc::new(ground(&scenario).unwrap());
+    Prepared { scenario: Arc::new(scenario), ground }
+}
+
+fn results(width: Width, cases: &[Prepared]) -> Vec<CaseResult> {
+    let mut told = 0;
+    let mut tell = |_: &CaseResult| told += 1;
+    let mut audience = Audience { tell: &mut tell, stop: &|| false };
+    let results = simulate_in(width, cases, &mut audience).unwrap();
+    assert_eq!(told, cases.len(), "every case is told once");
+    results
+}
+
+#[test]
+fn cases_in_lanes_come_to_the_bits_of_single_runs_collapses_included() {
+    let cases: Vec<Prepared> = (0..CASES).map(|seed| prepared(random_case(seed))).collect();
+    let alone: Vec<String> =
+        cases.chunks(1).map(|case| format!("{:?}", results(Width::Scalar, case)[0])).collect();
+    let collapses = alone.iter().filter(|result| result.contains("Collapse")).count();
+    let share = collapses as f64 / alone.len() as f64;
+    println!("{collapses} of {} cases collapse", alone.len());
+    assert!((0.2..0.8).contains(&share), "{share}"); // measured 0.45
+    for width in Width::ALL {
+        if !width.is_here() {
+            println!("this machine has no {} lanes: not checked", width.name());
+            continue;
+        }
+        // All cases in the lanes that are used here, a tenth of them in the others.
+        let count = if width == Width::widest() { cases.len() } else { cases.len() / 10 };
+        let together = results(width, &cases[..count]);
+        for (index, (one, many)) in alone.iter().zip(&together).enumerate() {
+            assert_eq!(*one, format!("{many:?}"), "case {index} in {} lanes", width.name());
+        }
+        println!("{count} cases in {} lanes have the bits of single runs", width.name());
+    }
+}
+
+#[test]
+fn a_case_of_an_ensemble_is_a_run() {
+    for seed in 0..12 {
+        let scenario = random_case(seed);
+        let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())).unwrap();
+        let result = &results(Width::widest(), &[prepared(scenario)])[0];
+        assert_eq!(result.outcome, Ok(run.outcome.clone()), "case {seed}");
+        assert_eq!(result.first_fall, run.fates.first_fall(), "case {seed}");
+        assert_eq!(result.end_time, Some(run.end_time), "case {seed}");
+        assert_eq!(result.steps, Some(run.work.steps), "case {seed}");
+        let books = run.energy.map(|energy| energy.residual_ratio());
+        assert_eq!(result.energy_residual_ratio, books, "case {seed}");
+    }
+}
+
+#[test]
+fn what_stands_beside_a_case_changes_nothing_about_it() {
+    let cases: Vec<Prepared> = (0..24).map(|seed| prepared(random_case(seed))).collect();
+    let all = results(Width::widest(), &cases);
+    let mut reversed: Vec<Prepared> = cases.clone();
+    reversed.reverse();
+    let mut again = results(Width::widest(), &reversed);
+    again.reverse();
+    assert_eq!(format!("{all:?}"), format!("{again:?}"));
+}
+
+#[test]
+fn a_broken_case_is_told_and_leaves_its_neighbors_alone() {
+    let mut cases: Vec<Prepared> = (0..20).map(|seed| prepared(random_case(3 * seed))).collect();
+    let sound = results(Width::widest(), &cases);
+    // So long a step that the numbers are lost, and a stack that cannot stand.
+    let broken = Scenario::builtin(
+        "candia-8-barrels",
+        &["stack.levels=2".into(), "run.duration=\"1.6 s\"".into(), "run.step=\"2.4 ms\"".into()],
+    );
+    cases.insert(7, prepared(broken.unwrap()));
+    let mut with = results(Width::widest(), &cases);
+    let broken = with.remove(7);
+    println!("{:?}", broken.outcome);
+    assert!(!matches!(broken.outcome, Ok(barrelstack::outcome::Outcome::Stable)));
+    assert_eq!(format!("{sound:?}"), format!("{with:?}"));
+}
+
+#[test]
+fn an_ensemble_stops_when_asked() {
+    let cases: Vec<Prepared> = (0..12).map(|seed| prepared(random_case(seed))).collect();
+    let asked = std::cell::Cell::new(0);
+    let stop = || {
+        asked.set(asked.get() + 1);
+        asked.get() > 14
+    };
+    let mut audience = Audience { tell: &mut |_| {}, stop: &stop };
+    assert!(simulate_in(Width::widest(), &cases, &mut audience).is_none());
+}

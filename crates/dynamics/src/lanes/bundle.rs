@@ -1,0 +1,190 @@
+//! Eight numbers in one vector register, or in as many as the machine needs for them.
+//!
+//! The vectors are those of `fearless_simd`; here they become a [`Real`].
+#![allow(clippy::inline_always, reason = "vector code is fast only inside its scope")]
+
+use std::fmt;
+use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign};
+
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f64x8, mask64x8};
+
+use crate::real::{Mask, Real};
+
+/// A vector unit of which it is known that this machine has it.
+pub(super) trait Unit: Simd + fmt::Debug + Send + Sync + 'static {
+    /// The proof that the machine has it, which takes no room.
+    const TOKEN: Self;
+}
+
+/// Eight numbers that march together.
+#[derive(Clone, Copy)]
+pub(super) struct Bundle<U: Unit>(f64x8<U>);
+
+/// Eight truth values.
+#[derive(Clone, Copy)]
+pub(super) struct BundleMask<U: Unit>(mask64x8<U>);
+
+impl<U: Unit> Real for Bundle<U> {
+    type Mask = BundleMask<U>;
+    const LANES: usize = 8;
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self(f64x8::splat(U::TOKEN, value))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(SimdFloat::sqrt(self.0))
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(SimdBase::abs(self.0))
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> BundleMask<U> {
+        BundleMask(self.0.simd_lt(other.0))
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> BundleMask<U> {
+        BundleMask(self.0.simd_le(other.0))
+    }
+    #[inline(always)]
+    fn select(mask: BundleMask<U>, yes: Self, no: Self) -> Self {
+        Self(mask.0.select(yes.0, no.0))
+    }
+    #[inline(always)]
+    fn lane(self, lane: usize) -> f64 {
+        self.0[lane]
+    }
+    #[inline(always)]
+    fn from_lanes(mut value: impl FnMut(usize) -> f64) -> Self {
+        let mut lanes = [0.0; 8];
+        for (lane, number) in lanes.iter_mut().enumerate() {
+            *number = value(lane);
+        }
+        Self(f64x8::from_slice(U::TOKEN, &lanes))
+    }
+    #[inline(always)]
+    fn scope<T>(work: impl FnOnce() -> T) -> T {
+        U::TOKEN.vectorize(work)
+    }
+}
+
+impl<U: Unit> Mask for BundleMask<U> {
+    const LANES: usize = 8;
+
+    #[inline(always)]
+    fn from_lanes(mut value: impl FnMut(usize) -> bool) -> Self {
+        let bits = (0..8).fold(0, |bits, lane| bits | (u64::from(value(lane)) << lane));
+        Self(mask64x8::from_bitmask(U::TOKEN, bits))
+    }
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.0.any_true()
+    }
+    #[inline(always)]
+    fn all(self) -> bool {
+        self.0.all_true()
+    }
+    #[inline(always)]
+    fn lane(self, lane: usize) -> bool {
+        self.0.to_bitmask() >> lane & 1 == 1
+    }
+}
+
+impl<U: Unit> Default for Bundle<U> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self::splat(0.0)
+    }
+}
+
+impl<U: Unit> Default for BundleMask<U> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self(mask64x8::splat(U::TOKEN, false))
+    }
+}
+
+impl<U: Unit> PartialEq for Bundle<U> {
+    fn eq(&self, other: &Self) -> bool {
+        (0..8).all(|lane| self.lane(lane) == other.lane(lane))
+    }
+}
+
+impl<U: Unit> PartialEq for BundleMask<U> {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.to_bitmask() == other.0.to_bitmask()
+    }
+}
+
+impl<U: Unit> fmt::Debug for Bundle<U> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries((0..8).map(|lane| self.lane(lane))).finish()
+    }
+}
+
+impl<U: Unit> fmt::Debug for BundleMask<U> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries((0..8).map(|lane| self.lane(lane))).finish()
+    }
+}
+
+macro_rules! arithmetic {
+    ($($operation:ident $method:ident),*) => {$(
+        impl<U: Unit> $operation for Bundle<U> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self($operation::$method(self.0, other.0))
+            }
+        }
+    )*};
+}
+arithmetic!(Add add, Sub sub, Mul mul, Div div);
+
+impl<U: Unit> Neg for Bundle<U> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl<U: Unit> AddAssign for Bundle<U> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<U: Unit> SubAssign for Bundle<U> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<U: Unit> BitAnd for BundleMask<U> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+}
+
+impl<U: Unit> BitOr for BundleMask<U> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+impl<U: Unit> Not for BundleMask<U> {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(!self.0)
+    }
+}

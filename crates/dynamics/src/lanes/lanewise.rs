@@ -1,0 +1,327 @@
+//! From things made of single numbers to the same things made of bundles, lane by lane.
+
+use crate::body::{Body, Node, Nodes, Placed};
+use crate::contact::{FrictionLaw, Interface, NormalLaw, Stick};
+use crate::forces::Losses;
+use crate::model::Model;
+use crate::real::{Mask, Real};
+use crate::shape::{BarrelProfile, Circle, Cradle, Shape};
+use crate::space::{Planar, Pose, Rotation2, Twist, Vec2, Wrench};
+
+/// A thing made of bundles of numbers, into each lane of which the same thing made of single numbers
+/// can be put.
+///
+/// What decides how much memory a thing takes and which way it is computed (the number of nodes, the
+/// kind of a law) must be the same in all lanes; [`Topology`](super::Topology) compares it beforehand.
+pub(crate) trait Lanewise {
+    /// The thing made of single numbers.
+    type Single;
+    /// The same thing in every lane.
+    fn in_all(single: &Self::Single) -> Self;
+    /// Puts a thing into one lane.
+    fn put(&mut self, lane: usize, single: &Self::Single);
+}
+
+/// Why a match on two variants has no other arm.
+pub(crate) const ALIKE: &str = "things that share a bundle are of one topology";
+
+impl<R: Real> Lanewise for R {
+    type Single = f64;
+    fn in_all(single: &f64) -> Self {
+        Real::splat(*single)
+    }
+    fn put(&mut self, lane: usize, single: &f64) {
+        *self = self.with_lane(lane, *single);
+    }
+}
+
+impl<T: Lanewise> Lanewise for Vec<T> {
+    type Single = Vec<T::Single>;
+    fn in_all(single: &Self::Single) -> Self {
+        single.iter().map(T::in_all).collect()
+    }
+    fn put(&mut self, lane: usize, single: &Self::Single) {
+        assert_eq!(self.len(), single.len(), "{ALIKE}");
+        for (bundle, single) in self.iter_mut().zip(single) {
+            bundle.put(lane, single);
+        }
+    }
+}
+
+impl<T: Lanewise> Lanewise for Option<T> {
+    type Single = Option<T::Single>;
+    fn in_all(single: &Self::Single) -> Self {
+        single.as_ref().map(T::in_all)
+    }
+    fn put(&mut self, lane: usize, single: &Self::Single) {
+        match (self, single) {
+            (Some(bundle), Some(single)) => bundle.put(lane, single),
+            (None, None) => {}
+            (Some(_), None) | (None, Some(_)) => unreachable!("{ALIKE}"),
+        }
+    }
+}
+
+impl<T: Lanewise, const N: usize> Lanewise for [T; N] {
+    type Single = [T::Single; N];
+    fn in_all(single: &Self::Single) -> Self {
+        single.each_ref().map(T::in_all)
+    }
+    fn put(&mut self, lane: usize, single: &Self::Single) {
+        for (bundle, single) in self.iter_mut().zip(single) {
+            bundle.put(lane, single);
+        }
+    }
+}
+
+/// For a struct whose fields are all lanewise.
+macro_rules! fields {
+    ($bundle:ty, $single:ty, $name:ident { $($field:ident),* }) => {
+        impl<R: Real> Lanewise for $bundle {
+            type Single = $single;
+            fn in_all(single: &Self::Single) -> Self {
+                $name { $($field: Lanewise::in_all(&single.$field)),* }
+            }
+            fn put(&mut self, lane: usize, single: &Self::Single) {
+                $(self.$field.put(lane, &single.$field);)*
+            }
+        }
+    };
+}
+
+/// For an enum whose variants have only lanewise fields.
+macro_rules! variants {
+    ($bundle:ty, $single:ty, $name:ident { $($variant:ident { $($field:ident),* }),* }) => {
+        impl<R: Real> Lanewise for $bundle {
+            type Single = $single;
+            fn in_all(single: &Self::Single) -> Self {
+                match single {
+                    $($name::$variant { $($field),* } => {
+                        $name::$variant { $($field: Lanewise::in_all($field)),* }
+                    })*
+                }
+            }
+            fn put(&mut self, lane: usize, single: &Self::Single) {
+                match self {
+                    $(Self::$variant { $($field),* } => {
+                        $(let bundle = $field;
+                          let $name::$variant { $field, .. } = single else {
+                              unreachable!("{ALIKE}")
+                          };
+                          bundle.put(lane, $field);)*
+                    })*
+                }
+            }
+        }
+    };
+}
+
+fields!(Vec2<R>, Vec2, Vec2 { x, z });
+fields!(Rotation2<R>, Rotation2, Rotation2 { cos, sin });
+fields!(Pose<Planar<R>>, Pose<Planar>, Pose { position, orientation });
+fields!(Twist<Planar<R>>, Twist<Planar>, Twist { linear, angular });
+fields!(Wrench<Planar<R>>, Wrench<Planar>, Wrench { force, moment });
+fields!(Losses<Planar<R>>, Losses<Planar>, Losses { damped, friction, viscous });
+fields!(Node<Planar<R>>, Node<Planar>, Node { position, tributary_length });
+fields!(Placed<Planar<R>>, Placed<Planar>, Placed { surface, offset, rotation });
+fields!(Circle<R>, Circle, Circle { radius });
+fields!(Cradle<R>, Cradle, Cradle { radius, sin, cos });
+fields!(
+    BarrelProfile<R>,
+    BarrelProfile,
+    BarrelProfile { half_length, head_radius, bilge_radius, stave_radius }
+);
+
+impl<R: Real> Lanewise for Stick<Planar<R>> {
+    type Single = Stick<Planar>;
+    fn in_all(single: &Self::Single) -> Self {
+        Self {
+            displacement: Real::splat(single.displacement),
+            slipping: Mask::from_lanes(|_| single.slipping),
+        }
+    }
+    fn put(&mut self, lane: usize, single: &Self::Single) {
+        self.displacement.put(lane, &single.displacement);
+        let others = self.slipping;
+        self.slipping =
+            Mask::from_lanes(|l| if l == lane { single.slipping } else { others.lane(l) });
+    }
+}
+
+impl<R: Real> Lanewise for Shape<R> {
+    type Single = Shape;
+    fn in_all(single: &Shape) -> Self {
+        match single {
+            Shape::Circle(shape) => Self::Circle(Lanewise::in_all(shape)),
+            Shape::HalfPlane(shape) => Self::HalfPlane(*shape),
+            Shape::Polygon(shape) => Self::Polygon(Lanewise::in_all(shape)),
+            Shape::Cradle(shape) => Self::Cradle(Lanewise::in_all(shape)),
+            Shape::BarrelProfile(shape) => Self::BarrelProfile(Lanewise::in_all(shape)),
+        }
+    }
+    fn put(&mut self, lane: usize, single: &Shape) {
+        match (self, single) {
+            (Self::Circle(bundle), Shape::Circle(single)) => bundle.put(lane, single),
+            (Self::HalfPlane(_), Shape::HalfPlane(_)) => {}
+            (Self::Polygon(bundle), Shape::Polygon(single)) => bundle.put(lane, single),
+            (Self::Cradle(bundle), Shape::Cradle(single)) => bundle.put(lane, single),
+            (Self::BarrelProfile(bundle), Shape::BarrelProfile(single)) => bundle.put(lane, single),
+            (
+                Self::Circle(_)
+                | Self::HalfPlane(_)
+                | Self::Polygon(_)
+                | Self::Cradle(_)
+                | Self::BarrelProfile(_),
+                _,
+            ) => unreachable!("{ALIKE}"),
+        }
+    }
+}
+
+impl<R: Real> Lanewise for Nodes<Planar<R>> {
+    type Single = Nodes<Planar>;
+    fn in_all(single: &Self::Single) -> Self {
+        match single {
+            Nodes::Fixed(nodes) => Self::Fixed(Lanewise::in_all(nodes)),
+            Nodes::Rolling { center, radius, tributary_length } => Self::Rolling {
+                center: Lanewise::in_all(center),
+                radius: Lanewise::in_all(radius),
+                tributary_length: Lanewise::in_all(tributary_length),
+            },
+        }
+    }
+    fn put(&mut self, lane: usize, single: &Self::Single) {
+        match (self, single) {
+            (Self::Fixed(bundle), Nodes::Fixed(single)) => bundle.put(lane, single),
+            (
+                Self::Rolling { center, radius, tributary_length },
+                Nodes::Rolling { center: c, radius: r, tributary_length: t },
+            ) => {
+                center.put(lane, c);
+                radius.put(lane, r);
+                tributary_length.put(lane, t);
+            }
+            (Self::Fixed(_) | Self::Rolling { .. }, _) => unreachable!("{ALIKE}"),
+        }
+    }
+}
+
+variants!(FrictionLaw<R>, FrictionLaw, FrictionLaw {
+    Frictionless {},
+    Coulomb { static_coefficient, kinetic_coefficient, tangential_stiffness, tangential_damping },
+    Regularized { coefficient, velocity }
+});
+
+impl<R: Real> Lanewise for NormalLaw<R> {
+    type Single = NormalLaw;
+    fn in_all(single: &NormalLaw) -> Self {
+        let splat = |number: f64| R::splat(number);
+        match *single {
+            NormalLaw::SpeedGap { stiffness, damping } => {
+                Self::SpeedGap { stiffness: splat(stiffness), damping: splat(damping) }
+            }
+            NormalLaw::KelvinVoigt { stiffness, damping } => {
+                Self::KelvinVoigt { stiffness: splat(stiffness), damping: splat(damping) }
+            }
+            NormalLaw::HuntCrossley { stiffness, dissipation, exponent } => Self::HuntCrossley {
+                stiffness: splat(stiffness),
+                dissipation: splat(dissipation),
+                exponent,
+            },
+            NormalLaw::Hertz { stiffness } => Self::Hertz { stiffness: splat(stiffness) },
+        }
+    }
+    fn put(&mut self, lane: usize, single: &NormalLaw) {
+        match (self, single) {
+            (
+                Self::SpeedGap { stiffness, damping },
+                NormalLaw::SpeedGap { stiffness: k, damping: c },
+            )
+            | (
+                Self::KelvinVoigt { stiffness, damping },
+                NormalLaw::KelvinVoigt { stiffness: k, damping: c },
+            )
+            | (
+                Self::HuntCrossley { stiffness, dissipation: damping, .. },
+                NormalLaw::HuntCrossley { stiffness: k, dissipation: c, .. },
+            ) => {
+                stiffness.put(lane, k);
+                damping.put(lane, c);
+            }
+            (Self::Hertz { stiffness }, NormalLaw::Hertz { stiffness: k }) => {
+                stiffness.put(lane, k);
+            }
+            (
+                Self::SpeedGap { .. }
+                | Self::KelvinVoigt { .. }
+                | Self::HuntCrossley { .. }
+                | Self::Hertz { .. },
+                _,
+            ) => unreachable!("{ALIKE}"),
+        }
+    }
+}
+
+impl<R: Real> Lanewise for Interface<Planar<R>> {
+    type Single = Interface<Planar>;
+    fn in_all(single: &Self::Single) -> Self {
+        Self {
+            name: single.name.clone(),
+            normal: Lanewise::in_all(&single.normal),
+            friction: Lanewise::in_all(&single.friction),
+            basis: single.basis,
+        }
+    }
+    fn put(&mut self, lane: usize, single: &Self::Single) {
+        self.normal.put(lane, &single.normal);
+        self.friction.put(lane, &single.friction);
+    }
+}
+
+impl<R: Real> Lanewise for Body<Planar<R>> {
+    type Single = Body<Planar>;
+    fn in_all(single: &Self::Single) -> Self {
+        Self {
+            name: single.name.clone(),
+            motion: single.motion,
+            mass: Lanewise::in_all(&single.mass),
+            inertia: Lanewise::in_all(&single.inertia),
+            damping: Lanewise::in_all(&single.damping),
+            pose: Lanewise::in_all(&single.pose),
+            twist: Lanewise::in_all(&single.twist),
+            surfaces: Lanewise::in_all(&single.surfaces),
+            nodes: Lanewise::in_all(&single.nodes),
+        }
+    }
+    fn put(&mut self, lane: usize, single: &Self::Single) {
+        self.mass.put(lane, &single.mass);
+        self.inertia.put(lane, &single.inertia);
+        self.damping.put(lane, &single.damping);
+        self.pose.put(lane, &single.pose);
+        self.twist.put(lane, &single.twist);
+        self.surfaces.put(lane, &single.surfaces);
+        self.nodes.put(lane, &single.nodes);
+    }
+}
+
+impl<R: Real> Lanewise for Model<Planar<R>> {
+    type Single = Model<Planar>;
+    fn in_all(single: &Self::Single) -> Self {
+        Self {
+            bodies: Lanewise::in_all(&single.bodies),
+            interfaces: Lanewise::in_all(&single.interfaces),
+            pairs: single.pairs.clone(),
+            gravity: Lanewise::in_all(&single.gravity),
+            reach: single.reach.clone(),
+        }
+    }
+    fn put(&mut self, lane: usize, single: &Self::Single) {
+        self.bodies.put(lane, &single.bodies);
+        self.interfaces.put(lane, &single.interfaces);
+        self.gravity.put(lane, &single.gravity);
+        for (reach, single) in self.reach.iter_mut().zip(&single.reach) {
+            // Balls that hold the body of every lane.
+            *reach = reach.max(*single);
+        }
+    }
+}

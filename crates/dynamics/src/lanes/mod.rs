@@ -1,0 +1,145 @@
+//! Many cases side by side in the lanes of a vector register.
+//!
+//! A lane computes what a single run computes, with the same source and the same bits: laws, shapes,
+//! methods and books are written once over [`Real`], and here are the bundles that stand in for it.
+//! Which vector unit they use is found out when the program runs.
+//!
+//! - `Bundle`: eight numbers of one vector unit.
+//! - [`Topology`]: what cases must share to march in one bundle.
+//! - `Lanewise`: how a single thing is put into a lane.
+//! - [`march`]: the run loop of all lanes, which refills the lane of a case that has ended.
+
+mod bundle;
+mod lanewise;
+mod march;
+mod topology;
+
+use crate::real::Real;
+
+pub(crate) use lanewise::Lanewise;
+pub use march::{Case, Crew, End, march};
+pub use topology::Topology;
+
+/// How numbers are bundled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Width {
+    /// One number after the other.
+    Scalar,
+    /// What every processor of the kind can do: SSE2 on x86-64.
+    Baseline,
+    /// AVX2.
+    Avx2,
+    /// AVX-512 of the kind that Ice Lake brought.
+    Avx512,
+}
+
+/// Work that is written over the scalar and done with the bundles of a width.
+pub trait Task {
+    /// What it makes.
+    type Output;
+    /// Does it.
+    fn run<R: Real>(self) -> Self::Output;
+}
+
+impl Width {
+    /// All of them, the narrowest first.
+    pub const ALL: [Self; 4] = [Self::Scalar, Self::Baseline, Self::Avx2, Self::Avx512];
+
+    /// The widest that this machine has.
+    pub fn widest() -> Self {
+        Self::ALL.into_iter().rev().find(|width| width.is_here()).unwrap_or(Self::Scalar)
+    }
+
+    /// Whether this machine has it.
+    pub fn is_here(self) -> bool {
+        match self {
+            Self::Scalar => true,
+            Self::Baseline => cfg!(target_arch = "x86_64"),
+            Self::Avx2 => units::has_avx2(),
+            Self::Avx512 => units::has_avx512(),
+        }
+    }
+
+    /// The word used in files and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Scalar => "scalar",
+            Self::Baseline => "baseline",
+            Self::Avx2 => "avx2",
+            Self::Avx512 => "avx512",
+        }
+    }
+
+    /// Does work with the bundles of this width; none where this machine does not have it.
+    pub fn run<T: Task>(self, task: T) -> Option<T::Output> {
+        if !self.is_here() {
+            return None;
+        }
+        match self {
+            Self::Scalar => Some(task.run::<f64>()),
+            Self::Baseline | Self::Avx2 | Self::Avx512 => units::run(self, task),
+        }
+    }
+}
+
+/// The vector units of this kind of processor.
+///
+/// A token proves that the machine has a unit; bundles need it in every number they make, so it is a
+/// constant here, and the functions of this module are the only way to code that uses it: each asks
+/// the machine first.
+#[cfg(target_arch = "x86_64")]
+#[expect(unsafe_code, reason = "tokens as constants; every way to them asks the machine first")]
+mod units {
+    use fearless_simd::{Avx2, Avx512, Level, Sse2};
+
+    use super::bundle::{Bundle, Unit};
+    use super::{Task, Width};
+
+    impl Unit for Sse2 {
+        // SAFETY: every x86-64 processor has SSE2.
+        const TOKEN: Self = unsafe { Self::assume_supported() };
+    }
+    impl Unit for Avx2 {
+        // SAFETY: `run` is the only user, and asks `has_avx2` first.
+        const TOKEN: Self = unsafe { Self::assume_supported() };
+    }
+    impl Unit for Avx512 {
+        // SAFETY: `run` is the only user, and asks `has_avx512` first.
+        const TOKEN: Self = unsafe { Self::assume_supported() };
+    }
+
+    pub(super) fn has_avx2() -> bool {
+        Level::new().as_avx2().is_some()
+    }
+
+    pub(super) fn has_avx512() -> bool {
+        Level::new().as_avx512().is_some()
+    }
+
+    pub(super) fn run<T: Task>(width: Width, task: T) -> Option<T::Output> {
+        match width {
+            Width::Scalar => Some(task.run::<f64>()),
+            Width::Baseline => Some(task.run::<Bundle<Sse2>>()),
+            Width::Avx2 => has_avx2().then(|| task.run::<Bundle<Avx2>>()),
+            Width::Avx512 => has_avx512().then(|| task.run::<Bundle<Avx512>>()),
+        }
+    }
+}
+
+/// Elsewhere one number goes after the other.
+#[cfg(not(target_arch = "x86_64"))]
+mod units {
+    use super::{Task, Width};
+
+    pub(super) fn has_avx2() -> bool {
+        false
+    }
+
+    pub(super) fn has_avx512() -> bool {
+        false
+    }
+
+    pub(super) fn run<T: Task>(_width: Width, _task: T) -> Option<T::Output> {
+        None
+    }
+}
