@@ -90,7 +90,8 @@ impl GroundMotion {
     /// use barrelstack_motion::{CloughPenzien, Envelope, Matching, TargetSpectrum};
     /// let envelope = Envelope::Jennings { rise: 2.0, decay_start: 8.0, decay: 0.5 };
     /// let motion = CloughPenzien::medium(1.0).motion(&envelope, 15.0, 0.01, 1)?;
-    /// let target = TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0 };
+    /// let target =
+    ///     TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0, damping: 0.05 };
     /// let settings = Matching { tolerance: 0.1, ..Matching::default() };
     /// let matched = motion.match_spectrum(&target, &settings)?;
     /// assert!(matched.misfit <= 0.1);

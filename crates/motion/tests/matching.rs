@@ -24,7 +24,7 @@ fn napa() -> GroundMotion {
 
 fn targets() -> Vec<TargetSpectrum> {
     vec![
-        TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0 },
+        TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0, damping: 0.05 },
         TargetSpectrum::Eurocode8 {
             ground_acceleration: 0.3,
             site: SiteClass::B,
@@ -32,7 +32,7 @@ fn targets() -> Vec<TargetSpectrum> {
             damping: 0.05,
         },
         TargetSpectrum::NCh433 { zone: ChileanZone::Three, site: SiteClass::D },
-        TargetSpectrum::NCh2745 { zone: ChileanZone::Two, soil: NCh2745Soil::II },
+        TargetSpectrum::NCh2745 { zone: ChileanZone::Two, soil: NCh2745Soil::II, damping: 0.05 },
         TargetSpectrum::Nzs1170 {
             hazard: 0.4,
             return_period: 1.0,
@@ -88,7 +88,7 @@ fn both_methods_meet_every_code_spectrum_and_do_not_drift() {
 fn a_table_is_matched_like_a_code() {
     let table: Vec<(f64, f64)> =
         [0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0].iter().map(|t| (*t, 6.0 / (1.0 + 3.0 * t))).collect();
-    let target = TargetSpectrum::Table(table);
+    let target = TargetSpectrum::Table { points: table, damping: 0.05 };
     let matched = napa().match_spectrum(&target, &Matching::default()).unwrap();
     assert!(matched.misfit <= 0.05);
 }
@@ -102,7 +102,7 @@ fn impossible_matches_are_refused_in_words() {
     let hopeless = Matching { tolerance: 1e-6, rounds: 2, ..Matching::default() };
     let error = motion.match_spectrum(target, &hopeless).unwrap_err().to_string();
     assert!(error.contains("misfit"), "{error}");
-    let bad = TargetSpectrum::Table(vec![(1.0, 1.0), (0.5, 1.0)]);
+    let bad = TargetSpectrum::Table { points: vec![(1.0, 1.0), (0.5, 1.0)], damping: 0.05 };
     assert!(motion.match_spectrum(&bad, &Matching::default()).is_err());
 }
 
@@ -112,7 +112,7 @@ fn code_spectra_have_their_published_ordinates() {
     let near = |value: f64, expected: f64| {
         assert!((value / expected - 1.0).abs() < 2e-3, "{value} against {expected}");
     };
-    let asce = TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0 };
+    let asce = TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0, damping: 0.05 };
     for (t, a) in [(0.0, 0.4), (0.06, 0.7), (0.3, 1.0), (1.2, 0.5), (16.0, 0.6 * 8.0 / 256.0)] {
         near(asce.acceleration(t), a * g);
     }
@@ -131,7 +131,7 @@ fn code_spectra_have_their_published_ordinates() {
     near(nch.acceleration(0.0), 1.2 * 0.4 * g);
     // The branches meet within the rounding of the code's plateaus.
     for soil in [NCh2745Soil::I, NCh2745Soil::II, NCh2745Soil::III] {
-        let spectrum = TargetSpectrum::NCh2745 { zone: ChileanZone::Two, soil };
+        let spectrum = TargetSpectrum::NCh2745 { zone: ChileanZone::Two, soil, damping: 0.05 };
         let mut previous = spectrum.acceleration(0.01);
         for k in 1..4000 {
             let here = spectrum.acceleration(0.01 + 0.001 * f64::from(k));
@@ -140,7 +140,7 @@ fn code_spectra_have_their_published_ordinates() {
         }
     }
     near(
-        TargetSpectrum::NCh2745 { zone: ChileanZone::Three, soil: NCh2745Soil::II }
+        TargetSpectrum::NCh2745 { zone: ChileanZone::Three, soil: NCh2745Soil::II, damping: 0.05 }
             .acceleration(0.3),
         1.25 * 11.0,
     );

@@ -3,13 +3,14 @@
 //! Neither unit nor step is ever guessed: both come from header words, a time column, or the caller.
 
 use super::even::{Timed, even_steps};
-use super::source::{Source, latin1, shorten};
+use super::source::{LARGEST_ACCELERATION, Source, latin1, parse_number, shorten};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::math;
 use crate::record::{Channel, Record, Stage};
 use crate::units::AccelerationUnit;
+use crate::write::INITIAL_VELOCITY;
 
 pub(crate) const FORMAT: Format =
     Format { name: "columns", title: "plain columns and CSV", sniff, read };
@@ -90,14 +91,27 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     let names = if timed { names.get(1..).unwrap_or(&[]).to_vec() } else { names };
     let stem = super::file_stem(source.name);
     let several = columns.len() > 1;
+    let velocities = initial_velocities(source, first);
     for (k, column) in columns.into_iter().enumerate() {
         let fallback = if several { format!("column {}", k + 1) } else { stem.clone() };
         let name = names.get(k).filter(|_| several).cloned().unwrap_or(fallback);
         let direction = Direction::parse(&name);
         let values = column.iter().map(|value| value * unit.factor()).collect();
-        record.channels.push(Channel::new(name, direction, time_step, values));
+        let mut channel = Channel::new(name, direction, time_step, values);
+        channel.initial_velocity = velocities.get(k).copied().unwrap_or(0.0);
+        record.channels.push(channel);
     }
     Ok(record)
+}
+
+/// Velocities (m/s) at the first samples, which files of our own state; none in all others.
+fn initial_velocities(source: &Source<'_>, first: usize) -> Vec<f64> {
+    let stated = (0..first)
+        .map(|line| source.text(line))
+        .find_map(|text| text.strip_prefix(INITIAL_VELOCITY).map(str::to_owned));
+    let numbers: Option<Vec<f64>> =
+        stated.and_then(|text| text.split_whitespace().map(|v| parse_number(v.as_bytes())).collect());
+    numbers.filter(|v| v.iter().all(|v| v.abs() <= LARGEST_ACCELERATION)).unwrap_or_default()
 }
 
 fn is_comment(source: &Source<'_>, line: usize) -> bool {
