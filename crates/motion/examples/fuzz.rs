@@ -148,7 +148,8 @@ fn large(
             let mut random = Random::new(seed(format, k));
             execute(format, k, &bytes, &mut random, seen, start)?;
             for _ in 0..DAMAGED {
-                let damaged = mutate(&bytes, samples, &mut random);
+                let mut damaged = mutate(&bytes, samples, &mut random);
+                damaged.truncate(large::SIZE);
                 execute(format, k, &damaged, &mut random, seen, start)?;
             }
             k += 1;
@@ -219,7 +220,8 @@ fn watch(start: Instant) {
             std::thread::sleep(Duration::from_secs(1));
             let k = NOW.load(Ordering::Relaxed);
             let since = Duration::from_millis(SINCE.load(Ordering::Relaxed));
-            if k != u64::MAX && start.elapsed().saturating_sub(since).as_secs_f64() > 6.0 * LONGEST {
+            if k != u64::MAX && start.elapsed().saturating_sub(since).as_secs_f64() > 6.0 * LONGEST
+            {
                 eprintln!("execution {k} hangs; repeat it with --first {k} --executions 1");
                 std::process::exit(1);
             }

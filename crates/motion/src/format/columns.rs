@@ -94,7 +94,9 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     let velocities = initial_velocities(source, first);
     for (k, column) in columns.into_iter().enumerate() {
         let fallback = if several { format!("column {}", k + 1) } else { stem.clone() };
-        let name = names.get(k).filter(|_| several).cloned().unwrap_or(fallback);
+        // A single column is often called "acceleration"; the file's name says more.
+        let tells = |name: &&String| several || Direction::parse(name) != Direction::default();
+        let name = names.get(k).filter(tells).cloned().unwrap_or(fallback);
         let direction = Direction::parse(&name);
         let values = column.iter().map(|value| value * unit.factor()).collect();
         let mut channel = Channel::new(name, direction, time_step, values);
@@ -109,8 +111,8 @@ fn initial_velocities(source: &Source<'_>, first: usize) -> Vec<f64> {
     let stated = (0..first)
         .map(|line| source.text(line))
         .find_map(|text| text.strip_prefix(INITIAL_VELOCITY).map(str::to_owned));
-    let numbers: Option<Vec<f64>> =
-        stated.and_then(|text| text.split_whitespace().map(|v| parse_number(v.as_bytes())).collect());
+    let numbers: Option<Vec<f64>> = stated
+        .and_then(|text| text.split_whitespace().map(|v| parse_number(v.as_bytes())).collect());
     numbers.filter(|v| v.iter().all(|v| v.abs() <= LARGEST_ACCELERATION)).unwrap_or_default()
 }
 
@@ -162,7 +164,10 @@ fn count_and_step(source: &Source<'_>, first: usize) -> (Option<(usize, f64)>, u
     (None, first)
 }
 
-/// All rows as columns; rows of several values without a common width are refused with their line,
+/// Most columns that are taken for components; more are one series in long lines.
+const MOST_COLUMNS: usize = 200;
+
+/// All rows as columns, or one column of very long rows; rows of several values without a common width are refused with their line,
 /// except a short last one.
 fn table(source: &Source<'_>, first: usize, end: usize) -> Result<Vec<Vec<f64>>, ReadError> {
     let mut row = Vec::new();
@@ -170,6 +175,9 @@ fn table(source: &Source<'_>, first: usize, end: usize) -> Result<Vec<Vec<f64>>,
     let width = row.len();
     if width == 0 {
         return Err(source.bad_number(first, 0, source.raw(first)));
+    }
+    if width > MOST_COLUMNS {
+        return Ok(vec![source.all_tokens(first, end, LIMIT)?]);
     }
     let mut columns: Vec<Vec<f64>> =
         (0..width).map(|_| Vec::with_capacity(end.saturating_sub(first))).collect();
@@ -184,7 +192,7 @@ fn table(source: &Source<'_>, first: usize, end: usize) -> Result<Vec<Vec<f64>>,
                 continue;
             }
             return Err(source.error(
-                line,
+                (line, source.end_of(line)),
                 Refusal::Damaged,
                 format!("{width} numbers"),
                 format!("{} numbers", row.len()),

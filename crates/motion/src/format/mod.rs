@@ -31,7 +31,7 @@ use crate::error::{ReadError, Refusal};
 use crate::math::STANDARD_GRAVITY;
 use crate::record::Record;
 use crate::units::AccelerationUnit;
-use source::{LARGEST_ACCELERATION, Source};
+use source::{LARGEST_ACCELERATION, Place, Source};
 
 /// What the caller knows and a file may not say.
 ///
@@ -79,11 +79,7 @@ impl Format {
         self.read_source(&source, options)
     }
 
-    fn read_source(
-        &self,
-        source: &Source<'_>,
-        options: &ReadOptions,
-    ) -> Result<Record, ReadError> {
+    fn read_source(&self, source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
         let mut record = (self.read)(source, options)?;
         record.format = self.name;
         if options.time_step.is_some() && self.name != columns::FORMAT.name {
@@ -123,7 +119,8 @@ pub const FORMATS: &[Format] = &[
 ];
 
 /// Files that are known and refused, tried first.
-const KNOWN_OTHERS: &[Format] = &[refused::HDF5, refused::ARCHIVE, refused::XML, slammer::FORMAT];
+const KNOWN_OTHERS: &[Format] =
+    &[refused::HDF5, refused::ARCHIVE, refused::XML, refused::USGS_BLOCKS, slammer::FORMAT];
 
 /// Reads a strong-motion file of any format; `name` is used in messages only.
 ///
@@ -303,8 +300,9 @@ fn check_count(
         );
         return Ok(());
     }
+    let column = source.find(line, &stated.to_string());
     Err(source.error(
-        line,
+        column.map_or(Place::from(line), |column| Place::from((line, column))),
         Refusal::Damaged,
         format!("{stated} values as stated here"),
         format!("{found}"),
@@ -333,7 +331,7 @@ fn rows(
         source.tokens(line, limit, &mut row)?;
         if row.len() != width {
             return Err(source.error(
-                line,
+                (line, source.end_of(line)),
                 Refusal::Damaged,
                 format!("{width} numbers"),
                 format!("{} numbers", row.len()),

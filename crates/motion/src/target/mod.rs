@@ -179,9 +179,7 @@ impl TargetSpectrum {
             | Self::Eurocode8 { damping, .. }
             | Self::NCh2745 { damping, .. }
             | Self::Table { damping, .. } => *damping,
-            Self::NCh433 { .. }
-            | Self::Nzs1170 { .. }
-            | Self::Ac156 { .. } => 0.05,
+            Self::NCh433 { .. } | Self::Nzs1170 { .. } | Self::Ac156 { .. } => 0.05,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Files of one megabyte made from a small one: grown soundly where that can be done, and made absurd.
 
 /// Size of the files (bytes).
-const SIZE: usize = 1_000_000;
+pub(crate) const SIZE: usize = 1_000_000;
 
 /// Large files after the manner of a sample.
 pub(crate) fn files(sample: &[u8]) -> Vec<Vec<u8>> {
@@ -9,9 +9,20 @@ pub(crate) fn files(sample: &[u8]) -> Vec<Vec<u8>> {
     files.extend(grown(sample));
     files.extend(grown_words(sample));
     let head = &sample[..sample.len().min(4000)];
-    for filling in
-        [b"\n".as_slice(), b" ", b"1 ", b"1,", b"-", b"1.5-1.5", b"0.1 0.2\n", b"9", b"\0", b":", b"/", b"|\n"]
-    {
+    for filling in [
+        b"\n".as_slice(),
+        b" ",
+        b"1 ",
+        b"1,",
+        b"-",
+        b"1.5-1.5",
+        b"0.1 0.2\n",
+        b"9",
+        b"\0",
+        b":",
+        b"/",
+        b"|\n",
+    ] {
         files.push(repeated(sample, filling));
         files.push(repeated(head, filling));
         // In front, so that the header becomes what is absurd.
@@ -104,21 +115,61 @@ fn with_counts(line: &[u8], more: usize, per_line: usize) -> Vec<u8> {
     out.chars().map(|c| u8::try_from(u32::from(c)).unwrap_or(b'?')).collect()
 }
 
-/// A binary file with its samples repeated: the words of the header that hold the count are raised.
+/// A binary file with its samples repeated soundly.
 fn grown_words(sample: &[u8]) -> Option<Vec<u8>> {
-    const SAC_HEADER: usize = 632;
-    const SAC_COUNT: usize = 79 * 4;
+    grown_sac(sample).or_else(|| grown_miniseed(sample))
+}
+
+/// The words of the header that hold the count are raised.
+fn grown_sac(sample: &[u8]) -> Option<Vec<u8>> {
+    const HEADER: usize = 632;
+    const COUNT: usize = 79 * 4;
     let little = sample.get(76 * 4..77 * 4)? == 6_i32.to_le_bytes();
     let big = sample.get(76 * 4..77 * 4)? == 6_i32.to_be_bytes();
     if !little && !big {
         return None;
     }
     let mut file = sample.to_vec();
-    while file.len() < SIZE {
-        file.extend(&sample[SAC_HEADER..]);
+    while file.len() + sample.len() < SIZE {
+        file.extend(&sample[HEADER..]);
     }
-    let count = i32::try_from((file.len() - SAC_HEADER) / 4).ok()?;
+    let count = i32::try_from((file.len() - HEADER) / 4).ok()?;
     let word = if little { count.to_le_bytes() } else { count.to_be_bytes() };
-    file[SAC_COUNT..SAC_COUNT + 4].copy_from_slice(&word);
+    file[COUNT..COUNT + 4].copy_from_slice(&word);
+    Some(file)
+}
+
+/// The records follow one another in time, as those of one channel do.
+fn grown_miniseed(sample: &[u8]) -> Option<Vec<u8>> {
+    /// Ticks of the header's clock (1/s).
+    const TICKS: u32 = 10_000;
+    if sample.get(6) != Some(&b'D') {
+        return None;
+    }
+    let number = |at: usize| u16::from_be_bytes([sample[at], sample[at + 1]]);
+    let length = 1_usize << sample[54];
+    let records = sample.chunks_exact(length);
+    let samples: u32 =
+        records.map(|record| u32::from(u16::from_be_bytes([record[30], record[31]]))).sum();
+    // The rate of the samples is a whole number of Hz.
+    let span = samples * TICKS / u32::from(number(32));
+    let mut file = Vec::with_capacity(SIZE);
+    let mut shift = 0;
+    while file.len() + sample.len() <= SIZE {
+        for record in sample.chunks_exact(length) {
+            let mut record = record.to_vec();
+            let fraction = u32::from(u16::from_be_bytes([record[28], record[29]]));
+            let clock =
+                u32::from(record[24]) * 3600 + u32::from(record[25]) * 60 + u32::from(record[26]);
+            let now = clock * TICKS + fraction + shift;
+            let seconds = now / TICKS;
+            record[24] = u8::try_from(seconds / 3600 % 24).ok()?;
+            record[25] = u8::try_from(seconds / 60 % 60).ok()?;
+            record[26] = u8::try_from(seconds % 60).ok()?;
+            record[28..30].copy_from_slice(&u16::try_from(now % TICKS).ok()?.to_be_bytes());
+            file.extend(record);
+        }
+        shift += span;
+    }
     Some(file)
 }

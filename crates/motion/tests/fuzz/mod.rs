@@ -2,23 +2,71 @@
 
 use std::path::{Path, PathBuf};
 
-use barrelstack_motion::{AccelerationUnit, FORMATS, Format, Random, ReadError, ReadOptions, Record};
+use barrelstack_motion::{AccelerationUnit, Format, Random, ReadError, ReadOptions, Record};
 
 /// Numbers that break readers: edges of types, of formats and of sense.
 const NUMBERS: [&str; 22] = [
-    "0", "-0", "1", "-1", "2", "100", "9999", "32767", "65536", "99999999", "1e9", "2147483647",
-    "4294967296", "1E308", "-1E308", "1e-320", "NaN", "inf", ".", "-", "+5.D+02", "*******",
+    "0",
+    "-0",
+    "1",
+    "-1",
+    "2",
+    "100",
+    "9999",
+    "32767",
+    "65536",
+    "99999999",
+    "1e9",
+    "2147483647",
+    "4294967296",
+    "1E308",
+    "-1E308",
+    "1e-320",
+    "NaN",
+    "inf",
+    ".",
+    "-",
+    "+5.D+02",
+    "*******",
 ];
 
 /// Pieces that readers look for, and some that they do not expect.
 const WORDS: [&[u8]; 20] = [
-    b"\n", b"\r\n", b"\r", b"  ", b"\t", b",", b"/&", b"|", b"#", b":", b"(8F10.3)", b"(1X,10F7.3)",
-    b"(99999F99999.1)", b"NPTS", b"UNITS", b"accel", b"points", b"\xff\xfe", b"\0", b"\xd1",
+    b"\n",
+    b"\r\n",
+    b"\r",
+    b"  ",
+    b"\t",
+    b",",
+    b"/&",
+    b"|",
+    b"#",
+    b":",
+    b"(8F10.3)",
+    b"(1X,10F7.3)",
+    b"(99999F99999.1)",
+    b"NPTS",
+    b"UNITS",
+    b"accel",
+    b"points",
+    b"\xff\xfe",
+    b"\0",
+    b"\xd1",
 ];
 
 /// 32-bit words that binary headers may hold.
-const BINARY: [u32; 10] =
-    [0, 1, 2, 6, 0xff, 0x7fff_ffff, 0x8000_0000, u32::MAX, 0x7fc0_0000, (-12345_i32).cast_unsigned()];
+const BINARY: [u32; 10] = [
+    0,
+    1,
+    2,
+    6,
+    0xff,
+    0x7fff_ffff,
+    0x8000_0000,
+    u32::MAX,
+    0x7fc0_0000,
+    (-12345_i32).cast_unsigned(),
+];
 
 /// A sample file.
 pub(crate) struct Sample {
@@ -62,11 +110,6 @@ pub(crate) fn samples() -> Vec<Sample> {
 pub(crate) fn samples_of<'a>(format: &Format, samples: &'a [Sample]) -> Vec<&'a Sample> {
     let folder = format!("{}/", format.name);
     samples.iter().filter(|sample| sample.name.starts_with(&folder)).collect()
-}
-
-/// The format of a name.
-pub(crate) fn format(name: &str) -> Option<&'static Format> {
-    FORMATS.iter().find(|format| format.name == name)
 }
 
 /// What a caller may state: nothing, one thing, or all.
@@ -116,7 +159,8 @@ pub(crate) fn mutate(bytes: &[u8], others: &[Sample], random: &mut Random) -> Ve
                 let word = *pick(random, &WORDS);
                 let at = below(random, out.len());
                 // Over what stands there, or between.
-                let end = if random.bits() & 1 == 0 { at } else { (at + word.len()).min(out.len()) };
+                let end =
+                    if random.bits() & 1 == 0 { at } else { (at + word.len()).min(out.len()) };
                 out.splice(at..end, word.iter().copied());
             }
             8 => out = new_line_ends(&out, random),
@@ -130,7 +174,8 @@ pub(crate) fn mutate(bytes: &[u8], others: &[Sample], random: &mut Random) -> Ve
             }
             13 | 14 => {
                 let value = *pick(random, &BINARY);
-                let word = if random.bits() & 1 == 0 { value.to_le_bytes() } else { value.to_be_bytes() };
+                let word =
+                    if random.bits() & 1 == 0 { value.to_le_bytes() } else { value.to_be_bytes() };
                 let at = below(random, out.len()) & !3;
                 let end = (at + 4).min(out.len());
                 out[at..end].copy_from_slice(&word[..end - at]);
