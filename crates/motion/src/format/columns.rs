@@ -265,7 +265,8 @@ fn header_names(source: &Source<'_>, first: usize, width: usize) -> Vec<String> 
     } else {
         text.split_whitespace().map(str::to_owned).collect()
     };
-    if names.len() == width {
+    // A line of numbers alone, such as count and step, names nothing.
+    if names.len() == width && names.iter().any(|name| name.parse::<f64>().is_err()) {
         names
             .into_iter()
             .map(|name| name.split('(').next().unwrap_or("").trim().to_owned())
