@@ -30,7 +30,7 @@ fn refused(arguments: &[&str]) -> String {
 
 /// Two components and a vertical that shake for eight seconds.
 fn record(folder: &Path) -> std::path::PathBuf {
-    let mut rows = String::from("time (s),90 (m/s2),0 (m/s2),UP (m/s2)\n");
+    let mut rows = String::from("# acceleration (m/s2)\ntime (s),90,0,UP\n");
     for k in 0..1600 {
         let t = 0.005 * f64::from(k);
         let (a, b) = ((9.0 * t).sin() * (-0.3 * t).exp(), (5.0 * t + 0.4).sin() * (-0.4 * t).exp());

@@ -63,7 +63,9 @@ const PER_DECADE: f64 = 60.0;
 /// Periods judged to one matched, so that nothing hides between.
 const JUDGED: usize = 3;
 /// Periods to one judged at which the result is checked in the end.
-const CHECKED: usize = 4;
+const CHECKED: usize = 6;
+/// Share of the tolerance at which no further method is tried.
+const CLEAR: f64 = 0.98;
 /// Share of the tolerance at which the rounds end.
 pub(crate) const GOOD_ENOUGH: f64 = 0.7;
 
@@ -72,7 +74,7 @@ pub(crate) const GOOD_ENOUGH: f64 = 0.7;
 pub struct Matched {
     /// The motion; its horizontal component is matched, the vertical takes the same first scaling.
     pub motion: GroundMotion,
-    /// Largest relative misfit from the shortest to the longest period, on a grid of 720 periods to a
+    /// Largest relative misfit from the shortest to the longest period, on a grid of 1080 periods to a
     /// decade.
     pub misfit: f64,
     /// Rounds done.
@@ -300,7 +302,7 @@ impl Work<'_> {
             };
             rounds += more;
             best.offer(&next, self.checked_misfit(&next)?, rounds);
-            if best.misfit <= settings.tolerance {
+            if best.misfit <= CLEAR * settings.tolerance {
                 break;
             }
             a = next;

@@ -11,7 +11,9 @@
 
 mod fuzz;
 
-use barrelstack_motion::{FORMATS, Random, read};
+use barrelstack_motion::{
+    AccelerationUnit, Component, Direction, FORMATS, Horizontals, IntensityMeasure, Random, read,
+};
 use fuzz::{must_hold, mutate, options, samples, samples_of};
 
 /// Mutated files to a sample.
@@ -68,6 +70,28 @@ fn random_bytes_and_numbers_never_panic_a_reader() {
         must_hold(&read(&bytes, "random", &options));
         for format in FORMATS {
             must_hold(&format.read(&bytes, "random", &options));
+        }
+    }
+}
+
+#[test]
+fn mutated_words_never_panic_a_parser() {
+    let words = ["sa(1.0,0.02)", "d5-95", "housner(0.2)", "az:90", "#3", "cm/s2", "rotd100", "N28W"];
+    let samples: Vec<fuzz::Sample> = words
+        .iter()
+        .map(|word| fuzz::Sample { name: (*word).to_owned(), bytes: word.as_bytes().to_vec() })
+        .collect();
+    let mut random = Random::new(3);
+    for sample in &samples {
+        for _ in 0..2000 {
+            let bytes = mutate(&sample.bytes, &samples, &mut random);
+            let text = String::from_utf8_lossy(&bytes);
+            let measure = text.parse::<IntensityMeasure>();
+            assert!(measure.is_err() || measure.is_ok_and(|measure| measure.check().is_ok()));
+            let _ = text.parse::<Component>();
+            let _ = text.parse::<AccelerationUnit>();
+            let _ = text.parse::<Horizontals>();
+            let _ = Direction::parse(&text);
         }
     }
 }
