@@ -311,6 +311,23 @@ fn what_a_format_does_not_say_must_be_given() {
 }
 
 #[test]
+fn a_unit_behind_every_name_is_a_stated_one() {
+    let rows: String = (0..50).fold(String::new(), |text, k| {
+        text + &format!("{:.2},{},{}\n", 0.01 * f64::from(k), k % 7, 5 - k % 5)
+    });
+    let table = |header: &str| {
+        read(format!("{header}\n{rows}").as_bytes(), "t.csv", &ReadOptions::default())
+    };
+    let record = table("time (s),EW (cm/s2),NS (cm/s2)").unwrap();
+    assert!((record.channels[0].pga() - 0.06).abs() < 1e-12);
+    assert_eq!(record.channels[1].direction.azimuth, Some(0.0));
+    for header in ["time (s),EW (cm/s2),NS (g)", "time (s),EW,NS", "time (s),EW (cm/s2),NS"] {
+        let error = table(header).unwrap_err();
+        assert_eq!(error.refusal, Refusal::Missing, "{header}: {error}");
+    }
+}
+
+#[test]
 fn an_ignored_option_is_reported() {
     let given = ReadOptions { time_step: Some(0.5), ..ReadOptions::default() };
     for (file, ..) in SAMPLES.iter().filter(|s| !s.0.starts_with("columns")) {

@@ -76,7 +76,8 @@ fn random_bytes_and_numbers_never_panic_a_reader() {
 
 #[test]
 fn mutated_words_never_panic_a_parser() {
-    let words = ["sa(1.0,0.02)", "d5-95", "housner(0.2)", "az:90", "#3", "cm/s2", "rotd100", "N28W"];
+    let words =
+        ["sa(1.0,0.02)", "d5-95", "housner(0.2)", "az:90", "#3", "cm/s2", "rotd100", "N28W"];
     let samples: Vec<fuzz::Sample> = words
         .iter()
         .map(|word| fuzz::Sample { name: (*word).to_owned(), bytes: word.as_bytes().to_vec() })

@@ -276,7 +276,8 @@ fn header_names(source: &Source<'_>, first: usize, width: usize) -> Vec<String> 
     }
 }
 
-/// The unit in parentheses or after "units" in a header line that speaks of acceleration.
+/// The unit in parentheses or after "units" in a header line that speaks of acceleration, or the one
+/// that stands in parentheses behind every name but that of the time.
 fn stated_unit(source: &Source<'_>, first: usize) -> Option<(usize, AccelerationUnit)> {
     for line in 0..first {
         let text = source.text(line).to_ascii_lowercase();
@@ -296,8 +297,22 @@ fn stated_unit(source: &Source<'_>, first: usize) -> Option<(usize, Acceleration
                 return Some((line, unit));
             }
         }
+        if let Some(unit) = unit_of_every_column(&text) {
+            return Some((line, unit));
+        }
     }
     None
+}
+
+/// `time (s),EW (m/s2),NS (m/s2)`: one unit of acceleration for all that is not time.
+fn unit_of_every_column(header: &str) -> Option<AccelerationUnit> {
+    let mut units =
+        header.split([',', ';', '\t']).filter(|name| !name.contains("time")).map(|name| {
+            let word = name.split_once(['(', '['])?.1.split([')', ']']).next()?;
+            word.parse::<AccelerationUnit>().ok()
+        });
+    let unit = units.next()??;
+    units.all(|other| other == Some(unit)).then_some(unit)
 }
 
 fn unit(

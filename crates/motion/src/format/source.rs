@@ -59,7 +59,7 @@ impl<'a> Source<'a> {
         }
         let separator = if text.contains(&b'\n') { b'\n' } else { b'\r' };
         // Counted first: growing by doubling would hold three times what a file of short lines needs.
-        let count = text.iter().filter(|&&byte| byte == separator).count() + 1;
+        let count = text.split(|&byte| byte == separator).count();
         let mut lines: Vec<&[u8]> = Vec::with_capacity(count);
         lines.extend(text.split(|&byte| byte == separator).map(|mut line| {
             while let [rest @ .., b'\r'] = line {

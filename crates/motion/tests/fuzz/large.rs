@@ -143,7 +143,11 @@ fn grown_sac(sample: &[u8]) -> Option<Vec<u8>> {
 fn grown_miniseed(sample: &[u8]) -> Option<Vec<u8>> {
     /// Ticks of the header's clock (1/s).
     const TICKS: u32 = 10_000;
-    if sample.get(6) != Some(&b'D') {
+    let looks_like_one = sample.len() >= 64
+        && sample[..6].iter().all(u8::is_ascii_digit)
+        && sample[6] == b'D'
+        && (7..=20).contains(&sample[54]);
+    if !looks_like_one {
         return None;
     }
     let number = |at: usize| u16::from_be_bytes([sample[at], sample[at + 1]]);

@@ -118,9 +118,9 @@ pub(crate) fn options(random: &mut Random) -> ReadOptions {
     let units =
         [AccelerationUnit::G, AccelerationUnit::Gal, AccelerationUnit::MillimetersPerSecondSquared];
     ReadOptions {
-        unit: (choice & 3 != 0).then(|| *pick(random, &units)),
-        time_step: (choice & 12 != 0).then_some(0.01),
-        sensitivity: (choice & 48 != 0).then_some(1000.0),
+        unit: (choice & 0b11 != 0).then(|| *pick(random, &units)),
+        time_step: (choice & 0b1100 != 0).then_some(0.01),
+        sensitivity: (choice & 0b11_0000 != 0).then_some(1000.0),
     }
 }
 

@@ -174,7 +174,7 @@ pub(super) fn target(text: &str) -> anyhow::Result<TargetSpectrum> {
         ),
     };
     given.end()?;
-    spectrum.check()?;
+    spectrum.check().map_err(|error| anyhow!("target {code}: {error}"))?;
     Ok(spectrum)
 }
 
