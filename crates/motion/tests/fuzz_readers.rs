@@ -41,9 +41,9 @@ fn mutated_files_never_panic_a_reader() {
             let result = read(&mutated, &sample.name, &options);
             must_hold(&result);
             if result.is_ok() {
-                done += 1
+                done += 1;
             } else {
-                refused += 1
+                refused += 1;
             }
             if let Some(format) = format {
                 must_hold(&format.read(&mutated, &sample.name, &options));
