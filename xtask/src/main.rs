@@ -17,7 +17,8 @@ usage: cargo xtask TASK
 
 tasks:
   test       formatting, lints, documentation, and all tests in both profiles; stops at the first failure
-  validate   every problem with an exact answer, in full, with a report; `--out DIR`, `--only TEXT`, `--fast`";
+  validate   every problem with an exact answer, in full, with a report; `--out DIR`, `--only TEXT`, `--fast`
+  fuzz       damaged files through every reader of records; `--executions N`, `--reader NAME`, `--first K`";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -30,7 +31,10 @@ fn main() -> ExitCode {
                 ExitCode::FAILURE
             }
         },
-        ["validate", rest @ ..] => validate(rest),
+        ["validate", rest @ ..] => release(&["--package", "barrelstack-validation"], rest),
+        ["fuzz", rest @ ..] => {
+            release(&["--package", "barrelstack-motion", "--example", "fuzz"], rest)
+        }
         [] | ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             ExitCode::SUCCESS
@@ -42,11 +46,11 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs the validation program in release and passes its words and its status on.
-fn validate(words: &[&str]) -> ExitCode {
+/// Runs a program of the workspace in release and passes its words and its status on.
+fn release(program: &[&str], words: &[&str]) -> ExitCode {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let run = ["run", "--quiet", "--release", "--package", "barrelstack-validation", "--"];
-    match std::process::Command::new(cargo).args(run).args(words).status() {
+    let run = ["run", "--quiet", "--release"];
+    match std::process::Command::new(cargo).args(run).args(program).arg("--").args(words).status() {
         Ok(status) if status.success() => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,
         Err(error) => {

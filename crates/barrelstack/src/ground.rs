@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
-    AccelerationUnit, Component, GroundMotion, History, IntensityMeasure, MotionError, Processing,
-    Pulse as MotionPulse, ReadError, ReadFailure, ReadOptions, Record, Refusal,
+    AccelerationUnit, Component, GroundMotion, History, Horizontals, IntensityMeasure, MotionError,
+    Processing, Pulse as MotionPulse, ReadError, ReadFailure, ReadOptions, Record, Refusal,
 };
 
 use crate::scenario::{
-    Amplitude, Direction, MotionSource, MotionSpec, Processing as ProcessingSpec, Pulse, PulseKind,
-    RecordMotion, RecordSource, Scale, Scenario, Sine, Vertical,
+    Amplitude, Direction, MeasuredOn, MotionSource, MotionSpec, Processing as ProcessingSpec,
+    Pulse, PulseKind, RecordMotion, RecordSource, Scale, Scenario, Sine, Vertical,
 };
 use crate::system;
 
@@ -94,7 +94,7 @@ pub fn ground(scenario: &Scenario) -> Result<Ground, GroundError> {
 pub(crate) fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
     let mut ground = match &spec.source {
         MotionSource::None => return Ok(Ground::default()),
-        MotionSource::Record(record) => recorded(record)?,
+        MotionSource::Record(record) => recorded(record, spec.scale)?,
         MotionSource::Sine(sine) => Ground { motion: Some(harmonic(sine)?), ..Ground::default() },
         MotionSource::Pulse(pulse) => Ground { motion: Some(pulsed(pulse)?), ..Ground::default() },
     };
@@ -118,6 +118,12 @@ pub(crate) fn scaled(
         }
         Scale::Pga(target) => motion = motion.scale_to(IntensityMeasure::Pga, target)?,
         Scale::Pgv(target) => motion = motion.scale_to(IntensityMeasure::Pgv, target)?,
+        Scale::Measure { measure, value, of } => {
+            // Both horizontals are at hand only where the record is read; it is scaled there.
+            if horizontals(of).is_none() {
+                motion = motion.scale_to(measure, value)?;
+            }
+        }
     }
     for length in [spec.similitude, run_scale] {
         if length != 1.0 {
@@ -127,11 +133,11 @@ pub(crate) fn scaled(
     Ok(motion)
 }
 
-fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
+fn recorded(spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
     let options = ReadOptions {
         unit: spec.unit.map(unit).transpose()?,
         time_step: spec.time_step,
-        sensitivity: None,
+        sensitivity: spec.sensitivity,
     };
     let record = match &spec.source {
         RecordSource::Bundled(name) => {
@@ -182,7 +188,37 @@ fn recorded(spec: &RecordMotion) -> Result<Ground, GroundError> {
             joined
         }
     };
+    let motion = scaled_by_both(motion, &record, &processing, scale)?;
     Ok(Ground { motion: Some(motion), warnings })
+}
+
+/// The measure of both horizontals that a scaling is about; none if it is about one component.
+fn horizontals(of: MeasuredOn) -> Option<Horizontals> {
+    match of {
+        MeasuredOn::Component => None,
+        MeasuredOn::RotD50 => Some(Horizontals::RotD50),
+        MeasuredOn::RotD100 => Some(Horizontals::RotD100),
+        MeasuredOn::GeometricMean => Some(Horizontals::GeometricMean),
+    }
+}
+
+/// The motion scaled by what both horizontals of its record measure, processed alike.
+fn scaled_by_both(
+    motion: GroundMotion,
+    record: &Record,
+    processing: &Processing,
+    scale: Scale,
+) -> Result<GroundMotion, MotionError> {
+    let Scale::Measure { measure, value, of } = scale else { return Ok(motion) };
+    let Some(over) = horizontals(of) else { return Ok(motion) };
+    let (first, second) = record.horizontals(processing)?;
+    let factor = over.scale_factor(measure, &first, &second, value)?;
+    let mut scaled = motion.scaled(factor);
+    scaled.provenance.push(format!(
+        "that factor brings {measure}, {over} of both horizontals, to {value} {}",
+        measure.unit()
+    ));
+    Ok(scaled)
 }
 
 /// The default processing of a record's stage, its pads cut off again.
@@ -209,10 +245,14 @@ fn read_file(
         let mut failure: ReadFailure = (*error).clone();
         // The reader knows what is missing, the scenario where to state it.
         if failure.refusal == Refusal::Missing {
-            failure.remedy += if failure.expected.contains("unit") {
+            failure.remedy += if failure.expected.contains("a unit or a sensitivity") {
+                " in the scenario, as motion.unit = \"1 g\" or motion.sensitivity = 427819"
+            } else if failure.expected.contains("unit") {
                 " in the scenario, for example motion.unit = \"1 g\""
             } else if failure.expected.contains("step") {
                 " in the scenario, for example motion.time_step = \"0.01 s\""
+            } else if failure.expected.contains("sensitivity") {
+                " in the scenario, for example motion.sensitivity = 427819"
             } else {
                 ""
             };

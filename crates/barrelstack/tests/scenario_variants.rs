@@ -2,9 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
+use barrelstack_motion::IntensityMeasure;
+
 use barrelstack::scenario::{
-    Amplitude, Basis, BodyOverride, Cradle, Damping, Fill, Friction, Method, MotionSource, Nodes,
-    NormalLaw, PulseKind, RackKind, Scale, Scenario, Scene, Shape, StackBody, Vertical, Viscous,
+    Amplitude, Basis, BodyOverride, Cradle, Damping, Fill, Friction, MeasuredOn, Method,
+    MotionSource, Nodes, NormalLaw, PulseKind, RackKind, Scale, Scenario, Scene, Shape, StackBody,
+    Vertical, Viscous,
 };
 
 fn stack(changes: &[&str]) -> Scenario {
@@ -219,6 +222,18 @@ fn motions() {
     let unit = source(&["motion.record=a.txt", "motion.unit=cm/s^2"]);
     let MotionSource::Record(record) = unit.source else { panic!() };
     assert_eq!(record.unit, Some(0.01));
+    let counts = source(&["motion.record=a.mseed", "motion.sensitivity=427819"]);
+    let MotionSource::Record(record) = counts.source else { panic!() };
+    assert_eq!(record.sensitivity, Some(427_819.0));
+    let measured = source(&[
+        "motion.record=a.txt",
+        "motion.scale.measure=sa(1,0.02)",
+        "motion.scale.value=0.5 g",
+        "motion.scale.of=rotd50",
+    ]);
+    let measure = IntensityMeasure::Sa { period: 1.0, damping: 0.02 };
+    let of = MeasuredOn::RotD50;
+    assert_eq!(measured.scale, Scale::Measure { measure, value: 4.903_325, of });
     let off = round_trip("demo-napa", &["motion.vertical=false", "motion.scale.factor=-2"]);
     let MotionSource::Record(record) = off.motion.source else { panic!() };
     assert_eq!((record.vertical, off.motion.scale), (Vertical::None, Scale::Factor(-2.0)));

@@ -2,7 +2,7 @@
 
 use crate::error::MotionError;
 use crate::history::History;
-use crate::intensity::{Growth, IntensityMeasure};
+use crate::intensity::IntensityMeasure;
 use crate::pulse::Pulse;
 use crate::sampled::Sampled;
 
@@ -95,7 +95,6 @@ impl GroundMotion {
     /// # Errors
     /// If the measure does not grow with amplitude, is zero here, or the target is not above zero.
     pub fn scale_to(&self, measure: IntensityMeasure, target: f64) -> Result<Self, MotionError> {
-        MotionError::require_positive(&format!("target {measure} ({})", measure.unit()), target)?;
         let factor = self.scale_factor(measure, target)?;
         let mut motion = self.map(|history| history.scaled(factor));
         motion.provenance.push(format!(
@@ -111,56 +110,13 @@ impl GroundMotion {
     /// # Errors
     /// As [`GroundMotion::scale_to`].
     pub fn scale_factor(&self, measure: IntensityMeasure, target: f64) -> Result<f64, MotionError> {
-        let now = self.intensity(measure)?;
-        let zero = || MotionError::Zero {
-            measure: measure.to_string(),
-            motion: self.name.clone(),
-            target: format!("{target} {}", measure.unit()),
-        };
-        match measure.growth() {
-            Growth::Power(power) => {
-                if !(now > 0.0) {
-                    return Err(zero());
-                }
-                let ratio = target / now;
-                Ok(if power == 2.0 { ratio.sqrt() } else { ratio })
-            }
-            Growth::Monotone => {
-                self.bracketed_factor(measure, target).and_then(|factor| factor.ok_or_else(zero))
-            }
-            Growth::None(reason) => Err(MotionError::NotScalable {
-                measure: measure.to_string(),
-                reason: reason.to_owned(),
-            }),
-        }
-    }
-
-    /// The factor at which a growing measure reaches `target`, by bisection.
-    fn bracketed_factor(
-        &self,
-        measure: IntensityMeasure,
-        target: f64,
-    ) -> Result<Option<f64>, MotionError> {
-        if !(self.horizontal.pga() > 0.0) {
-            return Ok(None);
-        }
-        let value = |factor: f64| measure.of_history(&self.horizontal.scaled(factor));
-        let (mut low, mut high) = (1.0, 1.0);
-        while value(low)? > target {
-            low *= 0.5;
-        }
-        while value(high)? < target {
-            high *= 2.0;
-        }
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if value(middle)? < target {
-                low = middle;
+        measure.factor(target, &self.name, |factor| {
+            if factor == 1.0 {
+                measure.of_history(&self.horizontal)
             } else {
-                high = middle;
+                measure.of_history(&self.horizontal.scaled(factor))
             }
-        }
-        Ok(Some(high))
+        })
     }
 
     /// An intensity measure of the horizontal component (SI units).

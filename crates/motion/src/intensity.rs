@@ -20,7 +20,8 @@ pub enum IntensityMeasure {
     Pga,
     /// Peak ground velocity (m/s).
     Pgv,
-    /// Peak ground displacement (m).
+    /// Peak ground displacement (m), by the trapezoid of the sampled velocities
+    /// ([`Sampled::pgd_by_trapezoid`]).
     Pgd,
     /// PGV/PGA (s), long for pulse-like motions.
     PgvOverPga,
@@ -68,7 +69,7 @@ pub enum IntensityMeasure {
 }
 
 /// How a measure grows with the scale factor.
-pub(crate) enum Growth {
+enum Growth {
     /// With the given power of the factor.
     Power(f64),
     /// Always upward, by no simple law.
@@ -99,7 +100,7 @@ impl IntensityMeasure {
         }
     }
 
-    pub(crate) fn growth(&self) -> Growth {
+    fn growth(&self) -> Growth {
         match self {
             Self::Pga
             | Self::Pgv
@@ -118,6 +119,37 @@ impl IntensityMeasure {
                 Growth::None("a time does not change with the amplitude")
             }
             Self::BracketedDuration { .. } => Growth::None("a bracketed duration grows in steps"),
+        }
+    }
+
+    /// The factor on a motion that brings this measure to `target` (SI units); `value` gives the
+    /// measure of the motion times a factor, `name` is the motion's.
+    pub(crate) fn factor(
+        self,
+        target: f64,
+        name: &str,
+        value: impl Fn(f64) -> Result<f64, MotionError>,
+    ) -> Result<f64, MotionError> {
+        MotionError::require_positive(&format!("target {self} ({})", self.unit()), target)?;
+        let zero = || MotionError::Zero {
+            measure: self.to_string(),
+            motion: name.to_owned(),
+            target: format!("{target} {}", self.unit()),
+        };
+        match self.growth() {
+            Growth::Power(power) => {
+                let now = value(1.0)?;
+                if !(now > 0.0) {
+                    return Err(zero());
+                }
+                let ratio = target / now;
+                Ok(if power == 2.0 { ratio.sqrt() } else { ratio })
+            }
+            Growth::Monotone => bracketed(target, value)?.ok_or_else(zero),
+            Growth::None(reason) => Err(MotionError::NotScalable {
+                measure: self.to_string(),
+                reason: reason.to_owned(),
+            }),
         }
     }
 
@@ -167,7 +199,7 @@ impl IntensityMeasure {
         Ok(match *self {
             Self::Pga => motion.pga(),
             Self::Pgv => motion.pgv(),
-            Self::Pgd => motion.pgd(),
+            Self::Pgd => motion.pgd_by_trapezoid(),
             Self::PgvOverPga => motion.pgv() / motion.pga(),
             Self::Arias => arias(dt, a),
             Self::Cav => math::trapezoid(a.iter().map(|a| a.abs()), dt),
@@ -202,6 +234,32 @@ impl IntensityMeasure {
             _ => self.of(&history.sampled(history.natural_step())?),
         }
     }
+}
+
+/// The factor at which a growing measure reaches `target`, by bisection; none if no factor does.
+fn bracketed(
+    target: f64,
+    value: impl Fn(f64) -> Result<f64, MotionError>,
+) -> Result<Option<f64>, MotionError> {
+    let (mut low, mut high) = (1.0, 1.0);
+    while value(low)? > target {
+        low *= 0.5;
+    }
+    while value(high)? < target {
+        high *= 2.0;
+        if high > 1e12 {
+            return Ok(None);
+        }
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if value(middle)? < target {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Ok(Some(high))
 }
 
 /// Arias intensity (m/s) of accelerations (m/s²).

@@ -88,12 +88,19 @@ fn join_pair(joined: &mut Record, part: &Record) -> Result<(), MotionError> {
         remedy: "give the parts of one record in order of time".to_owned(),
     };
     let mut overlap = None;
-    let names: Vec<String> = joined.channels.iter().map(|channel| channel.name.clone()).collect();
-    for name in names {
-        let (Some(mine), Some(theirs)) = (
-            joined.channels.iter_mut().find(|channel| channel.name == name),
-            part.channels.iter().find(|channel| channel.name == name),
-        ) else {
+    // Channels of plain columns are named after their files: where no name is shared, the order in
+    // the file tells which belong together.
+    let shares = |channel: &Channel| part.channels.iter().any(|other| other.name == channel.name);
+    let by_order =
+        joined.channels.len() == part.channels.len() && !joined.channels.iter().any(shares);
+    for (place, mine) in joined.channels.iter_mut().enumerate() {
+        let name = mine.name.clone();
+        let theirs = if by_order {
+            part.channels.get(place)
+        } else {
+            part.channels.iter().find(|channel| channel.name == name)
+        };
+        let Some(theirs) = theirs else {
             return Err(refuse(format!("{} has no channel {name}", part.file)));
         };
         require_step(mine, theirs)?;

@@ -24,7 +24,9 @@
 //! - Vertical components are positive upward; a channel that points down is turned when read.
 //! - Acceleration is linear between samples, velocity quadratic, displacement cubic.
 //! - Before t = 0 nothing moves; after the end the acceleration is zero and the velocity is held.
-//! - PGV and PGD are peaks at the samples, as published values are.
+//! - Measures are trapezoids and peaks of the samples, as published values are; the displacement that
+//!   drives a model is the exact integral of its acceleration, whose peak ([`Sampled::pgd`]) lies up to
+//!   0.4 % above the published one.
 //! - Units and steps are never guessed: a file that states none needs [`ReadOptions`].
 //!
 //! # Where to look
@@ -32,7 +34,7 @@
 //! - Reading: [`read`], [`FORMATS`], [`ReadError`]; parts and components: [`Record::join`],
 //!   [`Record::gather`].
 //! - Choosing and processing: [`Component`], [`Record::ground_motion`], [`Processing`].
-//! - Measuring: [`IntensityMeasure`], [`ResponseSpectrum`], [`rotated_spectrum`], [`dominant_pulse`].
+//! - Measuring: [`IntensityMeasure`], [`Horizontals`], [`ResponseSpectrum`], [`rotated_spectrum`], [`dominant_pulse`].
 //! - Scaling and matching: [`GroundMotion::scale_to`], [`GroundMotion::froude`],
 //!   [`GroundMotion::match_spectrum`], [`TargetSpectrum`].
 //! - Making: [`Pulse`], [`CloughPenzien`], [`BooreSource`], [`NearFault`], all from stated seeds of
@@ -50,6 +52,7 @@ mod format;
 mod fourier;
 mod ground_motion;
 mod history;
+mod horizontals;
 mod intensity;
 mod join;
 mod matching;
@@ -76,6 +79,7 @@ pub use format::{FORMATS, Format, ReadOptions, read, slammer_step, station_xml_s
 pub use fourier::FourierSpectrum;
 pub use ground_motion::GroundMotion;
 pub use history::{Delayed, History};
+pub use horizontals::Horizontals;
 pub use intensity::{IntensityMeasure, arias, husid};
 pub use matching::{MatchMethod, Matched, Matching};
 pub use math::STANDARD_GRAVITY;

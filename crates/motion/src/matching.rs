@@ -62,6 +62,10 @@ const AMPLITUDE_STEP: f64 = 0.7;
 const PER_DECADE: f64 = 60.0;
 /// Periods judged to one matched, so that nothing hides between.
 const JUDGED: usize = 3;
+/// Periods to one judged at which the result is checked in the end.
+const CHECKED: usize = 6;
+/// Share of the tolerance at which no further method is tried.
+const CLEAR: f64 = 0.98;
 /// Share of the tolerance at which the rounds end.
 pub(crate) const GOOD_ENOUGH: f64 = 0.7;
 
@@ -70,7 +74,8 @@ pub(crate) const GOOD_ENOUGH: f64 = 0.7;
 pub struct Matched {
     /// The motion; its horizontal component is matched, the vertical takes the same first scaling.
     pub motion: GroundMotion,
-    /// Largest relative misfit at the matched periods.
+    /// Largest relative misfit from the shortest to the longest period, on a grid of 1080 periods to a
+    /// decade.
     pub misfit: f64,
     /// Rounds done.
     pub rounds: usize,
@@ -90,7 +95,8 @@ impl GroundMotion {
     /// use barrelstack_motion::{CloughPenzien, Envelope, Matching, TargetSpectrum};
     /// let envelope = Envelope::Jennings { rise: 2.0, decay_start: 8.0, decay: 0.5 };
     /// let motion = CloughPenzien::medium(1.0).motion(&envelope, 15.0, 0.01, 1)?;
-    /// let target = TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0 };
+    /// let target =
+    ///     TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0, damping: 0.05 };
     /// let settings = Matching { tolerance: 0.1, ..Matching::default() };
     /// let matched = motion.match_spectrum(&target, &settings)?;
     /// assert!(matched.misfit <= 0.1);
@@ -110,8 +116,11 @@ impl GroundMotion {
         };
         check(settings, sampled.time_step())?;
         let (time_step, given) = subdivided(&sampled, settings.shortest);
-        let judged = judged_periods(settings);
-        let judged_goal = judged.iter().map(|&t| target.acceleration(t)).collect();
+        let goals = |periods: &[f64]| periods.iter().map(|&t| target.acceleration(t)).collect();
+        let judged = judged_periods(settings, JUDGED);
+        let judged_goal: Vec<f64> = goals(&judged);
+        let checked = judged_periods(settings, CHECKED * JUDGED);
+        let checked_goal = goals(&checked);
         let damping = target.damping();
         // Drift is kept out below the longest matched period.
         let chain = Processing {
@@ -120,8 +129,9 @@ impl GroundMotion {
             close: true,
             ..Processing::none()
         };
-        let work = Work { time_step, target, judged, judged_goal, damping, chain };
-        let now = work.spectrum(&given)?;
+        let work =
+            Work { time_step, target, judged, judged_goal, checked, checked_goal, damping, chain };
+        let now = work.spectrum(&work.judged, &given)?;
         let factor = mean_ratio(&work.judged_goal, &now);
         if !(factor.is_finite() && factor > 0.0) {
             return Err(MotionError::Zero {
@@ -203,8 +213,9 @@ fn intervals(settings: &Matching) -> usize {
     count
 }
 
-fn judged_periods(settings: &Matching) -> Vec<f64> {
-    math::log_space(settings.shortest, settings.longest, JUDGED * intervals(settings))
+/// Both ends, and between them `finer` periods to one that is matched.
+fn judged_periods(settings: &Matching, finer: usize) -> Vec<f64> {
+    math::log_space(settings.shortest, settings.longest, finer * intervals(settings))
 }
 
 /// Periods matched in one round: both ends, and between them a grid that shifts from round to round
@@ -229,20 +240,26 @@ fn mean_ratio(goal: &[f64], now: &[f64]) -> f64 {
     math::exp(sum / goal.len() as f64)
 }
 
+fn misfit_of(goal: &[f64], now: &[f64]) -> f64 {
+    goal.iter().zip(now).map(|(g, n)| (n / g - 1.0).abs()).fold(0.0, f64::max)
+}
+
 /// What stays the same over the rounds.
 pub(crate) struct Work<'a> {
     pub(crate) time_step: f64,
     pub(crate) target: &'a TargetSpectrum,
     judged: Vec<f64>,
     judged_goal: Vec<f64>,
+    checked: Vec<f64>,
+    checked_goal: Vec<f64>,
     pub(crate) damping: f64,
     pub(crate) chain: Processing,
 }
 
 impl Work<'_> {
-    /// Pseudo-accelerations at the judged periods.
-    fn spectrum(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
-        self.judged
+    /// Pseudo-accelerations at some periods.
+    fn spectrum(&self, periods: &[f64], acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
+        periods
             .iter()
             .map(|&period| {
                 response(self.time_step, acceleration, period, self.damping)
@@ -251,13 +268,14 @@ impl Work<'_> {
             .collect()
     }
 
-    fn misfit_of(&self, now: &[f64]) -> f64 {
-        self.judged_goal.iter().zip(now).map(|(g, n)| (n / g - 1.0).abs()).fold(0.0, f64::max)
-    }
-
     /// Largest relative misfit at the judged periods.
     pub(crate) fn misfit(&self, acceleration: &[f64]) -> Result<f64, MotionError> {
-        Ok(self.misfit_of(&self.spectrum(acceleration)?))
+        Ok(misfit_of(&self.judged_goal, &self.spectrum(&self.judged, acceleration)?))
+    }
+
+    /// Largest relative misfit at all periods that are checked.
+    fn checked_misfit(&self, acceleration: &[f64]) -> Result<f64, MotionError> {
+        Ok(misfit_of(&self.checked_goal, &self.spectrum(&self.checked, acceleration)?))
     }
 
     pub(crate) fn close(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
@@ -272,37 +290,39 @@ impl Work<'_> {
     ) -> Result<(Vec<f64>, f64, usize), MotionError> {
         use MatchMethod::{Frequency, Time};
         let order: &[MatchMethod] = match settings.method {
-            Frequency => &[Frequency, Time, Frequency, Time],
-            Time => &[Time, Frequency, Time],
+            Frequency => &[Frequency, Time, Frequency, Time, Frequency, Time],
+            Time => &[Time, Frequency, Time, Frequency, Time],
         };
-        let (mut a, mut misfit, mut rounds) = (start, f64::INFINITY, 0);
+        let (mut a, mut rounds) = (start, 0);
+        let mut best = Best::new(&a);
         for method in order {
-            let (next, reached, more) = match method {
+            let (next, more) = match method {
                 Frequency => self.in_frequency(&a, settings)?,
                 Time => wavelets::match_in_time(self, &a, settings)?,
             };
             rounds += more;
-            (a, misfit) = (next, reached);
-            if misfit <= settings.tolerance {
+            best.offer(&next, self.checked_misfit(&next)?, rounds);
+            if best.misfit <= CLEAR * settings.tolerance {
                 break;
             }
+            a = next;
         }
-        Ok((a, misfit, rounds))
+        Ok((best.acceleration, best.misfit, rounds))
     }
 
     fn in_frequency(
         &self,
         start: &[f64],
         settings: &Matching,
-    ) -> Result<(Vec<f64>, f64, usize), MotionError> {
+    ) -> Result<(Vec<f64>, usize), MotionError> {
         let length = (2 * start.len()).next_power_of_two();
         let mut a = self.close(start)?;
         let mut best = Best::new(&a);
         // Ratios over the logarithm of frequency, from long periods to short ones.
         let ln_f: Vec<f64> = self.judged.iter().rev().map(|t| -math::ln(*t)).collect();
         for round in 1..=settings.rounds {
-            let now = self.spectrum(&a)?;
-            best.offer(&a, self.misfit_of(&now), round);
+            let now = self.spectrum(&self.judged, &a)?;
+            best.offer(&a, misfit_of(&self.judged_goal, &now), round);
             if best.misfit <= GOOD_ENOUGH * settings.tolerance {
                 break;
             }
@@ -321,7 +341,7 @@ impl Work<'_> {
             let changed: Vec<f64> = spectrum[..a.len()].iter().map(|x| x.re).collect();
             a = self.close(&changed)?;
         }
-        Ok((best.acceleration, best.misfit, best.round))
+        Ok((best.acceleration, best.round))
     }
 }
 

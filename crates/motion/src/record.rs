@@ -115,16 +115,16 @@ impl Channel {
     /// Peak velocity (m/s) by plain integration from [`Channel::initial_velocity`]; of a raw record
     /// this is drift, not ground motion.
     pub fn pgv(&self) -> f64 {
-        math::peak(&self.integrated().0)
+        math::peak(&self.velocity())
     }
 
-    /// Peak displacement (m) by plain integration.
+    /// Peak displacement (m) by plain integration, trapezoids throughout.
     pub fn pgd(&self) -> f64 {
-        math::peak(&self.integrated().1)
+        crate::sampled::trapezoid_peak(self.time_step, &self.velocity())
     }
 
-    fn integrated(&self) -> (Vec<f64>, Vec<f64>) {
-        crate::sampled::integrate(self.time_step, &self.acceleration, self.initial_velocity)
+    fn velocity(&self) -> Vec<f64> {
+        crate::sampled::integrate(self.time_step, &self.acceleration, self.initial_velocity).0
     }
 
     /// Whether the channel is known to be vertical.

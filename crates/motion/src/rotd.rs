@@ -5,7 +5,7 @@ use crate::math::{self, PI};
 use crate::response::{Step, check_oscillator};
 
 /// Directions in half a turn.
-const DIRECTIONS: usize = 180;
+pub(crate) const DIRECTIONS: usize = 180;
 
 /// A peak over all horizontal directions, one degree apart.
 #[derive(Clone, Copy, Debug, PartialEq)]

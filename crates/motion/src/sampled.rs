@@ -168,6 +168,15 @@ impl Sampled {
         math::peak(&self.displacement)
     }
 
+    /// Largest absolute displacement by the trapezoid of the sampled velocities (m), as published
+    /// values and the displacement files of PEER are made.
+    ///
+    /// The displacement that belongs to an acceleration linear between samples, [`Sampled::pgd`], is
+    /// another number: 0.4 % more for a record of 0.02 s with a period of 0.3 s at its peak.
+    pub fn pgd_by_trapezoid(&self) -> f64 {
+        trapezoid_peak(self.time_step, &self.velocity)
+    }
+
     /// Largest absolute velocity at any time, also between samples (m/s).
     ///
     /// Where the acceleration changes sign inside a step the velocity has an extremum there.
@@ -224,6 +233,16 @@ impl Sampled {
             displacement: times(&self.displacement, factor * time * time),
         }
     }
+}
+
+/// Largest absolute value of the running trapezoid integral.
+pub(crate) fn trapezoid_peak(time_step: f64, values: &[f64]) -> f64 {
+    let (mut sum, mut peak) = (0.0_f64, 0.0_f64);
+    for pair in values.windows(2) {
+        sum += 0.5 * time_step * (pair[0] + pair[1]);
+        peak = peak.max(sum.abs());
+    }
+    peak
 }
 
 /// Velocity and displacement at the samples of a piecewise-linear acceleration.

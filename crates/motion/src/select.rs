@@ -182,6 +182,26 @@ impl Record {
         Ok(motion)
     }
 
+    /// The first two horizontal components, processed as told and cut to the shorter.
+    ///
+    /// # Errors
+    /// If there are not two, their steps differ, or a setting is out of range.
+    pub fn horizontals(&self, processing: &Processing) -> Result<(Sampled, Sampled), MotionError> {
+        let mut first = self.component(&Component::Horizontal1)?;
+        let mut second = self.component(&Component::Horizontal2)?;
+        let mut told = Vec::new();
+        cut_to_shorter(&mut first, &mut second, &mut told)?;
+        let mut series = |channel: &Channel| -> Result<Sampled, MotionError> {
+            match history(channel, "horizontal", processing, &mut told)? {
+                History::Sampled(sampled) => Ok(sampled),
+                other @ (History::Analytic(_) | History::Sum(_)) => {
+                    other.sampled(channel.time_step)
+                }
+            }
+        };
+        Ok((series(&first)?, series(&second)?))
+    }
+
     /// The first horizontal component with the vertical one if there is any, processed by the
     /// default for the record's stage.
     ///

@@ -44,7 +44,7 @@ pub(crate) fn match_in_time(
     work: &Work<'_>,
     start: &[f64],
     settings: &Matching,
-) -> Result<(Vec<f64>, f64, usize), MotionError> {
+) -> Result<(Vec<f64>, usize), MotionError> {
     let n = start.len();
     let mut a = work.close(start)?;
     let mut best = Best::new(&a);
@@ -83,7 +83,7 @@ pub(crate) fn match_in_time(
         }
         a = work.close(&a)?;
     }
-    Ok((best.acceleration, best.misfit, best.round))
+    Ok((best.acceleration, best.round))
 }
 
 /// Least-squares amplitudes of the wavelets for the demands, which are in order of period.

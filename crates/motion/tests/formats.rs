@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 use barrelstack_motion::{
     AccelerationUnit, Orientation, ReadOptions, Record, Refusal, STANDARD_GRAVITY, Stage,
-    StatedPeak, read,
+    StatedPeak, read, write,
 };
 
 fn folder() -> PathBuf {
@@ -311,6 +311,23 @@ fn what_a_format_does_not_say_must_be_given() {
 }
 
 #[test]
+fn a_unit_behind_every_name_is_a_stated_one() {
+    let rows: String = (0..50).fold(String::new(), |text, k| {
+        text + &format!("{:.2},{},{}\n", 0.01 * f64::from(k), k % 7, 5 - k % 5)
+    });
+    let table = |header: &str| {
+        read(format!("{header}\n{rows}").as_bytes(), "t.csv", &ReadOptions::default())
+    };
+    let record = table("time (s),EW (cm/s2),NS (cm/s2)").unwrap();
+    assert!((record.channels[0].pga() - 0.06).abs() < 1e-12);
+    assert_eq!(record.channels[1].direction.azimuth, Some(0.0));
+    for header in ["time (s),EW (cm/s2),NS (g)", "time (s),EW,NS", "time (s),EW (cm/s2),NS"] {
+        let error = table(header).unwrap_err();
+        assert_eq!(error.refusal, Refusal::Missing, "{header}: {error}");
+    }
+}
+
+#[test]
 fn an_ignored_option_is_reported() {
     let given = ReadOptions { time_step: Some(0.5), ..ReadOptions::default() };
     for (file, ..) in SAMPLES.iter().filter(|s| !s.0.starts_with("columns")) {
@@ -469,20 +486,20 @@ fn binary_garbage_is_refused() {
 }
 
 #[test]
-fn the_own_text_form_survives_a_round_trip() {
+fn the_own_text_form_and_csv_survive_a_round_trip_with_the_initial_velocity() {
     for file in ["csmip-v2/example.V2", "knet/example.EW", "peer/values-first.AT2"] {
-        let record = read(&bytes(file), file, &options(file)).unwrap();
-        let text = record.to_text(&["a comment"]);
-        let again = read(text.as_bytes(), "copy.txt", &ReadOptions::default()).unwrap();
-        assert_eq!(again.format, "barrelstack");
-        assert_eq!(again.stage, record.stage);
-        assert_eq!(again.channels.len(), record.channels.len());
-        for (a, b) in again.channels.iter().zip(&record.channels) {
-            assert_eq!(a.name, b.name);
-            assert_eq!(a.direction, b.direction);
-            assert_eq!(a.time_step, b.time_step);
-            for (x, y) in a.acceleration.iter().zip(&b.acceleration) {
-                assert!((x - y).abs() <= 6e-6 * y.abs());
+        let mut record = read(&bytes(file), file, &options(file)).unwrap();
+        record.channels[0].initial_velocity = -0.012_345_678_9;
+        for (name, text) in [
+            ("copy.txt", write::text(&record).unwrap()),
+            ("copy.csv", write::csv(&record).unwrap()),
+        ] {
+            let again = read(text.as_bytes(), name, &ReadOptions::default()).unwrap();
+            assert_eq!(again.channels.len(), record.channels.len());
+            for (a, b) in again.channels.iter().zip(&record.channels) {
+                assert_eq!(a.acceleration, b.acceleration[..a.acceleration.len()], "{name}");
+                assert_eq!(a.initial_velocity.to_bits(), b.initial_velocity.to_bits(), "{name}");
+                assert_eq!(a.direction, b.direction);
             }
         }
     }

@@ -7,8 +7,8 @@
 )]
 
 use barrelstack_motion::{
-    FourierSpectrum, IntensityMeasure, Pulse, STANDARD_GRAVITY, Sampled, dominant_pulse, response,
-    response_subdivided, rotated_peak, rotated_spectrum,
+    FourierSpectrum, Horizontals, IntensityMeasure, Pulse, STANDARD_GRAVITY, Sampled,
+    dominant_pulse, response, response_subdivided, rotated_peak, rotated_spectrum,
 };
 
 const TAU: f64 = std::f64::consts::TAU;
@@ -136,6 +136,47 @@ fn a_rotated_spectrum_lies_between_the_components_of_a_pair() {
         let ratio = peak.median / peak.largest;
         assert!((ratio - 0.5_f64.sqrt()).abs() < 0.01, "{ratio}");
     }
+}
+
+#[test]
+fn two_horizontals_are_scaled_to_any_measure_over_all_directions() {
+    let one = sine(2.0, 0.4, 10, 40);
+    let a: Vec<f64> = one
+        .acceleration()
+        .iter()
+        .enumerate()
+        .map(|(k, a)| 0.7 * a * (0.01 * k as f64).cos())
+        .collect();
+    let two = Sampled::new(one.time_step(), a).unwrap();
+    for (measure, target) in [
+        (IntensityMeasure::Pga, 3.0),
+        (IntensityMeasure::Pgv, 0.4),
+        (IntensityMeasure::Pgd, 0.05),
+        (IntensityMeasure::Sa { period: 0.5, damping: 0.05 }, 6.0),
+        (IntensityMeasure::Arias, 1.5),
+        (IntensityMeasure::Cav, 6.0),
+        (IntensityMeasure::CavStandardized, 6.0),
+        (IntensityMeasure::Rms, 1.0),
+    ] {
+        for over in [Horizontals::RotD50, Horizontals::RotD100, Horizontals::GeometricMean] {
+            let factor = over.scale_factor(measure, &one, &two, target).unwrap();
+            let (first, second) = (one.scaled(factor), two.scaled(factor));
+            let reached = over.of(measure, &first, &second).unwrap();
+            assert!((reached / target - 1.0).abs() < 1e-9, "{over} {measure}: {reached}");
+        }
+        // The largest lies above the median, and both components lie below the largest.
+        let of = |over: Horizontals| over.of(measure, &one, &two).unwrap();
+        assert!(of(Horizontals::RotD100) >= of(Horizontals::RotD50));
+        let single = measure.of(&one).unwrap().max(measure.of(&two).unwrap());
+        assert!(of(Horizontals::RotD100) >= single * (1.0 - 1e-12), "{measure}");
+    }
+    let time = Horizontals::RotD50.scale_factor(IntensityMeasure::D5_95, &one, &two, 3.0);
+    assert!(time.unwrap_err().to_string().contains("does not change"));
+    // Turned Arias intensities have a closed form: their median is that at 45 degrees of the axes.
+    let arias = |m: &Sampled| IntensityMeasure::Arias.of(m).unwrap();
+    let mean = 0.5 * (arias(&one) + arias(&two));
+    let median = Horizontals::RotD50.of(IntensityMeasure::Arias, &one, &two).unwrap();
+    assert!((median / mean - 1.0).abs() < 1e-3, "{median} {mean}"); // measured 1e-5
 }
 
 #[test]

@@ -24,7 +24,7 @@ fn napa() -> GroundMotion {
 
 fn targets() -> Vec<TargetSpectrum> {
     vec![
-        TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0 },
+        TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0, damping: 0.05 },
         TargetSpectrum::Eurocode8 {
             ground_acceleration: 0.3,
             site: SiteClass::B,
@@ -32,7 +32,7 @@ fn targets() -> Vec<TargetSpectrum> {
             damping: 0.05,
         },
         TargetSpectrum::NCh433 { zone: ChileanZone::Three, site: SiteClass::D },
-        TargetSpectrum::NCh2745 { zone: ChileanZone::Two, soil: NCh2745Soil::II },
+        TargetSpectrum::NCh2745 { zone: ChileanZone::Two, soil: NCh2745Soil::II, damping: 0.05 },
         TargetSpectrum::Nzs1170 {
             hazard: 0.4,
             return_period: 1.0,
@@ -42,14 +42,14 @@ fn targets() -> Vec<TargetSpectrum> {
     ]
 }
 
-/// Largest misfit on a grid of its own, finer than the matched one.
+/// Largest misfit on a grid of its own, 1000 periods to a decade.
 fn misfit(motion: &GroundMotion, target: &TargetSpectrum) -> f64 {
     let History::Sampled(sampled) = &motion.horizontal else {
         panic!("a matched motion is sampled")
     };
-    (0..=300)
+    (0..=1477)
         .map(|k| {
-            let period = 0.1 * 30.0_f64.powf(f64::from(k) / 300.0);
+            let period = 0.1 * 30.0_f64.powf(f64::from(k) / 1477.0);
             let peaks =
                 response(sampled.time_step(), sampled.acceleration(), period, 0.05).unwrap();
             (peaks.pseudo_acceleration / target.acceleration(period) - 1.0).abs()
@@ -73,7 +73,7 @@ fn both_methods_meet_every_code_spectrum_and_do_not_drift() {
             let between = misfit(&matched.motion, &target);
             println!("{method:?}: {:.3} at its periods, {between:.3} between", matched.misfit);
             assert!(matched.misfit <= 0.05);
-            assert!(between <= 0.053, "{method:?} {target:?}: {between}"); // measured 0.0512
+            assert!(between <= 0.05, "{method:?} {target:?}: {between}"); // measured 0.0498
             let motion = &matched.motion;
             let end = motion.horizontal.at(motion.horizontal.duration());
             assert!(end.velocity.abs() < 1e-3 * motion.pgv());
@@ -88,7 +88,7 @@ fn both_methods_meet_every_code_spectrum_and_do_not_drift() {
 fn a_table_is_matched_like_a_code() {
     let table: Vec<(f64, f64)> =
         [0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0].iter().map(|t| (*t, 6.0 / (1.0 + 3.0 * t))).collect();
-    let target = TargetSpectrum::Table(table);
+    let target = TargetSpectrum::Table { points: table, damping: 0.05 };
     let matched = napa().match_spectrum(&target, &Matching::default()).unwrap();
     assert!(matched.misfit <= 0.05);
 }
@@ -102,7 +102,7 @@ fn impossible_matches_are_refused_in_words() {
     let hopeless = Matching { tolerance: 1e-6, rounds: 2, ..Matching::default() };
     let error = motion.match_spectrum(target, &hopeless).unwrap_err().to_string();
     assert!(error.contains("misfit"), "{error}");
-    let bad = TargetSpectrum::Table(vec![(1.0, 1.0), (0.5, 1.0)]);
+    let bad = TargetSpectrum::Table { points: vec![(1.0, 1.0), (0.5, 1.0)], damping: 0.05 };
     assert!(motion.match_spectrum(&bad, &Matching::default()).is_err());
 }
 
@@ -112,7 +112,7 @@ fn code_spectra_have_their_published_ordinates() {
     let near = |value: f64, expected: f64| {
         assert!((value / expected - 1.0).abs() < 2e-3, "{value} against {expected}");
     };
-    let asce = TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0 };
+    let asce = TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0, damping: 0.05 };
     for (t, a) in [(0.0, 0.4), (0.06, 0.7), (0.3, 1.0), (1.2, 0.5), (16.0, 0.6 * 8.0 / 256.0)] {
         near(asce.acceleration(t), a * g);
     }
@@ -131,7 +131,7 @@ fn code_spectra_have_their_published_ordinates() {
     near(nch.acceleration(0.0), 1.2 * 0.4 * g);
     // The branches meet within the rounding of the code's plateaus.
     for soil in [NCh2745Soil::I, NCh2745Soil::II, NCh2745Soil::III] {
-        let spectrum = TargetSpectrum::NCh2745 { zone: ChileanZone::Two, soil };
+        let spectrum = TargetSpectrum::NCh2745 { zone: ChileanZone::Two, soil, damping: 0.05 };
         let mut previous = spectrum.acceleration(0.01);
         for k in 1..4000 {
             let here = spectrum.acceleration(0.01 + 0.001 * f64::from(k));
@@ -140,14 +140,14 @@ fn code_spectra_have_their_published_ordinates() {
         }
     }
     near(
-        TargetSpectrum::NCh2745 { zone: ChileanZone::Three, soil: NCh2745Soil::II }
+        TargetSpectrum::NCh2745 { zone: ChileanZone::Three, soil: NCh2745Soil::II, damping: 0.05 }
             .acceleration(0.3),
         1.25 * 11.0,
     );
     let nzs = |site, t| {
-        TargetSpectrum::Nzs1170 { hazard: 1.0, return_period: 1.0, site, fault_distance: None }
+        TargetSpectrum::Nzs1170 { hazard: 0.5, return_period: 1.0, site, fault_distance: None }
             .acceleration(t)
-            / g
+            / (0.5 * g)
     };
     for (site, t, shape) in [
         (SiteClass::B, 0.5, 1.60),
@@ -161,11 +161,66 @@ fn code_spectra_have_their_published_ordinates() {
     ] {
         assert!((nzs(site, t) - shape).abs() < 0.013, "{site:?} {t}: {}", nzs(site, t));
     }
+    let near_fault = |return_period: f64, t: f64| {
+        let distance = Some(2.0);
+        let (hazard, site) = (0.3, SiteClass::C);
+        TargetSpectrum::Nzs1170 { hazard, return_period, site, fault_distance: distance }
+            .acceleration(t)
+            / g
+    };
+    near(near_fault(1.0, 4.0), 0.3 * 3.96 / 16.0 * 1.6);
+    near(near_fault(0.5, 4.0), 0.3 * 0.5 * 3.96 / 16.0);
+    // Z R goes no higher than 0.7.
+    near(near_fault(3.0, 1.0), 0.7 * 2.0 * 0.5_f64.powf(0.75));
     let ac = TargetSpectrum::Ac156 { sds: 1.0, height_ratio: 1.0 };
-    for (f, a) in [(2.0, 1.6), (8.3, 1.6), (33.3, 1.2), (50.0, 1.2)] {
+    for (f, a) in [(0.1, 0.16), (1.3, 1.6), (8.3, 1.6), (33.3, 1.2), (50.0, 1.2)] {
         near(ac.acceleration(1.0 / f), a * g);
     }
     let ground = TargetSpectrum::Ac156 { sds: 1.0, height_ratio: 0.0 };
     near(ground.acceleration(0.2), g);
     near(ground.acceleration(0.01), 0.4 * g);
+}
+
+#[test]
+fn damping_changes_the_spectra_of_the_codes_that_say_how() {
+    let g = STANDARD_GRAVITY;
+    let near = |value: f64, expected: f64| {
+        assert!((value / expected - 1.0).abs() < 1e-9, "{value} against {expected}");
+    };
+    let asce = |damping| TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0, damping };
+    for (damping, factor) in [(0.02, 0.8), (0.05, 1.0), (0.15, 1.35), (0.3, 1.7), (0.5, 2.0)] {
+        near(asce(damping).acceleration(0.0), 0.4 * g);
+        near(asce(damping).acceleration(0.5), g / factor);
+        near(asce(damping).acceleration(2.0), 0.3 * g / factor);
+        assert_eq!(asce(damping).damping(), damping);
+    }
+    let ec8 = |damping| TargetSpectrum::Eurocode8 {
+        ground_acceleration: 0.2,
+        site: SiteClass::C,
+        small_magnitude: true,
+        damping,
+    };
+    near(ec8(0.1).acceleration(0.2), 0.2 * 1.5 * 2.5 * (10.0_f64 / 15.0).sqrt() * g);
+    near(ec8(0.9).acceleration(0.2), 0.2 * 1.5 * 2.5 * 0.55 * g);
+    let nch = |soil, damping| TargetSpectrum::NCh2745 { zone: ChileanZone::Two, soil, damping };
+    near(nch(NCh2745Soil::I, 0.05).acceleration(0.01), 0.40 * g);
+    near(nch(NCh2745Soil::III, 0.05).acceleration(0.01), 0.45 * g);
+    near(nch(NCh2745Soil::II, 0.05).acceleration(0.115), 0.5 * (0.41 * g + 11.0));
+    near(nch(NCh2745Soil::II, 0.10).acceleration(0.3), 11.0 / 1.37);
+    near(nch(NCh2745Soil::II, 0.02).acceleration(0.3), 11.0 / 0.65);
+    for target in [asce(0.01), asce(0.6), ec8(1.0), nch(NCh2745Soil::I, f64::NAN)] {
+        assert!(target.check().unwrap_err().to_string().contains("damping ratio"), "{target:?}");
+    }
+}
+
+#[test]
+fn a_motion_is_matched_at_the_damping_of_its_target() {
+    let target = TargetSpectrum::Asce7 { sds: 0.8, sd1: 0.5, long_period: 8.0, damping: 0.1 };
+    let matched = napa().match_spectrum(&target, &Matching::default()).unwrap();
+    let History::Sampled(sampled) = &matched.motion.horizontal else { panic!("not sampled") };
+    for period in [0.15, 0.4, 0.9, 2.2] {
+        let peaks = response(sampled.time_step(), sampled.acceleration(), period, 0.1).unwrap();
+        let off = peaks.pseudo_acceleration / target.acceleration(period) - 1.0;
+        assert!(off.abs() <= 0.05, "{period} s: {off}");
+    }
 }

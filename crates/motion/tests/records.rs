@@ -165,6 +165,98 @@ fn unreasonable_settings_are_refused() {
     assert!(whole.apply(0.01, &a, 0.0).unwrap().acceleration.iter().all(|v| v.abs() < 1e-15));
 }
 
+/// Times without pattern in 0..1.
+fn scattered(n: u32) -> impl Iterator<Item = f64> {
+    (1..=n).map(|k| (f64::from(k) * 0.618_033_988_749_894_9).fract())
+}
+
+#[test]
+fn every_sample_of_a_raw_record_comes_to_rest_and_stays_consistent() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    let given = ReadOptions {
+        unit: Some(barrelstack_motion::AccelerationUnit::G),
+        time_step: Some(0.01),
+        sensitivity: Some(4000.0),
+    };
+    let mut seen = 0;
+    for folder in std::fs::read_dir(root).unwrap() {
+        let folder = folder.unwrap().path();
+        if !folder.is_dir() {
+            continue;
+        }
+        for file in std::fs::read_dir(folder).unwrap() {
+            let path = file.unwrap().path();
+            let name = path.display().to_string();
+            let Ok(record) = read(&std::fs::read(&path).unwrap(), &name, &given) else { continue };
+            if record.stage != Stage::Raw {
+                continue;
+            }
+            for number in 1..=record.channels.len() {
+                for chain in [Processing::raw(), Processing::compact()] {
+                    let component = Component::Number(number);
+                    let motion = record.ground_motion(&component, None, &chain).unwrap();
+                    consistent_and_closed(&name, sampled(&motion.horizontal));
+                    seen += 1;
+                }
+            }
+        }
+    }
+    assert!(seen >= 40, "{seen}");
+}
+
+/// End velocity and displacement, and the integrals over parts of a step at scattered times.
+fn consistent_and_closed(name: &str, motion: &Sampled) {
+    let end = motion.at(motion.duration());
+    assert!(end.velocity.abs() < 1e-3 * motion.pgv(), "{name}"); // measured 1e-13
+    assert!(end.displacement.abs() < 1e-2 * motion.pgd(), "{name}"); // measured 1e-12
+    for x in scattered(100) {
+        let t = x * motion.duration();
+        let from = (t / motion.time_step()).floor() * motion.time_step();
+        let (a, m, b) = (motion.at(from), motion.at(0.5 * (from + t)), motion.at(t));
+        // Simpson's rule is exact for a linear acceleration and a quadratic velocity.
+        let h = (t - from) / 6.0;
+        let v = a.velocity + h * (a.acceleration + 4.0 * m.acceleration + b.acceleration);
+        let d = a.displacement + h * (a.velocity + 4.0 * m.velocity + b.velocity);
+        assert!((v - b.velocity).abs() <= 1e-12 * motion.pgv(), "{name} at {t}"); // measured 1e-15
+        assert!((d - b.displacement).abs() <= 1e-12 * motion.pgd(), "{name} at {t}");
+    }
+}
+
+#[test]
+fn parts_of_every_kind_are_joined_by_name_or_by_order() {
+    let whole = example((0.0, 90.0), 3000);
+    let part = |from: usize, to: usize, file: &str| {
+        let mut part = whole.clone();
+        part.file = file.to_owned();
+        part.channels.truncate(1);
+        // Plain columns name their only channel after the file.
+        part.channels[0].name = barrelstack_name(file);
+        part.channels[0].acceleration = part.channels[0].acceleration[from..to].to_vec();
+        part
+    };
+    let joined =
+        Record::join(&[part(0, 1800, "part1.txt"), part(1300, 3000, "part2.txt")]).unwrap();
+    assert_eq!(joined.channels[0].acceleration.len(), 3000);
+    // As K-NET files do, with the same name in both and the mean of each taken off.
+    let mut two = part(1300, 3000, "part1.txt");
+    let mean = two.channels[0].acceleration.iter().sum::<f64>() / 1700.0;
+    for a in &mut two.channels[0].acceleration {
+        *a -= mean;
+    }
+    let joined = Record::join(&[part(0, 1800, "part1.txt"), two]).unwrap();
+    let off = joined.channels[0]
+        .acceleration
+        .iter()
+        .zip(&whole.channels[0].acceleration)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max);
+    assert!(off < 1e-12, "{off}");
+}
+
+fn barrelstack_name(file: &str) -> String {
+    file.trim_end_matches(".txt").to_owned()
+}
+
 #[test]
 fn parts_are_joined_where_they_repeat() {
     let whole = example((0.0, 90.0), 3000);

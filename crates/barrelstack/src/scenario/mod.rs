@@ -65,8 +65,8 @@ pub use error::{Place, Problem, ScenarioError};
 pub use free::{FreeBody, FreeInterface, FreeScene, Ground, Nodes, Viscous};
 pub use interface::{Basis, Damping, Friction, Interface, NormalLaw};
 pub use motion::{
-    Amplitude, Direction, FileRef, MotionSource, MotionSpec, Processing, Pulse, PulseKind,
-    RecordMotion, RecordSource, Scale, Sine, Vertical,
+    Amplitude, Direction, FileRef, MeasuredOn, MotionSource, MotionSpec, Processing, Pulse,
+    PulseKind, RecordMotion, RecordSource, Scale, Sine, Vertical,
 };
 pub use quantity::{Quantity, QuantityError};
 pub use rack::{Cradle, Posts, Rack, RackKind};

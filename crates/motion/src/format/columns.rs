@@ -3,13 +3,14 @@
 //! Neither unit nor step is ever guessed: both come from header words, a time column, or the caller.
 
 use super::even::{Timed, even_steps};
-use super::source::{Source, latin1, shorten};
+use super::source::{LARGEST_ACCELERATION, Source, latin1, parse_number, shorten};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::math;
 use crate::record::{Channel, Record, Stage};
 use crate::units::AccelerationUnit;
+use crate::write::INITIAL_VELOCITY;
 
 pub(crate) const FORMAT: Format =
     Format { name: "columns", title: "plain columns and CSV", sniff, read };
@@ -90,14 +91,29 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     let names = if timed { names.get(1..).unwrap_or(&[]).to_vec() } else { names };
     let stem = super::file_stem(source.name);
     let several = columns.len() > 1;
+    let velocities = initial_velocities(source, first);
     for (k, column) in columns.into_iter().enumerate() {
         let fallback = if several { format!("column {}", k + 1) } else { stem.clone() };
-        let name = names.get(k).filter(|_| several).cloned().unwrap_or(fallback);
+        // A single column is often called "acceleration"; the file's name says more.
+        let tells = |name: &&String| several || Direction::parse(name) != Direction::default();
+        let name = names.get(k).filter(tells).cloned().unwrap_or(fallback);
         let direction = Direction::parse(&name);
         let values = column.iter().map(|value| value * unit.factor()).collect();
-        record.channels.push(Channel::new(name, direction, time_step, values));
+        let mut channel = Channel::new(name, direction, time_step, values);
+        channel.initial_velocity = velocities.get(k).copied().unwrap_or(0.0);
+        record.channels.push(channel);
     }
     Ok(record)
+}
+
+/// Velocities (m/s) at the first samples, which files of our own state; none in all others.
+fn initial_velocities(source: &Source<'_>, first: usize) -> Vec<f64> {
+    let stated = (0..first)
+        .map(|line| source.text(line))
+        .find_map(|text| text.strip_prefix(INITIAL_VELOCITY).map(str::to_owned));
+    let numbers: Option<Vec<f64>> = stated
+        .and_then(|text| text.split_whitespace().map(|v| parse_number(v.as_bytes())).collect());
+    numbers.filter(|v| v.iter().all(|v| v.abs() <= LARGEST_ACCELERATION)).unwrap_or_default()
 }
 
 fn is_comment(source: &Source<'_>, line: usize) -> bool {
@@ -148,7 +164,10 @@ fn count_and_step(source: &Source<'_>, first: usize) -> (Option<(usize, f64)>, u
     (None, first)
 }
 
-/// All rows as columns; rows of several values without a common width are refused with their line,
+/// Most columns that are taken for components; more are one series in long lines.
+const MOST_COLUMNS: usize = 200;
+
+/// All rows as columns, or one column of very long rows; rows of several values without a common width are refused with their line,
 /// except a short last one.
 fn table(source: &Source<'_>, first: usize, end: usize) -> Result<Vec<Vec<f64>>, ReadError> {
     let mut row = Vec::new();
@@ -156,6 +175,9 @@ fn table(source: &Source<'_>, first: usize, end: usize) -> Result<Vec<Vec<f64>>,
     let width = row.len();
     if width == 0 {
         return Err(source.bad_number(first, 0, source.raw(first)));
+    }
+    if width > MOST_COLUMNS {
+        return Ok(vec![source.all_tokens(first, end, LIMIT)?]);
     }
     let mut columns: Vec<Vec<f64>> =
         (0..width).map(|_| Vec::with_capacity(end.saturating_sub(first))).collect();
@@ -170,7 +192,7 @@ fn table(source: &Source<'_>, first: usize, end: usize) -> Result<Vec<Vec<f64>>,
                 continue;
             }
             return Err(source.error(
-                line,
+                (line, source.end_of(line)),
                 Refusal::Damaged,
                 format!("{width} numbers"),
                 format!("{} numbers", row.len()),
@@ -243,7 +265,8 @@ fn header_names(source: &Source<'_>, first: usize, width: usize) -> Vec<String> 
     } else {
         text.split_whitespace().map(str::to_owned).collect()
     };
-    if names.len() == width {
+    // A line of numbers alone, such as count and step, names nothing.
+    if names.len() == width && names.iter().any(|name| name.parse::<f64>().is_err()) {
         names
             .into_iter()
             .map(|name| name.split('(').next().unwrap_or("").trim().to_owned())
@@ -253,7 +276,8 @@ fn header_names(source: &Source<'_>, first: usize, width: usize) -> Vec<String> 
     }
 }
 
-/// The unit in parentheses or after "units" in a header line that speaks of acceleration.
+/// The unit in parentheses or after "units" in a header line that speaks of acceleration, or the one
+/// that stands in parentheses behind every name but that of the time.
 fn stated_unit(source: &Source<'_>, first: usize) -> Option<(usize, AccelerationUnit)> {
     for line in 0..first {
         let text = source.text(line).to_ascii_lowercase();
@@ -273,8 +297,22 @@ fn stated_unit(source: &Source<'_>, first: usize) -> Option<(usize, Acceleration
                 return Some((line, unit));
             }
         }
+        if let Some(unit) = unit_of_every_column(&text) {
+            return Some((line, unit));
+        }
     }
     None
+}
+
+/// `time (s),EW (m/s2),NS (m/s2)`: one unit of acceleration for all that is not time.
+fn unit_of_every_column(header: &str) -> Option<AccelerationUnit> {
+    let mut units =
+        header.split([',', ';', '\t']).filter(|name| !name.contains("time")).map(|name| {
+            let word = name.split_once(['(', '['])?.1.split([')', ']']).next()?;
+            word.parse::<AccelerationUnit>().ok()
+        });
+    let unit = units.next()??;
+    units.all(|other| other == Some(unit)).then_some(unit)
 }
 
 fn unit(

@@ -31,7 +31,7 @@ use crate::error::{ReadError, Refusal};
 use crate::math::STANDARD_GRAVITY;
 use crate::record::Record;
 use crate::units::AccelerationUnit;
-use source::{LARGEST_ACCELERATION, Source};
+use source::{LARGEST_ACCELERATION, Place, Source};
 
 /// What the caller knows and a file may not say.
 ///
@@ -56,6 +56,38 @@ pub struct Format {
     pub title: &'static str,
     sniff: fn(&Source<'_>) -> bool,
     read: fn(&Source<'_>, &ReadOptions) -> Result<Record, ReadError>,
+}
+
+impl Format {
+    /// Reads `bytes` as this format, whether or not they look like it; `name` is used in messages
+    /// only.
+    ///
+    /// [`read`] finds the format; this is for those who know it, or want to see every reader at work
+    /// on the same bytes.
+    ///
+    /// # Errors
+    /// As [`read`].
+    pub fn read(
+        &self,
+        bytes: &[u8],
+        name: &str,
+        options: &ReadOptions,
+    ) -> Result<Record, ReadError> {
+        let source = Source::new(name, bytes);
+        check_bytes(&source)?;
+        check_options(&source, options)?;
+        self.read_source(&source, options)
+    }
+
+    fn read_source(&self, source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+        let mut record = (self.read)(source, options)?;
+        record.format = self.name;
+        if options.time_step.is_some() && self.name != columns::FORMAT.name {
+            record.warn(None, "the file states its step; the time step given was ignored");
+        }
+        finish(source, &mut record)?;
+        Ok(record)
+    }
 }
 
 impl std::fmt::Debug for Format {
@@ -87,7 +119,8 @@ pub const FORMATS: &[Format] = &[
 ];
 
 /// Files that are known and refused, tried first.
-const KNOWN_OTHERS: &[Format] = &[refused::HDF5, refused::ARCHIVE, refused::XML, slammer::FORMAT];
+const KNOWN_OTHERS: &[Format] =
+    &[refused::HDF5, refused::ARCHIVE, refused::XML, refused::USGS_BLOCKS, slammer::FORMAT];
 
 /// Reads a strong-motion file of any format; `name` is used in messages only.
 ///
@@ -106,24 +139,7 @@ const KNOWN_OTHERS: &[Format] = &[refused::HDF5, refused::ARCHIVE, refused::XML,
 /// ```
 pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, ReadError> {
     let source = Source::new(name, bytes);
-    if bytes.trim_ascii().is_empty() {
-        return Err(source.error(
-            (),
-            Refusal::Damaged,
-            "a strong-motion file",
-            "an empty file",
-            "get the file again from its source",
-        ));
-    }
-    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
-        return Err(source.error(
-            (),
-            Refusal::Damaged,
-            "text in UTF-8",
-            "UTF-16",
-            "save the file as UTF-8 or plain text",
-        ));
-    }
+    check_bytes(&source)?;
     check_options(&source, options)?;
     let Some(format) = KNOWN_OTHERS.iter().chain(FORMATS).find(|format| (format.sniff)(&source))
     else {
@@ -136,13 +152,19 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
             "convert the file to plain columns, one value or time and value to a line",
         ));
     };
-    let mut record = (format.read)(&source, options)?;
-    record.format = format.name;
-    if options.time_step.is_some() && format.name != columns::FORMAT.name {
-        record.warn(None, "the file states its step; the time step given was ignored");
-    }
-    finish(&source, &mut record)?;
-    Ok(record)
+    format.read_source(&source, options)
+}
+
+/// Refuses what no format is.
+fn check_bytes(source: &Source<'_>) -> Result<(), ReadError> {
+    let (expected, found, remedy) = if source.bytes.trim_ascii().is_empty() {
+        ("a strong-motion file", "an empty file", "get the file again from its source")
+    } else if source.bytes.starts_with(&[0xff, 0xfe]) || source.bytes.starts_with(&[0xfe, 0xff]) {
+        ("text in UTF-8", "UTF-16", "save the file as UTF-8 or plain text")
+    } else {
+        return Ok(());
+    };
+    Err(source.error((), Refusal::Damaged, expected, found, remedy))
 }
 
 /// The names of all formats, for messages.
@@ -278,8 +300,9 @@ fn check_count(
         );
         return Ok(());
     }
+    let column = source.find(line, &stated.to_string());
     Err(source.error(
-        line,
+        column.map_or(Place::from(line), |column| Place::from((line, column))),
         Refusal::Damaged,
         format!("{stated} values as stated here"),
         format!("{found}"),
@@ -308,7 +331,7 @@ fn rows(
         source.tokens(line, limit, &mut row)?;
         if row.len() != width {
             return Err(source.error(
-                line,
+                (line, source.end_of(line)),
                 Refusal::Damaged,
                 format!("{width} numbers"),
                 format!("{} numbers", row.len()),

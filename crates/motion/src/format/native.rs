@@ -11,13 +11,12 @@
 //! 1.2345e-3 -2.3456e-4 0
 //! ```
 //!
-//! Other `#` lines are comments. Spec: this file; written by [`Record::to_text`].
-
-use std::fmt::Write as _;
+//! `# initial_velocity:` gives the velocity (m/s) at the first sample of each channel where it is not
+//! zero. Other `#` lines are comments. Spec: this file; written by [`crate::write::text`].
 
 use super::source::{LARGEST_ACCELERATION, Source, parse_number, shorten};
 use super::{Format, ReadOptions};
-use crate::direction::{Direction, Orientation};
+use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::record::{Channel, Record, Stage};
 use crate::units::AccelerationUnit;
@@ -92,6 +91,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         }
         channels.push((words.join(" "), direction.unwrap_or_default()));
     }
+    let velocities = initial_velocities(source, end, channels.len())?;
     let stage = match field(source, end, "stage") {
         None => Stage::Unknown,
         Some((line, text)) => match text.as_str() {
@@ -106,75 +106,40 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let mut record = Record::new(FORMAT.name, source.name, stage);
     record.station = field(source, end, "station").map(|(_, text)| text).unwrap_or_default();
     record.event = field(source, end, "event").map(|(_, text)| text).unwrap_or_default();
-    for (line, text) in (0..end).map(|line| (line, source.text(line))) {
-        let _ = line;
+    for text in (0..end).map(|line| source.text(line)) {
         for key in ["source", "attribution", "licence", "processing"] {
             if let Some(value) = text.strip_prefix(&format!("# {key}: ")) {
                 record.notes.push(format!("{key}: {value}"));
             }
         }
     }
-    for ((name, direction), column) in channels.into_iter().zip(columns) {
+    for (k, ((name, direction), column)) in channels.into_iter().zip(columns).enumerate() {
         let values = column.iter().map(|value| value * unit.factor()).collect();
-        record.channels.push(Channel::new(name, direction, time_step, values));
+        let mut channel = Channel::new(name, direction, time_step, values);
+        channel.initial_velocity = velocities.get(k).copied().unwrap_or(0.0);
+        record.channels.push(channel);
     }
     Ok(record)
 }
 
-impl Record {
-    /// Writes the record in the crate's own text form (m/s², six significant digits), cut to the
-    /// shortest channel; further `comments` stand in the header.
-    ///
-    /// Steps are taken from the first channel; channels of another step are left out.
-    ///
-    /// ```
-    /// use barrelstack_motion::{ReadOptions, bundled, read};
-    /// let napa = bundled("napa-college-2014").unwrap();
-    /// let again = read(napa.to_text(&[]).as_bytes(), "copy", &ReadOptions::default())?;
-    /// assert_eq!(again.channels.len(), 3);
-    /// # Ok::<(), barrelstack_motion::ReadError>(())
-    /// ```
-    pub fn to_text(&self, comments: &[&str]) -> String {
-        let mut text = format!("{TITLE}\n");
-        let line =
-            |key: &str, value: &str| format!("# {key}: {}\n", value.replace(['\n', '\r'], " "));
-        text.push_str(&line("station", &self.station));
-        text.push_str(&line("event", &self.event));
-        for comment in comments {
-            text.push_str("# ");
-            text.push_str(&comment.replace(['\n', '\r'], " "));
-            text.push('\n');
-        }
-        text.push_str(&line("stage", &self.stage.to_string()));
-        text.push_str(&line("unit", "m/s2"));
-        let step = self.channels.first().map_or(0.0, |channel| channel.time_step);
-        text.push_str(&line("time_step", &step.to_string()));
-        let channels: Vec<&Channel> =
-            self.channels.iter().filter(|channel| channel.time_step == step).collect();
-        let names: Vec<String> = channels
-            .iter()
-            .enumerate()
-            .map(|(k, channel)| {
-                let name = channel.name.replace([',', '\n', '\r'], " ");
-                let name = if name.trim().is_empty() { format!("channel {}", k + 1) } else { name };
-                match (channel.direction.azimuth, channel.direction.orientation) {
-                    (Some(azimuth), _) => format!("{name} az={azimuth}"),
-                    (None, Some(Orientation::Vertical)) => format!("{name} vertical"),
-                    (None, Some(Orientation::Horizontal)) => format!("{name} horizontal"),
-                    (None, None) => name,
-                }
-            })
-            .collect();
-        text.push_str(&line("channels", &names.join(", ")));
-        let rows = channels.iter().map(|channel| channel.acceleration.len()).min().unwrap_or(0);
-        for row in 0..rows {
-            for (k, channel) in channels.iter().enumerate() {
-                let gap = if k == 0 { "" } else { " " };
-                // Writing to a String cannot fail.
-                let _ = write!(text, "{gap}{:.5e}", channel.acceleration[row]);
-            }
-            text.push('\n');
-        }
-        text
-    }
+/// Velocities (m/s) at the first samples, one to a channel; none where the line is missing.
+fn initial_velocities(
+    source: &Source<'_>,
+    end: usize,
+    channels: usize,
+) -> Result<Vec<f64>, ReadError> {
+    let Some((line, text)) = field(source, end, "initial_velocity") else { return Ok(Vec::new()) };
+    let velocities: Option<Vec<f64>> =
+        text.split_whitespace().map(|word| parse_number(word.as_bytes())).collect();
+    velocities
+        .filter(|v| v.len() == channels && v.iter().all(|v| v.abs() <= LARGEST_ACCELERATION))
+        .ok_or_else(|| {
+            source.error(
+                line,
+                Refusal::Damaged,
+                format!("{channels} velocities (m/s), one to a channel"),
+                format!("\"{}\"", shorten(&text)),
+                "correct the header line",
+            )
+        })
 }

@@ -18,6 +18,31 @@ pub(crate) const XML: Format =
 pub(crate) const ARCHIVE: Format =
     Format { name: "archive", title: "zip and gzip (refused)", sniff: is_archive, read: archive };
 
+/// Blocks of acceleration, velocity and displacement that the USGS gave out around 1987; no sample of
+/// them can be passed on, so that a reader could not be tested.
+pub(crate) const USGS_BLOCKS: Format = Format {
+    name: "usgs-1987",
+    title: "USGS blocks of 1987 (refused)",
+    sniff: is_usgs_blocks,
+    read: usgs_blocks,
+};
+
+fn is_usgs_blocks(source: &Source<'_>) -> bool {
+    (0..7).any(|line| source.has(line, "SAMPLES/SEC="))
+        && (0..7).any(|line| source.has(line, "DATA TYPE="))
+}
+
+fn usgs_blocks(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
+    let line = (0..7).find(|&line| source.has(line, "DATA TYPE="));
+    Err(source.error(
+        line,
+        Refusal::Unrecognized,
+        "a format with a reader",
+        "blocks of the USGS layout of 1987",
+        "cut the block with DATA TYPE=AC into a file of plain columns and state its unit and step",
+    ))
+}
+
 fn is_hdf5(source: &Source<'_>) -> bool {
     source.bytes.starts_with(b"\x89HDF\r\n\x1a\n")
 }

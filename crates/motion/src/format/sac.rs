@@ -56,7 +56,15 @@ fn sniff(source: &Source<'_>) -> bool {
 #[expect(clippy::too_many_lines, reason = "one header, read from top to bottom")]
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
     let bytes = source.bytes;
-    let big = byte_order(bytes).unwrap_or(false);
+    let big = byte_order(bytes).ok_or_else(|| {
+        source.error(
+            (),
+            Refusal::Unrecognized,
+            "a SAC header of version 6, 632 bytes",
+            format!("{} bytes of something else", bytes.len()),
+            "give a SAC file, binary",
+        )
+    })?;
     let damaged = |expected: &str, found: String| {
         source.error(
             (),

@@ -58,15 +58,15 @@ impl<'a> Source<'a> {
             text = rest;
         }
         let separator = if text.contains(&b'\n') { b'\n' } else { b'\r' };
-        let mut lines: Vec<&[u8]> = text
-            .split(|&byte| byte == separator)
-            .map(|mut line| {
-                while let [rest @ .., b'\r'] = line {
-                    line = rest;
-                }
-                line
-            })
-            .collect();
+        // Counted first: growing by doubling would hold three times what a file of short lines needs.
+        let count = text.split(|&byte| byte == separator).count();
+        let mut lines: Vec<&[u8]> = Vec::with_capacity(count);
+        lines.extend(text.split(|&byte| byte == separator).map(|mut line| {
+            while let [rest @ .., b'\r'] = line {
+                line = rest;
+            }
+            line
+        }));
         while lines.last().is_some_and(|line| line.trim_ascii().is_empty()) {
             lines.pop();
         }
@@ -122,10 +122,14 @@ impl<'a> Source<'a> {
         remedy: impl Into<String>,
     ) -> ReadError {
         let place = place.into();
+        // Where a whole line is meant, its first sign that is not blank.
+        let begin = |line: usize| {
+            self.raw(line).iter().position(|byte| !byte.is_ascii_whitespace()).unwrap_or(0)
+        };
         ReadFailure {
             file: self.name.to_owned(),
             line: place.line.map(|line| line + 1),
-            column: place.column.map(|column| column + 1),
+            column: place.column.or_else(|| place.line.map(begin)).map(|column| column + 1),
             refusal,
             expected: expected.into(),
             found: found.into(),
@@ -154,15 +158,21 @@ impl<'a> Source<'a> {
         self.error((line, column), Refusal::Damaged, "a number", found, remedy)
     }
 
-    /// A file that ends too soon.
+    /// A file that ends too soon, right behind its last sign.
     pub(crate) fn cut(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
+        let last = self.lines.len().saturating_sub(1);
         self.error(
-            self.lines.len().saturating_sub(1),
+            (last, self.end_of(last)),
             Refusal::Damaged,
             expected,
             found,
             "the file is cut; get it again from its source",
         )
+    }
+
+    /// The column behind the last sign of a line.
+    pub(crate) fn end_of(&self, line: usize) -> usize {
+        self.raw(line).trim_ascii_end().len()
     }
 
     /// Reads `count` numbers from fixed columns starting on `line`; returns them and the next line.
@@ -213,7 +223,7 @@ impl<'a> Source<'a> {
             let from = columns.indent + k * columns.width;
             if from >= filled {
                 return Err(self.error(
-                    line,
+                    (line, filled),
                     Refusal::Damaged,
                     format!("{wanted} numbers"),
                     format!("{k} numbers"),

@@ -143,11 +143,11 @@ impl CloughPenzien {
     fn shape(&self, w: f64) -> f64 {
         let term = |w0: f64, z: f64| {
             let (a, b) = (w0 * w0 - w * w, 2.0 * z * w0 * w);
-            (a * a + b * b, w0.powi(4) + b * b)
+            (a * a + b * b, (w0 * w0) * (w0 * w0) + b * b)
         };
         let (ground, above) = term(self.ground_frequency, self.ground_damping);
         let (filter, _) = term(self.filter_frequency, self.filter_damping);
-        above / ground * w.powi(4) / filter
+        above / ground * ((w * w) * (w * w)) / filter
     }
 
     /// Two-sided spectral density of the stationary acceleration (m²/s³) at `w` (rad/s), for a step

@@ -44,6 +44,9 @@ pub fn at2(record: &Record) -> Result<String, MotionError> {
     for note in super::provenance(record) {
         let _ = write!(title, "; {note}");
     }
+    if channel.initial_velocity != 0.0 {
+        let _ = write!(title, "; starts with {:e} m/s", channel.initial_velocity);
+    }
     let or = |text: &str, missing: &str| {
         let plain = harmless(text);
         if plain.is_empty() { missing.to_owned() } else { plain }

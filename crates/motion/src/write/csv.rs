@@ -5,6 +5,9 @@ use std::fmt::Write as _;
 use crate::error::MotionError;
 use crate::record::Record;
 
+/// Comment that gives the velocity at the first sample of each channel, where one is not zero.
+pub(crate) const INITIAL_VELOCITY: &str = "# initial velocity (m/s):";
+
 /// A record as CSV: comment lines that start with `#`, then `time (s),NAME (m/s2),…`, then one row
 /// to a sample.
 ///
@@ -35,6 +38,11 @@ pub fn csv(record: &Record) -> Result<String, MotionError> {
     let _ = writeln!(text, "# stage: {}", record.stage);
     for note in super::provenance(record) {
         let _ = writeln!(text, "# processing: {}", plain(&note));
+    }
+    if record.channels.iter().any(|channel| channel.initial_velocity != 0.0) {
+        let velocities: Vec<String> =
+            record.channels.iter().map(|c| format!("{:e}", c.initial_velocity)).collect();
+        let _ = writeln!(text, "{INITIAL_VELOCITY} {}", velocities.join(" "));
     }
     text.push_str("time (s)");
     for name in super::names(&record.channels) {

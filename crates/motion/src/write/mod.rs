@@ -2,8 +2,8 @@
 //!
 //! Every writer takes a [`Record`]; its notes are the provenance and go into the header.
 //! Channels stand side by side, cut to the shortest.
-//! None of the forms but the archive can hold a velocity at the first sample
-//! ([`crate::Channel::initial_velocity`]): what is read back starts from rest.
+//! AT2 has no place for a velocity at the first sample ([`crate::Channel::initial_velocity`]): it
+//! stands in the title, and what is read back starts from rest. All other forms keep it.
 
 mod at2;
 mod csv;
@@ -11,6 +11,7 @@ mod npz;
 mod text;
 
 pub use at2::at2;
+pub(crate) use csv::INITIAL_VELOCITY;
 pub use csv::csv;
 pub use npz::{archive, npz};
 pub use text::text;

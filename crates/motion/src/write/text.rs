@@ -14,6 +14,7 @@
 //!
 //! One column stands for each channel, numbers as the shortest decimals that read back to the same
 //! double.
+//! `# initial_velocity:` (m/s, one to a channel) stands there where one is not zero.
 //! `az=` is the azimuth (degrees clockwise from north); `vertical` means positive upward;
 //! `horizontal` a horizontal of unknown azimuth; a name alone an unknown direction.
 
@@ -23,7 +24,8 @@ use crate::direction::Orientation;
 use crate::error::MotionError;
 use crate::record::{Channel, Record};
 
-/// A record in the crate's own text form; [`crate::read`] gives the accelerations back bit for bit.
+/// A record in the crate's own text form; [`crate::read`] gives the accelerations and the initial
+/// velocities back bit for bit.
 ///
 /// ```
 /// use barrelstack_motion::{ReadOptions, bundled, read, write};
@@ -61,6 +63,11 @@ pub fn text(record: &Record) -> Result<String, MotionError> {
         .map(|(channel, name)| with_direction(channel, &name))
         .collect();
     head("channels", &channels.join(", "));
+    if record.channels.iter().any(|channel| channel.initial_velocity != 0.0) {
+        let velocities: Vec<String> =
+            record.channels.iter().map(|c| format!("{:e}", c.initial_velocity)).collect();
+        head("initial_velocity", &velocities.join(" "));
+    }
     for row in 0..rows {
         for (k, channel) in record.channels.iter().enumerate() {
             let gap = if k == 0 { "" } else { " " };

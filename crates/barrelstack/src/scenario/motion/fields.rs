@@ -6,7 +6,7 @@ use crate::scenario::field::{
     Default, Field, Kind, Named, Range, Section, Variant, Variants, names,
 };
 
-use super::{Direction, Processing};
+use super::{Direction, MeasuredOn, Processing};
 
 impl Named for Processing {
     const NAMES: &'static [(&'static str, Self)] =
@@ -16,6 +16,15 @@ impl Named for Processing {
 impl Named for Direction {
     const NAMES: &'static [(&'static str, Self)] =
         &[("horizontal", Self::Horizontal), ("vertical", Self::Vertical)];
+}
+
+impl Named for MeasuredOn {
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("component", Self::Component),
+        ("rotd50", Self::RotD50),
+        ("rotd100", Self::RotD100),
+        ("geomean", Self::GeometricMean),
+    ];
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -226,9 +235,37 @@ pub static SCALE: Section = Section {
             Default::Nothing,
             "Peak horizontal velocity to reach.",
         ),
+        Field::new(
+            "measure",
+            Kind::Text,
+            Default::Nothing,
+            "Any other measure that grows with the motion, whose `value` shall be reached: `pgd`, \
+             `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`, `sa(1.0)` (period in seconds, \
+             damping 5 %) or `sa(1.0,0.02)`.",
+        ),
+        Field::new(
+            "value",
+            Kind::Quantity(
+                &[Dimension::ACCELERATION, Dimension::VELOCITY, Dimension::LENGTH],
+                Range::up_to(1e4),
+            ),
+            Default::Nothing,
+            "Value of `measure` to reach.",
+        ),
+        Field::new(
+            "of",
+            Kind::Choice(names::<MeasuredOn>),
+            Default::Value("\"component\""),
+            "What `measure` is taken of: the component that drives the stack, or both horizontals of \
+             the record.",
+        ),
     ],
     variants: None,
-    exclusive: &[&["factor", "pga", "pgv"]],
+    exclusive: &[
+        &["factor", "pga", "pgv", "measure"],
+        &["factor", "pga", "pgv", "value"],
+        &["factor", "pga", "pgv", "of"],
+    ],
 };
 
 pub(super) const SOURCES: &[&str] = &["record", "bundled", "sine", "pulse", "none"];
@@ -284,6 +321,12 @@ pub static MOTION: Section = Section {
             "Unit of acceleration, only for a file that states none.",
         ),
         Field::new(
+            "sensitivity",
+            Kind::Number(Range::up_to(1e15)),
+            Default::Nothing,
+            "Counts to one m/s², only for a file that holds counts (miniSEED, SAC).",
+        ),
+        Field::new(
             "processing",
             Kind::Choice(names::<Processing>),
             Default::Value("\"default\""),
@@ -317,6 +360,7 @@ pub static MOTION: Section = Section {
         &["sine", "pulse", "none", "processing"],
         &["bundled", "sine", "pulse", "none", "time_step"],
         &["bundled", "sine", "pulse", "none", "unit"],
+        &["bundled", "sine", "pulse", "none", "sensitivity"],
         &["bundled", "sine", "pulse", "none", "obtain"],
         &["vertical", "vertical_record"],
         &["none", "scale"],

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use barrelstack_motion::IntensityMeasure;
+
 mod fields;
 mod text;
 
@@ -76,6 +78,8 @@ pub struct RecordMotion {
     pub time_step: Option<f64>,
     /// Acceleration of one file unit for files that state none (m/s²).
     pub unit: Option<f64>,
+    /// Counts to one m/s² for files that hold counts (s²/m).
+    pub sensitivity: Option<f64>,
     /// Processing.
     pub processing: Processing,
     /// Where to get the file, in words, for those who do not have it.
@@ -192,6 +196,28 @@ pub enum Scale {
     Pga(f64),
     /// To this peak horizontal velocity (m/s).
     Pgv(f64),
+    /// To a value of any measure that grows with the motion.
+    Measure {
+        /// The measure.
+        measure: IntensityMeasure,
+        /// Its value to reach (SI).
+        value: f64,
+        /// What it is measured on.
+        of: MeasuredOn,
+    },
+}
+
+/// What the measure of a scaling is taken of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MeasuredOn {
+    /// The horizontal component that drives the stack.
+    Component,
+    /// Both horizontals of the record: median over all directions.
+    RotD50,
+    /// Both horizontals of the record: largest over all directions.
+    RotD100,
+    /// Both horizontals of the record: their geometric mean.
+    GeometricMean,
 }
 
 /// The ground motion of a scenario.

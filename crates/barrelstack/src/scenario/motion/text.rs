@@ -1,5 +1,7 @@
 //! Reads and writes `[motion]`.
 
+use barrelstack_motion::{IntensityMeasure, MotionError};
+
 use crate::scenario::dimension::Dimension;
 use crate::scenario::error::ScenarioError;
 use crate::scenario::reader::Reader;
@@ -8,8 +10,8 @@ use crate::scenario::writer::Writer;
 
 use super::fields::{LONGEST, MOTION, PULSE, PulseName, SCALE, SINE, SOURCES};
 use super::{
-    Amplitude, MotionSource, MotionSpec, Pulse, PulseKind, RecordMotion, RecordSource, Scale, Sine,
-    Vertical,
+    Amplitude, MeasuredOn, MotionSource, MotionSpec, Pulse, PulseKind, RecordMotion, RecordSource,
+    Scale, Sine, Vertical,
 };
 
 /// A ground at rest.
@@ -44,6 +46,14 @@ pub(crate) fn read(reader: Reader<'_>) -> Result<MotionSpec, ScenarioError> {
         Some(scale) => read_scale(scale)?,
         None => Scale::Factor(1.0),
     };
+    let both = matches!(scale, Scale::Measure { of, .. } if of != MeasuredOn::Component);
+    if both && !matches!(source, MotionSource::Record(_)) {
+        let message = format!(
+            "`{}` of both horizontals needs a recorded motion; leave `of` out",
+            reader.path_of("scale")
+        );
+        return Err(reader.inconsistent("scale", message));
+    }
     let similitude = reader.number("similitude")?;
     reader.finish();
     Ok(MotionSpec { source, scale, similitude })
@@ -60,6 +70,7 @@ fn read_record_details(reader: &Reader<'_>) -> Result<RecordMotion, ScenarioErro
         vertical: vertical_component.or(vertical_file).unwrap_or(Vertical::None),
         time_step: reader.optional_quantity("time_step")?,
         unit: reader.optional_quantity("unit")?,
+        sensitivity: reader.optional_number("sensitivity")?,
         processing: reader.choice("processing")?,
         obtain: reader.optional_text("obtain")?,
     })
@@ -76,13 +87,58 @@ fn read_scale(reader: Reader<'_>) -> Result<Scale, ScenarioError> {
     }
     let pga = reader.optional_quantity("pga")?;
     let pgv = reader.optional_quantity("pgv")?;
+    let measured = read_measured(&reader)?;
     let scale = factor
         .map(Scale::Factor)
         .or(pga.map(Scale::Pga))
         .or(pgv.map(Scale::Pgv))
-        .ok_or_else(|| reader.one_of(&["factor", "pga", "pgv"]))?;
+        .or(measured)
+        .ok_or_else(|| reader.one_of(&["factor", "pga", "pgv", "measure"]))?;
     reader.finish();
     Ok(scale)
+}
+
+/// `measure`, `value` and `of`.
+fn read_measured(reader: &Reader<'_>) -> Result<Option<Scale>, ScenarioError> {
+    let value = reader.optional_quantity_with_dimension("value")?;
+    let of = reader.choice("of")?;
+    let Some(text) = reader.optional_text("measure")? else {
+        if value.is_some() {
+            return Err(reader.missing("measure"));
+        }
+        return Ok(None);
+    };
+    let measure: IntensityMeasure = text
+        .parse()
+        .map_err(|error: MotionError| reader.inconsistent("measure", error.to_string()))?;
+    let Some(dimension) = dimension_of(measure) else {
+        let message = format!(
+            "`{}`: {measure} cannot be scaled to; take a measure that grows with the motion and has a \
+             unit of acceleration, velocity or length",
+            reader.path_of("measure")
+        );
+        return Err(reader.inconsistent("measure", message));
+    };
+    let quantity = value.ok_or_else(|| reader.missing("value"))?;
+    if quantity.dimension != dimension {
+        let message = format!(
+            "`{}` of {measure} must be a quantity such as \"{}\"",
+            reader.path_of("value"),
+            dimension.example()
+        );
+        return Err(reader.inconsistent("value", message));
+    }
+    Ok(Some(Scale::Measure { measure, value: quantity.value, of }))
+}
+
+/// The dimension of a measure that can be scaled to.
+fn dimension_of(measure: IntensityMeasure) -> Option<Dimension> {
+    match measure.unit() {
+        "m/s2" => Some(Dimension::ACCELERATION),
+        "m/s" => Some(Dimension::VELOCITY),
+        "m" => Some(Dimension::LENGTH),
+        _ => None,
+    }
 }
 
 fn read_amplitude(reader: &Reader<'_>) -> Result<Amplitude, ScenarioError> {
@@ -188,6 +244,7 @@ pub(crate) fn write(motion: &MotionSpec) -> Table {
         "vertical_record",
         "time_step",
         "unit",
+        "sensitivity",
         "processing",
         "obtain",
     ]);
@@ -207,6 +264,9 @@ fn write_record(writer: &mut Writer, record: &RecordMotion) {
     }
     writer.optional_quantity("time_step", record.time_step);
     writer.optional_quantity("unit", record.unit);
+    if let Some(sensitivity) = record.sensitivity {
+        writer.number("sensitivity", sensitivity);
+    }
     writer.choice("processing", record.processing);
     writer.optional_text("obtain", record.obtain.as_deref());
 }
@@ -217,8 +277,15 @@ fn write_scale(scale: Scale) -> Table {
         Scale::Factor(factor) => writer.number("factor", factor),
         Scale::Pga(pga) => writer.quantity("pga", pga),
         Scale::Pgv(pgv) => writer.quantity("pgv", pgv),
+        Scale::Measure { measure, value, of } => {
+            writer.text("measure", &measure.to_string());
+            if let Some(dimension) = dimension_of(measure) {
+                writer.quantity_in("value", value, dimension);
+            }
+            writer.choice("of", of);
+        }
     }
-    writer.omit(&["factor", "pga", "pgv"]);
+    writer.omit(&["factor", "pga", "pgv", "measure", "value", "of"]);
     writer.finish()
 }
 

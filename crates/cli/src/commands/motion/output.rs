@@ -88,10 +88,10 @@ impl Target {
         for channel in &record.channels {
             // What rounding leaves at the edge of a pulse is no velocity.
             let matters = channel.initial_velocity.abs() > 1e-6 * channel.pgv();
-            if matters && self.form != Form::Npz {
+            if matters && self.form == Form::At2 {
                 losses.push(format!(
-                    "channel {} starts with a velocity of {} cm/s, for which the file has no place: \
-                     read back, it starts from rest",
+                    "channel {} starts with a velocity of {} cm/s, for which AT2 has no place but the \
+                     title: read back, it starts from rest; .txt, .csv and .npz keep it",
                     channel.name,
                     super::table::number(100.0 * channel.initial_velocity)
                 ));

@@ -2,7 +2,7 @@
 
 use anyhow::{anyhow, bail};
 use barrelstack::scenario::Dimension;
-use barrelstack_motion::{GroundMotion, History, IntensityMeasure, Record};
+use barrelstack_motion::{GroundMotion, History, Horizontals, IntensityMeasure, Record};
 
 use super::input::{self, Chain, Choice, Input, quantity};
 use super::measures::{self, reading, sampled};
@@ -21,7 +21,8 @@ pub(super) struct ScaleArgs {
     /// "arias=2 m/s", "sa(1.0)=0.5 g" (period in s, damping 5 %) or "sa(1.0,0.02)=0.5 g".
     #[arg(long, value_name = "MEASURE=VALUE", conflicts_with = "factor")]
     to: Option<String>,
-    /// The component that --to is about; the first horizontal if none is named.
+    /// The component that --to is about, the first horizontal if none is named; or both horizontals:
+    /// rotd50, rotd100 (median and largest over all directions) or geomean.
     #[arg(long, value_name = "NAME", requires = "to")]
     of: Option<String>,
     /// Multiply the accelerations.
@@ -73,6 +74,16 @@ fn factor_to(
     measure: IntensityMeasure,
     value: f64,
 ) -> anyhow::Result<(f64, String)> {
+    if let Some(over) = args.of.as_deref().and_then(|name| name.parse::<Horizontals>().ok()) {
+        let Some((first, second)) = measures::horizontals(record) else {
+            bail!(
+                "--of {over}: it needs two horizontal components of one step, and {} has not",
+                record.file
+            );
+        };
+        let factor = over.scale_factor(measure, &sampled(first)?, &sampled(second)?, value)?;
+        return Ok((factor, format!("{} and {} ({over})", first.name, second.name)));
+    }
     let channel = match &args.of {
         Some(name) => record.component(&input::component(record, name)?)?,
         None => record
@@ -84,8 +95,6 @@ fn factor_to(
     };
     let motion =
         GroundMotion::new(channel.name.clone(), History::Sampled(sampled(&channel)?), None);
-    // The library checks the measure, its zero and the target.
-    motion.scale_to(measure, value)?;
     Ok((motion.scale_factor(measure, value)?, channel.name))
 }
 
@@ -123,6 +132,16 @@ fn goal(text: &str) -> anyhow::Result<(IntensityMeasure, f64)> {
     })?;
     let measure: IntensityMeasure =
         name.parse().map_err(|error| anyhow!("--to {text}: {error}"))?;
+    if measure == IntensityMeasure::Fajfar {
+        // Its unit, m/s^0.75, is one of no other quantity.
+        let plain = value.trim().strip_suffix("m/s^0.75").unwrap_or(value).trim();
+        return match plain.parse::<f64>() {
+            Ok(goal) if goal.is_finite() && goal > 0.0 => Ok((measure, goal)),
+            _ => {
+                bail!("--to {text}: expected a number above 0 in m/s^0.75, such as \"fajfar=0.9\"")
+            }
+        };
+    }
     let dimension = match measure.unit() {
         "m/s2" => Dimension::ACCELERATION,
         "m/s" => Dimension::VELOCITY,

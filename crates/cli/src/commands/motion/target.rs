@@ -3,20 +3,22 @@
 use std::path::Path;
 
 use anyhow::{anyhow, bail};
+use barrelstack::scenario::Dimension;
 use barrelstack_motion::{AccelerationUnit, ChileanZone, NCh2745Soil, SiteClass, TargetSpectrum};
 
 use super::input;
 
 /// The codes and their parameters, for help and errors.
 pub(super) const CODES: &str = "\
-Targets (accelerations in g):
-  asce7:sds=1.0,sd1=0.6[,tl=8]                 ASCE/SEI 7 design spectrum; T_L in s
+Targets (accelerations in g; damping ratio 0.05 where none is given):
+  asce7:sds=1.0,sd1=0.6[,tl=8,damping=0.05]    ASCE/SEI 7-16 design spectrum; T_L in s
   ec8:ag=0.3,site=B[,type=1,damping=0.05]      Eurocode 8 horizontal elastic spectrum, type 1 or 2
   nch433:zone=2,soil=D                         NCh433 with decree 61; zone 1 to 3, soil A to E
-  nch2745:zone=2,soil=II                       NCh2745; zone 1 to 3, soil I to III
-  nzs1170:z=0.3,site=C[,r=1,distance=5]        NZS 1170.5; fault distance in km
+  nch2745:zone=2,soil=II[,damping=0.05]        NCh2745.Of2003; zone 1 to 3, soil I to III
+  nzs1170:z=0.3,site=C[,r=1,distance=5]        NZS 1170.5:2004; fault distance in km
   ac156:sds=1.0[,zh=0]                         ICC-ES AC156; height of attachment over roof height
-  FILE.csv                                     a header such as \"period (s), Sa (g)\", then rows";
+  FILE.csv                                     a header such as \"period (s), Sa (g)\", then rows;
+                                               \"period (s), Sa (g) at 2 %\" for another damping";
 
 /// Parameters of a code, each asked for once.
 struct Parameters<'a> {
@@ -86,10 +88,20 @@ impl<'a> Parameters<'a> {
         })
     }
 
+    /// The damping ratio, 5 % if none is given.
+    fn damping(&mut self) -> anyhow::Result<f64> {
+        Ok(self.number("damping")?.unwrap_or(0.05))
+    }
+
     /// Nothing may be left over.
     fn end(self) -> anyhow::Result<()> {
         match self.pairs.first() {
             None => Ok(()),
+            Some(("damping", _)) => bail!(
+                "target {}: the code defines its spectrum for 5 % of damping and no correction; match \
+                 a table for another damping",
+                self.code
+            ),
             Some((key, _)) => bail!(
                 "target {}: it has no parameter {key}; `barrelstack motion match --help` lists the \
                  parameters",
@@ -112,6 +124,7 @@ pub(super) fn target(text: &str) -> anyhow::Result<TargetSpectrum> {
                 sds: given.need("sds", sds)?,
                 sd1: given.need("sd1", sd1)?,
                 long_period: given.number("tl")?.unwrap_or(8.0),
+                damping: given.damping()?,
             }
         }
         "ec8" => {
@@ -124,7 +137,7 @@ pub(super) fn target(text: &str) -> anyhow::Result<TargetSpectrum> {
                     Some("2") => true,
                     Some(other) => bail!("target ec8: type must be 1 or 2, found \"{other}\""),
                 },
-                damping: given.number("damping")?.unwrap_or(0.05),
+                damping: given.damping()?,
             }
         }
         "nch433" => TargetSpectrum::NCh433 { zone: given.zone()?, site: given.site("soil")? },
@@ -137,7 +150,7 @@ pub(super) fn target(text: &str) -> anyhow::Result<TargetSpectrum> {
                 "III" => NCh2745Soil::III,
                 other => bail!("target nch2745: soil must be I, II or III, found \"{other}\""),
             };
-            TargetSpectrum::NCh2745 { zone, soil }
+            TargetSpectrum::NCh2745 { zone, soil, damping: given.damping()? }
         }
         "nzs1170" => {
             let hazard = given.number("z")?;
@@ -161,7 +174,7 @@ pub(super) fn target(text: &str) -> anyhow::Result<TargetSpectrum> {
         ),
     };
     given.end()?;
-    spectrum.check()?;
+    spectrum.check().map_err(|error| anyhow!("target {code}: {error}"))?;
     Ok(spectrum)
 }
 
@@ -171,6 +184,7 @@ fn table(path: &Path) -> anyhow::Result<TargetSpectrum> {
     let text = String::from_utf8_lossy(&bytes);
     let place = |line: usize| format!("{}, line {}", path.display(), line + 1);
     let mut unit = None;
+    let mut damping = 0.05;
     let mut points = Vec::new();
     for (line, row) in text.lines().enumerate() {
         let row = row.trim().trim_start_matches('\u{feff}');
@@ -186,10 +200,8 @@ fn table(path: &Path) -> anyhow::Result<TargetSpectrum> {
             );
         };
         let Some(factor) = unit else {
-            let stated = acceleration
-                .split_once('(')
-                .and_then(|(_, rest)| rest.split_once(')'))
-                .and_then(|(word, _)| word.parse::<AccelerationUnit>().ok());
+            let words = acceleration.split_once('(').and_then(|(_, rest)| rest.split_once(')'));
+            let stated = words.and_then(|(word, _)| word.parse::<AccelerationUnit>().ok());
             let Some(stated) = stated.filter(|_| period.contains("(s)")) else {
                 bail!(
                     "{}: expected a header that states the units, such as \"period (s), Sa (g)\", \
@@ -198,6 +210,9 @@ fn table(path: &Path) -> anyhow::Result<TargetSpectrum> {
                 );
             };
             unit = Some(stated.factor());
+            if let Some(at) = words.and_then(|(_, after)| after.trim().strip_prefix("at ")) {
+                damping = input::quantity(&place(line), at, Dimension::NONE)?;
+            }
             continue;
         };
         let number = |cell: &str| {
@@ -208,7 +223,7 @@ fn table(path: &Path) -> anyhow::Result<TargetSpectrum> {
         };
         points.push((number(period)?, factor * number(acceleration)?));
     }
-    let spectrum = TargetSpectrum::Table(points);
+    let spectrum = TargetSpectrum::Table { points, damping };
     spectrum.check().map_err(|error| anyhow!("{}: {error}", path.display()))?;
     Ok(spectrum)
 }

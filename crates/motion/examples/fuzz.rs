@@ -1,0 +1,230 @@
+//! Feeds damaged files to every reader and watches time and memory.
+//!
+//! `cargo xtask fuzz` runs it in release.
+//! Execution `k` of a reader is the same on every machine: it depends on the reader's name and `k` only.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    clippy::exit,
+    reason = "a program for people at a terminal, which ends where a reader fails"
+)]
+
+#[path = "../tests/fuzz/mod.rs"]
+mod fuzz;
+#[path = "../tests/fuzz/large.rs"]
+mod large;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use barrelstack_motion::{FORMATS, Format, Random, read};
+use fuzz::{Sample, must_hold, mutate, options, samples, samples_of};
+use peak_alloc::PeakAlloc;
+
+#[global_allocator]
+static MEMORY: PeakAlloc = PeakAlloc;
+
+/// Most memory that one execution may take (MB).
+const MOST_MEGABYTES: f64 = 100.0;
+/// Longest that one execution may take (s); a hang is far above, a busy machine far below.
+const LONGEST: f64 = 10.0;
+/// Damaged copies of each file of one megabyte.
+const DAMAGED: u32 = 4;
+
+const USAGE: &str = "usage: fuzz [--executions N] [--reader NAME] [--first K]";
+
+/// What one reader was seen to do.
+#[derive(Default)]
+struct Seen {
+    executions: u64,
+    read: u64,
+    slowest: f64,
+    megabytes: f64,
+}
+
+/// The execution that is going on, for the watch on time: its number and when it began (ms).
+static NOW: AtomicU64 = AtomicU64::new(u64::MAX);
+static SINCE: AtomicU64 = AtomicU64::new(0);
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let (mut executions, mut only, mut first) = (100_000, None, 0);
+    for pair in words.chunks(2) {
+        let number = || pair.get(1).and_then(|word| word.replace('_', "").parse().ok());
+        match (pair[0].as_str(), pair.get(1), number()) {
+            ("--executions", _, Some(n)) => executions = n,
+            ("--first", _, Some(n)) => first = n,
+            ("--reader", Some(name), _) => only = Some(name.clone()),
+            _ => {
+                eprintln!("{USAGE}");
+                std::process::exit(2);
+            }
+        }
+    }
+    let formats: Vec<&Format> = FORMATS
+        .iter()
+        .filter(|format| only.as_ref().is_none_or(|name| name == format.name))
+        .collect();
+    if formats.is_empty() {
+        eprintln!("there is no reader {}", only.unwrap_or_default());
+        std::process::exit(2);
+    }
+    let start = Instant::now();
+    watch(start);
+    // A panic is reported with its execution below.
+    std::panic::set_hook(Box::new(|_| {}));
+    let samples = samples();
+    println!("reader       executions       read  rate (1/s)  slowest (ms)  most memory (MB)");
+    let mut faults = Vec::new();
+    for format in formats {
+        let began = Instant::now();
+        let mut seen = Seen::default();
+        faults.extend(small(format, &samples, first, executions, &mut seen, start).err());
+        report(format.name, &seen, began.elapsed());
+        if first == 0 {
+            let began = Instant::now();
+            let mut seen = Seen::default();
+            faults.extend(large(format, &samples, &mut seen, start).err());
+            report("  at 1 MB", &seen, began.elapsed());
+        }
+    }
+    if faults.is_empty() {
+        println!("no panic, no hang, nothing above {LONGEST} s or {MOST_MEGABYTES} MB");
+    } else {
+        eprintln!("{}", faults.join("\n"));
+        std::process::exit(1);
+    }
+}
+
+fn report(name: &str, seen: &Seen, time: Duration) {
+    println!(
+        "{name:<11} {:>11} {:>10} {:>11.0} {:>13.2} {:>17.3}",
+        seen.executions,
+        seen.read,
+        seen.executions as f64 / time.as_secs_f64(),
+        1e3 * seen.slowest,
+        seen.megabytes
+    );
+}
+
+/// The seed of one execution.
+fn seed(format: &Format, k: u64) -> u64 {
+    let name = format.name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    });
+    name ^ k.wrapping_mul(0x9E37_79B9_7F4A_7C15)
+}
+
+fn small(
+    format: &Format,
+    samples: &[Sample],
+    first: u64,
+    count: u64,
+    seen: &mut Seen,
+    start: Instant,
+) -> Result<(), String> {
+    let own = samples_of(format, samples);
+    for k in first..first + count {
+        let mut random = Random::new(seed(format, k));
+        let sample = own[usize::try_from(random.bits() % own.len() as u64).unwrap()];
+        let bytes = mutate(&sample.bytes, samples, &mut random);
+        execute(format, k, &bytes, &mut random, seen, start)?;
+    }
+    Ok(())
+}
+
+fn large(
+    format: &Format,
+    samples: &[Sample],
+    seen: &mut Seen,
+    start: Instant,
+) -> Result<(), String> {
+    let mut k = 0;
+    for sample in samples_of(format, samples) {
+        for bytes in large::files(&sample.bytes) {
+            let mut random = Random::new(seed(format, k));
+            execute(format, k, &bytes, &mut random, seen, start)?;
+            for _ in 0..DAMAGED {
+                let mut damaged = mutate(&bytes, samples, &mut random);
+                damaged.truncate(large::SIZE);
+                execute(format, k, &damaged, &mut random, seen, start)?;
+            }
+            k += 1;
+        }
+    }
+    Ok(())
+}
+
+/// One execution of the reader, and now and then of the sniffers on the same bytes.
+///
+/// A fault comes back as a sentence that says where its input is.
+fn execute(
+    format: &Format,
+    k: u64,
+    bytes: &[u8],
+    random: &mut Random,
+    seen: &mut Seen,
+    start: Instant,
+) -> Result<(), String> {
+    let given = options(random);
+    let before = PeakAlloc.current_usage();
+    PeakAlloc.reset_peak_usage();
+    let began = Instant::now();
+    SINCE.store(u64::try_from((began - start).as_millis()).unwrap(), Ordering::Relaxed);
+    NOW.store(k, Ordering::Relaxed);
+    let outcome = catch_unwind(AssertUnwindSafe(|| {
+        let result = format.read(bytes, "fuzz", &given);
+        must_hold(&result);
+        if k.is_multiple_of(8) {
+            must_hold(&read(bytes, "fuzz", &given));
+        }
+        result.is_ok()
+    }));
+    NOW.store(u64::MAX, Ordering::Relaxed);
+    let time = began.elapsed().as_secs_f64();
+    let megabytes = PeakAlloc.peak_usage().saturating_sub(before) as f64 / 1e6;
+    seen.executions += 1;
+    seen.slowest = seen.slowest.max(time);
+    seen.megabytes = seen.megabytes.max(megabytes);
+    let fault = match outcome {
+        Err(payload) => {
+            let text = payload
+                .downcast_ref::<String>()
+                .cloned()
+                .or_else(|| payload.downcast_ref::<&str>().map(ToString::to_string));
+            format!("panicked: {}", text.unwrap_or_default())
+        }
+        Ok(_) if megabytes > MOST_MEGABYTES => format!("took {megabytes:.0} MB"),
+        Ok(_) if time > LONGEST => format!("took {time:.1} s"),
+        Ok(read) => {
+            seen.read += u64::from(read);
+            return Ok(());
+        }
+    };
+    let file = std::env::temp_dir().join(format!("fuzz-{}-{k}", format.name));
+    std::fs::write(&file, bytes).unwrap();
+    Err(format!(
+        "{}, execution {k}, {given:?}: {fault}; the input is in {}",
+        format.name,
+        file.display()
+    ))
+}
+
+/// Ends the program where one execution does not end.
+fn watch(start: Instant) {
+    std::thread::spawn(move || {
+        loop {
+            std::thread::sleep(Duration::from_secs(1));
+            let k = NOW.load(Ordering::Relaxed);
+            let since = Duration::from_millis(SINCE.load(Ordering::Relaxed));
+            if k != u64::MAX && start.elapsed().saturating_sub(since).as_secs_f64() > 6.0 * LONGEST
+            {
+                eprintln!("execution {k} hangs; repeat it with --first {k} --executions 1");
+                std::process::exit(1);
+            }
+        }
+    });
+}

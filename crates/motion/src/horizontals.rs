@@ -1,0 +1,153 @@
+//! A measure of two horizontals as one number.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::error::MotionError;
+use crate::intensity::IntensityMeasure;
+use crate::math::{self, PI};
+use crate::rotd::{DIRECTIONS, rotated_peak, rotated_spectrum};
+use crate::sampled::Sampled;
+
+/// How the measures of two horizontals become one number.
+///
+/// Parses from and prints as `rotd50`, `rotd100` and `geomean`.
+///
+/// ```
+/// use barrelstack_motion::{Horizontals, IntensityMeasure, Sampled};
+/// let east = Sampled::new(0.01, vec![0.0, 3.0, -2.0, 0.0])?;
+/// let north = Sampled::new(0.01, vec![0.0, 4.0, 1.0, 0.0])?;
+/// let largest = Horizontals::RotD100.of(IntensityMeasure::Pga, &east, &north)?;
+/// assert!((largest - 5.0).abs() < 1e-3);
+/// # Ok::<(), barrelstack_motion::MotionError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Horizontals {
+    /// Median over all directions, one degree apart (Boore 2010, BSSA 100:1830-1835).
+    RotD50,
+    /// Largest over all directions.
+    RotD100,
+    /// Square root of the product of both as recorded.
+    GeometricMean,
+}
+
+impl Horizontals {
+    /// The measure of two components of one step (SI units); the longer one is cut to the shorter.
+    ///
+    /// Peaks and spectral accelerations are taken from the convex hull of the two responses, all
+    /// other measures from the motion turned degree by degree.
+    ///
+    /// # Errors
+    /// If the steps differ, or a parameter of the measure is out of range.
+    pub fn of(
+        self,
+        measure: IntensityMeasure,
+        first: &Sampled,
+        second: &Sampled,
+    ) -> Result<f64, MotionError> {
+        measure.check()?;
+        if (first.time_step() / second.time_step() - 1.0).abs() > 1e-9 {
+            return Err(MotionError::Mismatch {
+                what: format!(
+                    "one horizontal has a step of {} s, the other of {} s",
+                    first.time_step(),
+                    second.time_step()
+                ),
+                remedy: "choose components of one step".to_owned(),
+            });
+        }
+        let peaks = match (self, measure) {
+            (Self::GeometricMean, _) => {
+                return Ok((measure.of(first)? * measure.of(second)?).sqrt());
+            }
+            (_, IntensityMeasure::Pga) => rotated_peak(first.acceleration(), second.acceleration()),
+            (_, IntensityMeasure::Pgv) => rotated_peak(first.velocity(), second.velocity()),
+            (_, IntensityMeasure::Pgd) => rotated_peak(first.displacement(), second.displacement()),
+            (_, IntensityMeasure::Sa { period, damping }) => {
+                let (a, b) = (first.acceleration(), second.acceleration());
+                return rotated_spectrum(first.time_step(), a, b, &[period], damping)
+                    .map(|peaks| self.pick(peaks[0].median, peaks[0].largest));
+            }
+            _ => {
+                let values = turned(measure, first, second)?;
+                let middle = DIRECTIONS / 2;
+                return Ok(
+                    self.pick(0.5 * (values[middle - 1] + values[middle]), values[DIRECTIONS - 1])
+                );
+            }
+        };
+        Ok(self.pick(peaks.median, peaks.largest))
+    }
+
+    fn pick(self, median: f64, largest: f64) -> f64 {
+        match self {
+            Self::RotD50 | Self::GeometricMean => median,
+            Self::RotD100 => largest,
+        }
+    }
+
+    /// The one factor for both components that brings the measure to `target` (SI units).
+    ///
+    /// # Errors
+    /// As [`Horizontals::of`]; if the measure does not grow with the motion or is zero, or the
+    /// target is not above zero.
+    pub fn scale_factor(
+        self,
+        measure: IntensityMeasure,
+        first: &Sampled,
+        second: &Sampled,
+        target: f64,
+    ) -> Result<f64, MotionError> {
+        measure.factor(target, &format!("both horizontals ({self})"), |factor| {
+            self.of(measure, &first.scaled(factor), &second.scaled(factor))
+        })
+    }
+}
+
+/// The measure along every direction, in ascending order.
+fn turned(
+    measure: IntensityMeasure,
+    first: &Sampled,
+    second: &Sampled,
+) -> Result<Vec<f64>, MotionError> {
+    let v0 = (first.velocity()[0], second.velocity()[0]);
+    let mut values = Vec::with_capacity(DIRECTIONS);
+    for degree in 0..DIRECTIONS {
+        let (s, c) = math::sin_cos(PI * degree as f64 / DIRECTIONS as f64);
+        let along = first.acceleration().iter().zip(second.acceleration());
+        let a = along.map(|(x, y)| x * c + y * s).collect();
+        let v = v0.0 * c + v0.1 * s;
+        values.push(measure.of(&Sampled::with_initial_velocity(first.time_step(), a, v)?)?);
+    }
+    values.sort_by(f64::total_cmp);
+    Ok(values)
+}
+
+impl fmt::Display for Horizontals {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::RotD50 => "rotd50",
+            Self::RotD100 => "rotd100",
+            Self::GeometricMean => "geomean",
+        })
+    }
+}
+
+impl FromStr for Horizontals {
+    type Err = MotionError;
+
+    fn from_str(text: &str) -> Result<Self, MotionError> {
+        Ok(match text.trim().to_ascii_lowercase().as_str() {
+            "rotd50" => Self::RotD50,
+            "rotd100" => Self::RotD100,
+            "geomean" => Self::GeometricMean,
+            _ => {
+                return Err(MotionError::parameter(
+                    "measure of two horizontals",
+                    "rotd50, rotd100 or geomean",
+                    format!("\"{text}\""),
+                ));
+            }
+        })
+    }
+}

@@ -1,0 +1,245 @@
+//! Code and table spectra: pseudo-acceleration as a function of period.
+
+mod codes;
+
+use crate::error::MotionError;
+use crate::math::STANDARD_GRAVITY;
+use codes::log_log;
+
+/// Soil or site classes `A` to `E`, each code with its own meaning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SiteClass {
+    /// Strong rock.
+    A,
+    /// Rock.
+    B,
+    /// Dense or shallow soil.
+    C,
+    /// Soft or deep soil.
+    D,
+    /// Very soft soil; in Eurocode 8 a thin soft layer over rock.
+    E,
+}
+
+/// Seismic zones of Chile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChileanZone {
+    /// The Andes.
+    One,
+    /// The central valley.
+    Two,
+    /// The coast.
+    Three,
+}
+
+/// Soils of `NCh2745`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NCh2745Soil {
+    /// Rock.
+    I,
+    /// Dense soil.
+    II,
+    /// Soft soil.
+    III,
+}
+
+/// A target spectrum (m/s²).
+///
+/// Codes that define a correction for damping have a damping; the others are for 5 %.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TargetSpectrum {
+    /// ASCE/SEI 7-16, section 11.4.6: design spectrum of two ordinates and the long-period
+    /// transition; other dampings by the factor `B_M` of table 17.5-1 on all but the ground's own
+    /// peak.
+    Asce7 {
+        /// `S_DS` (g).
+        sds: f64,
+        /// `S_D1` (g).
+        sd1: f64,
+        /// `T_L` (s).
+        long_period: f64,
+        /// Damping ratio, 0.02 to 0.5.
+        damping: f64,
+    },
+    /// EN 1998-1:2004, section 3.2.2.2: horizontal elastic spectrum, tables 3.2 and 3.3.
+    Eurocode8 {
+        /// Ground acceleration on rock `a_g` (g), importance included.
+        ground_acceleration: f64,
+        /// Ground type.
+        site: SiteClass,
+        /// Type 2 (small magnitudes) instead of type 1.
+        small_magnitude: bool,
+        /// Damping ratio, 0.05 for `η = 1`; above 0.28 the code's floor of `η` rules.
+        damping: f64,
+    },
+    /// `NCh433` with decree 61 of 2011: elastic spectrum `S A0 α(T)`, importance 1, 5 % damping.
+    NCh433 {
+        /// Seismic zone, which gives `A0` = 0.20, 0.30 or 0.40 g.
+        zone: ChileanZone,
+        /// Soil class of decree 61.
+        site: SiteClass,
+    },
+    /// `NCh2745.Of2003` (base isolation): base spectrum of acceleration, velocity and displacement
+    /// branches, over the damping factor `B_D`.
+    NCh2745 {
+        /// Seismic zone, factor 3/4, 1 or 5/4.
+        zone: ChileanZone,
+        /// Soil.
+        soil: NCh2745Soil,
+        /// Damping ratio; `B_D` is held below 0.02 and above 0.5.
+        damping: f64,
+    },
+    /// NZS 1170.5:2004, section 3.1: `C(T) = Ch(T) Z R N(T, D)` with `Z R` up to 0.7, `Ch` for
+    /// modal and time-history analysis, 5 % damping.
+    Nzs1170 {
+        /// Hazard factor `Z`.
+        hazard: f64,
+        /// Return period factor `R`.
+        return_period: f64,
+        /// Site subsoil class.
+        site: SiteClass,
+        /// Distance to the nearest major fault (km); `None` for no near-fault factor, which is 1 for
+        /// `R` up to 0.75 in any case.
+        fault_distance: Option<f64>,
+    },
+    /// ICC-ES AC156 with ASCE 7-16: horizontal required response spectrum for shake-table tests,
+    /// 5 % damping, defined from 0.1 Hz, where it is a tenth of its plateau, to 33.3 Hz.
+    Ac156 {
+        /// `S_DS` (g).
+        sds: f64,
+        /// Height of attachment over roof height, 0 to 1.
+        height_ratio: f64,
+    },
+    /// Points in ascending order of period, linear between in the logarithm of both; held outside.
+    Table {
+        /// Period (s) and acceleration (m/s²).
+        points: Vec<(f64, f64)>,
+        /// Damping ratio of the oscillators that the accelerations are for.
+        damping: f64,
+    },
+}
+
+impl TargetSpectrum {
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// Names the first that is out of range.
+    pub fn check(&self) -> Result<(), MotionError> {
+        let positive = MotionError::require_positive;
+        match self {
+            Self::Asce7 { sds, sd1, long_period, damping } => {
+                require_damping(*damping, 0.02, 0.5)?;
+                positive("S_DS (g)", *sds)?;
+                positive("S_D1 (g)", *sd1)?;
+                positive("T_L (s)", *long_period)?;
+                if sd1 / sds >= *long_period {
+                    return Err(MotionError::parameter(
+                        "T_L (s)",
+                        format!("above S_D1/S_DS = {}", sd1 / sds),
+                        long_period,
+                    ));
+                }
+                Ok(())
+            }
+            Self::Eurocode8 { ground_acceleration, damping, .. } => {
+                positive("ground acceleration (g)", *ground_acceleration)?;
+                require_damping(*damping, 0.0, 0.99)
+            }
+            Self::NCh2745 { damping, .. } => require_damping(*damping, 0.0, 0.99),
+            Self::NCh433 { .. } => Ok(()),
+            Self::Nzs1170 { hazard, return_period, fault_distance, .. } => {
+                positive("hazard factor Z", *hazard)?;
+                positive("return period factor R", *return_period)?;
+                match fault_distance {
+                    Some(distance) if !(*distance >= 0.0) => {
+                        Err(MotionError::parameter("fault distance (km)", "0 or above", distance))
+                    }
+                    _ => Ok(()),
+                }
+            }
+            Self::Ac156 { sds, height_ratio } => {
+                positive("S_DS (g)", *sds)?;
+                if (0.0..=1.0).contains(height_ratio) {
+                    Ok(())
+                } else {
+                    Err(MotionError::parameter("height ratio z/h", "0 to 1", height_ratio))
+                }
+            }
+            Self::Table { points, damping } => {
+                require_damping(*damping, 0.0, 0.99)?;
+                check_table(points)
+            }
+        }
+    }
+
+    /// The damping ratio the spectrum is for.
+    pub fn damping(&self) -> f64 {
+        match self {
+            Self::Asce7 { damping, .. }
+            | Self::Eurocode8 { damping, .. }
+            | Self::NCh2745 { damping, .. }
+            | Self::Table { damping, .. } => *damping,
+            Self::NCh433 { .. } | Self::Nzs1170 { .. } | Self::Ac156 { .. } => 0.05,
+        }
+    }
+
+    /// Pseudo-acceleration (m/s²) at a period (s).
+    pub fn acceleration(&self, period: f64) -> f64 {
+        let t = period.max(0.0);
+        match self {
+            Self::Asce7 { sds, sd1, long_period, damping } => {
+                STANDARD_GRAVITY * codes::asce7(*sds, *sd1, *long_period, *damping, t)
+            }
+            Self::Eurocode8 { ground_acceleration, site, small_magnitude, damping } => {
+                STANDARD_GRAVITY
+                    * ground_acceleration
+                    * codes::eurocode8(*site, *small_magnitude, *damping, t)
+            }
+            Self::NCh433 { zone, site } => STANDARD_GRAVITY * codes::nch433(*zone, *site, t),
+            Self::NCh2745 { zone, soil, damping } => codes::nch2745(*zone, *soil, *damping, t),
+            Self::Nzs1170 { hazard, return_period, site, fault_distance } => {
+                STANDARD_GRAVITY
+                    * codes::nzs1170(*hazard, *return_period, *site, *fault_distance, t)
+            }
+            Self::Ac156 { sds, height_ratio } => {
+                STANDARD_GRAVITY * codes::ac156(*sds, *height_ratio, t)
+            }
+            Self::Table { points, .. } => table(points, t),
+        }
+    }
+}
+
+fn require_damping(damping: f64, least: f64, greatest: f64) -> Result<(), MotionError> {
+    if (least..=greatest).contains(&damping) {
+        return Ok(());
+    }
+    Err(MotionError::parameter("damping ratio", format!("{least} to {greatest}"), damping))
+}
+
+fn check_table(points: &[(f64, f64)]) -> Result<(), MotionError> {
+    if points.len() < 2 {
+        return Err(MotionError::parameter("target table", "at least 2 points", points.len()));
+    }
+    for (k, (period, acceleration)) in points.iter().enumerate() {
+        let row = format!("target table, row {}", k + 1);
+        MotionError::require_positive(&format!("{row}, period (s)"), *period)?;
+        MotionError::require_positive(&format!("{row}, acceleration (m/s2)"), *acceleration)?;
+        if k > 0 && *period <= points[k - 1].0 {
+            return Err(MotionError::parameter(
+                format!("{row}, period (s)"),
+                format!("above {}", points[k - 1].0),
+                period,
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn table(points: &[(f64, f64)], t: f64) -> f64 {
+    let after = points.partition_point(|(period, _)| *period < t);
+    match (after.checked_sub(1).and_then(|k| points.get(k)), points.get(after)) {
+        (Some((t0, a0)), Some((t1, a1))) => log_log(t, (*t0, *a0), (*t1, *a1)),
+        (None, Some((_, a))) | (Some((_, a)), None) => *a,
+        (None, None) => 0.0,
+    }
+}
