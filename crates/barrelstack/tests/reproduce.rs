@@ -103,11 +103,14 @@ fn every_figure_of_the_paper_is_drawn() {
         "figure-6b.svg",
         "figure-6c-upper.svg",
         "figure-6c-lower.svg",
+        "figure-7a-pairs.svg",
+        "figure-7a-sequence.svg",
         "figure-7b-half.svg",
         "figure-7b-full.svg",
         "figure-7c-body-2.svg",
         "figure-7c-body-3.svg",
         "along.svg",
+        "along-pairs.svg",
     ] {
         let file = bundle.files.iter().find(|file| file.name == figure);
         assert!(file.is_some_and(|file| file.bytes.len() > 1000), "{figure}");

@@ -38,13 +38,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self {
-            within: 2.0,
-            placement: 1e-3,
-            errors: Errors::default(),
-            simulations: 1000,
-            seed: 1,
-        }
+        Self { within: 2.0, placement: 1e-3, errors: Errors::default(), simulations: 1000, seed: 1 }
     }
 }
 
@@ -53,9 +47,6 @@ const TOLD: f64 = 0.15;
 
 /// Correlation above which two parameters cannot be told apart.
 const ALIKE: f64 = 0.9;
-
-/// Draws in effect below which an interval is rough.
-const FEW: f64 = 40.0;
 
 /// Weight of simulations that go as observed below which the model does not show what was seen.
 const UNSEEN: f64 = 0.2;
@@ -111,7 +102,8 @@ struct Trial<'a> {
 /// Each set of parameters is simulated with racks and barrels a little beside their places, as no two
 /// stacks are built alike, and weighs as much as what was seen is likely beside that course
 /// ([`Errors`]). Sampling is iterated around what has become likely; the intervals hold the middle
-/// 95 % of the weight.
+/// 95 % of the weight. Where too few courses come near, the likelihood is raised to a power below one,
+/// which widens the intervals and is stated.
 /// What is stated for one rack–ground and one barrel–rack interface keeps its ratio between both, as in
 /// [`super::response`].
 ///
@@ -178,13 +170,17 @@ pub fn collapse(
         ("tests".to_owned(), trials.len().to_string()),
         ("simulations".to_owned(), courses.len().to_string()),
         ("draws in effect".to_owned(), short(posterior.effective())),
+        ("power of the likelihood".to_owned(), short(posterior.power)),
         ("tried".to_owned(), format!("within a factor of {} of the scenario", settings.within)),
         ("seed".to_owned(), settings.seed.to_string()),
     ];
     for (at, trial) in trials.iter().enumerate() {
         let (name, share) = alike(trial, courses.iter().skip(at).step_by(trials.len()), &posterior);
         if let Some(share) = share {
-            facts.push((format!("test {}: {name}", at + 1), format!("{:.0} % of the weight", 100.0 * share)));
+            facts.push((
+                format!("test {}: {name}", at + 1),
+                format!("{:.0} % of the weight", 100.0 * share),
+            ));
             if share < UNSEEN {
                 warnings.push(format!(
                     "test {}: the model hardly shows what was seen ({name} in {:.0} % of the weight): see \
@@ -196,7 +192,10 @@ pub fn collapse(
         }
     }
     Ok(Calibration {
-        title: format!("collapse {}: simulated with stacks built anew each time", observations.file),
+        title: format!(
+            "collapse {}: simulated with stacks built anew each time",
+            observations.file
+        ),
         scenario: lead.tunable.scenario_lines(&medians),
         estimates,
         correlation,
@@ -320,10 +319,11 @@ fn identifiability(
             ));
         }
     }
-    if posterior.effective() < FEW {
+    if posterior.power < 1.0 {
         warnings.push(format!(
-            "the intervals rest on {} draws in effect and are rough: ask for more (--simulations)",
-            short(posterior.effective())
+            "too few simulations came near to what was seen, so its likelihood counts to the power {} and \
+             the intervals are wider than they need be: ask for more (--simulations)",
+            short(posterior.power)
         ));
     }
     warnings
@@ -345,3 +345,6 @@ fn alike<'a>(
     let weights = courses.zip(&posterior.weights).filter(|(seen, _)| same(seen));
     (name, Some(weights.map(|(_, weight)| weight).sum()))
 }
+
+#[cfg(test)]
+mod tests;

@@ -6,9 +6,7 @@ use barrelstack_dynamics::math;
 
 use super::CalibrateError;
 use super::result::{quoted, rounded};
-use crate::scenario::{
-    Basis, Damping, Dimension, Friction, Interface, NormalLaw, Scenario, Scene,
-};
+use crate::scenario::{Basis, Damping, Dimension, Friction, Interface, NormalLaw, Scenario, Scene};
 
 /// A parameter that a response or a collapse may tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -239,12 +239,26 @@ fn figure_7(results: &Results) -> Vec<Block> {
     let mut blocks = vec![
         heading(2, "Fig. 7: eight barrels on four levels"),
         figures::player(&scene, "eight-barrels", "Eight barrels at full scale, to watch."),
-        heading(3, "(a) contact and target bodies"),
-        Block::Table(figures::pairs(
+        heading(3, "(a) contact bodies, target bodies, and the collapse"),
+        figures::contact_bodies(
             full,
-            "Bodies that lean on each other by design, by the paper's numbers and ours. The contact \
-             body carries the nodes, the target body the surface.",
-        )),
+            "figure-7a-pairs",
+            "The transverse section with the paper's body numbers. Each arrow starts in a contact body, \
+             which carries the nodes, and ends in its target body, which has the surface.",
+        ),
+        figures::strip(
+            &scene,
+            "figure-7a-sequence",
+            "The collapse in the transverse section, by what happens in it.",
+            figures::events(full),
+        ),
+        Block::Details {
+            summary: "The pairs as a table, with the forces at rest".into(),
+            blocks: vec![Block::Table(figures::pairs(
+                full,
+                "Bodies that lean on each other by design, by the paper's numbers and ours.",
+            ))],
+        },
     ];
     if figures::racks_carry_the_nodes(full) {
         blocks.push(text(
@@ -295,7 +309,19 @@ fn along(results: &Results) -> Vec<Block> {
             figures::moments(run),
         ),
         figures::player(&scene, "along-the-barrels", "The same run to watch."),
-        Block::Table(figures::pairs(run, "Contact and target bodies along the barrels.")),
+        figures::contact_bodies(
+            run,
+            "along-pairs",
+            "The section along the barrels with the paper's body numbers: the targets of every contact \
+             body are above and below it.",
+        ),
+        Block::Details {
+            summary: "The pairs as a table, with the forces at rest".into(),
+            blocks: vec![Block::Table(figures::pairs(
+                run,
+                "Contact and target bodies along the barrels.",
+            ))],
+        },
     ]
 }
 

@@ -1,9 +1,12 @@
 //! The problems, grouped by theory.
 
+mod arch;
 mod consensus;
 mod gravity;
 mod housner;
+mod intensity;
 mod invariances;
+mod measured;
 mod pulses;
 mod regimes;
 mod restitution;
@@ -23,9 +26,12 @@ pub fn all() -> Vec<Problem> {
         sliding::problems(),
         rolling::problems(),
         restitution::problems(),
+        measured::problems(),
         gravity::problems(),
         stacks::problems(),
+        arch::problems(),
         invariances::problems(),
+        intensity::problems(),
         statistics::problems(),
         consensus::problems(),
         crate::cases::shipped(),

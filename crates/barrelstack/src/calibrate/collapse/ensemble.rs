@@ -33,7 +33,11 @@ impl Seen {
         let parts = &run.assembly.parts;
         let barrels = run.assembly.of_kind(PartKind::Barrel);
         let fall = |body: usize| (parts[body].name.clone(), time(run.fates.fate(body).fell_at));
-        Some(Self { mode, loss: time(run.fates.collapse_time()), falls: barrels.map(fall).collect() })
+        Some(Self {
+            mode,
+            loss: time(run.fates.collapse_time()),
+            falls: barrels.map(fall).collect(),
+        })
     }
 
     /// The first barrel to fall, and when.
@@ -54,10 +58,7 @@ impl Seen {
 /// Simulates all scenarios, in their order; none where one cannot be simulated.
 ///
 /// The one place that runs stacks for the calibration of collapses.
-pub(super) fn simulate(
-    scenarios: &[Scenario],
-    done: &(dyn Fn(usize) + Sync),
-) -> Vec<Option<Seen>> {
+pub(super) fn simulate(scenarios: &[Scenario], done: &(dyn Fn(usize) + Sync)) -> Vec<Option<Seen>> {
     let one = |scenario: &Scenario| {
         let run = run(scenario, &mut |_| ControlFlow::Continue(())).ok()?;
         Seen::of(&run)

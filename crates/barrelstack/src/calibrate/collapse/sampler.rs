@@ -21,9 +21,9 @@ const ROUNDS: usize = 5;
 /// bound.
 const WIDE: f64 = 0.2;
 
-/// Fewest draws, in effect, that a proposal is built on; the likelihood is flattened until there are so
-/// many.
-const FEWEST: f64 = 30.0;
+/// Fewest draws, in effect, that a proposal or a result rests on; the likelihood is raised to a power
+/// below one until there are so many.
+const FEWEST: f64 = 40.0;
 
 /// One draw: a point of the box `[−1, 1]ⁿ`, and what seeds everything else that is random in it.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +37,9 @@ pub(super) struct Draw {
 pub(super) struct Posterior {
     pub(super) draws: Vec<Draw>,
     pub(super) weights: Vec<f64>,
+    /// The power to which the likelihood was raised so that enough draws count; one where it needed
+    /// not be. Below it, intervals are wider than they had to be.
+    pub(super) power: f64,
 }
 
 /// Where a round draws from: normal kernels around centers, each coordinate mirrored at the walls.
@@ -60,7 +63,11 @@ pub(super) fn sample(
     mut evaluate: impl FnMut(&[Draw]) -> Vec<f64>,
 ) -> Option<Posterior> {
     let mut random = Random::new(seed);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a count")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a share of a count"
+    )]
     let first = ((FIRST * count as f64) as usize).max(1);
     let each = (count - first).div_ceil(ROUNDS);
     let mut draws = numbered(hypercube(first, dimensions, &mut random), 0, seed);
@@ -71,7 +78,7 @@ pub(super) fn sample(
             break;
         }
         let densities = densities(&draws, first, &proposals);
-        let weights = flattened(&logs, &densities)?;
+        let (weights, _) = flattened(&logs, &densities)?;
         let proposal = Proposal::around(&draws, weights, each, dimensions);
         let points = (0..each).map(|_| proposal.draw(dimensions, &mut random)).collect();
         let round = numbered(points, draws.len(), seed);
@@ -80,8 +87,8 @@ pub(super) fn sample(
         proposals.push(proposal);
     }
     let densities = densities(&draws, first, &proposals);
-    let weights = weights(&logs, &densities, 1.0)?;
-    Some(Posterior { draws, weights })
+    let (weights, power) = flattened(&logs, &densities)?;
+    Some(Posterior { draws, weights, power })
 }
 
 /// Points with seeds of their own, which differ for every place in the list.
@@ -131,18 +138,19 @@ fn weights(logs: &[f64], densities: &[f64], power: f64) -> Option<Vec<f64>> {
     Some(weights.into_iter().map(|weight| weight / sum).collect())
 }
 
-/// The same with the highest power, up to one, that leaves enough draws in effect.
-fn flattened(logs: &[f64], densities: &[f64]) -> Option<Vec<f64>> {
-    let enough = |power| weights(logs, densities, power).map(|w| effective(&w) >= FEWEST);
-    if enough(1.0)? {
-        return weights(logs, densities, 1.0);
+/// The same with the highest power, up to one, that leaves enough draws in effect, and that power.
+fn flattened(logs: &[f64], densities: &[f64]) -> Option<(Vec<f64>, f64)> {
+    let whole = weights(logs, densities, 1.0)?;
+    if effective(&whole) >= FEWEST {
+        return Some((whole, 1.0));
     }
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..30 {
         let middle = 0.5 * (low + high);
-        if enough(middle)? { low = middle } else { high = middle }
+        let enough = effective(&weights(logs, densities, middle)?) >= FEWEST;
+        if enough { low = middle } else { high = middle }
     }
-    weights(logs, densities, low)
+    Some((weights(logs, densities, low)?, low))
 }
 
 /// How many equally weighted draws say as much as these (Kish).
@@ -193,7 +201,9 @@ impl Proposal {
         let total = self.cumulated.last().copied().unwrap_or(1.0);
         let kernel = |center: &Vec<f64>| -> f64 {
             let coordinates = point.iter().zip(center).zip(&self.width);
-            coordinates.map(|((x, center), width)| 2.0 * mirrored_normal(*x, *center, *width)).product()
+            coordinates
+                .map(|((x, center), width)| 2.0 * mirrored_normal(*x, *center, *width))
+                .product()
         };
         let sum: f64 = self.centers.iter().zip(&self.weights).map(|(c, w)| w * kernel(c)).sum();
         WIDE + (1.0 - WIDE) * sum / total
@@ -226,6 +236,13 @@ fn mirrored_normal(x: f64, center: f64, width: f64) -> f64 {
 }
 
 impl Posterior {
+    /// The posterior of draws from the box itself.
+    #[cfg(test)]
+    pub(super) fn of(draws: Vec<Draw>, logs: &[f64]) -> Option<Self> {
+        let (weights, power) = flattened(logs, &vec![1.0; draws.len()])?;
+        Some(Self { draws, weights, power })
+    }
+
     /// How many equally weighted draws say as much.
     pub(super) fn effective(&self) -> f64 {
         effective(&self.weights)
@@ -269,7 +286,13 @@ mod tests {
         for center in [-1.0, -0.7, 0.1, 0.95] {
             let parts = 4000;
             let sum: f64 = (0..parts)
-                .map(|i| mirrored_normal(2.0 * (f64::from(i) + 0.5) / f64::from(parts) - 1.0, center, 0.4))
+                .map(|i| {
+                    mirrored_normal(
+                        2.0 * (f64::from(i) + 0.5) / f64::from(parts) - 1.0,
+                        center,
+                        0.4,
+                    )
+                })
                 .sum();
             let area = sum * 2.0 / f64::from(parts);
             assert!((area - 1.0).abs() < 1e-4, "{center}: {area}"); // measured 1.6e-6
@@ -279,9 +302,8 @@ mod tests {
     #[test]
     fn a_narrow_slanted_normal_is_found() {
         // x ~ N(0.3, 0.05), y given x ~ N(-x, 0.1): moments known in closed form.
-        let log = |x: f64, y: f64| {
-            -0.5 * ((x - 0.3) / 0.05).powi(2) - 0.5 * ((y + x) / 0.1).powi(2)
-        };
+        let log =
+            |x: f64, y: f64| -0.5 * ((x - 0.3) / 0.05).powi(2) - 0.5 * ((y + x) / 0.1).powi(2);
         let found = sample(2, 2000, 3, |draws| {
             draws.iter().map(|draw| log(draw.point[0], draw.point[1])).collect()
         })
