@@ -10,6 +10,7 @@ mod figures;
 mod numbering;
 mod page;
 mod pool;
+mod racks;
 mod results;
 mod rows;
 mod study;

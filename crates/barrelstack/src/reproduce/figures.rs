@@ -74,7 +74,7 @@ pub(super) fn events(run: &Run) -> Vec<(f64, String)> {
         None => parts[body].name.clone(),
     };
     let first = run.fates.first().map_or_else(String::new, named);
-    panels.push((loss - 0.3, "0.3 s before the loss of seat".into()));
+    panels.push((loss - 0.3, "0.3 s before".into()));
     panels.push((loss, format!("{first} leaves its seat")));
     let top = run
         .assembly

@@ -90,5 +90,6 @@ fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
     println!("{collapsed} of {} stacks collapse", seen.len());
     println!("k, c and μ covered in {covered:?} of 100 campaigns");
     println!("mean width of the intervals over that of the range: {width:.2?}");
+    // measured 94, 94 and 97; widths 0.75, 0.97 and 0.60: collapses say nothing about c
     assert!(covered.iter().all(|covered| *covered >= 90), "{covered:?}");
 }
