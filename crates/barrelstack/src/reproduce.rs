@@ -113,3 +113,8 @@ pub fn html(found: &Reproduction) -> String {
 pub fn markdown(found: &Reproduction, figure_dir: &str) -> MarkdownBundle {
     barrelstack_report::markdown(&found.document, figure_dir)
 }
+
+/// The comparisons alone, as one Markdown table.
+pub fn table(found: &Reproduction) -> String {
+    compare::table(&found.comparisons)
+}
