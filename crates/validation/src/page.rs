@@ -29,7 +29,7 @@ pub const LIMITS: [&str; 6] = [
 ];
 
 /// What `validation.md` lists and no problem here answers, with the reason.
-pub const ABSENT: [(&str, &str); 9] = [
+pub const ABSENT: [(&str, &str); 11] = [
     (
         "4.2, many-impact windows below ω/p = 1.5; double-impulse limit; Dimitrakopoulos and DeJong 2012",
         "the windows are too narrow to judge by; of the other two no closed form is on record here.",
@@ -50,6 +50,14 @@ pub const ABSENT: [(&str, &str); 9] = [
     (
         "4.9, two-block histories of Psycharis, Spanos and Kounadis; trilith",
         "only the four patterns are on record; equations and tests of the histories are not.",
+    ),
+    (
+        "4.8, decay of granite block S3",
+        "its measured ratio, 0.978, lies below Housner's 0.9787, the least that any damping shows.",
+    ),
+    (
+        "4.9, thinnest semicircular arch (t/R = 0.1075)",
+        "no scene of voussoirs has been made to come to rest here yet.",
     ),
     ("4.9, arch of 27 blocks with friction modes", "its published modes are not on record here."),
     ("4.9, heavy top, Euler disc", "three-dimensional; the model is planar."),
@@ -74,7 +82,6 @@ fn heading(theory: &str) -> &str {
         "restitution" => "Restitution and damping",
         "gravity" => "Gravity",
         "stacks" => "Stacked blocks",
-        "arch" => "Arches",
         "measured" => "Measured blocks",
         "intensity" => "Measures of ground motions",
         "invariances" => "Invariances and energy",

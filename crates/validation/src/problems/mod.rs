@@ -1,6 +1,5 @@
 //! The problems, grouped by theory.
 
-mod arch;
 mod consensus;
 mod gravity;
 mod housner;
@@ -29,7 +28,6 @@ pub fn all() -> Vec<Problem> {
         measured::problems(),
         gravity::problems(),
         stacks::problems(),
-        arch::problems(),
         invariances::problems(),
         intensity::problems(),
         statistics::problems(),
