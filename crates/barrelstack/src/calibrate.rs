@@ -6,16 +6,19 @@
 //! | [`mod@drop`] | drop and rebound heights, or times of impact | restitution, `c` |
 //! | [`friction`] | pull forces, or tilt angles | static and kinetic μ |
 //! | [`response`] | histories of a shaken stack | `k`, `c`, μ together |
+//! | [`mod@collapse`] | mode and fall times of collapses | `k`, `c`, μ together |
 //!
 //! Files are CSV with a header whose columns carry their unit, such as `penetration (mm),force (kN)`.
 //! Intervals hold what scatters in the file; what is given as exact (a mass, the model itself) is not
 //! in them.
 
+pub mod collapse;
 pub mod drop;
 mod error;
 pub mod friction;
 mod impact;
 pub mod least_squares;
+mod parameters;
 pub mod response;
 mod result;
 pub mod statistics;
@@ -24,5 +27,6 @@ mod table;
 
 pub use error::CalibrateError;
 pub use impact::{Impact, impact};
+pub use parameters::Parameter;
 pub use result::{Calibration, Estimate};
 pub use table::Table;

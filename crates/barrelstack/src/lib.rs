@@ -17,6 +17,7 @@ pub mod export;
 pub mod ground;
 pub mod outcome;
 mod overlap;
+mod pool;
 pub mod render;
 pub mod report;
 pub mod reproduce;

@@ -19,6 +19,10 @@ pub enum CollapseMode {
 }
 
 impl CollapseMode {
+    /// All modes.
+    pub const ALL: [Self; 4] =
+        [Self::Ejection, Self::Rocking, Self::RackSliding, Self::Overturning];
+
     /// The word used in files and reports.
     pub fn name(self) -> &'static str {
         match self {

@@ -10,6 +10,7 @@ mod figures;
 mod numbering;
 mod page;
 mod pool;
+mod racks;
 mod results;
 mod rows;
 mod study;
@@ -111,4 +112,9 @@ pub fn html(found: &Reproduction) -> String {
 /// The page as text, with its figures and tables as files for a folder named `figure_dir`.
 pub fn markdown(found: &Reproduction, figure_dir: &str) -> MarkdownBundle {
     barrelstack_report::markdown(&found.document, figure_dir)
+}
+
+/// The comparisons alone, as one Markdown table.
+pub fn table(found: &Reproduction) -> String {
+    compare::table(&found.comparisons)
 }

@@ -6,11 +6,12 @@
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
 
+use barrelstack::calibrate::collapse::{Observations, Settings, collapse};
 use barrelstack::calibrate::drop::{GRAVITY, Striker, drop};
 use barrelstack::calibrate::friction::friction;
-use barrelstack::calibrate::response::{Parameter, response};
+use barrelstack::calibrate::response::response;
 use barrelstack::calibrate::stiffness::stiffness;
-use barrelstack::calibrate::{Calibration, Table, impact};
+use barrelstack::calibrate::{Calibration, Parameter, Table, impact};
 use barrelstack::scenario::Scenario;
 use barrelstack_motion::Random;
 
@@ -300,4 +301,105 @@ fn a_response_says_what_it_cannot_tell() {
     let told = |warning: &String| warning.contains("friction rack-ground");
     assert!(found.warnings.iter().any(told), "{:?}", found.warnings);
     assert!(found.estimate("stiffness k").unwrap().relative() < 0.05, "{found:?}");
+}
+
+/// The eight barrels under two sines, the second stronger than the first.
+fn shaken_down() -> [Scenario; 2] {
+    ["4 in", "6 in"].map(|amplitude| {
+        let change = format!("motion.sine.amplitude={amplitude}");
+        Scenario::builtin("candia-8-barrels", &[change, "run.duration=2.6 s".to_owned()]).unwrap()
+    })
+}
+
+/// What a video shows of scenarios with other values in their text: modes and fall times, read off to a
+/// hundredth of a second.
+fn filmed(scenarios: &[Scenario], values: &[(&str, &str)]) -> String {
+    let mut text = String::from("mode,until (s)");
+    let mut lines = String::new();
+    for (at, scenario) in scenarios.iter().enumerate() {
+        let mut truth = scenario.to_resolved_toml();
+        for (from, to) in values {
+            assert!(truth.contains(from), "{from}");
+            truth = truth.replace(from, to);
+        }
+        let truth = Scenario::parse("truth.toml", &truth, &[]).unwrap();
+        let run = barrelstack::run(&truth, &mut |_| ControlFlow::Continue(())).unwrap();
+        let summary = barrelstack::Summary::of(&run, None);
+        write!(lines, "\n{},2.6", summary.outcome.mode.unwrap_or("stands")).unwrap();
+        for body in summary.bodies.iter().filter(|body| body.kind == "barrel") {
+            if at == 0 {
+                write!(text, ",{} fell (s)", body.name).unwrap();
+            }
+            match body.fell_at {
+                Some(time) => write!(lines, ",{time:.2}").unwrap(),
+                None => lines.push_str(",stands"),
+            }
+        }
+    }
+    text + &lines + "\n"
+}
+
+fn from_film(tests: usize, simulations: usize, parameters: &[Parameter]) -> Calibration {
+    let scenarios = &shaken_down()[..tests];
+    let values = [
+        ("stiffness = \"980000 N/m\"", "stiffness = \"1200000 N/m\""),
+        ("coefficient = 0.22", "coefficient = 0.18"),
+    ];
+    let table = Table::parse("video.csv", &filmed(scenarios, &values)).unwrap();
+    let settings = Settings { simulations, ..Settings::default() };
+    let seen = Observations::read(&table, &settings.errors).unwrap();
+    collapse(&seen, scenarios, parameters, &settings, &|_, _| ()).unwrap()
+}
+
+#[test]
+fn two_collapses_give_stiffness_and_friction_back_within_their_intervals() {
+    let found = from_film(2, 150, &[Parameter::Stiffness, Parameter::FrictionBarrelRack]);
+    println!("{}\n{:?}", found.lines().join("\n"), found.warnings);
+    let stiffness = found.estimate("stiffness k").unwrap();
+    let friction = found.estimate("friction barrel-rack").unwrap();
+    assert!(stiffness.covers(1.2e6), "{stiffness:?}");
+    assert!(friction.covers(0.18), "{friction:?}");
+    // Both know more than the factor of two to either side that they began with.
+    assert!(stiffness.high < 0.8 * 4.0 * stiffness.low, "{stiffness:?}");
+    assert!(friction.high < 0.8 * 4.0 * friction.low, "{friction:?}");
+}
+
+#[test]
+fn a_collapse_says_what_it_cannot_tell_and_the_same_every_time() {
+    let found = from_film(1, 50, &[Parameter::Damping]);
+    let told = |words: &str| found.warnings.iter().any(|warning| warning.contains(words));
+    assert!(told("says nothing about damping c"), "{:?}", found.warnings);
+    assert_eq!(found, from_film(1, 50, &[Parameter::Damping]));
+}
+
+#[test]
+fn observations_are_refused_at_their_place() {
+    let cases = [
+        (
+            "mode,B4.1 fell (s)\nejected,1.5\n",
+            "line 2, column \"mode\": expected ejection, rocking",
+        ),
+        ("mode,B4.1 fell (s)\nejection,soon\n", "line 2, column \"B4.1 fell\": expected a number"),
+        ("mode,B4.1 fell\nejection,1.5\n", "line 1, column \"B4.1 fell\": expected a unit"),
+        ("mode,B4.1 fell (s)\nejection,-1\n", "column \"B4.1 fell\": expected a time above zero"),
+        ("mode,B4.1 fell (s)\nejection,stands\n", "column \"until\": expected how long the test"),
+        (
+            "mode,B4.1 fell (s),until (s)\n,3,2\n",
+            "expected a time up to the end of the watch at 2 s",
+        ),
+        ("mode,B4.1 fell (s)\n,\n", "line 2, column \"mode\": expected something that was seen"),
+    ];
+    for (text, words) in cases {
+        let table = Table::parse("video.csv", text).unwrap();
+        let error =
+            Observations::read(&table, &Settings::default().errors).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    }
+    let table = Table::parse("video.csv", "mode,B9.1 fell (s)\nejection,1.5\n").unwrap();
+    let settings = Settings { simulations: 50, ..Settings::default() };
+    let seen = Observations::read(&table, &settings.errors).unwrap();
+    let fit = [Parameter::Stiffness];
+    let error = collapse(&seen, &shaken_down()[..1], &fit, &settings, &|_, _| ()).unwrap_err();
+    let words = "test 1: the scenario has no barrel \"B9.1\"; it has B1.1, B1.2, B2.1";
+    assert!(error.to_string().starts_with(words), "{error}");
 }

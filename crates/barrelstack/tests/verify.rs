@@ -139,3 +139,14 @@ fn the_summary_carries_its_verification() {
     assert_eq!(whole["outcome"], alone["outcome"]);
     assert_eq!(whole.as_object().unwrap().len(), alone.as_object().unwrap().len() + 1);
 }
+
+#[test]
+fn the_two_cases_of_the_documentation_are_what_it_says() {
+    // validation/README.md shows both with their commands.
+    assert!(verified(&run("candia-8-barrels", &["run.stop_after_collapse=0.5 s"])).robust);
+    let edge = two_levels(0.645_295);
+    let found = verified(&edge);
+    assert!(!found.robust, "{:#?}", found.rows());
+    // measured: the run collapses at 7.57 s, with half the step it stands
+    assert!(found.repeats.iter().any(|repeat| !repeat.same_outcome), "{:#?}", found.rows());
+}

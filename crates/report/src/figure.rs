@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::{Block, Document, Envelope, Plot, Strip, escape, svg::Svg};
+use crate::{Block, Diagram, Document, Envelope, Plot, Strip, escape, svg::Svg};
 
 /// One picture with a caption.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +24,8 @@ pub enum FigureKind {
     Strip(Strip),
     /// Stress drawn around a body's outline.
     Envelope(Envelope),
+    /// A scene at one instant with labels and arrows.
+    Diagram(Diagram),
 }
 
 impl Figure {
@@ -35,12 +37,14 @@ impl Figure {
     /// The picture's data as CSV at full precision.
     ///
     /// A plot gives `x` columns beside `y` columns, one pair for each series; a strip gives one
-    /// row for each instant and body; an envelope one row for each sample.
+    /// row for each instant and body; an envelope one row for each sample; a diagram one row for each
+    /// arrow.
     pub fn to_csv(&self) -> String {
         match &self.kind {
             FigureKind::Plot(plot) => plot.to_csv(),
             FigureKind::Strip(strip) => strip.to_csv(),
             FigureKind::Envelope(envelope) => envelope.to_csv(),
+            FigureKind::Diagram(diagram) => diagram.to_csv(),
         }
     }
 
@@ -49,6 +53,7 @@ impl Figure {
             FigureKind::Plot(plot) => plot.draw(id, &self.caption),
             FigureKind::Strip(strip) => strip.draw(id, &self.caption),
             FigureKind::Envelope(envelope) => envelope.draw(&self.caption),
+            FigureKind::Diagram(diagram) => diagram.draw(id, &self.caption),
         }
     }
 }

@@ -216,12 +216,16 @@ impl<'a> Writer<'a> {
         let id = self.names.take(&figure.id);
         let live = match &figure.kind {
             FigureKind::Plot(plot) if plot.is_live() => Some(self.payload.add_plot(&id, plot)),
-            FigureKind::Plot(_) | FigureKind::Strip(_) | FigureKind::Envelope(_) => None,
+            FigureKind::Plot(_)
+            | FigureKind::Strip(_)
+            | FigureKind::Envelope(_)
+            | FigureKind::Diagram(_) => None,
         };
         let kind = match &figure.kind {
             FigureKind::Plot(_) => "plot",
             FigureKind::Strip(_) => "strip",
             FigureKind::Envelope(_) => "envelope",
+            FigureKind::Diagram(_) => "diagram",
         };
         let data = live.map_or(String::new(), |place| format!(" data-plot=\"{place}\""));
         self.put(&format!("<figure class=\"{kind}\" id=\"figure-{id}\"{data}>\n"));
@@ -230,7 +234,7 @@ impl<'a> Writer<'a> {
         }
         match &figure.kind {
             FigureKind::Strip(strip) => self.strip(strip, &id),
-            FigureKind::Plot(_) | FigureKind::Envelope(_) => {
+            FigureKind::Plot(_) | FigureKind::Envelope(_) | FigureKind::Diagram(_) => {
                 let drawing = figure.draw(&id).inline();
                 self.put(&format!("<div class=\"drawing\">{drawing}</div>\n"));
             }

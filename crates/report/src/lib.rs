@@ -30,6 +30,7 @@
 //! A number that is not finite is a gap in a line and a dash in a table. No input panics: lists
 //! of unequal length are read to the end of the shorter, empty figures draw empty axes.
 
+mod diagram;
 mod document;
 mod envelope;
 mod escape;
@@ -51,6 +52,7 @@ mod table;
 mod ticks;
 mod vtk;
 
+pub use diagram::{Arrow, Diagram};
 pub use document::{Block, Document, Tone, Verdict};
 pub use envelope::{BoundarySample, Envelope};
 pub use figure::{Attachment, Figure, FigureKind, attachments};

@@ -3,7 +3,7 @@
 use std::{fmt::Write as _, sync::Arc};
 
 use crate::{
-    Polyline, Role, Scene, escape, number,
+    Point, Polyline, Role, Scene, escape, number,
     scene::{Extent, hatch, window},
     svg::{Anchor, Svg, coordinate, text_width},
 };
@@ -57,6 +57,22 @@ impl View {
         let scale = (most[0] / wide).min(most[1] / high);
         let [width, height] = [(wide * scale).max(120.0), (high * scale + FOOT).max(50.0)];
         Self { extent, scale, width, height, names }
+    }
+
+    /// Where the origin of the scene lies (px): centered across when the window is narrower than the
+    /// panel.
+    fn origin(&self) -> [f64; 2] {
+        let (extent, scale) = (&self.extent, self.scale);
+        [
+            0.5 * (self.width - extent.width() * scale) - extent.lower[0] * scale,
+            self.height - FOOT + extent.lower[1] * scale,
+        ]
+    }
+
+    /// Where a point of the scene (m) lies (px).
+    pub(crate) fn on_page(&self, [x, z]: Point) -> [f64; 2] {
+        let [x0, z0] = self.origin();
+        [x0 + x * self.scale, z0 - z * self.scale]
     }
 }
 
@@ -232,11 +248,8 @@ pub(crate) fn picture(scene: &Scene, id: &str, frame: Option<usize>, view: &View
 }
 
 fn place_bodies(svg: &mut Svg, scene: &Scene, id: &str, frame: usize, view: &View) {
-    let (extent, scale) = (&view.extent, view.scale);
-    // Centered across when the window is narrower than the panel.
-    let x0 = 0.5 * (view.width - extent.width() * scale) - extent.lower[0] * scale;
-    let z0 = view.height - FOOT + extent.lower[1] * scale;
-    let [left, foot] = [x0, z0].map(coordinate);
+    let scale = view.scale;
+    let [left, foot] = view.origin().map(coordinate);
     svg.raw(&format!(r#"<g transform="matrix({scale:.6} 0 0 {:.6} {left} {foot})">"#, -scale));
     let poses: Vec<_> = (0..scene.bodies.len())
         .filter_map(|at| Some((at, scene.frames.pose(frame, at)?)))
@@ -253,8 +266,8 @@ fn place_bodies(svg: &mut Svg, scene: &Scene, id: &str, frame: usize, view: &Vie
     for (at, [x, z, _]) in poses.iter().filter(|_| view.names) {
         let body = &scene.bodies[*at];
         if matches!(body.role, Role::Barrel | Role::Block) {
-            let place = [x0 + x * scale, z0 - z * scale + 4.0];
-            svg.text("label", place, Anchor::Middle, &body.name);
+            let [x, y] = view.on_page([*x, *z]);
+            svg.text("label", [x, y + 4.0], Anchor::Middle, &body.name);
         }
     }
 }

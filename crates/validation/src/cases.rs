@@ -88,6 +88,14 @@ pub(crate) fn shipped() -> Vec<Problem> {
         ("half-sine-4", include_str!("../cases/half-sine-4.toml")),
         ("one-sine-4-starts", include_str!("../cases/one-sine-4-starts.toml")),
         ("one-sine-4-without-impact", include_str!("../cases/one-sine-4-without-impact.toml")),
+        ("housner-period-short", include_str!("../cases/housner-period-short.toml")),
+        ("half-sine-2.5", include_str!("../cases/half-sine-2.5.toml")),
+        ("one-cosine-2.5-starts", include_str!("../cases/one-cosine-2.5-starts.toml")),
+        (
+            "one-cosine-2.5-without-impact",
+            include_str!("../cases/one-cosine-2.5-without-impact.toml"),
+        ),
+        ("rectangular-0.75", include_str!("../cases/rectangular-0.75.toml")),
         ("sliding-rectangular", include_str!("../cases/sliding-rectangular.toml")),
         ("sliding-half-sine", include_str!("../cases/sliding-half-sine.toml")),
     ];

@@ -182,6 +182,10 @@ impl<'a> Builder<'a> {
     /// Racks carry the nodes against barrels and against each other; barrels against the ground and
     /// against barrels. Between two barrels the one with the lower id carries the nodes when they
     /// roll (the other's would say the same), and both do when their nodes are fixed.
+    ///
+    /// A round barrel that neither lies in a rack nor bears it meets it only in a heap, anywhere along
+    /// its beam, where the rack has no nodes: there the barrel carries one that rolls, which finds the
+    /// beam wherever it is.
     pub(super) fn pairs(&self) -> Vec<ContactPair> {
         let mut pairs = Vec::new();
         let mut join = |contactor: BodyId, target: BodyId, interface: usize| {
@@ -204,7 +208,9 @@ impl<'a> Builder<'a> {
                         join(a, b, RACK_RACK);
                         join(b, a, RACK_RACK);
                     }
+                    (PartKind::Rack, _) if self.only_in_a_heap(a, b) => join(b, a, BARREL_RACK),
                     (PartKind::Rack, _) => join(a, b, BARREL_RACK),
+                    (_, PartKind::Rack) if self.only_in_a_heap(b, a) => join(a, b, BARREL_RACK),
                     (_, PartKind::Rack) => join(b, a, BARREL_RACK),
                     _ => {
                         join(a, b, BARREL_BARREL);
@@ -216,6 +222,13 @@ impl<'a> Builder<'a> {
             }
         }
         pairs
+    }
+
+    /// Whether a rack and a rolling barrel are no neighbors in the stack.
+    fn only_in_a_heap(&self, rack: BodyId, barrel: BodyId) -> bool {
+        let rolls = matches!(self.bodies[barrel].nodes.first(), Some(Nodes::Rolling { .. }));
+        let carried = self.parts[barrel].carrier == Some(rack);
+        rolls && !carried && !self.parts[rack].supports.contains(&barrel)
     }
 }
 

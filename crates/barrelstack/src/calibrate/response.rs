@@ -2,50 +2,15 @@
 
 mod simulate;
 
-use std::fmt::Write as _;
-
 use barrelstack_dynamics::math;
 
 use self::simulate::{Measured, Simulator};
 use super::least_squares::{Fit, Start, condition, fit, normalized};
-use super::result::{quoted, rounded, short};
+use super::result::short;
 use super::statistics::student;
-use super::{CalibrateError, Calibration, Estimate, Table};
+use super::{CalibrateError, Calibration, Estimate, Parameter, Table};
 use crate::run::RunFailure;
 use crate::scenario::Scenario;
-
-/// A parameter that a response may be fitted by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Parameter {
-    /// Stiffness of barrel–rack; that of rack–ground keeps its ratio to it.
-    Stiffness,
-    /// Damping of barrel–rack; that of rack–ground keeps its ratio to it.
-    Damping,
-    /// Friction of barrel–rack; static and kinetic keep their ratio.
-    FrictionBarrelRack,
-    /// Friction of rack–ground; static and kinetic keep their ratio.
-    FrictionRackGround,
-}
-
-impl Parameter {
-    /// All parameters, with the word that names them on the command line.
-    pub const NAMES: [(&'static str, Self); 4] = [
-        ("k", Self::Stiffness),
-        ("c", Self::Damping),
-        ("mu-br", Self::FrictionBarrelRack),
-        ("mu-rg", Self::FrictionRackGround),
-    ];
-
-    /// What tables call it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Stiffness => "stiffness k",
-            Self::Damping => "damping c",
-            Self::FrictionBarrelRack => "friction barrel-rack",
-            Self::FrictionRackGround => "friction rack-ground",
-        }
-    }
-}
 
 /// Differences of the logarithms of the parameters over which sensitivities are taken: wide enough
 /// that single nodes coming into contact average out.
@@ -174,7 +139,7 @@ pub fn response(
     }
     Ok(Calibration {
         title: format!("response {}: fitted by simulations", table.file()),
-        scenario: scenario_lines(&simulator, parameters, &found),
+        scenario: simulator.tunable.scenario_lines(&found.parameters),
         estimates,
         correlation,
         condition: Some(condition),
@@ -220,14 +185,14 @@ fn estimates(
     let known = |at: usize| found.covariance.as_ref().filter(|_| found.matters[at]);
     let estimate = |(at, parameter): (usize, &Parameter)| {
         let half = known(at).map_or(f64::INFINITY, |c| t * c[place(at)][place(at)].sqrt());
-        let value = |log: f64| simulator.start(*parameter) * math::exp(log);
+        let value = |log: f64| simulator.tunable.start(*parameter) * math::exp(log);
         let log = found.parameters[at];
         Estimate {
             name: parameter.name().to_owned(),
             value: value(log),
             low: value(log - half),
             high: value(log + half),
-            dimension: simulator.dimension(*parameter),
+            dimension: simulator.tunable.dimension(*parameter),
         }
     };
     let estimates = parameters.iter().enumerate().map(estimate).collect();
@@ -284,38 +249,6 @@ fn identifiability(
         ));
     }
     warnings
-}
-
-/// The lines for a scenario: each interface with all that was fitted of it.
-fn scenario_lines(simulator: &Simulator<'_>, parameters: &[Parameter], found: &Fit) -> String {
-    let point: Vec<f64> = found.parameters.clone();
-    let mut text = String::new();
-    let has = |parameter| parameters.contains(&parameter);
-    for (name, own) in [
-        ("barrel-rack", Parameter::FrictionBarrelRack),
-        ("rack-ground", Parameter::FrictionRackGround),
-    ] {
-        let constants = simulator.constants(name == "barrel-rack", &point);
-        if has(Parameter::Stiffness) || has(Parameter::Damping) {
-            let _ = writeln!(
-                text,
-                "[interface.{name}]\nstiffness = {}\ndamping = {}",
-                quoted(constants.stiffness, simulator.dimension(Parameter::Stiffness)),
-                quoted(constants.damping, simulator.dimension(Parameter::Damping)),
-            );
-        }
-        if has(own) {
-            let _ = writeln!(
-                text,
-                "[interface.{name}.friction]\ncoefficient = {}",
-                rounded(constants.kinetic)
-            );
-            if constants.rest > constants.kinetic {
-                let _ = writeln!(text, "static_coefficient = {}", rounded(constants.rest));
-            }
-        }
-    }
-    text
 }
 
 fn by_channel(residuals: &[f64], rows: usize) -> impl Iterator<Item = &[f64]> {

@@ -30,6 +30,17 @@ pub struct Table {
     rows: Vec<(usize, Vec<String>)>,
 }
 
+/// What stands in a cell of a column with gaps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Entry {
+    /// Nothing.
+    Empty,
+    /// The word that stands for no number.
+    Word,
+    /// A value (SI).
+    Number(f64),
+}
+
 /// The head of a column.
 #[derive(Clone, Debug)]
 struct Column {
@@ -134,11 +145,45 @@ impl Table {
         columns.map(|column| format!("column \"{}\" is not used", column.name)).collect()
     }
 
+    /// How many rows of measurements there are.
+    pub(super) fn count(&self) -> usize {
+        self.rows.len()
+    }
+
     /// The values (SI) of a column that must be there.
     ///
     /// # Errors
     /// When it is missing, has no unit or another one, or holds anything but numbers.
     pub fn required(&self, name: &str, dimension: Dimension) -> Result<Vec<f64>, CalibrateError> {
+        let (at, unit) = self.place(name, dimension)?;
+        let column = &self.columns[at].name;
+        let value = |(line, row): &(usize, Vec<String>)| self.value(*line, column, &row[at], unit);
+        self.rows.iter().map(value).collect()
+    }
+
+    /// The cells of a column that must be there, each with a number (SI), a `word` in place of one, or
+    /// nothing.
+    ///
+    /// # Errors
+    /// As [`Table::required`], for cells that hold anything else.
+    pub(super) fn entries(
+        &self,
+        name: &str,
+        dimension: Dimension,
+        word: &str,
+    ) -> Result<Vec<Entry>, CalibrateError> {
+        let (at, unit) = self.place(name, dimension)?;
+        let column = &self.columns[at].name;
+        let entry = |(line, row): &(usize, Vec<String>)| match row[at].as_str() {
+            "" => Ok(Entry::Empty),
+            cell if cell == word => Ok(Entry::Word),
+            cell => self.value(*line, column, cell, unit).map(Entry::Number),
+        };
+        self.rows.iter().map(entry).collect()
+    }
+
+    /// Where a column stands, and its unit.
+    fn place(&self, name: &str, dimension: Dimension) -> Result<(usize, &str), CalibrateError> {
         let mut found = self.columns.iter().enumerate().filter(|(_, column)| column.is(name));
         let example = || format!("`{name} ({})`", dimension.si_unit());
         let at_header = |column: Option<String>, expected: String, found: String, remedy: &str| {
@@ -175,10 +220,7 @@ impl Table {
             let found = format!("\"{unit}\" ({error})");
             return Err(at_header(named, expected, found, "correct the unit in the header"));
         }
-        self.rows
-            .iter()
-            .map(|(line, row)| self.value(*line, &column.name, &row[at], unit))
-            .collect()
+        Ok((at, unit))
     }
 
     fn value(

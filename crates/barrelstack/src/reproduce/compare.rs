@@ -1,5 +1,7 @@
 //! One published result beside ours, and the verdict.
 
+use std::fmt::Write as _;
+
 /// Largest difference, as a share of the published number, that counts as agreement.
 pub(super) const CLOSE: f64 = 0.20;
 
@@ -54,6 +56,38 @@ pub fn percent(share: f64) -> String {
     let rounded = (100.0 * share).round();
     let sign = if rounded < 0.0 { "−" } else { "+" };
     format!("{sign}{} %", rounded.abs())
+}
+
+/// All comparisons as one Markdown table, as `validation/README.md` holds it.
+pub(super) fn table(rows: &[Comparison]) -> String {
+    let mut text = String::from(
+        "| quantity | published | ours | difference | band | verdict | why |\n\
+         | :--- | :--- | :--- | :--- | :--- | :--- | :--- |\n",
+    );
+    for row in rows {
+        let difference = row.difference.map_or_else(|| "–".to_owned(), percent);
+        let cells = [
+            row.quantity.as_str(),
+            &row.published,
+            &row.ours,
+            &difference,
+            row.band.unwrap_or("–"),
+            row.verdict.words(),
+            &sentence(&row.why),
+        ];
+        let cells = cells.map(|cell| cell.replace('*', "\\*").replace('|', "\\|"));
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "| {} |", cells.join(" | "));
+    }
+    text
+}
+
+/// Words as a sentence.
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    let Some(first) = letters.next() else { return String::new() };
+    let end = if words.ends_with('.') { "" } else { "." };
+    format!("{}{}{end}", first.to_uppercase(), letters.as_str())
 }
 
 /// A number and the words around it.

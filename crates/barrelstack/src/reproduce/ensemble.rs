@@ -11,6 +11,9 @@ use crate::summary::Summary;
 /// How far each parameter goes.
 const REACH: f64 = 0.10;
 
+/// How many members there are.
+pub(super) const COUNT: usize = 24;
+
 type Change = fn(&mut StackSpec, f64);
 
 /// The parameters, each with what multiplies it.
@@ -175,7 +178,7 @@ mod tests {
     #[test]
     fn every_member_is_another_one_and_none_is_the_base() {
         let members = members();
-        assert_eq!(members.len(), 24);
+        assert_eq!(members.len(), super::COUNT);
         for (at, factors) in members.iter().enumerate() {
             assert!(!members[..at].contains(factors), "{}", name(*factors));
             assert_ne!(*factors, [1.0; 4]);

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use barrelstack_report::{
-    Axis, Block, Cell, Figure, FigureKind, Mark, Panel, Player, Plot, Scene, Series, Strip, Table,
+    Arrow, Axis, Block, Cell, Diagram, Figure, FigureKind, Mark, Panel, Player, Plot, Point, Scene,
+    Series, Strip, Table,
 };
 
 use super::numbering;
-use crate::assemble::PartKind;
+use crate::assemble::{Assembly, PartKind};
 use crate::report::{scene, standing_range, stress_figure};
 use crate::run::Run;
 
@@ -60,6 +61,98 @@ pub(super) fn moments(run: &Run) -> Vec<(f64, String)> {
     panels.push((loss + 1.0, "1 s after".into()));
     panels.retain(|(time, _)| *time >= 0.0 && *time <= end);
     panels
+}
+
+/// The sequence of a collapse by what happens in it: the loss of seat, and each fall of the top level.
+pub(super) fn events(run: &Run) -> Vec<(f64, String)> {
+    let mut panels = vec![(0.0, "at rest".to_owned())];
+    let Some(loss) = run.fates.collapse_time() else { return moments(run) };
+    let parts = &run.assembly.parts;
+    let columns = run.scenario.stack().map_or(2, |stack| stack.columns);
+    let named = |body: usize| match numbering::number(&parts[body].name, columns) {
+        Some(number) => format!("{number} = {}", parts[body].name),
+        None => parts[body].name.clone(),
+    };
+    let first = run.fates.first().map_or_else(String::new, named);
+    panels.push((loss - 0.3, "0.3 s before".into()));
+    panels.push((loss, format!("{first} leaves its seat")));
+    let top = run
+        .assembly
+        .of_kind(PartKind::Barrel)
+        .filter(|body| parts[*body].level == Some(run.assembly.levels));
+    for body in top {
+        if let Some(fell) = run.fates.fate(body).fell_at {
+            panels.push((fell, format!("{} has fallen", named(body))));
+        }
+    }
+    let last = panels.iter().map(|(time, _)| *time).fold(0.0, f64::max);
+    panels.push((last + 0.5, "0.5 s later".into()));
+    panels.retain(|(time, _)| *time >= 0.0 && *time <= run.end_time);
+    panels.sort_by(|one, other| one.0.total_cmp(&other.0));
+    panels
+}
+
+/// How far from its center an arrow ends in a barrel, as a share of the radius: within the round, clear
+/// of the number.
+const ARROW_END: f64 = 0.5;
+
+/// Where an arrow to the ground starts and ends (m): the rack on it is too flat to hold one.
+const GROUND_ARROW: [f64; 2] = [0.07, -0.05];
+
+/// The section at rest with the paper's numbers, and an arrow from every contact body to its target
+/// body, as in the paper.
+pub(super) fn contact_bodies(run: &Run, id: &str, caption: &str) -> Block {
+    let assembly = &run.assembly;
+    let parts = &assembly.parts;
+    let columns = run.scenario.stack().map_or(2, |stack| stack.columns);
+    let rest: Vec<Point> = run
+        .recording
+        .frames
+        .poses
+        .first()
+        .map(|poses| poses.iter().map(|[x, z, _]| [*x, *z]).collect())
+        .unwrap_or_default();
+    let mut arrows = Vec::new();
+    for (contactor, target, _) in designed_pairs(run) {
+        let meaning = format!("{} on {}", parts[contactor].name, parts[target].name);
+        let ends = if target == Assembly::GROUND {
+            let barrels = assembly.of_kind(PartKind::Barrel);
+            let above = barrels.filter(|body| parts[*body].carrier == Some(contactor));
+            above.map(|body| GROUND_ARROW.map(|z| [rest[body][0], z])).collect()
+        } else {
+            vec![arrow(parts, &rest, contactor, target)]
+        };
+        arrows.extend(ends.into_iter().map(|[from, to]| Arrow {
+            from,
+            to,
+            meaning: meaning.clone(),
+        }));
+    }
+    let labels = parts.iter().enumerate().filter_map(|(at, part)| {
+        let number = numbering::number(&part.name, columns)?;
+        let lift = if part.kind == PartKind::Rack { 0.09 } else { 0.0 };
+        let aside = if part.kind == PartKind::Rack && columns == 1 { 0.14 } else { 0.0 };
+        Some(([rest[at][0] + aside, rest[at][1] + lift], number.to_string()))
+    });
+    let labels = labels.collect();
+    Block::Figure(Figure {
+        id: id.to_owned(),
+        caption: caption.to_owned(),
+        kind: FigureKind::Diagram(Diagram { scene: scene_of(run), time: 0.0, labels, arrows }),
+    })
+}
+
+/// From a rack upright into the barrel it meets, or the other way round.
+fn arrow(parts: &[crate::assemble::Part], rest: &[Point], from: usize, to: usize) -> [Point; 2] {
+    let end = |body: usize, other: usize| {
+        let [x, z] = rest[body];
+        if parts[body].kind == PartKind::Barrel {
+            [x, z + ARROW_END * parts[body].size * (rest[other][1] - z).signum()]
+        } else {
+            [rest[other][0], z]
+        }
+    };
+    [end(from, to), end(to, from)]
 }
 
 /// Histories of the horizontal displacement of the paper's bodies 1, 4 and 7, relative to the ground.
@@ -150,38 +243,38 @@ pub(super) fn pairs(run: &Run, caption: &str) -> Table {
         Some(number) => format!("{number} = {}", parts[body].name),
         None => parts[body].name.clone(),
     };
-    for joint in &run.recording.joints {
+    for (contactor, target, at_rest) in designed_pairs(run) {
+        let above = is_above(run, contactor, target);
+        table.rows.push(vec![
+            Cell::text(named(contactor)),
+            Cell::text(named(target)),
+            Cell::text(if above { "above" } else { "below" }),
+            Cell::Number(1e-3 * at_rest, 3),
+        ]);
+    }
+    table
+}
+
+/// Contactor, target and force at rest (N) of all bodies that lean on each other by design.
+fn designed_pairs(run: &Run) -> impl Iterator<Item = (usize, usize, f64)> {
+    run.recording.joints.iter().filter_map(|joint| {
         let pair = run.assembly.model.pairs().iter().find(|pair| {
             let between = [pair.contactor, pair.target];
             between == [joint.upper, joint.lower] || between == [joint.lower, joint.upper]
-        });
-        if let Some(pair) = pair {
-            let place = if pair.contactor == joint.upper { "above" } else { "below" };
-            table.rows.push(vec![
-                Cell::text(named(pair.contactor)),
-                Cell::text(named(pair.target)),
-                Cell::text(place),
-                Cell::Number(1e-3 * joint.at_rest, 3),
-            ]);
-        }
-    }
-    table
+        })?;
+        Some((pair.contactor, pair.target, joint.at_rest))
+    })
+}
+
+/// Whether one body lies on the other.
+fn is_above(run: &Run, one: usize, other: usize) -> bool {
+    run.recording.joints.iter().any(|joint| [joint.upper, joint.lower] == [one, other])
 }
 
 /// Whether every designed contact of a run is carried by nodes of a rack.
 pub(super) fn racks_carry_the_nodes(run: &Run) -> bool {
     let parts = &run.assembly.parts;
-    run.assembly
-        .model
-        .pairs()
-        .iter()
-        .filter(|pair| {
-            run.recording.joints.iter().any(|joint| {
-                let between = [pair.contactor, pair.target];
-                between == [joint.upper, joint.lower] || between == [joint.lower, joint.upper]
-            })
-        })
-        .all(|pair| parts[pair.contactor].kind == PartKind::Rack)
+    designed_pairs(run).all(|(contactor, _, _)| parts[contactor].kind == PartKind::Rack)
 }
 
 /// Largest distance (m at full scale) between two runs of one stack at two scales, at equivalent

@@ -1,11 +1,9 @@
 //! Many runs on all cores, with results in the order of the jobs.
 
-use std::num::NonZero;
 use std::ops::ControlFlow;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::ReproduceError;
+use crate::pool;
 use crate::run::{Run, run};
 use crate::scenario::Scenario;
 use crate::summary::Summary;
@@ -28,44 +26,12 @@ pub(super) struct Done {
     pub(super) run: Option<Box<Run>>,
 }
 
-/// Runs all jobs; `tell` hears how many are done, of how many.
-///
-/// Threads take the jobs in their order, so the long ones belong first.
-/// Which thread runs a job changes nothing about its result.
+/// Runs all jobs on all cores, the first first; `tell` hears how many are done, of how many.
 pub(super) fn run_all(
     jobs: &[Job],
     tell: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Vec<Done>, ReproduceError> {
-    let (next, finished) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let slots: Vec<Mutex<Option<Result<Done, ReproduceError>>>> =
-        jobs.iter().map(|_| Mutex::new(None)).collect();
-    let work = || {
-        loop {
-            let at = next.fetch_add(1, Ordering::Relaxed);
-            let Some(job) = jobs.get(at) else { break };
-            let done = run_one(job);
-            if let Ok(mut slot) = slots[at].lock() {
-                *slot = Some(done);
-            }
-            tell(finished.fetch_add(1, Ordering::Relaxed) + 1, jobs.len());
-        }
-    };
-    let threads = std::thread::available_parallelism().map_or(1, NonZero::get).min(jobs.len());
-    std::thread::scope(|scope| {
-        for _ in 1..threads {
-            scope.spawn(work);
-        }
-        work();
-    });
-    slots
-        .into_iter()
-        .zip(jobs)
-        .map(|(slot, job)| {
-            // Every slot was filled: a thread that panics takes the scope, and so this call, with it.
-            let filled = slot.into_inner().ok().flatten();
-            filled.unwrap_or_else(|| Err(ReproduceError::Lost { case: job.label.clone() }))
-        })
-        .collect()
+    pool::map(jobs, run_one, &|done| tell(done, jobs.len())).into_iter().collect()
 }
 
 fn run_one(job: &Job) -> Result<Done, ReproduceError> {

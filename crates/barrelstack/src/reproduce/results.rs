@@ -2,6 +2,7 @@
 
 use super::cases::{Cases, Motion};
 use super::pool::{Done, Job};
+use super::racks::{self, Tried};
 use super::study::{self, Factor, Study, Subject};
 use super::{ReproduceError, ensemble, vary};
 use crate::run::Run;
@@ -48,6 +49,8 @@ pub(super) struct Results {
     pub(super) measured: Summary,
     /// Eight barrels with contact parameters 10 % off.
     pub(super) ensemble: Vec<Summary>,
+    /// Other racks that give the paper's numbers as well.
+    pub(super) racks: Vec<Tried>,
     /// What moves each case.
     pub(super) studies: Vec<Study>,
 }
@@ -92,6 +95,7 @@ impl Plan {
             jobs.extend(study::jobs(*subject, factors));
         }
         jobs.extend(ensemble::jobs(&cases.eight));
+        jobs.extend(racks::jobs(cases));
         Self { jobs, studies, single }
     }
 
@@ -128,7 +132,8 @@ impl Plan {
             })
             .collect();
         studies.sort_by_key(|study| study.subject);
-        let ensemble = summaries.collect();
+        let ensemble = summaries.by_ref().take(ensemble::COUNT).collect();
+        let racks = racks::read(motion.is_papers(), &mut summaries);
         Ok(Results {
             motion,
             six,
@@ -139,6 +144,7 @@ impl Plan {
             mirrored,
             measured,
             ensemble,
+            racks,
             studies,
         })
     }

@@ -4,13 +4,15 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context as _;
+use barrelstack::Scenario;
+use barrelstack::calibrate::collapse::{Errors, Observations, Settings};
 use barrelstack::calibrate::drop::{GRAVITY, Striker};
-use barrelstack::calibrate::response::Parameter;
 use barrelstack::calibrate::{
-    CalibrateError, Calibration, Table, drop, friction, response, stiffness,
+    CalibrateError, Calibration, Parameter, Table, collapse, drop, friction, response, stiffness,
 };
 use barrelstack::scenario::{Dimension, Quantity};
 use clap::{Subcommand, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::args::ScenarioArgs;
 use crate::printer;
@@ -54,6 +56,17 @@ enum Test {
     /// Impacts, slips and falls make responses chaotic within seconds: take a short window of mild
     /// shaking in which things still slide a little (--until), and no collapse.
     Response(ResponseArgs),
+    /// Stiffness, damping and friction together from collapses that were seen, on video or by eye.
+    ///
+    /// Each row of the file is a test: `mode` (ejection, rocking, rack-sliding, overturning or stands),
+    /// when barrels had fallen (`B4.1 fell (s)` and so on, or `first fall (s)` and `first barrel`),
+    /// `loss of seat (s)`, how long it was watched (`until (s)`), and `scenario` where tests differ.
+    /// Times count from the start of the motion; `stands` marks what had not fallen; an empty cell was
+    /// not seen.
+    ///
+    /// Many stacks are simulated, each built a little differently, with parameters spread around those
+    /// of the scenario; what made them go as observed is found by weighing them.
+    Collapse(CollapseArgs),
 }
 
 /// How the result is printed, and what for.
@@ -154,6 +167,41 @@ struct ResponseArgs {
     result: ResultArgs,
 }
 
+#[derive(Debug, clap::Args)]
+struct CollapseArgs {
+    /// The scenario of the tests: a file (TOML), or the name of a built-in scenario.
+    scenario: String,
+    /// What was seen (CSV).
+    file: PathBuf,
+    /// What to find: k and c (of barrel-rack; those of rack-ground keep their ratio to them), mu-br
+    /// (barrel-rack), mu-rg (rack-ground).
+    #[arg(long, value_delimiter = ',', default_value = "k,c,mu-br,mu-rg", value_name = "NAMES")]
+    fit: Vec<Fitted>,
+    /// Parameters lie within this factor of those of the scenario.
+    #[arg(long, default_value_t = Settings::default().within, value_name = "FACTOR")]
+    within: f64,
+    /// How well times were read off, such as "0.05 s" (standard deviation).
+    #[arg(long, default_value = "0.05 s", value_name = "TIME")]
+    timing: String,
+    /// How well racks and barrels were put in their places, such as "1 mm" (standard deviation).
+    #[arg(long, default_value = "1 mm", value_name = "LENGTH")]
+    placement: String,
+    /// Sets of parameters to simulate, each once for every test.
+    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u32).range(50..=1_000_000))]
+    simulations: u32,
+    /// Start of the random numbers; the same seed gives the same result.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Change a value of the scenario, such as stack.levels=2; may be repeated.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    set: Vec<String>,
+    /// The file of the ground motion, in place of the scenario's.
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    #[command(flatten)]
+    result: ResultArgs,
+}
+
 /// A parameter, by its word.
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum Fitted {
@@ -192,6 +240,7 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
             (friction::friction(&table, args.interface.name())?, args.result.json)
         }
         Test::Response(args) => (fitted(args)?, args.result.json),
+        Test::Collapse(args) => (collapsed(args)?, args.result.json),
     };
     print(&found, json)?;
     Ok(ExitCode::SUCCESS)
@@ -224,9 +273,10 @@ fn positive(option: &str, text: &str, dimension: Dimension) -> anyhow::Result<f6
     Ok(value)
 }
 
-fn fitted(args: &ResponseArgs) -> anyhow::Result<Calibration> {
+/// The parameters that were asked for, each once.
+fn parameters(fit: &[Fitted]) -> anyhow::Result<Vec<Parameter>> {
     let mut parameters: Vec<Parameter> = Vec::new();
-    for fitted in &args.fit {
+    for fitted in fit {
         let parameter = fitted.parameter();
         anyhow::ensure!(
             !parameters.contains(&parameter),
@@ -235,6 +285,22 @@ fn fitted(args: &ResponseArgs) -> anyhow::Result<Calibration> {
         );
         parameters.push(parameter);
     }
+    Ok(parameters)
+}
+
+/// An error of a calibration with the scenario it comes from.
+fn placed(error: CalibrateError, scenario: &ScenarioArgs) -> anyhow::Error {
+    match error {
+        CalibrateError::Run(failure) => super::placed(failure, scenario),
+        CalibrateError::Scenario(reason) => anyhow::anyhow!("{}: {reason}", scenario.scenario),
+        error @ (CalibrateError::Unreadable { .. }
+        | CalibrateError::Table { .. }
+        | CalibrateError::Unsuited { .. }) => error.into(),
+    }
+}
+
+fn fitted(args: &ResponseArgs) -> anyhow::Result<Calibration> {
+    let parameters = parameters(&args.fit)?;
     let until = args
         .until
         .as_deref()
@@ -247,11 +313,46 @@ fn fitted(args: &ResponseArgs) -> anyhow::Result<Calibration> {
     };
     let scenario = super::load(&scenario_args)?;
     let table = Table::load(&args.file)?;
-    response::response(&scenario, &table, &parameters, until).map_err(|error| match error {
-        CalibrateError::Run(failure) => super::placed(failure, &scenario_args),
-        CalibrateError::Scenario(reason) => anyhow::anyhow!("{}: {reason}", args.scenario),
-        error @ (CalibrateError::Unreadable { .. }
-        | CalibrateError::Table { .. }
-        | CalibrateError::Unsuited { .. }) => error.into(),
-    })
+    response::response(&scenario, &table, &parameters, until)
+        .map_err(|error| placed(error, &scenario_args))
+}
+
+fn collapsed(args: &CollapseArgs) -> anyhow::Result<Calibration> {
+    let parameters = parameters(&args.fit)?;
+    anyhow::ensure!(
+        args.within > 1.0 && args.within <= 100.0,
+        "--within: expected a factor between 1 and 100 such as 2, found {}",
+        args.within
+    );
+    let settings = Settings {
+        within: args.within,
+        placement: positive("--placement", &args.placement, Dimension::LENGTH)?,
+        errors: Errors {
+            reading: positive("--timing", &args.timing, Dimension::TIME)?,
+            ..Errors::default()
+        },
+        simulations: args.simulations as usize,
+        seed: args.seed,
+    };
+    let of = |name: &str| ScenarioArgs {
+        scenario: name.to_owned(),
+        set: args.set.clone(),
+        record: args.record.clone(),
+    };
+    let seen = Observations::read(&Table::load(&args.file)?, &settings.errors)?;
+    let scenarios: Vec<Scenario> = seen
+        .scenarios()
+        .map(|name| super::load(&of(name.unwrap_or(&args.scenario))))
+        .collect::<anyhow::Result<_>>()?;
+    // Hidden by itself where standard error is no terminal.
+    let bar = ProgressBar::new(0);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} runs, {eta} to go") {
+        bar.set_style(style);
+    }
+    let found = collapse::collapse(&seen, &scenarios, &parameters, &settings, &|done, of| {
+        bar.set_length(of as u64);
+        bar.set_position(done as u64);
+    });
+    bar.finish_and_clear();
+    found.map_err(|error| placed(error, &of(&args.scenario)))
 }

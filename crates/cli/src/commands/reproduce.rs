@@ -44,6 +44,7 @@ fn write(out: &Path, found: &Reproduction) -> anyhow::Result<()> {
     put("index.html", barrelstack::reproduce::html(found).as_bytes())?;
     let bundle = barrelstack::reproduce::markdown(found, "figures");
     put("index.md", bundle.text.as_bytes())?;
+    put("table.md", barrelstack::reproduce::table(found).as_bytes())?;
     prepare(&out.join("figures"))?;
     for file in &bundle.files {
         put(&format!("figures/{}", file.name), &file.bytes)?;

@@ -3,7 +3,9 @@
 pub mod consensus;
 mod gravity;
 mod housner;
+mod intensity;
 mod invariances;
+mod measured;
 mod pulses;
 mod regimes;
 mod restitution;
@@ -23,9 +25,11 @@ pub fn all() -> Vec<Problem> {
         sliding::problems(),
         rolling::problems(),
         restitution::problems(),
+        measured::problems(),
         gravity::problems(),
         stacks::problems(),
         invariances::problems(),
+        intensity::problems(),
         statistics::problems(),
         consensus::problems(),
         crate::cases::shipped(),

@@ -8,7 +8,7 @@ use barrelstack_dynamics::{FrictionLaw, Method, NormalLaw, Still, Twist, Vec2};
 
 use crate::problem::{border, refine};
 use crate::rocking::{Corner, RockingBlock, contact_frequency};
-use crate::scene::{DOWN, Scene, disc, floor, interface};
+use crate::scene::{DOWN, Scene, disc, floor, ground_of, interface};
 use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
 
 use super::housner::halvings;
@@ -44,7 +44,41 @@ pub(super) fn problems() -> Vec<Problem> {
     list.extend([0.0676, 0.2, 0.3].map(stays));
     list.extend([0.0, 0.07, 0.5, 1.0].map(stability));
     list.extend([0.92, 0.94, 0.96].map(calibrated));
+    list.push(newtons_cradle());
     list
+}
+
+/// Five equal discs in a row that touch, the first of which is struck: an elastic contact must neither
+/// gain nor lose.
+fn newtons_cradle() -> Problem {
+    Problem {
+        id: "restitution/newtons-cradle".into(),
+        title: "one disc at 1 m/s against four that touch, no damping, no friction".into(),
+        source: "balance of energy; validation.md 4.9".into(),
+        quantity: "kinetic energy after over before",
+        unit: "",
+        exact: 1.0,
+        tolerance: Tolerance::Relative(1e-6),
+        fast: Some(Tolerance::Relative(1e-4)),
+        run: Box::new(|effort| {
+            let mut bodies = vec![ground_of(vec![])];
+            for at in 0..5 {
+                let x = 2.0 * RADIUS * f64::from(at);
+                bodies.push(disc(&format!("disc {at}"), RADIUS, 1.0, 0.005, Vec2::new(x, 0.0)));
+            }
+            bodies[1].twist = Twist { linear: Vec2::new(1.0, 0.0), angular: 0.0 };
+            let normal = NormalLaw::SpeedGap { stiffness: OMEGA * OMEGA, damping: 0.0 };
+            let laws = interface(normal, FrictionLaw::Frictionless);
+            let mut scene = Scene::new(bodies, laws, Vec2::default())?;
+            let finer = if effort == Effort::Full { 1e-4 } else { 1e-3 };
+            scene.run(&Still, finer / OMEGA, 40.0 / OMEGA)?;
+            let speeds: Vec<f64> =
+                scene.state.twists[1..].iter().map(|twist| twist.linear.x).collect();
+            let energy: f64 = speeds.iter().map(|speed| speed * speed).sum();
+            let said: Vec<String> = speeds.iter().map(|speed| format!("{speed:.3}")).collect();
+            Ok(Outcome::of(energy).noted(format!("speeds after: {} m/s", said.join(", "))))
+        }),
+    }
 }
 
 /// A mass of 1 kg that meets the floor at a speed (m/s).

@@ -1,18 +1,15 @@
 //! A scenario with changed constants, simulated at the times of a recording.
 
-use std::num::NonZero;
 use std::ops::ControlFlow;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use barrelstack_dynamics::math;
-
-use super::Parameter;
 use crate::assemble::assemble;
+use crate::calibrate::parameters::{Parameter, Tunable};
 use crate::calibrate::{CalibrateError, Table};
 use crate::outcome::Outcome;
+use crate::pool;
 use crate::run::{Run, run, time_step};
-use crate::scenario::{Basis, Damping, Dimension, Friction, Interface, NormalLaw, Scenario, Scene};
+use crate::scenario::{Dimension, Scenario};
 
 /// A recording: times (s) and channels by name.
 pub(super) struct Measured {
@@ -61,23 +58,11 @@ impl Measured {
     }
 }
 
-/// Constants of one interface.
-#[derive(Clone, Copy)]
-pub(super) struct Constants {
-    pub(super) stiffness: f64,
-    pub(super) damping: f64,
-    pub(super) kinetic: f64,
-    pub(super) rest: f64,
-}
-
 /// Simulates a scenario for sets of logarithms of factors on its constants.
 pub(super) struct Simulator<'a> {
     scenario: Scenario,
     measured: &'a Measured,
-    parameters: &'a [Parameter],
-    barrel_rack: Constants,
-    rack_ground: Constants,
-    basis: Basis,
+    pub(super) tunable: Tunable,
     count: AtomicUsize,
 }
 
@@ -90,24 +75,9 @@ impl<'a> Simulator<'a> {
     pub(super) fn new(
         scenario: &Scenario,
         measured: &'a Measured,
-        parameters: &'a [Parameter],
+        parameters: &[Parameter],
     ) -> Result<Self, CalibrateError> {
-        let refuse = |reason: &str| CalibrateError::Scenario(reason.to_owned());
-        let Scene::Stack { stack, .. } = &scenario.scene else {
-            return Err(refuse(
-                "a response is fitted to a stack, and this scenario is a free scene",
-            ));
-        };
-        let interfaces = &stack.interfaces;
-        let barrel_rack = constants("barrel-rack", &interfaces.barrel_rack)?;
-        let rack_ground = constants("rack-ground", &interfaces.rack_ground)?;
-        let basis = interfaces.barrel_rack.basis;
-        if interfaces.rack_ground.basis != basis {
-            return Err(refuse(
-                "interface barrel-rack and rack-ground differ in `basis`: state both per node or both \
-                 per length",
-            ));
-        }
+        let tunable = Tunable::new(scenario, parameters)?;
         let mut scenario = scenario.clone();
         scenario.run.stop_after_collapse = None;
         let scale = scenario.run.similitude.sqrt();
@@ -122,27 +92,7 @@ impl<'a> Simulator<'a> {
         scenario.record.history_rate = 1.0 / step;
         scenario.record.frame_rate = 1.0;
         let count = AtomicUsize::new(0);
-        Ok(Self { scenario, measured, parameters, barrel_rack, rack_ground, basis, count })
-    }
-
-    /// The value that a parameter starts from (SI).
-    pub(super) fn start(&self, parameter: Parameter) -> f64 {
-        match parameter {
-            Parameter::Stiffness => self.barrel_rack.stiffness,
-            Parameter::Damping => self.barrel_rack.damping,
-            Parameter::FrictionBarrelRack => self.barrel_rack.kinetic,
-            Parameter::FrictionRackGround => self.rack_ground.kinetic,
-        }
-    }
-
-    pub(super) fn dimension(&self, parameter: Parameter) -> Dimension {
-        match (parameter, self.basis) {
-            (Parameter::Stiffness, Basis::Node) => Dimension::STIFFNESS,
-            (Parameter::Stiffness, Basis::Length) => Dimension::STIFFNESS_PER_LENGTH,
-            (Parameter::Damping, Basis::Node) => Dimension::DAMPING,
-            (Parameter::Damping, Basis::Length) => Dimension::DAMPING_PER_LENGTH,
-            (Parameter::FrictionBarrelRack | Parameter::FrictionRackGround, _) => Dimension::NONE,
-        }
+        Ok(Self { scenario, measured, tunable, count })
     }
 
     /// How many simulations were run.
@@ -150,31 +100,9 @@ impl<'a> Simulator<'a> {
         self.count.load(Ordering::Relaxed)
     }
 
-    /// The constants of barrel–rack or of rack–ground at a point.
-    pub(super) fn constants(&self, barrel_rack: bool, point: &[f64]) -> Constants {
-        let mut constants = if barrel_rack { self.barrel_rack } else { self.rack_ground };
-        for (parameter, log) in self.parameters.iter().zip(point) {
-            let factor = math::exp(*log);
-            match parameter {
-                Parameter::Stiffness => constants.stiffness *= factor,
-                Parameter::Damping => constants.damping *= factor,
-                Parameter::FrictionBarrelRack if barrel_rack => {
-                    constants.kinetic *= factor;
-                    constants.rest *= factor;
-                }
-                Parameter::FrictionRackGround if !barrel_rack => {
-                    constants.kinetic *= factor;
-                    constants.rest *= factor;
-                }
-                Parameter::FrictionBarrelRack | Parameter::FrictionRackGround => {}
-            }
-        }
-        constants
-    }
-
     /// Runs the scenario as it is, and checks that it shows the channels that were recorded.
     pub(super) fn first(&self) -> Result<First, CalibrateError> {
-        let run = self.run(&vec![0.0; self.parameters.len()])?;
+        let run = self.run(&self.tunable.origin())?;
         for (name, _) in &self.measured.channels {
             if run.recording.channel(name).is_none() {
                 let bodies = run.recording.channels.iter().map(|channel| channel.name.as_str());
@@ -204,12 +132,7 @@ impl<'a> Simulator<'a> {
 
     fn run(&self, point: &[f64]) -> Result<Run, crate::run::RunFailure> {
         self.count.fetch_add(1, Ordering::Relaxed);
-        let mut scenario = self.scenario.clone();
-        if let Scene::Stack { stack, .. } = &mut scenario.scene {
-            set(&mut stack.interfaces.barrel_rack, &self.constants(true, point));
-            set(&mut stack.interfaces.rack_ground, &self.constants(false, point));
-        }
-        run(&scenario, &mut |_| ControlFlow::Continue(()))
+        run(&self.tunable.at(&self.scenario, point), &mut |_| ControlFlow::Continue(()))
     }
 
     /// All channels at the recorded times; none where the stack cannot be simulated.
@@ -230,73 +153,7 @@ impl<'a> Simulator<'a> {
 
     /// Several points on all cores; which thread runs which changes nothing.
     pub(super) fn batch(&self, points: &[Vec<f64>]) -> Vec<Option<Vec<Vec<f64>>>> {
-        let next = AtomicUsize::new(0);
-        let slots: Vec<Mutex<Option<Vec<Vec<f64>>>>> =
-            points.iter().map(|_| Mutex::new(None)).collect();
-        let work = || {
-            loop {
-                let at = next.fetch_add(1, Ordering::Relaxed);
-                let Some(point) = points.get(at) else { break };
-                let found = self.channels(point);
-                if let Ok(mut slot) = slots[at].lock() {
-                    *slot = found;
-                }
-            }
-        };
-        let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
-        std::thread::scope(|scope| {
-            for _ in 1..threads.min(points.len()) {
-                scope.spawn(work);
-            }
-            work();
-        });
-        slots.into_iter().map(|slot| slot.into_inner().ok().flatten()).collect()
-    }
-}
-
-/// The constants of an interface, which must be such that a factor can change them.
-fn constants(name: &str, interface: &Interface) -> Result<Constants, CalibrateError> {
-    let refuse =
-        |reason: &str| Err(CalibrateError::Scenario(format!("interface.{name}: {reason}")));
-    let (NormalLaw::SpeedGap { stiffness, damping }
-    | NormalLaw::KelvinVoigt { stiffness, damping }) = interface.normal
-    else {
-        return refuse(
-            "k and c are those of a linear law: law = \"speed-gap\" or \"kelvin-voigt\"",
-        );
-    };
-    let Damping::Coefficient(damping) = damping else {
-        return refuse("state `damping` in place of `restitution`, so that c is not tied to k");
-    };
-    let (kinetic, rest) = match interface.friction {
-        Friction::Coulomb { coefficient, static_coefficient, .. } => {
-            (coefficient, static_coefficient)
-        }
-        Friction::Regularized { coefficient, .. } => (coefficient, coefficient),
-        Friction::None => return refuse("a fit needs a law of friction: law = \"coulomb\""),
-    };
-    if [stiffness, damping, kinetic].iter().any(|value| *value <= 0.0) {
-        return refuse("a fit needs stiffness, damping and friction above zero to start from");
-    }
-    Ok(Constants { stiffness, damping, kinetic, rest })
-}
-
-fn set(interface: &mut Interface, to: &Constants) {
-    match &mut interface.normal {
-        NormalLaw::SpeedGap { stiffness, damping }
-        | NormalLaw::KelvinVoigt { stiffness, damping } => {
-            *stiffness = to.stiffness;
-            *damping = Damping::Coefficient(to.damping);
-        }
-        NormalLaw::HuntCrossley { .. } | NormalLaw::Hertz { .. } => {}
-    }
-    match &mut interface.friction {
-        Friction::Coulomb { coefficient, static_coefficient, .. } => {
-            *coefficient = to.kinetic;
-            *static_coefficient = to.rest;
-        }
-        Friction::Regularized { coefficient, .. } => *coefficient = to.kinetic,
-        Friction::None => {}
+        pool::map(points, |point| self.channels(point), &|_| ())
     }
 }
 

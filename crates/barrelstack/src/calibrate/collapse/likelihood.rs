@@ -1,0 +1,74 @@
+//! How likely an observation is when a simulated stack went its way.
+
+use std::f64::consts::PI;
+
+use barrelstack_dynamics::math;
+
+use super::ensemble::Seen;
+use super::observed::{Observed, Time};
+
+/// How observations differ from the course of a simulation that is otherwise right.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Errors {
+    /// Standard deviation (s) of a time read off a video.
+    pub reading: f64,
+    /// What is added to it for every second after the first loss of seat: the course of a collapse is
+    /// less and less that of any model. Falls of the eight barrels two seconds after the loss of seat
+    /// move by half a second when one contact parameter changes by 10 %.
+    pub growth: f64,
+    /// Probability that a mode, a barrel or a time is another than the simulated one for no reason that
+    /// is modeled.
+    pub other: f64,
+}
+
+impl Default for Errors {
+    fn default() -> Self {
+        Self { reading: 0.05, growth: 0.25, other: 0.02 }
+    }
+}
+
+impl Errors {
+    /// The logarithm of the likelihood of an observation.
+    ///
+    /// Labels that agree weigh 1 − ε, others ε. A time t beside a simulated one s weighs
+    /// (1 − ε) N(t; s, σ²) + ε/T, with σ = reading + growth · (time since the loss of seat) and T the
+    /// time of the watch.
+    pub(super) fn log_likelihood(&self, observed: &Observed, seen: &Seen) -> f64 {
+        let label = |same: bool| math::log(if same { 1.0 - self.other } else { self.other });
+        let mut sum = observed.mode.map_or(0.0, |mode| label(mode == seen.mode));
+        let first = seen.first_fall();
+        if let Some(barrel) = &observed.first_barrel {
+            sum += label(first.is_some_and(|(name, _)| name == barrel));
+        }
+        if let Some(loss) = observed.loss {
+            sum += self.time(observed, loss, seen.loss, seen.loss);
+        }
+        if let Some(fall) = observed.first_fall {
+            let simulated = first.map_or(Time::Never, |(_, time)| Time::At(time));
+            sum += self.time(observed, fall, simulated, seen.loss);
+        }
+        for (barrel, time) in &observed.falls {
+            if let Some(simulated) = seen.fall(barrel) {
+                sum += self.time(observed, *time, simulated, seen.loss);
+            }
+        }
+        sum
+    }
+
+    fn time(&self, observed: &Observed, time: Time, simulated: Time, loss: Time) -> f64 {
+        let at_random = self.other / observed.until;
+        math::log(match (time, simulated) {
+            (Time::At(time), Time::At(simulated)) => {
+                let since =
+                    if let Time::At(loss) = loss { (simulated - loss).max(0.0) } else { 0.0 };
+                let sigma = self.reading + self.growth * since;
+                let off = (time - simulated) / sigma;
+                let density = math::exp(-0.5 * off * off) / (sigma * (2.0 * PI).sqrt());
+                (1.0 - self.other) * density + at_random
+            }
+            (Time::At(_), Time::Never) => at_random,
+            (Time::Never, Time::At(_)) => self.other,
+            (Time::Never, Time::Never) => 1.0 - self.other,
+        })
+    }
+}

@@ -1,0 +1,56 @@
+//! Work on all cores, with results in the order of the tasks.
+
+use std::num::NonZero;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Does all tasks, each on whichever thread is free; results come in the order of the tasks.
+///
+/// Threads take the tasks in their order, so the long ones belong first.
+/// Which thread does a task changes nothing about its result.
+/// `done` hears how many tasks are done.
+pub(crate) fn map<T: Sync, R: Send>(
+    tasks: &[T],
+    work: impl Fn(&T) -> R + Sync,
+    done: &(dyn Fn(usize) + Sync),
+) -> Vec<R> {
+    let (next, finished) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let slots: Vec<Mutex<Option<R>>> = tasks.iter().map(|_| Mutex::new(None)).collect();
+    let worker = || {
+        loop {
+            let at = next.fetch_add(1, Ordering::Relaxed);
+            let Some(task) = tasks.get(at) else { break };
+            let result = work(task);
+            if let Ok(mut slot) = slots[at].lock() {
+                *slot = Some(result);
+            }
+            done(finished.fetch_add(1, Ordering::Relaxed) + 1);
+        }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, NonZero::get).min(tasks.len());
+    std::thread::scope(|scope| {
+        for _ in 1..threads {
+            scope.spawn(worker);
+        }
+        worker();
+    });
+    // Every slot was filled: a thread that panics takes the scope, and so this call, with it.
+    slots.into_iter().filter_map(|slot| slot.into_inner().ok().flatten()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    #[test]
+    fn results_keep_the_order_of_their_tasks() {
+        let tasks: Vec<usize> = (0..200).collect();
+        let told = AtomicUsize::new(0);
+        let squares = super::map(&tasks, |task| task * task, &|done| {
+            told.fetch_max(done, Ordering::Relaxed);
+        });
+        assert_eq!(squares, tasks.iter().map(|task| task * task).collect::<Vec<_>>());
+        assert_eq!(told.into_inner(), 200);
+        assert!(super::map(&[] as &[usize], |task| *task, &|_| ()).is_empty());
+    }
+}

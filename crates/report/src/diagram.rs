@@ -1,0 +1,82 @@
+//! A diagram: a scene at one instant with named bodies and arrows over it.
+
+use std::{fmt::Write as _, sync::Arc};
+
+use crate::{
+    Point, Scene, escape, number,
+    strip::{View, define_bodies, picture},
+    svg::{Anchor, Svg},
+};
+
+/// A scene at one instant with labels and arrows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagram {
+    /// What stands there.
+    pub scene: Arc<Scene>,
+    /// The instant (s); the frame nearest to it is shown.
+    pub time: f64,
+    /// Words at places (m).
+    pub labels: Vec<(Point, String)>,
+    /// Arrows over the bodies.
+    pub arrows: Vec<Arrow>,
+}
+
+/// An arrow between two bodies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arrow {
+    /// Where it starts (m).
+    pub from: Point,
+    /// Where its head is (m).
+    pub to: Point,
+    /// What it says, for the table of its data.
+    pub meaning: String,
+}
+
+/// Largest width and height (px).
+const MOST: [f64; 2] = [620.0, 520.0];
+/// Length and half width of an arrow's head (px).
+const HEAD: [f64; 2] = [8.0, 3.6];
+
+impl Diagram {
+    pub(crate) fn draw(&self, id: &str, title: &str) -> Svg {
+        let frame = self.scene.frames.nearest(self.time);
+        let shown: Vec<usize> = frame.into_iter().collect();
+        let view = View::of(&self.scene, &shown, MOST, false);
+        let mut svg = Svg::new(view.width, view.height, title);
+        define_bodies(&mut svg, &self.scene, id, &view, &shown);
+        svg.nest([0.0, 0.0], &picture(&self.scene, id, frame, &view));
+        for arrow in &self.arrows {
+            draw_arrow(&mut svg, view.on_page(arrow.from), view.on_page(arrow.to));
+        }
+        for (place, label) in &self.labels {
+            let [x, y] = view.on_page(*place);
+            svg.text("label strong halo", [x, y + 4.0], Anchor::Middle, label);
+        }
+        svg
+    }
+
+    pub(crate) fn to_csv(&self) -> String {
+        let mut out = String::from("from x (m),from z (m),to x (m),to z (m),meaning\n");
+        for arrow in &self.arrows {
+            let [a, b, c, d] =
+                [arrow.from[0], arrow.from[1], arrow.to[0], arrow.to[1]].map(number::csv_number);
+            // Writing to a String cannot fail.
+            let _ = writeln!(out, "{a},{b},{c},{d},{}", escape::csv(&arrow.meaning));
+        }
+        out
+    }
+}
+
+fn draw_arrow(svg: &mut Svg, from: [f64; 2], to: [f64; 2]) {
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let length = along[0].hypot(along[1]);
+    if !(length.is_finite() && length > 0.0) {
+        return;
+    }
+    let [ux, uy] = along.map(|v| v / length);
+    let neck = [to[0] - HEAD[0] * ux, to[1] - HEAD[0] * uy];
+    let side = |sign: f64| [neck[0] - sign * HEAD[1] * uy, neck[1] + sign * HEAD[1] * ux];
+    svg.circle("arrow tail", from, 2.2);
+    svg.line("arrow", from, neck);
+    svg.path("arrow head", "", &[vec![side(1.0), to, side(-1.0)]], true);
+}

@@ -1,0 +1,138 @@
+//! Measures of ground motions with closed forms: a harmonic, and a push that stays.
+
+use std::f64::consts::{PI, TAU};
+
+use barrelstack_dynamics::math::{exp, sin};
+use barrelstack_motion::{IntensityMeasure, STANDARD_GRAVITY, Sampled, response};
+
+use crate::{Failure, Outcome, Problem, Tolerance};
+
+const SOURCE: &str = "integrals of a harmonic; validation.md 4.10";
+const STEP: &str = "oscillator pushed by a constant force; validation.md 4.10";
+
+/// Amplitude (m/s²), period (s) and cycles of the harmonic.
+const AMPLITUDE: f64 = 0.3 * STANDARD_GRAVITY;
+const PERIOD: f64 = 0.5;
+const CYCLES: u32 = 8;
+
+/// Damping ratio of spectra.
+const DAMPING: f64 = 0.05;
+
+/// The problems of this theory.
+pub(super) fn problems() -> Vec<Problem> {
+    let time = f64::from(CYCLES) * PERIOD;
+    let arias = PI / (2.0 * STANDARD_GRAVITY) * AMPLITUDE * AMPLITUDE * time / 2.0;
+    let mut list = vec![
+        of_harmonic("arias", "Arias intensity", IntensityMeasure::Arias, "m/s", arias),
+        of_harmonic("cav", "CAV", IntensityMeasure::Cav, "m/s", 2.0 / PI * AMPLITUDE * time),
+        of_harmonic("pgv", "PGV", IntensityMeasure::Pgv, "m/s", AMPLITUDE * PERIOD / PI),
+    ];
+    list.extend([0.1, 0.5, 2.0].map(of_push));
+    list.push(short_period());
+    list.push(housner_intensity());
+    list
+}
+
+fn harmonic() -> Result<Sampled, Failure> {
+    const PER_CYCLE: u32 = 4000;
+    let wave = |i: u32| AMPLITUDE * sin(TAU * f64::from(i) / f64::from(PER_CYCLE));
+    sampled(PERIOD / f64::from(PER_CYCLE), (0..=CYCLES * PER_CYCLE).map(wave).collect())
+}
+
+fn sampled(step: f64, acceleration: Vec<f64>) -> Result<Sampled, Failure> {
+    Sampled::new(step, acceleration).map_err(|error| Failure::Absent(error.to_string()))
+}
+
+fn measured(measure: &IntensityMeasure, motion: &Sampled) -> Result<f64, Failure> {
+    measure.of(motion).map_err(|error| Failure::Absent(error.to_string()))
+}
+
+fn of_harmonic(
+    name: &str,
+    quantity: &'static str,
+    measure: IntensityMeasure,
+    unit: &'static str,
+    exact: f64,
+) -> Problem {
+    Problem {
+        id: format!("intensity/harmonic-{name}"),
+        title: format!("A sin 2πt/T with A = 0.3 g, T = {PERIOD} s, {CYCLES} cycles"),
+        source: SOURCE.into(),
+        quantity,
+        unit,
+        exact,
+        tolerance: Tolerance::Relative(1e-6),
+        fast: None,
+        run: Box::new(move |_| Ok(Outcome::of(measured(&measure, &harmonic()?)?))),
+    }
+}
+
+/// A push of 1 m/s² that stays for 4 s.
+fn push(step: f64) -> Result<Sampled, Failure> {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
+    let samples = (4.0 / step) as usize;
+    sampled(step, vec![1.0; samples])
+}
+
+/// Largest pseudo-acceleration over the push: 1 + e^{−πζ/√(1−ζ²)}.
+fn overshoot() -> f64 {
+    1.0 + exp(-PI * DAMPING / (1.0 - DAMPING * DAMPING).sqrt())
+}
+
+fn of_push(period: f64) -> Problem {
+    Problem {
+        id: format!("intensity/push-{period}"),
+        title: format!("oscillator of {period} s and 5 % under a push that stays"),
+        source: STEP.into(),
+        quantity: "pseudo-acceleration over the push",
+        unit: "",
+        exact: overshoot(),
+        tolerance: Tolerance::Relative(1e-5),
+        fast: None,
+        run: Box::new(move |_| {
+            let motion = push(period / 1000.0)?;
+            let found = response(motion.time_step(), motion.acceleration(), period, DAMPING)
+                .map_err(|error| Failure::Absent(error.to_string()))?;
+            Ok(Outcome::of(found.pseudo_acceleration))
+        }),
+    }
+}
+
+fn short_period() -> Problem {
+    Problem {
+        id: "intensity/short-period".into(),
+        title: "the harmonic at a period of 2 ms, a twentieth of the step of a 20 Hz record".into(),
+        source: SOURCE.into(),
+        quantity: "Sa over PGA",
+        unit: "",
+        exact: 1.0,
+        tolerance: Tolerance::Relative(1e-3),
+        fast: None,
+        run: Box::new(|_| {
+            // 25 samples a second, interpolated between them by the recursion itself.
+            let wave = |i: u32| AMPLITUDE * sin(TAU * f64::from(i) / 12.0);
+            let motion = sampled(PERIOD / 12.0, (0..=12 * CYCLES).map(wave).collect())?;
+            let short = IntensityMeasure::Sa { period: 0.002, damping: DAMPING };
+            Ok(Outcome::of(measured(&short, &motion)? / measured(&IntensityMeasure::Pga, &motion)?))
+        }),
+    }
+}
+
+/// `∫ PSV dT` from 0.1 s to 2.5 s with `PSV = S_a T/2π` and `S_a` the same at all periods.
+fn housner_intensity() -> Problem {
+    let exact = overshoot() * (2.5 * 2.5 - 0.1 * 0.1) / (2.0 * TAU);
+    Problem {
+        id: "intensity/housner".into(),
+        title: "Housner intensity of a push of 1 m/s² that stays".into(),
+        source: STEP.into(),
+        quantity: "Housner intensity",
+        unit: "m",
+        exact,
+        tolerance: Tolerance::Relative(1e-3),
+        fast: None,
+        run: Box::new(|_| {
+            let measure = IntensityMeasure::Housner { damping: DAMPING };
+            Ok(Outcome::of(measured(&measure, &push(0.001)?)?))
+        }),
+    }
+}
