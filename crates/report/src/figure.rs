@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::{Block, Document, Envelope, Plot, Strip, escape, svg::Svg};
+use crate::{Block, Document, Envelope, Plot, Strip, drawing::Drawing, escape};
 
 /// One picture with a caption.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +44,7 @@ impl Figure {
         }
     }
 
-    pub(crate) fn draw(&self, id: &str) -> Svg {
+    pub(crate) fn draw(&self, id: &str) -> Drawing {
         match &self.kind {
             FigureKind::Plot(plot) => plot.draw(id, &self.caption),
             FigureKind::Strip(strip) => strip.draw(id, &self.caption),

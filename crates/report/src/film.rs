@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use crate::{
-    Scene, number,
+    Scene,
+    drawing::{Anchor, Drawing},
+    number,
     strip::{View, define_bodies, picture},
-    svg::{Anchor, Svg},
 };
 
 /// A scene as pictures that follow each other at even steps of time.
@@ -46,13 +47,17 @@ impl Film {
 
     /// Picture `at` as a standalone SVG document; `None` beyond the last.
     pub fn svg(&self, at: usize) -> Option<String> {
+        self.drawing(at).map(|drawing| drawing.standalone())
+    }
+
+    pub(crate) fn drawing(&self, at: usize) -> Option<Drawing> {
         let frame = *self.frames.get(at)?;
         let heading = format!("t = {} s", number::fixed(self.time(at)?, 2));
-        let mut svg = Svg::new(self.view.width, self.view.height + HEADING, &heading);
-        define_bodies(&mut svg, &self.scene, "film", &self.view, &self.frames);
-        svg.text("label strong", [1.0, 16.0], Anchor::Start, &heading);
-        svg.nest([0.0, HEADING], &picture(&self.scene, "film", Some(frame), &self.view));
-        Some(svg.standalone())
+        let mut drawing = Drawing::new(self.view.width, self.view.height + HEADING, &heading);
+        drawing.push(define_bodies(&self.scene, "film", &self.view, &self.frames));
+        drawing.text("label strong", [1.0, 16.0], Anchor::Start, &heading);
+        drawing.nest([0.0, HEADING], picture(&self.scene, "film", Some(frame), &self.view));
+        Some(drawing)
     }
 }
 

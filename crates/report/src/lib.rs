@@ -31,21 +31,25 @@
 //! of unequal length are read to the end of the shorter, empty figures draw empty axes.
 
 mod document;
+mod drawing;
 mod envelope;
 mod escape;
 mod figure;
 mod film;
+mod font;
 mod html;
 mod markdown;
 mod number;
 mod pack;
 mod page;
+mod paint;
 mod player;
 mod plot;
-mod plot_svg;
+mod plot_drawing;
 mod scene;
 mod simplify;
 mod strip;
+mod style;
 mod svg;
 mod table;
 mod ticks;

@@ -1,9 +1,10 @@
-//! A plot drawn as SVG: axes, grid, bands, lines, marks, legend.
+//! A plot as a drawing: axes, grid, bands, lines, marks, legend.
 
 use crate::{
     Axis, Plot, Scale,
+    drawing::{Anchor, Drawing, Item, Runs, text_width},
     simplify::simplify,
-    svg::{Anchor, DASHES, Svg, text_width},
+    style::DASHES,
     ticks::{Ticks, linear_ticks, log_ticks},
 };
 
@@ -35,7 +36,7 @@ impl Map {
 }
 
 impl Plot {
-    pub(crate) fn draw(&self, id: &str, title: &str) -> Svg {
+    pub(crate) fn draw(&self, id: &str, title: &str) -> Drawing {
         let x_range = self.x.data_range(self.series.iter().map(|s| &s.x[..s.len()]), false);
         let areas = self.series.iter().any(|s| s.style.area);
         let y_range =
@@ -51,25 +52,23 @@ impl Plot {
         let x = Map { range: x_range, pixels: [left, right], log: self.x.scale == Scale::Log };
         let y = Map { range: y_range, pixels: [bottom, top], log: self.y.scale == Scale::Log };
 
-        let mut svg = Svg::new(WIDTH, bottom + 46.0, title);
-        svg.raw(&format!(r#"<defs><clipPath id="{id}-clip">"#));
-        svg.rect("", [left, top - 1.0], [right - left, bottom - top + 2.0]);
-        svg.raw("</clipPath></defs>");
-        self.draw_bands(&mut svg, &x, top, bottom);
-        self.draw_axes(&mut svg, &x, &y, &y_ticks);
-        self.draw_series(&mut svg, id, &x, &y);
-        self.draw_marks(&mut svg, &x, &y, top);
+        let mut drawing = Drawing::new(WIDTH, bottom + 46.0, title);
+        self.draw_bands(&mut drawing, &x, top, bottom);
+        self.draw_axes(&mut drawing, &x, &y, &y_ticks);
+        drawing.push(Item::Clip {
+            id: format!("{id}-clip"),
+            lower: [left, top - 1.0],
+            size: [right - left, bottom - top + 2.0],
+            items: self.draw_series(&x, &y),
+        });
+        self.draw_marks(&mut drawing, &x, &y, top);
         for (at, corner, label) in legend {
             let class = self.class(at);
-            svg.path(
-                &class,
-                self.dash(at),
-                &[vec![[corner[0], corner[1] - 4.0], [corner[0] + 26.0, corner[1] - 4.0]]],
-                false,
-            );
-            svg.text("label", [corner[0] + 32.0, corner[1]], Anchor::Start, &label);
+            let sample = vec![[corner[0], corner[1] - 4.0], [corner[0] + 26.0, corner[1] - 4.0]];
+            drawing.path(&class, self.dash(at), vec![sample], false);
+            drawing.text("label", [corner[0] + 32.0, corner[1]], Anchor::Start, &label);
         }
-        svg
+        drawing
     }
 
     fn class(&self, at: usize) -> String {
@@ -103,31 +102,31 @@ impl Plot {
         (entries, height)
     }
 
-    fn draw_axes(&self, svg: &mut Svg, x: &Map, y: &Map, y_ticks: &Ticks) {
+    fn draw_axes(&self, drawing: &mut Drawing, x: &Map, y: &Map, y_ticks: &Ticks) {
         let [left, right] = x.pixels;
         let [bottom, top] = y.pixels;
         for (value, label) in y_ticks.values.iter().zip(&y_ticks.labels) {
             let at = y.at(*value);
-            svg.line("grid", [left, at], [right, at]);
-            svg.text("tick", [left - 7.0, at + 4.0], Anchor::End, label);
+            drawing.line("grid", [left, at], [right, at]);
+            drawing.text("tick", [left - 7.0, at + 4.0], Anchor::End, label);
         }
         let x_ticks = self.x.ticks(x.range, 8);
         for (value, label) in x_ticks.values.iter().zip(&x_ticks.labels) {
             let at = x.at(*value);
-            svg.line("grid", [at, top], [at, bottom]);
-            svg.line("axis", [at, bottom], [at, bottom + 4.0]);
-            svg.text("tick", [at, bottom + 17.0], Anchor::Middle, label);
+            drawing.line("grid", [at, top], [at, bottom]);
+            drawing.line("axis", [at, bottom], [at, bottom + 4.0]);
+            drawing.text("tick", [at, bottom + 17.0], Anchor::Middle, label);
         }
-        svg.line("axis", [left, bottom], [right, bottom]);
+        drawing.line("axis", [left, bottom], [right, bottom]);
         if !y.log && y.range[0] < 0.0 && y.range[1] > 0.0 {
-            svg.line("zero", [left, y.at(0.0)], [right, y.at(0.0)]);
+            drawing.line("zero", [left, y.at(0.0)], [right, y.at(0.0)]);
         }
-        svg.text("label", [0.5 * (left + right), bottom + 37.0], Anchor::Middle, &self.x.title());
+        drawing.text("label", [0.5 * (left + right), bottom + 37.0], Anchor::Middle, &self.x.title());
         let middle = 0.5 * (top + bottom);
-        svg.turned_text("label", [13.0, middle], Anchor::Middle, -90.0, &self.y.title());
+        drawing.turned_text("label", [13.0, middle], Anchor::Middle, -90.0, &self.y.title());
     }
 
-    fn draw_bands(&self, svg: &mut Svg, x: &Map, top: f64, bottom: f64) {
+    fn draw_bands(&self, drawing: &mut Drawing, x: &Map, top: f64, bottom: f64) {
         for band in &self.bands {
             if !(self.x.shows(band.from) && self.x.shows(band.to)) {
                 continue;
@@ -135,14 +134,14 @@ impl Plot {
             let from = x.at(band.from.max(x.range[0]));
             let to = x.at(band.to.min(x.range[1]));
             if to > from {
-                svg.rect("band", [from, top], [to - from, bottom - top]);
-                svg.text("note", [0.5 * (from + to), top - 7.0], Anchor::Middle, &band.label);
+                drawing.rect("band", [from, top], [to - from, bottom - top]);
+                drawing.text("note", [0.5 * (from + to), top - 7.0], Anchor::Middle, &band.label);
             }
         }
     }
 
-    fn draw_series(&self, svg: &mut Svg, id: &str, x: &Map, y: &Map) {
-        svg.raw(&format!(r#"<g clip-path="url(#{id}-clip)">"#));
+    fn draw_series(&self, x: &Map, y: &Map) -> Vec<Item> {
+        let mut items = Vec::new();
         // Context first, so that it lies under what it is the context of.
         let mut order: Vec<usize> = (0..self.series.len()).collect();
         order.sort_by_key(|&at| !self.series[at].style.muted);
@@ -153,7 +152,7 @@ impl Plot {
             if series.style.area {
                 let foot =
                     if y.log { y.pixels[0] } else { y.at(0.0_f64.clamp(y.range[0], y.range[1])) };
-                let shapes: Vec<_> = runs
+                let shapes: Runs = runs
                     .iter()
                     .map(|run| {
                         let mut shape = run.clone();
@@ -164,26 +163,27 @@ impl Plot {
                         shape
                     })
                     .collect();
-                svg.path(&format!("area s{}", self.look(at)), "", &shapes, true);
+                let class = format!("area s{}", self.look(at));
+                items.push(Item::Path { class, dash: "", runs: shapes, closed: true });
             }
-            svg.path(&class, self.dash(at), &runs, false);
+            items.push(Item::Path { class, dash: self.dash(at), runs, closed: false });
             if series.style.dots {
                 for k in 0..series.len() {
                     if self.x.shows(series.x[k]) && self.y.shows(series.y[k]) {
-                        svg.circle(
-                            &format!("dot s{}", self.look(at)),
-                            [x.at(series.x[k]), y.at(series.y[k])],
-                            2.6,
-                        );
+                        items.push(Item::Circle {
+                            class: format!("dot s{}", self.look(at)),
+                            center: [x.at(series.x[k]), y.at(series.y[k])],
+                            radius: 2.6,
+                        });
                     }
                 }
             }
         }
-        svg.raw("</g>");
+        items
     }
 
     /// Runs of points between gaps, in pixels.
-    fn runs(&self, at: usize, x: &Map, y: &Map) -> Vec<Vec<[f64; 2]>> {
+    fn runs(&self, at: usize, x: &Map, y: &Map) -> Runs {
         let series = &self.series[at];
         let mut runs = vec![Vec::new()];
         for k in 0..series.len() {
@@ -201,7 +201,7 @@ impl Plot {
         runs.iter().map(|run| simplify(run, 0.1)).collect()
     }
 
-    fn draw_marks(&self, svg: &mut Svg, x: &Map, y: &Map, top: f64) {
+    fn draw_marks(&self, drawing: &mut Drawing, x: &Map, y: &Map, top: f64) {
         let [left, right] = x.pixels;
         let mut free = f64::NEG_INFINITY;
         let mut marks: Vec<_> =
@@ -209,19 +209,19 @@ impl Plot {
         marks.sort_by(|a, b| a.at.total_cmp(&b.at));
         for mark in marks {
             let at = x.at(mark.at);
-            svg.line("mark", [at, top - 4.0], [at, y.pixels[0]]);
+            drawing.line("mark", [at, top - 4.0], [at, y.pixels[0]]);
             let wide = text_width(&mark.label, 11.0);
             let center = at.clamp(left + 0.5 * wide, (right - 0.5 * wide).max(left + 0.5 * wide));
             // A label that would cover the one before it is left to the caption and the table.
             if center - 0.5 * wide > free {
-                svg.text("note", [center, top - 8.0], Anchor::Middle, &mark.label);
+                drawing.text("note", [center, top - 8.0], Anchor::Middle, &mark.label);
                 free = center + 0.5 * wide + 6.0;
             }
         }
         for level in self.levels.iter().filter(|m| self.y.shows(m.at) && y.holds(m.at)) {
             let at = y.at(level.at);
-            svg.line("mark", [left, at], [right, at]);
-            svg.text("note", [right - 4.0, at - 4.0], Anchor::End, &level.label);
+            drawing.line("mark", [left, at], [right, at]);
+            drawing.text("note", [right - 4.0, at - 4.0], Anchor::End, &level.label);
         }
     }
 }
