@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::{Block, Document, Envelope, Plot, Strip, drawing::Drawing, escape};
+use crate::{Block, Document, Envelope, Plot, Strip, drawing::Drawing, escape, pages, raster};
 
 /// One picture with a caption.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +30,17 @@ impl Figure {
     /// The picture as a standalone SVG document: white ground, text as text, f64 coordinates.
     pub fn to_svg(&self) -> String {
         self.draw(&escape::slug(&self.id)).standalone()
+    }
+
+    /// The picture as a PNG of `dpi` dots per inch on white; its 12 px letters are 9 points high.
+    /// The words are drawn with the bundled font, so the same figure gives the same file anywhere.
+    pub fn to_png(&self, dpi: f64) -> Vec<u8> {
+        raster::png(&self.draw(&escape::slug(&self.id)), dpi)
+    }
+
+    /// The picture as a PDF page of its size: lines as lines, words as words in the bundled font.
+    pub fn to_pdf(&self) -> Vec<u8> {
+        pages::figure_pdf(self)
     }
 
     /// The picture's data as CSV at full precision.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::{
     Scene,
     drawing::{Anchor, Drawing},
-    number,
+    number, raster,
     strip::{View, define_bodies, picture},
 };
 
@@ -43,6 +43,16 @@ impl Film {
     /// Time (s) of picture `at`; `None` beyond the last.
     pub fn time(&self, at: usize) -> Option<f64> {
         self.scene.frames.times.get(*self.frames.get(at)?).copied()
+    }
+
+    /// Time (s) of the last picture; zero when there is none.
+    pub(crate) fn end(&self) -> f64 {
+        self.len().checked_sub(1).and_then(|last| self.time(last)).unwrap_or(0.0)
+    }
+
+    /// Picture `at` as a PNG of `dpi` dots per inch; `None` beyond the last.
+    pub fn png(&self, at: usize, dpi: f64) -> Option<Vec<u8>> {
+        self.drawing(at).map(|drawing| raster::png(&drawing, dpi))
     }
 
     /// Picture `at` as a standalone SVG document; `None` beyond the last.

@@ -30,6 +30,7 @@
 //! A number that is not finite is a gap in a line and a dash in a table. No input panics: lists
 //! of unequal length are read to the end of the shorter, empty figures draw empty axes.
 
+mod animation;
 mod document;
 mod drawing;
 mod envelope;
@@ -42,11 +43,15 @@ mod markdown;
 mod number;
 mod pack;
 mod page;
+mod pages;
 mod paint;
+mod pdf;
 mod player;
 mod plot;
 mod plot_drawing;
+mod raster;
 mod scene;
+mod sheet;
 mod simplify;
 mod strip;
 mod style;
@@ -63,6 +68,7 @@ pub use html::html;
 pub use markdown::{MarkdownBundle, markdown};
 pub use number::significant;
 pub use pack::{POSE_QUANTUM, TIME_QUANTUM};
+pub use pages::{Paper, document_pdf};
 pub use player::Player;
 pub use plot::{Axis, Band, Mark, Plot, Scale, Series, SeriesStyle};
 pub use scene::{

@@ -137,7 +137,8 @@ impl<'d> Walk<'d, '_> {
                 self.bodies.extend(bodies.iter().map(|body| (body.id.as_str(), body)));
             }
             Item::Scene { scale, origin, bodies } => {
-                let world = Place { origin: place.at(*origin), scale: place.scale * scale, ..*place };
+                let world =
+                    Place { origin: place.at(*origin), scale: place.scale * scale, ..*place };
                 bodies.iter().for_each(|placed| self.placed(placed, &world));
             }
         }

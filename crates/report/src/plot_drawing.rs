@@ -121,7 +121,12 @@ impl Plot {
         if !y.log && y.range[0] < 0.0 && y.range[1] > 0.0 {
             drawing.line("zero", [left, y.at(0.0)], [right, y.at(0.0)]);
         }
-        drawing.text("label", [0.5 * (left + right), bottom + 37.0], Anchor::Middle, &self.x.title());
+        drawing.text(
+            "label",
+            [0.5 * (left + right), bottom + 37.0],
+            Anchor::Middle,
+            &self.x.title(),
+        );
         let middle = 0.5 * (top + bottom);
         drawing.turned_text("label", [13.0, middle], Anchor::Middle, -90.0, &self.y.title());
     }

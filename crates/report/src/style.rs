@@ -58,7 +58,6 @@ pub(crate) fn page_style() -> &'static str {
     STYLE
 }
 
-
 /// The rules as they are read where no browser reads them.
 static SHEET: LazyLock<StyleSheet<'static>> = LazyLock::new(|| {
     static TEXT: LazyLock<String> = LazyLock::new(|| on_white(&[STYLE, PAPER].concat()));

@@ -114,9 +114,7 @@ impl Writer {
             }
         }
         if !data.is_empty() {
-            self.put(format_args!(
-                r#"<path class="{class}" stroke-width="{pen:.5}" d="{data}"/>"#
-            ));
+            self.put(format_args!(r#"<path class="{class}" stroke-width="{pen:.5}" d="{data}"/>"#));
         }
     }
 
