@@ -5,10 +5,10 @@
 use std::{error::Error, f64::consts::TAU, fs, path::PathBuf, sync::Arc};
 
 use barrelstack_report::{
-    Axis, Band, Block, BoundarySample, Cell, ContactForce, Document, Envelope, Event, EventKind,
-    Figure, FigureKind, Film, Frames, History, Mark, Panel, Paper, Player, Plot, Polyline, Role,
-    Scene, SceneBody, Series, SeriesStyle, Strip, Table, Tone, Trace, Verdict, attachments,
-    document_pdf, html, markdown,
+    Animation, Axis, Band, Block, BoundarySample, Cell, ContactForce, Document, Envelope, Event,
+    EventKind, Figure, FigureKind, Film, Frames, History, Mark, Panel, Paper, Player, Plot,
+    Polyline, Role, Scene, SceneBody, Series, SeriesStyle, Strip, Table, Tone, Trace, Verdict,
+    attachments, document_pdf, html, markdown,
 };
 
 const RADIUS: f64 = 0.33;
@@ -33,8 +33,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         if let Block::Player(player) = block {
             let film = Film::of_run(Arc::clone(&player.scene), 5.0);
-            fs::write(folder.join("film.gif"), film.gif(640))?;
-            fs::write(folder.join("film.png"), film.apng(640))?;
+            if let Some(animation) = Animation::of(&film, 480) {
+                fs::write(folder.join("film.gif"), animation.gif())?;
+                fs::write(folder.join("film.png"), animation.apng())?;
+            }
         }
     }
     for file in attachments(&document) {

@@ -1,10 +1,11 @@
 //! A film as one file that plays by itself: GIF, and APNG, which is smaller and keeps its colors.
 //!
-//! Only what changes from one picture to the next is stored, in at most 255 colors and one that
-//! stands for "as before".
+//! Only what changes from one picture to the next is stored, in a few colors and one that stands
+//! for "as before".
 
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
+use std::ops::Range;
 
 use gif::{DisposalMethod, Repeat};
 use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp};
@@ -23,23 +24,61 @@ const KEEP: u8 = 0;
 /// Pictures that are painted at a time.
 const BLOCK: usize = 32;
 
-impl Film {
-    /// The film as a GIF that plays over and over at the speed of the run, `width` pixels wide.
+/// A film as few colors and what each of its pictures changes.
+pub struct Animation {
+    palette: Vec<u8>,
+    pictures: Vec<Picture>,
+}
+
+impl Animation {
+    /// Paints a film with at most `largest` pixels across and up. None for a film without pictures.
     ///
     /// Players hold pictures for whole hundredths of a second, and few show more than 50 in one.
-    pub fn gif(&self, width: u32) -> Vec<u8> {
-        let mut file = Vec::new();
-        let Some((palette, pictures)) = self.pictures(width) else { return file };
-        let size = |sides: [usize; 2]| sides.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
-        let [wide, high] = size(pictures.first().map_or([1, 1], |picture| picture.size));
+    pub fn of(film: &Film, largest: u32) -> Option<Self> {
+        let [width, height] = film.size();
+        let scale = f64::from(largest.min(u32::from(u16::MAX))) / width.max(height);
+        let mut palette = Palette::of(film, scale);
+        let mut pictures: Vec<Picture> = Vec::new();
+        let mut shown: Vec<u8> = Vec::new();
+        let (start, end) = (film.time(0)?, film.time(film.len() - 1)?);
+        let mut clock = 0;
+        for from in (0..film.len()).step_by(BLOCK) {
+            let block = painted(film, from..film.len().min(from + BLOCK), scale);
+            for (at, (wide, pixels)) in (from..).zip(block) {
+                let now = palette.indices(&pixels);
+                let until = hundredths(film.time(at + 1).unwrap_or(end + REST) - start);
+                let hold = until - clock;
+                clock = until;
+                match (pictures.last_mut(), change(&shown, &now, wide)) {
+                    (Some(last), None) => last.hundredths += hold,
+                    (_, change) => {
+                        let picture = change.unwrap_or_else(|| Picture::whole(&now, wide));
+                        pictures.push(Picture { hundredths: hold, ..picture });
+                    }
+                }
+                shown = now;
+            }
+        }
+        Some(Self { palette: palette.bytes(), pictures })
+    }
+
+    /// As a GIF that plays over and over at the speed of the run.
+    pub fn gif(&self) -> Vec<u8> {
         // Nothing but the memory can refuse, and the sizes agree.
-        let mut encoder =
-            gif::Encoder::new(&mut file, wide, high, &palette).expect("a film in memory");
-        encoder.set_repeat(Repeat::Infinite).expect("a film in memory");
-        for picture in pictures {
+        self.write_gif().expect("a film in memory")
+    }
+
+    fn write_gif(&self) -> Result<Vec<u8>, gif::EncodingError> {
+        let mut file = Vec::new();
+        // No side is longer than the largest that was asked for, which is a u16.
+        let size = |sides: [usize; 2]| sides.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
+        let [wide, high] = size(self.pictures.first().map_or([1, 1], |picture| picture.size));
+        let mut encoder = gif::Encoder::new(&mut file, wide, high, &self.palette)?;
+        encoder.set_repeat(Repeat::Infinite)?;
+        for picture in &self.pictures {
             let [left, top] = size(picture.corner);
             let [width, height] = size(picture.size);
-            let frame = gif::Frame {
+            encoder.write_frame(&gif::Frame {
                 delay: u16::try_from(picture.hundredths).unwrap_or(u16::MAX),
                 dispose: DisposalMethod::Keep,
                 transparent: Some(KEEP),
@@ -47,99 +86,68 @@ impl Film {
                 top,
                 width,
                 height,
-                buffer: picture.indices.into(),
+                buffer: picture.indices.as_slice().into(),
                 ..gif::Frame::default()
-            };
-            encoder.write_frame(&frame).expect("a film in memory");
+            })?;
         }
         drop(encoder);
-        file
+        Ok(file)
     }
 
-    /// The film as an animated PNG that plays over and over at the speed of the run, `width` pixels
-    /// wide; what cannot play it shows the first picture.
-    pub fn apng(&self, width: u32) -> Vec<u8> {
+    /// As an animated PNG that plays over and over at the speed of the run; what cannot play it
+    /// shows the first picture.
+    pub fn apng(&self) -> Vec<u8> {
+        // Nothing but the memory can refuse, and the sizes agree.
+        self.write_apng().expect("a film in memory")
+    }
+
+    fn write_apng(&self) -> Result<Vec<u8>, png::EncodingError> {
         let mut file = Vec::new();
-        let Some((palette, pictures)) = self.pictures(width) else { return file };
         let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
-        let [wide, high] = pictures.first().map_or([1, 1], |picture| picture.size).map(side);
+        let [wide, high] = self.pictures.first().map_or([1, 1], |picture| picture.size).map(side);
         let mut encoder = png::Encoder::new(&mut file, wide, high);
         encoder.set_color(ColorType::Indexed);
         encoder.set_depth(BitDepth::Eight);
-        encoder.set_palette(palette);
+        encoder.set_palette(self.palette.as_slice());
         encoder.set_trns(vec![0_u8]);
         encoder.set_compression(Compression::High);
         encoder.set_filter(png::Filter::NoFilter);
-        let written = encoder
-            .set_animated(side(pictures.len()), 0)
-            .and_then(|()| encoder.write_header())
-            .and_then(|mut writer| {
-                for (at, picture) in pictures.iter().enumerate() {
-                    if at > 0 {
-                        let [width, height] = picture.size.map(side);
-                        let [left, top] = picture.corner.map(side);
-                        writer.reset_frame_position()?;
-                        writer.set_frame_dimension(width, height)?;
-                        writer.set_frame_position(left, top)?;
-                        writer.set_blend_op(BlendOp::Over)?;
-                        writer.set_dispose_op(DisposeOp::None)?;
-                    }
-                    let delay = u16::try_from(picture.hundredths).unwrap_or(u16::MAX);
-                    writer.set_frame_delay(delay, 100)?;
-                    writer.write_image_data(&picture.indices)?;
-                }
-                writer.finish()
-            });
-        // Nothing but the memory can refuse, and the sizes agree.
-        written.expect("a film in memory");
-        file
-    }
-
-    /// The palette and what every picture changes; None for a film without pictures.
-    fn pictures(&self, width: u32) -> Option<(Vec<u8>, Vec<Picture>)> {
-        let scale = f64::from(width) / self.drawing(0)?.width;
-        let mut palette = Palette::of(self, scale);
-        let mut pictures: Vec<Picture> = Vec::new();
-        let mut shown: Vec<u8> = Vec::new();
-        let start = self.time(0)?;
-        let mut clock = 0;
-        for from in (0..self.len()).step_by(BLOCK) {
-            for (at, (wide, pixels)) in self.painted(from, scale).into_iter().enumerate() {
-                let at = from + at;
-                let now = palette.indices(&pixels);
-                let until = self.time(at + 1).map_or_else(|| self.end() + REST, |next| next);
-                let hundredths = hundredths(until - start) - clock;
-                clock += hundredths;
-                match (pictures.last_mut(), change(&shown, &now, wide)) {
-                    (Some(last), None) => last.hundredths += hundredths,
-                    (_, change) => {
-                        let picture = change.unwrap_or_else(|| Picture::whole(&now, wide));
-                        pictures.push(Picture { hundredths, ..picture });
-                    }
-                }
-                shown = now;
+        encoder.set_animated(side(self.pictures.len()), 0)?;
+        let mut writer = encoder.write_header()?;
+        for (at, picture) in self.pictures.iter().enumerate() {
+            if at > 0 {
+                let [width, height] = picture.size.map(side);
+                let [left, top] = picture.corner.map(side);
+                writer.reset_frame_position()?;
+                writer.set_frame_dimension(width, height)?;
+                writer.set_frame_position(left, top)?;
+                writer.set_blend_op(BlendOp::Over)?;
+                writer.set_dispose_op(DisposeOp::None)?;
             }
+            writer.set_frame_delay(u16::try_from(picture.hundredths).unwrap_or(u16::MAX), 100)?;
+            writer.write_image_data(&picture.indices)?;
         }
-        Some((palette.bytes(), pictures))
+        writer.finish()?;
+        Ok(file)
     }
+}
 
-    /// Pictures from number `from` on, painted by all cores: width and colors of each.
-    fn painted(&self, from: usize, scale: f64) -> Vec<(usize, Vec<u8>)> {
-        let numbers: Vec<usize> = (from..self.len().min(from + BLOCK)).collect();
-        let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-        let share = numbers.len().div_ceil(cores).max(1);
-        let paint = |at: &usize| {
-            let pixels = rasterize(&self.drawing(*at)?, scale);
-            Some((usize::try_from(pixels.width()).ok()?, rgb(&pixels)))
-        };
-        std::thread::scope(|scope| {
-            let workers: Vec<_> = numbers
-                .chunks(share)
-                .map(|part| scope.spawn(move || part.iter().filter_map(paint).collect::<Vec<_>>()))
-                .collect();
-            workers.into_iter().flat_map(|worker| worker.join().unwrap_or_default()).collect()
-        })
-    }
+/// Pictures of these numbers, painted by all cores: width and colors of each.
+fn painted(film: &Film, numbers: Range<usize>, scale: f64) -> Vec<(usize, Vec<u8>)> {
+    let numbers: Vec<usize> = numbers.collect();
+    let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let share = numbers.len().div_ceil(cores).max(1);
+    let paint = |at: &usize| {
+        let pixels = rasterize(&film.drawing(*at)?, scale);
+        Some((usize::try_from(pixels.width()).ok()?, rgb(&pixels)))
+    };
+    std::thread::scope(|scope| {
+        let workers: Vec<_> = numbers
+            .chunks(share)
+            .map(|part| scope.spawn(move || part.iter().filter_map(paint).collect::<Vec<_>>()))
+            .collect();
+        workers.into_iter().flat_map(|worker| worker.join().unwrap_or_default()).collect()
+    })
 }
 
 /// A time (s) in hundredths.
@@ -199,11 +207,13 @@ impl Palette {
     /// The commonest colors of some pictures of the film.
     ///
     /// Drawings are flat: a few colors fill them and edges blend those. So the commonest colors are
-    /// kept exactly, and of the rest only those that differ to the eye from what is there.
+    /// kept exactly, and of the rest only those that differ to the eye from what is there; the fewer
+    /// there are, the smaller is the file.
     fn of(film: &Film, scale: f64) -> Self {
         const SAMPLES: usize = 8;
-        const EXACT: usize = 48;
-        const APART: u8 = 14;
+        const MOST: usize = 64;
+        const EXACT: usize = 16;
+        const APART: u8 = 24;
         let mut counts: HashMap<[u8; 3], u32> = HashMap::new();
         let step = film.len().div_ceil(SAMPLES).max(1);
         for drawing in (0..film.len()).step_by(step).filter_map(|at| film.drawing(at)) {
@@ -216,7 +226,7 @@ impl Palette {
         let mut colors: Vec<[u8; 3]> = vec![[255; 3]];
         for (color, _) in ranked {
             let far = |known: &[u8; 3]| (0..3).any(|at| known[at].abs_diff(color[at]) > APART);
-            if colors.len() < 256 && (colors.len() <= EXACT || colors[1..].iter().all(far)) {
+            if colors.len() < MOST && (colors.len() <= EXACT || colors[1..].iter().all(far)) {
                 colors.push(color);
             }
         }

@@ -45,9 +45,9 @@ impl Film {
         self.scene.frames.times.get(*self.frames.get(at)?).copied()
     }
 
-    /// Time (s) of the last picture; zero when there is none.
-    pub(crate) fn end(&self) -> f64 {
-        self.len().checked_sub(1).and_then(|last| self.time(last)).unwrap_or(0.0)
+    /// Width and height of every picture (px).
+    pub(crate) fn size(&self) -> [f64; 2] {
+        [self.view.width, self.view.height + HEADING]
     }
 
     /// Picture `at` as a PNG of `dpi` dots per inch; `None` beyond the last.
@@ -63,7 +63,7 @@ impl Film {
     pub(crate) fn drawing(&self, at: usize) -> Option<Drawing> {
         let frame = *self.frames.get(at)?;
         let heading = format!("t = {} s", number::fixed(self.time(at)?, 2));
-        let mut drawing = Drawing::new(self.view.width, self.view.height + HEADING, &heading);
+        let mut drawing = Drawing::new(self.size()[0], self.size()[1], &heading);
         drawing.push(define_bodies(&self.scene, "film", &self.view, &self.frames));
         drawing.text("label strong", [1.0, 16.0], Anchor::Start, &heading);
         drawing.nest([0.0, HEADING], picture(&self.scene, "film", Some(frame), &self.view));

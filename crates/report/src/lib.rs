@@ -60,6 +60,7 @@ mod table;
 mod ticks;
 mod vtk;
 
+pub use animation::Animation;
 pub use document::{Block, Document, Tone, Verdict};
 pub use envelope::{BoundarySample, Envelope};
 pub use figure::{Attachment, Figure, FigureKind, attachments};

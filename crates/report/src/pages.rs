@@ -206,7 +206,7 @@ impl<'a> Flow<'a> {
             match block {
                 Block::Heading { level, text } => {
                     let class = if *level <= 2 { "page-section" } else { "page-part" };
-                    let follows = blocks.get(at + 1).map_or(0.0, |next| self.least(next));
+                    let follows = self.least(&blocks[at + 1..]);
                     self.heading(class, text, follows);
                 }
                 Block::Paragraph(text) => self.paragraph("page-text", text),
@@ -215,25 +215,31 @@ impl<'a> Flow<'a> {
                 Block::Figure(figure) => self.figure(figure),
                 Block::Player(player) => self.player(player),
                 Block::Details { summary, blocks } => {
-                    let follows = blocks.first().map_or(0.0, |first| self.least(first));
-                    self.heading("page-part", summary, follows);
+                    self.heading("page-part", summary, self.least(blocks));
                     self.blocks(blocks);
                 }
             }
         }
     }
 
-    /// How much of a block must stand under its heading (points).
-    fn least(&self, block: &Block) -> f64 {
-        match block {
-            Block::Figure(figure) => self.picture(figure, "measured").1 + 24.0,
-            Block::Player(player) => {
-                self.picture(&player.paper_figure(&self.document.blocks), "measured").1 + 24.0
-            }
+    /// How much of what follows must stand under its heading (points).
+    fn least(&self, blocks: &[Block]) -> f64 {
+        let Some((first, rest)) = blocks.split_first() else { return 0.0 };
+        let figure = |figure: &Figure| self.picture(figure, "measured").1 + 24.0;
+        let least = match first {
+            Block::Figure(shown) => figure(shown),
+            Block::Player(player) => figure(&player.paper_figure(&self.document.blocks)),
             Block::Table(_) => 66.0,
-            Block::Heading { .. } | Block::Details { .. } => 60.0,
-            Block::Paragraph(_) | Block::List(_) => 28.0,
-        }
+            Block::Heading { .. } => 24.0 + self.least(rest),
+            Block::Details { blocks, .. } => 24.0 + self.least(blocks),
+            Block::List(_) => 28.0,
+            // A paragraph in front of a figure leads over to it.
+            Block::Paragraph(_) if matches!(rest.first(), Some(Block::Figure(_))) => {
+                40.0 + self.least(rest)
+            }
+            Block::Paragraph(_) => 28.0,
+        };
+        least.min(0.8 * (self.floor() - MARGIN[1]))
     }
 
     /// The drawing of a figure and its height on the page: as large as the page lets it be, and

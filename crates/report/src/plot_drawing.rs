@@ -11,6 +11,8 @@ use crate::{
 const WIDTH: f64 = 680.0;
 const PLOT_HEIGHT: f64 = 230.0;
 const FONT: f64 = 12.0;
+/// Height of a row of notes above the plot: marks lowest, bands above them.
+const NOTE: f64 = 16.0;
 
 /// A range of data and the pixels it maps to.
 struct Map {
@@ -46,7 +48,8 @@ impl Plot {
         let left = 34.0 + widest;
         let right = WIDTH - 14.0;
         let (legend, legend_height) = self.legend_layout(left, right);
-        let mark_height = if self.marks.is_empty() && self.bands.is_empty() { 6.0 } else { 22.0 };
+        let rows = [!self.marks.is_empty(), !self.bands.is_empty()];
+        let mark_height = 6.0 + rows.map(|row| if row { NOTE } else { 0.0 }).iter().sum::<f64>();
         let top = 6.0 + legend_height + mark_height;
         let bottom = top + PLOT_HEIGHT;
         let x = Map { range: x_range, pixels: [left, right], log: self.x.scale == Scale::Log };
@@ -132,6 +135,7 @@ impl Plot {
     }
 
     fn draw_bands(&self, drawing: &mut Drawing, x: &Map, top: f64, bottom: f64) {
+        let row = if self.marks.is_empty() { top - 7.0 } else { top - 7.0 - NOTE };
         for band in &self.bands {
             if !(self.x.shows(band.from) && self.x.shows(band.to)) {
                 continue;
@@ -140,7 +144,7 @@ impl Plot {
             let to = x.at(band.to.min(x.range[1]));
             if to > from {
                 drawing.rect("band", [from, top], [to - from, bottom - top]);
-                drawing.text("note", [0.5 * (from + to), top - 7.0], Anchor::Middle, &band.label);
+                drawing.text("note", [0.5 * (from + to), row], Anchor::Middle, &band.label);
             }
         }
     }

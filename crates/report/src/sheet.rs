@@ -36,8 +36,7 @@ impl Sheet {
                 let whole = measure(bold, cell);
                 let longest = cell.split_whitespace().map(|word| measure(bold, word));
                 let longest = longest.fold(0.0, f64::max);
-                // A heading may break before it widens its column.
-                wish[at] = wish[at].max(if bold { longest } else { whole });
+                wish[at] = wish[at].max(whole);
                 least[at] = least[at].max(if numeric[at] && !bold { whole } else { longest });
             }
         }
