@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::{
-    Scene,
+    Frames, Scene,
     drawing::{Anchor, Drawing},
     number, raster,
     strip::{View, define_bodies, picture},
@@ -47,10 +47,11 @@ impl Film {
 
     /// Width and height of every picture (px).
     pub(crate) fn size(&self) -> [f64; 2] {
-        [self.view.width, self.view.height + HEADING]
+        [self.view.width, self.view.height + HEADING].map(|side| 2.0 * (0.5 * side).ceil())
     }
 
-    /// Picture `at` as a PNG of `dpi` dots per inch; `None` beyond the last.
+    /// Picture `at` as a PNG of `dpi` dots per inch; `None` beyond the last. At 96
+    /// dots, and multiples, sides are even counts of pixels, as encoders of video ask for.
     pub fn png(&self, at: usize, dpi: f64) -> Option<Vec<u8>> {
         self.drawing(at).map(|drawing| raster::png(&drawing, dpi))
     }
@@ -68,6 +69,22 @@ impl Film {
         drawing.text("label strong", [1.0, 16.0], Anchor::Start, &heading);
         drawing.nest([0.0, HEADING], picture(&self.scene, "film", Some(frame), &self.view));
         Some(drawing)
+    }
+}
+
+impl Scene {
+    /// The scene from one time to another (s): its frames in between, and all that happened.
+    #[must_use]
+    pub fn between(&self, from: f64, to: f64) -> Self {
+        let frames = &self.frames;
+        let inside = |at: &usize| (from..=to).contains(&frames.times[*at]);
+        let kept: Vec<usize> = (0..frames.len()).filter(inside).collect();
+        let frames = Frames {
+            times: kept.iter().map(|at| frames.times[*at]).collect(),
+            poses: kept.iter().map(|at| frames.poses[*at].clone()).collect(),
+            forces: kept.iter().filter_map(|at| frames.forces.get(*at).cloned()).collect(),
+        };
+        Self { frames, ..self.clone() }
     }
 }
 

@@ -57,13 +57,14 @@ mod strip;
 mod style;
 mod svg;
 mod table;
+mod terminal;
 mod ticks;
 mod vtk;
 
 pub use animation::Animation;
 pub use document::{Block, Document, Tone, Verdict};
 pub use envelope::{BoundarySample, Envelope};
-pub use figure::{Attachment, Figure, FigureKind, attachments};
+pub use figure::{Attachment, Figure, FigureKind, Format, attachments, figures};
 pub use film::Film;
 pub use html::html;
 pub use markdown::{MarkdownBundle, markdown};
@@ -78,5 +79,6 @@ pub use scene::{
 };
 pub use strip::{Panel, Strip};
 pub use table::{Cell, Column, Table};
+pub use terminal::{Characters, sparkline, terminal_picture};
 pub use ticks::{Ticks, linear_ticks, log_ticks};
 pub use vtk::paraview;
