@@ -1,7 +1,7 @@
 //! A plot as a drawing: axes, grid, bands, lines, marks, legend.
 
 use crate::{
-    Axis, Plot, Scale,
+    Axis, Mark, Plot, Scale,
     drawing::{Anchor, Drawing, Item, Runs, text_width},
     simplify::simplify,
     style::DASHES,
@@ -13,6 +13,8 @@ const PLOT_HEIGHT: f64 = 230.0;
 const FONT: f64 = 12.0;
 /// Height of a row of notes above the plot: marks lowest, bands above them.
 const NOTE: f64 = 16.0;
+/// Most rows of labels of marks; what finds no room in them is left to the caption.
+const MARK_ROWS: usize = 3;
 
 /// A range of data and the pixels it maps to.
 struct Map {
@@ -37,26 +39,36 @@ impl Map {
     }
 }
 
+/// A mark with the place (px) of its line and of its label.
+struct PlacedMark<'a> {
+    at: f64,
+    label: &'a str,
+    center: f64,
+    /// Counted from the plot upward; None where no row has room.
+    row: Option<usize>,
+}
+
 impl Plot {
     pub(crate) fn draw(&self, id: &str, title: &str) -> Drawing {
         let x_range = self.x.data_range(self.series.iter().map(|s| &s.x[..s.len()]), false);
         let areas = self.series.iter().any(|s| s.style.area);
         let y_range =
             self.y.with_air(self.y.data_range(self.series.iter().map(|s| &s.y[..s.len()]), areas));
-        let y_ticks = self.y.ticks(y_range, 5);
+        let y_ticks = self.y.ticks(y_range, 7);
         let widest = y_ticks.labels.iter().map(|l| text_width(l, FONT)).fold(0.0, f64::max);
         let left = 34.0 + widest;
         let right = WIDTH - 14.0;
         let (legend, legend_height) = self.legend_layout(left, right);
-        let rows = [!self.marks.is_empty(), !self.bands.is_empty()];
-        let mark_height = 6.0 + rows.map(|row| if row { NOTE } else { 0.0 }).iter().sum::<f64>();
-        let top = 6.0 + legend_height + mark_height;
-        let bottom = top + PLOT_HEIGHT;
         let x = Map { range: x_range, pixels: [left, right], log: self.x.scale == Scale::Log };
+        let marks = self.mark_layout(&x);
+        let mark_rows = marks.iter().filter_map(|mark| mark.row).max().map_or(0, |row| row + 1);
+        let rows = mark_rows + usize::from(!self.bands.is_empty());
+        let top = 12.0 + legend_height + NOTE * rows as f64;
+        let bottom = top + PLOT_HEIGHT;
         let y = Map { range: y_range, pixels: [bottom, top], log: self.y.scale == Scale::Log };
 
         let mut drawing = Drawing::new(WIDTH, bottom + 46.0, title);
-        self.draw_bands(&mut drawing, &x, top, bottom);
+        self.draw_bands(&mut drawing, &x, [top, bottom], top - 7.0 - NOTE * mark_rows as f64);
         self.draw_axes(&mut drawing, &x, &y, &y_ticks);
         drawing.push(Item::Clip {
             id: format!("{id}-clip"),
@@ -64,7 +76,7 @@ impl Plot {
             size: [right - left, bottom - top + 2.0],
             items: self.draw_series(&x, &y),
         });
-        self.draw_marks(&mut drawing, &x, &y, top);
+        self.draw_marks(&mut drawing, &marks, &x, &y);
         for (at, corner, label) in legend {
             let class = self.class(at);
             let sample = vec![[corner[0], corner[1] - 4.0], [corner[0] + 26.0, corner[1] - 4.0]];
@@ -134,8 +146,8 @@ impl Plot {
         drawing.turned_text("label", [13.0, middle], Anchor::Middle, -90.0, &self.y.title());
     }
 
-    fn draw_bands(&self, drawing: &mut Drawing, x: &Map, top: f64, bottom: f64) {
-        let row = if self.marks.is_empty() { top - 7.0 } else { top - 7.0 - NOTE };
+    /// Bands from top to bottom, their labels at a height of their own.
+    fn draw_bands(&self, drawing: &mut Drawing, x: &Map, [top, bottom]: [f64; 2], row: f64) {
         for band in &self.bands {
             if !(self.x.shows(band.from) && self.x.shows(band.to)) {
                 continue;
@@ -210,21 +222,38 @@ impl Plot {
         runs.iter().map(|run| simplify(run, 0.1)).collect()
     }
 
-    fn draw_marks(&self, drawing: &mut Drawing, x: &Map, y: &Map, top: f64) {
+    /// Marks in sight from left to right, their labels each in the lowest row that has room.
+    fn mark_layout<'a>(&'a self, x: &Map) -> Vec<PlacedMark<'a>> {
         let [left, right] = x.pixels;
-        let mut free = f64::NEG_INFINITY;
         let mut marks: Vec<_> =
             self.marks.iter().filter(|m| self.x.shows(m.at) && x.holds(m.at)).collect();
         marks.sort_by(|a, b| a.at.total_cmp(&b.at));
-        for mark in marks {
+        // Where every row ends so far.
+        let mut ends: Vec<f64> = Vec::new();
+        let place = |mark: &'a Mark| {
+            let half = 0.5 * text_width(&mark.label, 11.0);
             let at = x.at(mark.at);
-            drawing.line("mark", [at, top - 4.0], [at, y.pixels[0]]);
-            let wide = text_width(&mark.label, 11.0);
-            let center = at.clamp(left + 0.5 * wide, (right - 0.5 * wide).max(left + 0.5 * wide));
-            // A label that would cover the one before it is left to the caption and the table.
-            if center - 0.5 * wide > free {
-                drawing.text("note", [center, top - 8.0], Anchor::Middle, &mark.label);
-                free = center + 0.5 * wide + 6.0;
+            let center = at.clamp(left + half, (right - half).max(left + half));
+            let free = ends.iter().position(|end| center - half > *end);
+            let row = free.or_else(|| {
+                ends.push(0.0);
+                Some(ends.len() - 1).filter(|row| *row < MARK_ROWS)
+            });
+            if let Some(row) = row {
+                ends[row] = center + half + 6.0;
+            }
+            PlacedMark { at, label: &mark.label, center, row }
+        };
+        marks.into_iter().map(place).collect()
+    }
+
+    fn draw_marks(&self, drawing: &mut Drawing, marks: &[PlacedMark<'_>], x: &Map, y: &Map) {
+        let ([left, right], [bottom, top]) = (x.pixels, y.pixels);
+        for mark in marks {
+            let foot = top - 8.0 - NOTE * mark.row.unwrap_or(0) as f64;
+            drawing.line("mark", [mark.at, foot + 4.0], [mark.at, bottom]);
+            if mark.row.is_some() {
+                drawing.text("note", [mark.center, foot], Anchor::Middle, mark.label);
             }
         }
         for level in self.levels.iter().filter(|m| self.y.shows(m.at) && y.holds(m.at)) {
