@@ -14,6 +14,11 @@ pub(crate) struct FigureArgs {
 }
 
 impl FigureArgs {
+    /// Whether any format was asked for by name.
+    pub(crate) fn names_any(&self) -> bool {
+        !self.format.is_empty()
+    }
+
     /// The formats, each once, SVG first.
     pub(crate) fn formats(&self) -> Vec<Format> {
         let asked = |format: &Format| {

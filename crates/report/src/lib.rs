@@ -1,8 +1,12 @@
-//! Documents, figures and a player for moving rigid bodies, as HTML, Markdown, SVG, CSV and VTK.
+//! Documents, figures and a player for moving rigid bodies: HTML, Markdown, PDF, SVG, PNG, GIF, CSV
+//! and VTK.
 //!
 //! A [`Document`] is data: a verdict, [`Block`]s in reading order, warnings, provenance.
 //! [`html`] turns it into one page that needs no network, [`markdown`] into text with figures
-//! beside it. Every format reads the same numbers.
+//! beside it, [`document_pdf`] into numbered pages. Every format reads the same numbers.
+//!
+//! A [`Figure`] is drawn once, as data; SVG, pixels and PDF are three ways to write the drawing, and
+//! all obey one style sheet. A [`Film`] is many such drawings, an [`Animation`] one file of them.
 //!
 //! ```
 //! use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, html};

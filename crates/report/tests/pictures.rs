@@ -56,8 +56,8 @@ fn a_png_has_the_size_and_the_colors_of_the_drawing() {
                 / pixels.rgb.len() as f64
         };
         // Wood: two discs. Edges and marks take less of it at more dots.
-        eprintln!("MEAS {}", share([0xdc, 0xb6, 0x7f]));
-        assert!((0.40..0.46).contains(&share([0xdc, 0xb6, 0x7f])), "{}", share([0xdc, 0xb6, 0x7f]));
+        let wood = share([0xdc, 0xb6, 0x7f]);
+        assert!((0.40..0.46).contains(&wood), "{wood}"); // measured 0.431 at 96 dpi, 0.436 at 300
     }
 }
 
@@ -219,9 +219,8 @@ fn an_animation_shows_the_pictures_of_the_film() {
         let off = |(a, b): (&[u8; 3], &[u8; 3])| (0..3).map(|k| a[k].abs_diff(b[k])).max().unwrap();
         let differences: Vec<u8> = painted.rgb.iter().zip(picture).map(off).collect();
         let mean = differences.iter().map(|d| f64::from(*d)).sum::<f64>() / picture.len() as f64;
-        eprintln!("MEAS {mean} {}", differences.iter().max().unwrap());
-        assert!(mean < 0.5, "{mean}"); // measured 0.12
-        assert!(differences.iter().all(|d| *d < 40)); // measured 24
+        assert!(mean < 0.5, "{mean}"); // measured 0.26
+        assert!(differences.iter().all(|d| *d < 40)); // measured 22
     }
     let total: u32 = shown.iter().map(|(_, delay)| delay).sum();
     let span = film.time(film.len() - 1).unwrap();
@@ -235,6 +234,6 @@ fn ten_seconds_of_a_moving_stack_fit_a_mail() {
     assert_eq!(film.len(), 26);
     let animation = Animation::of(&film, 480).unwrap();
     let sizes = [animation.gif(), animation.apng()].map(|file| file.len());
-    eprintln!("MEAS {sizes:?}");
+    // Measured 185 and 181 kB.
     assert!(sizes.iter().all(|size| *size < 300_000), "{sizes:?}");
 }

@@ -100,11 +100,12 @@ pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<()> {
     lines.push(String::new());
     for (figure, path) in figures {
         for format in formats(args) {
-            let path = path.with_extension(format.extension());
-            store(&path, &figure.to_bytes(format, args.formats.dpi))?;
-            lines.push(format!("written: {} (numbers in .csv beside it)", path.display()));
+            let bytes = figure.to_bytes(format, args.formats.dpi);
+            store(&path.with_extension(format.extension()), &bytes)?;
         }
         store(&path.with_extension("csv"), figure.to_csv().as_bytes())?;
+        let beside: Vec<String> = endings(args).skip(1).map(|ending| format!(".{ending}")).collect();
+        lines.push(format!("written: {}, and beside it {}", path.display(), beside.join(", ")));
     }
     printer::lines(lines)?;
     info::warn(&Record { stage: record.stage, ..read });
@@ -135,6 +136,9 @@ fn endings(args: &PlotArgs) -> impl Iterator<Item = &'static str> {
 fn files(args: &PlotArgs) -> anyhow::Result<Vec<(Kind, PathBuf)>> {
     let mut kinds = args.figure.clone();
     if is_file(&args.output) {
+        if args.formats.names_any() {
+            bail!("{} says its format; --format goes with a folder", args.output.display());
+        }
         vacant(&args.output, true)?;
         let kind = match kinds.as_slice() {
             [] => Kind::Acceleration,
