@@ -1,4 +1,4 @@
-//! A film: a scene as numbered pictures of one size, window and scale, one SVG for each.
+//! A film: a scene as numbered pictures of one size, window and scale.
 
 use std::sync::Arc;
 

@@ -181,13 +181,12 @@ impl RenderFolder {
     /// What an earlier rendering wrote in the place of a part, sorted.
     fn earlier(&self, part: Part) -> Result<Vec<PathBuf>, ExportError> {
         let place = self.path.join(part.place());
-        let beside = self.path.join("report.md");
-        let mut files = Vec::new();
-        match part {
-            Part::Report if place.exists() => files.push(place.clone()),
-            Part::Figures if beside.exists() => files.push(beside),
-            _ => {}
-        }
+        let alone = match part {
+            Part::Report => Some(place.clone()),
+            Part::Figures => Some(self.path.join("report.md")),
+            Part::Animation | Part::Frames | Part::Paraview => None,
+        };
+        let mut files: Vec<PathBuf> = alone.into_iter().filter(|file| file.exists()).collect();
         if !place.is_dir() {
             return Ok(files);
         }
