@@ -3,6 +3,8 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use barrelstack_report::{Paper, document_pdf};
+
 use crate::report;
 use crate::run::Run;
 use crate::summary::Summary;
@@ -118,6 +120,29 @@ impl Folder {
             }
         }
         written
+    }
+
+    /// Writes the report on paper beside the other files and gives its path.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn write_pdf(
+        &self,
+        run: &Run,
+        summary: &Summary,
+        paper: Paper,
+    ) -> Result<PathBuf, ExportError> {
+        const NAME: &str = "report.pdf";
+        let bytes = document_pdf(&report::document(run, summary), paper);
+        let path = self.path.join(NAME);
+        let written = std::fs::write(self.temporary(NAME), bytes)
+            .and_then(|()| std::fs::rename(self.temporary(NAME), &path));
+        written.map_err(|error| {
+            // It may never have been made, and that is well.
+            let _ = std::fs::remove_file(self.temporary(NAME));
+            self.refused(NAME, &error)
+        })?;
+        Ok(path)
     }
 
     fn temporary(&self, name: &str) -> PathBuf {

@@ -4,8 +4,9 @@
 use std::path::Path;
 
 use barrelstack::export::ExportError;
-use barrelstack::render::{Part, RenderFolder};
+use barrelstack::render::{Part, RenderFolder, Rendering, drift_line, final_picture};
 use barrelstack::{Run, Scenario, Summary};
+use barrelstack_report::{Characters, Format};
 
 fn rocking_block() -> (Run, Summary) {
     let scenario = Scenario::builtin("rocking-block", &["run.duration=1 s".to_owned()]).unwrap();
@@ -22,12 +23,31 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// The numbers of the array `name` of a VTK file.
-fn array(file: &str, name: &str) -> Vec<f64> {
-    let (_, rest) = file.split_once(&format!("Name=\"{name}\"")).unwrap();
-    let (_, rest) = rest.split_once('>').unwrap();
-    let (numbers, _) = rest.split_once('<').unwrap();
-    numbers.split_whitespace().map(|word| word.parse().unwrap()).collect()
+fn at_rate(rate: f64) -> Rendering {
+    Rendering { rate, ..Rendering::default() }
+}
+
+/// Points and the named vectors at them, read from the XML alone: the array of the points, and the
+/// array of that name among the data of points, with as many triples as the piece says it has points.
+fn vtk(path: &Path, vectors: &str) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
+    let text = std::fs::read_to_string(path).unwrap();
+    let tree = roxmltree::Document::parse(&text).unwrap();
+    assert_eq!(tree.root_element().attribute("type"), Some("PolyData"));
+    let find = |name: &str| tree.descendants().find(|node| node.has_tag_name(name)).unwrap();
+    let count: usize = find("Piece").attribute("NumberOfPoints").unwrap().parse().unwrap();
+    let threes = |parent: &str, name: Option<&str>| -> Vec<[f64; 3]> {
+        let array = find(parent).children().find(|node| {
+            node.has_tag_name("DataArray") && (name.is_none() || node.attribute("Name") == name)
+        });
+        let array = array.unwrap();
+        assert_eq!(array.attribute("type"), Some("Float64"));
+        assert_eq!(array.attribute("NumberOfComponents"), Some("3"));
+        let numbers = array.text().unwrap_or("").split_whitespace();
+        let numbers: Vec<f64> = numbers.map(|number| number.parse().unwrap()).collect();
+        assert_eq!(numbers.len(), 3 * count);
+        numbers.as_chunks().0.to_vec()
+    };
+    (threes("Points", None), threes("PointData", Some(vectors)))
 }
 
 #[test]
@@ -36,34 +56,41 @@ fn the_paraview_series_holds_the_recorded_poses_and_forces() {
     let out = tempfile::tempdir().unwrap();
     let folder = RenderFolder::prepare(out.path(), &[Part::Paraview], false).unwrap();
     // Above the rate of the frames: every frame is there once.
-    let written = folder.write(&run, &summary, 1e6).unwrap();
+    let written = folder.write(&run, &summary, &at_rate(1e6)).unwrap();
     let frames = &run.recording.frames;
     assert_eq!(written[0].files, 2 * frames.times.len() + 2);
     let block = run.assembly.parts.iter().position(|part| part.name == "block").unwrap();
     let outline = &run.assembly.parts[block].outlines[0];
-    let mut moved = 0.0_f64;
+    let (mut moved, mut pushed) = (0.0_f64, 0.0_f64);
     for frame in 0..frames.times.len() {
-        let read = |part: &str| {
-            let name = format!("paraview/{part}-{frame:04}.vtp");
-            std::fs::read_to_string(out.path().join(name)).unwrap()
+        let read = |part: &str, vectors: &str| {
+            vtk(&out.path().join(format!("paraview/{part}-{frame:04}.vtp")), vectors)
         };
-        let bodies = read("bodies");
-        let points = array(&bodies, "points");
+        let (points, shifts) = read("bodies", "displacement");
+        assert_eq!(points.len(), shifts.len());
         let [x, z, angle] = frames.poses[frame][block];
         let (sin, cos) = angle.sin_cos();
         moved = moved.max(angle.abs());
         // The block is the last body: its outline ends the points.
-        let tail = points.len() - 3 * outline.points.len();
-        for (point, read) in outline.points.iter().zip(points[tail..].chunks(3)) {
+        let tail = points.len() - outline.points.len();
+        for (point, read) in outline.points.iter().zip(&points[tail..]) {
             let wanted = [x + cos * point.x - sin * point.z, z + sin * point.x + cos * point.z];
             // measured 0
             assert!((read[0] - wanted[0]).abs() < 1e-12 && (read[2] - wanted[1]).abs() < 1e-12);
+            assert_eq!(read[1], 0.0);
         }
-        let total: f64 = array(&read("forces"), "force").chunks(3).map(|force| force[2]).sum();
-        let recorded: f64 = frames.forces[frame].iter().map(|force| force[3].abs()).sum();
-        assert!((total - recorded).abs() <= 1e-9 * recorded.max(1.0));
+        let (places, forces) = read("forces", "force");
+        assert_eq!(forces.len(), frames.forces[frame].len());
+        for (at, [x, z, fx, fz]) in frames.forces[frame].iter().enumerate() {
+            // Of the two that push each other, the one that is pushed up.
+            let sign = if *fz < 0.0 { -1.0 } else { 1.0 };
+            assert_eq!(places[at], [*x, 0.0, *z]);
+            assert_eq!(forces[at], [sign * fx, 0.0, sign * fz]);
+            pushed = pushed.max(fz.abs());
+        }
     }
     assert!(moved > 1e-3, "a block that stands still would prove nothing: {moved} rad");
+    assert!(pushed > 100.0, "no force: {pushed} N");
 }
 
 #[test]
@@ -71,15 +98,15 @@ fn a_second_rendering_needs_leave_and_leaves_no_frame_of_the_first() {
     let (run, summary) = rocking_block();
     let out = tempfile::tempdir().unwrap();
     let folder = RenderFolder::prepare(out.path(), &Part::ALL, false).unwrap();
-    folder.write(&run, &summary, 20.0).unwrap();
+    folder.write(&run, &summary, &Rendering::default()).unwrap();
     let first = names(&out.path().join("frames"));
     std::fs::write(out.path().join("frames/notes.txt"), "mine").unwrap();
     let refused = RenderFolder::prepare(out.path(), &[Part::Frames], false).unwrap_err();
     assert!(
-        matches!(&refused, ExportError::Occupied { file, .. } if file == "frames/frame-0001.svg")
+        matches!(&refused, ExportError::Occupied { file, .. } if file == "frames/frame-0001.png")
     );
     let folder = RenderFolder::prepare(out.path(), &[Part::Frames], true).unwrap();
-    let written = folder.write(&run, &summary, 5.0).unwrap();
+    let written = folder.write(&run, &summary, &at_rate(5.0)).unwrap();
     let second = names(&out.path().join("frames"));
     assert!(second.len() < first.len());
     assert_eq!(second.len(), written[0].files + 1);
@@ -91,11 +118,106 @@ fn the_markdown_report_names_only_files_that_are_there() {
     let (run, summary) = rocking_block();
     let out = tempfile::tempdir().unwrap();
     let folder = RenderFolder::prepare(out.path(), &[Part::Figures], false).unwrap();
-    folder.write(&run, &summary, 20.0).unwrap();
+    folder.write(&run, &summary, &Rendering::default()).unwrap();
     let text = std::fs::read_to_string(out.path().join("report.md")).unwrap();
     let links: Vec<&str> =
         text.split("](figures/").skip(1).filter_map(|rest| rest.split(')').next()).collect();
     assert!(links.len() > 4);
     let there = names(&out.path().join("figures"));
     assert!(links.iter().all(|link| there.contains(&(*link).to_owned())), "{links:?} {there:?}");
+}
+
+#[test]
+fn the_index_of_the_paraview_series_names_every_file_at_its_time() {
+    let (run, summary) = rocking_block();
+    let out = tempfile::tempdir().unwrap();
+    let folder = RenderFolder::prepare(out.path(), &[Part::Paraview], false).unwrap();
+    folder.write(&run, &summary, &at_rate(1e6)).unwrap();
+    let index = std::fs::read_to_string(out.path().join("paraview/stack.pvd")).unwrap();
+    let value = |line: &str, name: &str| {
+        let (_, rest) = line.split_once(&format!(" {name}=\"")).unwrap();
+        rest.split('"').next().unwrap().to_owned()
+    };
+    let rows: Vec<&str> = index.lines().filter(|line| line.starts_with("<DataSet")).collect();
+    let times = &run.recording.frames.times;
+    assert_eq!(rows.len(), 2 * times.len());
+    for (at, row) in rows.iter().enumerate() {
+        assert_eq!(value(row, "timestep").parse::<f64>().unwrap(), times[at / 2]);
+        assert!(out.path().join("paraview").join(value(row, "file")).is_file());
+    }
+}
+
+#[test]
+fn every_figure_is_there_in_every_format_asked_for() {
+    let (run, summary) = rocking_block();
+    for (formats, endings) in [
+        (Format::ALL.to_vec(), &["csv", "pdf", "png", "svg"][..]),
+        (vec![Format::Svg, Format::Pdf], &["csv", "pdf", "svg"]),
+        (vec![Format::Svg], &["csv", "svg"]),
+    ] {
+        let out = tempfile::tempdir().unwrap();
+        let folder = RenderFolder::prepare(out.path(), &[Part::Figures], false).unwrap();
+        let how = Rendering { formats, dpi: 50.0, ..Rendering::default() };
+        let written = folder.write(&run, &summary, &how).unwrap();
+        let there = names(&out.path().join("figures"));
+        assert_eq!(written[0].files, there.len());
+        let figures = there.iter().filter_map(|name| name.strip_suffix(".svg"));
+        for figure in figures {
+            let of = |name: &&String| name.rsplit_once('.').is_some_and(|(stem, _)| stem == figure);
+            let found: Vec<&str> =
+                there.iter().filter(of).filter_map(|name| name.rsplit('.').next()).collect();
+            assert_eq!(found, endings, "{figure}");
+        }
+    }
+}
+
+#[test]
+fn a_part_of_a_run_is_filmed_alone() {
+    let (run, summary) = rocking_block();
+    let out = tempfile::tempdir().unwrap();
+    let folder = RenderFolder::prepare(out.path(), &[Part::Frames], false).unwrap();
+    let how = Rendering { between: Some([0.4, 0.7]), ..at_rate(10.0) };
+    folder.write(&run, &summary, &how).unwrap();
+    let times = std::fs::read_to_string(out.path().join("frames/times.csv")).unwrap();
+    let times: Vec<f64> =
+        times.lines().skip(1).map(|row| row.split(',').nth(1).unwrap().parse().unwrap()).collect();
+    assert!(times[0] >= 0.4 && *times.last().unwrap() <= 0.7, "{times:?}");
+    assert!((3..=4).contains(&times.len()), "{times:?}");
+}
+
+#[test]
+fn a_report_on_paper_is_not_overwritten_in_silence() {
+    let (run, summary) = rocking_block();
+    let out = tempfile::tempdir().unwrap();
+    let folder = RenderFolder::prepare(out.path(), &[Part::Report], false).unwrap();
+    let written = folder.write(&run, &summary, &Rendering::default()).unwrap();
+    assert_eq!(written[0].files, 1);
+    let bytes = std::fs::read(out.path().join("report.pdf")).unwrap();
+    assert!(bytes.starts_with(b"%PDF-"));
+    let refused = RenderFolder::prepare(out.path(), &[Part::Report], false).unwrap_err();
+    assert!(matches!(&refused, ExportError::Occupied { file, .. } if file == "report.pdf"));
+}
+
+#[test]
+fn a_collapsed_stack_and_its_drift_fit_a_terminal() {
+    let change = ["run.stop_after_collapse=1 s".to_owned()];
+    let scenario = Scenario::builtin("candia-8-barrels", &change).unwrap();
+    let run = barrelstack::run(&scenario, &mut |_| std::ops::ControlFlow::Continue(())).unwrap();
+    for characters in [Characters::Unicode, Characters::Ascii] {
+        let picture = final_picture(&run, characters);
+        assert!((4..=16).contains(&picture.len()), "{picture:#?}");
+        assert!(picture.iter().all(|line| line.chars().count() <= 72), "{picture:#?}");
+        let (line, [until, peak]) = drift_line(&run, 40, characters).unwrap();
+        assert_eq!(line.chars().count(), 40);
+        let collapse = run.fates.collapse_time().unwrap();
+        // One sample of the history, 1/200 s, may lie between.
+        assert!(until <= collapse && collapse - until < 0.006, "{until} {collapse}");
+        let top = if characters == Characters::Unicode { '█' } else { '#' };
+        let column = line.chars().position(|c| c == top).unwrap() as f64;
+        // The tallest column is that of the peak, within two columns of the first so tall.
+        assert!((column - peak / until * 40.0).abs() < 6.0, "{line} {peak}");
+    }
+    let block = rocking_block().0;
+    assert!(drift_line(&block, 40, Characters::Unicode).is_none());
+    assert!(!final_picture(&block, Characters::Unicode).is_empty());
 }

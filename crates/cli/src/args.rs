@@ -43,7 +43,7 @@ pub(crate) enum Command {
     Motion(crate::commands::motion::MotionArgs),
     /// Find contact parameters, with their uncertainty, from your own tests.
     Calibrate(crate::commands::calibrate::CalibrateArgs),
-    /// Run a scenario and write its figures, numbered pictures and a ParaView series.
+    /// Run a scenario and write its figures, the report as PDF, animations and a ParaView series.
     Render(crate::commands::render::RenderArgs),
     /// Run a scenario many times, with other values and other motions, into one table.
     Study(crate::commands::study::StudyArgs),
@@ -81,6 +81,15 @@ pub(crate) struct RunArgs {
     /// long it is predictable and whether its outcome is robust.
     #[arg(long)]
     pub(crate) verify: bool,
+    /// Write the report on paper too, report.pdf in the same folder.
+    #[arg(long, requires = "out")]
+    pub(crate) pdf: bool,
+    /// Paper of report.pdf.
+    #[arg(long, value_enum, value_name = "PAPER", default_value = "a4", requires = "pdf")]
+    pub(crate) paper: crate::figures::PaperName,
+    /// Draw the stack in the summary with the characters of every keyboard.
+    #[arg(long, conflicts_with = "json")]
+    pub(crate) plain: bool,
     /// Print one JSON document in place of the summary for people.
     #[arg(long)]
     pub(crate) json: bool,
@@ -118,7 +127,10 @@ pub(crate) struct ReproduceArgs {
     /// 10 % off.
     #[arg(long)]
     pub(crate) no_studies: bool,
-    /// Where to write the page and its figures; files of an earlier page are replaced.
+    #[command(flatten)]
+    pub(crate) figures: crate::figures::FigureArgs,
+    /// Where to write the page, on screen and on paper, and its figures; files of an earlier page are
+    /// replaced.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-reproduce")]
     pub(crate) out: PathBuf,
 }

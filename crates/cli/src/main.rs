@@ -2,6 +2,7 @@
 
 mod args;
 mod commands;
+mod figures;
 mod printer;
 mod progress;
 mod rows;

@@ -5,6 +5,7 @@ use std::io::{ErrorKind, Write as _};
 
 use anyhow::Context as _;
 use barrelstack::{Run, Summary};
+use barrelstack_report::Characters;
 
 /// Lines of a result.
 pub(crate) fn lines<T: AsRef<str>>(lines: impl IntoIterator<Item = T>) -> anyhow::Result<()> {
@@ -53,12 +54,18 @@ pub(crate) fn warnings(summary: &Summary) {
 }
 
 /// The summary for people; `changes` are the values changed on the command line.
-pub(crate) fn summary(run: &Run, summary: &Summary, changes: &[String]) -> anyhow::Result<()> {
+pub(crate) fn summary(
+    run: &Run,
+    summary: &Summary,
+    changes: &[String],
+    characters: Characters,
+) -> anyhow::Result<()> {
     let sentences = barrelstack::report::sentences(run, summary);
-    let rows = crate::rows::rows(run, summary, changes);
+    let rows = crate::rows::rows(run, summary, changes, characters);
+    let picture = crate::rows::picture(run, characters);
     let title = std::iter::once(summary.title.clone());
     let sentences = sentences.into_iter().map(|sentence| format!("  {sentence}"));
-    lines(title.chain(sentences).chain(std::iter::once(String::new())).chain(rows))
+    lines(title.chain(sentences).chain(std::iter::once(String::new())).chain(rows).chain(picture))
 }
 
 /// What repeats of a run say about it.

@@ -3,13 +3,22 @@
 use std::fmt::Write as _;
 
 use barrelstack::outcome::Outcome;
+use barrelstack::render::{drift_line, final_picture};
 use barrelstack::{Run, Summary};
+use barrelstack_report::Characters;
 
 /// Width of the name of a row.
 const NAME: usize = 24;
+/// Width of the history of the drift.
+const SPARKS: usize = 40;
 
 /// The rows, in reading order; `changes` are the values changed on the command line.
-pub(crate) fn rows(run: &Run, summary: &Summary, changes: &[String]) -> Vec<String> {
+pub(crate) fn rows(
+    run: &Run,
+    summary: &Summary,
+    changes: &[String],
+    characters: Characters,
+) -> Vec<String> {
     let mut rows = Vec::new();
     let mut row = |name: &str, value: String| rows.push(format!("  {name:NAME$}{value}"));
     for (index, change) in changes.iter().enumerate() {
@@ -40,6 +49,10 @@ pub(crate) fn rows(run: &Run, summary: &Summary, changes: &[String]) -> Vec<Stri
         let drift =
             if drift < 1e-4 { "under 0.01".to_owned() } else { three_digits(100.0 * drift) };
         row("drift of the top", format!("{drift} % of the height"));
+        if let Some((line, [until, peak])) = drift_line(run, SPARKS, characters) {
+            row("  while it stood", format!("{line} {until:.1} s"));
+            row("", format!("largest at {peak:.2} s"));
+        }
     }
     if let Some(amplification) = demands.stress_amplification {
         row("stress amplification", format!("{} × at rest", three_digits(amplification)));
@@ -60,6 +73,17 @@ pub(crate) fn rows(run: &Run, summary: &Summary, changes: &[String]) -> Vec<Stri
     row("computed", computed(summary));
     row("contact constants", format!("per {}", run.stiffness_basis()));
     rows
+}
+
+/// The stack at the end of the run, under a line that says so.
+pub(crate) fn picture(run: &Run, characters: Characters) -> Vec<String> {
+    let picture = final_picture(run, characters);
+    if picture.is_empty() {
+        return Vec::new();
+    }
+    let title = format!("  at the end, {:.1} s:", run.end_time);
+    let lines = picture.into_iter().map(|line| format!("  {line}").trim_end().to_owned());
+    [String::new(), title].into_iter().chain(lines).collect()
 }
 
 /// The outcome in a few words.

@@ -49,7 +49,8 @@ fn the_summary_says_what_happened_in_words_and_rows() {
     assert_eq!(first[2], "  The barrels of level 4 are thrown off the stack with their rack, R4.");
     assert!(text.contains("\n  changed                 run.stop_after_collapse=0.1 s\n"), "{text}");
     assert!(text.contains("\n  outcome                 collapse by ejection at "), "{text}");
-    for row in text.lines().skip_while(|line| !line.is_empty()).skip(1) {
+    let rows = text.lines().skip_while(|line| !line.is_empty()).skip(1);
+    for row in rows.take_while(|line| !line.is_empty()) {
         // Names fill 24 characters after the margin of 2, so all values stand below each other.
         let at: Vec<char> = row.chars().collect();
         assert!(row.starts_with("  ") && at[25] == ' ' && at[26] != ' ', "{row:?}");

@@ -358,7 +358,7 @@ fn figures_come_with_their_numbers() {
         "velocity",
     ];
     let wanted: Vec<String> =
-        kinds.iter().flat_map(|kind| [format!("{kind}.csv"), format!("{kind}.svg")]).collect();
+        kinds.iter().flat_map(|kind| ["csv", "pdf", "png", "svg"].map(|ending| format!("{kind}.{ending}"))).collect();
     assert_eq!(names(&pictures).unwrap(), wanted);
     for kind in kinds {
         let svg = fs::read_to_string(pictures.join(kind).with_extension("svg")).unwrap();
@@ -366,7 +366,18 @@ fn figures_come_with_their_numbers() {
         let csv = fs::read_to_string(pictures.join(kind).with_extension("csv")).unwrap();
         assert!(csv.lines().count() > 100, "{kind}");
     }
+    for (ending, start) in [("png", &b"\x89PNG"[..]), ("pdf", b"%PDF-")] {
+        let picture = folder.path().join(format!("spectrum.{ending}"));
+        motion(&["plot", text(&first), "-o", text(&picture), "--figure", "response"]);
+        assert!(fs::read(&picture).unwrap().starts_with(start), "{ending}");
+        assert!(picture.with_extension("csv").is_file());
+        let again = barrelstack(["motion", "plot", text(&first), "-o", text(&picture)]);
+        assert!(stderr(&again).contains("is there already"), "{}", stderr(&again));
+        fs::remove_file(picture.with_extension("csv")).unwrap();
+    }
     let one = folder.path().join("one.svg");
+    let torn = barrelstack(["motion", "plot", text(&first), "-o", text(&one), "--format", "png"]);
+    refused("a file and a format", &torn, &one, &["one.svg", "--format goes with a folder"]);
     motion(&["plot", text(&first), "-o", text(&one), "--figure", "velocity", "--component", "h1"]);
     assert!(fs::read_to_string(&one).unwrap().contains("velocity (cm/s)"));
     let again = barrelstack(["motion", "plot", text(&first), "-o", text(&pictures)]);

@@ -5,10 +5,10 @@
 use std::{error::Error, f64::consts::TAU, fs, path::PathBuf, sync::Arc};
 
 use barrelstack_report::{
-    Axis, Band, Block, BoundarySample, Cell, ContactForce, Document, Envelope, Event, EventKind,
-    Figure, FigureKind, Frames, History, Mark, Panel, Player, Plot, Polyline, Role, Scene,
-    SceneBody, Series, SeriesStyle, Strip, Table, Tone, Trace, Verdict, attachments, html,
-    markdown,
+    Animation, Axis, Band, Block, BoundarySample, Cell, ContactForce, Document, Envelope, Event,
+    EventKind, Figure, FigureKind, Film, Frames, History, Mark, Panel, Paper, Player, Plot,
+    Polyline, Role, Scene, SceneBody, Series, SeriesStyle, Strip, Table, Tone, Trace, Verdict,
+    attachments, document_pdf, html, markdown,
 };
 
 const RADIUS: f64 = 0.33;
@@ -25,6 +25,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     fs::write(folder.join("report.html"), html(&document))?;
     let bundle = markdown(&document, "figures");
     fs::write(folder.join("report.md"), &bundle.text)?;
+    fs::write(folder.join("report.pdf"), document_pdf(&document, Paper::A4))?;
+    for block in &document.blocks {
+        if let Block::Figure(figure) = block {
+            fs::write(figures.join(format!("{}.png", figure.id)), figure.to_png(150.0))?;
+            fs::write(figures.join(format!("{}.pdf", figure.id)), figure.to_pdf())?;
+        }
+        if let Block::Player(player) = block {
+            let film = Film::of_run(Arc::clone(&player.scene), 5.0);
+            if let Some(animation) = Animation::of(&film, 480) {
+                fs::write(folder.join("film.gif"), animation.gif())?;
+                fs::write(folder.join("film.png"), animation.apng())?;
+            }
+        }
+    }
     for file in attachments(&document) {
         fs::write(figures.join(file.name), file.bytes)?;
     }

@@ -3,9 +3,10 @@
 use std::{fmt::Write as _, sync::Arc};
 
 use crate::{
-    Point, Scene, escape, number,
+    Point, Scene,
+    drawing::{Anchor, Drawing, Item},
+    escape, number,
     strip::{View, define_bodies, picture},
-    svg::{Anchor, Svg},
 };
 
 /// A scene at one instant with labels and arrows.
@@ -38,21 +39,21 @@ const MOST: [f64; 2] = [620.0, 520.0];
 const HEAD: [f64; 2] = [8.0, 3.6];
 
 impl Diagram {
-    pub(crate) fn draw(&self, id: &str, title: &str) -> Svg {
+    pub(crate) fn draw(&self, id: &str, title: &str) -> Drawing {
         let frame = self.scene.frames.nearest(self.time);
         let shown: Vec<usize> = frame.into_iter().collect();
         let view = View::of(&self.scene, &shown, MOST, false);
-        let mut svg = Svg::new(view.width, view.height, title);
-        define_bodies(&mut svg, &self.scene, id, &view, &shown);
-        svg.nest([0.0, 0.0], &picture(&self.scene, id, frame, &view));
+        let mut drawing = Drawing::new(view.width, view.height, title);
+        drawing.push(define_bodies(&self.scene, id, &view, &shown));
+        drawing.nest([0.0, 0.0], picture(&self.scene, id, frame, &view));
         for arrow in &self.arrows {
-            draw_arrow(&mut svg, view.on_page(arrow.from), view.on_page(arrow.to));
+            draw_arrow(&mut drawing, view.on_page(arrow.from), view.on_page(arrow.to));
         }
         for (place, label) in &self.labels {
             let [x, y] = view.on_page(*place);
-            svg.text("label strong halo", [x, y + 4.0], Anchor::Middle, label);
+            drawing.text("label strong halo", [x, y + 4.0], Anchor::Middle, label);
         }
-        svg
+        drawing
     }
 
     pub(crate) fn to_csv(&self) -> String {
@@ -67,7 +68,7 @@ impl Diagram {
     }
 }
 
-fn draw_arrow(svg: &mut Svg, from: [f64; 2], to: [f64; 2]) {
+fn draw_arrow(drawing: &mut Drawing, from: [f64; 2], to: [f64; 2]) {
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = along[0].hypot(along[1]);
     if !(length.is_finite() && length > 0.0) {
@@ -76,7 +77,7 @@ fn draw_arrow(svg: &mut Svg, from: [f64; 2], to: [f64; 2]) {
     let [ux, uy] = along.map(|v| v / length);
     let neck = [to[0] - HEAD[0] * ux, to[1] - HEAD[0] * uy];
     let side = |sign: f64| [neck[0] - sign * HEAD[1] * uy, neck[1] + sign * HEAD[1] * ux];
-    svg.circle("arrow tail", from, 2.2);
-    svg.line("arrow", from, neck);
-    svg.path("arrow head", "", &[vec![side(1.0), to, side(-1.0)]], true);
+    drawing.push(Item::Circle { class: "arrow tail".into(), center: from, radius: 2.2 });
+    drawing.line("arrow", from, neck);
+    drawing.path("arrow head", "", vec![vec![side(1.0), to, side(-1.0)]], true);
 }

@@ -1,9 +1,10 @@
 //! Stress around a body: self-weight shaded, the largest during shaking as a line.
 
 use crate::{
-    Polyline, escape, number,
+    Polyline,
+    drawing::{Anchor, Drawing, Runs, text_width},
+    escape, number,
     scene::Extent,
-    svg::{Anchor, Svg, text_width},
     ticks::round_length,
 };
 
@@ -54,7 +55,7 @@ impl Envelope {
         self.samples.len().min(self.static_stress.len()).min(self.dynamic_stress.len())
     }
 
-    pub(crate) fn draw(&self, title: &str) -> Svg {
+    pub(crate) fn draw(&self, title: &str) -> Drawing {
         let mut extent = Extent::EMPTY;
         for point in self.outline.iter().flat_map(|line| &line.points) {
             extent.add(*point);
@@ -81,16 +82,16 @@ impl Envelope {
         let z0 = height - SIDE + extent.lower[1] * scale;
         let map = |p: [f64; 2]| [x0 + p[0] * scale, z0 - p[1] * scale];
 
-        let mut svg = Svg::new(WIDTH, height, title);
+        let mut drawing = Drawing::new(WIDTH, height, title);
         for line in &self.outline {
             let points = line.points.iter().map(|p| map(*p)).collect();
             let class = if line.closed { "outline" } else { "outline open" };
-            svg.path(class, "", &[points], line.closed);
+            drawing.path(class, "", vec![points], line.closed);
         }
         for (stresses, class) in
             [(&self.static_stress, "static"), (&self.dynamic_stress, "dynamic")]
         {
-            let shapes: Vec<Vec<[f64; 2]>> = self
+            let shapes: Runs = self
                 .runs(stresses)
                 .iter()
                 .map(|run| {
@@ -99,10 +100,10 @@ impl Envelope {
                     tips.chain(feet).collect()
                 })
                 .collect();
-            svg.path(class, "", &shapes, true);
+            drawing.path(class, "", shapes, true);
         }
-        self.legend(&mut svg, peak, per_stress * scale);
-        svg
+        self.legend(&mut drawing, peak, per_stress * scale);
+        drawing
     }
 
     fn peak(&self) -> f64 {
@@ -148,28 +149,28 @@ impl Envelope {
         runs
     }
 
-    fn legend(&self, svg: &mut Svg, peak: f64, per_stress: f64) {
-        svg.rect("static", [SIDE, 8.0], [26.0, 11.0]);
-        svg.text("label", [SIDE + 33.0, 18.0], Anchor::Start, "self-weight");
-        svg.path("dynamic", "", &[vec![[SIDE, 34.0], [SIDE + 26.0, 34.0]]], false);
-        svg.text("label", [SIDE + 33.0, 38.0], Anchor::Start, "largest during shaking");
+    fn legend(&self, drawing: &mut Drawing, peak: f64, per_stress: f64) {
+        drawing.rect("static", [SIDE, 8.0], [26.0, 11.0]);
+        drawing.text("label", [SIDE + 33.0, 18.0], Anchor::Start, "self-weight");
+        drawing.path("dynamic", "", vec![vec![[SIDE, 34.0], [SIDE + 26.0, 34.0]]], false);
+        drawing.text("label", [SIDE + 33.0, 38.0], Anchor::Start, "largest during shaking");
         let right = WIDTH - SIDE;
         if let Some(ratio) = self.amplification {
             let text = format!("amplification {}", number::significant(ratio, 2));
-            svg.text("label strong", [right, 18.0], Anchor::End, &text);
+            drawing.text("label strong", [right, 18.0], Anchor::End, &text);
         }
         let bar = round_length(0.6 * peak);
         if bar > 0.0 {
             let text = format!("{} {}", number::significant(bar, 1), self.unit);
             let from = right - text_width(&text, 12.0) - 8.0 - bar * per_stress;
             let to = from + bar * per_stress;
-            svg.line("axis", [from, 34.0], [to, 34.0]);
+            drawing.line("axis", [from, 34.0], [to, 34.0]);
             for x in [from, to] {
-                svg.line("axis", [x, 30.0], [x, 38.0]);
+                drawing.line("axis", [x, 30.0], [x, 38.0]);
             }
-            svg.text("label", [right, 38.0], Anchor::End, text.trim_end());
+            drawing.text("label", [right, 38.0], Anchor::End, text.trim_end());
         } else {
-            svg.text("note", [right, 38.0], Anchor::End, "no stress");
+            drawing.text("note", [right, 38.0], Anchor::End, "no stress");
         }
     }
 

@@ -2,7 +2,9 @@
 
 use std::collections::HashSet;
 
-use crate::{Block, Diagram, Document, Envelope, Plot, Strip, escape, svg::Svg};
+use crate::{
+    Block, Diagram, Document, Envelope, Plot, Strip, drawing::Drawing, escape, pages, raster,
+};
 
 /// One picture with a caption.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +36,26 @@ impl Figure {
         self.draw(&escape::slug(&self.id)).standalone()
     }
 
+    /// The picture in a format; `dpi` (dots per inch) is that of pixels.
+    pub fn to_bytes(&self, format: Format, dpi: f64) -> Vec<u8> {
+        match format {
+            Format::Svg => self.to_svg().into_bytes(),
+            Format::Png => self.to_png(dpi),
+            Format::Pdf => self.to_pdf(),
+        }
+    }
+
+    /// The picture as a PNG of `dpi` dots per inch on white; its 12 px letters are 9 points high.
+    /// The words are drawn with the bundled font, so the same figure gives the same file anywhere.
+    pub fn to_png(&self, dpi: f64) -> Vec<u8> {
+        raster::png(&self.draw(&escape::slug(&self.id)), dpi)
+    }
+
+    /// The picture as a PDF page of its size: lines as lines, words as words in the bundled font.
+    pub fn to_pdf(&self) -> Vec<u8> {
+        pages::figure_pdf(self)
+    }
+
     /// The picture's data as CSV at full precision.
     ///
     /// A plot gives `x` columns beside `y` columns, one pair for each series; a strip gives one
@@ -48,7 +70,7 @@ impl Figure {
         }
     }
 
-    pub(crate) fn draw(&self, id: &str) -> Svg {
+    pub(crate) fn draw(&self, id: &str) -> Drawing {
         match &self.kind {
             FigureKind::Plot(plot) => plot.draw(id, &self.caption),
             FigureKind::Strip(strip) => strip.draw(id, &self.caption),
@@ -67,42 +89,74 @@ pub struct Attachment {
     pub bytes: Vec<u8>,
 }
 
-/// Every figure of a document as `<id>.svg` and `<id>.csv`, every table as `table-<n>.csv`,
-/// every player as the SVG and CSV of its picture on paper, in reading order.
+/// The pictures that a figure can become.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Lines and words, for pages and for editing.
+    Svg,
+    /// Pixels.
+    Png,
+    /// Lines and words, for typesetting.
+    Pdf,
+}
+
+impl Format {
+    /// All formats.
+    pub const ALL: [Self; 3] = [Self::Svg, Self::Png, Self::Pdf];
+
+    /// How names of its files end, without the dot.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Png => "png",
+            Self::Pdf => "pdf",
+        }
+    }
+}
+
+/// Every figure of a document with the name of its files, in reading order; a player as its picture
+/// on paper.
+pub fn figures(document: &Document) -> Vec<(String, Figure)> {
+    let mut found = Vec::new();
+    let mut names = Names::default();
+    walk(&document.blocks, &mut |block| match block {
+        Block::Figure(figure) => found.push((names.take(&figure.id), figure.clone())),
+        Block::Player(player) => {
+            found.push((names.take(&player.id), player.paper_figure(&document.blocks)));
+        }
+        Block::Heading { .. }
+        | Block::Paragraph(_)
+        | Block::List(_)
+        | Block::Table(_)
+        | Block::Details { .. } => {}
+    });
+    found
+}
+
+/// Every figure of a document as `<id>.svg` and `<id>.csv`, every player as the SVG and CSV of its
+/// picture on paper, then every table as `table-<n>.csv`, in reading order.
 pub fn attachments(document: &Document) -> Vec<Attachment> {
     let mut files = Vec::new();
-    let mut names = Names::default();
+    for (id, figure) in figures(document) {
+        files.push(Attachment::text(format!("{id}.svg"), figure.to_svg()));
+        files.push(Attachment::text(format!("{id}.csv"), figure.to_csv()));
+    }
     let mut tables = 0;
-    gather(document, &document.blocks, &mut names, &mut tables, &mut files);
+    walk(&document.blocks, &mut |block| {
+        if let Block::Table(table) = block {
+            tables += 1;
+            files.push(Attachment::text(format!("table-{tables}.csv"), table.to_csv()));
+        }
+    });
     files
 }
 
-fn gather(
-    document: &Document,
-    blocks: &[Block],
-    names: &mut Names,
-    tables: &mut usize,
-    files: &mut Vec<Attachment>,
-) {
+/// Visits blocks in reading order, those that are folded away too.
+fn walk(blocks: &[Block], visit: &mut dyn FnMut(&Block)) {
     for block in blocks {
-        match block {
-            Block::Figure(figure) => {
-                let id = names.take(&figure.id);
-                files.push(Attachment::text(format!("{id}.svg"), figure.to_svg()));
-                files.push(Attachment::text(format!("{id}.csv"), figure.to_csv()));
-            }
-            Block::Player(player) => {
-                let id = names.take(&player.id);
-                let figure = player.paper_figure(&document.blocks);
-                files.push(Attachment::text(format!("{id}.svg"), figure.to_svg()));
-                files.push(Attachment::text(format!("{id}.csv"), figure.to_csv()));
-            }
-            Block::Table(table) => {
-                *tables += 1;
-                files.push(Attachment::text(format!("table-{tables}.csv"), table.to_csv()));
-            }
-            Block::Details { blocks, .. } => gather(document, blocks, names, tables, files),
-            Block::Heading { .. } | Block::Paragraph(_) | Block::List(_) => {}
+        visit(block);
+        if let Block::Details { blocks, .. } = block {
+            walk(blocks, visit);
         }
     }
 }

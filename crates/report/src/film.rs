@@ -1,11 +1,12 @@
-//! A film: a scene as numbered pictures of one size, window and scale, one SVG for each.
+//! A film: a scene as numbered pictures of one size, window and scale.
 
 use std::sync::Arc;
 
 use crate::{
-    Scene, number,
+    Frames, Scene,
+    drawing::{Anchor, Drawing},
+    number, raster,
     strip::{View, define_bodies, picture},
-    svg::{Anchor, Svg},
 };
 
 /// A scene as pictures that follow each other at even steps of time.
@@ -44,15 +45,46 @@ impl Film {
         self.scene.frames.times.get(*self.frames.get(at)?).copied()
     }
 
+    /// Width and height of every picture (px).
+    pub(crate) fn size(&self) -> [f64; 2] {
+        [self.view.width, self.view.height + HEADING].map(|side| 2.0 * (0.5 * side).ceil())
+    }
+
+    /// Picture `at` as a PNG of `dpi` dots per inch; `None` beyond the last. At 96
+    /// dots, and multiples, sides are even counts of pixels, as encoders of video ask for.
+    pub fn png(&self, at: usize, dpi: f64) -> Option<Vec<u8>> {
+        self.drawing(at).map(|drawing| raster::png(&drawing, dpi))
+    }
+
     /// Picture `at` as a standalone SVG document; `None` beyond the last.
     pub fn svg(&self, at: usize) -> Option<String> {
+        self.drawing(at).map(|drawing| drawing.standalone())
+    }
+
+    pub(crate) fn drawing(&self, at: usize) -> Option<Drawing> {
         let frame = *self.frames.get(at)?;
         let heading = format!("t = {} s", number::fixed(self.time(at)?, 2));
-        let mut svg = Svg::new(self.view.width, self.view.height + HEADING, &heading);
-        define_bodies(&mut svg, &self.scene, "film", &self.view, &self.frames);
-        svg.text("label strong", [1.0, 16.0], Anchor::Start, &heading);
-        svg.nest([0.0, HEADING], &picture(&self.scene, "film", Some(frame), &self.view));
-        Some(svg.standalone())
+        let mut drawing = Drawing::new(self.size()[0], self.size()[1], &heading);
+        drawing.push(define_bodies(&self.scene, "film", &self.view, &self.frames));
+        drawing.text("label strong", [1.0, 16.0], Anchor::Start, &heading);
+        drawing.nest([0.0, HEADING], picture(&self.scene, "film", Some(frame), &self.view));
+        Some(drawing)
+    }
+}
+
+impl Scene {
+    /// The scene from one time to another (s): its frames in between, and all that happened.
+    #[must_use]
+    pub fn between(&self, from: f64, to: f64) -> Self {
+        let frames = &self.frames;
+        let inside = |at: &usize| (from..=to).contains(&frames.times[*at]);
+        let kept: Vec<usize> = (0..frames.len()).filter(inside).collect();
+        let frames = Frames {
+            times: kept.iter().map(|at| frames.times[*at]).collect(),
+            poses: kept.iter().map(|at| frames.poses[*at].clone()).collect(),
+            forces: kept.iter().filter_map(|at| frames.forces.get(*at).cloned()).collect(),
+        };
+        Self { frames, ..self.clone() }
     }
 }
 

@@ -1,8 +1,12 @@
-//! Documents, figures and a player for moving rigid bodies, as HTML, Markdown, SVG, CSV and VTK.
+//! Documents, figures and a player for moving rigid bodies: HTML, Markdown, PDF, SVG, PNG, GIF, CSV
+//! and VTK.
 //!
 //! A [`Document`] is data: a verdict, [`Block`]s in reading order, warnings, provenance.
 //! [`html`] turns it into one page that needs no network, [`markdown`] into text with figures
-//! beside it. Every format reads the same numbers.
+//! beside it, [`document_pdf`] into numbered pages. Every format reads the same numbers.
+//!
+//! A [`Figure`] is drawn once, as data; SVG, pixels and PDF are three ways to write the drawing, and
+//! all obey one style sheet. A [`Film`] is many such drawings, an [`Animation`] one file of them.
 //!
 //! ```
 //! use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, html};
@@ -30,37 +34,49 @@
 //! A number that is not finite is a gap in a line and a dash in a table. No input panics: lists
 //! of unequal length are read to the end of the shorter, empty figures draw empty axes.
 
+mod animation;
 mod diagram;
 mod document;
+mod drawing;
 mod envelope;
 mod escape;
 mod figure;
 mod film;
+mod font;
 mod html;
 mod markdown;
 mod number;
 mod pack;
 mod page;
+mod pages;
+mod paint;
+mod pdf;
 mod player;
 mod plot;
-mod plot_svg;
+mod plot_drawing;
+mod raster;
 mod scene;
+mod sheet;
 mod simplify;
 mod strip;
+mod style;
 mod svg;
 mod table;
+mod terminal;
 mod ticks;
 mod vtk;
 
+pub use animation::Animation;
 pub use diagram::{Arrow, Diagram};
 pub use document::{Block, Document, Tone, Verdict};
 pub use envelope::{BoundarySample, Envelope};
-pub use figure::{Attachment, Figure, FigureKind, attachments};
+pub use figure::{Attachment, Figure, FigureKind, Format, attachments, figures};
 pub use film::Film;
 pub use html::html;
 pub use markdown::{MarkdownBundle, markdown};
 pub use number::significant;
 pub use pack::{POSE_QUANTUM, TIME_QUANTUM};
+pub use pages::{Paper, document_pdf};
 pub use player::Player;
 pub use plot::{Axis, Band, Mark, Plot, Scale, Series, SeriesStyle};
 pub use scene::{
@@ -69,5 +85,6 @@ pub use scene::{
 };
 pub use strip::{Panel, Strip};
 pub use table::{Cell, Column, Table};
+pub use terminal::{Characters, sparkline, terminal_picture};
 pub use ticks::{Ticks, linear_ticks, log_ticks};
 pub use vtk::paraview;

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::{
     Axis, Plot, Scale, escape, pack,
-    svg::{DASHES, PALETTE, page_style, standalone_style},
+    style::{DASHES, PALETTE, page_style, standalone_style},
 };
 
 const REPORT_CSS: &str = include_str!("../assets/report.css");

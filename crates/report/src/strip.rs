@@ -3,9 +3,10 @@
 use std::{fmt::Write as _, sync::Arc};
 
 use crate::{
-    Point, Polyline, Role, Scene, escape, number,
+    Point, Polyline, Role, Scene, SceneBody,
+    drawing::{Anchor, Body, Drawing, Item, Placed, text_width},
+    escape, number,
     scene::{Extent, hatch, window},
-    svg::{Anchor, Svg, coordinate, text_width},
 };
 
 /// A scene at chosen instants.
@@ -126,7 +127,7 @@ impl Strip {
 
     /// Panels as drawings of equal size. Bodies are defined in the first one that is drawn, under
     /// names that start with `id`, and used by all.
-    pub(crate) fn drawings(&self, id: &str) -> Vec<Svg> {
+    pub(crate) fn drawings(&self, id: &str) -> Vec<Drawing> {
         let frames: Vec<Option<usize>> =
             self.panels.iter().map(|p| self.scene.frames.nearest(p.time)).collect();
         let shown: Vec<usize> = frames.iter().copied().flatten().collect();
@@ -141,37 +142,37 @@ impl Strip {
                 let heading = format!("t = {} s", number::fixed(time.unwrap_or(f64::NAN), 2));
                 let title = format!("{heading}. {}", panel.note);
                 let (width, height) = (view.width, view.height);
-                let mut svg = Svg::new(width, height + CAPTION, title.trim_end());
+                let mut drawing = Drawing::new(width, height + CAPTION, title.trim_end());
                 if at == 0 {
-                    define_bodies(&mut svg, &self.scene, id, &view, &shown);
+                    drawing.push(define_bodies(&self.scene, id, &view, &shown));
                 }
-                svg.nest([0.0, 0.0], &picture(&self.scene, id, frame, &view));
-                svg.text("label strong", [1.0, height + 16.0], Anchor::Start, &heading);
+                drawing.nest([0.0, 0.0], picture(&self.scene, id, frame, &view));
+                drawing.text("label strong", [1.0, height + 16.0], Anchor::Start, &heading);
                 let note = fit(&panel.note, width);
-                svg.text("note", [1.0, height + 31.0], Anchor::Start, &note);
-                svg
+                drawing.text("note", [1.0, height + 31.0], Anchor::Start, &note);
+                drawing
             })
             .collect()
     }
 
-    pub(crate) fn draw(&self, id: &str, title: &str) -> Svg {
+    pub(crate) fn draw(&self, id: &str, title: &str) -> Drawing {
         let drawings = self.drawings(id);
         let (wide, high) = drawings.first().map_or((PANEL[0], 0.0), |d| (d.width, d.height));
         let most = (1..drawings.len()).take_while(|n| *n as f64 * (wide + GAP) + wide <= ROW);
         // As many as fit a row, and no last row that holds a single one where two rows could share.
         let rows = drawings.len().div_ceil(most.count() + 1).max(1);
         let per_row = drawings.len().div_ceil(rows).max(1);
-        let mut svg = Svg::new(
+        let mut whole = Drawing::new(
             per_row as f64 * (wide + GAP) + GAP,
             (rows as f64 * (high + GAP) + GAP).max(40.0),
             title,
         );
-        for (at, drawing) in drawings.iter().enumerate() {
+        for (at, drawing) in drawings.into_iter().enumerate() {
             let (row, column) = (at / per_row, at % per_row);
             let corner = [GAP + column as f64 * (wide + GAP), GAP + row as f64 * (high + GAP)];
-            svg.nest(corner, drawing);
+            whole.nest(corner, drawing);
         }
-        svg
+        whole
     }
 
     pub(crate) fn to_csv(&self) -> String {
@@ -192,98 +193,76 @@ impl Strip {
 }
 
 /// Defines every body of a scene, under names that start with `id`.
-pub(crate) fn define_bodies(svg: &mut Svg, scene: &Scene, id: &str, view: &View, shown: &[usize]) {
-    let scale = view.scale;
-    svg.raw("<defs>");
-    for (at, body) in scene.bodies.iter().enumerate() {
-        svg.raw(&format!(r#"<g id="{id}-b{at}">"#));
-        for line in &body.outlines {
+pub(crate) fn define_bodies(scene: &Scene, id: &str, view: &View, shown: &[usize]) -> Item {
+    let define = |(at, body): (usize, &SceneBody)| {
+        let outlines = body.outlines.iter().map(|line| {
             let open = if line.closed { "" } else { " bs-open" };
-            let class = format!("bs-body bs-{}{open}", body.role.class());
-            shape(svg, &class, line, 1.1 / scale);
-        }
-        if body.role == Role::Ground {
-            ground_hatch(svg, scene, at, view, shown);
-        }
-        for (place, line) in body.marks.iter().enumerate() {
+            shape(format!("bs-body bs-{}{open}", body.role.class()), line, 1.1 / view.scale)
+        });
+        let hatch = (body.role == Role::Ground).then(|| ground_hatch(scene, at, view, shown));
+        let marks = body.marks.iter().enumerate().map(|(place, line)| {
             let wide = if place == 0 && body.role != Role::Ground { 2.4 } else { 0.7 };
-            shape(svg, "bs-body bs-open", line, wide / scale);
-        }
-        svg.raw("</g>");
-    }
-    svg.raw("</defs>");
+            shape("bs-body bs-open".into(), line, wide / view.scale)
+        });
+        Body { id: name(id, at), items: outlines.chain(hatch).chain(marks).collect() }
+    };
+    Item::Defined(scene.bodies.iter().enumerate().map(define).collect())
+}
+
+/// What a body is called within a page.
+fn name(id: &str, body: usize) -> String {
+    format!("{id}-b{body}")
 }
 
 /// The hatch under the part of the ground that some frame shows.
-fn ground_hatch(svg: &mut Svg, scene: &Scene, body: usize, view: &View, shown: &[usize]) {
+fn ground_hatch(scene: &Scene, body: usize, view: &View, shown: &[usize]) -> Item {
     let mut reach = [f64::INFINITY, f64::NEG_INFINITY];
     let spare = view.width / view.scale;
     for pose in shown.iter().filter_map(|&frame| scene.frames.pose(frame, body)) {
         reach[0] = reach[0].min(view.extent.lower[0] - pose[0] - spare);
         reach[1] = reach[1].max(view.extent.upper[0] - pose[0] + spare);
     }
-    let mut data = String::new();
-    for line in scene.bodies[body].outlines.iter().filter(|line| !line.closed) {
-        for [from, to] in hatch(line, HATCH / view.scale, reach) {
-            // Writing to a String cannot fail.
-            let _ = write!(data, "M{:.3} {:.3}L{:.3} {:.3}", from[0], from[1], to[0], to[1]);
-        }
-    }
-    if !data.is_empty() {
-        let width = 0.8 / view.scale;
-        svg.raw(&format!(
-            r#"<path class="bs-body bs-ground bs-open" stroke-width="{width:.5}" d="{data}"/>"#
-        ));
+    let lines = scene.bodies[body].outlines.iter().filter(|line| !line.closed);
+    let strokes = lines.flat_map(|line| hatch(line, HATCH / view.scale, reach));
+    Item::Outline {
+        class: "bs-body bs-ground bs-open".into(),
+        pen: 0.8 / view.scale,
+        runs: strokes.map(Vec::from).collect(),
+        closed: false,
     }
 }
 
 /// The bodies of a scene as they stand at a frame, in a frame of their own.
-pub(crate) fn picture(scene: &Scene, id: &str, frame: Option<usize>, view: &View) -> Svg {
-    let mut svg = Svg::new(view.width, view.height, "");
-    svg.rect("frame", [0.5, 0.5], [view.width - 1.0, view.height - 1.0]);
+pub(crate) fn picture(scene: &Scene, id: &str, frame: Option<usize>, view: &View) -> Drawing {
+    let mut drawing = Drawing::new(view.width, view.height, "");
+    drawing.rect("frame", [0.5, 0.5], [view.width - 1.0, view.height - 1.0]);
     if let Some(frame) = frame {
-        place_bodies(&mut svg, scene, id, frame, view);
+        place_bodies(&mut drawing, scene, id, frame, view);
     }
-    svg
+    drawing
 }
 
-fn place_bodies(svg: &mut Svg, scene: &Scene, id: &str, frame: usize, view: &View) {
-    let scale = view.scale;
-    let [left, foot] = view.origin().map(coordinate);
-    svg.raw(&format!(r#"<g transform="matrix({scale:.6} 0 0 {:.6} {left} {foot})">"#, -scale));
+fn place_bodies(drawing: &mut Drawing, scene: &Scene, id: &str, frame: usize, view: &View) {
     let poses: Vec<_> = (0..scene.bodies.len())
         .filter_map(|at| Some((at, scene.frames.pose(frame, at)?)))
         .collect();
-    for (at, [x, z, angle]) in &poses {
-        let degrees = angle.to_degrees();
+    let placed = poses.iter().map(|(at, pose)| {
         let ground = scene.bodies[*at].role == Role::Ground;
-        let class = if ground { "ground" } else { "moving" };
-        svg.raw(&format!(
-            r##"<use class="{class}" href="#{id}-b{at}" transform="translate({x:.4} {z:.4}) rotate({degrees:.3})"/>"##
-        ));
-    }
-    svg.raw("</g>");
+        Placed { id: name(id, *at), class: if ground { "ground" } else { "moving" }, pose: *pose }
+    });
+    let (scale, origin) = (view.scale, view.origin());
+    drawing.push(Item::Scene { scale, origin, bodies: placed.collect() });
     for (at, [x, z, _]) in poses.iter().filter(|_| view.names) {
         let body = &scene.bodies[*at];
         if matches!(body.role, Role::Barrel | Role::Block) {
             let [x, y] = view.on_page([*x, *z]);
-            svg.text("label", [x, y + 4.0], Anchor::Middle, &body.name);
+            drawing.text("label", [x, y + 4.0], Anchor::Middle, &body.name);
         }
     }
 }
 
-fn shape(svg: &mut Svg, class: &str, line: &Polyline, width: f64) {
-    let mut data = String::new();
-    for (at, [x, z]) in line.points.iter().enumerate() {
-        if x.is_finite() && z.is_finite() {
-            let letter = if at == 0 { "M" } else { "L" };
-            let _ = write!(data, "{letter}{x:.4} {z:.4}");
-        }
-    }
-    if data.starts_with('M') {
-        let end = if line.closed { "z" } else { "" };
-        svg.raw(&format!(r#"<path class="{class}" stroke-width="{width:.5}" d="{data}{end}"/>"#));
-    }
+fn shape(class: String, line: &Polyline, pen: f64) -> Item {
+    Item::Outline { class, pen, runs: vec![line.points.clone()], closed: line.closed }
 }
 
 /// A note that fits under its panel.

@@ -1,109 +1,97 @@
-//! A small SVG writer and the palette that figures and page share.
+//! A drawing as SVG, inside a page or on its own.
 
 use std::fmt::{Arguments, Write as _};
 
-use crate::escape;
+use crate::{
+    drawing::{Anchor, Body, Drawing, Item, Placed, Runs},
+    escape,
+    style::standalone_style,
+};
 
-/// Colors by name: on white (and paper), and on the dark page.
-///
-/// `s0` to `s5` are the series: the Okabe–Ito set, with the text color in place of its black.
-pub(crate) const PALETTE: &[(&str, &str, &str)] = &[
-    ("paper", "#ffffff", "#14171b"),
-    ("panel", "#f6f7f8", "#1b1f24"),
-    ("ink", "#1b1f24", "#e8eaed"),
-    ("soft", "#59626d", "#a3acb7"),
-    ("rule", "#d9dde2", "#343b44"),
-    ("grid", "#e6e9ed", "#272d34"),
-    ("accent", "#7a1f3d", "#e58aa6"),
-    ("s0", "#0072b2", "#56b4e9"),
-    ("s1", "#d55e00", "#e8792b"),
-    ("s2", "#009e73", "#1fbf92"),
-    ("s3", "#b8578f", "#d98fb8"),
-    ("s4", "#1b1f24", "#e8eaed"),
-    ("s5", "#b07a00", "#e69f00"),
-    ("band", "#e9ecf0", "#2a3038"),
-    ("ground", "#c9ced4", "#3a424c"),
-    ("barrel", "#dcb67f", "#9a7340"),
-    ("rack", "#7f8b98", "#8794a3"),
-    ("block", "#b9c4cf", "#56626f"),
-    ("device", "#8fc7b5", "#2f7f6a"),
-    ("line", "#3b3023", "#f0e6d8"),
-    ("good", "#00785a", "#3fcf9f"),
-    ("bad", "#b84a00", "#f08a4b"),
-];
-
-/// Dash patterns of the series, by the same index as their colors.
-pub(crate) const DASHES: [&str; 6] = ["", "8 4", "2 3", "9 3 2 3", "14 5", "5 3"];
-
-const STYLE: &str = include_str!("../assets/figure.css");
-
-/// The style of a standalone figure: the page's rules with the colors of white paper.
-pub(crate) fn standalone_style() -> String {
-    let mut style = STYLE.to_owned();
-    for (name, light, _) in PALETTE {
-        style = style.replace(&format!("var(--{name})"), light);
-    }
-    style
-}
-
-/// The rules that figures inside a page share.
-pub(crate) fn page_style() -> &'static str {
-    STYLE
-}
-
-/// A drawing of a known size; y grows downward (px).
-#[derive(Clone, Debug)]
-pub(crate) struct Svg {
-    pub(crate) width: f64,
-    pub(crate) height: f64,
-    title: String,
-    body: String,
-}
-
-#[derive(Clone, Copy)]
-pub(crate) enum Anchor {
-    Start,
-    Middle,
-    End,
-}
-
-impl Svg {
-    pub(crate) fn new(width: f64, height: f64, title: &str) -> Self {
-        Self { width, height, title: escape::html(title), body: String::new() }
+impl Drawing {
+    /// For a page that carries the style.
+    pub(crate) fn inline(&self) -> String {
+        let [w, h] = [self.width, self.height].map(coordinate);
+        format!(
+            r#"<svg class="bs" xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {w} {h}" width="{w}" height="{h}" role="img" aria-label="{}">{}</svg>"#,
+            escape::html(&self.title),
+            markup(&self.items)
+        )
     }
 
-    /// Appends markup that is known to be well formed.
-    pub(crate) fn raw(&mut self, markup: &str) {
-        self.body.push_str(markup);
+    /// With its own style and a white ground.
+    pub(crate) fn standalone(&self) -> String {
+        let [w, h] = [self.width, self.height].map(coordinate);
+        format!(
+            concat!(
+                r#"<svg class="bs" xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {w} {h}" width="{w}" height="{h}" role="img">"#,
+                "<title>{title}</title><style>{style}</style>",
+                r##"<rect width="{w}" height="{h}" fill="#ffffff"/>{body}</svg>"##,
+                "\n"
+            ),
+            w = w,
+            h = h,
+            title = escape::html(&self.title),
+            style = escape::html(&standalone_style()),
+            body = markup(&self.items)
+        )
     }
+}
 
+fn markup(items: &[Item]) -> String {
+    let mut writer = Writer(String::new());
+    items.iter().for_each(|item| writer.item(item));
+    writer.0
+}
+
+struct Writer(String);
+
+impl Writer {
     fn put(&mut self, markup: Arguments<'_>) {
         // Writing to a String cannot fail, here and below.
-        let _ = self.body.write_fmt(markup);
+        let _ = self.0.write_fmt(markup);
     }
 
-    pub(crate) fn line(&mut self, class: &str, from: [f64; 2], to: [f64; 2]) {
-        let [x1, y1, x2, y2] = [from[0], from[1], to[0], to[1]].map(coordinate);
-        self.put(format_args!(
-            r#"<line class="{class}" x1="{x1}" y1="{y1}" x2="{x2}" y2="{y2}"/>"#
-        ));
+    fn item(&mut self, item: &Item) {
+        match item {
+            Item::Line { class, from, to } => {
+                let [x1, y1, x2, y2] = [from[0], from[1], to[0], to[1]].map(coordinate);
+                self.put(format_args!(
+                    r#"<line class="{class}" x1="{x1}" y1="{y1}" x2="{x2}" y2="{y2}"/>"#
+                ));
+            }
+            Item::Rect { class, lower, size } => self.rect(class, *lower, *size),
+            Item::Circle { class, center, radius } => {
+                let [x, y, r] = [center[0], center[1], *radius].map(coordinate);
+                self.put(format_args!(r#"<circle class="{class}" cx="{x}" cy="{y}" r="{r}"/>"#));
+            }
+            Item::Path { class, dash, runs, closed } => self.path(class, dash, runs, *closed),
+            Item::Outline { class, pen, runs, closed } => self.outline(class, *pen, runs, *closed),
+            Item::Text { class, at, anchor, degrees, text } => {
+                self.text(class, *at, *anchor, *degrees, text);
+            }
+            Item::Clip { id, lower, size, items } => {
+                self.put(format_args!(r#"<defs><clipPath id="{id}">"#));
+                self.rect("", *lower, *size);
+                self.put(format_args!(r#"</clipPath></defs><g clip-path="url(#{id})">"#));
+                items.iter().for_each(|item| self.item(item));
+                self.put(format_args!("</g>"));
+            }
+            Item::Nested { at, scale, drawing } => self.nested(*at, *scale, drawing),
+            Item::Defined(bodies) => self.defined(bodies),
+            Item::Scene { scale, origin, bodies } => self.scene(*scale, *origin, bodies),
+        }
     }
 
-    pub(crate) fn rect(&mut self, class: &str, lower: [f64; 2], size: [f64; 2]) {
+    fn rect(&mut self, class: &str, lower: [f64; 2], size: [f64; 2]) {
         let [x, y] = lower.map(coordinate);
-        let [w, h] = size.map(|v| coordinate(v.max(0.0)));
+        let [w, h] = size.map(coordinate);
         self.put(format_args!(
             r#"<rect class="{class}" x="{x}" y="{y}" width="{w}" height="{h}"/>"#
         ));
     }
 
-    pub(crate) fn circle(&mut self, class: &str, center: [f64; 2], radius: f64) {
-        let [x, y, r] = [center[0], center[1], radius].map(coordinate);
-        self.put(format_args!(r#"<circle class="{class}" cx="{x}" cy="{y}" r="{r}"/>"#));
-    }
-
-    /// A path through runs of points; nothing when there is none.
-    pub(crate) fn path(&mut self, class: &str, dash: &str, runs: &[Vec<[f64; 2]>], closed: bool) {
+    fn path(&mut self, class: &str, dash: &str, runs: &Runs, closed: bool) {
         let data = path_data(runs, closed);
         if data.is_empty() {
             return;
@@ -113,21 +101,24 @@ impl Svg {
         self.put(format_args!(r#"<path class="{class}"{dash} d="{data}"/>"#));
     }
 
-    pub(crate) fn text(&mut self, class: &str, at: [f64; 2], anchor: Anchor, text: &str) {
-        self.turned_text(class, at, anchor, 0.0, text);
+    fn outline(&mut self, class: &str, pen: f64, runs: &Runs, closed: bool) {
+        let mut data = String::new();
+        for run in runs {
+            let points = run.iter().filter(|p| p.iter().all(|v| v.is_finite()));
+            for (at, [x, z]) in points.enumerate() {
+                let letter = if at == 0 { "M" } else { "L" };
+                let _ = write!(data, "{letter}{x:.4} {z:.4}");
+            }
+            if closed && data.ends_with(|c: char| c.is_ascii_digit()) {
+                data.push('z');
+            }
+        }
+        if !data.is_empty() {
+            self.put(format_args!(r#"<path class="{class}" stroke-width="{pen:.5}" d="{data}"/>"#));
+        }
     }
 
-    pub(crate) fn turned_text(
-        &mut self,
-        class: &str,
-        at: [f64; 2],
-        anchor: Anchor,
-        degrees: f64,
-        text: &str,
-    ) {
-        if text.is_empty() {
-            return;
-        }
+    fn text(&mut self, class: &str, at: [f64; 2], anchor: Anchor, degrees: f64, text: &str) {
         let [x, y] = at.map(coordinate);
         let anchor = match anchor {
             Anchor::Start => "start",
@@ -145,50 +136,45 @@ impl Svg {
         ));
     }
 
-    /// Places another drawing inside this one.
-    pub(crate) fn nest(&mut self, at: [f64; 2], inner: &Self) {
-        let [x, y, w, h] = [at[0], at[1], inner.width, inner.height].map(coordinate);
+    fn nested(&mut self, at: [f64; 2], scale: f64, drawing: &Drawing) {
+        let [x, y] = at.map(coordinate);
+        let [w, h] = [drawing.width, drawing.height].map(coordinate);
+        let [wide, high] = [drawing.width * scale, drawing.height * scale].map(coordinate);
         self.put(format_args!(
-            r#"<svg x="{x}" y="{y}" width="{w}" height="{h}" viewBox="0 0 {w} {h}">{}</svg>"#,
-            inner.body
+            r#"<svg x="{x}" y="{y}" width="{wide}" height="{high}" viewBox="0 0 {w} {h}">"#
         ));
+        drawing.items.iter().for_each(|item| self.item(item));
+        self.put(format_args!("</svg>"));
     }
 
-    /// For a page that carries the style.
-    pub(crate) fn inline(&self) -> String {
-        let [w, h] = [self.width, self.height].map(coordinate);
-        format!(
-            r#"<svg class="bs" xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {w} {h}" width="{w}" height="{h}" role="img" aria-label="{}">{}</svg>"#,
-            self.title, self.body
-        )
+    fn defined(&mut self, bodies: &[Body]) {
+        self.put(format_args!("<defs>"));
+        for body in bodies {
+            self.put(format_args!(r#"<g id="{}">"#, body.id));
+            body.items.iter().for_each(|item| self.item(item));
+            self.put(format_args!("</g>"));
+        }
+        self.put(format_args!("</defs>"));
     }
 
-    /// With its own style and a white ground.
-    pub(crate) fn standalone(&self) -> String {
-        let [w, h] = [self.width, self.height].map(coordinate);
-        format!(
-            concat!(
-                r#"<svg class="bs" xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {w} {h}" width="{w}" height="{h}" role="img">"#,
-                "<title>{title}</title><style>{style}</style>",
-                r##"<rect width="{w}" height="{h}" fill="#ffffff"/>{body}</svg>"##,
-                "\n"
-            ),
-            w = w,
-            h = h,
-            title = self.title,
-            style = escape::html(&standalone_style()),
-            body = self.body
-        )
+    fn scene(&mut self, scale: f64, origin: [f64; 2], bodies: &[Placed]) {
+        let [left, foot] = origin.map(coordinate);
+        self.put(format_args!(
+            r#"<g transform="matrix({scale:.6} 0 0 {:.6} {left} {foot})">"#,
+            -scale
+        ));
+        for Placed { id, class, pose: [x, z, angle] } in bodies {
+            let degrees = angle.to_degrees();
+            self.put(format_args!(
+                r##"<use class="{class}" href="#{id}" transform="translate({x:.4} {z:.4}) rotate({degrees:.3})"/>"##
+            ));
+        }
+        self.put(format_args!("</g>"));
     }
-}
-
-/// Width of a line of text at `size` px, on the generous side.
-pub(crate) fn text_width(text: &str, size: f64) -> f64 {
-    0.56 * size * text.chars().count() as f64
 }
 
 /// A coordinate to a hundredth of a pixel without trailing zeros; zero when not finite.
-pub(crate) fn coordinate(value: f64) -> String {
+fn coordinate(value: f64) -> String {
     if !value.is_finite() {
         return "0".into();
     }
@@ -200,7 +186,7 @@ pub(crate) fn coordinate(value: f64) -> String {
 /// Path data through runs of points: absolute starts, then relative steps to 0.05 px.
 ///
 /// Each step starts from the rounded end of the one before, so rounding never adds up.
-pub(crate) fn path_data(runs: &[Vec<[f64; 2]>], closed: bool) -> String {
+fn path_data(runs: &[Vec<[f64; 2]>], closed: bool) -> String {
     let mut out = String::new();
     for run in runs {
         let mut points = run.iter().filter(|p| p.iter().all(|v| v.is_finite()));

@@ -98,6 +98,10 @@ fn every_figure_is_well_formed_xml_whatever_it_holds() {
             }
         }
         assert!(!svg.contains("var(--"), "a file on its own knows its colors");
+        let png = figure(kind.clone()).to_png(40.0);
+        assert!(png.starts_with(b"\x89PNG"), "{kind:?}");
+        let pdf = lopdf::Document::load_mem(&figure(kind.clone()).to_pdf()).unwrap();
+        assert_eq!(pdf.get_pages().len(), 1, "{kind:?}");
     }
 }
 

@@ -1,20 +1,34 @@
 //! A run as files for papers, films and ParaView, in one folder.
 
-use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+mod terminal;
 
-use barrelstack_report::{Attachment, Film, markdown, paraview};
+use std::fmt::Write as _;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use barrelstack_report::{
+    Animation, Attachment, Document, Film, Format, Paper, Scene, document_pdf, figures, markdown,
+    paraview,
+};
 
 use crate::export::ExportError;
 use crate::report;
 use crate::run::Run;
 use crate::summary::Summary;
+use crate::system;
 
-/// What can be rendered; each part has a folder of its own.
+pub use terminal::{drift_line, final_picture};
+
+/// What can be rendered; each part has a place of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// `figures/`: every figure and table of the report as SVG and CSV; `report.md` beside it.
+    /// `figures/`: every figure of the report with its numbers as CSV; `report.md` beside it.
     Figures,
+    /// `report.pdf`: the report on paper.
+    Report,
+    /// `animation/`: the stack as a GIF and as an animated PNG.
+    Animation,
     /// `frames/`: numbered pictures of one size, and `times.csv` with the time of each.
     Frames,
     /// `paraview/`: bodies and contact forces over time; `stack.pvd` is the file to open.
@@ -23,20 +37,57 @@ pub enum Part {
 
 impl Part {
     /// All parts.
-    pub const ALL: [Self; 3] = [Self::Figures, Self::Frames, Self::Paraview];
+    pub const ALL: [Self; 5] =
+        [Self::Figures, Self::Report, Self::Animation, Self::Frames, Self::Paraview];
 
-    /// The name of its folder.
-    pub fn folder(self) -> &'static str {
+    /// The name of its folder, or of its file.
+    pub fn place(self) -> &'static str {
         match self {
             Self::Figures => "figures",
+            Self::Report => "report.pdf",
+            Self::Animation => "animation",
             Self::Frames => "frames",
             Self::Paraview => "paraview",
         }
     }
 }
 
+/// How parts are rendered.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rendering {
+    /// Formats of figures besides SVG, which is always written. Frames are PNG where that is among
+    /// them and SVG where it is not.
+    pub formats: Vec<Format>,
+    /// Dots per inch of figures as PNG.
+    pub dpi: f64,
+    /// Paper of the report.
+    pub paper: Paper,
+    /// Pictures, and ParaView times, for every second of the run (1/s).
+    pub rate: f64,
+    /// The part of the run that is filmed (s); None for all of it.
+    pub between: Option<[f64; 2]>,
+    /// Longer side of animations (pixels).
+    pub largest: u32,
+}
+
+impl Default for Rendering {
+    fn default() -> Self {
+        Self {
+            formats: Format::ALL.to_vec(),
+            dpi: 200.0,
+            paper: Paper::A4,
+            rate: 20.0,
+            between: None,
+            largest: 480,
+        }
+    }
+}
+
 /// Kinds of files that rendering writes into its folders, and may remove from them.
-const KINDS: [&str; 4] = ["svg", "csv", "vtp", "pvd"];
+const KINDS: [&str; 7] = ["svg", "png", "pdf", "gif", "csv", "vtp", "pvd"];
+
+/// Most pictures in a second that viewers of animations show.
+const FASTEST: f64 = 50.0;
 
 /// A folder that is ready to take rendered parts.
 #[derive(Clone, Debug)]
@@ -50,8 +101,8 @@ pub struct RenderFolder {
 pub struct Rendered {
     /// The part.
     pub part: Part,
-    /// Its folder.
-    pub folder: PathBuf,
+    /// Its folder or file.
+    pub place: PathBuf,
     /// Count of its files.
     pub files: usize,
 }
@@ -60,10 +111,11 @@ impl RenderFolder {
     /// Checks a folder before the work is done; makes and removes nothing yet.
     ///
     /// # Errors
-    /// When a part's folder holds files of an earlier rendering and `overwrite` is not set, or
+    /// When a part's place holds files of an earlier rendering and `overwrite` is not set, or
     /// when something that should be a folder is a file.
     pub fn prepare(path: &Path, parts: &[Part], overwrite: bool) -> Result<Self, ExportError> {
-        let folders = parts.iter().map(|part| path.join(part.folder()));
+        let folders = parts.iter().filter(|part| **part != Part::Report);
+        let folders = folders.map(|part| path.join(part.place()));
         for folder in std::iter::once(path.to_owned()).chain(folders) {
             if folder.exists() && !folder.is_dir() {
                 return Err(ExportError::Write {
@@ -84,8 +136,8 @@ impl RenderFolder {
         Ok(folder)
     }
 
-    /// Writes all parts; `rate` (1/s of the run's time) is that of pictures and ParaView times.
-    /// Files of an earlier rendering in the folders of these parts are removed first, so that a
+    /// Writes all parts.
+    /// Files of an earlier rendering in the places of these parts are removed first, so that a
     /// shorter run leaves no frames of a longer one.
     ///
     /// # Errors
@@ -94,40 +146,53 @@ impl RenderFolder {
         &self,
         run: &Run,
         summary: &Summary,
-        rate: f64,
+        how: &Rendering,
     ) -> Result<Vec<Rendered>, ExportError> {
         let scene = report::scene(run);
+        let filmed = how
+            .between
+            .map_or_else(|| Arc::clone(&scene), |[from, to]| Arc::new(scene.between(from, to)));
+        let document = report::document(run, summary);
         let mut written = Vec::new();
         for &part in &self.parts {
-            let folder = self.path.join(part.folder());
-            std::fs::create_dir_all(&folder).map_err(|error| refused(&folder, &error))?;
+            let place = self.path.join(part.place());
+            let folder = if part == Part::Report { &self.path } else { &place };
+            std::fs::create_dir_all(folder).map_err(|error| refused(folder, &error))?;
             for file in self.earlier(part)? {
                 std::fs::remove_file(&file).map_err(|error| refused(&file, &error))?;
             }
             let files = match part {
                 Part::Figures => {
-                    let bundle = markdown(&report::document(run, summary), part.folder());
+                    let bundle = markdown(&document, part.place());
                     put(&self.path.join("report.md"), bundle.text.as_bytes())?;
-                    write_all(&folder, &bundle.files)?
+                    write_all(&place, &bundle.files)?
+                        + write_figures(&document, &place, &how.formats, how.dpi)?
                 }
-                Part::Frames => frames(&folder, &Film::of_run(scene.clone(), rate))?,
-                Part::Paraview => write_all(&folder, &paraview(&scene, rate))?,
+                Part::Report => put(&place, &document_pdf(&document, how.paper))?,
+                Part::Animation => animation(&place, &filmed, how)?,
+                Part::Frames => frames(&place, &Film::of_run(Arc::clone(&filmed), how.rate), how)?,
+                Part::Paraview => write_all(&place, &paraview(&filmed, how.rate))?,
             };
-            written.push(Rendered { part, folder, files });
+            written.push(Rendered { part, place, files });
         }
         Ok(written)
     }
 
-    /// Files in the folder of a part that an earlier rendering wrote, sorted.
+    /// What an earlier rendering wrote in the place of a part, sorted.
     fn earlier(&self, part: Part) -> Result<Vec<PathBuf>, ExportError> {
-        let folder = self.path.join(part.folder());
-        if !folder.exists() {
-            return Ok(Vec::new());
+        let place = self.path.join(part.place());
+        let alone = match part {
+            Part::Report => Some(place.clone()),
+            Part::Figures => Some(self.path.join("report.md")),
+            Part::Animation | Part::Frames | Part::Paraview => None,
+        };
+        let mut files: Vec<PathBuf> = alone.into_iter().filter(|file| file.exists()).collect();
+        if !place.is_dir() {
+            return Ok(files);
         }
-        let entries = std::fs::read_dir(&folder).map_err(|error| refused(&folder, &error))?;
-        let mut files = Vec::new();
+        let entries = std::fs::read_dir(&place).map_err(|error| refused(&place, &error))?;
         for entry in entries {
-            let path = entry.map_err(|error| refused(&folder, &error))?.path();
+            let path = entry.map_err(|error| refused(&place, &error))?.path();
             let kind = path.extension().and_then(|kind| kind.to_str()).unwrap_or_default();
             if path.is_file() && KINDS.contains(&kind) {
                 files.push(path);
@@ -138,34 +203,78 @@ impl RenderFolder {
     }
 }
 
-/// Pictures one after the other, so that only one of them is in memory.
-fn frames(folder: &Path, film: &Film) -> Result<usize, ExportError> {
-    let digits = film.len().to_string().len().max(4);
-    let mut times = String::from("file,time (s)\n");
+/// Writes the figures of a document in formats besides SVG, named as the SVG files are; `dpi` (dots
+/// per inch) is that of pixels. Gives the count of files.
+///
+/// # Errors
+/// When the system refuses.
+pub fn write_figures(
+    document: &Document,
+    folder: &Path,
+    formats: &[Format],
+    dpi: f64,
+) -> Result<usize, ExportError> {
     let mut count = 0;
-    for at in 0..film.len() {
-        let (Some(svg), Some(time)) = (film.svg(at), film.time(at)) else { continue };
-        let name = format!("frame-{:0digits$}.svg", at + 1);
-        put(&folder.join(&name), svg.as_bytes())?;
-        // Writing to a String cannot fail.
-        let _ = writeln!(times, "{name},{time}");
-        count += 1;
+    for (name, figure) in figures(document) {
+        for format in formats.iter().filter(|format| **format != Format::Svg) {
+            let file = format!("{name}.{}", format.extension());
+            count += put(&folder.join(file), &figure.to_bytes(*format, dpi))?;
+        }
     }
-    put(&folder.join("times.csv"), times.as_bytes())?;
-    Ok(count + 1)
+    Ok(count)
+}
+
+/// Both kinds of animations, from the same pictures.
+fn animation(folder: &Path, scene: &Arc<Scene>, how: &Rendering) -> Result<usize, ExportError> {
+    let film = Film::of_run(Arc::clone(scene), how.rate.min(FASTEST));
+    let Some(animation) = Animation::of(&film, how.largest) else { return Ok(0) };
+    Ok(put(&folder.join("stack.gif"), &animation.gif())?
+        + put(&folder.join("stack.png"), &animation.apng())?)
+}
+
+/// Numbered pictures, painted and written by all cores, each with one of them in memory.
+fn frames(folder: &Path, film: &Film, how: &Rendering) -> Result<usize, ExportError> {
+    let digits = film.len().to_string().len().max(4);
+    let pixels = how.formats.contains(&Format::Png);
+    let name = |at: usize| {
+        let format = if pixels { Format::Png } else { Format::Svg };
+        format!("frame-{:0digits$}.{}", at + 1, format.extension())
+    };
+    let paint = |at: usize| {
+        let bytes = if pixels { film.png(at, 96.0) } else { film.svg(at).map(String::into_bytes) };
+        bytes.map_or(Ok(0), |bytes| put(&folder.join(name(at)), &bytes))
+    };
+    let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let worker = |first: usize| -> Result<usize, ExportError> {
+        (first..film.len()).step_by(cores).map(&paint).sum()
+    };
+    let worker = &worker;
+    let count = std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..cores).map(|first| scope.spawn(move || worker(first))).collect();
+        let counts = workers.into_iter().map(|worker| match worker.join() {
+            Ok(count) => count,
+            Err(panic) => std::panic::resume_unwind(panic),
+        });
+        counts.sum::<Result<usize, ExportError>>()
+    })?;
+    let mut times = String::from("file,time (s)\n");
+    for (at, time) in (0..film.len()).filter_map(|at| Some((at, film.time(at)?))) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(times, "{},{time}", name(at));
+    }
+    Ok(count + put(&folder.join("times.csv"), times.as_bytes())?)
 }
 
 fn write_all(folder: &Path, files: &[Attachment]) -> Result<usize, ExportError> {
-    for file in files {
-        put(&folder.join(&file.name), &file.bytes)?;
-    }
-    Ok(files.len())
+    files.iter().map(|file| put(&folder.join(&file.name), &file.bytes)).sum()
 }
 
-fn put(path: &Path, bytes: &[u8]) -> Result<(), ExportError> {
-    std::fs::write(path, bytes).map_err(|error| refused(path, &error))
+/// Writes one file.
+fn put(path: &Path, bytes: &[u8]) -> Result<usize, ExportError> {
+    std::fs::write(path, bytes).map_err(|error| refused(path, &error))?;
+    Ok(1)
 }
 
 fn refused(path: &Path, error: &std::io::Error) -> ExportError {
-    ExportError::Write { path: path.to_owned(), reason: error.to_string() }
+    ExportError::Write { path: path.to_owned(), reason: system::words(error) }
 }

@@ -1,11 +1,13 @@
-//! `barrelstack render`: a run as figures, pictures and a ParaView series.
+//! `barrelstack render`: a run as figures, a printed report, films and a ParaView series.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use barrelstack::render::{Part, RenderFolder};
+use anyhow::bail;
+use barrelstack::render::{Part, RenderFolder, Rendering};
 
 use crate::args::ScenarioArgs;
+use crate::figures::{FigureArgs, PaperName};
 use crate::printer;
 
 /// Arguments of `render`.
@@ -13,16 +15,30 @@ use crate::printer;
 pub(crate) struct RenderArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
-    /// Where to write: figures/ with report.md beside it, frames/, paraview/.
+    /// Where to write: figures/ with report.md beside it, report.pdf, animation/, frames/, paraview/.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Write only this part; may be repeated.
     #[arg(long, value_enum, value_name = "PART")]
     only: Vec<PartName>,
-    /// Pictures, and ParaView times, for every second of the run.
+    #[command(flatten)]
+    figures: FigureArgs,
+    /// Paper of report.pdf.
+    #[arg(long, value_enum, value_name = "PAPER", default_value = "a4")]
+    paper: PaperName,
+    /// Pictures, and ParaView times, for every second of the run; animations show at most 50.
     #[arg(long, value_name = "HZ", default_value = "20", value_parser = rate)]
     rate: f64,
-    /// Remove what an earlier rendering wrote into the folders of these parts.
+    /// Film the run from this time on (s).
+    #[arg(long, value_name = "SECONDS")]
+    from: Option<f64>,
+    /// Film the run up to this time (s).
+    #[arg(long, value_name = "SECONDS")]
+    to: Option<f64>,
+    /// Longer side of animations (pixels).
+    #[arg(long, value_name = "PIXELS", default_value = "480", value_parser = clap::value_parser!(u32).range(64..=4096))]
+    size: u32,
+    /// Remove what an earlier rendering wrote in the places of these parts.
     #[arg(long)]
     overwrite: bool,
     /// Show no progress.
@@ -33,9 +49,14 @@ pub(crate) struct RenderArgs {
 /// The parts, as typed.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum PartName {
-    /// Every figure and table of the report as SVG and CSV.
+    /// Every figure of the report, with its numbers as CSV.
     Figures,
-    /// Numbered pictures of one size.
+    /// The report on paper, as PDF.
+    Report,
+    /// The stack as GIF and as animated PNG, which play in any browser.
+    Animation,
+    /// Numbered pictures of one size, from which any encoder makes a video, such as
+    /// `ffmpeg -framerate 20 -i frame-%04d.png -pix_fmt yuv420p stack.mp4`.
     Frames,
     /// Bodies and contact forces over time.
     Paraview,
@@ -45,6 +66,8 @@ impl From<PartName> for Part {
     fn from(name: PartName) -> Self {
         match name {
             PartName::Figures => Self::Figures,
+            PartName::Report => Self::Report,
+            PartName::Animation => Self::Animation,
             PartName::Frames => Self::Frames,
             PartName::Paraview => Self::Paraview,
         }
@@ -58,26 +81,49 @@ fn rate(text: &str) -> Result<f64, String> {
     }
 }
 
+impl RenderArgs {
+    /// The parts, each once, in the order of the help.
+    fn parts(&self) -> Vec<Part> {
+        let asked = |part: &Part| {
+            self.only.is_empty() || self.only.iter().any(|name| Part::from(*name) == *part)
+        };
+        Part::ALL.into_iter().filter(asked).collect()
+    }
+
+    fn between(&self) -> anyhow::Result<Option<[f64; 2]>> {
+        let (from, to) = (self.from.unwrap_or(0.0), self.to.unwrap_or(f64::INFINITY));
+        if !(from >= 0.0 && to > from) {
+            bail!(
+                "--from {from} --to {to}: expected two times (s), the first from 0 on, the second later"
+            );
+        }
+        Ok((self.from.is_some() || self.to.is_some()).then_some([from, to]))
+    }
+}
+
 /// Runs the scenario and writes its parts.
 pub(crate) fn render(args: &RenderArgs) -> anyhow::Result<ExitCode> {
     let scenario = super::load(&args.scenario)?;
-    let parts = if args.only.is_empty() {
-        Part::ALL.to_vec()
-    } else {
-        let mut parts: Vec<Part> = Vec::new();
-        for part in args.only.iter().copied().map(Part::from) {
-            if !parts.contains(&part) {
-                parts.push(part);
-            }
-        }
-        parts
+    let how = Rendering {
+        formats: args.figures.formats(),
+        dpi: args.figures.dpi,
+        paper: args.paper.into(),
+        rate: args.rate,
+        between: args.between()?,
+        largest: args.size,
     };
     // The folder is looked at before the work is done, not after.
-    let folder = RenderFolder::prepare(&args.out, &parts, args.overwrite)?;
+    let folder = RenderFolder::prepare(&args.out, &args.parts(), args.overwrite)?;
     let (run, summary) = super::run::watched(&scenario, !args.quiet)?;
-    let written = folder.write(&run, &summary, args.rate)?;
-    printer::lines(
-        written.iter().map(|part| format!("{}: {} files", part.folder.display(), part.files)),
-    )?;
+    if let Some([from, _]) = how.between
+        && from > run.end_time
+    {
+        bail!("--from {from}: the run ends at {:.2} s, and there is nothing to film", run.end_time);
+    }
+    let written = folder.write(&run, &summary, &how)?;
+    printer::lines(written.iter().map(|part| match part.files {
+        1 => part.place.display().to_string(),
+        files => format!("{}: {files} files", part.place.display()),
+    }))?;
     Ok(if run.interrupted { ExitCode::from(130) } else { ExitCode::SUCCESS })
 }

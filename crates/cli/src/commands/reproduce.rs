@@ -4,7 +4,9 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::Context;
+use barrelstack::render::write_figures;
 use barrelstack::reproduce::{Comparison, Reproduction, percent, reproduce as run_all};
+use barrelstack_report::{Paper, document_pdf};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::args::ReproduceArgs;
@@ -24,7 +26,7 @@ pub(crate) fn reproduce(args: &ReproduceArgs) -> anyhow::Result<ExitCode> {
     });
     bar.finish_and_clear();
     let found = result?;
-    write(&args.out, &found)?;
+    write(args, &found)?;
     print(&found)?;
     printer::lines(["", &format!("page: {}", args.out.join("index.html").display())])?;
     found.document.warnings.iter().for_each(|warning| printer::warning(warning));
@@ -36,7 +38,8 @@ fn prepare(out: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))
 }
 
-fn write(out: &Path, found: &Reproduction) -> anyhow::Result<()> {
+fn write(args: &ReproduceArgs, found: &Reproduction) -> anyhow::Result<()> {
+    let out = &args.out;
     let put = |name: &str, bytes: &[u8]| {
         let path = out.join(name);
         std::fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))
@@ -49,6 +52,9 @@ fn write(out: &Path, found: &Reproduction) -> anyhow::Result<()> {
     for file in &bundle.files {
         put(&format!("figures/{}", file.name), &file.bytes)?;
     }
+    put("index.pdf", &document_pdf(&found.document, Paper::A4))?;
+    let formats = args.figures.formats();
+    write_figures(&found.document, &out.join("figures"), &formats, args.figures.dpi)?;
     Ok(())
 }
 

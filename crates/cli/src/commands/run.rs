@@ -7,6 +7,7 @@ use barrelstack::export::Folder;
 use barrelstack::outcome::Outcome;
 use barrelstack::verify::{Verification, verify};
 use barrelstack::{Run, RunFailure, Scenario, Summary};
+use barrelstack_report::Characters;
 
 use crate::args::RunArgs;
 use crate::printer;
@@ -21,6 +22,9 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         watched(&scenario, !args.quiet).map_err(|error| super::placed(error, &args.scenario))?;
     if let Some(folder) = &folder {
         folder.write(&run, &summary)?;
+        if args.pdf {
+            folder.write_pdf(&run, &summary, args.paper.into())?;
+        }
     }
     let verification = args.verify.then(|| repeated(&run, !args.quiet)).transpose()?;
     if args.json {
@@ -30,12 +34,14 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         };
         printer::lines([document])?;
     } else {
-        printer::summary(&run, &summary, &args.scenario.set)?;
+        let characters = if args.plain { Characters::Ascii } else { Characters::Unicode };
+        printer::summary(&run, &summary, &args.scenario.set, characters)?;
         if let Some(verification) = &verification {
             printer::verification(verification)?;
         }
         if let Some(folder) = &folder {
-            printer::lines(["", &format!("report: {}", folder.report().display())])?;
+            let paper = if args.pdf { ", and report.pdf beside it" } else { "" };
+            printer::lines(["", &format!("report: {}{paper}", folder.report().display())])?;
         }
         printer::warnings(&summary);
     }

@@ -7,7 +7,7 @@ use barrelstack_motion::{
     Channel, FourierSpectrum, Record, ResponseSpectrum, STANDARD_GRAVITY, arias, husid,
     standard_periods,
 };
-use barrelstack_report::{Axis, Band, Figure, FigureKind, Plot, Series};
+use barrelstack_report::{Axis, Band, Figure, FigureKind, Format, Plot, Series};
 use clap::ValueEnum;
 
 use super::info;
@@ -15,6 +15,7 @@ use super::input::{self, Chain, Choice, Input};
 use super::measures::sampled;
 use super::output::{store, vacant};
 use super::process::share;
+use crate::figures::FigureArgs;
 use crate::printer;
 
 /// Arguments of `plot`.
@@ -24,13 +25,14 @@ pub(super) struct PlotArgs {
     input: Input,
     #[command(flatten)]
     choice: Choice,
-    /// A folder for all figures, or one .svg file; the numbers go beside each as .csv. For PNG open
-    /// the SVG in a browser.
-    #[arg(long, short, value_name = "DIR|FILE.svg")]
+    /// A folder for all figures, or one .svg, .png or .pdf file; the numbers go beside each as .csv.
+    #[arg(long, short, value_name = "DIR|FILE")]
     output: PathBuf,
     /// Which figure; may be repeated. Without it a folder gets all, a file the accelerations.
     #[arg(long, value_enum)]
     figure: Vec<Kind>,
+    #[command(flatten)]
+    formats: FigureArgs,
     /// Damping ratio of the response spectra; may be repeated.
     #[arg(long, value_name = "SHARE", default_value = "5 %")]
     damping: Vec<String>,
@@ -75,9 +77,9 @@ pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<()> {
     for (_, path) in &files {
         let in_folder =
             path.parent().is_none_or(|folder| folder.as_os_str().is_empty() || folder.is_dir());
-        for path in [path.clone(), path.with_extension("csv")] {
+        for ending in endings(args) {
             if in_folder {
-                vacant(&path, args.overwrite)?;
+                vacant(&path.with_extension(ending), args.overwrite)?;
             }
         }
     }
@@ -97,23 +99,46 @@ pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<()> {
     let mut lines = record.notes.clone();
     lines.push(String::new());
     for (figure, path) in figures {
-        store(path, figure.to_svg().as_bytes())?;
+        for format in formats(args) {
+            let bytes = figure.to_bytes(format, args.formats.dpi);
+            store(&path.with_extension(format.extension()), &bytes)?;
+        }
         store(&path.with_extension("csv"), figure.to_csv().as_bytes())?;
-        lines.push(format!("written: {} (numbers in .csv beside it)", path.display()));
+        let beside: Vec<String> = endings(args).skip(1).map(|ending| format!(".{ending}")).collect();
+        lines.push(format!("written: {}, and beside it {}", path.display(), beside.join(", ")));
     }
     printer::lines(lines)?;
     info::warn(&Record { stage: record.stage, ..read });
     Ok(())
 }
 
+/// The format that the name of a file asks for; None for a folder.
+fn format_of(output: &Path) -> Option<Format> {
+    let ending = output.extension()?;
+    Format::ALL.into_iter().find(|format| ending.eq_ignore_ascii_case(format.extension()))
+}
+
 fn is_file(output: &Path) -> bool {
-    output.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"))
+    format_of(output).is_some()
+}
+
+/// What every figure is written as.
+fn formats(args: &PlotArgs) -> Vec<Format> {
+    format_of(&args.output).map_or_else(|| args.formats.formats(), |format| vec![format])
+}
+
+/// Endings of the files that go with a figure.
+fn endings(args: &PlotArgs) -> impl Iterator<Item = &'static str> {
+    formats(args).into_iter().map(Format::extension).chain(["csv"])
 }
 
 /// Which figure goes into which file.
 fn files(args: &PlotArgs) -> anyhow::Result<Vec<(Kind, PathBuf)>> {
     let mut kinds = args.figure.clone();
     if is_file(&args.output) {
+        if args.formats.names_any() {
+            bail!("{} says its format; --format goes with a folder", args.output.display());
+        }
         vacant(&args.output, true)?;
         let kind = match kinds.as_slice() {
             [] => Kind::Acceleration,
@@ -123,11 +148,14 @@ fn files(args: &PlotArgs) -> anyhow::Result<Vec<(Kind, PathBuf)>> {
         return Ok(vec![(kind, args.output.clone())]);
     }
     if args.output.is_file() {
-        bail!("{} is a file, not a folder, and does not end in .svg", args.output.display());
+        bail!(
+            "{} is a file, not a folder, and does not end in .svg, .png or .pdf",
+            args.output.display()
+        );
     }
     if let Some(ending) = args.output.extension().filter(|_| !args.output.is_dir()) {
         bail!(
-            "{}: figures are written as .svg, not as .{}; name a file of that ending or a folder",
+            "{}: figures are written as .svg, .png or .pdf, not as .{}; name such a file or a folder",
             args.output.display(),
             ending.to_string_lossy()
         );

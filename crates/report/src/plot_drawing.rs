@@ -1,15 +1,20 @@
-//! A plot drawn as SVG: axes, grid, bands, lines, marks, legend.
+//! A plot as a drawing: axes, grid, bands, lines, marks, legend.
 
 use crate::{
-    Axis, Plot, Scale,
+    Axis, Mark, Plot, Scale,
+    drawing::{Anchor, Drawing, Item, Runs, text_width},
     simplify::simplify,
-    svg::{Anchor, DASHES, Svg, text_width},
+    style::DASHES,
     ticks::{Ticks, linear_ticks, log_ticks},
 };
 
 const WIDTH: f64 = 680.0;
 const PLOT_HEIGHT: f64 = 230.0;
 const FONT: f64 = 12.0;
+/// Height of a row of notes above the plot: marks lowest, bands above them.
+const NOTE: f64 = 16.0;
+/// Most rows of labels of marks; what finds no room in them is left to the caption.
+const MARK_ROWS: usize = 3;
 
 /// A range of data and the pixels it maps to.
 struct Map {
@@ -34,42 +39,51 @@ impl Map {
     }
 }
 
+/// A mark with the place (px) of its line and of its label.
+struct PlacedMark<'a> {
+    at: f64,
+    label: &'a str,
+    center: f64,
+    /// Counted from the plot upward; None where no row has room.
+    row: Option<usize>,
+}
+
 impl Plot {
-    pub(crate) fn draw(&self, id: &str, title: &str) -> Svg {
+    pub(crate) fn draw(&self, id: &str, title: &str) -> Drawing {
         let x_range = self.x.data_range(self.series.iter().map(|s| &s.x[..s.len()]), false);
         let areas = self.series.iter().any(|s| s.style.area);
         let y_range =
             self.y.with_air(self.y.data_range(self.series.iter().map(|s| &s.y[..s.len()]), areas));
-        let y_ticks = self.y.ticks(y_range, 5);
+        let y_ticks = self.y.ticks(y_range, 7);
         let widest = y_ticks.labels.iter().map(|l| text_width(l, FONT)).fold(0.0, f64::max);
         let left = 34.0 + widest;
         let right = WIDTH - 14.0;
         let (legend, legend_height) = self.legend_layout(left, right);
-        let mark_height = if self.marks.is_empty() && self.bands.is_empty() { 6.0 } else { 22.0 };
-        let top = 6.0 + legend_height + mark_height;
-        let bottom = top + PLOT_HEIGHT;
         let x = Map { range: x_range, pixels: [left, right], log: self.x.scale == Scale::Log };
+        let marks = self.mark_layout(&x);
+        let mark_rows = marks.iter().filter_map(|mark| mark.row).max().map_or(0, |row| row + 1);
+        let rows = mark_rows + usize::from(!self.bands.is_empty());
+        let top = 12.0 + legend_height + NOTE * rows as f64;
+        let bottom = top + PLOT_HEIGHT;
         let y = Map { range: y_range, pixels: [bottom, top], log: self.y.scale == Scale::Log };
 
-        let mut svg = Svg::new(WIDTH, bottom + 46.0, title);
-        svg.raw(&format!(r#"<defs><clipPath id="{id}-clip">"#));
-        svg.rect("", [left, top - 1.0], [right - left, bottom - top + 2.0]);
-        svg.raw("</clipPath></defs>");
-        self.draw_bands(&mut svg, &x, top, bottom);
-        self.draw_axes(&mut svg, &x, &y, &y_ticks);
-        self.draw_series(&mut svg, id, &x, &y);
-        self.draw_marks(&mut svg, &x, &y, top);
+        let mut drawing = Drawing::new(WIDTH, bottom + 46.0, title);
+        self.draw_bands(&mut drawing, &x, [top, bottom], top - 7.0 - NOTE * mark_rows as f64);
+        self.draw_axes(&mut drawing, &x, &y, &y_ticks);
+        drawing.push(Item::Clip {
+            id: format!("{id}-clip"),
+            lower: [left, top - 1.0],
+            size: [right - left, bottom - top + 2.0],
+            items: self.draw_series(&x, &y),
+        });
+        self.draw_marks(&mut drawing, &marks, &x, &y);
         for (at, corner, label) in legend {
             let class = self.class(at);
-            svg.path(
-                &class,
-                self.dash(at),
-                &[vec![[corner[0], corner[1] - 4.0], [corner[0] + 26.0, corner[1] - 4.0]]],
-                false,
-            );
-            svg.text("label", [corner[0] + 32.0, corner[1]], Anchor::Start, &label);
+            let sample = vec![[corner[0], corner[1] - 4.0], [corner[0] + 26.0, corner[1] - 4.0]];
+            drawing.path(&class, self.dash(at), vec![sample], false);
+            drawing.text("label", [corner[0] + 32.0, corner[1]], Anchor::Start, &label);
         }
-        svg
+        drawing
     }
 
     fn class(&self, at: usize) -> String {
@@ -103,31 +117,37 @@ impl Plot {
         (entries, height)
     }
 
-    fn draw_axes(&self, svg: &mut Svg, x: &Map, y: &Map, y_ticks: &Ticks) {
+    fn draw_axes(&self, drawing: &mut Drawing, x: &Map, y: &Map, y_ticks: &Ticks) {
         let [left, right] = x.pixels;
         let [bottom, top] = y.pixels;
         for (value, label) in y_ticks.values.iter().zip(&y_ticks.labels) {
             let at = y.at(*value);
-            svg.line("grid", [left, at], [right, at]);
-            svg.text("tick", [left - 7.0, at + 4.0], Anchor::End, label);
+            drawing.line("grid", [left, at], [right, at]);
+            drawing.text("tick", [left - 7.0, at + 4.0], Anchor::End, label);
         }
         let x_ticks = self.x.ticks(x.range, 8);
         for (value, label) in x_ticks.values.iter().zip(&x_ticks.labels) {
             let at = x.at(*value);
-            svg.line("grid", [at, top], [at, bottom]);
-            svg.line("axis", [at, bottom], [at, bottom + 4.0]);
-            svg.text("tick", [at, bottom + 17.0], Anchor::Middle, label);
+            drawing.line("grid", [at, top], [at, bottom]);
+            drawing.line("axis", [at, bottom], [at, bottom + 4.0]);
+            drawing.text("tick", [at, bottom + 17.0], Anchor::Middle, label);
         }
-        svg.line("axis", [left, bottom], [right, bottom]);
+        drawing.line("axis", [left, bottom], [right, bottom]);
         if !y.log && y.range[0] < 0.0 && y.range[1] > 0.0 {
-            svg.line("zero", [left, y.at(0.0)], [right, y.at(0.0)]);
+            drawing.line("zero", [left, y.at(0.0)], [right, y.at(0.0)]);
         }
-        svg.text("label", [0.5 * (left + right), bottom + 37.0], Anchor::Middle, &self.x.title());
+        drawing.text(
+            "label",
+            [0.5 * (left + right), bottom + 37.0],
+            Anchor::Middle,
+            &self.x.title(),
+        );
         let middle = 0.5 * (top + bottom);
-        svg.turned_text("label", [13.0, middle], Anchor::Middle, -90.0, &self.y.title());
+        drawing.turned_text("label", [13.0, middle], Anchor::Middle, -90.0, &self.y.title());
     }
 
-    fn draw_bands(&self, svg: &mut Svg, x: &Map, top: f64, bottom: f64) {
+    /// Bands from top to bottom, their labels at a height of their own.
+    fn draw_bands(&self, drawing: &mut Drawing, x: &Map, [top, bottom]: [f64; 2], row: f64) {
         for band in &self.bands {
             if !(self.x.shows(band.from) && self.x.shows(band.to)) {
                 continue;
@@ -135,14 +155,14 @@ impl Plot {
             let from = x.at(band.from.max(x.range[0]));
             let to = x.at(band.to.min(x.range[1]));
             if to > from {
-                svg.rect("band", [from, top], [to - from, bottom - top]);
-                svg.text("note", [0.5 * (from + to), top - 7.0], Anchor::Middle, &band.label);
+                drawing.rect("band", [from, top], [to - from, bottom - top]);
+                drawing.text("note", [0.5 * (from + to), row], Anchor::Middle, &band.label);
             }
         }
     }
 
-    fn draw_series(&self, svg: &mut Svg, id: &str, x: &Map, y: &Map) {
-        svg.raw(&format!(r#"<g clip-path="url(#{id}-clip)">"#));
+    fn draw_series(&self, x: &Map, y: &Map) -> Vec<Item> {
+        let mut items = Vec::new();
         // Context first, so that it lies under what it is the context of.
         let mut order: Vec<usize> = (0..self.series.len()).collect();
         order.sort_by_key(|&at| !self.series[at].style.muted);
@@ -153,7 +173,7 @@ impl Plot {
             if series.style.area {
                 let foot =
                     if y.log { y.pixels[0] } else { y.at(0.0_f64.clamp(y.range[0], y.range[1])) };
-                let shapes: Vec<_> = runs
+                let shapes: Runs = runs
                     .iter()
                     .map(|run| {
                         let mut shape = run.clone();
@@ -164,26 +184,27 @@ impl Plot {
                         shape
                     })
                     .collect();
-                svg.path(&format!("area s{}", self.look(at)), "", &shapes, true);
+                let class = format!("area s{}", self.look(at));
+                items.push(Item::Path { class, dash: "", runs: shapes, closed: true });
             }
-            svg.path(&class, self.dash(at), &runs, false);
+            items.push(Item::Path { class, dash: self.dash(at), runs, closed: false });
             if series.style.dots {
                 for k in 0..series.len() {
                     if self.x.shows(series.x[k]) && self.y.shows(series.y[k]) {
-                        svg.circle(
-                            &format!("dot s{}", self.look(at)),
-                            [x.at(series.x[k]), y.at(series.y[k])],
-                            2.6,
-                        );
+                        items.push(Item::Circle {
+                            class: format!("dot s{}", self.look(at)),
+                            center: [x.at(series.x[k]), y.at(series.y[k])],
+                            radius: 2.6,
+                        });
                     }
                 }
             }
         }
-        svg.raw("</g>");
+        items
     }
 
     /// Runs of points between gaps, in pixels.
-    fn runs(&self, at: usize, x: &Map, y: &Map) -> Vec<Vec<[f64; 2]>> {
+    fn runs(&self, at: usize, x: &Map, y: &Map) -> Runs {
         let series = &self.series[at];
         let mut runs = vec![Vec::new()];
         for k in 0..series.len() {
@@ -201,27 +222,44 @@ impl Plot {
         runs.iter().map(|run| simplify(run, 0.1)).collect()
     }
 
-    fn draw_marks(&self, svg: &mut Svg, x: &Map, y: &Map, top: f64) {
+    /// Marks in sight from left to right, their labels each in the lowest row that has room.
+    fn mark_layout<'a>(&'a self, x: &Map) -> Vec<PlacedMark<'a>> {
         let [left, right] = x.pixels;
-        let mut free = f64::NEG_INFINITY;
         let mut marks: Vec<_> =
             self.marks.iter().filter(|m| self.x.shows(m.at) && x.holds(m.at)).collect();
         marks.sort_by(|a, b| a.at.total_cmp(&b.at));
-        for mark in marks {
+        // Where every row ends so far.
+        let mut ends: Vec<f64> = Vec::new();
+        let place = |mark: &'a Mark| {
+            let half = 0.5 * text_width(&mark.label, 11.0);
             let at = x.at(mark.at);
-            svg.line("mark", [at, top - 4.0], [at, y.pixels[0]]);
-            let wide = text_width(&mark.label, 11.0);
-            let center = at.clamp(left + 0.5 * wide, (right - 0.5 * wide).max(left + 0.5 * wide));
-            // A label that would cover the one before it is left to the caption and the table.
-            if center - 0.5 * wide > free {
-                svg.text("note", [center, top - 8.0], Anchor::Middle, &mark.label);
-                free = center + 0.5 * wide + 6.0;
+            let center = at.clamp(left + half, (right - half).max(left + half));
+            let free = ends.iter().position(|end| center - half > *end);
+            let row = free.or_else(|| {
+                ends.push(0.0);
+                Some(ends.len() - 1).filter(|row| *row < MARK_ROWS)
+            });
+            if let Some(row) = row {
+                ends[row] = center + half + 6.0;
+            }
+            PlacedMark { at, label: &mark.label, center, row }
+        };
+        marks.into_iter().map(place).collect()
+    }
+
+    fn draw_marks(&self, drawing: &mut Drawing, marks: &[PlacedMark<'_>], x: &Map, y: &Map) {
+        let ([left, right], [bottom, top]) = (x.pixels, y.pixels);
+        for mark in marks {
+            let foot = top - 8.0 - NOTE * mark.row.unwrap_or(0) as f64;
+            drawing.line("mark", [mark.at, foot + 4.0], [mark.at, bottom]);
+            if mark.row.is_some() {
+                drawing.text("note", [mark.center, foot], Anchor::Middle, mark.label);
             }
         }
         for level in self.levels.iter().filter(|m| self.y.shows(m.at) && y.holds(m.at)) {
             let at = y.at(level.at);
-            svg.line("mark", [left, at], [right, at]);
-            svg.text("note", [right - 4.0, at - 4.0], Anchor::End, &level.label);
+            drawing.line("mark", [left, at], [right, at]);
+            drawing.text("note", [right - 4.0, at - 4.0], Anchor::End, &level.label);
         }
     }
 }

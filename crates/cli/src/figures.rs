@@ -1,0 +1,76 @@
+//! Which pictures figures become, as typed.
+
+use barrelstack_report::{Format, Paper};
+
+/// Formats of figures besides SVG.
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct FigureArgs {
+    /// Write figures in this format besides SVG; may be repeated. Without it: PNG and PDF.
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    format: Vec<FormatName>,
+    /// Dots per inch of figures as PNG.
+    #[arg(long, value_name = "DPI", default_value = "200", value_parser = dpi)]
+    pub(crate) dpi: f64,
+}
+
+impl FigureArgs {
+    /// Whether any format was asked for by name.
+    pub(crate) fn names_any(&self) -> bool {
+        !self.format.is_empty()
+    }
+
+    /// The formats, each once, SVG first.
+    pub(crate) fn formats(&self) -> Vec<Format> {
+        let asked = |format: &Format| {
+            let named = self.format.iter().any(|name| Format::from(*name) == *format);
+            *format == Format::Svg || self.format.is_empty() || named
+        };
+        Format::ALL.into_iter().filter(asked).collect()
+    }
+}
+
+/// The formats, as typed.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(crate) enum FormatName {
+    /// Lines and words, for pages and for editing.
+    Svg,
+    /// Pixels.
+    Png,
+    /// Lines and words, for typesetting.
+    Pdf,
+}
+
+impl From<FormatName> for Format {
+    fn from(name: FormatName) -> Self {
+        match name {
+            FormatName::Svg => Self::Svg,
+            FormatName::Png => Self::Png,
+            FormatName::Pdf => Self::Pdf,
+        }
+    }
+}
+
+/// The papers, as typed.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(crate) enum PaperName {
+    /// 210 by 297 mm.
+    A4,
+    /// 8½ by 11 inches.
+    Letter,
+}
+
+impl From<PaperName> for Paper {
+    fn from(name: PaperName) -> Self {
+        match name {
+            PaperName::A4 => Self::A4,
+            PaperName::Letter => Self::Letter,
+        }
+    }
+}
+
+fn dpi(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(dpi) if (20.0..=1200.0).contains(&dpi) => Ok(dpi),
+        _ => Err("expected a number of dots per inch from 20 to 1200, such as 300".into()),
+    }
+}

@@ -1,0 +1,87 @@
+//! Figures, films and pictures in the terminal, as people ask for them.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
+mod common;
+
+use std::fs;
+
+use common::{barrelstack, names, refused, stderr, stdout};
+
+/// A stack that has come down by its end, in a fraction of a second.
+const FALLEN: [&str; 3] = ["run", "candia-8-barrels", "--set=run.stop_after_collapse=0.8 s"];
+
+/// A run of a moment.
+const BLOCK: [&str; 4] = ["render", "rocking-block", "--set=run.duration=0.5 s", "--quiet"];
+
+/// The lines of the picture in a summary.
+fn picture(text: &str) -> Vec<&str> {
+    text.lines().skip_while(|line| !line.starts_with("  at the end, ")).skip(1).collect()
+}
+
+#[test]
+fn the_summary_draws_the_stack_and_its_drift_in_eighty_columns() {
+    for (plain, full) in [(false, '█'), (true, '#')] {
+        let output = barrelstack(FALLEN.into_iter().chain(plain.then_some("--plain")));
+        assert_eq!(stderr(&output), "");
+        let text = stdout(&output);
+        let drawn = picture(&text);
+        assert!(drawn.len() > 5, "{text}");
+        let drift = text.lines().find(|line| line.starts_with("    while it stood ")).unwrap();
+        assert!(drift.contains(full) && drift.ends_with(" 1.2 s"), "{drift}");
+        for line in drawn.iter().chain([&drift]) {
+            assert!(line.chars().count() <= 80, "{line}");
+            assert!(!plain || line.is_ascii(), "{line}");
+        }
+    }
+}
+
+#[test]
+fn render_writes_every_part_and_names_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("pictures");
+    let output = barrelstack(BLOCK.into_iter().chain(["--dpi=60", "--out", out.to_str().unwrap()]));
+    assert_eq!(stderr(&output), "");
+    let parts = ["figures", "report.pdf", "animation", "frames", "paraview"];
+    let told = stdout(&output);
+    for part in parts {
+        assert!(told.contains(out.join(part).to_str().unwrap()), "{part}: {told}");
+    }
+    let animation = out.join("animation");
+    assert_eq!(names(&animation).unwrap(), ["stack.gif", "stack.png"]);
+    assert!(fs::read(animation.join("stack.gif")).unwrap().starts_with(b"GIF89a"));
+    assert!(fs::read(out.join("report.pdf")).unwrap().starts_with(b"%PDF-"));
+    assert!(out.join("frames/frame-0001.png").is_file());
+}
+
+#[test]
+fn render_refuses_what_it_cannot_mean() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("pictures");
+    for (option, words) in [
+        ("--dpi=5", &["--dpi", "from 20 to 1200"][..]),
+        ("--rate=0", &["--rate", "above zero"]),
+        ("--size=9", &["--size", "64"]),
+        ("--format=bmp", &["--format", "svg, png, pdf"]),
+        ("--to=-1", &["--to -1", "two times"]),
+    ] {
+        let output = barrelstack(BLOCK.into_iter().chain([option, "--out", out.to_str().unwrap()]));
+        refused(option, &output, &out, words);
+    }
+    let late = barrelstack(BLOCK.into_iter().chain(["--from=3", "--out", out.to_str().unwrap()]));
+    refused("--from", &late, &out, &["--from 3", "the run ends at 0.50 s"]);
+}
+
+#[test]
+fn a_run_writes_its_report_on_paper_when_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let place = out.to_str().unwrap();
+    let short = ["run", "rocking-block", "--set=run.duration=0.5 s"];
+    let alone = barrelstack(short.into_iter().chain(["--pdf"]));
+    refused("--pdf alone", &alone, &out, &["--out"]);
+    let output = barrelstack(short.into_iter().chain(["--out", place, "--pdf", "--paper=letter"]));
+    assert!(stdout(&output).contains("and report.pdf beside it"), "{}", stdout(&output));
+    let pdf = fs::read(out.join("report.pdf")).unwrap();
+    assert!(pdf.windows(13).any(|text| text == b"[0 0 612 792]"), "letter paper");
+}

@@ -1,0 +1,265 @@
+//! A film as one file that plays by itself: GIF, and APNG, which is smaller and keeps its colors.
+//!
+//! Only what changes from one picture to the next is stored, in a few colors and one that stands
+//! for "as before".
+
+use std::collections::HashMap;
+use std::num::NonZeroUsize;
+use std::ops::Range;
+
+use gif::{DisposalMethod, Repeat};
+use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp};
+
+use crate::{
+    Film,
+    raster::{rasterize, rgb},
+};
+
+/// How long the last picture stays before the film starts again (s).
+const REST: f64 = 1.5;
+
+/// The index of "as before".
+const KEEP: u8 = 0;
+
+/// Pictures that are painted at a time.
+const BLOCK: usize = 32;
+
+/// A film as few colors and what each of its pictures changes.
+pub struct Animation {
+    palette: Vec<u8>,
+    pictures: Vec<Picture>,
+}
+
+impl Animation {
+    /// Paints a film with at most `largest` pixels across and up. None for a film without pictures.
+    ///
+    /// Players hold pictures for whole hundredths of a second, and few show more than 50 in one.
+    pub fn of(film: &Film, largest: u32) -> Option<Self> {
+        let [width, height] = film.size();
+        let scale = f64::from(largest.min(u32::from(u16::MAX))) / width.max(height);
+        let mut palette = Palette::of(film, scale);
+        let mut pictures: Vec<Picture> = Vec::new();
+        let mut shown: Vec<u8> = Vec::new();
+        let (start, end) = (film.time(0)?, film.time(film.len() - 1)?);
+        let mut clock = 0;
+        for from in (0..film.len()).step_by(BLOCK) {
+            let block = painted(film, from..film.len().min(from + BLOCK), scale);
+            for (at, (wide, pixels)) in (from..).zip(block) {
+                let now = palette.indices(&pixels);
+                let until = hundredths(film.time(at + 1).unwrap_or(end + REST) - start);
+                let hold = until - clock;
+                clock = until;
+                match (pictures.last_mut(), change(&shown, &now, wide)) {
+                    (Some(last), None) => last.hundredths += hold,
+                    (_, change) => {
+                        let picture = change.unwrap_or_else(|| Picture::whole(&now, wide));
+                        pictures.push(Picture { hundredths: hold, ..picture });
+                    }
+                }
+                shown = now;
+            }
+        }
+        Some(Self { palette: palette.bytes(), pictures })
+    }
+
+    /// As a GIF that plays over and over at the speed of the run.
+    pub fn gif(&self) -> Vec<u8> {
+        // Nothing but the memory can refuse, and the sizes agree.
+        self.write_gif().expect("a film in memory")
+    }
+
+    fn write_gif(&self) -> Result<Vec<u8>, gif::EncodingError> {
+        let mut file = Vec::new();
+        // No side is longer than the largest that was asked for, which is a u16.
+        let size = |sides: [usize; 2]| sides.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
+        let [wide, high] = size(self.pictures.first().map_or([1, 1], |picture| picture.size));
+        let mut encoder = gif::Encoder::new(&mut file, wide, high, &self.palette)?;
+        encoder.set_repeat(Repeat::Infinite)?;
+        for picture in &self.pictures {
+            let [left, top] = size(picture.corner);
+            let [width, height] = size(picture.size);
+            encoder.write_frame(&gif::Frame {
+                delay: u16::try_from(picture.hundredths).unwrap_or(u16::MAX),
+                dispose: DisposalMethod::Keep,
+                transparent: Some(KEEP),
+                left,
+                top,
+                width,
+                height,
+                buffer: picture.indices.as_slice().into(),
+                ..gif::Frame::default()
+            })?;
+        }
+        drop(encoder);
+        Ok(file)
+    }
+
+    /// As an animated PNG that plays over and over at the speed of the run; what cannot play it
+    /// shows the first picture.
+    pub fn apng(&self) -> Vec<u8> {
+        // Nothing but the memory can refuse, and the sizes agree.
+        self.write_apng().expect("a film in memory")
+    }
+
+    fn write_apng(&self) -> Result<Vec<u8>, png::EncodingError> {
+        let mut file = Vec::new();
+        let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
+        let [wide, high] = self.pictures.first().map_or([1, 1], |picture| picture.size).map(side);
+        let mut encoder = png::Encoder::new(&mut file, wide, high);
+        encoder.set_color(ColorType::Indexed);
+        encoder.set_depth(BitDepth::Eight);
+        encoder.set_palette(self.palette.as_slice());
+        encoder.set_trns(vec![0_u8]);
+        encoder.set_compression(Compression::High);
+        encoder.set_filter(png::Filter::NoFilter);
+        encoder.set_animated(side(self.pictures.len()), 0)?;
+        let mut writer = encoder.write_header()?;
+        for (at, picture) in self.pictures.iter().enumerate() {
+            if at > 0 {
+                let [width, height] = picture.size.map(side);
+                let [left, top] = picture.corner.map(side);
+                writer.reset_frame_position()?;
+                writer.set_frame_dimension(width, height)?;
+                writer.set_frame_position(left, top)?;
+                writer.set_blend_op(BlendOp::Over)?;
+                writer.set_dispose_op(DisposeOp::None)?;
+            }
+            writer.set_frame_delay(u16::try_from(picture.hundredths).unwrap_or(u16::MAX), 100)?;
+            writer.write_image_data(&picture.indices)?;
+        }
+        writer.finish()?;
+        Ok(file)
+    }
+}
+
+/// Pictures of these numbers, painted by all cores: width and colors of each.
+fn painted(film: &Film, numbers: Range<usize>, scale: f64) -> Vec<(usize, Vec<u8>)> {
+    let numbers: Vec<usize> = numbers.collect();
+    let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let share = numbers.len().div_ceil(cores).max(1);
+    let paint = |at: &usize| {
+        let pixels = rasterize(&film.drawing(*at)?, scale);
+        Some((usize::try_from(pixels.width()).ok()?, rgb(&pixels)))
+    };
+    std::thread::scope(|scope| {
+        let workers: Vec<_> = numbers
+            .chunks(share)
+            .map(|part| scope.spawn(move || part.iter().filter_map(paint).collect::<Vec<_>>()))
+            .collect();
+        workers.into_iter().flat_map(|worker| worker.join().unwrap_or_default()).collect()
+    })
+}
+
+/// A time (s) in hundredths.
+fn hundredths(time: f64) -> u32 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some minutes")]
+    let whole = (100.0 * time).round().max(0.0) as u32;
+    whole
+}
+
+/// What one picture changes of the one before, and how long it stays.
+struct Picture {
+    corner: [usize; 2],
+    size: [usize; 2],
+    indices: Vec<u8>,
+    hundredths: u32,
+}
+
+impl Picture {
+    fn whole(indices: &[u8], wide: usize) -> Self {
+        let size = [wide, indices.len() / wide.max(1)];
+        Self { corner: [0; 2], size, indices: indices.to_vec(), hundredths: 0 }
+    }
+}
+
+/// The smallest rectangle that holds all changes; None when there are none, or nothing to compare.
+fn change(before: &[u8], now: &[u8], wide: usize) -> Option<Picture> {
+    if before.len() != now.len() {
+        return None;
+    }
+    let changed = |at: &usize| before[*at] != now[*at];
+    let (mut left, mut right) = (usize::MAX, 0);
+    let (mut top, mut bottom) = (usize::MAX, 0);
+    for at in (0..now.len()).filter(changed) {
+        let (row, column) = (at / wide, at % wide);
+        (left, right) = (left.min(column), right.max(column));
+        (top, bottom) = (top.min(row), bottom.max(row));
+    }
+    if left > right {
+        return None;
+    }
+    let place = |row: usize| (left..=right).map(move |column| row * wide + column);
+    let indices = (top..=bottom)
+        .flat_map(place)
+        .map(|at| if changed(&at) { now[at] } else { KEEP })
+        .collect();
+    let size = [right - left + 1, bottom - top + 1];
+    Some(Picture { corner: [left, top], size, indices, hundredths: 0 })
+}
+
+/// The colors of a film; place 0 is kept for "as before".
+struct Palette {
+    colors: Vec<[u8; 3]>,
+    known: HashMap<[u8; 3], u8>,
+}
+
+impl Palette {
+    /// The commonest colors of some pictures of the film.
+    ///
+    /// Drawings are flat: a few colors fill them and edges blend those. So the commonest colors are
+    /// kept exactly, and of the rest only those that differ to the eye from what is there; the fewer
+    /// there are, the smaller is the file.
+    fn of(film: &Film, scale: f64) -> Self {
+        const SAMPLES: usize = 8;
+        const MOST: usize = 64;
+        const EXACT: usize = 16;
+        const APART: u8 = 24;
+        let mut counts: HashMap<[u8; 3], u32> = HashMap::new();
+        let step = film.len().div_ceil(SAMPLES).max(1);
+        for drawing in (0..film.len()).step_by(step).filter_map(|at| film.drawing(at)) {
+            for color in rgb(&rasterize(&drawing, scale)).as_chunks().0 {
+                *counts.entry(*color).or_default() += 1;
+            }
+        }
+        let mut ranked: Vec<([u8; 3], u32)> = counts.into_iter().collect();
+        ranked.sort_by_key(|(color, count)| (std::cmp::Reverse(*count), *color));
+        let mut colors: Vec<[u8; 3]> = vec![[255; 3]];
+        for (color, _) in ranked {
+            let far = |known: &[u8; 3]| (0..3).any(|at| known[at].abs_diff(color[at]) > APART);
+            if colors.len() < MOST && (colors.len() <= EXACT || colors[1..].iter().all(far)) {
+                colors.push(color);
+            }
+        }
+        Self { colors, known: HashMap::new() }
+    }
+
+    /// The index of every color, that of the nearest one where it is not there.
+    fn indices(&mut self, pixels: &[u8]) -> Vec<u8> {
+        let mut last = None;
+        let index = |color: &[u8; 3]| match last {
+            // Neighbors are mostly alike.
+            Some((same, index)) if same == *color => index,
+            _ => {
+                let index = self.index(*color);
+                last = Some((*color, index));
+                index
+            }
+        };
+        pixels.as_chunks().0.iter().map(index).collect()
+    }
+
+    fn index(&mut self, color: [u8; 3]) -> u8 {
+        let colors = &self.colors;
+        *self.known.entry(color).or_insert_with(|| {
+            let distance = |known: &[u8; 3]| -> u32 {
+                (0..3).map(|at| u32::from(known[at].abs_diff(color[at])).pow(2)).sum()
+            };
+            let nearest = (1..colors.len()).min_by_key(|at| distance(&colors[*at]));
+            nearest.and_then(|at| u8::try_from(at).ok()).unwrap_or(KEEP)
+        })
+    }
+
+    fn bytes(&self) -> Vec<u8> {
+        self.colors.as_flattened().to_vec()
+    }
+}

@@ -1,0 +1,149 @@
+//! A drawing: lines, shapes and words of known styles, free of any output format.
+
+/// A drawing of a known size; y grows downward (px).
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Drawing {
+    pub(crate) width: f64,
+    pub(crate) height: f64,
+    /// What a reader who cannot see it is told.
+    pub(crate) title: String,
+    pub(crate) items: Vec<Item>,
+}
+
+/// Lines through points, each on its own.
+pub(crate) type Runs = Vec<Vec<[f64; 2]>>;
+
+/// One piece of a drawing. A class is a list of names that the style sheet knows.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Item {
+    Line {
+        class: &'static str,
+        from: [f64; 2],
+        to: [f64; 2],
+    },
+    Rect {
+        class: &'static str,
+        lower: [f64; 2],
+        size: [f64; 2],
+    },
+    Circle {
+        class: String,
+        center: [f64; 2],
+        radius: f64,
+    },
+    /// Lines in pixels; `dash` goes before the style's own.
+    Path {
+        class: String,
+        dash: &'static str,
+        runs: Runs,
+        closed: bool,
+    },
+    /// Lines in a body's own units (m), with the width of the pen in these units.
+    Outline {
+        class: String,
+        pen: f64,
+        runs: Runs,
+        closed: bool,
+    },
+    Text {
+        class: &'static str,
+        at: [f64; 2],
+        anchor: Anchor,
+        /// Turned clockwise about `at`.
+        degrees: f64,
+        text: String,
+    },
+    /// Items of which only what lies in a rectangle is seen; `id` differs within a page.
+    Clip {
+        id: String,
+        lower: [f64; 2],
+        size: [f64; 2],
+        items: Vec<Self>,
+    },
+    /// Another drawing with its upper left corner at `at`, `scale` times as large.
+    Nested {
+        at: [f64; 2],
+        scale: f64,
+        drawing: Drawing,
+    },
+    /// Bodies in their own units (m), to be shown by [`Item::Scene`].
+    Defined(Vec<Body>),
+    /// Bodies at their places in a world with z up: `scale` (px/m), the pixel of the origin.
+    Scene {
+        scale: f64,
+        origin: [f64; 2],
+        bodies: Vec<Placed>,
+    },
+}
+
+/// A body that is drawn once and shown many times; `id` differs within a page.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Body {
+    pub(crate) id: String,
+    pub(crate) items: Vec<Item>,
+}
+
+/// A defined body at a pose: x and z (m), angle (rad) counterclockwise.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Placed {
+    pub(crate) id: String,
+    pub(crate) class: &'static str,
+    pub(crate) pose: [f64; 3],
+}
+
+/// Which part of a text stands at its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+impl Drawing {
+    pub(crate) fn new(width: f64, height: f64, title: &str) -> Self {
+        Self { width, height, title: title.to_owned(), items: Vec::new() }
+    }
+
+    pub(crate) fn push(&mut self, item: Item) {
+        self.items.push(item);
+    }
+
+    pub(crate) fn line(&mut self, class: &'static str, from: [f64; 2], to: [f64; 2]) {
+        self.push(Item::Line { class, from, to });
+    }
+
+    pub(crate) fn rect(&mut self, class: &'static str, lower: [f64; 2], size: [f64; 2]) {
+        self.push(Item::Rect { class, lower, size: size.map(|side| side.max(0.0)) });
+    }
+
+    pub(crate) fn path(&mut self, class: &str, dash: &'static str, runs: Runs, closed: bool) {
+        self.push(Item::Path { class: class.to_owned(), dash, runs, closed });
+    }
+
+    pub(crate) fn text(&mut self, class: &'static str, at: [f64; 2], anchor: Anchor, text: &str) {
+        self.turned_text(class, at, anchor, 0.0, text);
+    }
+
+    pub(crate) fn turned_text(
+        &mut self,
+        class: &'static str,
+        at: [f64; 2],
+        anchor: Anchor,
+        degrees: f64,
+        text: &str,
+    ) {
+        if !text.is_empty() {
+            self.push(Item::Text { class, at, anchor, degrees, text: text.to_owned() });
+        }
+    }
+
+    /// Places another drawing inside this one.
+    pub(crate) fn nest(&mut self, at: [f64; 2], drawing: Self) {
+        self.push(Item::Nested { at, scale: 1.0, drawing });
+    }
+}
+
+/// Width of a line of text at `size` px, on the generous side.
+pub(crate) fn text_width(text: &str, size: f64) -> f64 {
+    0.56 * size * text.chars().count() as f64
+}

@@ -1,0 +1,111 @@
+//! The bundled font: which glyph a character has, how wide it is, what its outline is.
+//!
+//! Pictures and PDF look alike on every machine because the words in them are drawn with this font
+//! and none other; SVG names the reader's own.
+
+use std::sync::LazyLock;
+
+use ttf_parser::{Face, GlyphId, OutlineBuilder};
+
+/// One weight of the font.
+pub(crate) struct Font {
+    pub(crate) bytes: &'static [u8],
+    pub(crate) name: &'static str,
+    face: Face<'static>,
+}
+
+static REGULAR: LazyLock<Font> =
+    LazyLock::new(|| font(include_bytes!("../assets/fonts/Inter-Regular.ttf"), "Inter-Regular"));
+static STRONG: LazyLock<Font> =
+    LazyLock::new(|| font(include_bytes!("../assets/fonts/Inter-SemiBold.ttf"), "Inter-SemiBold"));
+
+fn font(bytes: &'static [u8], name: &'static str) -> Font {
+    Font { bytes, name, face: Face::parse(bytes, 0).expect("the bundled font is a font") }
+}
+
+impl Font {
+    /// The font for plain words, or for strong ones.
+    pub(crate) fn of(strong: bool) -> &'static Self {
+        if strong { &STRONG } else { &REGULAR }
+    }
+
+    /// Glyphs of a text in order, each with its character and its width over the size of the text.
+    /// Control characters have none; what the font does not know is a box.
+    pub(crate) fn glyphs(&self, text: &str) -> impl Iterator<Item = (u16, char, f64)> {
+        text.chars().filter(|c| !is_invisible(*c)).map(|c| {
+            let glyph = self.face.glyph_index(c).unwrap_or(GlyphId(0));
+            (glyph.0, c, self.advance(glyph.0))
+        })
+    }
+
+    /// Width of a glyph over the size of the text.
+    pub(crate) fn advance(&self, glyph: u16) -> f64 {
+        let advance = self.face.glyph_hor_advance(GlyphId(glyph)).unwrap_or(0);
+        f64::from(advance) / self.units()
+    }
+
+    /// Width of a line of text at `size`, in the unit of the size.
+    pub(crate) fn width(&self, text: &str, size: f64) -> f64 {
+        size * self.glyphs(text).map(|(_, _, width)| width).sum::<f64>()
+    }
+
+    /// Units of outlines in the size of the text.
+    pub(crate) fn units(&self) -> f64 {
+        f64::from(self.face.units_per_em())
+    }
+
+    /// Draws the outline of a glyph, in the font's units, y upward.
+    pub(crate) fn outline(&self, glyph: u16, pen: &mut dyn OutlineBuilder) {
+        self.face.outline_glyph(GlyphId(glyph), pen);
+    }
+
+    /// Ascent, descent (negative), cap height and the box around all glyphs, over the size of the
+    /// text.
+    pub(crate) fn metrics(&self) -> Metrics {
+        let share = |value: i16| f64::from(value) / self.units();
+        let bounds = self.face.global_bounding_box();
+        Metrics {
+            ascent: share(self.face.ascender()),
+            descent: share(self.face.descender()),
+            cap_height: self.face.capital_height().map_or(0.7, share),
+            bounds: [bounds.x_min, bounds.y_min, bounds.x_max, bounds.y_max].map(share),
+        }
+    }
+}
+
+/// Measures of a font over the size of the text.
+pub(crate) struct Metrics {
+    pub(crate) ascent: f64,
+    pub(crate) descent: f64,
+    pub(crate) cap_height: f64,
+    pub(crate) bounds: [f64; 4],
+}
+
+/// Characters that steer and are not seen.
+fn is_invisible(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_font_knows_what_reports_say() {
+        const SAID: &str = "AZaz09µμσφηω°×·−±√≤≥≈→–—“”‘’…²³⁻⁰¹⁴⁵⁶⁷⁸⁹₁₂éñÁü½′";
+        for strong in [false, true] {
+            let font = Font::of(strong);
+            let missing: String =
+                font.glyphs(SAID).filter(|(glyph, ..)| *glyph == 0).map(|(_, c, _)| c).collect();
+            assert_eq!(missing, "");
+        }
+    }
+
+    #[test]
+    fn digits_are_equally_wide_so_columns_line_up() {
+        let font = Font::of(false);
+        assert_eq!(font.width("1111", 12.0), font.width("0987", 12.0));
+        assert_eq!(font.width("\u{202e}\u{0}", 12.0), 0.0);
+    }
+}

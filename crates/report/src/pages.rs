@@ -1,0 +1,367 @@
+//! A document on pages: text, tables and figures set one below the other, with numbered feet.
+
+use crate::{
+    Block, Document, Figure, Player, Table, Tone,
+    drawing::{Anchor, Drawing, Item},
+    escape,
+    figure::Names,
+    font::Font,
+    number,
+    pdf::{Page, pdf},
+    sheet::{Sheet, row_height, wrap},
+    style::{Style, Tag},
+};
+
+/// The paper of a printed document.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Paper {
+    /// 210 by 297 mm.
+    #[default]
+    A4,
+    /// 8½ by 11 inches.
+    Letter,
+}
+
+impl Paper {
+    /// Width and height (points).
+    fn size(self) -> [f64; 2] {
+        match self {
+            Self::A4 => [595.28, 841.89],
+            Self::Letter => [612.0, 792.0],
+        }
+    }
+}
+
+/// The document as a PDF: the same words and numbers as [`html`](crate::html), figures as lines,
+/// words as words, a list of sections, the title and the number of the page at every foot.
+///
+/// A player is shown as it is on paper; what the page folds away is open.
+pub fn document_pdf(document: &Document, paper: Paper) -> Vec<u8> {
+    let mut flow = Flow::new(document, paper);
+    flow.verdict();
+    flow.warnings();
+    flow.blocks(&document.blocks);
+    flow.provenance();
+    pdf(&document.title, &flow.finish(), 1.0)
+}
+
+/// A figure alone on a page of its size; a px of it is three quarters of a point.
+pub(crate) fn figure_pdf(figure: &Figure) -> Vec<u8> {
+    let drawing = figure.draw(&escape::slug(&figure.id));
+    pdf(&figure.caption, &[Page { drawing, sections: Vec::new() }], POINTS_PER_PX)
+}
+
+const POINTS_PER_PX: f64 = 0.75;
+/// Empty on either side, above, and below (points); the foot stands in the last.
+const MARGIN: [f64; 3] = [54.0, 52.0, 60.0];
+/// From one baseline to the next, over the size of the letters.
+const LEADING: f64 = 1.4;
+/// Between one block and the next (points).
+const GAP: f64 = 8.0;
+
+struct Flow<'a> {
+    document: &'a Document,
+    size: [f64; 2],
+    pages: Vec<Page>,
+    /// Where the next block starts on the last page, from its top.
+    y: f64,
+    names: Names,
+    tables: usize,
+    figures: usize,
+}
+
+impl<'a> Flow<'a> {
+    fn new(document: &'a Document, paper: Paper) -> Self {
+        let mut flow = Self {
+            document,
+            size: paper.size(),
+            pages: Vec::new(),
+            y: 0.0,
+            names: Names::default(),
+            tables: 0,
+            figures: 0,
+        };
+        flow.turn();
+        flow
+    }
+
+    fn width(&self) -> f64 {
+        self.size[0] - 2.0 * MARGIN[0]
+    }
+
+    /// Where the last line of a page may end.
+    fn floor(&self) -> f64 {
+        self.size[1] - MARGIN[2]
+    }
+
+    /// Starts a page.
+    fn turn(&mut self) {
+        let drawing = Drawing::new(self.size[0], self.size[1], "");
+        self.pages.push(Page { drawing, sections: Vec::new() });
+        self.y = MARGIN[1];
+    }
+
+    /// Starts a page unless `height` is left on this one, or on none.
+    fn need(&mut self, height: f64) {
+        if self.y + height > self.floor() && self.y > MARGIN[1] {
+            self.turn();
+        }
+    }
+
+    fn page(&mut self) -> &mut Page {
+        // A flow starts with a page and never takes one away.
+        self.pages.last_mut().expect("a page")
+    }
+
+    /// A paragraph, `indent` (points) from the left margin.
+    fn text(&mut self, class: &'static str, indent: f64, text: &str) {
+        let style = Style::of(Tag::Text, class);
+        let leading = LEADING * style.font_size;
+        let font = Font::of(style.strong);
+        let lines = wrap(font, style.font_size, text, self.width() - indent);
+        // No page ends with the first line of a paragraph.
+        self.need(leading * if lines.len() > 1 { 2.0 } else { 1.0 });
+        for line in lines {
+            self.need(leading);
+            let at = [MARGIN[0] + indent, self.y + style.font_size];
+            self.page().drawing.text(class, at, Anchor::Start, &line);
+            self.y += leading;
+        }
+    }
+
+    fn paragraph(&mut self, class: &'static str, text: &str) {
+        self.text(class, 0.0, text);
+        self.y += GAP;
+    }
+
+    fn list(&mut self, items: &[String]) {
+        const INDENT: f64 = 11.0;
+        for item in items {
+            self.need(LEADING * 9.5);
+            let dot = [MARGIN[0] + 2.0, self.y + 9.5];
+            self.page().drawing.text("page-text", dot, Anchor::Start, "•");
+            self.text("page-text", INDENT, item);
+            self.y += 1.5;
+        }
+        self.y += GAP - 1.5;
+    }
+
+    /// A heading, which stays with `follows` points of what comes after it.
+    fn heading(&mut self, class: &'static str, text: &str, follows: f64) {
+        let above = if self.y > MARGIN[1] { 6.0 } else { 0.0 };
+        let height = LEADING * Style::of(Tag::Text, class).font_size;
+        self.need(above + height + follows);
+        self.y += if self.y > MARGIN[1] { above } else { 0.0 };
+        if class == "page-section" {
+            let y = self.y;
+            self.page().sections.push((text.to_owned(), y));
+        }
+        self.text(class, 0.0, text);
+        self.y += 3.0;
+    }
+
+    fn verdict(&mut self) {
+        let document = self.document;
+        let verdict = &document.verdict;
+        self.text("page-title", 0.0, &document.title);
+        self.y += 6.0;
+        let class = match verdict.tone {
+            Tone::Stands => "page-bold page-stands",
+            Tone::Falls => "page-bold page-falls",
+            Tone::Invalid => "page-bold page-invalid",
+            Tone::Neutral => "page-bold page-neutral",
+        };
+        self.text(class, 0.0, &verdict.tone.word().to_uppercase());
+        self.text("page-headline", 0.0, &verdict.headline);
+        self.y += 4.0;
+        if !verdict.sentences.is_empty() {
+            self.paragraph("page-text", &verdict.sentences.join(" "));
+        }
+    }
+
+    fn warnings(&mut self) {
+        let document = self.document;
+        if !document.warnings.is_empty() {
+            self.heading("page-section", "Warnings", 30.0);
+            self.list(&document.warnings);
+        }
+    }
+
+    fn provenance(&mut self) {
+        let document = self.document;
+        if document.provenance.is_empty() {
+            return;
+        }
+        let rows: Vec<Vec<String>> = document
+            .provenance
+            .iter()
+            .map(|(name, value)| vec![name.clone(), value.clone()])
+            .collect();
+        self.heading("page-section", "Provenance", 40.0);
+        self.rows(&Sheet::new(Vec::new(), rows, vec![false; 2], self.width()));
+    }
+
+    fn blocks(&mut self, blocks: &[Block]) {
+        for (at, block) in blocks.iter().enumerate() {
+            match block {
+                Block::Heading { level, text } => {
+                    let class = if *level <= 2 { "page-section" } else { "page-part" };
+                    let follows = self.least(&blocks[at + 1..]);
+                    self.heading(class, text, follows);
+                }
+                Block::Paragraph(text) => self.paragraph("page-text", text),
+                Block::List(items) => self.list(items),
+                Block::Table(table) => self.table(table),
+                Block::Figure(figure) => self.figure(figure),
+                Block::Player(player) => self.player(player),
+                Block::Details { summary, blocks } => {
+                    self.heading("page-part", summary, self.least(blocks));
+                    self.blocks(blocks);
+                }
+            }
+        }
+    }
+
+    /// How much of what follows must stand under its heading (points).
+    fn least(&self, blocks: &[Block]) -> f64 {
+        let Some((first, rest)) = blocks.split_first() else { return 0.0 };
+        let figure = |figure: &Figure| self.picture(figure, "measured").1 + 24.0;
+        let least = match first {
+            Block::Figure(shown) => figure(shown),
+            Block::Player(player) => figure(&player.paper_figure(&self.document.blocks)),
+            Block::Table(_) => 66.0,
+            Block::Heading { .. } => 24.0 + self.least(rest),
+            Block::Details { blocks, .. } => 24.0 + self.least(blocks),
+            Block::List(_) => 28.0,
+            // A paragraph in front of a figure leads over to it.
+            Block::Paragraph(_) if matches!(rest.first(), Some(Block::Figure(_))) => {
+                40.0 + self.least(rest)
+            }
+            Block::Paragraph(_) => 28.0,
+        };
+        least.min(0.8 * (self.floor() - MARGIN[1]))
+    }
+
+    /// The drawing of a figure and its height on the page: as large as the page lets it be, and
+    /// never larger than it was drawn.
+    fn picture(&self, figure: &Figure, id: &str) -> (Drawing, f64, f64) {
+        let drawing = figure.draw(id);
+        let most = self.floor() - MARGIN[1] - 60.0;
+        let scale = POINTS_PER_PX
+            .min(self.width() / drawing.width.max(1.0))
+            .min(most / drawing.height.max(1.0));
+        let height = drawing.height * scale;
+        (drawing, height, scale)
+    }
+
+    fn figure(&mut self, figure: &Figure) {
+        let id = self.names.take(&figure.id);
+        self.figures += 1;
+        let caption = format!("Figure {}. {}", self.figures, figure.caption);
+        let style = Style::of(Tag::Text, "page-small");
+        let lines = wrap(Font::of(false), style.font_size, &caption, self.width()).len();
+        let (drawing, height, scale) = self.picture(figure, &id);
+        self.need(height + 4.0 + lines as f64 * LEADING * style.font_size);
+        let at = [MARGIN[0], self.y];
+        self.page().drawing.push(Item::Nested { at, scale, drawing });
+        self.y += height + 4.0;
+        self.paragraph("page-small", &caption);
+    }
+
+    fn player(&mut self, player: &Player) {
+        self.figure(&player.paper_figure(&self.document.blocks));
+        let events = player.scene.events.iter().filter(|event| event.time.is_finite());
+        let rows: Vec<Vec<String>> = events
+            .map(|event| {
+                let time = format!("{} s", number::fixed(event.time, 2));
+                vec![time, event.kind.word().to_owned(), event.text.clone()]
+            })
+            .collect();
+        if !rows.is_empty() {
+            let numeric = vec![true, false, false];
+            self.rows(&Sheet::new(Vec::new(), rows, numeric, self.width()));
+        }
+    }
+
+    fn table(&mut self, table: &Table) {
+        self.tables += 1;
+        let columns = 0..table.columns.len();
+        let numeric: Vec<bool> = columns.clone().map(|at| table.is_numeric(at)).collect();
+        let shown = |row: &Vec<crate::Cell>, at: usize| {
+            row.get(at).map_or_else(|| number::MISSING.into(), crate::Cell::shown)
+        };
+        let head = table.columns.iter().map(crate::Column::heading).collect();
+        let rows = table
+            .rows
+            .iter()
+            .map(|row| columns.clone().map(|at| shown(row, at)).collect())
+            .collect();
+        self.need(66.0);
+        self.text("page-small", 0.0, &format!("Table {}. {}", self.tables, table.caption));
+        self.y += 3.0;
+        self.rows(&Sheet::new(head, rows, numeric, self.width()));
+    }
+
+    /// The rows of a table, its head again on every page.
+    fn rows(&mut self, sheet: &Sheet) {
+        let head = sheet.head();
+        let head_height = head.as_ref().map_or(0.0, |cells| row_height(cells));
+        let mut open = false;
+        for at in 0..sheet.len() {
+            let cells = sheet.row(at);
+            let height = row_height(&cells);
+            let first = if open { 0.0 } else { head_height };
+            if self.y + first + height > self.floor() && self.y > MARGIN[1] {
+                self.turn();
+                open = false;
+            }
+            if let (false, Some(head)) = (open, &head) {
+                self.row(sheet, head, "page-small-bold");
+                self.rule("page-line");
+            }
+            open = true;
+            self.row(sheet, &cells, "page-small");
+            self.rule("page-rule");
+        }
+        self.y += GAP + 2.0;
+    }
+
+    fn row(&mut self, sheet: &Sheet, cells: &[Vec<String>], class: &'static str) {
+        let top = self.y;
+        for (column, lines) in cells.iter().enumerate() {
+            let (x, anchor) = sheet.place(column);
+            for (line, text) in lines.iter().enumerate() {
+                let at = [MARGIN[0] + x, top + sheet.baseline(line)];
+                self.page().drawing.text(class, at, anchor, text);
+            }
+        }
+        self.y += row_height(cells);
+    }
+
+    fn rule(&mut self, class: &'static str) {
+        let (left, y) = (MARGIN[0], self.y);
+        let right = left + self.width();
+        self.page().drawing.line(class, [left, y], [right, y]);
+    }
+
+    /// The pages with their feet.
+    fn finish(mut self) -> Vec<Page> {
+        let (right, y) = (MARGIN[0] + self.width(), self.size[1] - 34.0);
+        let of = self.pages.len();
+        let size = Style::of(Tag::Text, "page-foot").font_size;
+        let titles = wrap(Font::of(false), size, &self.document.title, self.width() - 80.0);
+        let title = match titles.as_slice() {
+            [] => String::new(),
+            [whole] => whole.clone(),
+            [first, ..] => format!("{first} …"),
+        };
+        for (at, page) in self.pages.iter_mut().enumerate() {
+            let drawing = &mut page.drawing;
+            drawing.line("page-rule", [MARGIN[0], y - 12.0], [right, y - 12.0]);
+            drawing.text("page-foot", [MARGIN[0], y], Anchor::Start, &title);
+            let number = format!("{} of {of}", at + 1);
+            drawing.text("page-foot", [right, y], Anchor::End, &number);
+        }
+        self.pages
+    }
+}

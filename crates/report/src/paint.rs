@@ -1,0 +1,183 @@
+//! From a drawing to strokes, fills and words at their places, for formats that know no styles.
+
+use std::collections::HashMap;
+
+use crate::{
+    drawing::{Anchor, Body, Drawing, Item, Placed, Runs},
+    font::Font,
+    style::{Ink, Style, Tag, dashes},
+};
+
+/// What paints: pixels, or the content of a page. Lengths in px from the upper left corner, y down.
+pub(crate) trait Painter {
+    /// Lines through points; the style's lengths are already to scale.
+    fn lines(&mut self, runs: &[Vec<[f64; 2]>], closed: bool, style: &Style);
+    /// A circle.
+    fn circle(&mut self, center: [f64; 2], radius: f64, style: &Style);
+    /// A word whose baseline starts at a point.
+    fn word(&mut self, word: &Word<'_>);
+    /// From here on only what lies in this rectangle, and in those before it, is seen.
+    fn clip(&mut self, lower: [f64; 2], size: [f64; 2]);
+    /// Forgets the last rectangle.
+    fn unclip(&mut self);
+}
+
+/// A line of text at its place.
+pub(crate) struct Word<'a> {
+    pub(crate) text: &'a str,
+    /// Where its baseline starts.
+    pub(crate) at: [f64; 2],
+    /// Turned clockwise about `at`.
+    pub(crate) degrees: f64,
+    pub(crate) size: f64,
+    pub(crate) strong: bool,
+    pub(crate) ink: Ink,
+}
+
+/// Paints a drawing `scale` times as large, its upper left corner at the origin.
+pub(crate) fn paint(drawing: &Drawing, scale: f64, painter: &mut dyn Painter) {
+    let mut walk = Walk { painter, bodies: HashMap::new(), styles: HashMap::new() };
+    walk.items(&drawing.items, &Place { origin: [0.0; 2], scale, turn: [1.0, 0.0], up: false });
+}
+
+/// From the coordinates of an item to those of the picture.
+#[derive(Clone, Copy)]
+struct Place {
+    origin: [f64; 2],
+    scale: f64,
+    /// Cosine and sine of a turn, clockwise as seen.
+    turn: [f64; 2],
+    /// Whether the item's second coordinate points up.
+    up: bool,
+}
+
+impl Place {
+    fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let y = if self.up { -y } else { y };
+        let [cos, sin] = self.turn;
+        [
+            self.origin[0] + self.scale * (cos * x - sin * y),
+            self.origin[1] + self.scale * (sin * x + cos * y),
+        ]
+    }
+
+    fn runs(&self, runs: &Runs) -> Runs {
+        let finite = |run: &Vec<[f64; 2]>| -> Vec<[f64; 2]> {
+            let points = run.iter().filter(|p| p.iter().all(|v| v.is_finite()));
+            points.map(|point| self.at(*point)).collect()
+        };
+        runs.iter().map(finite).filter(|run| !run.is_empty()).collect()
+    }
+}
+
+struct Walk<'d, 'p> {
+    painter: &'p mut dyn Painter,
+    bodies: HashMap<&'d str, &'d Body>,
+    styles: HashMap<(Tag, &'d str), Style>,
+}
+
+impl<'d> Walk<'d, '_> {
+    fn style(&mut self, tag: Tag, class: &'d str, scale: f64) -> Style {
+        let known = self.styles.entry((tag, class)).or_insert_with(|| Style::of(tag, class));
+        let mut style = known.clone();
+        style.stroke_width *= scale;
+        style.font_size *= scale;
+        style.dash.iter_mut().for_each(|length| *length *= scale);
+        style
+    }
+
+    fn items(&mut self, items: &'d [Item], place: &Place) {
+        items.iter().for_each(|item| self.item(item, place));
+    }
+
+    fn item(&mut self, item: &'d Item, place: &Place) {
+        match item {
+            Item::Line { class, from, to } => {
+                let style = self.style(Tag::Shape, class, place.scale);
+                self.painter.lines(&place.runs(&vec![vec![*from, *to]]), false, &style);
+            }
+            Item::Rect { class, lower: [x, y], size: [w, h] } => {
+                let corners = vec![[*x, *y], [x + w, *y], [x + w, y + h], [*x, y + h]];
+                let style = self.style(Tag::Shape, class, place.scale);
+                self.painter.lines(&place.runs(&vec![corners]), true, &style);
+            }
+            Item::Circle { class, center, radius } => {
+                let style = self.style(Tag::Shape, class, place.scale);
+                self.painter.circle(place.at(*center), radius * place.scale, &style);
+            }
+            Item::Path { class, dash, runs, closed } => {
+                let mut style = self.style(Tag::Shape, class, place.scale);
+                if !dash.is_empty() {
+                    style.dash = dashes(dash).iter().map(|v| v * place.scale).collect();
+                }
+                self.painter.lines(&place.runs(runs), *closed, &style);
+            }
+            Item::Outline { class, pen, runs, closed } => {
+                let mut style = self.style(Tag::Shape, class, place.scale);
+                style.stroke_width = pen * place.scale;
+                self.painter.lines(&place.runs(runs), *closed, &style);
+            }
+            Item::Text { class, at, anchor, degrees, text } => {
+                self.word(class, place.at(*at), *anchor, *degrees, text, place.scale);
+            }
+            Item::Clip { lower, size, items, .. } => {
+                self.painter.clip(place.at(*lower), size.map(|side| side * place.scale));
+                self.items(items, place);
+                self.painter.unclip();
+            }
+            Item::Nested { at, scale, drawing } => {
+                let scale = place.scale * scale;
+                let inner = Place { origin: place.at(*at), scale, ..*place };
+                let size = [drawing.width, drawing.height].map(|side| side * scale);
+                self.painter.clip(inner.origin, size);
+                self.items(&drawing.items, &inner);
+                self.painter.unclip();
+            }
+            Item::Defined(bodies) => {
+                self.bodies.extend(bodies.iter().map(|body| (body.id.as_str(), body)));
+            }
+            Item::Scene { scale, origin, bodies } => {
+                let world =
+                    Place { origin: place.at(*origin), scale: place.scale * scale, ..*place };
+                bodies.iter().for_each(|placed| self.placed(placed, &world));
+            }
+        }
+    }
+
+    fn placed(&mut self, placed: &Placed, world: &Place) {
+        let Some(body) = self.bodies.get(placed.id.as_str()).copied() else { return };
+        let [x, z, angle] = placed.pose;
+        let (sin, cos) = angle.sin_cos();
+        let origin = Place { up: true, ..*world }.at([x, z]);
+        // Counterclockwise in a world with z up is clockwise with a minus.
+        self.items(&body.items, &Place { origin, turn: [cos, -sin], up: true, ..*world });
+    }
+
+    fn word(
+        &mut self,
+        class: &'d str,
+        at: [f64; 2],
+        anchor: Anchor,
+        degrees: f64,
+        text: &str,
+        scale: f64,
+    ) {
+        let style = self.style(Tag::Text, class, scale);
+        let Some(ink) = style.fill else { return };
+        let width = Font::of(style.strong).width(text, style.font_size);
+        let back = match anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => 0.5 * width,
+            Anchor::End => width,
+        };
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        self.painter.word(&Word {
+            text,
+            at: [at[0] - back * cos, at[1] - back * sin],
+            degrees,
+            size: style.font_size,
+            strong: style.strong,
+            ink,
+        });
+    }
+}

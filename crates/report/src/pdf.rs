@@ -1,0 +1,353 @@
+//! Drawings as pages of a PDF: lines as lines, words as words in the bundled font.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::io::Write as _;
+
+use flate2::{Compression, write::ZlibEncoder};
+use pdf_writer::{
+    Content, Filter, Finish as _, Name, Pdf, Rect, Ref, Str, TextStr,
+    types::{CidFontType, FontFlags, LineCapStyle, LineJoinStyle, SystemInfo, UnicodeCmap},
+};
+use subsetter::GlyphRemapper;
+
+use crate::{
+    drawing::Drawing,
+    font::Font,
+    paint::{Painter, Word, paint},
+    style::{Ink, Style},
+};
+
+/// A page: a drawing, and the headings that a reader's list of sections leads to.
+pub(crate) struct Page {
+    pub(crate) drawing: Drawing,
+    /// Words and height (in the drawing, from its top) of each.
+    pub(crate) sections: Vec<(String, f64)>,
+}
+
+/// Pages as a PDF with a title; `scale` is the count of points for a unit of the drawings.
+pub(crate) fn pdf(title: &str, pages: &[Page], scale: f64) -> Vec<u8> {
+    let mut file = File { pdf: Pdf::new(), last: 0, ink: Used::default() };
+    let (catalog, tree, info) = (file.next(), file.next(), file.next());
+    let resources = file.next();
+    let ids: Vec<Ref> = pages.iter().map(|_| file.next()).collect();
+    for (page, id) in pages.iter().zip(&ids) {
+        file.page(page, *id, tree, resources, scale);
+    }
+    let count = i32::try_from(ids.len()).unwrap_or(i32::MAX);
+    file.pdf.pages(tree).kids(ids.iter().copied()).count(count);
+    file.resources(resources);
+    let sections = file.sections(pages, &ids, scale);
+    file.pdf.document_info(info).title(TextStr(title)).producer(TextStr("barrelstack"));
+    let mut root = file.pdf.catalog(catalog);
+    root.pages(tree).lang(TextStr("en-US"));
+    root.viewer_preferences().display_doc_title(true);
+    if let Some(sections) = sections {
+        root.outlines(sections);
+    }
+    root.finish();
+    file.pdf.finish()
+}
+
+/// A PDF as it grows.
+struct File {
+    pdf: Pdf,
+    last: i32,
+    ink: Used,
+}
+
+/// Fonts and opacities that pages use.
+#[derive(Default)]
+struct Used {
+    /// By whether they are strong.
+    fonts: BTreeMap<bool, Glyphs>,
+    /// In percent.
+    opacities: BTreeSet<u8>,
+}
+
+/// Glyphs of a font by their number in the file, with the character that each stands for.
+#[derive(Default)]
+struct Glyphs {
+    numbers: GlyphRemapper,
+    characters: HashMap<u16, char>,
+}
+
+impl File {
+    fn next(&mut self) -> Ref {
+        self.last += 1;
+        Ref::new(self.last)
+    }
+
+    fn page(&mut self, page: &Page, id: Ref, tree: Ref, resources: Ref, scale: f64) {
+        let [width, height] = [page.drawing.width, page.drawing.height].map(|side| side * scale);
+        let mut painter = Writer { content: Content::new(), height, used: &mut self.ink };
+        paint(&page.drawing, scale, &mut painter);
+        let bytes = deflated(&painter.content.finish());
+        let content = self.next();
+        let mut written = self.pdf.page(id);
+        written.parent(tree).contents(content);
+        written.media_box(Rect::new(0.0, 0.0, short(width), short(height)));
+        written.pair(Name(b"Resources"), resources);
+        written.finish();
+        self.pdf.stream(content, &bytes).filter(Filter::FlateDecode);
+    }
+
+    /// What all pages share.
+    fn resources(&mut self, id: Ref) {
+        let used = std::mem::take(&mut self.ink);
+        let fonts: Vec<(String, Ref)> = used
+            .fonts
+            .iter()
+            .map(|(strong, glyphs)| (font_name(*strong), self.font(*strong, glyphs)))
+            .collect();
+        let mut resources = self.pdf.indirect(id).dict();
+        let mut list = resources.insert(Name(b"Font")).dict();
+        for (name, font) in &fonts {
+            list.pair(Name(name.as_bytes()), *font);
+        }
+        list.finish();
+        let mut states = resources.insert(Name(b"ExtGState")).dict();
+        for percent in &used.opacities {
+            let opacity = f32::from(*percent) / 100.0;
+            let name = opacity_name(*percent);
+            let mut state = states.insert(Name(name.as_bytes())).dict();
+            state.pair(Name(b"Type"), Name(b"ExtGState"));
+            state.pair(Name(b"ca"), opacity).pair(Name(b"CA"), opacity);
+        }
+    }
+
+    /// A font of which only the glyphs in use are in the file.
+    fn font(&mut self, strong: bool, glyphs: &Glyphs) -> Ref {
+        let font = Font::of(strong);
+        let [id, descendant, descriptor, program, unicode] = std::array::from_fn(|_| self.next());
+        // Should the font ever refuse to be cut, all of it serves as well.
+        let bytes = subsetter::subset(font.bytes, 0, &glyphs.numbers)
+            .unwrap_or_else(|_| font.bytes.to_vec());
+        let name = format!("BRLSTK+{}", font.name);
+        let base = Name(name.as_bytes());
+        let system =
+            SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
+        self.pdf
+            .type0_font(id)
+            .base_font(base)
+            .encoding_predefined(Name(b"Identity-H"))
+            .descendant_font(descendant)
+            .to_unicode(unicode);
+        let mut cid = self.pdf.cid_font(descendant);
+        cid.subtype(CidFontType::Type2).base_font(base).system_info(system);
+        cid.font_descriptor(descriptor).default_width(0.0);
+        cid.cid_to_gid_map_predefined(Name(b"Identity"));
+        let widths = glyphs.numbers.remapped_gids().map(|old| short(1000.0 * font.advance(old)));
+        cid.widths().consecutive(0, widths);
+        cid.finish();
+        let metrics = font.metrics();
+        let thousandths = |share: f64| short((1000.0 * share).round());
+        let [left, foot, right, top] = metrics.bounds.map(thousandths);
+        self.pdf
+            .font_descriptor(descriptor)
+            .name(base)
+            .flags(FontFlags::NON_SYMBOLIC)
+            .bbox(Rect::new(left, foot, right, top))
+            .italic_angle(0.0)
+            .ascent(thousandths(metrics.ascent))
+            .descent(thousandths(metrics.descent))
+            .cap_height(thousandths(metrics.cap_height))
+            .stem_v(if strong { 130.0 } else { 90.0 })
+            .font_file2(program);
+        let bytes_deflated = deflated(&bytes);
+        let length = i32::try_from(bytes.len()).unwrap_or(i32::MAX);
+        self.pdf
+            .stream(program, &bytes_deflated)
+            .filter(Filter::FlateDecode)
+            .pair(Name(b"Length1"), length);
+        let mut map = UnicodeCmap::new(Name(b"Custom"), system);
+        for (number, old) in glyphs.numbers.remapped_gids().enumerate() {
+            if let (Some(character), Ok(number)) =
+                (glyphs.characters.get(&old), u16::try_from(number))
+            {
+                map.pair(number, *character);
+            }
+        }
+        let map = deflated(&map.finish());
+        self.pdf.cmap(unicode, &map).filter(Filter::FlateDecode);
+        id
+    }
+
+    /// The list of sections; None when there are none.
+    fn sections(&mut self, pages: &[Page], ids: &[Ref], scale: f64) -> Option<Ref> {
+        let found: Vec<(&str, Ref, f64)> = pages
+            .iter()
+            .zip(ids)
+            .flat_map(|(page, id)| {
+                let height = page.drawing.height;
+                page.sections
+                    .iter()
+                    .map(move |(text, y)| (text.as_str(), *id, scale * (height - y)))
+            })
+            .collect();
+        let list = self.next();
+        let items: Vec<Ref> = found.iter().map(|_| self.next()).collect();
+        let (first, last) = (items.first()?, items.last()?);
+        let count = i32::try_from(items.len()).unwrap_or(i32::MAX);
+        self.pdf.outline(list).first(*first).last(*last).count(count);
+        for (at, (text, page, y)) in found.into_iter().enumerate() {
+            let mut item = self.pdf.outline_item(items[at]);
+            item.title(TextStr(text)).parent(list);
+            if at > 0 {
+                item.prev(items[at - 1]);
+            }
+            if let Some(next) = items.get(at + 1) {
+                item.next(*next);
+            }
+            item.dest().page(page).xyz(0.0, short(y), None);
+        }
+        Some(list)
+    }
+}
+
+fn font_name(strong: bool) -> String {
+    if strong { "Strong".into() } else { "Regular".into() }
+}
+
+fn opacity_name(percent: u8) -> String {
+    format!("O{percent}")
+}
+
+fn deflated(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
+    // Writing to memory cannot fail.
+    encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("memory")
+}
+
+/// A hundredth of a point is enough anywhere, and fewer digits make a smaller file.
+#[expect(clippy::cast_possible_truncation, reason = "a page is some thousand points high")]
+fn short(value: f64) -> f32 {
+    ((100.0 * value).round() / 100.0) as f32
+}
+
+/// Writes the content of one page.
+struct Writer<'a> {
+    content: Content,
+    /// Of the page (points): there y starts at the foot.
+    height: f64,
+    used: &'a mut Used,
+}
+
+impl Writer<'_> {
+    fn at(&self, [x, y]: [f64; 2]) -> [f32; 2] {
+        [short(x), short(self.height - y)]
+    }
+
+    fn opacity(&mut self, opacity: f64) {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 100")]
+        let percent = (100.0 * opacity.clamp(0.0, 1.0)).round() as u8;
+        self.used.opacities.insert(percent);
+        self.content.set_parameters(Name(opacity_name(percent).as_bytes()));
+    }
+
+    /// Fills and strokes what `trace` draws, each with its own opacity.
+    fn draw(&mut self, style: &Style, trace: &dyn Fn(&mut Self)) {
+        if let Some(ink) = style.fill {
+            self.opacity(ink.opacity);
+            let [red, green, blue] = color(ink);
+            self.content.set_fill_rgb(red, green, blue);
+            trace(self);
+            self.content.fill_nonzero();
+        }
+        if let (Some(ink), true) = (style.stroke, style.stroke_width > 0.0) {
+            self.opacity(ink.opacity);
+            let [red, green, blue] = color(ink);
+            self.content.set_stroke_rgb(red, green, blue);
+            self.content.set_line_width(short(style.stroke_width));
+            self.content.set_dash_pattern(style.dash.iter().map(|v| short(*v)), 0.0);
+            let (cap, join) = if style.round {
+                (LineCapStyle::RoundCap, LineJoinStyle::RoundJoin)
+            } else {
+                (LineCapStyle::ButtCap, LineJoinStyle::MiterJoin)
+            };
+            self.content.set_line_cap(cap).set_line_join(join);
+            trace(self);
+            self.content.stroke();
+        }
+    }
+}
+
+fn color(ink: Ink) -> [f32; 3] {
+    ink.rgb.map(|part| f32::from(part) / 255.0)
+}
+
+impl Painter for Writer<'_> {
+    fn lines(&mut self, runs: &[Vec<[f64; 2]>], closed: bool, style: &Style) {
+        if runs.is_empty() {
+            return;
+        }
+        self.draw(style, &|writer| {
+            for run in runs {
+                for (at, point) in run.iter().enumerate() {
+                    let [x, y] = writer.at(*point);
+                    if at == 0 {
+                        writer.content.move_to(x, y);
+                    }
+                    // A lone point is a step of no length, which round caps turn into a dot.
+                    if at > 0 || run.len() == 1 {
+                        writer.content.line_to(x, y);
+                    }
+                }
+                if closed {
+                    writer.content.close_path();
+                }
+            }
+        });
+    }
+
+    fn circle(&mut self, [x, y]: [f64; 2], radius: f64, style: &Style) {
+        /// Where the handles of a cubic that follows a quarter of a circle lie, over the radius.
+        const HANDLE: f64 = 0.552_284_75;
+        self.draw(style, &|writer| {
+            let spot = |u: f64, v: f64| writer.at([x + radius * u, y + radius * v]);
+            let start = spot(1.0, 0.0);
+            let mut quarters = Vec::new();
+            for [u, v] in [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]] {
+                // From (u, v) a quarter onward, to (−v, u).
+                let first = spot(u - HANDLE * v, v + HANDLE * u);
+                let second = spot(-v + HANDLE * u, u + HANDLE * v);
+                quarters.push([first, second, spot(-v, u)]);
+            }
+            writer.content.move_to(start[0], start[1]);
+            for [a, b, c] in quarters {
+                writer.content.cubic_to(a[0], a[1], b[0], b[1], c[0], c[1]);
+            }
+            writer.content.close_path();
+        });
+    }
+
+    fn word(&mut self, word: &Word<'_>) {
+        self.opacity(word.ink.opacity);
+        let glyphs = self.used.fonts.entry(word.strong).or_default();
+        let mut shown = Vec::new();
+        for (glyph, character, _) in Font::of(word.strong).glyphs(word.text) {
+            shown.extend(glyphs.numbers.remap(glyph).to_be_bytes());
+            glyphs.characters.entry(glyph).or_insert(character);
+        }
+        let [red, green, blue] = color(word.ink);
+        let [x, y] = self.at(word.at);
+        let (sin, cos) = word.degrees.to_radians().sin_cos();
+        // The matrix needs more digits than places do: it turns and never moves.
+        #[expect(clippy::cast_possible_truncation, reason = "between −1 and 1")]
+        let [sin, cos] = [sin as f32, cos as f32];
+        self.content.set_fill_rgb(red, green, blue).begin_text();
+        self.content.set_font(Name(font_name(word.strong).as_bytes()), short(word.size));
+        self.content.set_text_matrix([cos, -sin, sin, cos, x, y]);
+        self.content.show(Str(&shown)).end_text();
+    }
+
+    fn clip(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2]) {
+        let [left, foot] = self.at([x, y + height]);
+        self.content.save_state();
+        self.content.rect(left, foot, short(width), short(height));
+        self.content.clip_nonzero().end_path();
+    }
+
+    fn unclip(&mut self) {
+        self.content.restore_state();
+    }
+}

@@ -1,0 +1,167 @@
+//! A table on paper: how wide its columns are, and which lines its cells break into.
+
+use crate::{
+    drawing::Anchor,
+    font::Font,
+    style::{Style, Tag},
+};
+
+/// Between one column and the next (points).
+const GUTTER: f64 = 10.0;
+/// From one baseline to the next, and above and below the lines of a row together (points).
+const LEADING: f64 = 11.0;
+const AIR: f64 = 4.5;
+
+/// Cells of a table, set to a width.
+pub(crate) struct Sheet {
+    head: Vec<String>,
+    rows: Vec<Vec<String>>,
+    numeric: Vec<bool>,
+    widths: Vec<f64>,
+}
+
+impl Sheet {
+    /// A table of rows as long as `numeric` in at most `width` points; `head` may be empty.
+    pub(crate) fn new(
+        head: Vec<String>,
+        rows: Vec<Vec<String>>,
+        numeric: Vec<bool>,
+        width: f64,
+    ) -> Self {
+        let columns = numeric.len();
+        let mut wish = vec![0.0_f64; columns];
+        let mut least = vec![0.0_f64; columns];
+        for (bold, row) in rows.iter().map(|row| (false, row)).chain([(true, &head)]) {
+            for (at, cell) in row.iter().enumerate().take(columns) {
+                let whole = measure(bold, cell);
+                let longest = cell.split_whitespace().map(|word| measure(bold, word));
+                let longest = longest.fold(0.0, f64::max);
+                wish[at] = wish[at].max(whole);
+                least[at] = least[at].max(if numeric[at] && !bold { whole } else { longest });
+            }
+        }
+        let room = width - GUTTER * columns.saturating_sub(1) as f64;
+        Self { widths: shared(&wish, &least, room), head, rows, numeric }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Lines of every cell of the head; None when there is no head.
+    pub(crate) fn head(&self) -> Option<Vec<Vec<String>>> {
+        (!self.head.is_empty()).then(|| self.broken(true, &self.head))
+    }
+
+    /// Lines of every cell of a row.
+    pub(crate) fn row(&self, at: usize) -> Vec<Vec<String>> {
+        self.broken(false, &self.rows[at])
+    }
+
+    fn broken(&self, bold: bool, cells: &[String]) -> Vec<Vec<String>> {
+        let size = size(bold);
+        let cells = cells.iter().zip(&self.widths);
+        // What fits by the same sum must not be broken by rounding.
+        cells.map(|(cell, width)| wrap(Font::of(bold), size, cell, width + 1e-6)).collect()
+    }
+
+    /// Where a column's lines stand, from the left edge (points), and by which end.
+    pub(crate) fn place(&self, column: usize) -> (f64, Anchor) {
+        let left = self.widths[..column].iter().map(|width| width + GUTTER).sum::<f64>();
+        if self.numeric[column] {
+            (left + self.widths[column], Anchor::End)
+        } else {
+            (left, Anchor::Start)
+        }
+    }
+
+    /// Where a line of a row stands, from the row's top (points).
+    pub(crate) fn baseline(&self, line: usize) -> f64 {
+        0.5 * AIR + 8.5 + LEADING * line as f64
+    }
+}
+
+/// Height of a row (points).
+pub(crate) fn row_height(cells: &[Vec<String>]) -> f64 {
+    AIR + LEADING * cells.iter().map(Vec::len).max().unwrap_or(1).max(1) as f64
+}
+
+fn size(bold: bool) -> f64 {
+    Style::of(Tag::Text, if bold { "page-small-bold" } else { "page-small" }).font_size
+}
+
+fn measure(bold: bool, text: &str) -> f64 {
+    Font::of(bold).width(text, size(bold))
+}
+
+/// Widths of columns in `room`: what they wish where there is room, else what they need at least and
+/// a part of the rest by what they lack; where even that is too much, all shrink alike.
+fn shared(wish: &[f64], least: &[f64], room: f64) -> Vec<f64> {
+    let sum = |widths: &[f64]| widths.iter().sum::<f64>();
+    if sum(wish) <= room {
+        return wish.to_vec();
+    }
+    let needed = sum(least);
+    if needed >= room {
+        return least.iter().map(|width| width * room / needed).collect();
+    }
+    let lacking = sum(wish) - needed;
+    let spare = (room - needed) / lacking;
+    wish.iter().zip(least).map(|(wish, least)| least + (wish - least) * spare).collect()
+}
+
+/// Lines of a text that are no wider than `width`; a word that is wider alone is cut.
+pub(crate) fn wrap(font: &Font, size: f64, text: &str, width: f64) -> Vec<String> {
+    let fits = |line: &str| font.width(line, size) <= width;
+    let mut lines: Vec<String> = Vec::new();
+    let mut line = String::new();
+    for word in text.split_whitespace() {
+        let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
+        if fits(&longer) {
+            line = longer;
+            continue;
+        }
+        if !line.is_empty() {
+            lines.push(std::mem::take(&mut line));
+        }
+        for character in word.chars() {
+            line.push(character);
+            if line.chars().count() > 1 && !fits(&line) {
+                line.pop();
+                lines.push(std::mem::replace(&mut line, character.to_string()));
+            }
+        }
+    }
+    if !line.is_empty() {
+        lines.push(line);
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_line_is_wider_than_asked_and_no_word_is_lost() {
+        let text = "Rack R2 of level 2 walks 12.5 cm pneumonoultramicroscopicsilicovolcanoconiosis";
+        for width in [20.0, 60.0, 200.0, 1000.0] {
+            let lines = wrap(Font::of(false), 9.5, text, width);
+            assert!(
+                lines.iter().all(|line| Font::of(false).width(line, 9.5) <= width),
+                "{lines:?}"
+            );
+            let squeezed = |text: &str| text.replace(' ', "");
+            assert_eq!(squeezed(&lines.concat()), squeezed(text));
+        }
+        assert!(wrap(Font::of(false), 9.5, " ", 50.0).is_empty());
+    }
+
+    #[test]
+    fn columns_share_what_there_is() {
+        assert_eq!(shared(&[10.0, 20.0], &[5.0, 5.0], 40.0), [10.0, 20.0]);
+        let tight = shared(&[10.0, 100.0], &[10.0, 20.0], 60.0);
+        assert_eq!(tight, [10.0, 50.0]);
+        assert_eq!(shared(&[50.0, 50.0], &[50.0, 50.0], 50.0), [25.0, 25.0]);
+    }
+}
