@@ -194,8 +194,8 @@ pub(crate) fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Op
     for j in 0..N {
         for k in 0..j {
             let part = a[j][k];
-            for i in j..N {
-                a[i][j] -= part * a[i][k];
+            for row in a.iter_mut().skip(j) {
+                row[j] -= part * row[k];
             }
         }
         if a[j][j] <= 0.0 || !a[j][j].is_finite() {

@@ -112,6 +112,13 @@ pub fn student_beyond(t: f64, freedom: usize) -> f64 {
     x.inc_beta(p, q, p.ln_beta(q))
 }
 
+/// The `t` within which Student's `T` lies with a probability.
+pub(crate) fn student_quantile(probability: f64, freedom: usize) -> f64 {
+    let nu = freedom as f64;
+    let x = beta_quantile(1.0 - probability, 0.5 * nu, 0.5);
+    (nu * (1.0 / x - 1.0)).sqrt()
+}
+
 /// The `x` at which the regularized incomplete beta function `I(p, q)` is a probability.
 pub(crate) fn beta_quantile(probability: f64, p: f64, q: f64) -> f64 {
     probability.inv_inc_beta(p, q, p.ln_beta(q))
@@ -177,6 +184,9 @@ mod tests {
         assert!((chi_square_above(12.591_587_243_743_977, 6) - 0.05).abs() < 1e-12);
         assert!((student_beyond(2.776_445_105_197_793, 4) - 0.05).abs() < 1e-12);
         assert!((student_beyond(-1.984_467_5, 98) - 0.05).abs() < 1e-6);
+        assert!((student_quantile(0.95, 4) - 2.776_445_105_197_793).abs() < 1e-10);
+        assert!((student_quantile(0.95, 1) - 12.706_204_736_174_7).abs() < 1e-8);
+        assert!((student_quantile(0.95, 999) - 1.962_341_461).abs() < 1e-7);
         assert_eq!(chi_square_above(7.0, 0), 1.0);
     }
 

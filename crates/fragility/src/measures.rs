@@ -97,7 +97,7 @@ pub struct Demanded {
     /// Standard deviation of `ε`: a small one is an efficient measure (Luco and Cornell 2007).
     pub dispersion: f64,
     /// `dispersion/b`, the scatter in terms of intensity, which also punishes measures that move
-    /// the demand little (Padgett, Nielson and DesRoches 2008).
+    /// the demand little (Padgett et al. 2008).
     pub proficiency: f64,
     /// The chance of so large a dependence of `ε` on a second quantity if there were none.
     pub sufficiency: Option<f64>,

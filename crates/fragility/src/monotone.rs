@@ -82,7 +82,10 @@ fn isotonic(stripes: &[Stripe]) -> (Vec<Pool>, Vec<f64>, Vec<f64>) {
     for pool in &pools {
         let chance = pool.chance();
         chances.extend((pool.first..=pool.last).map(|_| chance));
-        misfits.push(deviance(&stripes[pool.first..=pool.last], |_| chance).max(0.0));
+        // A pool of one is met exactly; rounding must not make it a misfit.
+        let alone = pool.first == pool.last;
+        let misfit = || deviance(&stripes[pool.first..=pool.last], |_| chance).max(0.0);
+        misfits.push(if alone { 0.0 } else { misfit() });
     }
     (pools, chances, misfits)
 }

@@ -97,11 +97,7 @@ fn edge(excess: impl Fn(f64) -> f64, from: f64, step: f64, limit: f64) -> f64 {
     for _ in 0..60 {
         let middle = 0.5 * (inside + outside);
         let there = excess(middle);
-        if there <= 0.0 {
-            inside = middle
-        } else {
-            outside = middle
-        }
+        *(if there <= 0.0 { &mut inside } else { &mut outside }) = middle;
         if (outside - inside).abs() <= 1e-9 * inside.abs().max(1.0) {
             break;
         }

@@ -1,6 +1,7 @@
 //! The problems, grouped by theory.
 
 mod consensus;
+mod fragility;
 mod gravity;
 mod housner;
 mod invariances;
@@ -27,6 +28,7 @@ pub fn all() -> Vec<Problem> {
         stacks::problems(),
         invariances::problems(),
         statistics::problems(),
+        fragility::problems(),
         consensus::problems(),
         crate::cases::shipped(),
     ];
