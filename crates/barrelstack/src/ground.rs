@@ -84,7 +84,14 @@ const RECORD_LIMIT: usize = 256 << 20;
 /// # Errors
 /// When a record cannot be read, lacks the component asked for, or cannot be scaled.
 pub fn ground(scenario: &Scenario) -> Result<Ground, GroundError> {
-    let spec = &scenario.motion;
+    of_spec(&scenario.motion, scenario.run.similitude)
+}
+
+/// Reads or makes a motion, scaled as it says, for a stack of a length scale.
+///
+/// # Errors
+/// As [`ground`].
+pub(crate) fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
     let mut ground = match &spec.source {
         MotionSource::None => return Ok(Ground::default()),
         MotionSource::Record(record) => recorded(record)?,
@@ -92,12 +99,13 @@ pub fn ground(scenario: &Scenario) -> Result<Ground, GroundError> {
         MotionSource::Pulse(pulse) => Ground { motion: Some(pulsed(pulse)?), ..Ground::default() },
     };
     if let Some(motion) = ground.motion.take() {
-        ground.motion = Some(scaled(motion, spec, scenario.run.similitude)?);
+        ground.motion = Some(scaled(motion, spec, similitude)?);
     }
     Ok(ground)
 }
 
-fn scaled(
+/// A motion scaled and stretched as a scenario says, for a stack of a length scale.
+pub(crate) fn scaled(
     mut motion: GroundMotion,
     spec: &MotionSpec,
     run_scale: f64,

@@ -22,6 +22,7 @@ pub mod reproduce;
 pub mod run;
 pub mod scenario;
 pub mod step;
+pub mod study;
 pub mod summary;
 mod system;
 pub mod verify;

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use barrelstack_dynamics::contact::Basis;
+use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::{
     EnergySummary, Finish, Method, Motion, Planar, RunError, Scratch, SettleError, Settled,
     Simulation, State, settle, simulate,
@@ -124,27 +125,10 @@ pub fn run(
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Run, RunFailure> {
     let ground = ground(scenario)?;
-    let assembly = assemble(scenario)?;
-    let model = &assembly.model;
     let time_scale = scenario.run.similitude.sqrt();
     let end_time = end_time(scenario, &ground, time_scale)?;
-
-    let mut state = State::initial(model);
-    let mut scratch = Scratch::new(model);
-    check_overlap(&assembly, &state, &mut scratch, scenario.run.similitude)?;
-    let step = time_step(scenario, &assembly)?;
-    check_length(end_time, step)?;
-    let settled = if scenario.run.settle {
-        Some(at_rest(scenario, &assembly, &mut state, &mut scratch)?)
-    } else {
-        barrelstack_dynamics::evaluate(model, &state, &mut scratch);
-        None
-    };
-    let free_bodies_start = model.bodies().iter().map(|b| b.twist);
-    if matches!(scenario.scene, Scene::Free(_)) {
-        // Equilibrium is that of the places; what the scenario sets in motion starts from there.
-        state.twists = free_bodies_start.collect();
-    }
+    let Standing { assembly, mut state, mut scratch, settled, step } = stand(scenario, end_time)?;
+    let model = &assembly.model;
 
     let simulation = Simulation { method: method(scenario), time_step: step, end_time };
     let thresholds = thresholds(scenario);
@@ -164,33 +148,15 @@ pub fn run(
     );
     let result = simulate(model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
     let Watch { recording, stresses, fates, interrupted, .. } = watch;
-
-    let mut warnings = ground.warnings.clone();
-    let (outcome, energy, steps) = match result {
-        Ok(totals) => {
-            let energy = totals.energy.summary(0);
-            let broken = energy.residual_ratio() > BOOKS_BROKEN;
-            warnings.extend(energy_warning(&energy).filter(|_| !broken));
-            if interrupted && totals.finish == Finish::Stopped {
-                warnings.push(format!(
-                    "the run was stopped at {:.3} s of {end_time:.3} s; the results hold until then",
-                    state.time
-                ));
-            }
-            let outcome = if broken {
-                Outcome::Invalid { reason: broken_books(&energy) }
-            } else {
-                judge(&assembly, &fates)
-            };
-            warnings.extend(short_warning(&outcome, &ground, state.time).filter(|_| !interrupted));
-            (outcome, Some(energy), totals.steps)
-        }
-        Err(error) => {
-            let RunError::NotFinite { steps, .. } = error;
-            (Outcome::Invalid { reason: error.to_string() }, None, steps)
-        }
-    };
-    warnings.extend(creep_warning(&assembly));
+    let stopped = interrupted && matches!(&result, Ok(totals) if totals.finish == Finish::Stopped);
+    let Verdict { outcome, energy, steps, mut warnings } =
+        conclude(&assembly, &ground, &fates, result, state.time, interrupted);
+    if stopped {
+        warnings.push(format!(
+            "the run was stopped at {:.3} s of {end_time:.3} s; the results hold until then",
+            state.time
+        ));
+    }
     let work = Work {
         steps,
         evaluations: scratch.evaluations - evaluations,
@@ -213,6 +179,82 @@ pub fn run(
         ground,
         assembly,
     })
+}
+
+/// A stack that stands at rest, ready to be shaken.
+#[derive(Clone, Debug)]
+pub(crate) struct Standing {
+    pub(crate) assembly: Assembly,
+    pub(crate) state: State<Planar>,
+    pub(crate) scratch: Scratch<Planar>,
+    pub(crate) settled: Option<Settled>,
+    /// The time step (s).
+    pub(crate) step: f64,
+}
+
+/// Builds a stack for a run until a time (s) and lets it come to rest.
+///
+/// # Errors
+/// When it cannot be built, or does not stand.
+pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunFailure> {
+    let assembly = assemble(scenario)?;
+    let model = &assembly.model;
+    let mut state = State::initial(model);
+    let mut scratch = Scratch::new(model);
+    check_overlap(&assembly, &state, &mut scratch, scenario.run.similitude)?;
+    let step = time_step(scenario, &assembly)?;
+    check_length(end_time, step)?;
+    let settled = if scenario.run.settle {
+        Some(at_rest(scenario, &assembly, &mut state, &mut scratch)?)
+    } else {
+        barrelstack_dynamics::evaluate(model, &state, &mut scratch);
+        None
+    };
+    if matches!(scenario.scene, Scene::Free(_)) {
+        // Equilibrium is that of the places; what the scenario sets in motion starts from there.
+        state.twists = model.bodies().iter().map(|b| b.twist).collect();
+    }
+    Ok(Standing { assembly, state, scratch, settled, step })
+}
+
+/// What the end of a run says of it.
+pub(crate) struct Verdict {
+    pub(crate) outcome: Outcome,
+    pub(crate) energy: Option<EnergySummary>,
+    pub(crate) steps: u64,
+    pub(crate) warnings: Vec<String>,
+}
+
+/// Judges a run that ended at a time (s), by itself or because it was interrupted.
+pub(crate) fn conclude(
+    assembly: &Assembly,
+    ground: &Ground,
+    fates: &Fates,
+    result: Result<RunTotals<Planar>, RunError>,
+    time: f64,
+    interrupted: bool,
+) -> Verdict {
+    let mut warnings = ground.warnings.clone();
+    let (outcome, energy, steps) = match result {
+        Ok(totals) => {
+            let energy = totals.energy.summary(0);
+            let broken = energy.residual_ratio() > BOOKS_BROKEN;
+            warnings.extend(energy_warning(&energy).filter(|_| !broken));
+            let outcome = if broken {
+                Outcome::Invalid { reason: broken_books(&energy) }
+            } else {
+                judge(assembly, fates)
+            };
+            warnings.extend(short_warning(&outcome, ground, time).filter(|_| !interrupted));
+            (outcome, Some(energy), totals.steps)
+        }
+        Err(error) => {
+            let RunError::NotFinite { steps, .. } = error;
+            (Outcome::Invalid { reason: error.to_string() }, None, steps)
+        }
+    };
+    warnings.extend(creep_warning(assembly));
+    Verdict { outcome, energy, steps, warnings }
 }
 
 /// The step (s) that a scenario asks for, or the one its stiffest contact suggests.
@@ -267,7 +309,7 @@ pub(crate) fn at_rest(
     })
 }
 
-fn method(scenario: &Scenario) -> Method {
+pub(crate) fn method(scenario: &Scenario) -> Method {
     match scenario.run.method {
         scenario::Method::SemiImplicitEuler => Method::SemiImplicitEuler,
         scenario::Method::VelocityVerlet => Method::VelocityVerlet,
@@ -276,7 +318,7 @@ fn method(scenario: &Scenario) -> Method {
     }
 }
 
-fn thresholds(scenario: &Scenario) -> Thresholds {
+pub(crate) fn thresholds(scenario: &Scenario) -> Thresholds {
     match &scenario.scene {
         Scene::Stack { outcome, .. } => Thresholds::of(outcome, scenario.run.similitude),
         // A free scene is not judged: nothing in it has a seat.
@@ -290,7 +332,11 @@ fn thresholds(scenario: &Scenario) -> Thresholds {
     }
 }
 
-fn end_time(scenario: &Scenario, ground: &Ground, time_scale: f64) -> Result<f64, RunFailure> {
+pub(crate) fn end_time(
+    scenario: &Scenario,
+    ground: &Ground,
+    time_scale: f64,
+) -> Result<f64, RunFailure> {
     if let Some(duration) = scenario.run.duration {
         return Ok(duration * time_scale);
     }

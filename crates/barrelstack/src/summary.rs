@@ -3,10 +3,10 @@
 use barrelstack_dynamics::EnergySummary;
 use serde::Serialize;
 
-use crate::assemble::PartKind;
+use crate::assemble::{Assembly, PartKind};
 use crate::outcome::Outcome;
 use crate::run::Run;
-use crate::watch::StressEnvelope;
+use crate::watch::{Fates, StressEnvelope, Stresses};
 
 /// Version of the summary's layout.
 pub const SUMMARY_SCHEMA: u32 = 1;
@@ -250,7 +250,12 @@ impl Summary {
             title: run.scenario.title.clone(),
             outcome: outcome(run),
             bodies: bodies(run),
-            demands: demands(run),
+            demands: if matches!(run.outcome, Outcome::Invalid { .. }) {
+                // Numbers of a run that broke down look like results and are none.
+                Demands::default()
+            } else {
+                demands(&run.assembly, &run.fates, Some(&run.stresses))
+            },
             interfaces: joints(run),
             energy: run.energy.as_ref().map(EnergyBooks::of),
             motion: run.ground.motion.as_ref().map(|motion| MotionSummary {
@@ -356,12 +361,8 @@ fn bodies(run: &Run) -> Vec<BodySummary> {
         .collect()
 }
 
-fn demands(run: &Run) -> Demands {
-    if matches!(run.outcome, Outcome::Invalid { .. }) {
-        // Numbers of a run that broke down look like results and are none.
-        return Demands::default();
-    }
-    let assembly = &run.assembly;
+/// The demands on a stack of a run that did not break down; those of stress where stresses were watched.
+pub(crate) fn demands(assembly: &Assembly, fates: &Fates, stresses: Option<&Stresses>) -> Demands {
     let of = |kind: PartKind, level: u32| {
         assembly.of_kind(kind).filter(move |body| assembly.parts[*body].level == Some(level))
     };
@@ -370,8 +371,8 @@ fn demands(run: &Run) -> Demands {
             Some(most.map_or(v, |m| if v.abs() > m.abs() { v } else { m }))
         })
     };
-    let fate = |body: usize| run.fates.fate(body);
-    let stresses = || of(PartKind::Barrel, 1).filter_map(|body| run.stresses.of(body));
+    let fate = |body: usize| fates.fate(body);
+    let stresses = || of(PartKind::Barrel, 1).filter_map(|body| stresses?.of(body));
     let drift = most(&mut of(PartKind::Barrel, assembly.levels).map(|b| fate(b).peak_displacement));
     Demands {
         top_drift_ratio: drift.filter(|_| assembly.height > 0.0).map(|d| d / assembly.height),

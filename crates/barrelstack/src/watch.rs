@@ -61,6 +61,65 @@ impl<'a> Watch<'a> {
     }
 }
 
+/// Watches what becomes of every body, and nothing else: for runs of which there are many.
+pub struct FateWatch<'a> {
+    /// Seats, falls, slips and tilts.
+    pub fates: Fates,
+    assembly: &'a Assembly,
+    /// How long (s) to go on after a collapse; none to go on to the end.
+    after_collapse: Option<f64>,
+    stop: &'a (dyn Fn() -> bool + 'a),
+    /// When to ask next whether to stop (s).
+    next_ask: f64,
+    /// Whether the caller asked to stop.
+    pub interrupted: bool,
+}
+
+impl<'a> FateWatch<'a> {
+    /// Watches a run of an assembly from the state at rest in `state`; `stop` is asked every 0.05 s of simulated time.
+    pub fn new(
+        assembly: &'a Assembly,
+        state: &State<Planar>,
+        thresholds: Thresholds,
+        after_collapse: Option<f64>,
+        stop: &'a dyn Fn() -> bool,
+    ) -> Self {
+        let fates = Fates::new(assembly, state, thresholds);
+        Self { fates, assembly, after_collapse, stop, next_ask: 0.0, interrupted: false }
+    }
+}
+
+impl Observer<Planar> for FateWatch<'_> {
+    fn observe(
+        &mut self,
+        _: &Model<Planar>,
+        state: &State<Planar>,
+        scratch: &Scratch<Planar>,
+        _: &EnergyLedger<Planar>,
+    ) -> ControlFlow<()> {
+        self.fates.observe(self.assembly, state, scratch);
+        if state.time >= self.next_ask {
+            self.next_ask = state.time + PROGRESS;
+            if (self.stop)() {
+                self.interrupted = true;
+                return ControlFlow::Break(());
+            }
+        }
+        done(state.time, self.after_collapse, self.fates.collapse_time())
+    }
+}
+
+/// Whether a run is over at a time (s), because the time after its collapse is.
+fn done(time: f64, after_collapse: Option<f64>, collapse: Option<f64>) -> ControlFlow<()> {
+    match (after_collapse, collapse) {
+        (Some(after), Some(collapse)) if time >= collapse + after => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    }
+}
+
+/// Simulated time (s) between two reports to the caller.
+const PROGRESS: f64 = 0.05;
+
 impl Observer<Planar> for Watch<'_> {
     fn observe(
         &mut self,
@@ -77,15 +136,12 @@ impl Observer<Planar> for Watch<'_> {
         }
         self.recording.observe(self.assembly, self.ground, model, state, scratch, energy);
         if state.time >= self.next_progress {
-            self.next_progress = state.time + 0.05;
+            self.next_progress = state.time + PROGRESS;
             if (self.progress)(state.time).is_break() {
                 self.interrupted = true;
                 return ControlFlow::Break(());
             }
         }
-        match (self.after_collapse, self.fates.collapse_time()) {
-            (Some(after), Some(time)) if state.time >= time + after => ControlFlow::Break(()),
-            _ => ControlFlow::Continue(()),
-        }
+        done(state.time, self.after_collapse, self.fates.collapse_time())
     }
 }

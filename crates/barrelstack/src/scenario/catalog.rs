@@ -227,7 +227,7 @@ pub(super) fn rack_names() -> Vec<&'static str> {
     RACKS.iter().map(|rack| rack.name).collect()
 }
 
-pub(super) fn record_names() -> Vec<&'static str> {
+pub(crate) fn record_names() -> Vec<&'static str> {
     RECORDS.iter().map(|(name, _)| *name).collect()
 }
 

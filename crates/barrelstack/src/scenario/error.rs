@@ -266,7 +266,7 @@ impl Problem {
 pub struct ScenarioError(Box<(Problem, Place)>);
 
 impl ScenarioError {
-    pub(super) fn new(problem: Problem, place: Place) -> Self {
+    pub(crate) fn new(problem: Problem, place: Place) -> Self {
         Self(Box::new((problem, place)))
     }
 

@@ -44,7 +44,7 @@ pub struct Variant {
 }
 
 /// One field.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Field {
     /// Key in the file.
     pub name: &'static str,
@@ -102,6 +102,12 @@ pub enum Kind {
     Table(&'static Section),
     /// A list of tables, known by name in overrides.
     Tables(&'static Section),
+    /// A list of texts.
+    Texts,
+    /// A single value, whose kind another field decides.
+    Value,
+    /// A list of such values.
+    Values,
     /// One of a list of names, or a table; a name stands for a table with this key set to it.
     ChoiceOrTable(fn() -> Vec<&'static str>, &'static str, &'static Section),
 }
@@ -160,7 +166,7 @@ impl Range {
 }
 
 /// A closed set whose members have names in files.
-pub(super) trait Named: Copy + PartialEq + 'static {
+pub(crate) trait Named: Copy + PartialEq + 'static {
     /// All names and members.
     const NAMES: &'static [(&'static str, Self)];
 
@@ -172,12 +178,12 @@ pub(super) trait Named: Copy + PartialEq + 'static {
 }
 
 /// The names of a closed set.
-pub(super) fn names<T: Named>() -> Vec<&'static str> {
+pub(crate) fn names<T: Named>() -> Vec<&'static str> {
     T::NAMES.iter().map(|(name, _)| *name).collect()
 }
 
 impl Field {
-    pub(super) const fn new(
+    pub(crate) const fn new(
         name: &'static str,
         kind: Kind,
         default: Default,
@@ -217,6 +223,9 @@ impl Kind {
             | Self::Points(_)
             | Self::Pair
             | Self::TextOrFalse
+            | Self::Texts
+            | Self::Value
+            | Self::Values
             | Self::Choice(_) => None,
         }
     }
@@ -243,6 +252,9 @@ impl Kind {
             Self::Points(d) => format!("[[\"{0}\", \"{0}\"], …]", d.example()),
             Self::Pair => "[\"block\", \"ground\"]".to_owned(),
             Self::TextOrFalse => "\"UP\"".to_owned(),
+            Self::Texts => "[\"…\"]".to_owned(),
+            Self::Value => "\"0.35 g\"".to_owned(),
+            Self::Values => "[0.3, 0.4, 0.5]".to_owned(),
             Self::Choice(names) | Self::ChoiceOrTable(names, ..) => {
                 format!("\"{}\"", names().first().unwrap_or(&""))
             }
@@ -276,6 +288,9 @@ impl fmt::Display for Kind {
             }
             Self::Pair => f.write_str("a list of two names"),
             Self::TextOrFalse => f.write_str("text or false"),
+            Self::Texts => f.write_str("a list of texts"),
+            Self::Value => f.write_str("a value"),
+            Self::Values => f.write_str("a list of values"),
             Self::Choice(_) => f.write_str("a name"),
             Self::Table(_) => f.write_str("a table"),
             Self::Tables(_) => f.write_str("a list of tables"),
@@ -286,7 +301,7 @@ impl fmt::Display for Kind {
 
 impl Section {
     /// All fields for a variant, or for all variants when there is none chosen.
-    pub(super) fn fields_of(
+    pub(crate) fn fields_of(
         &'static self,
         variant: Option<&'static Variant>,
     ) -> impl Iterator<Item = &'static Field> {
@@ -295,8 +310,13 @@ impl Section {
 
     /// The field of a name in the section or any of its variants.
     pub(super) fn any_field(&'static self, name: &str) -> Option<&'static Field> {
+        self.all_fields().find(|field| field.name == name)
+    }
+
+    /// The fields of the section and of all its variants.
+    pub(super) fn all_fields(&'static self) -> impl Iterator<Item = &'static Field> {
         let variants = self.variants.iter().flat_map(|v| v.list).flat_map(|v| v.fields);
-        self.fields.iter().chain(variants).find(|field| field.name == name)
+        self.fields.iter().chain(variants)
     }
 
     /// The other members of the groups of exclusive fields that a field belongs to.

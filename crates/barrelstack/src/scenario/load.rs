@@ -18,9 +18,11 @@ const READ_LIMIT: usize = 256 << 20;
 const CHAIN_LIMIT: usize = 8;
 
 /// Whether `extends` may name files.
-#[derive(Clone, Copy, PartialEq)]
-enum Access {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Access {
+    /// It may.
     Files,
+    /// It names built-in scenarios only.
     BuiltinOnly,
 }
 
@@ -103,7 +105,7 @@ fn unknown_builtin(field: &str, name: &str) -> Problem {
     }
 }
 
-fn read_file(path: &Path, place: Place) -> Result<Vec<u8>, ScenarioError> {
+pub(super) fn read_file(path: &Path, place: Place) -> Result<Vec<u8>, ScenarioError> {
     system::read(path, READ_LIMIT).map_err(|error| {
         // A file that extends this one stands elsewhere than the place of the error.
         let reason = match &place {
@@ -135,13 +137,13 @@ fn read(
     root::read(reader, &stem(name))
 }
 
-fn stem(name: &str) -> String {
+pub(super) fn stem(name: &str) -> String {
     Path::new(name)
         .file_stem()
         .map_or_else(|| name.to_owned(), |s| s.to_string_lossy().into_owned())
 }
 
-fn add_source(
+pub(super) fn add_source(
     sources: &mut Sources,
     name: &str,
     bytes: &[u8],
@@ -160,15 +162,30 @@ fn add_source(
     Ok(())
 }
 
-/// Parses the first file and what it extends, and lays them over one another.
+/// Parses the first file and lays it over what it extends.
 fn chain(sources: &mut Sources, access: Access) -> Result<Table, ScenarioError> {
+    let table = parsed(sources, 0)?;
+    extend(sources, table, 0, access)
+}
+
+fn parsed(sources: &Sources, file: usize) -> Result<Table, ScenarioError> {
+    let table = sources.parse(file)?;
+    if table.entries.is_empty() {
+        return Err(sources.error(Origin::Whole(file), Problem::Empty));
+    }
+    Ok(table)
+}
+
+/// Lays a table of a file over what it extends.
+pub(super) fn extend(
+    sources: &mut Sources,
+    table: Table,
+    file: usize,
+    access: Access,
+) -> Result<Table, ScenarioError> {
     let mut tables: Vec<Table> = Vec::new();
-    let mut next = Some(0);
-    while let Some(file) = next {
-        let mut table = sources.parse(file)?;
-        if table.entries.is_empty() {
-            return Err(sources.error(Origin::Whole(file), Problem::Empty));
-        }
+    let mut next = Some((table, file));
+    while let Some((mut table, file)) = next {
         next = match table.get("extends").map(|entry| entry.node.clone()) {
             None => None,
             Some(node) => {
@@ -209,7 +226,8 @@ fn chain(sources: &mut Sources, access: Access) -> Result<Table, ScenarioError> 
                     return Err(problem(Problem::Inconsistent { message }));
                 }
                 add_source(sources, &name, &bytes, folder)?;
-                Some(sources.files.len() - 1)
+                let file = sources.files.len() - 1;
+                Some((parsed(sources, file)?, file))
             }
         };
         tables.push(table);

@@ -10,7 +10,7 @@ use super::reader::item_name;
 use super::tree::{Entry, Node, Origin, Sources, Table, Value, parse_value};
 
 /// Lays `over` over `base`.
-pub(super) fn overlay(base: &mut Table, over: Table, section: Option<&'static Section>) {
+pub(crate) fn overlay(base: &mut Table, over: Table, section: Option<&'static Section>) {
     let mut entries = over.entries;
     // The field that chooses a variant goes first, since it decides what the other keys mean.
     if let Some(variants) = section.and_then(|s| s.variants.as_ref()) {
@@ -100,7 +100,7 @@ fn expand_name(node: &mut Node, key: &str) {
 }
 
 /// Turns every name that stands for a table into that table.
-pub(super) fn expand_names(table: &mut Table, section: &'static Section) {
+pub(crate) fn expand_names(table: &mut Table, section: &'static Section) {
     let variant = variant_of(table, section);
     for field in section.fields_of(variant) {
         let Some(entry) = table.get_mut(field.name) else { continue };
@@ -121,7 +121,7 @@ pub(super) fn expand_names(table: &mut Table, section: &'static Section) {
 }
 
 /// Applies the override of the given index, `path=value`.
-pub(super) fn apply_override(
+pub(crate) fn apply_override(
     table: &mut Table,
     section: &'static Section,
     sources: &Sources,
@@ -148,8 +148,39 @@ pub(super) fn apply_override(
     set(table, Some(section), &keys, parse_value(value, origin)).map_err(wrong)
 }
 
+/// The definition of the field at a path, as the table below chooses among variants; `None` where no field has
+/// it.
+pub(crate) fn field_at(
+    table: Option<&Table>,
+    section: &'static Section,
+    keys: &[&str],
+) -> Option<&'static Field> {
+    let (key, rest) = keys.split_first()?;
+    let field = match table {
+        Some(table) => field_of(table, section, key),
+        None => section.any_field(key),
+    }?;
+    if rest.is_empty() {
+        return Some(field);
+    }
+    let inner = field.kind.section()?;
+    let node = table.and_then(|table| table.get(key)).map(|entry| &entry.node.value);
+    if let Kind::Tables(_) = field.kind {
+        // The next key is the name or the number of an item.
+        let Some(Value::Array(items)) = node else { return None };
+        let named = |(index, item): &(usize, &Node)| {
+            item_name(item, *index) == rest[0] || rest[0] == (index + 1).to_string()
+        };
+        let (_, item) = items.iter().enumerate().find(named)?;
+        let Value::Table(item) = &item.value else { return None };
+        return field_at(Some(item), inner, &rest[1..]);
+    }
+    let below = if let Some(Value::Table(below)) = node { Some(below) } else { None };
+    field_at(below, inner, rest)
+}
+
 /// Sets the value at a path, making the tables on the way.
-fn set(
+pub(crate) fn set(
     table: &mut Table,
     section: Option<&'static Section>,
     keys: &[&str],

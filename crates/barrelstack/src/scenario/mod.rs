@@ -47,14 +47,15 @@ mod merge;
 pub mod motion;
 pub mod quantity;
 pub mod rack;
-mod reader;
+pub(crate) mod reader;
 pub mod reference;
 mod root;
 pub mod run;
 pub mod schema;
 pub mod shape;
 pub mod stack;
-mod tree;
+pub(crate) mod template;
+pub(crate) mod tree;
 mod unit;
 mod writer;
 
@@ -134,7 +135,7 @@ impl Scenario {
 }
 
 /// FNV-1a, 64 bits (Fowler, Noll and Vo).
-fn fnv1a(bytes: &[u8]) -> u64 {
+pub(crate) fn fnv1a(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
     })

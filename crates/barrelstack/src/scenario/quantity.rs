@@ -130,7 +130,7 @@ impl fmt::Display for Quantity {
 
 /// The shortest decimal text that reads back to the same bits; an exponent when the number is very
 /// large or small.
-pub(super) fn plain(value: f64) -> String {
+pub(crate) fn plain(value: f64) -> String {
     let size = value.abs();
     if size != 0.0 && !(1e-5..1e15).contains(&size) {
         format!("{value:e}")
@@ -145,7 +145,7 @@ pub(super) fn rounded(value: f64) -> f64 {
 }
 
 /// A text cut to a length that fits an error message.
-pub(super) fn shorten(text: &str) -> String {
+pub(crate) fn shorten(text: &str) -> String {
     const LIMIT: usize = 60;
     if text.chars().count() <= LIMIT {
         text.to_owned()

@@ -11,12 +11,17 @@ use super::root::ROOT;
 /// `extends` and overrides may supply any; ranges and dimensions of quantities, and what fields
 /// mean together, are checked by the reader alone.
 pub fn json_schema() -> Value {
+    of_file("barrelstack scenario", &ROOT)
+}
+
+/// The schema of a file whose top is a section.
+pub(crate) fn of_file(title: &str, top: &'static Section) -> Value {
     let mut sections = Map::new();
-    collect(&mut sections, &ROOT);
+    collect(&mut sections, top);
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "barrelstack scenario",
-        "$ref": reference(&ROOT),
+        "title": title,
+        "$ref": reference(top),
         "$defs": sections,
     })
 }
@@ -85,6 +90,7 @@ fn property(field: &Field) -> Value {
 
 fn kind(kind: Kind) -> Value {
     let quantity = || json!({ "type": "string", "pattern": QUANTITY });
+    let single = || json!({ "type": ["string", "number", "boolean"] });
     let pair =
         |item: Value| json!({ "type": "array", "items": item, "minItems": 2, "maxItems": 2 });
     match kind {
@@ -101,6 +107,9 @@ fn kind(kind: Kind) -> Value {
         Kind::Points(_) => json!({ "type": "array", "items": pair(quantity()), "minItems": 3 }),
         Kind::Pair => pair(json!({ "type": "string" })),
         Kind::TextOrFalse => json!({ "anyOf": [{ "type": "string" }, { "const": false }] }),
+        Kind::Texts => json!({ "type": "array", "items": { "type": "string" }, "minItems": 1 }),
+        Kind::Value => single(),
+        Kind::Values => json!({ "type": "array", "items": single(), "minItems": 1 }),
         Kind::Choice(names) => json!({ "enum": names() }),
         Kind::Table(inner) => json!({ "$ref": reference(inner) }),
         Kind::Tables(inner) => json!({ "type": "array", "items": { "$ref": reference(inner) } }),

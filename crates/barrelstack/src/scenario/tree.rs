@@ -9,7 +9,7 @@ use super::error::{Place, Problem, ScenarioError};
 
 /// Where a key or value was written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Origin {
+pub(crate) enum Origin {
     /// In a file, by its index in [`Sources`], from byte to byte.
     File { file: usize, start: usize, end: usize },
     /// A file as a whole.
@@ -22,14 +22,14 @@ pub(super) enum Origin {
 
 /// A value with its origin.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Node {
-    pub(super) origin: Origin,
-    pub(super) value: Value,
+pub(crate) struct Node {
+    pub(crate) origin: Origin,
+    pub(crate) value: Value,
 }
 
 /// A TOML value.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Value {
+pub(crate) enum Value {
     Text(String),
     /// An integer; `None` when it leaves 64 bits.
     Integer(Option<i64>),
@@ -42,7 +42,7 @@ pub(super) enum Value {
 
 impl Value {
     /// The kind of value, with its article.
-    pub(super) fn describe(&self) -> String {
+    pub(crate) fn describe(&self) -> String {
         match self {
             Self::Text(text) => format!("the text \"{}\"", super::quantity::shorten(text)),
             Self::Integer(Some(value)) => format!("the number {value}"),
@@ -58,60 +58,60 @@ impl Value {
 
 /// One key of a table.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Entry {
-    pub(super) key: String,
-    pub(super) origin: Origin,
-    pub(super) node: Node,
+pub(crate) struct Entry {
+    pub(crate) key: String,
+    pub(crate) origin: Origin,
+    pub(crate) node: Node,
 }
 
 /// A table in the order of writing.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Table {
-    pub(super) entries: Vec<Entry>,
+pub(crate) struct Table {
+    pub(crate) entries: Vec<Entry>,
 }
 
 impl Table {
-    pub(super) fn get(&self, key: &str) -> Option<&Entry> {
+    pub(crate) fn get(&self, key: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.key == key)
     }
 
-    pub(super) fn get_mut(&mut self, key: &str) -> Option<&mut Entry> {
+    pub(crate) fn get_mut(&mut self, key: &str) -> Option<&mut Entry> {
         self.entries.iter_mut().find(|entry| entry.key == key)
     }
 
     /// Replaces the entry of the same key, or appends.
-    pub(super) fn set(&mut self, entry: Entry) {
+    pub(crate) fn set(&mut self, entry: Entry) {
         match self.get_mut(&entry.key) {
             Some(old) => *old = entry,
             None => self.entries.push(entry),
         }
     }
 
-    pub(super) fn remove(&mut self, key: &str) {
+    pub(crate) fn remove(&mut self, key: &str) {
         self.entries.retain(|entry| entry.key != key);
     }
 }
 
 /// A file that takes part in a scenario.
 #[derive(Debug, Clone)]
-pub(super) struct SourceFile {
-    pub(super) name: String,
-    pub(super) text: String,
+pub(crate) struct SourceFile {
+    pub(crate) name: String,
+    pub(crate) text: String,
     /// Folder against which its relative paths are resolved.
-    pub(super) folder: PathBuf,
+    pub(crate) folder: PathBuf,
 }
 
 /// All texts of a scenario, for the errors.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Sources {
-    pub(super) files: Vec<SourceFile>,
+pub(crate) struct Sources {
+    pub(crate) files: Vec<SourceFile>,
     /// Overrides as given, `path=value`.
-    pub(super) overrides: Vec<String>,
+    pub(crate) overrides: Vec<String>,
 }
 
 impl Sources {
     /// An error at a place.
-    pub(super) fn error(&self, origin: Origin, problem: Problem) -> ScenarioError {
+    pub(crate) fn error(&self, origin: Origin, problem: Problem) -> ScenarioError {
         ScenarioError::new(problem, self.place(origin))
     }
 
@@ -128,7 +128,7 @@ impl Sources {
     }
 
     /// Parses the file with the given index.
-    pub(super) fn parse(&self, file: usize) -> Result<Table, ScenarioError> {
+    pub(crate) fn parse(&self, file: usize) -> Result<Table, ScenarioError> {
         let text = &self.files[file].text;
         let document = DeTable::parse(text).map_err(|error| {
             let origin = error.span().map_or(Origin::Whole(file), |span| Origin::File {
@@ -143,7 +143,7 @@ impl Sources {
 }
 
 /// Reads the value of an override or a default: TOML when it is, text when it is not.
-pub(super) fn parse_value(text: &str, origin: Origin) -> Node {
+pub(crate) fn parse_value(text: &str, origin: Origin) -> Node {
     let trimmed = text.trim();
     DeValue::parse(trimmed).map_or_else(
         |_| Node { origin, value: Value::Text(trimmed.to_owned()) },

@@ -6,7 +6,8 @@ mod fields;
 mod text;
 
 pub use fields::{MOTION, PULSE, SCALE, SINE};
-pub(super) use text::{read, rest, write};
+pub(crate) use text::read;
+pub(super) use text::{rest, write};
 
 /// A file named by a scenario.
 #[derive(Debug, Clone)]

@@ -13,12 +13,12 @@ use super::{
 };
 
 /// A ground at rest.
-pub(in crate::scenario) fn rest() -> MotionSpec {
+pub(crate) fn rest() -> MotionSpec {
     MotionSpec { source: MotionSource::None, scale: Scale::Factor(1.0), similitude: 1.0 }
 }
 
 /// Reads the ground motion.
-pub(in crate::scenario) fn read(reader: Reader<'_>) -> Result<MotionSpec, ScenarioError> {
+pub(crate) fn read(reader: Reader<'_>) -> Result<MotionSpec, ScenarioError> {
     let record = reader.file("record")?.map(RecordSource::File);
     let bundled = reader.optional_catalog_name("bundled")?.map(RecordSource::Bundled);
     let details = read_record_details(&reader)?;
@@ -167,7 +167,7 @@ fn read_pulse(reader: Reader<'_>) -> Result<Pulse, ScenarioError> {
 }
 
 /// Writes the ground motion.
-pub(in crate::scenario) fn write(motion: &MotionSpec) -> Table {
+pub(crate) fn write(motion: &MotionSpec) -> Table {
     let mut writer = Writer::new(&MOTION);
     match &motion.source {
         MotionSource::None => writer.flag("none", true),

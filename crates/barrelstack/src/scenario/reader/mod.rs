@@ -12,7 +12,7 @@ mod values;
 type Result<T> = std::result::Result<T, ScenarioError>;
 
 /// One table of a scenario, checked for unknown and conflicting keys.
-pub(in crate::scenario) struct Reader<'a> {
+pub(crate) struct Reader<'a> {
     sources: &'a Sources,
     section: &'static Section,
     variant: Option<&'static Variant>,
@@ -25,7 +25,7 @@ pub(in crate::scenario) struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     /// Opens a table, or the place where it would be.
-    pub(in crate::scenario) fn open(
+    pub(crate) fn open(
         sources: &'a Sources,
         section: &'static Section,
         path: String,
@@ -98,7 +98,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Ends the reading: in builds with assertions, every defined field must have been read.
-    pub(in crate::scenario) fn finish(self) {
+    pub(crate) fn finish(self) {
         let seen = self.seen.borrow();
         for field in self.section.fields_of(self.variant) {
             debug_assert!(
@@ -111,38 +111,43 @@ impl<'a> Reader<'a> {
     }
 
     /// Whether a field is given.
-    pub(in crate::scenario) fn has(&self, name: &str) -> bool {
+    pub(crate) fn has(&self, name: &str) -> bool {
         self.entry(name).is_some()
     }
 
     /// The section as users know it.
-    pub(in crate::scenario) fn label(&self) -> String {
+    pub(crate) fn label(&self) -> String {
         if self.path.is_empty() { "the scenario".to_owned() } else { format!("[{}]", self.path) }
     }
 
     /// The full path of a field.
-    pub(in crate::scenario) fn path_of(&self, name: &str) -> String {
+    pub(crate) fn path_of(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
     /// An error about a field, placed at its value when it has one.
-    pub(in crate::scenario) fn error(&self, name: &str, problem: Problem) -> ScenarioError {
+    pub(crate) fn error(&self, name: &str, problem: Problem) -> ScenarioError {
         let origin = self.entry(name).map_or(self.origin, |node| node.origin);
         self.sources.error(origin, problem)
     }
 
+    /// An error about a value that is given.
+    pub(crate) fn error_at(&self, origin: Origin, problem: Problem) -> ScenarioError {
+        self.sources.error(origin, problem)
+    }
+
     /// Values that are fine alone and wrong together.
-    pub(in crate::scenario) fn inconsistent(&self, name: &str, message: String) -> ScenarioError {
+    pub(crate) fn inconsistent(&self, name: &str, message: String) -> ScenarioError {
         self.error(name, Problem::Inconsistent { message })
     }
 
     /// An error about the table as a whole.
-    pub(in crate::scenario) fn section_error(&self, problem: Problem) -> ScenarioError {
+    pub(crate) fn section_error(&self, problem: Problem) -> ScenarioError {
         self.sources.error(self.origin, problem)
     }
 
     /// None of several fields is given.
-    pub(in crate::scenario) fn one_of(&self, names: &[&str]) -> ScenarioError {
+    pub(crate) fn one_of(&self, names: &[&str]) -> ScenarioError {
         let choices: Vec<String> = names
             .iter()
             .map(|name| self.section.any_field(name).map_or_else(String::new, Field::example))
@@ -152,7 +157,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A field that another value makes necessary is missing.
-    pub(in crate::scenario) fn missing(&self, name: &str) -> ScenarioError {
+    pub(crate) fn missing(&self, name: &str) -> ScenarioError {
         let example = self.section.any_field(name).map_or_else(String::new, Field::example);
         let problem = Problem::Missing { field: name.to_owned(), section: self.label(), example };
         self.sources.error(self.origin, problem)
@@ -171,7 +176,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A table inside this one; one that is absent has only defaults.
-    pub(in crate::scenario) fn section(&self, name: &'static str) -> Result<Self> {
+    pub(crate) fn section(&self, name: &'static str) -> Result<Self> {
         let field = self.field(name);
         let (Kind::Table(section) | Kind::ChoiceOrTable(_, _, section)) = field.kind else {
             self.defined_otherwise(name);
@@ -189,8 +194,28 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Leaves a field to another reader.
+    pub(crate) fn skip(&self, name: &'static str) {
+        self.field(name);
+    }
+
+    /// A table inside this one as written, for another reader.
+    pub(crate) fn table(&self, name: &'static str) -> Result<&'a Table> {
+        let field = self.field(name);
+        let Some(node) = self.entry(name) else { return Err(self.missing(name)) };
+        let Value::Table(table) = &node.value else {
+            return Err(self.wrong_type(name, field.kind, node));
+        };
+        Ok(table)
+    }
+
+    /// Where a field was written; where the table was, for one that is not given.
+    pub(crate) fn origin_of(&self, name: &str) -> Origin {
+        self.entry(name).map_or(self.origin, |node| node.origin)
+    }
+
     /// A table inside this one that may be absent.
-    pub(in crate::scenario) fn optional_section(&self, name: &'static str) -> Result<Option<Self>> {
+    pub(crate) fn optional_section(&self, name: &'static str) -> Result<Option<Self>> {
         if self.has(name) {
             self.section(name).map(Some)
         } else {
@@ -200,7 +225,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A list of tables.
-    pub(in crate::scenario) fn sections(&self, name: &'static str) -> Result<Vec<Self>> {
+    pub(crate) fn sections(&self, name: &'static str) -> Result<Vec<Self>> {
         let field = self.field(name);
         let Kind::Tables(section) = field.kind else { self.defined_otherwise(name) };
         let Some(node) = self.entry(name) else { return Ok(Vec::new()) };
@@ -225,7 +250,7 @@ impl<'a> Reader<'a> {
 }
 
 /// How an item of a list is called in paths: its name, the pair it joins, or its number from 1.
-pub(in crate::scenario) fn item_name(item: &Node, index: usize) -> String {
+pub(crate) fn item_name(item: &Node, index: usize) -> String {
     let number = (index + 1).to_string();
     let Value::Table(table) = &item.value else { return number };
     if let Some(Value::Text(name)) = table.get("name").map(|entry| &entry.node.value) {
@@ -263,7 +288,7 @@ const HABITS: &[(&str, &str)] = &[
 ];
 
 /// The name that looks most like a word, if any comes close.
-pub(in crate::scenario) fn nearest(word: &str, valid: &[&str]) -> Option<String> {
+pub(crate) fn nearest(word: &str, valid: &[&str]) -> Option<String> {
     if word.len() > 60 {
         return None;
     }

@@ -31,18 +31,18 @@ impl Reader<'_> {
     }
 
     /// A quantity in SI.
-    pub(in crate::scenario) fn quantity(&self, name: &'static str) -> Result<f64> {
+    pub(crate) fn quantity(&self, name: &'static str) -> Result<f64> {
         let value = self.optional_quantity(name)?;
         self.required(name, value)
     }
 
     /// A quantity in SI that may be absent.
-    pub(in crate::scenario) fn optional_quantity(&self, name: &'static str) -> Result<Option<f64>> {
+    pub(crate) fn optional_quantity(&self, name: &'static str) -> Result<Option<f64>> {
         Ok(self.optional_quantity_with_dimension(name)?.map(|quantity| quantity.value))
     }
 
     /// A quantity whose dimension tells what it means.
-    pub(in crate::scenario) fn optional_quantity_with_dimension(
+    pub(crate) fn optional_quantity_with_dimension(
         &self,
         name: &'static str,
     ) -> Result<Option<Quantity>> {
@@ -58,7 +58,7 @@ impl Reader<'_> {
     }
 
     /// A quantity, or `None` for the word that stands in its place.
-    pub(in crate::scenario) fn word_or_quantity(&self, name: &'static str) -> Result<Option<f64>> {
+    pub(crate) fn word_or_quantity(&self, name: &'static str) -> Result<Option<f64>> {
         let value = self.value(name, |reader, field, node| {
             let Kind::WordOr(word, dimensions, range) = field.kind else {
                 reader.defined_otherwise(name);
@@ -72,41 +72,47 @@ impl Reader<'_> {
     }
 
     /// A plain number.
-    pub(in crate::scenario) fn number(&self, name: &'static str) -> Result<f64> {
+    pub(crate) fn number(&self, name: &'static str) -> Result<f64> {
         let value = self.optional_number(name)?;
         self.required(name, value)
     }
 
     /// A plain number that may be absent.
-    pub(in crate::scenario) fn optional_number(&self, name: &'static str) -> Result<Option<f64>> {
+    pub(crate) fn optional_number(&self, name: &'static str) -> Result<Option<f64>> {
         self.value(name, |reader, field, node| {
             let Kind::Number(range) = field.kind else { reader.defined_otherwise(name) };
-            let value = match &node.value {
-                Value::Integer(Some(value)) => *value as f64,
-                Value::Float(value) => *value,
-                Value::Text(text) => match Quantity::parse_as(text, &[Dimension::NONE]) {
-                    Ok(quantity) => quantity.value,
-                    Err(_) => return Err(reader.wrong_type(name, field.kind, node)),
-                },
-                Value::Integer(None)
-                | Value::Flag(_)
-                | Value::Date
-                | Value::Array(_)
-                | Value::Table(_) => return Err(reader.wrong_type(name, field.kind, node)),
-            };
-            reader.in_range(name, node, range, value, "", &node.value.describe())?;
-            Ok(value)
+            reader.read_number(name, node, range)
         })
     }
 
+    /// The value of a node that holds a plain number.
+    pub(crate) fn read_number(&self, name: &str, node: &Node, range: Range) -> Result<f64> {
+        let wrong = || self.wrong_type(name, Kind::Number(range), node);
+        let value = match &node.value {
+            Value::Integer(Some(value)) => *value as f64,
+            Value::Float(value) => *value,
+            Value::Text(text) => match Quantity::parse_as(text, &[Dimension::NONE]) {
+                Ok(quantity) => quantity.value,
+                Err(_) => return Err(wrong()),
+            },
+            Value::Integer(None)
+            | Value::Flag(_)
+            | Value::Date
+            | Value::Array(_)
+            | Value::Table(_) => return Err(wrong()),
+        };
+        self.in_range(name, node, range, value, "", &node.value.describe())?;
+        Ok(value)
+    }
+
     /// An integer in its range.
-    pub(in crate::scenario) fn integer(&self, name: &'static str) -> Result<u32> {
+    pub(crate) fn integer(&self, name: &'static str) -> Result<u32> {
         let value = self.optional_integer(name)?;
         self.required(name, value)
     }
 
     /// An integer that may be absent.
-    pub(in crate::scenario) fn optional_integer(&self, name: &'static str) -> Result<Option<u32>> {
+    pub(crate) fn optional_integer(&self, name: &'static str) -> Result<Option<u32>> {
         self.value(name, |reader, field, node| {
             let Kind::Integer(least, greatest) = field.kind else {
                 reader.defined_otherwise(name);
@@ -129,13 +135,13 @@ impl Reader<'_> {
     }
 
     /// `true` or `false`.
-    pub(in crate::scenario) fn flag(&self, name: &'static str) -> Result<bool> {
+    pub(crate) fn flag(&self, name: &'static str) -> Result<bool> {
         let value = self.optional_flag(name)?;
         self.required(name, value)
     }
 
     /// `true` or `false`, or absent.
-    pub(in crate::scenario) fn optional_flag(&self, name: &'static str) -> Result<Option<bool>> {
+    pub(crate) fn optional_flag(&self, name: &'static str) -> Result<Option<bool>> {
         self.value(name, |reader, field, node| {
             let Value::Flag(value) = node.value else {
                 return Err(reader.wrong_type(name, field.kind, node));
@@ -145,13 +151,13 @@ impl Reader<'_> {
     }
 
     /// Text.
-    pub(in crate::scenario) fn text(&self, name: &'static str) -> Result<String> {
+    pub(crate) fn text(&self, name: &'static str) -> Result<String> {
         let value = self.optional_text(name)?;
         self.required(name, value)
     }
 
     /// Text that may be absent; `false` counts as absent where the field allows it.
-    pub(in crate::scenario) fn optional_text(&self, name: &'static str) -> Result<Option<String>> {
+    pub(crate) fn optional_text(&self, name: &'static str) -> Result<Option<String>> {
         let value = self.value(name, |reader, field, node| {
             let text = match (&node.value, field.kind) {
                 (Value::Text(text), _) => text.clone(),
@@ -171,8 +177,47 @@ impl Reader<'_> {
         Ok(value.flatten())
     }
 
+    /// A single value as written, for the caller to make sense of.
+    pub(crate) fn node(&self, name: &'static str) -> Result<Option<Node>> {
+        self.value(name, |reader, field, node| {
+            if matches!(node.value, Value::Array(_) | Value::Table(_) | Value::Date) {
+                return Err(reader.wrong_type(name, field.kind, node));
+            }
+            Ok(node.clone())
+        })
+    }
+
+    /// A list of single values as written, not empty.
+    pub(crate) fn nodes(&self, name: &'static str) -> Result<Option<Vec<Node>>> {
+        self.value(name, |reader, field, node| {
+            let Value::Array(items) = &node.value else {
+                return Err(reader.wrong_type(name, field.kind, node));
+            };
+            let texts = matches!(field.kind, Kind::Texts);
+            for item in items {
+                let single = !matches!(item.value, Value::Array(_) | Value::Table(_) | Value::Date);
+                if !single || texts && !matches!(item.value, Value::Text(_)) {
+                    return Err(reader.wrong_type(name, field.kind, item));
+                }
+            }
+            if items.is_empty() {
+                let message = format!("`{}` is an empty list", reader.path_of(name));
+                return Err(reader.sources.error(node.origin, Problem::Inconsistent { message }));
+            }
+            Ok(items.clone())
+        })
+    }
+
+    /// A list of texts; empty where it is absent.
+    pub(crate) fn texts(&self, name: &'static str) -> Result<Vec<String>> {
+        let nodes = self.nodes(name)?.unwrap_or_default();
+        let text =
+            |node| if let Node { value: Value::Text(text), .. } = node { Some(text) } else { None };
+        Ok(nodes.into_iter().filter_map(text).collect())
+    }
+
     /// A file, relative to the file that names it.
-    pub(in crate::scenario) fn file(&self, name: &'static str) -> Result<Option<FileRef>> {
+    pub(crate) fn file(&self, name: &'static str) -> Result<Option<FileRef>> {
         let Some(path) = self.optional_text(name)? else { return Ok(None) };
         let folder = match self.entry(name).map(|node| node.origin) {
             Some(Origin::File { file, .. }) => self.sources.files[file].folder.clone(),
@@ -184,16 +229,13 @@ impl Reader<'_> {
     }
 
     /// A member of a closed set.
-    pub(in crate::scenario) fn choice<T: Named>(&self, name: &'static str) -> Result<T> {
+    pub(crate) fn choice<T: Named>(&self, name: &'static str) -> Result<T> {
         let value = self.optional_choice(name)?;
         self.required(name, value)
     }
 
     /// A member of a closed set that may be absent.
-    pub(in crate::scenario) fn optional_choice<T: Named>(
-        &self,
-        name: &'static str,
-    ) -> Result<Option<T>> {
+    pub(crate) fn optional_choice<T: Named>(&self, name: &'static str) -> Result<Option<T>> {
         self.value(name, |reader, _, node| {
             let text = reader.read_name(name, node, &crate::scenario::field::names::<T>())?;
             let found = T::NAMES.iter().find(|(known, _)| *known == text);
@@ -202,16 +244,13 @@ impl Reader<'_> {
     }
 
     /// A name of a list.
-    pub(in crate::scenario) fn catalog_name(&self, name: &'static str) -> Result<String> {
+    pub(crate) fn catalog_name(&self, name: &'static str) -> Result<String> {
         let value = self.optional_catalog_name(name)?;
         self.required(name, value)
     }
 
     /// A name of a list that may be absent.
-    pub(in crate::scenario) fn optional_catalog_name(
-        &self,
-        name: &'static str,
-    ) -> Result<Option<String>> {
+    pub(crate) fn optional_catalog_name(&self, name: &'static str) -> Result<Option<String>> {
         self.value(name, |reader, field, node| {
             let Kind::Choice(names) = field.kind else { reader.defined_otherwise(name) };
             reader.read_name(name, node, &names())
@@ -219,7 +258,7 @@ impl Reader<'_> {
     }
 
     /// Two texts.
-    pub(in crate::scenario) fn pair(&self, name: &'static str) -> Result<[String; 2]> {
+    pub(crate) fn pair(&self, name: &'static str) -> Result<[String; 2]> {
         let value = self.value(name, |reader, field, node| {
             if let Value::Array(items) = &node.value
                 && let [a, b] = items.as_slice()
@@ -233,10 +272,7 @@ impl Reader<'_> {
     }
 
     /// Two quantities.
-    pub(in crate::scenario) fn optional_point(
-        &self,
-        name: &'static str,
-    ) -> Result<Option<[f64; 2]>> {
+    pub(crate) fn optional_point(&self, name: &'static str) -> Result<Option<[f64; 2]>> {
         self.value(name, |reader, field, node| {
             let Kind::Point(dimension) = field.kind else { reader.defined_otherwise(name) };
             reader.read_point(name, node, dimension, field.kind)
@@ -244,13 +280,13 @@ impl Reader<'_> {
     }
 
     /// Two quantities.
-    pub(in crate::scenario) fn point(&self, name: &'static str) -> Result<[f64; 2]> {
+    pub(crate) fn point(&self, name: &'static str) -> Result<[f64; 2]> {
         let value = self.optional_point(name)?;
         self.required(name, value)
     }
 
     /// A list of points.
-    pub(in crate::scenario) fn points(&self, name: &'static str) -> Result<Vec<[f64; 2]>> {
+    pub(crate) fn points(&self, name: &'static str) -> Result<Vec<[f64; 2]>> {
         let value = self.value(name, |reader, field, node| {
             let Kind::Points(dimension) = field.kind else { reader.defined_otherwise(name) };
             let Value::Array(items) = &node.value else {
@@ -264,7 +300,13 @@ impl Reader<'_> {
         self.required(name, value)
     }
 
-    fn read_name(&self, name: &str, node: &Node, valid: &[&'static str]) -> Result<String> {
+    /// The value of a node that holds one of a list of names.
+    pub(crate) fn read_name(
+        &self,
+        name: &str,
+        node: &Node,
+        valid: &[&'static str],
+    ) -> Result<String> {
         let Value::Text(text) = &node.value else {
             return Err(self.wrong_type(name, Kind::Text, node));
         };
@@ -290,7 +332,8 @@ impl Reader<'_> {
         Err(self.wrong_type(name, kind, node))
     }
 
-    fn read_quantity(
+    /// The value of a node that holds a quantity.
+    pub(crate) fn read_quantity(
         &self,
         name: &str,
         node: &Node,
@@ -369,7 +412,7 @@ impl Reader<'_> {
         Err(self.sources.error(node.origin, problem))
     }
 
-    pub(super) fn wrong_type(&self, name: &str, kind: Kind, node: &Node) -> ScenarioError {
+    pub(crate) fn wrong_type(&self, name: &str, kind: Kind, node: &Node) -> ScenarioError {
         self.wrong_type_as(name, &kind.to_string(), node)
     }
 

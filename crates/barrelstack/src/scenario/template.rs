@@ -1,0 +1,174 @@
+//! A scenario some of whose values are still to be set, such as the base of a study.
+
+use std::path::Path;
+
+use super::error::{Place, Problem, ScenarioError};
+use super::field::Field;
+use super::load::{self, Access};
+use super::reader::Reader;
+use super::tree::{Entry, Node, Origin, Sources, Table, Value};
+use super::{MotionSpec, Scenario, merge, root};
+
+/// A scenario that is read again and again with other values.
+///
+/// Values carry the place where they were written, so that a value that does not fit is told there.
+#[derive(Debug)]
+pub(crate) struct Template {
+    sources: Sources,
+    table: Table,
+    title: String,
+}
+
+/// A file that holds a scenario among other things: its sources, its table, and whether it may name files.
+pub(crate) struct Opened {
+    pub(crate) sources: Sources,
+    pub(crate) table: Table,
+    access: Access,
+}
+
+impl Opened {
+    /// Reads and parses a file.
+    pub(crate) fn load(path: &Path) -> Result<Self, ScenarioError> {
+        let name = path.display().to_string();
+        let bytes = load::read_file(path, Place::Whole { file: name.clone() })?;
+        Self::new(&name, &bytes, Access::Files)
+    }
+
+    /// Parses a text that may name built-in scenarios only.
+    pub(crate) fn parse(name: &str, text: &str) -> Result<Self, ScenarioError> {
+        Self::new(name, text.as_bytes(), Access::BuiltinOnly)
+    }
+
+    fn new(name: &str, bytes: &[u8], access: Access) -> Result<Self, ScenarioError> {
+        let mut sources = Sources::default();
+        let folder = Path::new(name).parent().map(Path::to_path_buf).unwrap_or_default();
+        load::add_source(&mut sources, name, bytes, folder)?;
+        let table = sources.parse(0)?;
+        Ok(Self { sources, table, access })
+    }
+
+    /// The scenario in the table of a key, laid over what it extends; `motion` tells whether it needs one of its
+    /// own.
+    pub(crate) fn template(
+        &self,
+        key: &str,
+        fallback_title: &str,
+        motion: bool,
+    ) -> Result<Template, ScenarioError> {
+        let mut sources = self.sources.clone();
+        let (table, origin) = match self.table.get(key) {
+            Some(Entry { node: Node { value: Value::Table(table), origin }, .. }) => {
+                (table.clone(), *origin)
+            }
+            _ => (Table::default(), Origin::Whole(0)),
+        };
+        let mut table = load::extend(&mut sources, table, 0, self.access)?;
+        let plain =
+            |key: &str, value| Entry { key: key.to_owned(), origin, node: Node { origin, value } };
+        if table.get("schema").is_none() {
+            table.set(plain("schema", Value::Integer(Some(i64::from(root::SCHEMA)))));
+        }
+        if !motion {
+            let none = plain("none", Value::Flag(true));
+            table.set(plain("motion", Value::Table(Table { entries: vec![none] })));
+        }
+        Ok(Template { sources, table, title: fallback_title.to_owned() })
+    }
+}
+
+impl Template {
+    /// The definition of the field at a path such as `interface.rack-ground.friction.coefficient`.
+    pub(crate) fn field(&self, path: &str) -> Option<&'static Field> {
+        let keys: Vec<&str> = path.split('.').map(str::trim).collect();
+        merge::field_at(Some(&self.table), &root::ROOT, &keys)
+    }
+
+    /// The path that looks most like one that no field has.
+    pub(crate) fn nearest(&self, path: &str) -> Option<String> {
+        let mut keys: Vec<String> = path.split('.').map(|key| key.trim().to_owned()).collect();
+        for at in 0..keys.len() {
+            let above: Vec<&str> = keys[..at].iter().map(String::as_str).collect();
+            let section = if at == 0 {
+                &root::ROOT
+            } else {
+                merge::field_at(Some(&self.table), &root::ROOT, &above)?.kind.section()?
+            };
+            if section.any_field(&keys[at]).is_none() {
+                let known: Vec<&str> = section.all_fields().map(|field| field.name).collect();
+                keys[at] = super::reader::nearest(&keys[at], &known)?;
+            }
+        }
+        Some(keys.join("."))
+    }
+
+    /// The scenario with values set at paths.
+    pub(crate) fn with<'a>(
+        &self,
+        changes: impl IntoIterator<Item = (&'a str, &'a Node)>,
+    ) -> Result<Scenario, ScenarioError> {
+        let mut table = self.table.clone();
+        for (path, node) in changes {
+            let keys: Vec<&str> = path.split('.').map(str::trim).collect();
+            merge::set(&mut table, Some(&root::ROOT), &keys, node.clone()).map_err(|message| {
+                self.sources.error(node.origin, Problem::Inconsistent { message })
+            })?;
+        }
+        merge::expand_names(&mut table, &root::ROOT);
+        let reader = Reader::open(
+            &self.sources,
+            &root::ROOT,
+            String::new(),
+            Some(&table),
+            Origin::Whole(0),
+        )?;
+        root::read(reader, &self.title)
+    }
+
+    /// The value at a path of a scenario, every default written out; `None` where it has none.
+    pub(crate) fn value_in(scenario: &Scenario, path: &str) -> Option<Value> {
+        let mut table = root::write(scenario);
+        let mut keys = path.split('.').map(str::trim).peekable();
+        while let Some(key) = keys.next() {
+            let position = table.entries.iter().position(|entry| entry.key == key)?;
+            let value = table.entries.swap_remove(position).node.value;
+            if keys.peek().is_none() {
+                return Some(value);
+            }
+            match value {
+                Value::Table(below) => table = below,
+                Value::Array(items) => {
+                    let wanted = keys.next()?;
+                    let found = items.into_iter().enumerate().find(|(index, item)| {
+                        super::reader::item_name(item, *index) == wanted
+                            || wanted == (index + 1).to_string()
+                    });
+                    let Value::Table(below) = found?.1.value else { return None };
+                    table = below;
+                }
+                Value::Text(_)
+                | Value::Integer(_)
+                | Value::Float(_)
+                | Value::Flag(_)
+                | Value::Date => return None,
+            }
+        }
+        None
+    }
+
+    /// All texts that the scenario was read from, in order.
+    pub(crate) fn texts(&self) -> impl Iterator<Item = &str> {
+        self.sources.files.iter().map(|file| file.text.as_str())
+    }
+}
+
+/// Reads the motion in a table whose entries come from the given sources.
+pub(crate) fn motion(
+    sources: &Sources,
+    path: &str,
+    table: &Table,
+    origin: Origin,
+) -> Result<MotionSpec, ScenarioError> {
+    let reader =
+        Reader::open(sources, &super::motion::MOTION, path.to_owned(), Some(table), origin)?;
+    super::motion::read(reader)
+}

@@ -1,0 +1,14 @@
+//! The studies shipped with the program.
+
+const ALL: &[(&str, &str)] =
+    &[("napa-four-levels", include_str!("../../studies/napa-four-levels.toml"))];
+
+/// Names of all built-in studies.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    ALL.iter().map(|(name, _)| *name)
+}
+
+/// The text of a built-in study.
+pub fn get(name: &str) -> Option<&'static str> {
+    ALL.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}

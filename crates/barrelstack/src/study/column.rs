@@ -1,0 +1,159 @@
+//! One column of a table of cases: what it is, and its values.
+
+use serde::{Deserialize, Serialize};
+
+use super::error::StudyError;
+
+/// What a column tells of a case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Role {
+    /// Which case it is.
+    Key,
+    /// A value that the study varies.
+    Factor,
+    /// Which motion shook it, and how strongly it was asked to.
+    Motion,
+    /// How strong the motion was, as shaken.
+    Intensity,
+    /// What happened.
+    Outcome,
+    /// How far things went.
+    Demand,
+    /// How it was computed, and what to know about that.
+    Run,
+}
+
+/// What the values of a column are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ValueKind {
+    /// Whole numbers.
+    Integer,
+    /// Numbers in SI units.
+    Number,
+    /// Text.
+    Text,
+}
+
+/// One value; every column may lack some.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A whole number.
+    Integer(i64),
+    /// A number in SI units.
+    Number(f64),
+    /// A text.
+    Text(String),
+}
+
+/// What a column holds.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ColumnSpec {
+    /// Its name without the unit, unique in a table.
+    pub name: String,
+    /// SI unit; empty for pure numbers and for text.
+    pub unit: String,
+    /// What it tells.
+    pub role: Role,
+    /// What its values are.
+    pub kind: ValueKind,
+}
+
+impl ColumnSpec {
+    pub(super) fn new(name: &str, unit: &str, role: Role, kind: ValueKind) -> Self {
+        Self { name: name.to_owned(), unit: unit.to_owned(), role, kind }
+    }
+
+    /// The name with its unit, as files have it: `pga (m/s2)`.
+    pub fn heading(&self) -> String {
+        if self.unit.is_empty() {
+            self.name.clone()
+        } else {
+            format!("{} ({})", self.name, self.unit)
+        }
+    }
+}
+
+/// The values of a column, one a row; `None` where it does not apply or did not happen.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// Whole numbers.
+    Integer(Vec<Option<i64>>),
+    /// Numbers in SI units.
+    Number(Vec<Option<f64>>),
+    /// Texts.
+    Text(Vec<Option<String>>),
+}
+
+impl Values {
+    /// No values yet.
+    pub fn empty(kind: ValueKind) -> Self {
+        match kind {
+            ValueKind::Integer => Self::Integer(Vec::new()),
+            ValueKind::Number => Self::Number(Vec::new()),
+            ValueKind::Text => Self::Text(Vec::new()),
+        }
+    }
+
+    /// How many rows there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Integer(values) => values.len(),
+            Self::Number(values) => values.len(),
+            Self::Text(values) => values.len(),
+        }
+    }
+
+    /// Whether there are no rows.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The value in a row; `None` where there is none.
+    pub fn get(&self, row: usize) -> Option<Value> {
+        match self {
+            Self::Integer(values) => values.get(row).copied().flatten().map(Value::Integer),
+            Self::Number(values) => values.get(row).copied().flatten().map(Value::Number),
+            Self::Text(values) => values.get(row).cloned().flatten().map(Value::Text),
+        }
+    }
+
+    /// Appends a value of the column's kind; a whole number may stand for a number.
+    pub(super) fn push(&mut self, value: Option<Value>) -> Result<(), StudyError> {
+        match (self, value) {
+            (Self::Integer(values), None) => values.push(None),
+            (Self::Number(values), None) => values.push(None),
+            (Self::Text(values), None) => values.push(None),
+            (Self::Integer(values), Some(Value::Integer(value))) => values.push(Some(value)),
+            (Self::Number(values), Some(Value::Number(value))) => values.push(Some(value)),
+            (Self::Number(values), Some(Value::Integer(value))) => values.push(Some(value as f64)),
+            (Self::Text(values), Some(Value::Text(value))) => values.push(Some(value)),
+            (_, Some(value)) => {
+                return Err(StudyError::Table(format!("{value:?} does not fit its column")));
+            }
+        }
+        Ok(())
+    }
+
+    /// Appends the values of the given rows of another column of the same kind.
+    pub(super) fn take(
+        &mut self,
+        from: &Self,
+        rows: impl Iterator<Item = usize>,
+    ) -> Result<(), StudyError> {
+        for row in rows {
+            self.push(from.get(row))?;
+        }
+        Ok(())
+    }
+}
+
+/// A column with its values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// What it holds.
+    pub spec: ColumnSpec,
+    /// Its values, one a row.
+    pub values: Values,
+}

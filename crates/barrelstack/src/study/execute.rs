@@ -1,0 +1,228 @@
+//! Runs chunks: one of them, or all that are missing, on all cores.
+
+use std::collections::BTreeMap;
+use std::num::NonZero;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use super::Study;
+use super::engine::CaseResult;
+use super::error::StudyError;
+use super::folder::{Collected, Folder, read_shard};
+use super::motions::Shelf;
+use super::prepare::Bench;
+use super::stop::{StopRule, Tally};
+
+/// How a study is run.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RunOptions {
+    /// Threads; as many as there are cores without.
+    pub threads: Option<NonZero<usize>>,
+}
+
+/// How far a study is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Progress {
+    /// Cases in all; of an adaptive design, at most.
+    pub cases: u64,
+    /// Cases of chunks that were done before this run.
+    pub before: u64,
+    /// Cases that this run has done.
+    pub now: u64,
+    /// How the cases of both ended.
+    pub tally: Tally,
+    /// Chunks in all; of an adaptive design, at most.
+    pub chunks: usize,
+    /// Chunks that are done.
+    pub chunks_done: usize,
+}
+
+/// What threads share.
+struct Shared<'a> {
+    study: &'a Study,
+    folder: &'a Folder,
+    shelf: Shelf,
+    rule: Option<StopRule>,
+    stop: AtomicBool,
+    state: Mutex<State>,
+    tell: &'a (dyn Fn(&Progress) -> ControlFlow<()> + Sync),
+}
+
+/// What threads take turns with.
+struct State {
+    /// Chunks that nobody has taken, the next one last.
+    open: Vec<usize>,
+    /// How the cases of each chunk that is done ended.
+    done: BTreeMap<usize, Tally>,
+    progress: Progress,
+    failed: Option<StudyError>,
+    /// Whether the caller asked to stop.
+    interrupted: bool,
+}
+
+impl Study {
+    /// Runs all chunks that are missing from a folder, and collects the table.
+    ///
+    /// `tell` hears of every case that is done, from several threads, and may stop the run; what was done until then is
+    /// kept, and the next run goes on from there.
+    /// How many threads there are changes nothing about the table.
+    ///
+    /// # Errors
+    /// When a motion cannot be read, the folder belongs to something else, a file cannot be written, and
+    /// [`StudyError::Stopped`] when `tell` stopped it.
+    pub fn run(
+        &self,
+        folder: &Path,
+        options: &RunOptions,
+        tell: &(dyn Fn(&Progress) -> ControlFlow<()> + Sync),
+    ) -> Result<Collected, StudyError> {
+        let shelf = Shelf::default();
+        // Before the folder is made: a study that cannot run leaves none behind.
+        self.try_motions(&shelf)?;
+        let place = Folder::open(folder, self)?;
+        place.clean()?;
+        let done = self.done(&place)?;
+        let rule = self.provenance()?.stop;
+        let mut progress =
+            Progress { cases: self.cases(), chunks: self.chunk_count(), ..Progress::default() };
+        progress.tally = done.values().fold(Tally::default(), |sum, tally| sum.plus(*tally));
+        progress.before = progress.tally.cases;
+        progress.chunks_done = done.len();
+        let open: Vec<usize> =
+            (0..self.chunk_count()).rev().filter(|chunk| !done.contains_key(chunk)).collect();
+        let threads = options.threads.or_else(|| std::thread::available_parallelism().ok());
+        let threads = threads.map_or(1, NonZero::get).min(open.len()).max(1);
+        let state = State { open, done, progress, failed: None, interrupted: false };
+        let shared = Shared {
+            study: self,
+            folder: &place,
+            shelf,
+            rule,
+            stop: AtomicBool::new(false),
+            state: Mutex::new(state),
+            tell,
+        };
+        if tell(&progress).is_break() {
+            return Err(StudyError::Stopped);
+        }
+        std::thread::scope(|scope| {
+            for _ in 1..threads {
+                scope.spawn(|| shared.work());
+            }
+            shared.work();
+        });
+        let state = shared.state.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if let Some(error) = state.failed {
+            return Err(error);
+        }
+        if state.interrupted {
+            return Err(StudyError::Stopped);
+        }
+        let collected = Collected::read(folder)?;
+        collected.write(folder)?;
+        Ok(collected)
+    }
+
+    /// Runs one chunk and writes its shard; false when it was there already.
+    ///
+    /// # Errors
+    /// When there is no such chunk, or as [`Study::run`].
+    pub fn run_chunk(
+        &self,
+        folder: &Path,
+        chunk: usize,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<bool, StudyError> {
+        let chunks = self.chunk_count();
+        if chunk >= chunks {
+            return Err(StudyError::Chunk(format!(
+                "the study has no chunk {chunk}; its {chunks} chunks are numbered from 0 to {}",
+                chunks - 1
+            )));
+        }
+        let place = Folder::open(folder, self)?;
+        if let Some(path) = place.shards()?.get(&chunk) {
+            read_shard(path, &self.columns())?;
+            return Ok(false);
+        }
+        let mut bench = Bench { shelf: &Shelf::default(), tell: &mut |_| {}, stop };
+        let table = self.compute(chunk, &mut bench)?.ok_or(StudyError::Stopped)?;
+        place.write_shard(chunk, &table)?;
+        Ok(true)
+    }
+
+    /// How the cases of each chunk that is done ended; a damaged shard is removed, and its chunk is not done.
+    fn done(&self, folder: &Folder) -> Result<BTreeMap<usize, Tally>, StudyError> {
+        let columns = self.columns();
+        let mut done = BTreeMap::new();
+        for (chunk, path) in folder.shards()? {
+            match read_shard(&path, &columns) {
+                Ok(table) => drop(done.insert(chunk, Tally::of(&table))),
+                Err(StudyError::Shard { path, .. }) => {
+                    std::fs::remove_file(&path).map_err(|error| {
+                        StudyError::system("remove the damaged shard", &path, &error)
+                    })?;
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(done)
+    }
+}
+
+impl Shared<'_> {
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Takes chunks until there are none, or none are needed.
+    fn work(&self) {
+        while !self.stop.load(Ordering::Relaxed) {
+            let Some(chunk) = self.take() else { return };
+            if let Err(error) = self.chunk(chunk) {
+                self.stop.store(true, Ordering::Relaxed);
+                self.state().failed.get_or_insert(error);
+            }
+        }
+    }
+
+    /// The next chunk; none when the chunks without a gap are enough.
+    fn take(&self) -> Option<usize> {
+        let mut state = self.state();
+        if let Some(rule) = self.rule {
+            let mut tally = Tally::default();
+            for chunk in 0.. {
+                let Some(done) = state.done.get(&chunk) else { break };
+                tally = tally.plus(*done);
+                if rule.met(tally) {
+                    return None;
+                }
+            }
+        }
+        state.open.pop()
+    }
+
+    fn chunk(&self, chunk: usize) -> Result<(), StudyError> {
+        let mut tell = |result: &CaseResult| self.case_done(result);
+        let stop = || self.stop.load(Ordering::Relaxed);
+        let mut bench = Bench { shelf: &self.shelf, tell: &mut tell, stop: &stop };
+        let Some(table) = self.study.compute(chunk, &mut bench)? else { return Ok(()) };
+        self.folder.write_shard(chunk, &table)?;
+        let mut state = self.state();
+        state.done.insert(chunk, Tally::of(&table));
+        state.progress.chunks_done += 1;
+        Ok(())
+    }
+
+    fn case_done(&self, result: &CaseResult) {
+        let mut state = self.state();
+        state.progress.now += 1;
+        state.progress.tally.add(result.outcome.as_ref().map_or("error", |outcome| outcome.kind()));
+        if (self.tell)(&state.progress).is_break() {
+            state.interrupted = true;
+            self.stop.store(true, Ordering::Relaxed);
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Incremental dynamic analysis: the levels of one hunt, found one after the other.
+
+/// How the levels of a motion are found: hunt and fill (Vamvatsikos and Cornell 2004, Earthquake Spectra 20:523).
+///
+/// Levels rise in growing steps until the stack collapses; then the gap between the highest level that it stood and
+/// the lowest that felled it is narrowed, each time at a third of it; what runs are left go to the middle of the
+/// widest gaps below.
+/// All levels are in SI units of the intensity measure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hunt {
+    /// Lowest level.
+    pub first: f64,
+    /// First step up.
+    pub step: f64,
+    /// By how much each step is longer than the one before.
+    pub growth: f64,
+    /// Gap, over the highest level that stood, at which it is narrow enough.
+    pub resolution: f64,
+    /// Runs of each hunt.
+    pub runs: u32,
+}
+
+/// A level that was run, and whether the stack collapsed; none where that could not be told.
+pub(super) type Seen = (f64, Option<bool>);
+
+impl Hunt {
+    /// The next level to run after those that were; none when the hunt is over.
+    pub(super) fn next(&self, seen: &[Seen]) -> Option<f64> {
+        // A run without a verdict would come out the same at the next level: the hunt ends with it.
+        let known: Vec<(f64, bool)> = seen
+            .iter()
+            .map(|(level, fell)| fell.map(|fell| (*level, fell)))
+            .collect::<Option<_>>()?;
+        if known.len() >= self.runs as usize {
+            return None;
+        }
+        let lowest_fall =
+            known.iter().filter(|(_, fell)| *fell).map(|(level, _)| *level).reduce(f64::min);
+        let Some(fall) = lowest_fall else {
+            let Some((last, _)) = known.last() else { return Some(self.first) };
+            let steps = (known.len() - 1) as f64;
+            return Some(last + self.step + steps * self.growth);
+        };
+        let stood =
+            known.iter().filter(|(level, fell)| !*fell && *level < fall).map(|(level, _)| *level);
+        let stood = stood.fold(0.0, f64::max);
+        let gap = fall - stood;
+        // A stack that fell at the first level is brought down to a tenth of it at most.
+        if gap > self.resolution * stood.max(0.1 * self.first) {
+            return Some(stood + gap / 3.0);
+        }
+        let mut below: Vec<f64> =
+            known.iter().map(|(level, _)| *level).filter(|level| *level <= stood).collect();
+        below.sort_by(f64::total_cmp);
+        let widest = below.windows(2).map(|pair| (pair[1] - pair[0], 0.5 * (pair[0] + pair[1])));
+        widest.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, middle)| middle)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Hunt, Seen};
+
+    fn hunt() -> Hunt {
+        Hunt { first: 0.1, step: 0.1, growth: 0.05, resolution: 0.1, runs: 14 }
+    }
+
+    /// All levels of a hunt of a stack that collapses where `falls` says.
+    fn levels(hunt: &Hunt, falls: impl Fn(f64) -> bool) -> Vec<Seen> {
+        let mut seen = Vec::new();
+        while let Some(level) = hunt.next(&seen) {
+            seen.push((level, Some(falls(level))));
+        }
+        seen
+    }
+
+    #[test]
+    fn steps_grow_until_the_collapse_and_the_gap_is_narrowed_below_its_resolution() {
+        let seen = levels(&hunt(), |level| level > 0.62);
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} and {b}");
+        for ((level, _), expected) in seen.iter().zip([0.1, 0.2, 0.35, 0.55, 0.8]) {
+            near(*level, expected);
+        }
+        near(seen[5].0, 0.55 + 0.25 / 3.0);
+        let fall = seen
+            .iter()
+            .filter(|(_, fell)| *fell == Some(true))
+            .map(|(l, _)| *l)
+            .fold(f64::INFINITY, f64::min);
+        let stood = seen
+            .iter()
+            .filter(|(_, fell)| *fell == Some(false))
+            .map(|(l, _)| *l)
+            .fold(0.0, f64::max);
+        assert!(stood <= 0.62 && fall > 0.62 && fall - stood <= 0.1 * stood, "{stood} {fall}");
+        assert_eq!(seen.len(), 14, "what is left fills the gaps below");
+        let mut sorted: Vec<f64> = seen.iter().map(|(level, _)| *level).collect();
+        sorted.sort_by(f64::total_cmp);
+        sorted.dedup();
+        assert_eq!(sorted.len(), 14, "no level is run twice");
+    }
+
+    #[test]
+    fn an_island_of_collapse_below_is_found_and_the_hunt_goes_on_below_it() {
+        let seen = levels(&hunt(), |level| level > 0.62 || (0.4..0.5).contains(&level));
+        assert!(seen.iter().any(|(level, fell)| *fell == Some(true) && *level < 0.5), "{seen:?}");
+    }
+
+    #[test]
+    fn a_stack_that_never_falls_or_has_no_verdict_ends_its_hunt() {
+        assert_eq!(levels(&hunt(), |_| false).len(), 14);
+        assert_eq!(hunt().next(&[(0.1, None)]), None);
+    }
+
+    #[test]
+    fn a_stack_that_falls_at_once_is_hunted_downward() {
+        let seen = levels(&hunt(), |_| true);
+        assert!(seen.len() < 14 && seen.last().unwrap().0 < 0.015, "{seen:?}");
+    }
+}

@@ -1,0 +1,287 @@
+//! The motions of a study: records, formulas and ensembles made from random numbers.
+
+use std::path::Path;
+use std::sync::{Arc, Mutex};
+
+use barrelstack_motion::{
+    BooreSource, CloughPenzien, Envelope, GroundMotion, IntensityMeasure, MotionError, NearFault,
+    Pulse,
+};
+
+use crate::ground::{self, Ground, GroundError};
+use crate::scenario::{FileRef, MotionSource, MotionSpec, RecordSource, Vertical, fnv1a};
+use crate::system;
+
+use super::error::StudyError;
+
+/// A motion of a study.
+#[derive(Clone, Debug)]
+pub(super) struct Motion {
+    /// Its name in the table, unique.
+    pub(super) name: String,
+    /// Where it comes from.
+    pub(super) shaking: Shaking,
+}
+
+/// Where a motion comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Shaking {
+    /// The motion of the base, with the values of the case.
+    Base,
+    /// As a scenario would have it.
+    Spec(Box<MotionSpec>),
+    /// One realization of an ensemble.
+    Synthetic(Box<Synthetic>),
+}
+
+/// One realization of an ensemble.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Synthetic {
+    pub(super) maker: Making,
+    /// Step of the samples (s).
+    pub(super) time_step: f64,
+    pub(super) seed: u64,
+    pub(super) scale: crate::scenario::Scale,
+}
+
+/// How it is made.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Making {
+    Boore(BooreSource),
+    CloughPenzien { noise: CloughPenzien, envelope: Envelope, duration: f64 },
+    NearFault { pulse: Pulse, start: f64, rest: BooreSource, crossover: f64 },
+}
+
+impl Synthetic {
+    fn motion(&self) -> Result<GroundMotion, MotionError> {
+        let (step, seed) = (self.time_step, self.seed);
+        match &self.maker {
+            Making::Boore(source) => source.motion(step, seed),
+            Making::CloughPenzien { noise, envelope, duration } => {
+                noise.motion(envelope, *duration, step, seed)
+            }
+            Making::NearFault { pulse, start, rest, crossover } => {
+                let fault = NearFault {
+                    pulse: *pulse,
+                    start: *start,
+                    rest: rest.clone(),
+                    crossover: *crossover,
+                };
+                fault.motion(step, seed)
+            }
+        }
+    }
+}
+
+impl Shaking {
+    /// The motion for a stack of a length scale, with the scale of its own source.
+    pub(super) fn ground(&self, base: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
+        match self {
+            Self::Base => ground::of_spec(base, similitude),
+            Self::Spec(spec) => ground::of_spec(spec, similitude),
+            Self::Synthetic(synthetic) => {
+                let spec = MotionSpec {
+                    source: MotionSource::None,
+                    scale: synthetic.scale,
+                    similitude: 1.0,
+                };
+                let motion = ground::scaled(synthetic.motion()?, &spec, similitude)?;
+                Ok(Ground { motion: Some(motion), warnings: Vec::new() })
+            }
+        }
+    }
+
+    /// The files that it is read from.
+    pub(super) fn files<'a>(&'a self, base: Option<&'a MotionSpec>) -> Vec<&'a FileRef> {
+        let spec = match self {
+            Self::Base => base,
+            Self::Spec(spec) => Some(&**spec),
+            Self::Synthetic(_) => None,
+        };
+        let Some(MotionSource::Record(record)) = spec.map(|spec| &spec.source) else {
+            return Vec::new();
+        };
+        let mut files = Vec::new();
+        if let RecordSource::File(file) = &record.source {
+            files.push(file);
+        }
+        if let Vertical::File(file) = &record.vertical {
+            files.push(file);
+        }
+        files
+    }
+}
+
+/// Largest record (bytes) that is looked at.
+const RECORD_LIMIT: usize = 256 << 20;
+
+/// The fingerprint of the bytes of files; none where there are no files.
+pub(super) fn hash_files(name: &str, files: &[&FileRef]) -> Result<Option<u64>, StudyError> {
+    let mut all = Vec::new();
+    for file in files {
+        let path = file.resolve();
+        let bytes =
+            system::read(&path, RECORD_LIMIT).map_err(|reason| unreadable(name, &path, reason))?;
+        all.extend(fnv1a(&bytes).to_le_bytes());
+    }
+    Ok((!files.is_empty()).then(|| fnv1a(&all)))
+}
+
+fn unreadable(name: &str, path: &Path, reason: String) -> StudyError {
+    let obtain = "; correct the path in the study file".to_owned();
+    let error = GroundError::Unreadable { path: path.to_owned(), reason, obtain };
+    StudyError::Motion { name: name.to_owned(), error: Box::new(error) }
+}
+
+/// The intensity measures that a table has, with their columns.
+pub(super) const MEASURES: [(&str, IntensityMeasure); 9] = [
+    ("pga", IntensityMeasure::Pga),
+    ("pgv", IntensityMeasure::Pgv),
+    ("pgv_over_pga", IntensityMeasure::PgvOverPga),
+    ("sa_0.3", IntensityMeasure::Sa { period: 0.3, damping: 0.05 }),
+    ("sa_0.5", IntensityMeasure::Sa { period: 0.5, damping: 0.05 }),
+    ("sa_1.0", IntensityMeasure::Sa { period: 1.0, damping: 0.05 }),
+    ("arias", IntensityMeasure::Arias),
+    ("cav", IntensityMeasure::Cav),
+    ("d5_95", IntensityMeasure::D5_95),
+];
+
+/// A motion ready to shake, with what it measures.
+#[derive(Clone, Debug)]
+pub(super) struct Shaken {
+    pub(super) ground: Arc<Ground>,
+    /// The factor by which it was multiplied for its level.
+    pub(super) factor: f64,
+    /// [`MEASURES`] of the horizontal component, as shaken (SI); none for ground at rest.
+    pub(super) measures: Option<[f64; 9]>,
+}
+
+/// A motion as its source has it, kept for the cases that share it.
+#[derive(Debug)]
+struct Kept {
+    shaking: Shaking,
+    /// The motion of the base, where that is what shakes.
+    base: Option<MotionSpec>,
+    similitude: f64,
+    shaken: Arc<Shaken>,
+    /// Its size (bytes).
+    size: usize,
+}
+
+/// The motions that were used last, so that none is read for every case.
+#[derive(Debug, Default)]
+pub(super) struct Shelf(Mutex<Vec<Kept>>);
+
+/// Most memory (bytes) that the shelf takes.
+const SHELF: usize = 64 << 20;
+
+impl Shelf {
+    /// A motion as its source has it: from the shelf, or read.
+    pub(super) fn unscaled(
+        &self,
+        motion: &Motion,
+        base: &MotionSpec,
+        similitude: f64,
+    ) -> Result<Arc<Shaken>, StudyError> {
+        let own = (motion.shaking == Shaking::Base).then(|| base.clone());
+        let same = |kept: &Kept| {
+            kept.similitude == similitude && kept.base == own && kept.shaking == motion.shaking
+        };
+        if let Ok(mut shelf) = self.0.lock()
+            && let Some(at) = shelf.iter().position(same)
+        {
+            // What was used last stands last, and what stands first goes first.
+            let kept = shelf.remove(at);
+            let shaken = Arc::clone(&kept.shaken);
+            shelf.push(kept);
+            return Ok(shaken);
+        }
+        let failed = |error: GroundError| StudyError::Motion {
+            name: motion.name.clone(),
+            error: Box::new(error),
+        };
+        let ground = motion.shaking.ground(base, similitude).map_err(failed)?;
+        let measures = ground.motion.as_ref().map(measure).transpose();
+        let measures = measures.map_err(|error| failed(error.into()))?;
+        let size = ground.motion.as_ref().map_or(0, size);
+        let shaken = Arc::new(Shaken { ground: Arc::new(ground), factor: 1.0, measures });
+        if let Ok(mut shelf) = self.0.lock() {
+            let shaking = motion.shaking.clone();
+            shelf.push(Kept { shaking, base: own, similitude, shaken: Arc::clone(&shaken), size });
+            let mut total: usize = shelf.iter().map(|kept| kept.size).sum();
+            while total > SHELF && shelf.len() > 1 {
+                total -= shelf.remove(0).size;
+            }
+        }
+        Ok(shaken)
+    }
+
+    /// A motion scaled to a level of a measure.
+    pub(super) fn at_level(
+        &self,
+        motion: &Motion,
+        base: &MotionSpec,
+        similitude: f64,
+        level: Option<(IntensityMeasure, f64)>,
+    ) -> Result<Shaken, StudyError> {
+        let unscaled = self.unscaled(motion, base, similitude)?;
+        let (Some((measure, level)), Some(as_read)) = (level, &unscaled.ground.motion) else {
+            return Ok(Shaken::clone(&unscaled));
+        };
+        let failed = |error: MotionError| StudyError::Motion {
+            name: motion.name.clone(),
+            error: Box::new(error.into()),
+        };
+        let factor = as_read.scale_factor(measure, level).map_err(failed)?;
+        let scaled = as_read.scaled(factor);
+        let warnings = unscaled.ground.warnings.clone();
+        let measures = unscaled.measures.map(|measures| scaled_measures(measures, factor));
+        Ok(Shaken { ground: Arc::new(Ground { motion: Some(scaled), warnings }), factor, measures })
+    }
+}
+
+fn measure(motion: &GroundMotion) -> Result<[f64; 9], MotionError> {
+    let mut values = [0.0; 9];
+    for (value, (_, measure)) in values.iter_mut().zip(MEASURES) {
+        *value = motion.intensity(measure)?;
+    }
+    Ok(values)
+}
+
+/// How measures grow with the factor: Arias with its square, a ratio and a time not at all, the rest with itself.
+fn scaled_measures(mut values: [f64; 9], factor: f64) -> [f64; 9] {
+    for (value, (_, measure)) in values.iter_mut().zip(MEASURES) {
+        *value *= match measure {
+            IntensityMeasure::PgvOverPga | IntensityMeasure::SignificantDuration { .. } => 1.0,
+            IntensityMeasure::Arias => factor * factor,
+            _ => factor.abs(),
+        };
+    }
+    values
+}
+
+/// Memory (bytes) that a motion takes: acceleration, velocity and displacement at every step.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of samples")]
+fn size(motion: &GroundMotion) -> usize {
+    let of = |history: &barrelstack_motion::History| {
+        24 * (history.duration() / history.natural_step()).clamp(0.0, 1e8) as usize
+    };
+    of(&motion.horizontal) + motion.vertical.as_ref().map_or(0, of)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{MEASURES, measure, scaled_measures};
+
+    #[test]
+    fn measures_of_a_scaled_motion_are_the_scaled_measures() {
+        let record = barrelstack_motion::bundled("napa-college-2014").unwrap();
+        let motion = record.default_motion().unwrap();
+        let expected = measure(&motion.scaled(1.7)).unwrap();
+        let scaled = scaled_measures(measure(&motion).unwrap(), 1.7);
+        for ((name, _), (a, b)) in MEASURES.iter().zip(expected.iter().zip(scaled)) {
+            // Measured: 4e-16.
+            assert!((a / b - 1.0).abs() < 1e-12, "{name}: {a} and {b}");
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! From the numbers of a chunk to its rows: cases are built, shaken by the engine, and told.
+
+use std::sync::Arc;
+
+use crate::scenario::{Scenario, ScenarioError};
+
+use super::design::{Case, Design, seed_of};
+use super::engine::{CaseResult, Prepared, simulate};
+use super::error::StudyError;
+use super::ida::{Hunt, Seen};
+use super::motions::{Shaken, Shelf};
+use super::setting::Setting;
+use super::table::StudyTable;
+use super::{Study, Value};
+use crate::outcome::Outcome;
+
+/// Most cases that are built at once: many enough to run in lockstep, few enough to hold their motions.
+const BATCH: usize = 128;
+
+/// What a chunk needs while it runs.
+pub(super) struct Bench<'a> {
+    /// Motions that were used before.
+    pub(super) shelf: &'a Shelf,
+    /// Hears of every case that is done.
+    pub(super) tell: &'a mut dyn FnMut(&CaseResult),
+    /// Whether to stop.
+    pub(super) stop: &'a dyn Fn() -> bool,
+}
+
+/// A case with what shakes it, or why it cannot run.
+struct Built {
+    shaken: Option<Shaken>,
+    prepared: Result<Prepared, String>,
+}
+
+impl Study {
+    /// The rows of a chunk; none when asked to stop.
+    pub(super) fn compute(
+        &self,
+        chunk: usize,
+        bench: &mut Bench<'_>,
+    ) -> Result<Option<StudyTable>, StudyError> {
+        let numbers = self.chunks.numbers(chunk);
+        let mut table = StudyTable::empty(&self.columns());
+        if let Design::Ida(hunt) = &self.design {
+            let Some(rows) = self.hunts(hunt, &numbers, chunk, bench) else { return Ok(None) };
+            for row in rows {
+                table.push(row)?;
+            }
+            return Ok(Some(table));
+        }
+        for numbers in numbers.chunks(BATCH) {
+            let cases: Vec<Case> =
+                numbers.iter().map(|number| self.cases.case(self, *number)).collect();
+            let Some(done) = self.shake(&cases, bench) else { return Ok(None) };
+            for (case, (shaken, result)) in cases.iter().zip(done) {
+                table.push(self.row(case, chunk, shaken.as_ref(), &result))?;
+            }
+        }
+        Ok(Some(table))
+    }
+
+    /// The rows of hunts that go on side by side, one level each at a time; none when asked to stop.
+    fn hunts(
+        &self,
+        hunt: &Hunt,
+        numbers: &[u64],
+        chunk: usize,
+        bench: &mut Bench<'_>,
+    ) -> Option<Vec<Vec<Option<Value>>>> {
+        let hunts: Vec<Case> =
+            numbers.iter().map(|number| self.cases.case(self, *number)).collect();
+        let mut seen: Vec<Vec<Seen>> = vec![Vec::new(); hunts.len()];
+        let mut rows: Vec<(u64, Vec<Option<Value>>)> = Vec::new();
+        loop {
+            let mut round: Vec<(usize, Case)> = Vec::new();
+            for (index, (base, seen)) in hunts.iter().zip(&seen).enumerate() {
+                if let Some(level) = hunt.next(seen) {
+                    let number = base.number * u64::from(hunt.runs) + seen.len() as u64;
+                    let id = seed_of(base.id, &crate::scenario::quantity::plain(level));
+                    round.push((index, Case { number, id, level: Some(level), ..base.clone() }));
+                }
+            }
+            if round.is_empty() {
+                break;
+            }
+            for part in round.chunks(BATCH) {
+                let cases: Vec<Case> = part.iter().map(|(_, case)| case.clone()).collect();
+                for ((index, case), (shaken, result)) in part.iter().zip(self.shake(&cases, bench)?)
+                {
+                    let fell = match &result.outcome {
+                        Ok(Outcome::Collapse { .. }) => Some(true),
+                        Ok(Outcome::Stable) => Some(false),
+                        Ok(Outcome::NotJudged | Outcome::Invalid { .. }) | Err(_) => None,
+                    };
+                    seen[*index].push((case.level.unwrap_or(0.0), fell));
+                    rows.push((case.number, self.row(case, chunk, shaken.as_ref(), &result)));
+                }
+            }
+        }
+        rows.sort_by_key(|(number, _)| *number);
+        Some(rows.into_iter().map(|(_, row)| row).collect())
+    }
+
+    /// Builds cases and runs them; what cannot be built is told as such.
+    fn shake(
+        &self,
+        cases: &[Case],
+        bench: &mut Bench<'_>,
+    ) -> Option<Vec<(Option<Shaken>, CaseResult)>> {
+        let built = self.build(cases, bench.shelf);
+        let ready: Vec<Prepared> =
+            built.iter().filter_map(|built| built.prepared.as_ref().ok()).cloned().collect();
+        let mut results = simulate(&ready, bench.tell, bench.stop)?.into_iter();
+        let mut done = Vec::with_capacity(cases.len());
+        for Built { shaken, prepared } in built {
+            let result = match prepared {
+                Ok(_) => results.next()?,
+                Err(reason) => {
+                    let result = CaseResult::failed(reason);
+                    (bench.tell)(&result);
+                    result
+                }
+            };
+            done.push((shaken, result));
+        }
+        Some(done)
+    }
+
+    fn build(&self, cases: &[Case], shelf: &Shelf) -> Vec<Built> {
+        let mut built: Vec<Built> = Vec::with_capacity(cases.len());
+        // Cases with the same values share a scenario, and those of the same level a motion.
+        let mut scenarios: Vec<(&Case, Result<Arc<Scenario>, String>)> = Vec::new();
+        let mut shakings: Vec<(&Case, *const Scenario, Shaken)> = Vec::new();
+        for case in cases {
+            let known = scenarios.iter().find(|(other, _)| other.settings == case.settings);
+            let scenario = if let Some((_, scenario)) = known {
+                scenario.clone()
+            } else {
+                let scenario = self.scenario(&case.settings);
+                let scenario = scenario.map(Arc::new).map_err(|error| error.sentence());
+                scenarios.push((case, scenario.clone()));
+                scenario
+            };
+            let scenario = match scenario {
+                Ok(scenario) => scenario,
+                Err(reason) => {
+                    built.push(Built { shaken: None, prepared: Err(reason) });
+                    continue;
+                }
+            };
+            let same = |(other, at, _): &&(&Case, *const Scenario, Shaken)| {
+                other.motion == case.motion
+                    && other.level == case.level
+                    && *at == Arc::as_ptr(&scenario)
+            };
+            let shaken = match shakings.iter().find(same) {
+                Some((_, _, shaken)) => Ok(shaken.clone()),
+                None => self.shaken(case, &scenario, shelf),
+            };
+            built.push(match shaken {
+                Ok(shaken) => {
+                    shakings.push((case, Arc::as_ptr(&scenario), shaken.clone()));
+                    let ground = Arc::clone(&shaken.ground);
+                    Built { shaken: Some(shaken), prepared: Ok(Prepared { scenario, ground }) }
+                }
+                Err(error) => Built { shaken: None, prepared: Err(error.to_string()) },
+            });
+        }
+        built
+    }
+
+    /// The scenario with values in place of those of the base.
+    pub(super) fn scenario(&self, settings: &[Option<Setting>]) -> Result<Scenario, ScenarioError> {
+        let changes = self.factors.iter().zip(settings).flat_map(|(factor, setting)| {
+            let fields = factor.fields.iter().map(String::as_str);
+            fields.zip(std::iter::repeat(setting)).filter_map(|(field, setting)| {
+                setting.as_ref().map(|setting| (field, &setting.node))
+            })
+        });
+        self.template.with(changes)
+    }
+
+    /// The motion of a case.
+    fn shaken(
+        &self,
+        case: &Case,
+        scenario: &Scenario,
+        shelf: &Shelf,
+    ) -> Result<Shaken, StudyError> {
+        let level = self.intensity.as_ref().map(|intensity| intensity.measure).zip(case.level);
+        let motion = &self.motions[case.motion];
+        shelf.at_level(motion, &scenario.motion, scenario.run.similitude, level)
+    }
+
+    /// Reads every record once, so that one which is no record is told before the work and not after it.
+    ///
+    /// # Errors
+    /// Names the first motion that cannot be had.
+    pub(super) fn try_motions(&self, shelf: &Shelf) -> Result<(), StudyError> {
+        let scenario = self.template.with([])?;
+        let mut synthetic = false;
+        for motion in &self.motions {
+            // Realizations of ensembles differ in their numbers alone: one speaks for all.
+            if matches!(motion.shaking, super::motions::Shaking::Synthetic(_)) {
+                if synthetic {
+                    continue;
+                }
+                synthetic = true;
+            }
+            shelf.unscaled(motion, &scenario.motion, scenario.run.similitude)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,278 @@
+//! One value of a factor: as a scenario file has it, and as a table has it.
+
+use crate::scenario::field::{Field, Kind, Named as _, Range};
+use crate::scenario::reader::Reader;
+use crate::scenario::tree::{Node, Origin, Value as Written};
+use crate::scenario::{Dimension, Problem, Quantity, ScenarioError};
+
+use super::column::{Value, ValueKind};
+use super::fields::Spacing;
+
+/// One value of a factor.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Setting {
+    /// As a scenario file has it, with the place where it was written.
+    pub(super) node: Node,
+    /// As the table has it, in SI units.
+    pub(super) value: Value,
+}
+
+impl Setting {
+    /// The number (SI) that it is.
+    pub(super) fn number(&self) -> f64 {
+        match &self.value {
+            Value::Number(value) => *value,
+            Value::Integer(value) => *value as f64,
+            Value::Text(_) => f64::NAN,
+        }
+    }
+
+    /// The value in words that tell it from every other, for the identity of a case.
+    pub(super) fn word(&self) -> String {
+        match &self.value {
+            Value::Number(value) => crate::scenario::quantity::plain(*value),
+            Value::Integer(value) => value.to_string(),
+            Value::Text(text) => text.clone(),
+        }
+    }
+}
+
+/// What values a field takes, and how they are written.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Domain {
+    kind: Kind,
+    /// What numbers of it measure; of several that the field allows, the one that this study uses.
+    dimension: Dimension,
+}
+
+impl PartialEq for Domain {
+    fn eq(&self, other: &Self) -> bool {
+        self.kind.to_string() == other.kind.to_string() && self.dimension == other.dimension
+    }
+}
+
+impl Domain {
+    /// The domain of a field, or none where it does not hold a single value.
+    pub(super) fn of(field: &Field) -> Option<Self> {
+        let dimension = match field.kind {
+            Kind::Quantity(dimensions, _) | Kind::WordOr(_, dimensions, _) => dimensions[0],
+            Kind::Text
+            | Kind::Label
+            | Kind::Flag
+            | Kind::Integer(..)
+            | Kind::Number(_)
+            | Kind::TextOrFalse
+            | Kind::Choice(_)
+            | Kind::ChoiceOrTable(..) => Dimension::NONE,
+            Kind::Unit(_)
+            | Kind::Point(_)
+            | Kind::Points(_)
+            | Kind::Pair
+            | Kind::Table(_)
+            | Kind::Tables(_)
+            | Kind::Texts
+            | Kind::Value
+            | Kind::Values => return None,
+        };
+        Some(Self { kind: field.kind, dimension })
+    }
+
+    /// Positive quantities of a dimension.
+    pub(super) fn positive(dimensions: &'static [Dimension]) -> Self {
+        Self { kind: Kind::Quantity(dimensions, Range::POSITIVE), dimension: dimensions[0] }
+    }
+
+    /// The same domain where values measure what a first one does: a field may allow an acceleration or a velocity,
+    /// a column holds one of them.
+    #[must_use]
+    pub(super) fn fixed_by(self, node: &Node) -> Self {
+        let Kind::Quantity(dimensions, _) = self.kind else { return self };
+        let Written::Text(text) = &node.value else { return self };
+        let dimension =
+            Quantity::parse_as(text, dimensions).map_or(self.dimension, |q| q.dimension);
+        Self { dimension, ..self }
+    }
+
+    /// Whether values are numbers of any size between two.
+    pub(super) fn continuous(self) -> bool {
+        matches!(self.kind, Kind::Number(_) | Kind::Quantity(..))
+    }
+
+    /// What a column of its values holds.
+    pub(super) fn column_kind(self) -> ValueKind {
+        match self.kind {
+            Kind::Integer(..) => ValueKind::Integer,
+            Kind::Number(_) | Kind::Quantity(..) => ValueKind::Number,
+            _ => ValueKind::Text,
+        }
+    }
+
+    /// The unit of a column of its values.
+    pub(super) fn unit(self) -> String {
+        if self.dimension == Dimension::NONE || self.column_kind() == ValueKind::Text {
+            String::new()
+        } else {
+            self.dimension.si_unit()
+        }
+    }
+
+    /// A number (SI) as a value.
+    pub(super) fn setting(self, number: f64, origin: Origin) -> Setting {
+        let written = if let Kind::Quantity(..) = self.kind {
+            Written::Text(Quantity { value: number, dimension: self.dimension }.to_string())
+        } else {
+            Written::Float(number)
+        };
+        Setting { node: Node { origin, value: written }, value: Value::Number(number) }
+    }
+
+    /// A value as written.
+    pub(super) fn read(
+        self,
+        reader: &Reader<'_>,
+        name: &str,
+        node: &Node,
+    ) -> Result<Setting, ScenarioError> {
+        let kind = self.kind;
+        let wrong = || {
+            let expected = kind.to_string();
+            let found = node.value.describe();
+            let field = reader.path_of(name);
+            reader.error_at(node.origin, Problem::WrongType { field, expected, found })
+        };
+        let value = match (kind, &node.value) {
+            (Kind::Number(range), _) => Value::Number(reader.read_number(name, node, range)?),
+            (Kind::Quantity(_, range), _) => {
+                // The written number is read again by the scenario, to the same bits.
+                Value::Number(reader.read_quantity(name, node, &[self.dimension], range)?.value)
+            }
+            (Kind::Integer(least, greatest), Written::Integer(Some(value))) => {
+                if !(least..=greatest).contains(value) {
+                    let (field, range) = (reader.path_of(name), kind.to_string());
+                    let found = node.value.describe();
+                    let problem = Problem::OutOfRange { field, range, found };
+                    return Err(reader.error_at(node.origin, problem));
+                }
+                Value::Integer(*value)
+            }
+            (Kind::Choice(names) | Kind::ChoiceOrTable(names, ..), _) => {
+                Value::Text(reader.read_name(name, node, &names())?)
+            }
+            (Kind::Flag | Kind::TextOrFalse, Written::Flag(flag)) => Value::Text(flag.to_string()),
+            (Kind::Label, Written::Integer(Some(value))) => Value::Text(value.to_string()),
+            (
+                Kind::Text | Kind::Label | Kind::TextOrFalse | Kind::WordOr(..),
+                Written::Text(text),
+            ) => Value::Text(text.clone()),
+            _ => return Err(wrong()),
+        };
+        Ok(Setting { node: node.clone(), value })
+    }
+
+    /// A required number (SI) of a reader's field.
+    pub(super) fn number(
+        self,
+        reader: &Reader<'_>,
+        name: &'static str,
+    ) -> Result<f64, ScenarioError> {
+        let Some(node) = reader.node(name)? else { return Err(reader.missing(name)) };
+        // A range or a deviation may lie where a value itself may not, so that only its unit is looked at.
+        let open = match self.kind {
+            Kind::Quantity(dimensions, _) => Kind::Quantity(dimensions, Range::ANY),
+            Kind::Number(_) => Kind::Number(Range::ANY),
+            other => other,
+        };
+        Ok(Self { kind: open, ..self }.read(reader, name, &node)?.number())
+    }
+
+    /// A required list of values, no two alike.
+    pub(super) fn settings(
+        self,
+        reader: &Reader<'_>,
+        name: &'static str,
+    ) -> Result<Vec<Setting>, ScenarioError> {
+        let Some(nodes) = reader.nodes(name)? else { return Err(reader.missing(name)) };
+        let mut settings: Vec<Setting> = Vec::new();
+        for node in &nodes {
+            let setting = self.read(reader, name, node)?;
+            if settings.iter().any(|other| other.value == setting.value) {
+                let message = format!("`{}` holds {} twice", reader.path_of(name), setting.word());
+                return Err(reader.error_at(node.origin, Problem::Inconsistent { message }));
+            }
+            settings.push(setting);
+        }
+        Ok(settings)
+    }
+
+    /// The values of `[….range]`.
+    pub(super) fn range(
+        self,
+        reader: &Reader<'_>,
+        origin: Origin,
+    ) -> Result<Vec<Setting>, ScenarioError> {
+        let spacing: Spacing = reader.choice("spacing")?;
+        let (count, whole) = (reader.integer("count")?, matches!(self.kind, Kind::Integer(..)));
+        if !self.continuous() && !whole {
+            let message = "a field of names has no range; list its `values`".to_owned();
+            return Err(reader.inconsistent("from", message));
+        }
+        let end = |name| -> Result<f64, ScenarioError> {
+            let Some(node) = reader.node(name)? else { return Err(reader.missing(name)) };
+            Ok(self.read(reader, name, &node)?.number())
+        };
+        let (from, to) = (end("from")?, end("to")?);
+        if spacing == Spacing::Logarithmic && (from <= 0.0 || to <= 0.0) {
+            let message = format!("spacing \"{}\" needs both ends above zero", spacing.name());
+            return Err(reader.inconsistent("spacing", message));
+        }
+        if from == to {
+            return Err(reader.inconsistent("to", "`to` is the same as `from`".to_owned()));
+        }
+        let value = |at: u32| {
+            let share = f64::from(at) / f64::from(count - 1);
+            match (at, spacing) {
+                (0, _) => from,
+                (at, _) if at + 1 == count => to,
+                (_, Spacing::Linear) => from + share * (to - from),
+                (_, Spacing::Logarithmic) => from * libm::exp(share * libm::log(to / from)),
+            }
+        };
+        let mut settings = Vec::new();
+        for at in 0..count {
+            let value = value(at);
+            if !whole {
+                settings.push(self.setting(value, origin));
+                continue;
+            }
+            if value != value.round() {
+                let message =
+                    format!("{count} values from {from} to {to} are not all whole numbers");
+                return Err(reader.inconsistent("count", message));
+            }
+            #[expect(
+                clippy::cast_possible_truncation,
+                reason = "a whole number within the range of the field"
+            )]
+            let value = value as i64;
+            let node = Node { origin, value: Written::Integer(Some(value)) };
+            settings.push(Setting { node, value: Value::Integer(value) });
+        }
+        Ok(settings)
+    }
+
+    /// The value of the base of a study, from its resolved scenario.
+    pub(super) fn told(self, written: &Written) -> Option<Value> {
+        match (self.column_kind(), written) {
+            (ValueKind::Integer, Written::Integer(value)) => value.map(Value::Integer),
+            (ValueKind::Number, Written::Float(value)) => Some(Value::Number(*value)),
+            (ValueKind::Number, Written::Integer(value)) => value.map(|v| Value::Number(v as f64)),
+            (ValueKind::Number, Written::Text(text)) => {
+                // A base that states another of the dimensions which the field allows has no number here.
+                Quantity::parse_as(text, &[self.dimension]).ok().map(|q| Value::Number(q.value))
+            }
+            (ValueKind::Text, Written::Text(text)) => Some(Value::Text(text.clone())),
+            (ValueKind::Text, Written::Flag(flag)) => Some(Value::Text(flag.to_string())),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! When enough cases have been run: the collapse probability and its interval.
+
+use serde::{Deserialize, Serialize};
+
+use super::table::StudyTable;
+
+/// How many cases ended how.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Cases in all.
+    pub cases: u64,
+    /// Cases that were judged: stable or collapse.
+    pub judged: u64,
+    /// Cases that collapsed.
+    pub collapsed: u64,
+}
+
+impl Tally {
+    /// Adds a case by the word for its outcome.
+    pub fn add(&mut self, outcome: &str) {
+        self.cases += 1;
+        self.judged += u64::from(matches!(outcome, "stable" | "collapse"));
+        self.collapsed += u64::from(outcome == "collapse");
+    }
+
+    /// The tally of a table.
+    pub fn of(table: &StudyTable) -> Self {
+        let mut tally = Self::default();
+        for outcome in table.texts("outcome").unwrap_or_default() {
+            tally.add(outcome.as_deref().unwrap_or("error"));
+        }
+        tally
+    }
+
+    /// Both together.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            cases: self.cases + other.cases,
+            judged: self.judged + other.judged,
+            collapsed: self.collapsed + other.collapsed,
+        }
+    }
+
+    /// The fraction of judged cases that collapsed, with its 95 % interval (Wilson); none without any.
+    pub fn collapse(&self) -> Option<(f64, [f64; 2])> {
+        wilson(self.collapsed, self.judged)
+    }
+}
+
+/// When a Monte Carlo design has enough cases.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StopRule {
+    /// Half of the width of the 95 % interval (Wilson) of the collapse probability at which to stop.
+    pub half_width: f64,
+    /// Number of cases before the interval is looked at.
+    pub least: u32,
+}
+
+impl StopRule {
+    /// Whether these cases, which are all of the chunks up to one, are enough.
+    pub(super) fn met(&self, tally: Tally) -> bool {
+        let half = tally.collapse().map(|(_, [low, high])| 0.5 * (high - low));
+        tally.cases >= u64::from(self.least) && half.is_some_and(|half| half <= self.half_width)
+    }
+}
+
+/// A fraction and its 95 % score interval (Wilson 1927); none of nothing.
+pub fn wilson(hits: u64, of: u64) -> Option<(f64, [f64; 2])> {
+    if of == 0 {
+        return None;
+    }
+    let z2 = 1.959_963_984_540_054_f64.powi(2);
+    let n = of as f64;
+    let p = hits as f64 / n;
+    let center = (p + 0.5 * z2 / n) / (1.0 + z2 / n);
+    let half = (z2 * (p * (1.0 - p) / n + 0.25 * z2 / (n * n))).sqrt() / (1.0 + z2 / n);
+    Some((p, [(center - half).max(0.0), (center + half).min(1.0)]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::wilson;
+
+    #[test]
+    fn the_interval_is_that_of_wilson() {
+        // statsmodels.stats.proportion.proportion_confint(method="wilson").
+        let cases = [
+            (0, 10, [0.0, 0.277_532_799_862_889]),
+            (10, 20, [0.299_298_021_714_419, 0.700_701_978_285_581]),
+            (3, 4, [0.300_641_842_582_402, 0.954_412_739_190_281]),
+        ];
+        for (hits, of, [low, high]) in cases {
+            let (_, interval) = wilson(hits, of).unwrap();
+            // Measured: 5e-14.
+            assert!(
+                (interval[0] - low).abs() < 1e-12 && (interval[1] - high).abs() < 1e-12,
+                "{interval:?}"
+            );
+        }
+        assert_eq!(wilson(0, 0), None);
+    }
+}
