@@ -12,8 +12,10 @@
 pub mod assemble;
 pub mod calibrate;
 pub mod check;
+pub mod decision;
 pub mod export;
 pub mod ground;
+pub mod heights;
 pub mod outcome;
 mod overlap;
 pub mod render;

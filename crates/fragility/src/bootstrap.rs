@@ -79,6 +79,14 @@ impl Replicates {
         self.interval(level, |curve| curve.dispersion)
     }
 
+    /// The same with the first `most` curves alone, for what is slow to compute from a curve.
+    #[must_use]
+    pub fn thinned(&self, most: usize) -> Self {
+        let mut fewer = self.clone();
+        fewer.curves.truncate(most.max(1));
+        fewer
+    }
+
     /// Share of the resampled data sets that determine no curve.
     pub fn refused_share(&self) -> f64 {
         self.refused as f64 / (self.refused + self.curves.len()) as f64

@@ -66,6 +66,6 @@ pub use scene::{
     SceneBody, Trace,
 };
 pub use strip::{Panel, Strip};
-pub use table::{Cell, Column, Table};
+pub use table::{Cell, Column, Rating, Table};
 pub use ticks::{Ticks, linear_ticks, log_ticks};
 pub use vtk::paraview;
