@@ -139,6 +139,17 @@ enum Levels {
     Hunted,
 }
 
+/// The schema (JSON Schema 2020-12) of a study file, for completion and checking in editors.
+pub fn json_schema() -> serde_json::Value {
+    crate::scenario::schema::of_file("barrelstack study", &STUDY)
+}
+
+/// Every table and field of a study file in Markdown; those of `[base]` are those of a scenario file.
+pub fn reference() -> String {
+    let fields = crate::scenario::reference::of_tables(&STUDY, &["root", "motion", "sine", "pulse", "scale"]);
+    format!("# Fields of a study file\n\n{fields}")
+}
+
 impl Study {
     /// The fingerprint of the study: its text, the scenarios it extends, the bytes of its records, and the version of
     /// the program.
@@ -152,6 +163,24 @@ impl Study {
             Design::Ida(hunt) => self.cases.count(self) * u64::from(hunt.runs),
             _ => self.cases.count(self),
         }
+    }
+
+    /// Whether the number of cases depends on what becomes of them.
+    pub fn is_adaptive(&self) -> bool {
+        match &self.design {
+            Design::Ida(_) => true,
+            Design::MonteCarlo { half_width, .. } => half_width.is_some(),
+            Design::FullFactorial
+            | Design::OneAtATime { .. }
+            | Design::LatinHypercube { .. }
+            | Design::Sobol { .. }
+            | Design::Stripes => false,
+        }
+    }
+
+    /// What a chunk has: "cases", or "hunts" of an incremental dynamic analysis.
+    pub fn chunk_unit(&self) -> &'static str {
+        if matches!(self.design, Design::Ida(_)) { "hunts" } else { "cases" }
     }
 
     /// How many motions there are.

@@ -47,6 +47,8 @@ pub(crate) enum Command {
     Calibrate(crate::commands::calibrate::CalibrateArgs),
     /// Run a scenario and write its figures, numbered pictures and a ParaView series.
     Render(crate::commands::render::RenderArgs),
+    /// Run a scenario many times, with other values and other motions, into one table.
+    Study(crate::commands::study::StudyArgs),
     /// List the built-in scenarios, or print one.
     Scenarios(ScenariosArgs),
 }

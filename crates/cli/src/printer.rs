@@ -35,6 +35,11 @@ pub(crate) fn error(error: &anyhow::Error) {
     eprintln!("error: {error:#}");
 }
 
+/// What became of the work, beside a result.
+pub(crate) fn note(text: &str) {
+    eprintln!("{text}");
+}
+
 /// What the reader of a result should know, one sentence.
 pub(crate) fn warning(text: &str) {
     eprintln!("warning: {text}");

@@ -12,8 +12,7 @@ use super::unit;
 /// the catalog.
 pub fn markdown() -> String {
     let mut text = String::from("# Fields of a scenario file\n\n");
-    let mut seen = Vec::new();
-    table(&mut text, &mut seen, "", &ROOT);
+    text.push_str(&of_tables(&ROOT, &[]));
     text.push_str("## Units\n\n");
     let names: Vec<String> =
         unit::names().filter(|u| *u != "1").map(|u| format!("`{u}`")).collect();
@@ -23,6 +22,15 @@ pub fn markdown() -> String {
         names.join(" ")
     );
     catalog_tables(&mut text);
+    text
+}
+
+/// The tables and fields of a file whose top is a section, but for those of the sections left to another page.
+pub(crate) fn of_tables(top: &'static Section, elsewhere: &[&'static str]) -> String {
+    let mut text = String::new();
+    let mut seen: Vec<(&str, String)> =
+        elsewhere.iter().map(|name| (*name, format!("{name} of a scenario file"))).collect();
+    table(&mut text, &mut seen, "", top);
     text
 }
 

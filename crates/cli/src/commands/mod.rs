@@ -9,6 +9,7 @@ pub(crate) mod render;
 mod reproduce;
 mod run;
 mod scenarios;
+pub(crate) mod study;
 
 use std::io::Read as _;
 use std::path::Path;
@@ -35,6 +36,7 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
         Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::Motion(args) => motion::motion(&args),
         Command::Render(args) => render::render(&args),
+        Command::Study(args) => study::study(&args),
         Command::Scenarios(args) => scenarios::scenarios(&args),
     }
 }

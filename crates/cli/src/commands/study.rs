@@ -1,0 +1,280 @@
+//! `barrelstack study`: one scenario run many times, on this machine or chunk by chunk on others.
+
+mod answer;
+mod emit;
+mod live;
+
+use std::num::NonZero;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::Context as _;
+use barrelstack::study::{Collected, RunOptions, Study, StudyError};
+use clap::Subcommand;
+use serde_json::json;
+
+use crate::printer;
+
+/// What the help ends with.
+const AFTER_HELP: &str = "\
+Start with:
+  barrelstack study example > mine.toml           a commented study to change
+  barrelstack study plan mine.toml                how many cases and chunks it has
+  barrelstack study mine.toml --out mine          run it; run it again to go on after a stop
+  barrelstack study fields                        all that a study file can hold
+
+Results are in the folder: table.csv, table.parquet and provenance.json, and one Parquet file a chunk in shards.";
+
+/// Arguments of `study`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = AFTER_HELP,
+    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true
+)]
+pub(crate) struct StudyArgs {
+    #[command(subcommand)]
+    action: Option<Action>,
+    #[command(flatten)]
+    run: RunArgs,
+}
+
+/// A study.
+#[derive(Debug, clap::Args)]
+struct Which {
+    /// A study file (TOML), or the name of a built-in study.
+    #[arg(value_name = "STUDY")]
+    study: String,
+}
+
+/// Arguments of `study` and `study run`.
+#[derive(Debug, clap::Args)]
+struct RunArgs {
+    /// A study file (TOML), or the name of a built-in study.
+    #[arg(value_name = "STUDY", required = true)]
+    study: Option<String>,
+    /// Folder of the results: new, empty, or one of the same study, which then goes on.
+    #[arg(long, value_name = "DIR", required = true)]
+    out: Option<PathBuf>,
+    /// Threads; all cores without. The table does not depend on it.
+    #[arg(long, value_name = "NUMBER")]
+    threads: Option<NonZero<usize>>,
+    /// Print one JSON document in place of the summary for people.
+    #[arg(long)]
+    json: bool,
+    /// Show no progress, which is shown on a terminal only.
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+#[derive(Debug, clap::Args)]
+struct PlanArgs {
+    #[command(flatten)]
+    which: Which,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+struct ChunkArgs {
+    #[command(flatten)]
+    which: Which,
+    /// The chunk, from 0.
+    #[arg(long, value_name = "NUMBER")]
+    chunk: usize,
+    /// Folder of the results, shared by all chunks.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+#[derive(Debug, clap::Args)]
+struct FolderArgs {
+    /// A folder that `barrelstack study` wrote.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What to do with a study.
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// Run what is missing and collect the table (the same as without `run`).
+    Run(RunArgs),
+    /// List the chunks, without running anything.
+    Plan(PlanArgs),
+    /// Run one chunk and write its shard; does nothing when the shard is there.
+    RunChunk(ChunkArgs),
+    /// Say how far a study is.
+    Status(FolderArgs),
+    /// Write table.csv, table.parquet and provenance.json from the shards that are there.
+    Collect(FolderArgs),
+    /// Write job files with which another engine runs all chunks.
+    Emit(emit::EmitArgs),
+    /// Print a built-in study, with its comments, as a starting point.
+    Example {
+        /// Its name; without it the first.
+        name: Option<String>,
+        /// List the names instead.
+        #[arg(long)]
+        list: bool,
+    },
+    /// List every field of a study file, with its default and what it means.
+    Fields,
+    /// Print the JSON schema for editors.
+    Schema,
+}
+
+/// Does what was typed.
+pub(crate) fn study(args: &StudyArgs) -> anyhow::Result<ExitCode> {
+    match &args.action {
+        None => return run(&args.run),
+        Some(Action::Run(args)) => return run(args),
+        Some(Action::Plan(args)) => plan(args)?,
+        Some(Action::RunChunk(args)) => return run_chunk(args),
+        Some(Action::Status(args)) => status(args)?,
+        Some(Action::Collect(args)) => collect(args)?,
+        Some(Action::Emit(args)) => emit::emit(args)?,
+        Some(Action::Example { name, list }) => example(name.as_deref(), *list)?,
+        Some(Action::Fields) => printer::text(&barrelstack::study::reference())?,
+        Some(Action::Schema) => {
+            printer::lines([serde_json::to_string_pretty(&barrelstack::study::json_schema())?])?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A study file, or a built-in study by name: a name that is a file is a file.
+fn load(study: &str) -> Result<Study, StudyError> {
+    let path = Path::new(study);
+    if path.is_file() || study.contains(['.', '/', '\\']) {
+        Study::load(path)
+    } else {
+        Study::built_in(study)
+    }
+}
+
+fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
+    // The parser asks for both.
+    let (Some(study), Some(out)) = (&args.study, &args.out) else {
+        anyhow::bail!("name a study and a folder: barrelstack study STUDY --out DIR");
+    };
+    let study = load(study)?;
+    let live = live::Live::new(!args.quiet);
+    let options = RunOptions { threads: args.threads };
+    let collected = match study.run(out, &options, &|progress| live.at(progress)) {
+        Ok(collected) => collected,
+        Err(StudyError::Stopped) => {
+            drop(live);
+            printer::note(&format!(
+                "stopped; every chunk that was done is in {}: run the same command again to go on from there",
+                out.display()
+            ));
+            return Ok(ExitCode::from(130));
+        }
+        Err(error) => return Err(error.into()),
+    };
+    drop(live);
+    if args.json {
+        printer::lines([answer::json(&collected)?])?;
+    } else {
+        printer::lines(answer::lines(&collected, out))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn plan(args: &PlanArgs) -> anyhow::Result<()> {
+    let study = load(&args.which.study)?;
+    let at_most = study.is_adaptive();
+    if args.json {
+        let chunks: Vec<_> = study
+            .plan()
+            .map(|chunk| {
+                let (number, cases) = (chunk.number, chunk.cases);
+                json!({ "chunk": number, "cases": cases, "first": chunk.first, "last": chunk.last })
+            })
+            .collect();
+        let document = json!({
+            "title": study.title,
+            "design": study.design.name(),
+            "study_hash": format!("{:016x}", study.hash()),
+            "cases": study.cases(),
+            "at_most": at_most,
+            "motions": study.motions(),
+            "chunks": chunks,
+        });
+        return printer::lines([serde_json::to_string_pretty(&document)?]);
+    }
+    let (most, unit) = (if at_most { "at most " } else { "" }, study.chunk_unit());
+    let mut lines = vec![
+        study.title.clone(),
+        format!(
+            "  {} design, {most}{} cases in {} chunks, {} motions",
+            study.design.name(),
+            study.cases(),
+            study.chunk_count(),
+            study.motions()
+        ),
+        String::new(),
+        format!("  {:>8}  {unit:>8}  {:>10}  {:>10}", "chunk", "first", "last"),
+    ];
+    lines.extend(study.plan().map(|chunk| {
+        format!("  {:>8}  {:>8}  {:>10}  {:>10}", chunk.number, chunk.cases, chunk.first, chunk.last)
+    }));
+    printer::lines(lines)
+}
+
+fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
+    let study = load(&args.which.study)?;
+    let live = live::Live::new(false);
+    match study.run_chunk(&args.out, args.chunk, &|| live.stopped()) {
+        Ok(true) => printer::lines([format!("chunk {} is done", args.chunk)])?,
+        Ok(false) => printer::lines([format!("chunk {} was done before", args.chunk)])?,
+        Err(StudyError::Stopped) => {
+            printer::note(&format!("stopped; chunk {} is to be run again", args.chunk));
+            return Ok(ExitCode::from(130));
+        }
+        Err(error) => return Err(error.into()),
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn status(args: &FolderArgs) -> anyhow::Result<()> {
+    let status = Collected::status(&args.folder)?;
+    if args.json {
+        let document = json!({
+            "provenance": status.provenance,
+            "tally": answer::tally(&status.tally),
+            "missing": status.missing,
+        });
+        return printer::lines([serde_json::to_string_pretty(&document)?]);
+    }
+    printer::lines(answer::status(&status))
+}
+
+fn collect(args: &FolderArgs) -> anyhow::Result<()> {
+    let collected = Collected::read(&args.folder)?;
+    collected.write(&args.folder)?;
+    if args.json {
+        return printer::lines([answer::json(&collected)?]);
+    }
+    printer::lines(answer::lines(&collected, &args.folder))
+}
+
+fn example(name: Option<&str>, list: bool) -> anyhow::Result<()> {
+    if list {
+        return printer::lines(barrelstack::study::builtin_names());
+    }
+    let name = match name {
+        Some(name) => name,
+        None => barrelstack::study::builtin_names().next().context("there is no built-in study")?,
+    };
+    if let Some(text) = barrelstack::study::builtin(name) {
+        return printer::text(text);
+    }
+    // The error of the library names those there are.
+    Study::built_in(name)?;
+    Ok(())
+}

@@ -1,0 +1,81 @@
+//! A line on the terminal while a study runs, and Ctrl-C that keeps what was done.
+
+use std::io::IsTerminal as _;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use barrelstack::study::Progress;
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Tells how far a study is, and whether the user wants it to stop.
+pub(super) struct Live {
+    bar: Option<ProgressBar>,
+    stop: Arc<AtomicBool>,
+}
+
+impl Live {
+    /// Starts; shows a line only when asked to and only on a terminal.
+    ///
+    /// The first Ctrl-C asks for a stop, a second one ends the program; shards have their names only when whole.
+    pub(super) fn new(show: bool) -> Self {
+        let stop = Arc::new(AtomicBool::new(false));
+        let asked = Arc::clone(&stop);
+        // Without a handler Ctrl-C ends the program, which loses the chunks at work and nothing else.
+        drop(ctrlc::set_handler(move || {
+            if asked.swap(true, Ordering::Relaxed) {
+                #[expect(clippy::exit, reason = "the user asked twice")]
+                std::process::exit(130);
+            }
+        }));
+        let bar = (show && std::io::stderr().is_terminal()).then(|| {
+            let bar = ProgressBar::no_length();
+            bar.set_style(style("{spinner} reading the motions"));
+            bar.enable_steady_tick(Duration::from_millis(200));
+            bar
+        });
+        Self { bar, stop }
+    }
+
+    /// Whether the user asked to stop.
+    pub(super) fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Shows how far it is.
+    pub(super) fn at(&self, progress: &Progress) -> ControlFlow<()> {
+        if let Some(bar) = &self.bar {
+            if bar.length().is_none() {
+                bar.set_style(style("{spinner} {bar:30} {pos} of {len} cases, {per_sec}, {eta} to go; {msg}"));
+                bar.set_position(progress.before);
+                // The rate is that of this run.
+                bar.reset_eta();
+            }
+            bar.set_length(progress.cases);
+            bar.set_position(progress.before + progress.now);
+            if let Some((p, [low, high])) = progress.tally.collapse() {
+                bar.set_message(format!(
+                    "collapse {:.0} % ({:.0} to {:.0} %)",
+                    100.0 * p,
+                    100.0 * low,
+                    100.0 * high
+                ));
+            }
+        }
+        if self.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+/// Takes the line away, also where the study ends in an error.
+impl Drop for Live {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_spinner())
+}

@@ -1,0 +1,204 @@
+//! `barrelstack study` as a user, a cluster and a power cut know it.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::Duration;
+
+use common::{barrelstack, names, program, refused, stderr, stdout};
+
+/// Forty short cases in ten chunks.
+const STUDY: &str = "\
+schema = 1
+title = \"two barrels for a moment\"
+[base.stack]
+levels = 2
+columns = 2
+[base.run]
+duration = \"0.4 s\"
+[base.motion.pulse]
+kind = \"one-sine\"
+amplitude = \"1 g\"
+period = \"0.3 s\"
+[[factor]]
+name = \"friction\"
+field = \"interface.rack-ground.friction.coefficient\"
+range = { from = 0.2, to = 0.6, count = 10 }
+[[factor]]
+field = \"motion.pulse.amplitude\"
+values = [\"0.3 g\", \"0.6 g\", \"0.9 g\", \"1.2 g\"]
+[design]
+kind = \"full-factorial\"
+chunk = 4
+";
+
+fn study(folder: &Path) -> String {
+    let file = folder.join("study.toml");
+    fs::write(&file, STUDY).unwrap();
+    file.display().to_string()
+}
+
+fn run<'a>(file: &'a str, out: &'a str, threads: &'a str) -> [&'a str; 6] {
+    ["study", file, "--out", out, "--threads", threads]
+}
+
+fn tables(out: &str) -> [Vec<u8>; 3] {
+    ["table.csv", "table.parquet", "provenance.json"].map(|name| fs::read(Path::new(out).join(name)).unwrap())
+}
+
+#[test]
+fn killed_at_any_instant_and_resumed_it_gives_the_uninterrupted_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = study(folder.path());
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let whole = path("whole");
+    let start = std::time::Instant::now();
+    let output = barrelstack(run(&file, &whole, "2"));
+    let took = start.elapsed();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+
+    let broken = path("broken");
+    // Instants spread over the whole run, in an order without order.
+    for share in [37, 5, 71, 18, 90, 53, 2, 64, 29, 83] {
+        let mut child = program(run(&file, &broken, "2")).stdout(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(took.mul_f64(f64::from(share) / 300.0));
+        // SIGKILL on Unix.
+        child.kill().unwrap();
+        child.wait().unwrap();
+        if let Some(done) = names(&Path::new(&broken).join("shards")) {
+            let whole = names(&Path::new(&whole).join("shards")).unwrap();
+            let shards = done.iter().filter(|name| name.ends_with(".parquet"));
+            assert!(shards.into_iter().all(|name| whole.contains(name)), "a shard that is there is right: {done:?}");
+        }
+    }
+    let output = barrelstack(run(&file, &broken, "2"));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(tables(&whole) == tables(&broken));
+    let shards = |out: &str| names(&Path::new(out).join("shards")).unwrap();
+    assert_eq!(shards(&whole), shards(&broken), "nothing is left over");
+}
+
+#[test]
+fn chunks_run_one_by_one_in_any_order_give_the_table_of_the_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = study(folder.path());
+    let (whole, parts) = (folder.path().join("whole"), folder.path().join("parts"));
+    let (whole, parts) = (whole.display().to_string(), parts.display().to_string());
+    assert_eq!(barrelstack(run(&file, &whole, "8")).status.code(), Some(0));
+    let plan = barrelstack(["study", "plan", &file, "--json"]);
+    let plan: serde_json::Value = serde_json::from_str(&stdout(&plan)).unwrap();
+    let chunks = plan["chunks"].as_array().unwrap().len();
+    assert_eq!((chunks, plan["cases"].as_u64()), (10, Some(40)));
+    for chunk in (0..chunks).rev() {
+        let chunk = chunk.to_string();
+        let output = barrelstack(["study", "run-chunk", &file, "--chunk", &chunk, "--out", &parts]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        if chunk == "4" {
+            let status = barrelstack(["study", "status", &parts, "--json"]);
+            let status: serde_json::Value = serde_json::from_str(&stdout(&status)).unwrap();
+            assert_eq!(status["missing"], serde_json::json!([0, 1, 2, 3]));
+            let again = barrelstack(["study", "run-chunk", &file, "--chunk", &chunk, "--out", &parts]);
+            assert!(stdout(&again).contains("chunk 4 was done before"), "{}", stdout(&again));
+        }
+    }
+    let output = barrelstack(["study", "collect", &parts]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(tables(&whole) == tables(&parts));
+    let output = barrelstack(["study", "run-chunk", &file, "--chunk", "10", "--out", &parts]);
+    assert!(stderr(&output).contains("has no chunk 10; its 10 chunks are numbered from 0 to 9"));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_with_a_sentence_that_says_how_to_go_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = study(folder.path());
+    let out = folder.path().join("out").display().to_string();
+    let child = program(run(&file, &out, "1")).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    // The first shard shows that it is at work.
+    let shards = Path::new(&out).join("shards");
+    while names(&shards).is_none_or(|names| names.is_empty()) {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let killed = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(killed.unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    let told = stderr(&output);
+    assert!(told.contains("run the same command again to go on from there"), "{told}");
+    assert_eq!(barrelstack(run(&file, &out, "2")).status.code(), Some(0));
+}
+
+#[test]
+fn mistakes_are_told_before_anything_is_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let at = out.display().to_string();
+    let case = |what: &str, arguments: &[&str], words: &[&str]| {
+        refused(what, &barrelstack(arguments.iter().copied()), &out, words);
+    };
+    case("no such file", &["study", "no.toml", "--out", &at], &["no.toml", "there is no such file"]);
+    case("no such study", &["study", "napa-four", "--out", &at], &["no built-in study", "napa-four-levels"]);
+    case("no such example", &["study", "example", "naba-four-levels"], &["did you mean `napa-four-levels`"]);
+    case("no folder", &["study", "status", &at], &["is not there"]);
+    let scenario = folder.path().join("scenario.toml");
+    fs::write(&scenario, "schema = 1\n[stack]\nlevels = 2\ncolumns = 1\n[motion]\nnone = true\n").unwrap();
+    let scenario = scenario.display().to_string();
+    case("a scenario", &["study", &scenario, "--out", &at], &["unknown key `stack`"]);
+    let broken = folder.path().join("broken.toml");
+    fs::write(folder.path().join("site.AT2"), "not a record\n").unwrap();
+    let text = STUDY.replace(
+        "[base.motion.pulse]\nkind = \"one-sine\"\namplitude = \"1 g\"\nperiod = \"0.3 s\"\n",
+        "[[motion]]\nrecords = [\"site.AT2\"]\n",
+    );
+    let text = text.replace("[[factor]]\nfield = \"motion.pulse.amplitude\"\nvalues = [\"0.3 g\", \"0.6 g\", \"0.9 g\", \"1.2 g\"]\n", "");
+    fs::write(&broken, text).unwrap();
+    let broken = broken.display().to_string();
+    case("no record", &["study", &broken, "--out", &at], &["the motion \"site\" of the study", "site.AT2"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_in_plain_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = study(folder.path());
+    // Nothing can be made below a file; a folder below /proc cannot be made at all.
+    let inside = folder.path().join("study.toml").join("out").display().to_string();
+    let output = barrelstack(run(&file, &inside, "1"));
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("cannot make the folder"), "{}", stderr(&output));
+    let output = barrelstack(run(&file, "/proc/barrelstack", "1"));
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("/proc/barrelstack"), "{}", stderr(&output));
+}
+
+#[test]
+fn job_files_name_every_chunk() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = study(folder.path());
+    for (engine, word) in
+        [("slurm", "#SBATCH --array=0-9"), ("parallel", "seq 0 9 | parallel"), ("hyperqueue", "--array 0-9")]
+    {
+        let output = barrelstack(["study", "emit", &file, "--engine", engine, "--out", "it's here"]);
+        let text = stdout(&output);
+        assert!(text.contains(word) && text.contains("run-chunk"), "{text}");
+        // The script is one that a shell can read.
+        let script = folder.path().join(engine);
+        fs::write(&script, &text).unwrap();
+        let check = std::process::Command::new("sh").arg("-n").arg(&script).status().unwrap();
+        assert!(check.success(), "{text}");
+    }
+}
+
+#[test]
+fn reference_schema_and_example_are_printed() {
+    assert!(stdout(&barrelstack(["study", "fields"])).contains("hunt and fill"));
+    let schema: serde_json::Value =
+        serde_json::from_str(&stdout(&barrelstack(["study", "schema"]))).unwrap();
+    assert!(schema["$defs"]["design"].is_object() && schema["$defs"]["stack"].is_object());
+    assert!(stdout(&barrelstack(["study", "example"])).contains("kind = \"stripes\""));
+}
