@@ -146,7 +146,10 @@ pub fn json_schema() -> serde_json::Value {
 
 /// Every table and field of a study file in Markdown; those of `[base]` are those of a scenario file.
 pub fn reference() -> String {
-    let fields = crate::scenario::reference::of_tables(&STUDY, &["root", "motion", "sine", "pulse", "scale"]);
+    let fields = crate::scenario::reference::of_tables(
+        &STUDY,
+        &["root", "motion", "sine", "pulse", "scale"],
+    );
     format!("# Fields of a study file\n\n{fields}")
 }
 

@@ -7,7 +7,9 @@ use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use barrelstack::study::{Collected, Role, RunOptions, Study, StudyError, StudyTable, Tally, Value};
+use barrelstack::study::{
+    Collected, Role, RunOptions, Study, StudyError, StudyTable, Tally, Value,
+};
 
 /// Two barrels on two levels that are shaken for a moment: a case of a few milliseconds.
 const BASE: &str = "\
@@ -32,7 +34,8 @@ pulse = { kind = \"one-sine\", amplitude = \"1 g\", period = \"0.3 s\" }
 ";
 
 fn study(rest: &str) -> Study {
-    Study::parse("test.toml", &format!("{BASE}{rest}")).unwrap_or_else(|error| panic!("{error}\n{rest}"))
+    Study::parse("test.toml", &format!("{BASE}{rest}"))
+        .unwrap_or_else(|error| panic!("{error}\n{rest}"))
 }
 
 fn run_with(study: &Study, folder: &Path, threads: usize) -> Collected {
@@ -48,7 +51,8 @@ fn run(study: &Study) -> StudyTable {
 /// The rows of a table as text, without the number of the case and of the chunk.
 fn rows(table: &StudyTable) -> Vec<String> {
     let told = |row: usize| {
-        let values = table.columns().iter().filter(|c| !["case", "chunk"].contains(&c.spec.name.as_str()));
+        let values =
+            table.columns().iter().filter(|c| !["case", "chunk"].contains(&c.spec.name.as_str()));
         format!("{:?}", values.map(|column| column.values.get(row)).collect::<Vec<_>>())
     };
     (0..table.rows()).map(told).collect()
@@ -111,7 +115,10 @@ fn one_at_a_time_has_the_base_and_each_other_value_once() {
     assert_eq!(changed(0), 0);
     assert!((1..table.rows()).all(|row| changed(row) == 1), "every other row changes one factor");
     // Quantiles 0.1 and 0.9 of the uniform distribution.
-    assert!(drawn.iter().any(|v| (v - 0.24).abs() < 1e-12) && drawn.iter().any(|v| (v - 0.56).abs() < 1e-12));
+    assert!(
+        drawn.iter().any(|v| (v - 0.24).abs() < 1e-12)
+            && drawn.iter().any(|v| (v - 0.56).abs() < 1e-12)
+    );
 }
 
 /// A study of one drawn factor and a drawn level that needs no motion file.
@@ -129,7 +136,8 @@ fn a_latin_hypercube_has_one_sample_in_each_stratum_of_each_axis() {
     let table = run(&sampled("kind = \"latin-hypercube\"\ncount = 20"));
     let strata = |shares: Vec<f64>| {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 20")]
-        let cells: BTreeSet<usize> = shares.into_iter().map(|share| (20.0 * share) as usize).collect();
+        let cells: BTreeSet<usize> =
+            shares.into_iter().map(|share| (20.0 * share) as usize).collect();
         cells.len()
     };
     assert_eq!(strata(numbers(&table, "f")), 20);
@@ -190,7 +198,10 @@ fn more_motions_and_more_levels_change_no_earlier_row() {
     assert_eq!(rows(&realizations)[..4], rows(&few)[..]);
     let levels = STRIPES.replace("\"1.5 m/s\"", "\"1.5 m/s\", \"40 cm/s\"");
     let levels = rows(&run(&study(&format!("{drawn}{}{levels}", made(2)))));
-    assert!(rows(&few).iter().all(|row| levels.contains(row)), "a level more keeps the rows of the others");
+    assert!(
+        rows(&few).iter().all(|row| levels.contains(row)),
+        "a level more keeps the rows of the others"
+    );
 }
 
 #[test]
@@ -230,7 +241,11 @@ fn monte_carlo_stops_after_the_first_chunk_that_is_enough_whatever_the_threads()
     assert_eq!(tables[0], tables[1]);
     assert_eq!(tables[0], tables[2]);
     let table = &tables[0].table;
-    assert!(tables[0].provenance.complete && table.rows() < 400 && table.rows() >= 8, "{}", table.rows());
+    assert!(
+        tables[0].provenance.complete && table.rows() < 400 && table.rows() >= 8,
+        "{}",
+        table.rows()
+    );
     let (_, [low, high]) = Tally::of(table).collapse().unwrap();
     assert!(high - low <= 0.4, "{low} {high}");
     // Without the last chunk it was not enough.
@@ -251,7 +266,9 @@ fn a_hunt_brackets_the_collapse_of_each_motion() {
     let levels = numbers(&table, "level");
     let fell: Vec<bool> =
         table.texts("outcome").unwrap().iter().map(|o| o.as_deref() == Some("collapse")).collect();
-    let of = |wanted: bool| levels.iter().zip(&fell).filter(move |(_, fell)| **fell == wanted).map(|(l, _)| *l);
+    let of = |wanted: bool| {
+        levels.iter().zip(&fell).filter(move |(_, fell)| **fell == wanted).map(|(l, _)| *l)
+    };
     let lowest = of(true).fold(f64::INFINITY, f64::min);
     let below = of(false).filter(|level| *level < lowest).fold(0.0, f64::max);
     assert!(lowest.is_finite() && below > 0.0, "{levels:?} {fell:?}");
@@ -282,7 +299,8 @@ fn a_damaged_shard_is_named_when_read_and_made_again_when_run() {
     let folder = tempfile::tempdir().unwrap();
     let whole = run_with(&study, folder.path(), 2);
     let shards = folder.path().join("shards");
-    let mut names: Vec<_> = std::fs::read_dir(&shards).unwrap().map(|e| e.unwrap().path()).collect();
+    let mut names: Vec<_> =
+        std::fs::read_dir(&shards).unwrap().map(|e| e.unwrap().path()).collect();
     names.sort();
     let good = std::fs::read(&names[1]).unwrap();
     let mut flipped = good.clone();
@@ -306,20 +324,26 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
     run_with(&study(&text), folder.path(), 2);
     let before = std::fs::read(folder.path().join("study.json")).unwrap();
     let other = study(&text.replace("0.6]", "0.7]"));
-    let error = other.run(folder.path(), &RunOptions::default(), &|_| ControlFlow::Continue(())).unwrap_err();
+    let error = other
+        .run(folder.path(), &RunOptions::default(), &|_| ControlFlow::Continue(()))
+        .unwrap_err();
     let told = error.to_string();
     assert!(told.contains("belongs to another study: the study file has changed since"), "{told}");
     assert_eq!(std::fs::read(folder.path().join("study.json")).unwrap(), before);
 
     let foreign = tempfile::tempdir().unwrap();
     std::fs::write(foreign.path().join("thesis.docx"), "x").unwrap();
-    let error = other.run(foreign.path(), &RunOptions::default(), &|_| ControlFlow::Continue(())).unwrap_err();
+    let error = other
+        .run(foreign.path(), &RunOptions::default(), &|_| ControlFlow::Continue(()))
+        .unwrap_err();
     assert!(error.to_string().contains("holds thesis.docx and is no folder of a study"), "{error}");
     let error = Collected::read(foreign.path()).unwrap_err();
     assert!(error.to_string().contains("is no folder of a study: it has no study.json"), "{error}");
     let error = Collected::read(&foreign.path().join("nowhere")).unwrap_err();
     assert!(error.to_string().contains("is not there"), "{error}");
-    let error = other.run(&foreign.path().join("thesis.docx"), &RunOptions::default(), &|_| ControlFlow::Continue(()));
+    let error = other.run(&foreign.path().join("thesis.docx"), &RunOptions::default(), &|_| {
+        ControlFlow::Continue(())
+    });
     assert!(error.unwrap_err().to_string().contains("is a file, not a folder"));
 }
 
@@ -344,7 +368,8 @@ fn a_changed_record_is_another_study() {
     std::fs::write(&record, samples(0.3)).unwrap();
     let second = Study::load(&file).unwrap();
     assert_ne!(first.hash(), second.hash());
-    let error = second.run(&out, &RunOptions::default(), &|_| ControlFlow::Continue(())).unwrap_err();
+    let error =
+        second.run(&out, &RunOptions::default(), &|_| ControlFlow::Continue(())).unwrap_err();
     assert!(error.to_string().contains("the record \"site\" has changed"), "{error}");
 }
 

@@ -47,7 +47,8 @@ fn run<'a>(file: &'a str, out: &'a str, threads: &'a str) -> [&'a str; 6] {
 }
 
 fn tables(out: &str) -> [Vec<u8>; 3] {
-    ["table.csv", "table.parquet", "provenance.json"].map(|name| fs::read(Path::new(out).join(name)).unwrap())
+    ["table.csv", "table.parquet", "provenance.json"]
+        .map(|name| fs::read(Path::new(out).join(name)).unwrap())
 }
 
 #[test]
@@ -72,7 +73,10 @@ fn killed_at_any_instant_and_resumed_it_gives_the_uninterrupted_table() {
         if let Some(done) = names(&Path::new(&broken).join("shards")) {
             let whole = names(&Path::new(&whole).join("shards")).unwrap();
             let shards = done.iter().filter(|name| name.ends_with(".parquet"));
-            assert!(shards.into_iter().all(|name| whole.contains(name)), "a shard that is there is right: {done:?}");
+            assert!(
+                shards.into_iter().all(|name| whole.contains(name)),
+                "a shard that is there is right: {done:?}"
+            );
         }
     }
     let output = barrelstack(run(&file, &broken, "2"));
@@ -101,7 +105,8 @@ fn chunks_run_one_by_one_in_any_order_give_the_table_of_the_whole() {
             let status = barrelstack(["study", "status", &parts, "--json"]);
             let status: serde_json::Value = serde_json::from_str(&stdout(&status)).unwrap();
             assert_eq!(status["missing"], serde_json::json!([0, 1, 2, 3]));
-            let again = barrelstack(["study", "run-chunk", &file, "--chunk", &chunk, "--out", &parts]);
+            let again =
+                barrelstack(["study", "run-chunk", &file, "--chunk", &chunk, "--out", &parts]);
             assert!(stdout(&again).contains("chunk 4 was done before"), "{}", stdout(&again));
         }
     }
@@ -118,13 +123,18 @@ fn an_interrupt_ends_with_a_sentence_that_says_how_to_go_on() {
     let folder = tempfile::tempdir().unwrap();
     let file = study(folder.path());
     let out = folder.path().join("out").display().to_string();
-    let child = program(run(&file, &out, "1")).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let child = program(run(&file, &out, "1"))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
     // The first shard shows that it is at work.
     let shards = Path::new(&out).join("shards");
     while names(&shards).is_none_or(|names| names.is_empty()) {
         std::thread::sleep(Duration::from_millis(5));
     }
-    let killed = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    let killed =
+        std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     assert!(killed.unwrap().success());
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
@@ -141,12 +151,25 @@ fn mistakes_are_told_before_anything_is_made() {
     let case = |what: &str, arguments: &[&str], words: &[&str]| {
         refused(what, &barrelstack(arguments.iter().copied()), &out, words);
     };
-    case("no such file", &["study", "no.toml", "--out", &at], &["no.toml", "there is no such file"]);
-    case("no such study", &["study", "napa-four", "--out", &at], &["no built-in study", "napa-four-levels"]);
-    case("no such example", &["study", "example", "naba-four-levels"], &["did you mean `napa-four-levels`"]);
+    case(
+        "no such file",
+        &["study", "no.toml", "--out", &at],
+        &["no.toml", "there is no such file"],
+    );
+    case(
+        "no such study",
+        &["study", "napa-four", "--out", &at],
+        &["no built-in study", "napa-four-levels"],
+    );
+    case(
+        "no such example",
+        &["study", "example", "naba-four-levels"],
+        &["did you mean `napa-four-levels`"],
+    );
     case("no folder", &["study", "status", &at], &["is not there"]);
     let scenario = folder.path().join("scenario.toml");
-    fs::write(&scenario, "schema = 1\n[stack]\nlevels = 2\ncolumns = 1\n[motion]\nnone = true\n").unwrap();
+    fs::write(&scenario, "schema = 1\n[stack]\nlevels = 2\ncolumns = 1\n[motion]\nnone = true\n")
+        .unwrap();
     let scenario = scenario.display().to_string();
     case("a scenario", &["study", &scenario, "--out", &at], &["unknown key `stack`"]);
     let broken = folder.path().join("broken.toml");
@@ -158,7 +181,11 @@ fn mistakes_are_told_before_anything_is_made() {
     let text = text.replace("[[factor]]\nfield = \"motion.pulse.amplitude\"\nvalues = [\"0.3 g\", \"0.6 g\", \"0.9 g\", \"1.2 g\"]\n", "");
     fs::write(&broken, text).unwrap();
     let broken = broken.display().to_string();
-    case("no record", &["study", &broken, "--out", &at], &["the motion \"site\" of the study", "site.AT2"]);
+    case(
+        "no record",
+        &["study", &broken, "--out", &at],
+        &["the motion \"site\" of the study", "site.AT2"],
+    );
 }
 
 #[cfg(target_os = "linux")]
@@ -180,10 +207,13 @@ fn a_full_disk_is_told_in_plain_words() {
 fn job_files_name_every_chunk() {
     let folder = tempfile::tempdir().unwrap();
     let file = study(folder.path());
-    for (engine, word) in
-        [("slurm", "#SBATCH --array=0-9"), ("parallel", "seq 0 9 | parallel"), ("hyperqueue", "--array 0-9")]
-    {
-        let output = barrelstack(["study", "emit", &file, "--engine", engine, "--out", "it's here"]);
+    for (engine, word) in [
+        ("slurm", "#SBATCH --array=0-9"),
+        ("parallel", "seq 0 9 | parallel"),
+        ("hyperqueue", "--array 0-9"),
+    ] {
+        let output =
+            barrelstack(["study", "emit", &file, "--engine", engine, "--out", "it's here"]);
         let text = stdout(&output);
         assert!(text.contains(word) && text.contains("run-chunk"), "{text}");
         // The script is one that a shell can read.

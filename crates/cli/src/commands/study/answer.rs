@@ -47,12 +47,22 @@ pub(super) fn lines(collected: &Collected, folder: &Path) -> Vec<String> {
     let Collected { table, provenance } = collected;
     let tally = Tally::of(table);
     let mut lines = vec![provenance.title.clone()];
-    let state = if provenance.complete { String::new() } else {
-        format!(" of an unfinished study, {} of {} chunks", provenance.chunks_done, provenance.chunks)
+    let state = if provenance.complete {
+        String::new()
+    } else {
+        format!(
+            " of an unfinished study, {} of {} chunks",
+            provenance.chunks_done, provenance.chunks
+        )
     };
     lines.push(format!("  {} cases{state}", tally.cases));
     if let Some(collapse) = tally.collapse() {
-        lines.push(format!("  {} of {} collapse: {}", tally.collapsed, tally.judged, percent(collapse)));
+        lines.push(format!(
+            "  {} of {} collapse: {}",
+            tally.collapsed,
+            tally.judged,
+            percent(collapse)
+        ));
     }
     let modes: Vec<String> =
         counts(table, "mode").into_iter().map(|(mode, count)| format!("{mode} {count}")).collect();
@@ -61,20 +71,35 @@ pub(super) fn lines(collected: &Collected, folder: &Path) -> Vec<String> {
     }
     let other = tally.cases - tally.judged;
     if other > 0 {
-        lines.push(format!("  {other} cases have no verdict; the column `error` says why, most often:"));
+        lines.push(format!(
+            "  {other} cases have no verdict; the column `error` says why, most often:"
+        ));
         lines.extend(
-            counts(table, "error").into_iter().take(3).map(|(why, count)| format!("    {count} × {why}")),
+            counts(table, "error")
+                .into_iter()
+                .take(3)
+                .map(|(why, count)| format!("    {count} × {why}")),
         );
     }
     let levels = levels(table);
-    if let Some(spec) = table.column("level").map(|column| &column.spec).filter(|_| !levels.is_empty()) {
+    if let Some(spec) =
+        table.column("level").map(|column| &column.spec).filter(|_| !levels.is_empty())
+    {
         let measure = provenance.measure.as_deref().unwrap_or("level");
         lines.push(String::new());
-        lines.push(format!("  {:>14}  collapse (95 % interval)", format!("{measure} ({})", spec.unit)));
+        lines.push(format!(
+            "  {:>14}  collapse (95 % interval)",
+            format!("{measure} ({})", spec.unit)
+        ));
         lines.extend(levels.iter().filter_map(|(level, tally)| {
             let collapse = tally.collapse()?;
             let shown = (1e6 * level).round() / 1e6;
-            Some(format!("  {shown:>14}  {} of {}: {}", tally.collapsed, tally.judged, percent(collapse)))
+            Some(format!(
+                "  {shown:>14}  {} of {}: {}",
+                tally.collapsed,
+                tally.judged,
+                percent(collapse)
+            ))
         }));
     }
     lines.push(String::new());
@@ -95,7 +120,9 @@ pub(super) fn status(status: &Status) -> Vec<String> {
             if provenance.complete { "; nothing is left to run" } else { "" }
         ),
     ];
-    lines.extend(status.tally.collapse().map(|collapse| format!("  collapse so far: {}", percent(collapse))));
+    lines.extend(
+        status.tally.collapse().map(|collapse| format!("  collapse so far: {}", percent(collapse))),
+    );
     if !status.missing.is_empty() {
         let mut shown: Vec<String> = status.missing.iter().take(20).map(usize::to_string).collect();
         if status.missing.len() > shown.len() {
@@ -108,7 +135,8 @@ pub(super) fn status(status: &Status) -> Vec<String> {
 
 /// How cases ended.
 pub(super) fn tally(tally: &Tally) -> Value {
-    let collapse = tally.collapse().map(|(p, interval)| json!({ "fraction": p, "interval_95": interval }));
+    let collapse =
+        tally.collapse().map(|(p, interval)| json!({ "fraction": p, "interval_95": interval }));
     json!({
         "cases": tally.cases, "judged": tally.judged, "collapsed": tally.collapsed, "collapse": collapse,
     })

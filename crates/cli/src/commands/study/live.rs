@@ -47,7 +47,9 @@ impl Live {
     pub(super) fn at(&self, progress: &Progress) -> ControlFlow<()> {
         if let Some(bar) = &self.bar {
             if bar.length().is_none() {
-                bar.set_style(style("{spinner} {bar:30} {pos} of {len} cases, {per_sec}, {eta} to go; {msg}"));
+                bar.set_style(style(
+                    "{spinner} {bar:30} {pos} of {len} cases, {per_sec}, {eta} to go; {msg}",
+                ));
                 bar.set_position(progress.before);
                 // The rate is that of this run.
                 bar.reset_eta();
