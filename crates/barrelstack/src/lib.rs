@@ -12,9 +12,11 @@
 pub mod assemble;
 pub mod calibrate;
 pub mod check;
+pub mod decision;
 pub mod ensemble;
 pub mod export;
 pub mod ground;
+pub mod heights;
 pub mod outcome;
 mod overlap;
 mod pool;

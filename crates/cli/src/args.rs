@@ -35,6 +35,8 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Shake a five-level stack with the South Napa earthquake of 2014 and write a report.
     Demo(DemoArgs),
+    /// How high is safe: collapse of stacks of two to six levels, on one page.
+    Heights(crate::commands::heights::HeightsArgs),
     /// Read a scenario, build the stack and let it settle, without shaking it.
     Check(CheckArgs),
     /// Run every case of the paper behind the model and set its numbers beside ours.

@@ -357,8 +357,10 @@ fn figures_come_with_their_numbers() {
         "response-spectrum",
         "velocity",
     ];
-    let wanted: Vec<String> =
-        kinds.iter().flat_map(|kind| ["csv", "pdf", "png", "svg"].map(|ending| format!("{kind}.{ending}"))).collect();
+    let wanted: Vec<String> = kinds
+        .iter()
+        .flat_map(|kind| ["csv", "pdf", "png", "svg"].map(|ending| format!("{kind}.{ending}")))
+        .collect();
     assert_eq!(names(&pictures).unwrap(), wanted);
     for kind in kinds {
         let svg = fs::read_to_string(pictures.join(kind).with_extension("svg")).unwrap();

@@ -205,7 +205,11 @@ impl<'a> Writer<'a> {
             self.put("<tr>");
             for at in 0..table.columns.len() {
                 let text = row.get(at).map_or_else(|| number::MISSING.into(), crate::Cell::shown);
-                self.put(&format!("<td{}>{}</td>", class(at), escape::html(&text)));
+                let class = match row.get(at) {
+                    Some(crate::Cell::Rated(rating, _)) => format!(" class=\"{}\"", rating.class()),
+                    _ => class(at).to_owned(),
+                };
+                self.put(&format!("<td{class}>{}</td>", escape::html(&text)));
             }
             self.put("</tr>\n");
         }

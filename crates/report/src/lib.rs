@@ -84,7 +84,7 @@ pub use scene::{
     SceneBody, Trace,
 };
 pub use strip::{Panel, Strip};
-pub use table::{Cell, Column, Table};
+pub use table::{Cell, Column, Rating, Table};
 pub use terminal::{Characters, sparkline, terminal_picture};
 pub use ticks::{Ticks, linear_ticks, log_ticks};
 pub use vtk::paraview;

@@ -37,11 +37,34 @@ impl Column {
     }
 }
 
+/// A judgment of a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rating {
+    /// As wanted.
+    Good,
+    /// To be looked at.
+    Fair,
+    /// To be avoided.
+    Poor,
+}
+
+impl Rating {
+    pub(crate) fn class(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Fair => "fair",
+            Self::Poor => "poor",
+        }
+    }
+}
+
 /// One cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
     /// Plain text.
     Text(String),
+    /// Text with a judgment, which it must also say in words or by a sign: the color only repeats it.
+    Rated(Rating, String),
     /// A number and the count of significant digits to show; CSV keeps every digit.
     Number(f64, usize),
     /// No value: shown as a dash, empty in CSV.
@@ -56,7 +79,7 @@ impl Cell {
 
     pub(crate) fn shown(&self) -> String {
         match self {
-            Self::Text(text) => text.clone(),
+            Self::Text(text) | Self::Rated(_, text) => text.clone(),
             Self::Number(value, digits) => number::significant(*value, *digits),
             Self::Missing => number::MISSING.into(),
         }
@@ -79,7 +102,7 @@ impl Table {
         for row in &self.rows {
             let cells: Vec<_> = (0..self.columns.len())
                 .map(|at| match row.get(at) {
-                    Some(Cell::Text(text)) => escape::csv(text),
+                    Some(Cell::Text(text) | Cell::Rated(_, text)) => escape::csv(text),
                     Some(Cell::Number(value, _)) => number::csv_number(*value),
                     Some(Cell::Missing) | None => String::new(),
                 })
@@ -94,6 +117,6 @@ impl Table {
     pub(crate) fn is_numeric(&self, column: usize) -> bool {
         let cells = || self.rows.iter().filter_map(move |row| row.get(column));
         cells().any(|cell| matches!(cell, Cell::Number(..)))
-            && !cells().any(|cell| matches!(cell, Cell::Text(_)))
+            && !cells().any(|cell| matches!(cell, Cell::Text(_) | Cell::Rated(..)))
     }
 }

@@ -259,6 +259,38 @@ impl Table {
         Ok(values)
     }
 
+    /// The values of a column of annual rates, whose unit is `1/year`, `1/yr` or `1/a`: a year is no SI unit, and
+    /// rates are kept a year.
+    ///
+    /// # Errors
+    /// When the column is missing, has another unit, or holds anything but numbers.
+    pub fn per_year(&self, name: &str) -> Result<Vec<f64>, CalibrateError> {
+        let place = self.columns.iter().position(|column| column.is(name));
+        let unit = place.and_then(|at| self.columns[at].unit.as_deref());
+        let (Some(at), Some("1/year" | "1/yr" | "1/a")) = (place, unit) else {
+            let heads = self.columns.iter().map(|column| match &column.unit {
+                Some(unit) => format!("\"{} ({unit})\"", column.name),
+                None => format!("\"{}\"", column.name),
+            });
+            return Err(CalibrateError::Table {
+                file: self.file.clone(),
+                line: self.header_line,
+                column: None,
+                expected: format!("a column `{name} (1/year)`").into(),
+                found: heads.collect::<Vec<_>>().join(", ").into(),
+                remedy: "name the column so in the header".into(),
+            });
+        };
+        let number = |(line, row): &(usize, Vec<String>)| {
+            let value = row[at].parse::<f64>().ok().filter(|value| value.is_finite());
+            let remedy = "correct it, or remove the row (the decimal mark is a point)";
+            value.ok_or_else(|| {
+                self.refuse(*line, name, "a number", &format!("\"{}\"", row[at]), remedy)
+            })
+        };
+        self.rows.iter().map(number).collect()
+    }
+
     /// An error at a value of a row, counted from 0.
     pub(super) fn at(
         &self,

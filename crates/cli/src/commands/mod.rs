@@ -3,6 +3,7 @@
 pub(crate) mod calibrate;
 mod check;
 mod demo;
+pub(crate) mod heights;
 pub(crate) mod motion;
 pub(crate) mod render;
 mod reproduce;
@@ -29,6 +30,7 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
     match args.command {
         Command::Run(args) => run::run(&args),
         Command::Demo(args) => demo::demo(&args),
+        Command::Heights(args) => heights::run(&args),
         Command::Calibrate(args) => calibrate::calibrate(&args),
         Command::Check(args) => check::check(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),

@@ -3,6 +3,7 @@
 mod answer;
 mod emit;
 mod live;
+mod report;
 
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
@@ -111,6 +112,8 @@ enum Action {
     Status(FolderArgs),
     /// Write table.csv, table.parquet and provenance.json from the shards that are there.
     Collect(FolderArgs),
+    /// Write the page: fragility, losses, what matters, and with a hazard curve annual rates.
+    Report(report::ReportArgs),
     /// Write job files with which another engine runs all chunks.
     Emit(emit::EmitArgs),
     /// Print a built-in study, with its comments, as a starting point.
@@ -136,6 +139,7 @@ pub(crate) fn study(args: &StudyArgs) -> anyhow::Result<ExitCode> {
         Some(Action::RunChunk(args)) => return run_chunk(args),
         Some(Action::Status(args)) => status(args)?,
         Some(Action::Collect(args)) => collect(args)?,
+        Some(Action::Report(args)) => report::report(args)?,
         Some(Action::Emit(args)) => emit::emit(args)?,
         Some(Action::Example { name, list }) => example(name.as_deref(), *list)?,
         Some(Action::Fields) => printer::text(&barrelstack::study::reference())?,
@@ -184,10 +188,12 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
             out.join("shards").display()
         ));
     }
+    let page = report::write_page(out, &collected)?;
     if args.json {
         printer::lines([answer::json(&collected)?])?;
     } else {
         printer::lines(answer::lines(&collected, out))?;
+        printer::lines(page.map(|page| format!("page: {}", page.display())))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -1,6 +1,7 @@
 //! The problems, grouped by theory.
 
 pub mod consensus;
+mod fragility;
 mod gravity;
 mod housner;
 mod intensity;
@@ -31,6 +32,7 @@ pub fn all() -> Vec<Problem> {
         invariances::problems(),
         intensity::problems(),
         statistics::problems(),
+        fragility::problems(),
         consensus::problems(),
         crate::cases::shipped(),
     ];

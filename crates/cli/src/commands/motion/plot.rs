@@ -104,7 +104,8 @@ pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<()> {
             store(&path.with_extension(format.extension()), &bytes)?;
         }
         store(&path.with_extension("csv"), figure.to_csv().as_bytes())?;
-        let beside: Vec<String> = endings(args).skip(1).map(|ending| format!(".{ending}")).collect();
+        let beside: Vec<String> =
+            endings(args).skip(1).map(|ending| format!(".{ending}")).collect();
         lines.push(format!("written: {}, and beside it {}", path.display(), beside.join(", ")));
     }
     printer::lines(lines)?;

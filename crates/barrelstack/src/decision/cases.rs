@@ -1,0 +1,269 @@
+//! The cases of a study that have a verdict, with what shook them.
+
+use std::collections::BTreeMap;
+
+use barrelstack_motion::STANDARD_GRAVITY;
+
+use super::DecisionError;
+use crate::study::{Collected, Role, StudyTable, Value};
+
+/// An intensity measure and how it is printed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measure {
+    /// Name of its column, or of the measure of the study.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+    /// Name for people.
+    pub label: String,
+    /// Unit for people.
+    pub shown_unit: &'static str,
+    /// How many of these units one SI unit is.
+    pub scale: f64,
+}
+
+impl Measure {
+    fn new(name: &str, unit: &str) -> Self {
+        let (shown_unit, scale) = match unit {
+            "m/s2" | "m/s^2" | "m/s²" => ("g", 1.0 / STANDARD_GRAVITY),
+            "m/s" if name == "pgv" => ("cm/s", 100.0),
+            "m" => ("cm", 100.0),
+            "m/s" => ("m/s", 1.0),
+            "s" => ("s", 1.0),
+            _ => ("", 1.0),
+        };
+        let label = match name {
+            "pga" => "PGA".to_owned(),
+            "pgv" => "PGV".to_owned(),
+            "pgd" => "PGD".to_owned(),
+            "pgv_over_pga" => "PGV/PGA".to_owned(),
+            "arias" => "Arias intensity".to_owned(),
+            "cav" => "CAV".to_owned(),
+            "d5_95" => "duration D5–95".to_owned(),
+            other => match other.strip_prefix("sa_") {
+                Some(period) => format!("Sa({period} s)"),
+                None => other.to_owned(),
+            },
+        };
+        Self { name: name.to_owned(), unit: unit.to_owned(), label, shown_unit, scale }
+    }
+
+    /// An intensity as printed.
+    pub fn shown(&self, intensity: f64) -> f64 {
+        self.scale * intensity
+    }
+
+    /// An intensity with its unit, in three digits.
+    pub fn words(&self, intensity: f64) -> String {
+        let number = barrelstack_report::significant(self.shown(intensity), 3);
+        if self.shown_unit.is_empty() { number } else { format!("{number} {}", self.shown_unit) }
+    }
+}
+
+/// A case with a verdict.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// Its row in the table.
+    pub row: usize,
+    /// Number of its record among [`Cases::records`].
+    pub record: usize,
+    /// Whether a barrel or rack lost its seat.
+    pub collapsed: bool,
+    /// How it collapsed.
+    pub mode: Option<String>,
+    /// Barrels in the stack.
+    pub barrels: u32,
+    /// Drop (m) of each barrel that fell.
+    pub falls: Vec<f64>,
+    /// Peak drift of the top over its height, while the stack stood.
+    pub drift: Option<f64>,
+    /// Intensities (SI), one for each of [`Cases::measures`].
+    pub intensities: Vec<Option<f64>>,
+    /// What tells the cases of one hunt or curve from those of others: record and factors.
+    pub curve: usize,
+}
+
+impl Case {
+    /// Barrels that fell.
+    pub fn fallen(&self) -> u32 {
+        u32::try_from(self.falls.len()).unwrap_or(u32::MAX)
+    }
+}
+
+/// The cases of a study that have a verdict.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cases {
+    /// Title of the study.
+    pub title: String,
+    /// Names of the motions.
+    pub records: Vec<String>,
+    /// The measures.
+    pub measures: Vec<Measure>,
+    /// The measure of the study, an index of `measures`.
+    pub main: usize,
+    /// Whether every case was scaled to a level of it, so that raw fractions exist at each.
+    pub leveled: bool,
+    /// Whether levels were found by hunting for collapse, so that they depend on what was found.
+    pub hunted: bool,
+    /// The cases.
+    pub all: Vec<Case>,
+    /// Rows without a verdict: broken down, not judged, or could not run.
+    pub left_out: usize,
+    /// Seed of what is resampled.
+    pub seed: u64,
+}
+
+/// A column of numbers, all `None` where there is none.
+fn numbers(table: &StudyTable, name: &str) -> Vec<Option<f64>> {
+    table.numbers(name).map_or_else(|| vec![None; table.rows()], <[_]>::to_vec)
+}
+
+/// Numbers things in the order in which they come.
+#[derive(Default)]
+struct Numbering(BTreeMap<String, usize>);
+
+impl Numbering {
+    fn of(&mut self, name: String) -> usize {
+        let next = self.0.len();
+        *self.0.entry(name).or_insert(next)
+    }
+}
+
+impl Cases {
+    /// The cases of a table.
+    pub(crate) fn read(collected: &Collected) -> Result<Self, DecisionError> {
+        let (table, made) = (&collected.table, &collected.provenance);
+        let outcomes = table.texts("outcome").ok_or(DecisionError::Column("outcome"))?;
+        let records = table.texts("record").ok_or(DecisionError::Column("record"))?;
+        let barrels = table.integers("barrels").ok_or(DecisionError::Column("barrels"))?;
+        let modes = table.texts("mode");
+        let heights = table.texts("fall_heights");
+        let (drift, level) = (numbers(table, "top_drift_ratio"), numbers(table, "level"));
+        let mut measures = Vec::new();
+        let mut columns: Vec<Vec<Option<f64>>> = Vec::new();
+        for column in table.of_role(Role::Intensity) {
+            measures.push(Measure::new(&column.spec.name, &column.spec.unit));
+            columns.push(numbers(table, &column.spec.name));
+        }
+        // `sa(0.5)` is the column `sa_0.5`.
+        let asked = made.measure.as_deref().map(|name| name.replace('(', "_").replace(')', ""));
+        let leveled = level.iter().any(Option::is_some);
+        let known = |name: &str| measures.iter().position(|measure| measure.name == name);
+        let main = match &asked {
+            Some(name) if leveled => known(name).unwrap_or_else(|| {
+                let unit = table.column("level").map_or("", |column| column.spec.unit.as_str());
+                measures.push(Measure::new(name, unit));
+                columns.push(vec![None; table.rows()]);
+                measures.len() - 1
+            }),
+            _ => known("pgv").ok_or(DecisionError::Column("pgv"))?,
+        };
+        if leveled {
+            // The level as asked for: the same number in every case of a stripe.
+            for (place, level) in columns[main].iter_mut().zip(&level) {
+                *place = level.or(*place);
+            }
+        }
+        let (mut names, mut curves) = (Numbering::default(), Numbering::default());
+        let mut all = Vec::new();
+        for row in 0..table.rows() {
+            let collapsed = match outcomes[row].as_deref() {
+                Some("collapse") => true,
+                Some("stable") => false,
+                _ => continue,
+            };
+            let name = records[row].clone().unwrap_or_default();
+            let factors = table.of_role(Role::Factor).map(|f| told(f.values.get(row)));
+            let key = std::iter::once(name.clone()).chain(factors).collect::<Vec<_>>().join("\n");
+            let cell = |of: Option<&[Option<String>]>| of.and_then(|of| of[row].clone());
+            all.push(Case {
+                row,
+                record: names.of(name),
+                collapsed,
+                mode: cell(modes),
+                barrels: u32::try_from(barrels[row].unwrap_or(0)).unwrap_or(0),
+                falls: cell(heights).map_or_else(Vec::new, |text| {
+                    text.split(';').filter_map(|height| height.trim().parse().ok()).collect()
+                }),
+                drift: drift[row],
+                intensities: columns.iter().map(|column| column[row]).collect(),
+                curve: curves.of(key),
+            });
+        }
+        if all.is_empty() {
+            return Err(DecisionError::NoCases { rows: table.rows() });
+        }
+        let mut records = vec![String::new(); names.0.len()];
+        for (name, number) in names.0 {
+            records[number] = name;
+        }
+        Ok(Self {
+            title: made.title.clone(),
+            records,
+            measures,
+            main,
+            leveled,
+            hunted: made.design == "ida",
+            left_out: table.rows() - all.len(),
+            all,
+            seed: made.seed,
+        })
+    }
+
+    /// The same with some of the cases alone.
+    #[must_use]
+    pub fn only(&self, keep: impl Fn(&Case) -> bool) -> Self {
+        let mut fewer = self.clone();
+        fewer.all.retain(keep);
+        fewer
+    }
+
+    /// The measure of the study.
+    pub fn measure(&self) -> &Measure {
+        &self.measures[self.main]
+    }
+
+    /// Most barrels that a stack of the study has.
+    pub fn most_barrels(&self) -> u32 {
+        self.all.iter().map(|case| case.barrels).max().unwrap_or(0)
+    }
+
+    /// Levels of the measure of the study, ascending, each with its cases; bins of neighboring cases where
+    /// nothing was scaled to a level.
+    pub fn levels(&self, measure: usize) -> Vec<(f64, Vec<&Case>)> {
+        let mut sorted: Vec<(f64, &Case)> =
+            self.all.iter().filter_map(|case| Some((case.intensities[measure]?, case))).collect();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.row.cmp(&b.1.row)));
+        let mut found: Vec<(f64, Vec<&Case>)> = Vec::new();
+        if self.leveled && !self.hunted && measure == self.main {
+            for (level, case) in sorted {
+                match found.last_mut() {
+                    Some((last, cases)) if *last == level => cases.push(case),
+                    _ => found.push((level, vec![case])),
+                }
+            }
+            return found;
+        }
+        // Bins of equally many cases; the intensity of a bin is the geometric mean of its cases'.
+        let bins = (sorted.len() / 12).clamp(1, 10);
+        for bin in 0..bins {
+            let part = &sorted[bin * sorted.len() / bins..(bin + 1) * sorted.len() / bins];
+            if part.is_empty() {
+                continue;
+            }
+            let mean = part.iter().map(|(x, _)| libm::log(*x)).sum::<f64>() / part.len() as f64;
+            found.push((libm::exp(mean), part.iter().map(|(_, case)| *case).collect()));
+        }
+        found
+    }
+}
+
+/// A value of a factor as text.
+pub(super) fn told(value: Option<Value>) -> String {
+    match value {
+        Some(Value::Integer(number)) => number.to_string(),
+        Some(Value::Number(number)) => crate::scenario::quantity::plain(number),
+        Some(Value::Text(text)) => text,
+        None => String::new(),
+    }
+}

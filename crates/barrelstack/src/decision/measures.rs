@@ -1,0 +1,66 @@
+//! Intensity measures compared: which tells collapse best, and does it tell all.
+
+use barrelstack_fragility::{Demanded, FitError, Measured, demand_against, failure_against};
+
+use super::cases::Cases;
+
+/// One measure.
+#[derive(Clone, Debug)]
+pub struct MeasureRow {
+    /// Index of the measure.
+    pub measure: usize,
+    /// Index of the measure that was tried beside it.
+    pub beside: Option<usize>,
+    /// Collapse against it, or why there is no curve.
+    pub collapse: Result<Measured, FitError>,
+    /// Drift of the top of stacks that stood against it.
+    pub drift: Option<Demanded>,
+}
+
+/// Every measure, the one under which collapse is likeliest as observed first.
+pub(super) fn compare(cases: &Cases) -> Vec<MeasureRow> {
+    let by_name = |name: &str| cases.measures.iter().position(|measure| measure.name == name);
+    let mut rows: Vec<MeasureRow> = (0..cases.measures.len())
+        .map(|measure| {
+            // Each is tried beside the measure of the study, and that beside PGA, or PGV if it is PGA.
+            let beside = if measure == cases.main {
+                ["pga", "pgv"].into_iter().filter_map(by_name).find(|other| *other != measure)
+            } else {
+                Some(cases.main)
+            };
+            row(cases, measure, beside)
+        })
+        .collect();
+    let likelihood = |row: &MeasureRow| {
+        row.collapse.as_ref().map_or(f64::NEG_INFINITY, |found| found.fit.ln_likelihood)
+    };
+    rows.sort_by(|a, b| likelihood(b).total_cmp(&likelihood(a)));
+    rows
+}
+
+fn row(cases: &Cases, measure: usize, beside: Option<usize>) -> MeasureRow {
+    let positive = |value: Option<f64>| value.filter(|value| *value > 0.0);
+    let seen: Vec<_> = cases
+        .all
+        .iter()
+        .filter_map(|case| {
+            let second = beside.map_or(Some(1.0), |at| positive(case.intensities[at]))?;
+            Some((case, positive(case.intensities[measure])?, second))
+        })
+        .collect();
+    let outcomes: Vec<(f64, bool)> = seen.iter().map(|(case, x, _)| (*x, case.collapsed)).collect();
+    let second: Vec<f64> = seen.iter().map(|(_, _, second)| *second).collect();
+    let stood: Vec<(f64, f64, f64)> = seen
+        .iter()
+        .filter(|(case, ..)| !case.collapsed)
+        .filter_map(|(case, x, second)| Some((*x, positive(case.drift)?, *second)))
+        .collect();
+    let demands: Vec<(f64, f64)> = stood.iter().map(|(x, drift, _)| (*x, *drift)).collect();
+    let second_stood: Vec<f64> = stood.iter().map(|(.., second)| *second).collect();
+    MeasureRow {
+        measure,
+        beside,
+        collapse: failure_against(&outcomes, beside.is_some().then_some(second.as_slice())),
+        drift: demand_against(&demands, beside.is_some().then_some(second_stood.as_slice())),
+    }
+}

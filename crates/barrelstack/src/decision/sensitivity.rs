@@ -1,0 +1,127 @@
+//! What varied factors change: shares of collapse at each of their values.
+
+use std::collections::BTreeMap;
+
+use barrelstack_fragility::{Interval, wilson};
+
+use super::cases::{Case, Cases, told};
+use super::curve::LEVEL;
+use crate::study::{Collected, Role, Value};
+
+/// Cases of one value of a factor, or of a third of its values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// The value or values.
+    pub label: String,
+    /// Cases.
+    pub cases: u32,
+    /// Of which collapsed.
+    pub collapsed: u32,
+    /// Interval of the share of collapse.
+    pub interval: Interval,
+}
+
+impl Group {
+    /// Share of collapse.
+    pub fn share(&self) -> f64 {
+        f64::from(self.collapsed) / f64::from(self.cases)
+    }
+}
+
+/// What a factor changes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Effect {
+    /// Name of the factor.
+    pub factor: String,
+    /// Its values, ascending.
+    pub groups: Vec<Group>,
+}
+
+impl Effect {
+    /// The largest difference of shares.
+    pub fn range(&self) -> f64 {
+        let shares = || self.groups.iter().map(Group::share);
+        shares().fold(0.0, f64::max) - shares().fold(1.0, f64::min)
+    }
+}
+
+/// Most values of a factor that are told one by one.
+const MOST: usize = 6;
+
+/// Every factor that varies, the largest effect first.
+pub(super) fn effects(collected: &Collected, cases: &Cases) -> Vec<Effect> {
+    let table = &collected.table;
+    let factors: Vec<_> = table.of_role(Role::Factor).collect();
+    // One at a time: a factor's cases are those in which every other stands at its base.
+    let alone = collected.provenance.design == "one-at-a-time";
+    let base: Vec<Option<Value>> = factors.iter().map(|f| f.values.get(0)).collect();
+    let mut found: Vec<Effect> = factors
+        .iter()
+        .enumerate()
+        .filter_map(|(at, factor)| {
+            let belongs = |case: &&Case| {
+                !alone
+                    || factors.iter().zip(&base).enumerate().all(|(other, (column, base))| {
+                        other == at || column.values.get(case.row) == *base
+                    })
+            };
+            let seen: Vec<(Option<Value>, &Case)> = cases
+                .all
+                .iter()
+                .filter(belongs)
+                .map(|case| (factor.values.get(case.row), case))
+                .collect();
+            let groups = groups(&seen, &factor.spec.unit);
+            (groups.len() > 1).then(|| Effect { factor: factor.spec.name.clone(), groups })
+        })
+        .collect();
+    found.sort_by(|a, b| b.range().total_cmp(&a.range()));
+    found
+}
+
+fn group(label: String, of: &[&Case]) -> Group {
+    let cases = u32::try_from(of.len()).unwrap_or(u32::MAX);
+    let collapsed = of.iter().map(|case| u32::from(case.collapsed)).sum();
+    Group { label, cases, collapsed, interval: wilson(collapsed, cases, LEVEL) }
+}
+
+fn groups(seen: &[(Option<Value>, &Case)], unit: &str) -> Vec<Group> {
+    let numbers: Option<Vec<(f64, &Case)>> = seen
+        .iter()
+        .map(|(value, case)| match value {
+            Some(Value::Number(x)) => Some((*x, *case)),
+            #[expect(clippy::cast_precision_loss, reason = "counts are small")]
+            Some(Value::Integer(x)) => Some((*x as f64, *case)),
+            Some(Value::Text(_)) | None => None,
+        })
+        .collect();
+    let with_unit = |text: String| if unit.is_empty() { text } else { format!("{text} {unit}") };
+    let short = |x: f64| barrelstack_report::significant(x, 3);
+    let Some(mut numbers) = numbers else {
+        let mut by_text: BTreeMap<String, Vec<&Case>> = BTreeMap::new();
+        for (value, case) in seen {
+            by_text.entry(told(value.clone())).or_default().push(case);
+        }
+        return by_text.into_iter().map(|(label, of)| group(label, &of)).collect();
+    };
+    numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let same: Vec<&[(f64, &Case)]> = numbers.chunk_by(|a, b| a.0 == b.0).collect();
+    let parts: Vec<&[(f64, &Case)]> = if same.len() <= MOST {
+        same
+    } else {
+        let third = |i: usize| &numbers[i * numbers.len() / 3..(i + 1) * numbers.len() / 3];
+        vec![third(0), third(1), third(2)]
+    };
+    parts
+        .into_iter()
+        .filter_map(|part| {
+            let (first, last) = (part.first()?.0, part.last()?.0);
+            let label = if first == last {
+                short(first)
+            } else {
+                format!("{} to {}", short(first), short(last))
+            };
+            Some(group(with_unit(label), &part.iter().map(|(_, case)| *case).collect::<Vec<_>>()))
+        })
+        .collect()
+}

@@ -1,0 +1,137 @@
+//! `barrelstack heights`: how high is safe, on one page.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use anyhow::Context as _;
+use barrelstack::heights::{HEIGHTS, Heights, HeightsError, Request, VELOCITIES, View, heights};
+use barrelstack::study::{RunOptions, StudyError};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::printer;
+
+/// Arguments of `heights`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct HeightsArgs {
+    /// Rack of the catalog.
+    #[arg(long, value_name = "NAME", default_value = "two-barrel")]
+    rack: String,
+    /// File of a further motion, such as that of your own site; may be repeated.
+    #[arg(long, value_name = "FILE")]
+    record: Vec<PathBuf>,
+    /// Synthetic motions beside the bundled record.
+    #[arg(long, value_name = "NUMBER", default_value_t = 22, value_parser = clap::value_parser!(u32).range(0..=10_000))]
+    synthetic: u32,
+    /// Seed of motions and friction.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    seed: u32,
+    /// Where to write the page and the studies behind it; run again to go on after a stop.
+    #[arg(long, value_name = "DIR", default_value = "barrelstack-heights")]
+    out: PathBuf,
+    /// Print one JSON document in place of the table.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Set by Ctrl-C.
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Runs every height in both directions, writes the page, prints the table.
+pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
+    let request = Request {
+        rack: args.rack.clone(),
+        records: args.record.clone(),
+        synthetic: args.synthetic,
+        seed: args.seed,
+    };
+    // Without a handler Ctrl-C ends the program at once, which loses nothing that is on the disk.
+    let _ = ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed));
+    let bar = ProgressBar::new(0);
+    if let Ok(style) =
+        ProgressStyle::with_template("{bar:30} {pos} of {len} runs  {elapsed}, {eta} to go")
+    {
+        bar.set_style(style);
+    }
+    let result = heights(&request, &args.out, &RunOptions::default(), &|done, of| {
+        bar.set_length(of);
+        bar.set_position(done);
+        if STOP.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    });
+    bar.finish_and_clear();
+    let found = match result {
+        Err(HeightsError::Study(StudyError::Stopped)) => {
+            printer::warning(&format!(
+                "stopped; what was run is kept in {}, the same command goes on from there",
+                args.out.display()
+            ));
+            return Ok(ExitCode::from(130));
+        }
+        other => other?,
+    };
+    write(&args.out, &found)?;
+    if args.json {
+        printer::lines([serde_json::to_string_pretty(&found.json())?])?;
+    } else {
+        print(&found)?;
+        printer::lines(["", &format!("page: {}", args.out.join("index.html").display())])?;
+    }
+    found.warnings.iter().for_each(|warning| printer::warning(warning));
+    Ok(ExitCode::SUCCESS)
+}
+
+fn write(out: &Path, found: &Heights) -> anyhow::Result<()> {
+    let json = serde_json::to_string_pretty(&found.json())? + "\n";
+    page(out, &found.html(), &found.markdown("figures"))?;
+    put(&out.join("heights.json"), json.as_bytes())
+}
+
+/// Writes a page as HTML and as Markdown with its figures beside it.
+pub(crate) fn page(
+    out: &Path,
+    html: &str,
+    markdown: &barrelstack_report::MarkdownBundle,
+) -> anyhow::Result<()> {
+    let figures = out.join("figures");
+    std::fs::create_dir_all(&figures)
+        .with_context(|| format!("cannot make {}", figures.display()))?;
+    put(&out.join("index.html"), html.as_bytes())?;
+    put(&out.join("index.md"), markdown.text.as_bytes())?;
+    markdown.files.iter().try_for_each(|file| put(&figures.join(&file.name), &file.bytes))
+}
+
+fn put(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    std::fs::write(path, bytes).with_context(|| format!("cannot write {}", path.display()))
+}
+
+fn print(found: &Heights) -> anyhow::Result<()> {
+    let mut lines = vec![found.document.verdict.headline.clone(), String::new()];
+    for view in View::ALL {
+        lines.push(format!("  collapsed, shaken {}", view.words()));
+        let heads = HEIGHTS.map(|levels| format!("{:>9}", format!("{levels} levels")));
+        lines.push(format!("  {:>10}{}", "PGV", heads.concat()));
+        for (at, velocity) in VELOCITIES.iter().enumerate() {
+            let cells = HEIGHTS.map(|levels| {
+                let stripe =
+                    found.of(levels, view).and_then(|height| height.by_velocity.stripes.get(at));
+                let share = stripe.map_or_else(String::new, |stripe| {
+                    format!("{:.0} %", 100.0 * stripe.fraction())
+                });
+                format!("{share:>9}")
+            });
+            lines.push(format!(
+                "  {:>10}{}",
+                format!("{:.0} cm/s", 100.0 * velocity),
+                cells.concat()
+            ));
+        }
+        lines.push(String::new());
+    }
+    lines.pop();
+    printer::lines(lines)
+}

@@ -1,0 +1,83 @@
+//! `barrelstack study report`: from the table of a study to its page.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use barrelstack::decision::{Decision, Request, SiteHazard, decide};
+use barrelstack::study::Collected;
+
+use crate::commands::heights::page;
+use crate::printer;
+
+/// What the help ends with.
+const AFTER_HELP: &str = "\
+A hazard curve is a table (CSV) of the intensity, with its unit, and the annual rate at which it is exceeded:
+
+  pgv (cm/s),rate (1/year)
+  5,0.1
+  20,0.01
+  60,0.001";
+
+/// Arguments of `study report`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = AFTER_HELP)]
+pub(super) struct ReportArgs {
+    /// A folder that `barrelstack study` wrote, finished or not.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Hazard curve of the site: adds annual rates and expected losses.
+    #[arg(long, value_name = "FILE")]
+    hazard: Option<PathBuf>,
+    /// Years for which chances are given.
+    #[arg(long, value_name = "NUMBER", default_value_t = 50, requires = "hazard", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    years: u32,
+    /// Where to write the page, in place of the folder of the study.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print one JSON document in place of the summary.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Reads the folder, writes the page, prints what it says.
+pub(super) fn report(args: &ReportArgs) -> anyhow::Result<()> {
+    let hazard = args.hazard.as_deref().map(SiteHazard::load).transpose()?;
+    let collected = Collected::read(&args.folder)?;
+    let request = Request { hazard, years: Some(f64::from(args.years)) };
+    let decision = decide(&collected, &request)?;
+    let out = args.out.as_deref().unwrap_or(&args.folder);
+    write(out, &decision)?;
+    if args.json {
+        printer::lines([serde_json::to_string_pretty(&decision.json())?])?;
+    } else {
+        let verdict = &decision.document.verdict;
+        let sentences = verdict.sentences.iter().map(|sentence| format!("  {sentence}"));
+        printer::lines(std::iter::once(verdict.headline.clone()).chain(sentences))?;
+        printer::lines(["", &format!("page: {}", out.join("index.html").display())])?;
+    }
+    decision.warnings.iter().for_each(|warning| printer::warning(warning));
+    Ok(())
+}
+
+/// Writes the page of a study that was run.
+///
+/// A study without a single verdict has none, which is no reason to fail: its table says why.
+pub(super) fn write_page(out: &Path, collected: &Collected) -> anyhow::Result<Option<PathBuf>> {
+    match decide(collected, &Request::default()) {
+        Ok(decision) => {
+            write(out, &decision)?;
+            Ok(Some(out.join("index.html")))
+        }
+        Err(error) => {
+            printer::warning(&format!("no page: {error}"));
+            Ok(None)
+        }
+    }
+}
+
+fn write(out: &Path, decision: &Decision) -> anyhow::Result<()> {
+    page(out, &decision.html(), &decision.markdown("figures"))?;
+    let path = out.join("decision.json");
+    let text = serde_json::to_string_pretty(&decision.json())? + "\n";
+    std::fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
+}

@@ -1,0 +1,313 @@
+//! Maximum-likelihood fit of a lognormal curve.
+
+use crate::Stripe;
+use crate::curve::Lognormal;
+use crate::evidence::{Capacity, Evidence, check};
+use crate::likelihood::{Known, Likelihood, Score, Top, covariance};
+use crate::math::{exp, ln, ln_choose, normal_quantile};
+use crate::proportion::Interval;
+
+/// Whether the dispersion is fitted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Dispersion {
+    /// Found with the median.
+    Free,
+    /// Given (`β > 0`), such as from similar structures, where the data cannot tell it.
+    Fixed(f64),
+}
+
+/// Why data do not determine a curve.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum FitError {
+    /// No evidence.
+    #[error("expected at least one observation, found none; run some cases first")]
+    Empty,
+    /// A number that cannot be an intensity or a count.
+    #[error("observation {}: expected {expected}, found {found}", index + 1)]
+    Invalid {
+        /// Place in the evidence, from 0.
+        index: usize,
+        /// What belongs there.
+        expected: &'static str,
+        /// What is there.
+        found: f64,
+    },
+    /// A dispersion that is not a positive number.
+    #[error("expected a positive, finite dispersion, found {0}")]
+    BadDispersion(f64),
+    /// A confidence level outside 0 to 1.
+    #[error("expected a confidence level between 0 and 1, found {0}")]
+    BadLevel(f64),
+    /// Every case stood.
+    #[error(
+        "no case failed up to an intensity of {largest}: the median lies above, and no curve can be \
+         fitted; add cases of higher intensity"
+    )]
+    NothingFailed {
+        /// The highest intensity.
+        largest: f64,
+    },
+    /// Every case failed.
+    #[error(
+        "every case failed down to an intensity of {smallest}: the median lies below, and no curve \
+         can be fitted; add cases of lower intensity"
+    )]
+    EverythingFailed {
+        /// The lowest intensity.
+        smallest: f64,
+    },
+    /// One capacity explains everything.
+    #[error(
+        "failures and survivals do not overlap: a single capacity between {above} and {below} \
+         explains every case, and the dispersion cannot be found; add cases between these \
+         intensities, or give the dispersion"
+    )]
+    Separated {
+        /// Every survival is at or below this intensity.
+        above: f64,
+        /// Every failure is at or above this intensity.
+        below: f64,
+    },
+    /// Failure is as likely at low intensities.
+    #[error(
+        "failure does not become likelier with intensity, so no fragility curve describes the \
+         cases; look at the raw fractions, and try another intensity measure"
+    )]
+    NotIncreasing,
+    /// The numbers broke down.
+    #[error(
+        "the fit did not converge, which data of usual size do not cause; check for intensities \
+         that differ by many orders of magnitude"
+    )]
+    NotConverged,
+    /// Too few resampled data sets had a curve.
+    #[error(
+        "only {usable} of {replicates} resampled data sets determine a curve; add cases, or give \
+         the dispersion"
+    )]
+    Unstable {
+        /// Resampled sets with a curve.
+        usable: usize,
+        /// All of them.
+        replicates: usize,
+    },
+}
+
+/// A fitted curve and how sure it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fit {
+    /// Median and dispersion.
+    pub curve: Lognormal,
+    /// Standard error of `ln θ`.
+    pub median_error: f64,
+    /// Standard error of `ln β`; zero where the dispersion was given.
+    pub dispersion_error: f64,
+    /// Covariance of `ln θ` and `ln β`.
+    pub covariance: f64,
+    /// Logarithm of the likelihood, without binomial coefficients; see [`Fit::ln_likelihood_of`].
+    pub ln_likelihood: f64,
+    /// How many parameters were fitted: 1 or 2.
+    pub parameters: usize,
+}
+
+impl Fit {
+    /// The logarithm of the likelihood of counts, with their binomial coefficients (Baker 2015,
+    /// eq. 9).
+    pub fn ln_likelihood_of(&self, stripes: &[Stripe]) -> f64 {
+        let coefficients: f64 =
+            stripes.iter().map(|s| ln_choose(s.cases, s.failures.min(s.cases))).sum();
+        self.ln_likelihood + coefficients
+    }
+
+    /// The interval of the median at a confidence level, from its standard error.
+    pub fn median_interval(&self, level: f64) -> Interval {
+        around(self.curve.median, self.median_error, level)
+    }
+
+    /// The interval of the dispersion at a confidence level, from its standard error.
+    pub fn dispersion_interval(&self, level: f64) -> Interval {
+        around(self.curve.dispersion, self.dispersion_error, level)
+    }
+}
+
+/// A positive value times and over `exp(z error)`.
+fn around(value: f64, error: f64, level: f64) -> Interval {
+    let reach = exp(-normal_quantile(0.5 * (1.0 - level)) * error);
+    Interval { low: value / reach, high: value * reach }
+}
+
+/// Fits a curve to evidence: `z = (ln x − ln θ)/β` is the score of an intensity, and the likelihood
+/// of each observation is the chance, or the density, of its capacity.
+///
+/// For counts this is the fit of Baker (2015), for capacities that of a normal distribution to
+/// their logarithms, with `n` and not `n − 1` below the sum of squares ([`moments`] has that).
+/// Standard errors are those of the observed information and take the cases as independent.
+///
+/// # Errors
+/// A [`FitError`] when the evidence does not determine a curve.
+pub fn fit(evidence: &[Evidence], dispersion: Dispersion) -> Result<Fit, FitError> {
+    check(evidence)?;
+    existence(evidence, dispersion)?;
+    match dispersion {
+        Dispersion::Free => free(evidence),
+        Dispersion::Fixed(beta) => fixed(evidence, beta),
+    }
+}
+
+fn free(evidence: &[Evidence]) -> Result<Fit, FitError> {
+    let top = top_free(evidence)?;
+    let [a, b] = top.parameters;
+    let c = covariance(&top.shape.curvature).ok_or(FitError::NotConverged)?;
+    // ln θ = −a/b and ln β = −ln b, so their derivatives by (a, b) are these.
+    let by_median = [-1.0 / b, a / (b * b)];
+    let by_dispersion = [0.0, -1.0 / b];
+    let product = |u: [f64; 2], v: [f64; 2]| {
+        (0..2).map(|i| (0..2).map(|j| u[i] * c[i][j] * v[j]).sum::<f64>()).sum::<f64>()
+    };
+    Ok(Fit {
+        curve: Lognormal { median: exp(-a / b), dispersion: 1.0 / b },
+        median_error: product(by_median, by_median).sqrt(),
+        dispersion_error: product(by_dispersion, by_dispersion).sqrt(),
+        covariance: product(by_median, by_dispersion),
+        ln_likelihood: top.shape.value,
+        parameters: 2,
+    })
+}
+
+fn fixed(evidence: &[Evidence], beta: f64) -> Result<Fit, FitError> {
+    let likelihood = fixed_likelihood(evidence, beta);
+    let start = -middle(evidence) / beta;
+    let top = likelihood.top([start]).ok_or(FitError::NotConverged)?;
+    let [[variance]] = covariance(&top.shape.curvature).ok_or(FitError::NotConverged)?;
+    Ok(Fit {
+        curve: Lognormal { median: exp(-top.parameters[0] * beta), dispersion: beta },
+        median_error: beta * variance.sqrt(),
+        dispersion_error: 0.0,
+        covariance: 0.0,
+        ln_likelihood: top.shape.value,
+        parameters: 1,
+    })
+}
+
+/// The top over intercept `a = −ln θ/β` and slope `b = 1/β`.
+pub(crate) fn top_free(evidence: &[Evidence]) -> Result<Top<2>, FitError> {
+    let start = [-middle(evidence), 1.0];
+    // Started from a shape that is too narrow for nobody: β = 1 about the middle.
+    let top = free_likelihood(evidence).top(start).ok_or(FitError::NotConverged)?;
+    if top.parameters[1] > 0.0 { Ok(top) } else { Err(FitError::NotIncreasing) }
+}
+
+/// Likelihood over `(a, b)`: `z = a + b ln x`.
+fn free_likelihood(evidence: &[Evidence]) -> Likelihood<2> {
+    likelihood(evidence, Some(1), 0.0, |u| Score { offset: 0.0, row: [1.0, u] })
+}
+
+/// Likelihood over `a`: `z = a + ln x/β`.
+pub(crate) fn fixed_likelihood(evidence: &[Evidence], beta: f64) -> Likelihood<1> {
+    likelihood(evidence, None, -ln(beta), |u| Score { offset: u / beta, row: [1.0] })
+}
+
+/// The likelihood of evidence where `score` tells `z` from `ln x`; `ln_slope` is the logarithm of a
+/// slope that is not a parameter.
+pub(crate) fn likelihood<const N: usize>(
+    evidence: &[Evidence],
+    slope: Option<usize>,
+    ln_slope: f64,
+    score: impl Fn(f64) -> Score<N>,
+) -> Likelihood<N> {
+    let known = |capacity: Capacity| match capacity {
+        Capacity::At(x) => Known::At(score(ln(x)), ln(x) - ln_slope),
+        Capacity::Below(x) => Known::Below(score(ln(x))),
+        Capacity::Above(x) => Known::Above(score(ln(x))),
+        Capacity::Between(low, high) => Known::Between(score(ln(low)), score(ln(high))),
+    };
+    let terms = evidence.iter().map(|item| (known(item.capacity), item.weight)).collect();
+    Likelihood { terms, slope }
+}
+
+/// The mean of the logarithms of all intensities.
+fn middle(evidence: &[Evidence]) -> f64 {
+    let (mut sum, mut weight) = (0.0, 0.0);
+    for item in evidence {
+        let (low, high) = item.capacity.bounds();
+        let u = match (low > 0.0, high.is_finite()) {
+            (true, true) => 0.5 * (ln(low) + ln(high)),
+            (true, false) => ln(low),
+            (false, _) => ln(high),
+        };
+        sum += item.weight * u;
+        weight += item.weight;
+    }
+    sum / weight
+}
+
+/// Whether the likelihood has a top at a positive, finite dispersion.
+///
+/// It has none where one single capacity agrees with all evidence, since the dispersion then
+/// shrinks to nothing, nor where the likelihood falls from `b = 1/β = 0` on, since failure then
+/// becomes less likely with intensity; both are exact, as the likelihood is concave.
+fn existence(evidence: &[Evidence], dispersion: Dispersion) -> Result<(), FitError> {
+    let (mut above, mut below) = (0.0_f64, f64::INFINITY);
+    let (mut largest, mut smallest) = (0.0_f64, f64::INFINITY);
+    for item in evidence {
+        let (low, high) = item.capacity.bounds();
+        above = above.max(low);
+        below = below.min(high);
+        if let Capacity::Below(x) | Capacity::Above(x) = item.capacity {
+            largest = largest.max(x);
+            smallest = smallest.min(x);
+        }
+    }
+    if below.is_infinite() {
+        return Err(FitError::NothingFailed { largest });
+    }
+    if above == 0.0 {
+        return Err(FitError::EverythingFailed { smallest });
+    }
+    if let Dispersion::Fixed(beta) = dispersion {
+        let sound = beta.is_finite() && beta > 0.0;
+        return if sound { Ok(()) } else { Err(FitError::BadDispersion(beta)) };
+    }
+    if above <= below {
+        return Err(FitError::Separated { above, below });
+    }
+    let only_cases =
+        |item: &Evidence| matches!(item.capacity, Capacity::Below(_) | Capacity::Above(_));
+    if evidence.iter().all(only_cases) {
+        // At b = 0 every case fails with the overall share; the slope there is the sum of
+        // (failed − share) ln x over the cases, up to a positive factor.
+        let total: f64 = evidence.iter().map(|item| item.weight).sum();
+        let failed =
+            |item: &Evidence| f64::from(u8::from(matches!(item.capacity, Capacity::Below(_))));
+        let share = evidence.iter().map(|item| item.weight * failed(item)).sum::<f64>() / total;
+        let center = middle(evidence);
+        let rise: f64 = evidence
+            .iter()
+            .map(|item| {
+                let (low, high) = item.capacity.bounds();
+                let x = if low > 0.0 { low } else { high };
+                item.weight * (failed(item) - share) * (ln(x) - center)
+            })
+            .sum();
+        if rise <= 1e-12 * total {
+            return Err(FitError::NotIncreasing);
+        }
+    }
+    Ok(())
+}
+
+/// Median and dispersion of exact capacities by their moments: `ln θ` the mean of the logarithms,
+/// `β` their sample standard deviation with `n − 1` (Baker 2015, eqs. 2 and 3).
+///
+/// # Errors
+/// For fewer than two different capacities, or one that is not a positive number.
+pub fn moments(capacities: &[f64]) -> Result<Lognormal, FitError> {
+    let all: Vec<Evidence> =
+        capacities.iter().map(|x| Evidence::capacity(Capacity::At(*x), 0)).collect();
+    check(&all)?;
+    existence(&all, Dispersion::Free)?;
+    let n = capacities.len() as f64;
+    let mean = capacities.iter().map(|x| ln(*x)).sum::<f64>() / n;
+    let squares: f64 = capacities.iter().map(|x| (ln(*x) - mean) * (ln(*x) - mean)).sum();
+    Ok(Lognormal { median: exp(mean), dispersion: (squares / (n - 1.0)).sqrt() })
+}

@@ -1,0 +1,152 @@
+//! Whether a fitted curve describes the data.
+
+use crate::bootstrap::drawn;
+use crate::curve::Lognormal;
+use crate::evidence::{Stripe, evidence};
+use crate::fit::{Dispersion, Fit, FitError, fit, moments};
+use crate::math::{chi_square_above, exp, ln, normal, normal_quantile};
+
+/// Counts against a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goodness {
+    /// Twice the logarithm of the likelihood of the raw fractions over that of the curve, over all
+    /// stripes.
+    pub deviance: f64,
+    /// Sum of squared residuals over their binomial variance, over the pooled groups.
+    pub pearson: f64,
+    /// Groups after neighbors were pooled until each expects at least one failure and one survival.
+    pub groups: usize,
+    /// Groups less fitted parameters.
+    pub freedom: usize,
+    /// The chance of so large a `pearson` if the curve is true; 1 without freedom, which says
+    /// nothing.
+    pub p: f64,
+}
+
+/// Twice the logarithm of the likelihood ratio of raw fractions to given chances.
+pub(crate) fn deviance(stripes: &[Stripe], chance: impl Fn(usize) -> f64) -> f64 {
+    // x ln(x/y), zero at x = 0.
+    let part = |x: f64, y: f64| if x == 0.0 { 0.0 } else { x * ln(x / y) };
+    stripes
+        .iter()
+        .enumerate()
+        .map(|(i, s)| {
+            let (n, k, p) = (f64::from(s.cases), f64::from(s.failures), chance(i));
+            2.0 * (part(k, n * p) + part(n - k, n * (1.0 - p)))
+        })
+        .sum()
+}
+
+/// Pearson's test of counts against a fitted curve, in groups of neighboring stripes as Hosmer and
+/// Lemeshow (1980), and the deviance.
+///
+/// Cases must be independent: counts in which the same records return at every level scatter less
+/// than binomially, and the test is then too lenient.
+pub fn goodness(stripes: &[Stripe], found: &Fit) -> Goodness {
+    let chance = |s: &Stripe| found.curve.probability(s.intensity);
+    let mut sorted = stripes.to_vec();
+    sorted.sort_by(|a, b| a.intensity.total_cmp(&b.intensity));
+    // Cases, failures, expected failures, variance.
+    let mut groups: Vec<[f64; 4]> = vec![];
+    let expects_both = |g: &[f64; 4]| g[2] >= 1.0 && g[0] - g[2] >= 1.0;
+    let mut open = [0.0; 4];
+    for stripe in &sorted {
+        let (n, p) = (f64::from(stripe.cases), chance(stripe));
+        let part = [n, f64::from(stripe.failures), n * p, n * p * (1.0 - p)];
+        open.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+        if expects_both(&open) {
+            groups.push(open);
+            open = [0.0; 4];
+        }
+    }
+    if open[0] > 0.0 {
+        match groups.last_mut() {
+            Some(last) => last.iter_mut().zip(open).for_each(|(sum, part)| *sum += part),
+            None => groups.push(open),
+        }
+    }
+    let pearson = groups.iter().map(|g| (g[1] - g[2]) * (g[1] - g[2]) / g[3]).sum();
+    let freedom = groups.len().saturating_sub(found.parameters);
+    Goodness {
+        deviance: deviance(&sorted, |i| chance(&sorted[i])),
+        pearson,
+        groups: groups.len(),
+        freedom,
+        p: chi_square_above(pearson, freedom),
+    }
+}
+
+/// The chance of so large a deviance if the fitted curve is true, by drawing counts from it and
+/// fitting each draw again: right for small counts, where χ² is not.
+///
+/// # Errors
+/// As [`fit`], or when fewer than half of the draws determine a curve.
+pub fn goodness_by_simulation(
+    stripes: &[Stripe],
+    dispersion: Dispersion,
+    replicates: usize,
+    mut uniform: impl FnMut() -> f64,
+) -> Result<f64, FitError> {
+    let misfit = |stripes: &[Stripe], curve: &Lognormal| {
+        deviance(stripes, |i| curve.probability(stripes[i].intensity))
+    };
+    let curve = fit(&evidence(stripes), dispersion)?.curve;
+    let observed = misfit(stripes, &curve);
+    let chance = |i: usize| curve.probability(stripes[i].intensity);
+    let (mut usable, mut worse) = (0_usize, 0_usize);
+    for _ in 0..replicates {
+        let draw = drawn(stripes, chance, &mut uniform);
+        if let Ok(again) = fit(&evidence(&draw), dispersion) {
+            usable += 1;
+            worse += usize::from(misfit(&draw, &again.curve) >= observed - 1e-12);
+        }
+    }
+    if usable == 0 || 2 * usable < replicates {
+        return Err(FitError::Unstable { usable, replicates });
+    }
+    Ok((worse + 1) as f64 / (usable + 1) as f64)
+}
+
+/// Capacities against a lognormal distribution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Normality {
+    /// Largest distance of the distribution of the capacities from the fitted one (Lilliefors
+    /// 1967).
+    pub distance: f64,
+    /// The chance of so large a distance if capacities are lognormal.
+    pub p: f64,
+}
+
+/// Lilliefors's test whether exact capacities are lognormal with a median and dispersion of their
+/// own; its distribution does not depend on these and is drawn here.
+///
+/// # Errors
+/// As [`moments`].
+pub fn normality(
+    capacities: &[f64],
+    replicates: usize,
+    mut uniform: impl FnMut() -> f64,
+) -> Result<Normality, FitError> {
+    let observed = distance(capacities)?;
+    let mut worse = 0_usize;
+    for _ in 0..replicates {
+        let draw: Vec<f64> = (0..capacities.len())
+            .map(|_| exp(normal_quantile(uniform().max(f64::MIN_POSITIVE))))
+            .collect();
+        worse += usize::from(distance(&draw)? >= observed);
+    }
+    Ok(Normality { distance: observed, p: (worse + 1) as f64 / (replicates + 1) as f64 })
+}
+
+fn distance(capacities: &[f64]) -> Result<f64, FitError> {
+    let curve = moments(capacities)?;
+    let mut scores: Vec<f64> =
+        capacities.iter().map(|x| (ln(*x) - ln(curve.median)) / curve.dispersion).collect();
+    scores.sort_by(f64::total_cmp);
+    let n = scores.len() as f64;
+    let gap = |(i, z): (usize, &f64)| {
+        let p = normal(*z);
+        (p - i as f64 / n).max((i + 1) as f64 / n - p)
+    };
+    Ok(scores.iter().enumerate().map(gap).fold(0.0, f64::max))
+}

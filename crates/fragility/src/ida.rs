@@ -1,0 +1,167 @@
+//! Curves of incremental dynamic analysis: demand against intensity, one a record.
+
+use crate::math::quantile;
+
+/// One record at ascending intensities.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ida {
+    /// `(intensity, demand)` in ascending order; an infinite demand is a collapse.
+    points: Vec<(f64, f64)>,
+}
+
+/// A record that collapsed at one intensity and stood at a higher.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resurrection {
+    /// The intensity of the collapse.
+    pub collapsed: f64,
+    /// The next intensity at which it stood.
+    pub stood: f64,
+}
+
+impl Ida {
+    /// A curve through runs in any order; points whose intensity is not positive and finite, or
+    /// whose demand is not a number, are left out.
+    pub fn new(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let sound = |(x, d): &(f64, f64)| x.is_finite() && *x > 0.0 && !d.is_nan();
+        let mut points: Vec<(f64, f64)> = points.into_iter().filter(sound).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points.dedup_by(|later, first| {
+            let same = later.0 == first.0;
+            if same {
+                first.1 = first.1.max(later.1);
+            }
+            same
+        });
+        Self { points }
+    }
+
+    /// The runs, ascending.
+    pub fn points(&self) -> &[(f64, f64)] {
+        &self.points
+    }
+
+    /// The demand at an intensity.
+    ///
+    /// Linear between runs, and from rest (zero at zero) to the first. Between a run that stood
+    /// and one that collapsed, in either order, the change is taken at their geometric middle, and
+    /// the demand on the standing side held. Above the last run it is infinite if that collapsed,
+    /// since analyses end there, and `None`, unknown, if it stood.
+    pub fn demand(&self, intensity: f64) -> Option<f64> {
+        let after = self.points.partition_point(|(x, _)| *x < intensity);
+        let before = after.checked_sub(1).map_or((0.0, 0.0), |i| self.points[i]);
+        let Some(&next) = self.points.get(after) else {
+            return before.1.is_infinite().then_some(f64::INFINITY);
+        };
+        if next.0 == intensity {
+            return Some(next.1);
+        }
+        Some(match (before.1.is_finite(), next.1.is_finite()) {
+            (true, true) => {
+                let part = (intensity - before.0) / (next.0 - before.0);
+                before.1 + part * (next.1 - before.1)
+            }
+            (false, false) => f64::INFINITY,
+            (first_stands, _) => {
+                let past = intensity * intensity >= before.0 * next.0 && before.0 > 0.0;
+                let standing = if first_stands { before.1 } else { next.1 };
+                if past == first_stands { f64::INFINITY } else { standing }
+            }
+        })
+    }
+
+    /// The lowest intensity at which the demand reaches a value: the capacity by Vamvatsikos and
+    /// Cornell's (2002) first crossing. `None` when it never does.
+    pub fn first_reaching(&self, demand: f64) -> Option<f64> {
+        let mut before = (0.0, 0.0);
+        for &(x, d) in &self.points {
+            if d >= demand {
+                return Some(if d.is_finite() && d > before.1 {
+                    before.0 + (demand - before.1) / (d - before.1) * (x - before.0)
+                } else if before.0 > 0.0 {
+                    (before.0 * x).sqrt()
+                } else {
+                    x
+                });
+            }
+            before = (x, d);
+        }
+        None
+    }
+
+    /// The intensities between which the record first collapsed: the last run that stood below,
+    /// zero if none did, and the first that collapsed. `None` when it never did.
+    pub fn first_collapse(&self) -> Option<(f64, f64)> {
+        let index = self.points.iter().position(|(_, d)| d.is_infinite())?;
+        Some((index.checked_sub(1).map_or(0.0, |i| self.points[i].0), self.points[index].0))
+    }
+
+    /// Every return from collapse, ascending.
+    pub fn resurrections(&self) -> Vec<Resurrection> {
+        let pairs = self.points.windows(2);
+        pairs
+            .filter(|pair| pair[0].1.is_infinite() && pair[1].1.is_finite())
+            .map(|pair| Resurrection { collapsed: pair[0].0, stood: pair[1].0 })
+            .collect()
+    }
+
+    /// The demand that a share of records stays below at an intensity, infinite where too many have
+    /// collapsed; `None` where some record says nothing, so that no record drops out of a curve in
+    /// silence. A record that came back counts as standing where it stands.
+    pub fn fractile(all: &[Self], intensity: f64, share: f64) -> Option<f64> {
+        let mut demands =
+            all.iter().map(|ida| ida.demand(intensity)).collect::<Option<Vec<_>>>()?;
+        if demands.is_empty() {
+            return None;
+        }
+        demands.sort_by(f64::total_cmp);
+        Some(quantile(&demands, share))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn returning() -> Ida {
+        Ida::new([(0.4, f64::INFINITY), (0.1, 1.0), (0.2, 3.0), (0.8, 5.0), (1.6, f64::INFINITY)])
+    }
+
+    #[test]
+    fn demand_is_linear_between_runs_and_collapse_lies_at_the_geometric_middle() {
+        let ida = returning();
+        assert_eq!(ida.demand(0.05), Some(0.5));
+        assert!((ida.demand(0.15).unwrap() - 2.0).abs() < 1e-12);
+        assert_eq!(ida.demand(0.28), Some(3.0));
+        assert_eq!(ida.demand(0.29), Some(f64::INFINITY));
+        assert_eq!(ida.demand(0.56), Some(f64::INFINITY));
+        assert_eq!(ida.demand(0.57), Some(5.0));
+        assert_eq!(ida.demand(9.0), Some(f64::INFINITY));
+        assert_eq!(Ida::new([(0.1, 1.0)]).demand(0.2), None);
+    }
+
+    #[test]
+    fn a_record_that_comes_back_keeps_its_first_collapse_and_says_so() {
+        let ida = returning();
+        assert_eq!(ida.first_collapse(), Some((0.2, 0.4)));
+        assert_eq!(ida.resurrections(), [Resurrection { collapsed: 0.4, stood: 0.8 }]);
+        assert!((ida.first_reaching(2.0).unwrap() - 0.15).abs() < 1e-12);
+        assert!((ida.first_reaching(4.0).unwrap() - 0.08_f64.sqrt()).abs() < 1e-12);
+        assert_eq!(Ida::new([(0.1, 1.0)]).first_reaching(2.0), None);
+    }
+
+    #[test]
+    fn fractiles_come_back_where_enough_records_stand_again() {
+        let steady = Ida::new([(0.1, 0.5), (0.8, 4.0), (1.6, f64::INFINITY)]);
+        let all = [returning(), steady.clone(), returning()];
+        assert_eq!(Ida::fractile(&all, 0.4, 0.5), Some(f64::INFINITY));
+        assert_eq!(Ida::fractile(&all, 0.4, 0.0), steady.demand(0.4));
+        assert_eq!(Ida::fractile(&all, 0.8, 0.5), Some(5.0));
+        assert_eq!(Ida::fractile(&[], 0.8, 0.5), None);
+    }
+
+    #[test]
+    fn of_runs_at_one_intensity_the_larger_demand_counts() {
+        let ida = Ida::new([(0.1, 2.0), (0.1, 3.0), (f64::NAN, 1.0), (0.2, f64::NAN)]);
+        assert_eq!(ida.points(), [(0.1, 3.0)]);
+    }
+}

@@ -1,0 +1,69 @@
+//! Statistics of failure against intensity.
+//!
+//! The crate knows nothing of what fails or why. It is told where capacities lie, fits
+//! lognormal fragility curves to that, says how sure they are, shows where data contradict the
+//! fit, and folds curves with the hazard of a site.
+//!
+//! # From counts to a rate
+//!
+//! ```
+//! use barrelstack_fragility::{Dispersion, Hazard, Stripe, evidence, fit, profile_band};
+//!
+//! let stripes = [(0.2, 20, 1), (0.4, 20, 9), (0.6, 20, 15), (0.8, 20, 18)]
+//!     .map(|(intensity, cases, failures)| Stripe { intensity, cases, failures });
+//! let found = fit(&evidence(&stripes), Dispersion::Free)?;
+//! assert!((found.curve.median - 0.44).abs() < 0.01);
+//!
+//! let band = profile_band(&evidence(&stripes), Dispersion::Free, 0.95, &[0.4])?;
+//! assert!(band[0].low < 0.5 && 0.4 < band[0].high);
+//!
+//! let hazard = Hazard::new(&[(0.05, 0.1), (0.2, 0.01), (0.8, 0.0005), (2.0, 0.00005)])?;
+//! let rate = hazard.rate_of(|x| found.curve.probability(x));
+//! assert!(rate.low > 0.002 && rate.high < 0.006, "{rate:?}"); // a year
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # What counts as evidence
+//!
+//! All fits maximize one likelihood. Every observation says where a capacity lies: *at* an
+//! intensity, *below* it (failed there), *above* it (stood there) or *between* two. Counts at
+//! fixed intensities, capacities from incremental dynamic analysis, bracketed capacities and
+//! records that never fail below the largest intensity are the same thing to it.
+//!
+//! # Refusals
+//!
+//! Data that do not determine a curve get a [`FitError`] that says why: nothing failed, all failed,
+//! failures and survivals do not overlap, or failure does not become likelier with intensity.
+//! There is no penalty, no prior and no clipping that would turn them into a plausible number.
+//!
+//! # Chance
+//!
+//! Resampling takes its uniform numbers from the caller (`FnMut() -> f64`), so that the generator,
+//! the seed and the bits are the caller's.
+
+mod bootstrap;
+mod curve;
+mod evidence;
+mod fit;
+mod goodness;
+mod hazard;
+mod ida;
+mod likelihood;
+mod math;
+mod measures;
+mod monotone;
+mod profile;
+mod proportion;
+
+pub use bootstrap::{Replicates, bootstrap, simulate};
+pub use curve::Lognormal;
+pub use evidence::{Capacity, Evidence, Stripe, evidence, stripes};
+pub use fit::{Dispersion, Fit, FitError, fit, moments};
+pub use goodness::{Goodness, Normality, goodness, goodness_by_simulation, normality};
+pub use hazard::{Contribution, Hazard, HazardError, Rate, chance_within};
+pub use ida::{Ida, Resurrection};
+pub use math::{chi_square_above, normal, normal_density, normal_quantile, student_beyond};
+pub use measures::{Demanded, Measured, demand_against, failure_against};
+pub use monotone::{Fall, Monotony, Returned, monotony, returns};
+pub use profile::{profile_band, profile_median};
+pub use proportion::{Interval, clopper_pearson, wilson};

@@ -1,0 +1,170 @@
+//! How well an intensity measure tells failure: its efficiency, and whether anything is left that
+//! another measure would tell.
+
+use crate::Evidence;
+use crate::fit::{Dispersion, Fit, FitError, fit};
+use crate::likelihood::{Known, Likelihood, Score, solve};
+use crate::math::{chi_square_above, ln, student_beyond};
+
+/// Failure against one measure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// The curve over this measure. A small dispersion is an efficient measure.
+    pub fit: Fit,
+    /// The chance that a case which failed was shaken harder, by this measure, than one which
+    /// stood: 0.5 tells nothing, 1 everything (the area under the receiver's operating curve).
+    pub concordance: f64,
+    /// The chance of so much improvement by a second measure if it told nothing more: small where
+    /// the measure alone is not sufficient. `None` where the second follows from the first.
+    pub sufficiency: Option<f64>,
+}
+
+/// Failures against a measure, and against it and a second one.
+///
+/// `cases` are `(intensity, failed)`, and `second` the other quantity of each case, such as another
+/// measure or the duration. Sufficiency is the likelihood-ratio test of the second in a probit
+/// regression on the logarithms of both, independent cases taken for granted.
+///
+/// # Errors
+/// As [`fit`].
+pub fn failure_against(
+    cases: &[(f64, bool)],
+    second: Option<&[f64]>,
+) -> Result<Measured, FitError> {
+    let evidence: Vec<Evidence> =
+        cases.iter().map(|(x, failed)| Evidence::case(*x, *failed, 0)).collect();
+    let fit = fit(&evidence, Dispersion::Free)?;
+    let sufficiency = second.and_then(|second| sufficiency(cases, second, &fit));
+    Ok(Measured { fit, concordance: concordance(cases), sufficiency })
+}
+
+fn sufficiency(cases: &[(f64, bool)], second: &[f64], alone: &Fit) -> Option<f64> {
+    if second.len() != cases.len() || second.iter().any(|x| !(x.is_finite() && *x > 0.0)) {
+        return None;
+    }
+    let first: Vec<f64> = cases.iter().map(|(x, _)| ln(*x)).collect();
+    let rest = residuals(&first, &second.iter().map(|x| ln(*x)).collect::<Vec<_>>())?;
+    let terms = cases
+        .iter()
+        .zip(first.iter().zip(&rest))
+        .map(|((_, failed), (u, v))| {
+            let score = Score { offset: 0.0, row: [1.0, *u, *v] };
+            (if *failed { Known::Below(score) } else { Known::Above(score) }, 1.0)
+        })
+        .collect();
+    let b = 1.0 / alone.curve.dispersion;
+    let both = Likelihood { terms, slope: Some(1) };
+    // Without a top the two together separate failures from survivals, which is all there is to
+    // gain: the likelihood then tends to one.
+    let highest =
+        both.top([-b * ln(alone.curve.median), b, 0.0]).map_or(0.0, |top| top.shape.value);
+    Some(chi_square_above(2.0 * (highest - alone.ln_likelihood), 1))
+}
+
+/// What is left of `y` after its straight line over `x`, over its standard deviation; `None` when
+/// nothing is.
+fn residuals(x: &[f64], y: &[f64]) -> Option<Vec<f64>> {
+    let line = Line::through(x, y)?;
+    let rest: Vec<f64> = x.iter().zip(y).map(|(x, y)| y - line.at(*x)).collect();
+    let scale = (rest.iter().map(|r| r * r).sum::<f64>() / rest.len() as f64).sqrt();
+    (scale > 1e-9).then(|| rest.iter().map(|r| r / scale).collect())
+}
+
+/// The share of pairs, one failed and one standing, in which the failed has the higher intensity.
+fn concordance(cases: &[(f64, bool)]) -> f64 {
+    let mut sorted = cases.to_vec();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (mut pairs, mut stood) = (0.0, 0.0);
+    let mut failed_in_all = 0.0;
+    let mut rest = sorted.as_slice();
+    while let Some((x, _)) = rest.first() {
+        let same = rest.iter().take_while(|(y, _)| y == x).count();
+        let failed = rest[..same].iter().filter(|(_, failed)| *failed).count() as f64;
+        let standing = same as f64 - failed;
+        pairs += failed * (stood + 0.5 * standing);
+        stood += standing;
+        failed_in_all += failed;
+        rest = &rest[same..];
+    }
+    pairs / (failed_in_all * stood)
+}
+
+/// Demand against one measure: `ln D = ln a + b ln x + ε`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Demanded {
+    /// `b`.
+    pub slope: f64,
+    /// Standard deviation of `ε`: a small one is an efficient measure (Luco and Cornell 2007).
+    pub dispersion: f64,
+    /// `dispersion/b`, the scatter in terms of intensity, which also punishes measures that move
+    /// the demand little (Padgett et al. 2008).
+    pub proficiency: f64,
+    /// The chance of so large a dependence of `ε` on a second quantity if there were none.
+    pub sufficiency: Option<f64>,
+    /// Cases.
+    pub cases: usize,
+}
+
+/// Demands of cases that stood, each `(intensity, demand)`, both positive, against a measure, and
+/// what is left against a second quantity. `None` for fewer than three cases, for intensities all
+/// alike and for numbers that are not positive.
+pub fn demand_against(cases: &[(f64, f64)], second: Option<&[f64]>) -> Option<Demanded> {
+    let sound = |x: f64| x.is_finite() && x > 0.0;
+    if cases.len() < 3 || !cases.iter().all(|(x, d)| sound(*x) && sound(*d)) {
+        return None;
+    }
+    let (x, d): (Vec<f64>, Vec<f64>) = cases.iter().map(|(x, d)| (ln(*x), ln(*d))).unzip();
+    let line = Line::through(&x, &d)?;
+    let freedom = (cases.len() - 2) as f64;
+    let rest: Vec<f64> = x.iter().zip(&d).map(|(x, d)| d - line.at(*x)).collect();
+    let squares: f64 = rest.iter().map(|r| r * r).sum();
+    let dispersion = (squares / freedom).sqrt();
+    let sufficiency = second.and_then(|second| {
+        let other = second.iter().all(|x| sound(*x)).then(|| second.iter().map(|x| ln(*x)));
+        let other = residuals(&x, &other?.collect::<Vec<_>>())?;
+        let line = Line::through(&other, &rest)?;
+        let left: f64 = other.iter().zip(&rest).map(|(v, r)| (r - line.at(*v)).powi(2)).sum();
+        let freedom = cases.len().checked_sub(3).filter(|freedom| *freedom > 0)?;
+        let error = (left / freedom as f64 / other.len() as f64).sqrt();
+        Some(if error > 0.0 { student_beyond(line.slope / error, freedom) } else { 0.0 })
+    });
+    Some(Demanded {
+        slope: line.slope,
+        dispersion,
+        proficiency: dispersion / line.slope,
+        sufficiency,
+        cases: cases.len(),
+    })
+}
+
+/// A straight line by least squares.
+struct Line {
+    intercept: f64,
+    slope: f64,
+}
+
+impl Line {
+    fn through(x: &[f64], y: &[f64]) -> Option<Self> {
+        if x.len() != y.len() {
+            return None;
+        }
+        let n = x.len() as f64;
+        let center = x.iter().sum::<f64>() / n;
+        // About the center the two equations do not mix, and digits are kept.
+        let (mut sxx, mut sxy, mut sy) = (0.0, 0.0, 0.0);
+        for (x, y) in x.iter().zip(y) {
+            sxx += (x - center) * (x - center);
+            sxy += (x - center) * y;
+            sy += y;
+        }
+        if sxx <= 1e-12 * n {
+            return None;
+        }
+        let [at_center, slope] = solve([[n, 0.0], [0.0, sxx]], [sy, sxy])?;
+        Some(Self { intercept: at_center - slope * center, slope })
+    }
+
+    fn at(&self, x: f64) -> f64 {
+        self.intercept + self.slope * x
+    }
+}

@@ -1,0 +1,90 @@
+//! Intervals of a proportion from counts.
+
+use crate::math::{beta_quantile, normal_quantile};
+
+/// Two bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Lower bound.
+    pub low: f64,
+    /// Upper bound.
+    pub high: f64,
+}
+
+impl Interval {
+    /// Whether a value lies within, bounds included.
+    pub fn holds(&self, value: f64) -> bool {
+        self.low <= value && value <= self.high
+    }
+}
+
+/// Wilson's score interval of a proportion (Wilson 1927): short, with a coverage near the level on
+/// average. The whole of 0 to 1 without cases.
+pub fn wilson(failures: u32, cases: u32, level: f64) -> Interval {
+    if cases == 0 {
+        return Interval { low: 0.0, high: 1.0 };
+    }
+    let z = -normal_quantile(0.5 * (1.0 - level));
+    let n = f64::from(cases);
+    let p = f64::from(failures) / n;
+    let scale = 1.0 + z * z / n;
+    let center = (p + z * z / (2.0 * n)) / scale;
+    let half = z / scale * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt();
+    Interval {
+        low: if failures == 0 { 0.0 } else { center - half },
+        high: if failures >= cases { 1.0 } else { center + half },
+    }
+}
+
+/// The exact interval of a proportion (Clopper and Pearson 1934): its coverage is never below the
+/// level. The whole of 0 to 1 without cases.
+pub fn clopper_pearson(failures: u32, cases: u32, level: f64) -> Interval {
+    let tail = 0.5 * (1.0 - level);
+    let (k, n) = (f64::from(failures), f64::from(cases));
+    Interval {
+        low: if failures == 0 { 0.0 } else { beta_quantile(tail, k, n - k + 1.0) },
+        high: if failures >= cases { 1.0 } else { beta_quantile(1.0 - tail, k + 1.0, n - k) },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{exp, ln, ln_choose};
+
+    #[test]
+    fn wilson_has_its_textbook_values() {
+        let found = wilson(5, 20, 0.95);
+        assert!((found.low - 0.111_86).abs() < 1e-5 && (found.high - 0.468_70).abs() < 1e-5);
+        assert_eq!(wilson(0, 20, 0.95).low, 0.0);
+        assert_eq!(wilson(20, 20, 0.95).high, 1.0);
+        assert_eq!(wilson(0, 0, 0.95), Interval { low: 0.0, high: 1.0 });
+    }
+
+    /// The chance of at least `k` failures of `n`.
+    fn at_least(k: u32, n: u32, p: f64) -> f64 {
+        (k..=n)
+            .map(|j| {
+                let odds = f64::from(j) * ln(p) + f64::from(n - j) * ln(1.0 - p);
+                exp(ln_choose(n, j) + odds)
+            })
+            .sum()
+    }
+
+    #[test]
+    fn clopper_pearson_bounds_leave_exactly_the_tails() {
+        for n in [1, 2, 7, 20, 100, 1000] {
+            for k in (0..=n).step_by((n as usize / 17).max(1)) {
+                let found = clopper_pearson(k, n, 0.95);
+                if k > 0 {
+                    let tail = at_least(k, n, found.low);
+                    assert!((tail - 0.025).abs() < 1e-9, "{k} of {n}: {tail}"); // measured 1e-12
+                }
+                if k < n {
+                    let tail = 1.0 - at_least(k + 1, n, found.high);
+                    assert!((tail - 0.025).abs() < 1e-9, "{k} of {n}: {tail}"); // measured 1e-11
+                }
+            }
+        }
+    }
+}
