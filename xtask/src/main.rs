@@ -18,6 +18,7 @@ usage: cargo xtask TASK
 tasks:
   test       formatting, lints, documentation, and all tests in both profiles; stops at the first failure
   validate   every problem with an exact answer, in full, with a report; `--out DIR`, `--only TEXT`, `--fast`
+  bench      how fast stacks are computed, beside a game engine on the same scene
   fuzz       damaged files through every reader of records; `--executions N`, `--reader NAME`, `--first K`";
 
 fn main() -> ExitCode {
@@ -32,6 +33,7 @@ fn main() -> ExitCode {
             }
         },
         ["validate", rest @ ..] => release(&["--package", "barrelstack-validation"], rest),
+        ["bench", rest @ ..] => release(&["--manifest-path", "benchmarks/Cargo.toml"], rest),
         ["fuzz", rest @ ..] => {
             release(&["--package", "barrelstack-motion", "--example", "fuzz"], rest)
         }
