@@ -1,55 +1,88 @@
-//! The check of reports in a browser: whether there is one, and what it needs.
+//! The checks of pages in a browser: what they need, and how they are run.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitCode, Stdio};
 
-/// Where the check stands in the repository.
+use anyhow::{Context as _, bail};
+
+/// Where the checks stand in the repository.
 const SCRIPT: &str = "crates/report/tests/browser/check.mjs";
 
 /// What is announced.
 pub(crate) const NAME: &str = "node crates/report/tests/browser/check.mjs";
 
+/// What installs the modules of the checks, typed in the root of the repository.
+const INSTALL: &str = "npm ci --prefix crates/report/tests/browser";
+
 /// Names under which systems install a browser that can be driven.
 const BROWSERS: [&str; 4] =
     ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
-/// A check that opens reports in a browser.
+/// Checks that open pages in a browser.
 pub(crate) struct Check {
     root: PathBuf,
 }
 
-/// The check, where the repository has one.
+/// The checks, where the repository has them.
 pub(crate) fn find(root: &Path) -> Option<Check> {
     root.join(SCRIPT).is_file().then(|| Check { root: root.to_path_buf() })
 }
 
 impl Check {
-    /// The command, which is told where the browser is by the variable `CHROMIUM`; or why it cannot
-    /// be run here.
+    /// The command, which is told where the browser is by the variable `CHROMIUM` and where the
+    /// program is that makes the pages by `BARRELSTACK`; or why it cannot be run here.
     pub(crate) fn command(&self) -> Result<Command, String> {
-        let browser = BROWSERS.into_iter().find_map(on_path);
-        let browser =
-            browser.ok_or("no chromium on the PATH; install it to check reports in it")?;
+        let browser = BROWSERS.into_iter().find_map(on_path).ok_or(
+            "no chromium on the PATH; install the package `chromium` of your system to check pages \
+             in it",
+        )?;
         if on_path("node").is_none() {
-            return Err("no node on the PATH; install it to check reports in a browser".into());
+            return Err("no node on the PATH; install Node.js 20 or newer to check pages".into());
         }
         let script = self.root.join(SCRIPT);
-        let folder = script.parent().unwrap_or(&self.root);
-        let library = Command::new("node")
-            .args(["--eval", "require.resolve('playwright-core')"])
-            .current_dir(folder)
+        let modules = Command::new("node")
+            .args([
+                "--eval",
+                "for (const m of ['playwright-core', '@fontsource/roboto']) require.resolve(m)",
+            ])
+            .current_dir(script.parent().unwrap_or(&self.root))
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .status();
-        if !library.is_ok_and(|status| status.success()) {
-            return Err(format!(
-                "node finds no playwright-core; install it with `npm install playwright-core` in {}",
-                Path::new(SCRIPT).parent().unwrap_or(Path::new(".")).display()
-            ));
+        if !modules.is_ok_and(|status| status.success()) {
+            return Err(format!("the modules of the checks are not installed; type `{INSTALL}`"));
         }
         let mut command = Command::new("node");
         command.arg(SCRIPT).current_dir(&self.root).env("CHROMIUM", browser);
+        command.env("BARRELSTACK", self.program());
         Ok(command)
+    }
+
+    /// The program in release, which the tests in release have built.
+    fn program(&self) -> PathBuf {
+        let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
+        let target = target.unwrap_or_else(|| PathBuf::from("target"));
+        let name = format!("barrelstack{}", std::env::consts::EXE_SUFFIX);
+        self.root.join(target).join("release").join(name)
+    }
+
+    /// Builds the program in release.
+    pub(crate) fn build(&self) -> anyhow::Result<()> {
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let build = ["build", "--quiet", "--release", "--package", "barrelstack-cli"];
+        let status = Command::new(cargo).args(build).current_dir(&self.root).status();
+        if !status.context("cargo does not start")?.success() {
+            bail!("the program does not build: see above");
+        }
+        Ok(())
+    }
+
+    /// Keeps the looks of all pages as they are now.
+    pub(crate) fn renew(&self) -> anyhow::Result<ExitCode> {
+        let mut command = self.command().map_err(anyhow::Error::msg)?;
+        self.build()?;
+        let status = command.arg("--renew").status().context("node does not start")?;
+        Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
     }
 }
 

@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitCode, Stdio};
 use std::time::Instant;
 
 use anyhow::{Context as _, bail};
@@ -85,6 +85,7 @@ pub(crate) fn test() -> anyhow::Result<()> {
                 closing.push(format!("{}: skipped, {reason}", browser::NAME));
             }
             Ok(mut command) => {
+                check.build()?;
                 let (passed, tally) =
                     watched(&mut command).with_context(|| format!("{heading} failed"))?;
                 total.add(tally);
@@ -98,6 +99,13 @@ pub(crate) fn test() -> anyhow::Result<()> {
     }
     close(&closing, total, start);
     Ok(())
+}
+
+/// Keeps how all report pages look now.
+pub(crate) fn golden() -> anyhow::Result<ExitCode> {
+    let check =
+        browser::find(&root()).context("there are no checks of pages in this repository")?;
+    check.renew()
 }
 
 /// The sum of each step that ran tests, then the sum of all, alone on its line.

@@ -6,12 +6,12 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use barrelstack::Scenario;
 use barrelstack::assemble::{Assembly, assemble};
 use barrelstack::ground::{Ground, ground};
 use barrelstack::scenario::Scene;
 use barrelstack::step::default_step;
 use barrelstack::watch::{Thresholds, Watch};
+use barrelstack::{Scenario, Summary};
 use barrelstack_dynamics::{
     EnergyLedger, Method, Model, Observer, Planar, Scratch, Simulation, State, settle, simulate,
 };
@@ -27,6 +27,8 @@ fn main() -> Result<(), Failure> {
         return Ok(());
     }
     whole_run()?;
+    println!();
+    report()?;
     println!();
     growth("levels", 2..=8)?;
     println!();
@@ -75,6 +77,24 @@ fn whole_run() -> Result<(), Failure> {
         "  contacts that touch            {:10.1} million/s",
         1e-6 * counting.0 as f64 / watched.seconds
     );
+    Ok(())
+}
+
+/// The report of a minute of a large stack: what it takes to write, and how large it is.
+fn report() -> Result<(), Failure> {
+    let changes = ["stack.levels=6", "run.duration=60 s", "motion.scale.factor=0.6"];
+    let scenario = Scenario::builtin("demo-napa", &changes.map(str::to_owned))?;
+    let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(()))?;
+    let summary = Summary::of(&run, None);
+    let (mut seconds, mut bytes) = (Vec::new(), 0);
+    for _ in 0..REPEATS {
+        let start = Instant::now();
+        bytes = barrelstack_report::html(&barrelstack::report::document(&run, &summary)).len();
+        seconds.push(start.elapsed().as_secs_f64());
+    }
+    println!("the report of {:.0} s of twelve barrels, median of {REPEATS}", run.end_time);
+    println!("  from the run to the page       {:10.1} ms", 1e3 * median(seconds));
+    println!("  size of the page               {:10.2} MB", 1e-6 * bytes as f64);
     Ok(())
 }
 

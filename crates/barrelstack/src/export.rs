@@ -3,12 +3,13 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use barrelstack_report::{Paper, document_pdf};
+use barrelstack_report::{Document, Paper, document_pdf};
 
 use crate::report;
 use crate::run::Run;
 use crate::summary::Summary;
 use crate::system;
+use crate::verify::Verification;
 
 /// The names of all files that a run writes; nothing else in a folder is ever touched.
 const FILES: [&str; 8] = [
@@ -87,11 +88,18 @@ impl Folder {
     ///
     /// # Errors
     /// When the system refuses.
-    pub fn write(&self, run: &Run, summary: &Summary) -> Result<(), ExportError> {
-        let document = report::document(run, summary);
+    pub fn write(
+        &self,
+        run: &Run,
+        summary: &Summary,
+        verification: Option<&Verification>,
+    ) -> Result<(), ExportError> {
+        let document = report::verified_document(run, summary, verification);
+        let json =
+            verification.map_or_else(|| summary.to_json(), |found| found.with_summary(summary));
         // In the order of FILES.
         let contents: [Vec<u8>; FILES.len()] = [
-            (summary.to_json() + "\n").into_bytes(),
+            (json + "\n").into_bytes(),
             run.scenario.to_resolved_toml().into_bytes(),
             histories_csv(run).into_bytes(),
             self.histories_npz(run)?,
@@ -100,21 +108,49 @@ impl Folder {
             frames_csv(run).into_bytes(),
             barrelstack_report::html(&document).into_bytes(),
         ];
+        self.put(&FILES.iter().copied().zip(contents.iter().map(Vec::as_slice)))
+    }
+
+    /// Writes the page of a comparison as `report.html`, and as `report.md` with the figures and
+    /// tables of it in `figures/`.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn write_comparison(&self, document: &Document) -> Result<(), ExportError> {
+        const FIGURES: &str = "figures";
+        let page = barrelstack_report::html(document);
+        let bundle = barrelstack_report::markdown(document, FIGURES);
+        let names: Vec<String> =
+            bundle.files.iter().map(|file| format!("{FIGURES}/{}", file.name)).collect();
+        let figures = names.iter().map(String::as_str);
+        let figures = figures.zip(bundle.files.iter().map(|file| file.bytes.as_slice()));
+        let folder = self.path.join(FIGURES);
+        std::fs::create_dir_all(&folder).map_err(|error| self.refused(FIGURES, &error))?;
+        let texts = [("report.html", page.as_bytes()), ("report.md", bundle.text.as_bytes())];
+        self.put(&figures.chain(texts))
+    }
+
+    /// Writes files under temporary names, then renames them all.
+    fn put<'a>(
+        &self,
+        files: &(impl Iterator<Item = (&'a str, &'a [u8])> + Clone),
+    ) -> Result<(), ExportError> {
         std::fs::create_dir_all(&self.path).map_err(|error| self.refused("", &error))?;
-        let files = || FILES.iter().zip(&contents);
-        let written = files()
+        let names = || files.clone().map(|(name, _)| name);
+        let written = files
+            .clone()
             .try_for_each(|(name, bytes)| {
                 let write = std::fs::write(self.temporary(name), bytes);
                 write.map_err(|error| self.refused(name, &error))
             })
             .and_then(|()| {
-                FILES.iter().try_for_each(|name| {
+                names().try_for_each(|name| {
                     let rename = std::fs::rename(self.temporary(name), self.path.join(name));
                     rename.map_err(|error| self.refused(name, &error))
                 })
             });
         if written.is_err() {
-            for name in FILES {
+            for name in names() {
                 // Those that were never made cannot be removed, and that is well.
                 let _ = std::fs::remove_file(self.temporary(name));
             }
@@ -130,10 +166,12 @@ impl Folder {
         &self,
         run: &Run,
         summary: &Summary,
+        verification: Option<&Verification>,
         paper: Paper,
     ) -> Result<PathBuf, ExportError> {
         const NAME: &str = "report.pdf";
-        let bytes = document_pdf(&report::document(run, summary), paper);
+        let document = report::verified_document(run, summary, verification);
+        let bytes = document_pdf(&document, paper);
         let path = self.path.join(NAME);
         let written = std::fs::write(self.temporary(NAME), bytes)
             .and_then(|()| std::fs::rename(self.temporary(NAME), &path));

@@ -12,6 +12,7 @@
 pub mod assemble;
 pub mod calibrate;
 pub mod check;
+pub mod compare;
 pub mod decision;
 pub mod ensemble;
 pub mod export;
@@ -19,6 +20,7 @@ pub mod ground;
 pub mod heights;
 pub mod outcome;
 mod overlap;
+pub mod period;
 mod pool;
 pub mod render;
 pub mod report;

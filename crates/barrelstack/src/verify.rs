@@ -357,6 +357,42 @@ impl Verification {
         serde_json::to_string_pretty(&Verified { summary, verification: self }).unwrap_or_default()
     }
 
+    /// What was found, in plain sentences.
+    pub fn sentences(&self) -> Vec<String> {
+        if self.repeats.is_empty() {
+            return vec![
+                "No repeat of this run reached its end, so nothing more is known of it.".into(),
+            ];
+        }
+        let count = self.repeats.len();
+        let same = self.repeats.iter().filter(|repeat| repeat.same_outcome).count();
+        let judged = self.repeats.iter().any(|repeat| repeat.outcome.kind != "not-judged");
+        let mut sentences = Vec::new();
+        if judged && self.robust {
+            sentences.push(format!(
+                "The outcome is robust: {count} repeats, with a finer step and with barrels a nanometer \
+                 elsewhere, all end alike."
+            ));
+        } else if judged {
+            sentences.push(format!(
+                "The outcome is not robust: only {same} of {count} repeats, with a finer step or barrels \
+                 a nanometer elsewhere, give way or stand in the same way; judge this stack by many runs."
+            ));
+        }
+        let centimeters = barrelstack_report::significant(100.0 * self.apart, 2);
+        sentences.push(match self.predictable_until {
+            Some(time) => format!(
+                "Details are predicted until {time:.2} s; what a body does later, farther than \
+                 {centimeters} cm from where a repeat has it, is one possible course."
+            ),
+            None => format!(
+                "Details are predicted to the end: no body is more than {centimeters} cm elsewhere in a \
+                 repeat."
+            ),
+        });
+        sentences
+    }
+
     /// What was found, as pairs of name and value for people.
     pub fn rows(&self) -> Vec<(String, String)> {
         let centimeters = barrelstack_report::significant(100.0 * self.apart, 2);

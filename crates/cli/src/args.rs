@@ -39,6 +39,8 @@ pub(crate) enum Command {
     Heights(crate::commands::heights::HeightsArgs),
     /// Read a scenario, build the stack and let it settle, without shaking it.
     Check(CheckArgs),
+    /// Run two or more scenarios and set them side by side in one page.
+    Compare(crate::commands::compare::CompareArgs),
     /// Run every case of the paper behind the model and set its numbers beside ours.
     Reproduce(ReproduceArgs),
     /// Read, look at, change and make ground motions.

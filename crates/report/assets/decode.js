@@ -72,7 +72,7 @@ function readable(value, digits) {
 }
 
 function withUnit(value, digits, unit) {
-  return unit ? `${readable(value, digits)} ${unit}` : readable(value, digits);
+  return unit ? `${readable(value, digits)}\u00a0${unit}` : readable(value, digits);
 }
 
 function color(name) {

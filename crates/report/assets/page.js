@@ -1,7 +1,11 @@
 // The page: builds players and plots, follows size and theme, offers figures and data as files.
 
 const page = JSON.parse(document.getElementById("barrelstack-data").textContent);
-const columns = page.columns.map(columnOf);
+const read = new Map();
+const columns = (at) => {
+  if (!read.has(at)) read.set(at, columnOf(page.columns[at]));
+  return read.get(at);
+};
 const root = document.documentElement;
 root.classList.add("js");
 
@@ -11,7 +15,14 @@ const board = { player: players[0] || null, plots: [], dashes: page.dashes };
 for (const figure of document.querySelectorAll("[data-plot]")) {
   board.plots.push(makePlot(page.plots[Number(figure.dataset.plot)], columns, figure, board));
 }
-for (const plot of board.plots) plot.build();
+// Plots are built when they come near the screen, so that the page opens at once.
+const nearby = new IntersectionObserver((entries) => {
+  for (const { isIntersecting, target } of entries) {
+    const plot = isIntersecting && board.plots.find((one) => one.figure === target);
+    if (plot && !plot.plot) plot.build();
+  }
+}, { rootMargin: "800px 0px" });
+for (const plot of board.plots) nearby.observe(plot.figure);
 if (board.player) {
   board.player.onTime((time) => {
     for (const plot of board.plots) if (plot.timeline) plot.onTime(time);
@@ -20,7 +31,7 @@ if (board.player) {
 
 function refresh() {
   for (const player of players) player.refresh();
-  for (const plot of board.plots) plot.build();
+  for (const plot of board.plots) if (plot.plot) plot.build();
 }
 let width = window.innerWidth, waiting = 0;
 window.addEventListener("resize", () => {
@@ -31,18 +42,7 @@ window.addEventListener("resize", () => {
   waiting = setTimeout(refresh, 120);
 });
 window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", refresh);
-for (const fold of document.querySelectorAll("details")) {
-  // A plot inside a closed fold has no width until it opens.
-  fold.addEventListener("toggle", () => {
-    if (!fold.open || printing) return;
-    for (const plot of board.plots) {
-      if (!plot.plot && fold.querySelector(`#figure-${CSS.escape(plot.id)}`)) plot.build();
-    }
-  });
-}
-let printing = false;
 window.addEventListener("beforeprint", () => {
-  printing = true;
   for (const fold of document.querySelectorAll("details:not([open])")) {
     fold.open = true;
     fold.dataset.printed = "";
@@ -53,7 +53,6 @@ window.addEventListener("afterprint", () => {
     fold.open = false;
     delete fold.dataset.printed;
   }
-  printing = false;
 });
 
 function save(name, type, text) {
@@ -98,4 +97,6 @@ for (const figure of document.querySelectorAll("figure.plot, figure.envelope")) 
   figure.querySelector("figcaption").append(" ", files);
 }
 
-window.barrelstack = { player: board.player, players, plots: board.plots };
+window.barrelstack = { player: board.player, players, plots: board.plots, opened: null };
+// Time (ms) from the start of loading to the first picture on the screen.
+requestAnimationFrame(() => setTimeout(() => { window.barrelstack.opened = performance.now(); }));

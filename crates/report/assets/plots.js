@@ -5,13 +5,21 @@ for (let n = -12; n <= 12; n++) for (const f of [1, 2, 5]) STEPS.push(Number(`${
 
 function makePlot(raw, columns, figure, page) {
   const live = figure.querySelector(".live");
-  const series = raw.series.map((s) => ({ ...s, xs: columns[s.x], ys: columns[s.y], shown: true }));
+  // Numbers are read when the plot is first seen.
+  const series = raw.series.map((s) => ({
+    ...s, shown: true,
+    get xs() { return columns(s.x); },
+    get ys() { return columns(s.y); },
+  }));
   const listed = (values) => Array.from(values, (v) => (isFinite(v) ? v : null));
-  const one = series.every((s) => s.x === series[0].x);
-  const table = one
-    ? [listed(series[0].xs), ...series.map((s) => listed(s.ys))]
-    : uPlot.join(series.map((s) => [listed(s.xs), listed(s.ys)]));
-  const full = raw.x.range || [table[0][0], table[0][table[0].length - 1]];
+  let table = null, full = [0, 1];
+  function read() {
+    const one = raw.series.every((s) => s.x === raw.series[0].x);
+    table = one
+      ? [listed(series[0].xs), ...series.map((s) => listed(s.ys))]
+      : uPlot.join(series.map((s) => [listed(s.xs), listed(s.ys)]));
+    full = raw.x.range || [table[0][0], table[0][table[0].length - 1]];
+  }
   const values = [];
   const reset = make("button", { type: "button", class: "reset" }, "Reset zoom");
   reset.hidden = true;
@@ -23,7 +31,7 @@ function makePlot(raw, columns, figure, page) {
   });
   const head = make("div", { class: "head" }, legend, reset);
   live.append(head, box);
-  let plot = null, playhead = null, cursor = null, quiet = false;
+  let plot = null, playhead = null, cursor = null, quiet = false, wanted = null;
 
   series.forEach((s, k) => {
     const value = make("span", { class: "value" });
@@ -99,6 +107,7 @@ function makePlot(raw, columns, figure, page) {
         ready: [(u) => {
           playhead = make("div", { class: "playhead" });
           u.over.append(playhead);
+          place();
         }],
       },
     };
@@ -115,6 +124,9 @@ function makePlot(raw, columns, figure, page) {
   }
 
   function zoom(min, max) {
+    // A plot that nobody has seen yet takes the range when it is built.
+    wanted = [min, max];
+    if (!plot) return;
     quiet = true;
     plot.setScale("x", { min, max });
     quiet = false;
@@ -169,16 +181,19 @@ function makePlot(raw, columns, figure, page) {
       ctx.restore();
       ctx.fillText(text, x, y);
     };
-    let free = -Infinity;
+    // A label that would cover the one before it goes a line lower.
+    const ends = [];
     for (const mark of [...raw.marks].sort((a, b) => a.at - b.at)) {
       const x = u.valToPos(mark.at, "x", true);
       line(x, bbox.top, x, bbox.top + bbox.height);
       const wide = ctx.measureText(mark.label).width + 5 * dpr;
       const flip = x + wide > bbox.left + bbox.width;
-      if ((flip ? x - wide : x) > free && x >= bbox.left) {
-        label(mark.label, flip ? x - 4 * dpr : x + 4 * dpr, bbox.top + 3 * dpr, flip ? "right" : "left");
-        free = (flip ? x : x + wide) + 4 * dpr;
-      }
+      const from = flip ? x - wide : x;
+      if (x < bbox.left || x > bbox.left + bbox.width) continue;
+      let row = ends.findIndex((end) => end <= from);
+      if (row < 0) row = ends.length;
+      label(mark.label, flip ? x - 4 * dpr : x + 4 * dpr, bbox.top + (3 + 14 * row) * dpr, flip ? "right" : "left");
+      ends[row] = from + wide + 4 * dpr;
     }
     for (const band of raw.bands) {
       const x = 0.5 * (u.valToPos(band.from, "x", true) + u.valToPos(band.to, "x", true));
@@ -194,11 +209,14 @@ function makePlot(raw, columns, figure, page) {
 
   function build() {
     if (live.clientWidth === 0) return;
-    const window = plot ? { ...plot.scales.x } : null;
-    if (plot) plot.destroy();
+    if (!table) read();
+    if (plot) {
+      wanted = [plot.scales.x.min, plot.scales.x.max];
+      plot.destroy();
+    }
     quiet = true;
     plot = new uPlot(options(), table, box);
-    const [min, max] = window ? [window.min, window.max] : full;
+    const [min, max] = wanted || full;
     if (min < max) plot.setScale("x", { min, max });
     quiet = false;
     api.plot = plot;
@@ -251,13 +269,13 @@ function makePlot(raw, columns, figure, page) {
   });
 
   const api = {
-    timeline: raw.timeline, id: raw.id, zoom: (min, max) => { if (plot) zoom(min, max); }, build, plot: null,
+    timeline: raw.timeline, id: raw.id, zoom, build, plot: null, figure,
     series, title: raw.x.title, unit: raw.y.unit,
     onTime(time) {
       place();
       if (plot && plot.cursor.left < 0) readout(time);
     },
-    range: () => (plot ? [plot.scales.x.min, plot.scales.x.max] : null),
+    range: () => (plot ? [plot.scales.x.min, plot.scales.x.max] : wanted || full),
   };
   return api;
 }

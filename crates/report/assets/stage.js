@@ -31,7 +31,7 @@ function makeStage(data, canvas) {
   const [left, bottom, right, top] = data.view;
   const stage = {
     camera: "fixed", names: true, forces: false, traces: true,
-    perNewton: 0, strong: strongForce(data), draw, resize, retheme,
+    strong: strongForce(data), canvas, draw, resize, retheme, viewAt,
   };
   let paint = {};
   let width = 0, height = 0, dpr = 1;
@@ -42,15 +42,11 @@ function makeStage(data, canvas) {
     paint = Object.fromEntries(names.map((name) => [name, color(name)]));
   }
 
-  function resize() {
-    const box = canvas.parentElement.getBoundingClientRect();
-    // A player that opens the page fills the first screen, controls included; others take less.
-    const above = box.top + window.scrollY;
-    const below = canvas.closest(".screen").offsetHeight - canvas.offsetHeight;
-    const room = above < 0.5 * window.innerHeight ? window.innerHeight - above - below - 8 : 0.6 * window.innerHeight;
-    width = Math.max(200, Math.floor(box.width));
+  // `most` is the height (px) that there is room for.
+  function resize(most) {
+    width = Math.max(120, Math.floor(canvas.parentElement.getBoundingClientRect().width));
     const wanted = (width * (top - bottom)) / (right - left) + FOOT + HEAD;
-    height = Math.round(Math.min(Math.max(room, 320), 640, Math.max(wanted, 220)));
+    height = Math.round(Math.min(most, 640, Math.max(wanted, 220)));
     dpr = Math.min(window.devicePixelRatio || 1, 3);
     canvas.width = Math.round(width * dpr);
     canvas.height = Math.round(height * dpr);
@@ -73,6 +69,9 @@ function makeStage(data, canvas) {
       const shifts = moving.map((b) => pose(b, frame)[0] - pose(b, 0)[0]).filter(isFinite);
       shifts.sort((a, b) => a - b);
       if (shifts.length > 0) x += shifts[shifts.length >> 1];
+      // A lone body is followed down a slope, too; what falls off a stack is not.
+      const fall = moving.length === 1 ? pose(moving[0], frame)[1] - pose(moving[0], 0)[1] : 0;
+      if (isFinite(fall)) z += fall;
     }
     return { scale, x, z };
   }
@@ -219,7 +218,7 @@ function makeStage(data, canvas) {
       context.textAlign = "right";
       context.textBaseline = "middle";
       const [value, unit] = bar >= 1000 ? [bar / 1000, "kN"] : [bar, "N"];
-      halo(context, `${readable(value, 1)} ${unit}`, width - 20 - length, y);
+      halo(context, `${readable(value, 1)}\u00a0${unit}`, width - 20 - length, y);
     }
   }
 
@@ -283,11 +282,16 @@ function makeStage(data, canvas) {
     context.font = "12px system-ui, sans-serif";
     context.textAlign = "left";
     context.textBaseline = "middle";
-    halo(context, bar >= 1 ? `${bar} m` : `${readable(bar * 100, 1)} cm`, 20 + length, y - 2);
+    halo(context, bar >= 1 ? `${bar}\u00a0m` : `${readable(bar * 100, 1)}\u00a0cm`, 20 + length, y - 2);
   }
 
-  retheme();
-  resize();
+  // Where everything leaves the picture, the camera goes with it.
+  const end = data.count - 1;
+  const inside = (b) => {
+    const [x, z] = [data.poses[3 * b][end], data.poses[3 * b + 1][end]];
+    return x > left && x < right && z > bottom && z < top;
+  };
+  if (end > 0 && moving.length > 0 && !moving.some(inside)) stage.camera = "stack";
   return stage;
 }
 

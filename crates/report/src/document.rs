@@ -1,6 +1,6 @@
 //! A document: a verdict, blocks in reading order, warnings and provenance.
 
-use crate::{Figure, Player, Table};
+use crate::{Figure, Player, Players, Table};
 
 /// What a page says, free of any output format.
 ///
@@ -89,6 +89,9 @@ pub enum Block {
     Figure(Figure),
     /// Moving bodies with controls; on paper and in Markdown, a strip of frames and the events.
     Player(Player),
+    /// Several scenes side by side with one set of controls; on paper and in Markdown, a strip of
+    /// frames for each, all at the same times, and the events.
+    Players(Players),
     /// Content folded away on screen and always open on paper.
     Details {
         /// The line that stays visible.

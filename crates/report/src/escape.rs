@@ -1,5 +1,7 @@
 //! Text made safe for HTML, SVG, JSON inside a script element, Markdown and CSV.
 
+use crate::number;
+
 /// Text for an HTML or SVG element or a double-quoted attribute.
 ///
 /// Control characters that XML forbids become U+FFFD, so an SVG always parses.
@@ -27,10 +29,10 @@ pub(crate) fn json_in_script(json: &str) -> String {
     json.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
 }
 
-/// Text for Markdown, on one line.
+/// Text for Markdown, on one line, with numbers tied to their units.
 pub(crate) fn markdown(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    let line = one_line(text);
+    let line = number::tied(&one_line(text));
     for (at, c) in line.char_indices() {
         let opens_list = matches!(c, '+' | '-') && at == 0;
         let ends_number = matches!(c, '.' | ')')
@@ -95,7 +97,7 @@ mod tests {
         assert_eq!(markdown("a|b *c* <b>"), "a\\|b \\*c\\* \\<b\\>");
         assert_eq!(markdown("- x"), "\\- x");
         assert_eq!(markdown("12. x"), "12\\. x");
-        assert_eq!(markdown("0.5 m"), "0.5 m");
+        assert_eq!(markdown("0.5 m"), "0.5\u{a0}m");
         assert_eq!(markdown("two\nlines"), "two lines");
     }
 

@@ -124,6 +124,10 @@ pub fn figures(document: &Document) -> Vec<(String, Figure)> {
         Block::Player(player) => {
             found.push((names.take(&player.id), player.paper_figure(&document.blocks)));
         }
+        Block::Players(players) => {
+            let drawn = players.paper_figures();
+            found.extend(drawn.into_iter().map(|figure| (names.take(&figure.id), figure)));
+        }
         Block::Heading { .. }
         | Block::Paragraph(_)
         | Block::List(_)

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::{
-    Block, Document, Event, Figure, FigureKind, Player, Strip, Table, Tone, escape,
+    Block, Document, Figure, FigureKind, Strip, Table, Tone, escape,
     figure::Names,
     number,
     page::{Payload, assemble},
@@ -18,7 +18,8 @@ pub fn html(document: &Document) -> String {
     let mut writer = Writer::of(document);
     writer.header(document);
     writer.out.push_str("<main id=\"content\">\n");
-    let first_player = document.blocks.iter().position(|b| matches!(b, Block::Player(_)));
+    let first_player =
+        document.blocks.iter().position(|b| matches!(b, Block::Player(_) | Block::Players(_)));
     let split = first_player.map_or(0, |at| at + 1);
     let sections = sections(&document.blocks);
     writer.blocks(&document.blocks[..split]);
@@ -46,11 +47,11 @@ fn anchor(names: &mut Names, text: &str) -> String {
     names.take(&format!("section {text}"))
 }
 
-struct Writer<'a> {
-    document: &'a Document,
+pub(crate) struct Writer<'a> {
+    pub(crate) document: &'a Document,
     out: String,
-    payload: Payload,
-    names: Names,
+    pub(crate) payload: Payload,
+    pub(crate) names: Names,
     anchors: Names,
     tables: usize,
     figures: usize,
@@ -72,12 +73,12 @@ impl<'a> Writer<'a> {
     }
 
     /// Appends `markup`, which holds only escaped text.
-    fn put(&mut self, markup: &str) {
+    pub(crate) fn put(&mut self, markup: &str) {
         self.out.push_str(markup);
     }
 
-    fn element(&mut self, open: &str, text: &str, close: &str) {
-        let text = escape::html(text);
+    pub(crate) fn element(&mut self, open: &str, text: &str, close: &str) {
+        let text = escape::html(&number::tied(text));
         // Writing to a String cannot fail.
         let _ = writeln!(self.out, "{open}{text}{close}");
     }
@@ -169,6 +170,7 @@ impl<'a> Writer<'a> {
                 Block::Table(table) => self.table(table),
                 Block::Figure(figure) => self.figure(figure),
                 Block::Player(player) => self.player(player),
+                Block::Players(players) => self.players(players),
                 Block::Details { summary, blocks } => {
                     self.element("<details>\n<summary>", summary, "</summary>");
                     self.put("<div class=\"folded\">\n");
@@ -209,7 +211,7 @@ impl<'a> Writer<'a> {
                     Some(crate::Cell::Rated(rating, _)) => format!(" class=\"{}\"", rating.class()),
                     _ => class(at).to_owned(),
                 };
-                self.put(&format!("<td{class}>{}</td>", escape::html(&text)));
+                self.put(&format!("<td{class}>{}</td>", escape::html(&number::tied(&text))));
             }
             self.put("</tr>\n");
         }
@@ -247,13 +249,13 @@ impl<'a> Writer<'a> {
         self.put("</figure>\n");
     }
 
-    fn caption(&mut self, caption: &str) {
+    pub(crate) fn caption(&mut self, caption: &str) {
         self.figures += 1;
         let number = format!("<figcaption><b>Figure {}.</b> ", self.figures);
         self.element(&number, caption, "</figcaption>");
     }
 
-    fn strip(&mut self, strip: &Strip, id: &str) {
+    pub(crate) fn strip(&mut self, strip: &Strip, id: &str) {
         let drawings = strip.drawings(id);
         let width = drawings.first().map_or(0.0, |drawing| drawing.width.round());
         self.put(&format!("<div class=\"panels\" style=\"--panel:{width}px\">\n"));
@@ -263,65 +265,10 @@ impl<'a> Writer<'a> {
         }
         self.put("</div>\n");
     }
-
-    fn player(&mut self, player: &Player) {
-        let id = self.names.take(&player.id);
-        let place = self.payload.players.len();
-        self.payload.players.push(player.payload(&id));
-        self.put(&format!(
-            "<figure class=\"player\" id=\"figure-{id}\" data-player=\"{place}\">\n"
-        ));
-        self.put(PLAYER_CONTROLS);
-        self.put("<div class=\"paper\">\n");
-        if let FigureKind::Strip(strip) = player.paper_figure(&self.document.blocks).kind {
-            self.strip(&strip, &id);
-        }
-        self.put("</div>\n");
-        self.caption(&player.caption);
-        self.events(player);
-        self.put("</figure>\n");
-    }
-
-    fn events(&mut self, player: &Player) {
-        let events: Vec<_> = player.scene.events.iter().filter(|e| e.time.is_finite()).collect();
-        if events.is_empty() {
-            return;
-        }
-        // A fold that hides a single line would cost that line.
-        let open = if events.len() > OPEN_EVENTS + 1 { OPEN_EVENTS } else { events.len() };
-        let (first, rest) = events.split_at(open);
-        self.event_list(first);
-        if !rest.is_empty() {
-            self.put(&format!(
-                "<details class=\"more\">\n<summary>{} more events</summary>\n",
-                rest.len()
-            ));
-            self.event_list(rest);
-            self.put("</details>\n");
-        }
-    }
-
-    fn event_list(&mut self, events: &[&Event]) {
-        self.put("<ol class=\"events\" aria-label=\"Events\">\n");
-        for event in events {
-            self.put(&format!(
-                "<li><button type=\"button\" data-time=\"{}\"><i class=\"event {}\" aria-hidden=\"true\"></i><span class=\"when\">{} s</span><span class=\"what\">{}</span>",
-                event.time,
-                event.kind.class(),
-                number::fixed(event.time, 2),
-                escape::html(event.kind.word())
-            ));
-            self.element("<span class=\"text\">", &event.text, "</span></button></li>");
-        }
-        self.put("</ol>\n");
-    }
 }
 
-/// Events shown without unfolding.
-const OPEN_EVENTS: usize = 4;
-
 /// A shape for each tone, so that color only repeats what it says.
-fn sign(tone: Tone) -> &'static str {
+pub(crate) fn sign(tone: Tone) -> &'static str {
     match tone {
         Tone::Stands => {
             r#"<svg class="sign" viewBox="0 0 24 24" aria-hidden="true"><circle cx="12" cy="12" r="11"/><path d="M6.5 12.5l3.8 3.8 7.2-8"/></svg>"#
@@ -337,5 +284,3 @@ fn sign(tone: Tone) -> &'static str {
         }
     }
 }
-
-const PLAYER_CONTROLS: &str = include_str!("../assets/player.html");

@@ -52,6 +52,8 @@ mod pages;
 mod paint;
 mod pdf;
 mod player;
+mod player_data;
+mod player_html;
 mod plot;
 mod plot_drawing;
 mod raster;
@@ -77,7 +79,7 @@ pub use markdown::{MarkdownBundle, markdown};
 pub use number::significant;
 pub use pack::{POSE_QUANTUM, TIME_QUANTUM};
 pub use pages::{Paper, document_pdf};
-pub use player::Player;
+pub use player::{Pane, Player, Players};
 pub use plot::{Axis, Band, Mark, Plot, Scale, Series, SeriesStyle};
 pub use scene::{
     ContactForce, Event, EventKind, Frames, History, Point, Polyline, Pose2, Role, Scene,

@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use crate::{
-    Attachment, Block, Document, Player, Table, attachments, escape, figure::Names, number,
+    Attachment, Block, Document, Event, Player, Players, Table, attachments, escape, figure::Names,
+    number,
 };
 
 /// Markdown text and the files it refers to.
@@ -85,6 +86,7 @@ impl Writer {
                 Block::Table(table) => self.table(table),
                 Block::Figure(figure) => self.picture(&figure.id, &figure.caption),
                 Block::Player(player) => self.player(player),
+                Block::Players(players) => self.players(players),
                 Block::Details { summary, blocks } => {
                     self.line(&format!("**{}**\n", escape::markdown(summary)));
                     self.blocks(blocks, deeper + 1);
@@ -111,14 +113,31 @@ impl Writer {
 
     fn player(&mut self, player: &Player) {
         self.picture(&player.id, &player.caption);
-        let events: Vec<_> = player.scene.events.iter().filter(|e| e.time.is_finite()).collect();
+        self.events(player.scene.events.iter().map(|event| ("", event)).collect());
+    }
+
+    fn players(&mut self, players: &Players) {
+        self.line(&format!("{}\n", escape::markdown(&players.caption)));
+        let mut events = Vec::new();
+        for (pane, figure) in players.panes.iter().zip(players.paper_figures()) {
+            self.picture(&figure.id, &figure.caption);
+            events.extend(pane.scene.events.iter().map(|event| (pane.mark.as_str(), event)));
+        }
+        events.sort_by(|a: &(&str, &Event), b| a.1.time.total_cmp(&b.1.time));
+        self.events(events);
+    }
+
+    /// Events with the mark of their pane; an empty one where there is only one.
+    fn events(&mut self, mut events: Vec<(&str, &Event)>) {
+        events.retain(|(_, event)| event.time.is_finite());
         if events.is_empty() {
             return;
         }
         self.line("| time (s) | event | |\n| ---: | :--- | :--- |");
-        for event in events {
+        for (pane, event) in events {
             let time = number::fixed(event.time, 2);
-            let text = escape::markdown(&event.text);
+            let who = if pane.is_empty() { String::new() } else { format!("{pane}: ") };
+            let text = escape::markdown(&format!("{who}{}", event.text));
             self.line(&format!("| {time} | {} | {text} |", event.kind.word()));
         }
         self.line("");

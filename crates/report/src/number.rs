@@ -58,6 +58,34 @@ pub(crate) fn csv_number(value: f64) -> String {
     if value.is_finite() { format!("{value}") } else { String::new() }
 }
 
+/// Words that stand behind a number as its unit, or begin one such as `cm/s`.
+const UNITS: [&str; 30] = [
+    "%", "m", "cm", "mm", "µm", "nm", "km", "in", "ft", "s", "ms", "µs", "min", "h", "g", "kg",
+    "t", "N", "kN", "MN", "Pa", "kPa", "MPa", "J", "kJ", "Hz", "deg", "rad", "L", "1",
+];
+
+/// `text` with no-break spaces between numbers and their units, so that no line ends amid a quantity.
+pub(crate) fn tied(text: &str) -> String {
+    let mut out = String::with_capacity(text.len() + 8);
+    let mut before = ' ';
+    for (at, c) in text.char_indices() {
+        let tie = c == ' ' && before.is_ascii_digit() && begins_with_unit(&text[at + 1..]);
+        out.push(if tie { '\u{a0}' } else { c });
+        before = c;
+    }
+    out
+}
+
+fn begins_with_unit(text: &str) -> bool {
+    let end = text.find(|c: char| c.is_whitespace() || ".,;:)!?".contains(c)).unwrap_or(text.len());
+    let word = &text[..end];
+    match word.split_once('/') {
+        Some((first, _)) => UNITS.contains(&first),
+        // A lone number is no unit; it only begins one, as in `1/s`.
+        None => word != "1" && UNITS.contains(&word),
+    }
+}
+
 pub(crate) fn superscript(exponent: i64) -> String {
     exponent
         .to_string()
@@ -93,5 +121,14 @@ mod tests {
     fn a_small_negative_number_does_not_become_minus_zero() {
         assert_eq!(fixed(-0.000_4, 2), "0.00");
         assert_eq!(fixed(-0.4, 1), "−0.4");
+    }
+
+    #[test]
+    fn a_number_keeps_its_unit_and_other_words_may_go() {
+        assert_eq!(tied("after 6.1 s, 47 cm/s"), "after 6.1\u{a0}s, 47\u{a0}cm/s");
+        assert_eq!(tied("p = 2 1/s; 5 % (0.3 m)."), "p = 2\u{a0}1/s; 5\u{a0}% (0.3\u{a0}m).");
+        assert_eq!(tied("8 barrels fall, 1 of 2 1 m"), "8 barrels fall, 1 of 2 1\u{a0}m");
+        assert_eq!(tied("levels 2 to 4 m"), "levels 2 to 4\u{a0}m");
+        assert_eq!(tied(""), "");
     }
 }

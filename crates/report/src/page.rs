@@ -15,9 +15,10 @@ const UPLOT_JS: &str = include_str!("../assets/vendor/uPlot.iife.min.js");
 const UPLOT_LICENSE: &str = include_str!("../assets/vendor/uPlot-LICENSE");
 
 /// The page's own scripts, in the order they depend on each other.
-const SCRIPTS: [&str; 5] = [
+const SCRIPTS: [&str; 6] = [
     include_str!("../assets/decode.js"),
     include_str!("../assets/stage.js"),
+    include_str!("../assets/timeline.js"),
     include_str!("../assets/player.js"),
     include_str!("../assets/plots.js"),
     include_str!("../assets/page.js"),

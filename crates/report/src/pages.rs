@@ -214,6 +214,11 @@ impl<'a> Flow<'a> {
                 Block::Table(table) => self.table(table),
                 Block::Figure(figure) => self.figure(figure),
                 Block::Player(player) => self.player(player),
+                Block::Players(players) => {
+                    for figure in players.paper_figures() {
+                        self.figure(&figure);
+                    }
+                }
                 Block::Details { summary, blocks } => {
                     self.heading("page-part", summary, self.least(blocks));
                     self.blocks(blocks);
@@ -229,6 +234,7 @@ impl<'a> Flow<'a> {
         let least = match first {
             Block::Figure(shown) => figure(shown),
             Block::Player(player) => figure(&player.paper_figure(&self.document.blocks)),
+            Block::Players(players) => players.paper_figures().first().map_or(0.0, figure),
             Block::Table(_) => 66.0,
             Block::Heading { .. } => 24.0 + self.least(rest),
             Block::Details { blocks, .. } => 24.0 + self.least(blocks),

@@ -70,8 +70,8 @@ fn hostile_text_never_becomes_markup() {
 #[test]
 fn hostile_text_reads_back_from_the_data_as_it_was() {
     let data = payload(&hostile_page());
-    assert_eq!(data["players"][0]["bodies"][1]["name"], HOSTILE);
-    assert_eq!(data["players"][0]["events"][0]["text"], HOSTILE);
+    assert_eq!(data["players"][0]["panes"][0]["bodies"][1]["name"], HOSTILE);
+    assert_eq!(data["players"][0]["panes"][0]["events"][0]["text"], HOSTILE);
     assert_eq!(data["plots"][0]["series"][0]["label"], HOSTILE);
 }
 
@@ -129,8 +129,8 @@ fn scenes_with_nothing_or_one_of_everything_make_a_page() {
     let no_pose = Scene { frames: Frames::default(), ..scene(2, 1) };
     for (scene, frames) in [(empty, 0), (no_body, 2), (no_pose, 0), (scene(2, 1), 1)] {
         let data = payload(&html(&document(vec![player(scene)])));
-        assert_eq!(data["players"][0]["times"]["n"], frames);
-        let view = data["players"][0]["view"].as_array().unwrap();
+        assert_eq!(data["players"][0]["panes"][0]["times"]["n"], frames);
+        let view = data["players"][0]["panes"][0]["view"].as_array().unwrap();
         let corner = |at: usize| view[at].as_f64().expect("a finite view");
         assert!(corner(2) > corner(0) && corner(3) > corner(1));
     }

@@ -9,7 +9,7 @@ use common::{document, payload, player, scene, unpack};
 fn frames_read_back_within_half_a_quantum() {
     let scene = scene(6, 600);
     let data = payload(&html(&document(vec![player(scene.clone())])));
-    let data = &data["players"][0];
+    let data = &data["players"][0]["panes"][0];
     let times = &unpack(&data["times"])[0];
     let poses = unpack(&data["poses"]);
     assert_eq!((times.len(), poses.len()), (600, 3 * 7));
@@ -30,7 +30,7 @@ fn frames_read_back_within_half_a_quantum() {
 fn forces_read_back_at_their_place_in_the_list() {
     let scene = scene(2, 60);
     let data = payload(&html(&document(vec![player(scene.clone())])));
-    let forces = &data["players"][0]["forces"];
+    let forces = &data["players"][0]["panes"][0]["forces"];
     let (x, fz) = (unpack(&forces["x"]), unpack(&forces["fz"]));
     for frame in 0..60 {
         for (slot, force) in scene.frames.forces[frame].iter().enumerate() {
@@ -46,7 +46,7 @@ fn a_body_without_a_finite_pose_is_missing_in_that_frame_only() {
     scene.frames.poses[20][1] = [f64::NAN, 0.0, 0.0];
     scene.frames.poses[21].truncate(1);
     let data = payload(&html(&document(vec![player(scene)])));
-    let poses = unpack(&data["players"][0]["poses"]);
+    let poses = unpack(&data["players"][0]["panes"][0]["poses"]);
     for channel in &poses[3..6] {
         assert!(channel[20].is_nan() && channel[21].is_nan());
         assert!(channel[19].is_finite() && channel[22].is_finite());
@@ -63,7 +63,7 @@ fn a_body_that_rolls_away_does_not_widen_the_view() {
     }
     let width = |scene| {
         let data = payload(&html(&document(vec![player(scene)])));
-        let view: Vec<f64> = data["players"][0]["view"]
+        let view: Vec<f64> = data["players"][0]["panes"][0]["view"]
             .as_array()
             .unwrap()
             .iter()

@@ -34,7 +34,7 @@ pub(crate) fn scene(run: &Run) -> Arc<Scene> {
                 .collect(),
         },
         events: events(run),
-        ground: ground(run),
+        ground: ground_histories(run),
     })
 }
 
@@ -113,7 +113,11 @@ fn events(run: &Run) -> Vec<Event> {
     events
 }
 
-fn ground(run: &Run) -> Vec<History> {
+/// Acceleration and velocity of the ground; none where nothing shakes it.
+pub(crate) fn ground_histories(run: &Run) -> Vec<History> {
+    if run.ground.motion.is_none() {
+        return Vec::new();
+    }
     let recording = &run.recording;
     let history = |channel: &str, label: &str, unit: &str, factor: f64| {
         let values = recording.channel(channel)?.values.iter().map(|v| v * factor).collect();

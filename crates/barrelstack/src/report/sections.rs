@@ -5,27 +5,37 @@ use std::sync::Arc;
 use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
     Axis, Block, BoundarySample, Cell, Envelope, Figure, FigureKind, Mark, Player, Plot, Scene,
-    Series, Strip, Table, Trace,
+    Series, Strip, Table, Trace, significant,
 };
 
-use super::drawing;
+use super::{drawing, inputs, spectrum, trust};
 use crate::assemble::PartKind;
 use crate::run::Run;
 use crate::summary::Summary;
+use crate::verify::Verification;
 use crate::watch::{BoundaryPoint, StressEnvelope};
 
 /// All sections.
-pub(super) fn all(run: &Run, summary: &Summary, scene: &Arc<Scene>) -> Vec<Block> {
+pub(super) fn all(
+    run: &Run,
+    summary: &Summary,
+    verification: Option<&Verification>,
+    scene: &Arc<Scene>,
+) -> Vec<Block> {
     let mut blocks = vec![Block::Player(player(run, scene))];
     section(&mut blocks, "Collapse sequence", sequence(run, scene));
+    let trusted = verification.map(trust::trust).unwrap_or_default();
+    section(&mut blocks, "How far to trust this run", trusted);
     section(&mut blocks, "What became of every body", vec![Block::Table(fates(summary))]);
     section(&mut blocks, "Displacements", displacements(run));
-    section(&mut blocks, "Demands", vec![Block::Table(demands(summary))]);
+    let table = demand_table(summary);
+    let shown = if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] };
+    section(&mut blocks, "Demands", shown);
     section(&mut blocks, "Normal stress on barrels and racks", stresses(run));
     section(&mut blocks, "Forces between bodies", forces(run, summary));
     section(&mut blocks, "Ground motion", motion(run));
     section(&mut blocks, "Energy books", energy(run, summary));
-    section(&mut blocks, "Inputs", inputs(run));
+    section(&mut blocks, "Inputs", inputs::inputs(run));
     blocks
 }
 
@@ -37,10 +47,6 @@ fn section(blocks: &mut Vec<Block>, title: &str, content: Vec<Block>) {
 }
 
 fn player(run: &Run, scene: &Arc<Scene>) -> Player {
-    let top = run
-        .assembly
-        .of_kind(PartKind::Barrel)
-        .filter(|body| run.assembly.parts[*body].level == Some(run.assembly.levels));
     Player {
         id: "player".into(),
         caption:
@@ -48,14 +54,22 @@ fn player(run: &Run, scene: &Arc<Scene>) -> Player {
                   pushes up."
                 .into(),
         scene: Arc::clone(scene),
-        traces: top
-            .map(|body| Trace {
-                body,
-                point: [0.0, 0.0],
-                label: format!("center of {}", run.assembly.parts[body].name),
-            })
-            .collect(),
+        traces: traces(run),
     }
+}
+
+/// The centers of the barrels of the top level.
+pub(crate) fn traces(run: &Run) -> Vec<Trace> {
+    let parts = &run.assembly.parts;
+    run.assembly
+        .of_kind(PartKind::Barrel)
+        .filter(|body| parts[*body].level == Some(run.assembly.levels))
+        .map(|body| Trace {
+            body,
+            point: [0.0, 0.0],
+            label: format!("center of {}", parts[body].name),
+        })
+        .collect()
 }
 
 fn sequence(run: &Run, scene: &Arc<Scene>) -> Vec<Block> {
@@ -103,35 +117,81 @@ fn fates(summary: &Summary) -> Table {
     table
 }
 
-fn demands(summary: &Summary) -> Table {
+/// A demand in the unit of its print.
+pub(crate) struct Demand {
+    /// What it is.
+    pub(crate) name: &'static str,
+    /// Its value; none where it does not apply.
+    pub(crate) value: Option<f64>,
+    /// Its unit.
+    pub(crate) unit: &'static str,
+}
+
+/// All demands, in reading order.
+pub(crate) fn demands(summary: &Summary) -> Vec<Demand> {
     let demands = &summary.demands;
+    let demand = |name, value: Option<f64>, factor: f64, unit| Demand {
+        name,
+        value: value.map(|value| value * factor),
+        unit,
+    };
+    vec![
+        demand(
+            "drift of the top against the ground, of the height",
+            demands.top_drift_ratio,
+            100.0,
+            "%",
+        ),
+        demand(
+            "stress amplification, largest on a bottom barrel",
+            demands.stress_amplification,
+            1.0,
+            "× at rest",
+        ),
+        demand(
+            "stress amplification, average over the loaded boundary",
+            demands.mean_stress_amplification,
+            1.0,
+            "× at rest",
+        ),
+        demand(
+            "slip of the bottom rack on the ground, largest",
+            demands.base_slip_peak,
+            100.0,
+            "cm",
+        ),
+        demand(
+            "slip of the bottom rack, at the collapse",
+            demands.base_slip_at_collapse,
+            100.0,
+            "cm",
+        ),
+        demand(
+            "slip of the bottom rack, at the end of the run",
+            demands.base_slip_residual,
+            100.0,
+            "cm",
+        ),
+        demand("walk of a rack on the barrels below, largest", demands.rack_walk_peak, 100.0, "cm"),
+        demand(
+            "tilt of a rack, largest",
+            demands.rack_tilt_peak,
+            180.0 / std::f64::consts::PI,
+            "deg",
+        ),
+    ]
+}
+
+fn demand_table(summary: &Summary) -> Table {
     let mut table = Table::new(
         "While the stack stood, unless said otherwise.",
         &[("demand", ""), ("value", ""), ("unit", "")],
     );
-    let mut row = |name: &str, value: Option<f64>, factor: f64, unit: &str| {
-        if let Some(value) = value {
-            table.rows.push(vec![Cell::text(name), number(value * factor), Cell::text(unit)]);
+    for one in demands(summary) {
+        if let Some(value) = one.value {
+            table.rows.push(vec![Cell::text(one.name), number(value), Cell::text(one.unit)]);
         }
-    };
-    row("drift of the top against the ground, of the height", demands.top_drift_ratio, 100.0, "%");
-    row(
-        "stress amplification, largest on a bottom barrel",
-        demands.stress_amplification,
-        1.0,
-        "× at rest",
-    );
-    row(
-        "stress amplification, average over the loaded boundary",
-        demands.mean_stress_amplification,
-        1.0,
-        "× at rest",
-    );
-    row("slip of the bottom rack on the ground, largest", demands.base_slip_peak, 100.0, "cm");
-    row("slip of the bottom rack, at the collapse", demands.base_slip_at_collapse, 100.0, "cm");
-    row("slip of the bottom rack, at the end of the run", demands.base_slip_residual, 100.0, "cm");
-    row("walk of a rack on the barrels below, largest", demands.rack_walk_peak, 100.0, "cm");
-    row("tilt of a rack, largest", demands.rack_tilt_peak, 180.0 / std::f64::consts::PI, "deg");
+    }
     table
 }
 
@@ -343,9 +403,7 @@ fn motion(run: &Run) -> Vec<Block> {
         Axis::new("acceleration", "g"),
         series,
     ));
-    if let Some(spectrum) = super::spectrum::figure(motion) {
-        blocks.push(Block::Figure(spectrum));
-    }
+    blocks.extend(spectrum::figures(run, motion));
     blocks
 }
 
@@ -363,19 +421,10 @@ fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
     vec![
         Block::Paragraph(format!(
             "What the ground gave and what the stack lost in height equals what is stored and what is \
-             dissipated but for {:.2e} of {:.0} J.",
-            books.residual_ratio, books.input
+             dissipated but for {} of {} kJ.",
+            significant(books.residual_ratio, 2),
+            significant(1e-3 * books.input, 3)
         )),
         history(run, "energy", "Energies since the start.", Axis::new("energy", "kJ"), series),
     ]
-}
-
-fn inputs(run: &Run) -> Vec<Block> {
-    let lines = run.scenario.to_resolved_toml();
-    vec![Block::Details {
-        summary: "The scenario with every default written out".into(),
-        blocks: vec![Block::List(
-            lines.lines().filter(|line| !line.trim().is_empty()).map(str::to_owned).collect(),
-        )],
-    }]
 }

@@ -1,27 +1,186 @@
-//! The response spectrum of the ground motion.
+//! The response spectrum of the ground motion, with the periods at which the stack rocked.
 
 use barrelstack_motion::{GroundMotion, ResponseSpectrum, STANDARD_GRAVITY, standard_periods};
-use barrelstack_report::{Axis, Figure, FigureKind, Plot, Series};
+use barrelstack_report::{
+    Axis, Band, Block, Figure, FigureKind, Mark, Plot, Series, SeriesStyle, significant,
+};
+
+use crate::period::{Drift, RigidBlock, Swing, drift};
+use crate::run::Run;
 
 /// Damping ratio of the spectrum.
 const DAMPING: f64 = 0.05;
 
+/// Points of the curve of a rigid block.
+const CURVE: u32 = 60;
+
+/// How a stack rocked, and the block that it would be if nothing in it moved.
+struct Rocking {
+    drift: Drift,
+    block: RigidBlock,
+}
+
+impl Rocking {
+    /// None where nothing rocked.
+    fn of(run: &Run) -> Option<Self> {
+        let block = RigidBlock::of(&run.assembly, run.scenario.run.gravity)?;
+        let mut drift = drift(run).filter(|drift| drift.largest > 0.0)?;
+        // Figures read from small to large.
+        drift.swings.sort_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+        Some(Self { drift, block })
+    }
+
+    /// Period (s) of the block where its top moves by `amplitude` (m) as that of the stack does.
+    fn rigid(&self, amplitude: f64) -> f64 {
+        self.block.period(amplitude / self.drift.height)
+    }
+
+    fn widest(&self) -> Option<&Swing> {
+        self.drift.swings.last()
+    }
+
+    /// Shortest and longest period (s) of the swings.
+    fn range(&self) -> (f64, f64) {
+        let periods = || self.drift.swings.iter().map(|swing| swing.period);
+        (periods().fold(f64::INFINITY, f64::min), periods().fold(0.0, f64::max))
+    }
+}
+
+/// The spectrum, and the periods of the stack where it rocked.
+pub(super) fn figures(run: &Run, motion: &GroundMotion) -> Vec<Block> {
+    let rocking = Rocking::of(run);
+    let mut blocks = Vec::new();
+    blocks.extend(spectrum(motion, rocking.as_ref()).map(Block::Figure));
+    if let Some(rocking) = rocking {
+        blocks.push(Block::Paragraph(words(&rocking)));
+        blocks.push(Block::Figure(periods(&rocking)));
+    }
+    blocks
+}
+
+fn centimeters(amplitude: f64) -> String {
+    format!("{} cm", significant(100.0 * amplitude, 2))
+}
+
+fn words(rocking: &Rocking) -> String {
+    let Rocking { drift, block } = rocking;
+    let reached = centimeters(drift.largest);
+    let period = rocking.rigid(drift.largest);
+    let rigid = if period.is_finite() {
+        format!("would rock with a period of {} s at that amplitude", significant(period, 2))
+    } else {
+        "would not come back from there".to_owned()
+    };
+    let measured = match (&drift.swings[..], rocking.widest()) {
+        (_, None) => "it made no full swing".to_owned(),
+        ([one], _) => format!(
+            "it made one full swing, of {} and with a period of {} s",
+            centimeters(one.amplitude),
+            significant(one.period, 2)
+        ),
+        (many, Some(widest)) => {
+            let (low, high) = rocking.range();
+            format!(
+                "it made {} full swings with periods of {} to {} s, the widest of {} in {} s",
+                many.len(),
+                significant(low, 2),
+                significant(high, 2),
+                centimeters(widest.amplitude),
+                significant(widest.period, 2)
+            )
+        }
+    };
+    format!(
+        "A stack has no period of its own: the farther it rocks, the longer it takes, so the shaking \
+         that it answers to changes as it sways. While it stood, its top drifted by up to {reached} \
+         against its foot, and {measured}. A rigid block of the same mass and foot {rigid} (Housner \
+         1963: T = 4/p · arcosh(1/(1 − θ₀/α)) with p = {} 1/s and α = {} rad); a stack of loose parts \
+         gives at every level and is slower.",
+        significant(block.frequency, 3),
+        significant(block.slenderness, 3),
+    )
+}
+
 /// The pseudo-acceleration spectrum of the horizontal component; none where it cannot be computed.
-pub(super) fn figure(motion: &GroundMotion) -> Option<Figure> {
+fn spectrum(motion: &GroundMotion, rocking: Option<&Rocking>) -> Option<Figure> {
     let step = motion.horizontal.natural_step();
     let sampled = motion.horizontal.sampled(step).ok()?;
     let periods: Vec<f64> = standard_periods(30);
     let spectrum = ResponseSpectrum::new(step, sampled.acceleration(), &periods, DAMPING).ok()?;
     let values = spectrum.pseudo_acceleration().iter().map(|a| a / STANDARD_GRAVITY).collect();
-    Some(Figure {
-        id: "spectrum".into(),
-        caption: "Pseudo-acceleration response spectrum of the horizontal motion, 5 % damping."
+    let mut caption = String::from(
+        "Pseudo-acceleration response spectrum of the horizontal motion, 5 % damping.",
+    );
+    let mut plot = Plot {
+        x: Axis::new("period", "s").log(),
+        y: Axis::new("spectral acceleration", "g"),
+        series: vec![Series::new("horizontal", periods, values)],
+        interactive: true,
+        ..Plot::default()
+    };
+    if let Some(rocking) = rocking {
+        let reached = rocking.drift.largest;
+        let rigid = rocking.rigid(reached);
+        if rigid.is_finite() {
+            plot.marks.push(Mark {
+                at: rigid,
+                label: format!("rigid block at {}", centimeters(reached)),
+            });
+            caption.push_str(
+                " Dashed: the period of a rigid block of the shape of the stack at the largest drift \
+                 that it reached.",
+            );
+        }
+        match (&rocking.drift.swings[..], rocking.widest()) {
+            ([one], _) => {
+                let label = format!("stack at {}", centimeters(one.amplitude));
+                plot.marks.push(Mark { at: one.period, label });
+                caption.push_str(" Dashed, too: the period of its one swing.");
+            }
+            (_, Some(_)) => {
+                let (from, to) = rocking.range();
+                plot.bands.push(Band { from, to, label: "swings of the stack".into() });
+                caption.push_str(" Shaded: the periods of its swings.");
+            }
+            (_, None) => {}
+        }
+    }
+    Some(Figure { id: "spectrum".into(), caption, kind: FigureKind::Plot(plot) })
+}
+
+/// Period against amplitude: every swing of the run, and the rigid block.
+fn periods(rocking: &Rocking) -> Figure {
+    let amplitudes: Vec<f64> = (0..=CURVE)
+        .map(|k| 1.15 * rocking.drift.largest * f64::from(k) / f64::from(CURVE))
+        .collect();
+    let curve = amplitudes.iter().map(|a| rocking.rigid(*a)).collect();
+    let mut series =
+        vec![Series::new("rigid block", amplitudes.iter().map(|a| 100.0 * a).collect(), curve)];
+    if rocking.widest().is_some() {
+        // A gap after every point, half way to the next, keeps measurements from being joined.
+        let swings = &rocking.drift.swings;
+        let (mut x, mut y) = (Vec::new(), Vec::new());
+        for (at, swing) in swings.iter().enumerate() {
+            let next = swings.get(at + 1).map_or(1.01 * swing.amplitude, |next| next.amplitude);
+            x.extend([100.0 * swing.amplitude, 50.0 * (swing.amplitude + next)]);
+            y.extend([swing.period, f64::NAN]);
+        }
+        let dots = SeriesStyle { dots: true, ..SeriesStyle::default() };
+        series.push(Series { style: dots, ..Series::new("swings of the stack", x, y) });
+    }
+    Figure {
+        id: "periods".into(),
+        caption: "Period of rocking against its amplitude at the top: a rigid block of the same mass \
+                  and foot, and the swings of the drift while the stack stood, their periods twice the \
+                  time between zero crossings."
             .into(),
         kind: FigureKind::Plot(Plot {
-            x: Axis::new("period", "s").log(),
-            y: Axis::new("spectral acceleration", "g"),
-            series: vec![Series::new("horizontal", periods, values)],
+            x: Axis::new("amplitude", "cm"),
+            y: Axis::new("period", "s"),
+            marks: vec![Mark { at: 100.0 * rocking.drift.largest, label: "largest drift".into() }],
+            series,
+            interactive: true,
             ..Plot::default()
         }),
-    })
+    }
 }

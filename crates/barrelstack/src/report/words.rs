@@ -1,14 +1,16 @@
 //! The sentences of a report: what a person would say who had watched the run.
 
 use barrelstack_motion::STANDARD_GRAVITY;
+use barrelstack_report::significant;
 
 use crate::assemble::PartKind;
 use crate::outcome::{CollapseMode, Outcome};
 use crate::run::Run;
 use crate::summary::{MotionSummary, Summary};
+use crate::verify::Verification;
 
 /// The answer in one sentence.
-pub(super) fn headline(run: &Run, summary: &Summary) -> String {
+pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
     let until = run.interrupted.then(|| format!("the run was stopped at {:.1} s", run.end_time));
     match (&run.outcome, until) {
         (Outcome::Stable, None) => "The stack stands.".into(),
@@ -85,7 +87,13 @@ fn shaking(motion: &MotionSummary) -> String {
 }
 
 /// The sentences that back the headline.
-pub(super) fn details(run: &Run, summary: &Summary) -> Vec<String> {
+///
+/// What repeats of the run have shown takes the place of the general warning.
+pub(super) fn details(
+    run: &Run,
+    summary: &Summary,
+    verification: Option<&Verification>,
+) -> Vec<String> {
     let mut sentences = Vec::new();
     match &run.outcome {
         Outcome::Collapse { mode, first, from_level, to_level, .. } => {
@@ -111,7 +119,9 @@ pub(super) fn details(run: &Run, summary: &Summary) -> Vec<String> {
     }
     sentences.extend(summary.motion.as_ref().map(shaking));
     let judged = matches!(run.outcome, Outcome::Stable | Outcome::Collapse { .. });
-    if judged {
+    if let Some(found) = verification {
+        sentences.extend(found.sentences());
+    } else if judged {
         sentences.push(
             "One run is one possible course: small changes of friction or gaps can change what falls \
              when, so judge a stack by many runs."
@@ -129,7 +139,7 @@ fn capital(text: &str) -> String {
 }
 
 /// What made the result, in pairs of name and value.
-pub(super) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> {
+pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     let mut pairs = vec![
         ("program".to_owned(), format!("barrelstack {}", summary.provenance.version)),
         ("scenario fingerprint".to_owned(), summary.provenance.scenario_hash.clone()),
@@ -156,8 +166,9 @@ pub(super) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> 
                 || "lost with the numbers".to_owned(),
                 |books| {
                     format!(
-                        "residual {:.2e} of the {:.0} J that went through",
-                        books.residual_ratio, books.input
+                        "residual {} of the {} kJ that went through",
+                        significant(books.residual_ratio, 2),
+                        significant(1e-3 * books.input, 3)
                     )
                 },
             ),

@@ -42,6 +42,7 @@ pub mod error;
 pub mod field;
 pub mod free;
 pub mod interface;
+mod listing;
 mod load;
 mod merge;
 pub mod motion;
@@ -64,6 +65,7 @@ pub use dimension::Dimension;
 pub use error::{Place, Problem, ScenarioError};
 pub use free::{FreeBody, FreeInterface, FreeScene, Ground, Nodes, Viscous};
 pub use interface::{Basis, Damping, Friction, Interface, NormalLaw};
+pub use listing::{Setting, Source};
 pub use motion::{
     Amplitude, Direction, FileRef, MeasuredOn, MotionSource, MotionSpec, Processing, Pulse,
     PulseKind, RecordMotion, RecordSource, Scale, Sine, Vertical,

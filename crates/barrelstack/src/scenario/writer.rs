@@ -222,7 +222,7 @@ fn write_table(text: &mut String, table: &Table, path: &str) {
     }
 }
 
-fn inline(value: &Value) -> String {
+pub(super) fn inline(value: &Value) -> String {
     match value {
         Value::Text(text) => quote(text),
         Value::Integer(value) => value.unwrap_or_default().to_string(),

@@ -13,7 +13,7 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
     let scenario = Scenario::builtin("demo-napa", &args.set)?;
     let folder = Folder::prepare(&args.out, true)?;
     let (run, summary) = super::run::watched(&scenario, true)?;
-    folder.write(&run, &summary)?;
+    folder.write(&run, &summary, None)?;
     printer::lines(barrelstack::report::sentences(&run, &summary))?;
     let report = folder.report();
     printer::lines(["", &format!("Open {} in a browser to watch it.", report.display())])?;

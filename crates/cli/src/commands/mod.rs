@@ -2,6 +2,7 @@
 
 pub(crate) mod calibrate;
 mod check;
+pub(crate) mod compare;
 mod demo;
 pub(crate) mod heights;
 pub(crate) mod motion;
@@ -32,6 +33,7 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
         Command::Demo(args) => demo::demo(&args),
         Command::Heights(args) => heights::run(&args),
         Command::Calibrate(args) => calibrate::calibrate(&args),
+        Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check::check(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::Motion(args) => motion::motion(&args),

@@ -20,13 +20,13 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
     let (run, summary) =
         watched(&scenario, !args.quiet).map_err(|error| super::placed(error, &args.scenario))?;
+    let verification = args.verify.then(|| repeated(&run, !args.quiet)).transpose()?;
     if let Some(folder) = &folder {
-        folder.write(&run, &summary)?;
+        folder.write(&run, &summary, verification.as_ref())?;
         if args.pdf {
-            folder.write_pdf(&run, &summary, args.paper.into())?;
+            folder.write_pdf(&run, &summary, verification.as_ref(), args.paper.into())?;
         }
     }
-    let verification = args.verify.then(|| repeated(&run, !args.quiet)).transpose()?;
     if args.json {
         let document = match &verification {
             Some(verification) => verification.with_summary(&summary),

@@ -1,186 +1,91 @@
-// Opens report pages in a browser and checks what no other test can: that they run.
+// Opens report pages in a browser and checks what no other test can: that they run, and how they look.
 //
-//     NODE_PATH=<folder that holds playwright-core> node check.mjs PAGE...
+//     BARRELSTACK=<the program> node check.mjs [--renew] [FOLDER]
 //
-// PAGE is the path of a report.html. Chromium is $CHROMIUM, or /usr/bin/chromium. The module
-// playwright-core is looked for in NODE_PATH, beside this file and upward, and in the working
-// folder and upward.
+// Pages are made in FOLDER (target/browser) by the program; without BARRELSTACK those that are
+// there are taken. `--renew` keeps the looks of all pages as they are now, for the next time.
+// `cargo xtask test` and `cargo xtask golden` call this file; $CHROMIUM names the browser.
 //
-// A page fails when it
-// - writes an error to the console or throws one,
-// - asks for anything but its own file,
-// - scrolls sideways on a phone, or hides the play button below the first screen of 1280 × 900,
-// - shows less than 30 frames a second while it plays,
-// - shows another frame than the one nearest to the time asked for, at ten random times, by the
-//   slider and by the program; where frames.csv lies beside the page, the poses of every body
-//   must agree with it to the page's precision.
-//
-// Exit status: 0 when all pages pass, 1 when one fails, 2 when node, the module, the browser or a
+// Exit status: 0 when all checks pass, 1 when one fails, 2 when node, a module, the browser or a
 // page is missing, so that a caller can tell "broken" from "not here".
 
-import { createRequire } from "node:module";
-import { existsSync, readFileSync } from "node:fs";
+import { existsSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
-import { pathToFileURL } from "node:url";
+import { fileURLToPath } from "node:url";
+import { launch, missing, open } from "./lib/browser.mjs";
+import { Goldens, looks } from "./lib/golden.mjs";
+import { darkness, linkedZoom, opening, paper, phone } from "./lib/layout.mjs";
+import { PAGES, make, reportOf } from "./lib/pages.mjs";
+import { cameras, drawing, frameRate, keyboard, scrubbing, together } from "./lib/player.mjs";
+import { Suite, demand } from "./lib/suite.mjs";
 
-const POSE = 2 ** -14, TIME = 2 ** -20; // what the page rounds to
-const LEAST_RATE = 30;
+const here = dirname(fileURLToPath(import.meta.url));
+const words = process.argv.slice(2);
+const renew = words.includes("--renew");
+const folder = resolve(words.find((word) => !word.startsWith("--")) ?? join(here, "../../../../target/browser"));
+const pages = join(folder, "pages");
 
-function missing(text) {
-  console.error(`check.mjs: ${text}`);
-  process.exit(2);
+const browser = await launch();
+if (process.env.BARRELSTACK) await make(pages);
+for (const name of Object.keys(PAGES)) {
+  if (!existsSync(reportOf(pages, name))) missing(`${reportOf(pages, name)} is not there; set BARRELSTACK to the program`);
+}
+const goldens = new Goldens(browser, pages, join(here, "golden"), join(folder, "differences"));
+if (renew) {
+  await goldens.renew();
+  await browser.close();
+  process.exit(0);
 }
 
-function playwright() {
-  for (const from of [import.meta.url, pathToFileURL(join(process.cwd(), "x"))]) {
-    try {
-      return createRequire(from)("playwright-core");
-    } catch {
-      // The next place may have it.
-    }
-  }
-  return missing("playwright-core is not installed; set NODE_PATH to the folder that holds it");
+const suite = new Suite();
+const on = (name, options, use) => open(browser, reportOf(pages, name), options, use);
+const checkOn = (text, name, check) => suite.check(`${name}: ${text}`, async () => {
+  let note;
+  await on(name, {}, async (page) => { note = await check(page, reportOf(pages, name)); });
+  return note;
+});
+
+// First what is measured, while nothing else runs.
+await checkOn("plays at 30 frames a second with everything drawn", "eight", frameRate);
+for (const name of ["minute", "heap"]) {
+  await suite.check(`${name}: a minute of twelve barrels is small and opens at once`, () =>
+    opening((use) => on(name, {}, use), reportOf(pages, name)));
 }
-
-const pages = process.argv.slice(2).map((path) => resolve(path));
-if (pages.length === 0) missing("name at least one page");
-for (const page of pages) if (!existsSync(page)) missing(`${page} is not there`);
-const executablePath = process.env.CHROMIUM || "/usr/bin/chromium";
-if (!existsSync(executablePath)) missing(`${executablePath} is not there; set CHROMIUM to the browser`);
-const { chromium } = playwright();
-
-// The same times on every machine.
-let state = 20080727;
-function random() {
-  state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
-  return state / 2 ** 32;
-}
-
-function framesBeside(page) {
-  const path = join(dirname(page), "frames.csv");
-  if (!existsSync(path)) return null;
-  const rows = readFileSync(path, "utf8").trim().split("\n").slice(1).map((row) => row.split(",").map(Number));
-  return { times: rows.map((row) => row[0]), poses: rows.map((row) => row.slice(1)) };
-}
-
-function nearest(times, time) {
-  let best = 0;
-  times.forEach((t, k) => { if (Math.abs(t - time) < Math.abs(times[best] - time)) best = k; });
-  return best;
-}
-
-async function scrubbing(page, path, fail) {
-  const times = await page.evaluate(() => window.barrelstack.player.times());
-  const csv = framesBeside(path);
-  if (csv && csv.times.length !== times.length) {
-    fail(`frames.csv has ${csv.times.length} frames, the page ${times.length}`);
-    return "";
-  }
-  const source = csv ? csv.times : times;
-  let worst = 0;
-  for (let k = 0; k < 10; k++) {
-    const bySlider = k % 2 === 0;
-    const wish = bySlider ? Math.floor(random() * times.length) : times[0] + random() * (times.at(-1) - times[0]);
-    const shown = await page.evaluate(([wish, bySlider]) => {
-      const player = window.barrelstack.player;
-      if (bySlider) {
-        const slider = document.querySelector(".player input.scrub");
-        slider.value = wish;
-        slider.dispatchEvent(new Event("input", { bubbles: true }));
-      } else {
-        player.seek(wish);
+for (const [name, { several }] of Object.entries(PAGES)) {
+  const long = ["minute", "heap"].includes(name);
+  const checks = [
+    ...(several ? [["all panes keep one time and one scale", together]] : [["shows the recording at ten random times", scrubbing]]),
+    ["draws what it shows", drawing],
+    ["heeds the keyboard, and every control has a name", keyboard],
+    ...(["demo", "eight"].includes(name) ? [["has cameras that stand, ride and follow", cameras]] : []),
+    ...(["demo", "eight", "levels"].includes(name) ? [["zooms its histories together", linkedZoom]] : []),
+    ["is dark where that is asked for", darkness],
+    ["has no sideways scroll on a phone", phone],
+    ["prints all its sections", paper],
+  ];
+  let faults = [];
+  try {
+    faults = await open(browser, reportOf(pages, name), { strict: false }, async (page) => {
+      for (const [text, check] of long ? checks.slice(0, 1) : checks) {
+        await suite.check(`${name}: ${text}`, () => check(page, reportOf(pages, name)));
       }
-      const clock = document.querySelector(".player .clock").textContent;
-      return { frame: player.frame(), time: player.time(), poses: player.poses(), clock };
-    }, [wish, bySlider]);
-    const wanted = bySlider ? wish : nearest(times, wish);
-    const asked = bySlider ? `frame ${wish}` : `${wish} s`;
-    if (shown.frame !== wanted) fail(`asked for ${asked} it shows frame ${shown.frame}, not ${wanted}`);
-    if (Math.abs(shown.time - source[shown.frame]) > TIME) fail(`frame ${shown.frame} has the time ${shown.time}, not ${source[shown.frame]}`);
-    if (shown.clock !== `${shown.time.toFixed(2)} s`) fail(`the clock shows ${shown.clock} at ${shown.time} s`);
-    if (!csv) continue;
-    const flat = shown.poses.flat();
-    const truth = csv.poses[shown.frame];
-    if (flat.length !== truth.length) fail(`${flat.length} pose numbers, frames.csv has ${truth.length}`);
-    flat.forEach((value, at) => { worst = Math.max(worst, Math.abs(value - truth[at])); });
+    });
+  } catch (error) {
+    faults = [error.message];
   }
-  if (!(worst <= 0.51 * POSE)) fail(`a pose differs from frames.csv by ${worst}`);
-  return csv ? `poses within ${worst.toExponential(1)} of frames.csv` : "no frames.csv beside it";
+  await suite.check(`${name}: writes no error and asks for nothing but itself`, () => demand(faults.length === 0, faults.join("\n")));
 }
-
-// Frames shown in the best of three seconds: a busy machine may steal one, not all.
-async function frameRate(page) {
-  return page.evaluate(async () => {
-    const player = window.barrelstack.player;
-    const wait = (ms) => new Promise((done) => setTimeout(done, ms));
-    let drawn = 0;
-    player.onTime(() => { drawn += 1; });
-    const select = document.querySelector('.player [data-act="speed"]');
-    // Slow enough that a short run does not end first.
-    const times = player.times();
-    select.value = times.at(-1) - times[0] > 4 ? "1" : "0.25";
-    select.dispatchEvent(new Event("change"));
-    player.seek(0.6 * times.at(-1));
-    let best = 0;
-    for (let k = 0; k < 3; k++) {
-      player.play();
-      await wait(150);
-      const [count, since] = [drawn, performance.now()];
-      await wait(700);
-      best = Math.max(best, (1000 * (drawn - count)) / (performance.now() - since));
-    }
-    player.pause();
-    return best;
-  });
-}
-
-async function check(browser, path) {
-  const faults = [];
-  const fail = (text) => faults.push(text);
-  const notes = [];
-  const url = pathToFileURL(path).href;
-  const context = await browser.newContext({ viewport: { width: 1280, height: 900 } });
-  const page = await context.newPage();
-  page.on("console", (message) => { if (message.type() === "error") fail(`console: ${message.text()}`); });
-  page.on("pageerror", (error) => fail(`error: ${error.message}`));
-  page.on("request", (request) => {
-    const asked = request.url();
-    if (asked !== url && !asked.startsWith("data:") && !asked.startsWith("blob:")) fail(`asks for ${asked}`);
-  });
-  await page.goto(url);
-  const has = await page.evaluate(() => Boolean(window.barrelstack && window.barrelstack.player));
-  if (has) {
-    const play = await page.locator('.player [data-act="play"]').first().boundingBox();
-    if (!play || play.y + play.height > 900) fail("the play button is below the first screen of 1280 × 900");
-    notes.push(await scrubbing(page, path, fail));
-    const count = await page.evaluate(() => window.barrelstack.player.times().length);
-    if (count > 30) {
-      for (const name of ["names", "forces", "traces"]) {
-        const box = page.locator(`.player [data-act="${name}"]`).first();
-        if (await box.isVisible()) await box.check();
-      }
-      const rate = await frameRate(page);
-      notes.push(`${rate.toFixed(0)} frames a second with everything drawn`);
-      if (rate < LEAST_RATE) fail(`${rate.toFixed(1)} frames a second, at least ${LEAST_RATE} are due`);
-    }
-  } else {
-    notes.push("no player");
+// Pictures, two at a time.
+const queue = looks();
+const compareLooks = async () => {
+  for (let one = queue.shift(); one; one = queue.shift()) {
+    const [name, variant] = one;
+    await suite.check(`${name}: looks as kept, ${variant}`, () => goldens.check(name, variant));
   }
-  await page.emulateMedia({ colorScheme: "dark" });
-  await page.setViewportSize({ width: 390, height: 844 });
-  await page.waitForTimeout(400);
-  const wide = await page.evaluate(() => document.documentElement.scrollWidth);
-  if (wide > 390) fail(`it is ${wide} px wide on a phone of 390 px`);
-  await page.evaluate(() => { for (const fold of document.querySelectorAll("details")) fold.open = true; });
-  await page.waitForTimeout(200);
-  await context.close();
-  console.log(`${faults.length ? "FAIL" : "ok  "} ${path}: ${notes.filter(Boolean).join(", ")}`);
-  for (const fault of faults) console.log(`     ${fault}`);
-  return faults.length === 0;
-}
-
-const browser = await chromium.launch({ executablePath, args: ["--no-sandbox"] });
-let sound = true;
-for (const path of pages) sound = (await check(browser, path)) && sound;
+};
+await goldens.tools();
+await Promise.all([compareLooks(), compareLooks()]);
+await suite.check("every kept picture belongs to a page", async () => goldens.orphans());
+await suite.check("small defects of a page are seen", () => goldens.defects());
 await browser.close();
-process.exit(sound ? 0 : 1);
+process.exit(suite.close() ? 0 : 1);

@@ -1,0 +1,112 @@
+//! Two or more runs side by side: what differs in what was asked for, and in what came of it.
+
+mod page;
+mod tables;
+
+use barrelstack_report::Document;
+
+use crate::run::Run;
+use crate::scenario::Scenario;
+use crate::summary::Summary;
+
+/// One run among others.
+#[derive(Clone, Debug)]
+pub struct Side {
+    /// Its name, short enough for the head of a column.
+    pub name: String,
+    /// The run.
+    pub run: Run,
+    /// Its summary.
+    pub summary: Summary,
+}
+
+/// Why runs cannot be compared.
+#[derive(Debug, thiserror::Error, PartialEq, Eq)]
+pub enum CompareError {
+    /// One run has nothing to stand beside.
+    #[error(
+        "a comparison needs at least two runs, found {0}: name another scenario, or add \
+             --against PATH=VALUE"
+    )]
+    TooFew(usize),
+    /// More runs than a page can show.
+    #[error("a comparison shows at most {most} runs side by side, found {found}: leave some out")]
+    TooMany {
+        /// Runs asked for.
+        found: usize,
+        /// Runs that fit.
+        most: usize,
+    },
+    /// Nothing to compare.
+    #[error("{first} and {second} ask for the same run: every input is equal")]
+    Identical {
+        /// One of them.
+        first: String,
+        /// The other.
+        second: String,
+    },
+}
+
+/// Most runs of one comparison; a seventh would repeat a color.
+pub const MOST: usize = 6;
+
+/// Checks what is to be compared before any work is done.
+///
+/// # Errors
+/// When there are too few or too many, or two of them are the same run.
+pub fn check(scenarios: &[(String, Scenario)]) -> Result<(), CompareError> {
+    match scenarios.len() {
+        found @ 0..=1 => return Err(CompareError::TooFew(found)),
+        found if found > MOST => return Err(CompareError::TooMany { found, most: MOST }),
+        _ => {}
+    }
+    for (at, (second, scenario)) in scenarios.iter().enumerate() {
+        let print = scenario.fingerprint();
+        if let Some((first, _)) = scenarios[..at].iter().find(|(_, s)| s.fingerprint() == print) {
+            return Err(CompareError::Identical { first: first.clone(), second: second.clone() });
+        }
+    }
+    Ok(())
+}
+
+/// One input that is not the same in all runs.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Difference {
+    /// Its path, as in an override.
+    pub path: String,
+    /// What the field means.
+    pub help: &'static str,
+    /// The value in each run; none where that run has no such field.
+    pub values: Vec<Option<String>>,
+}
+
+/// The inputs that differ, in the order of the file.
+pub fn differences<'a>(scenarios: impl IntoIterator<Item = &'a Scenario>) -> Vec<Difference> {
+    let all: Vec<_> = scenarios.into_iter().map(Scenario::settings).collect();
+    let mut list: Vec<Difference> = Vec::new();
+    for setting in all.iter().flatten() {
+        if list.iter().any(|known| known.path == setting.path) {
+            continue;
+        }
+        let value = |settings: &Vec<crate::scenario::Setting>| {
+            settings.iter().find(|s| s.path == setting.path).map(|s| s.value.clone())
+        };
+        list.push(Difference {
+            path: setting.path.clone(),
+            help: setting.help,
+            values: all.iter().map(value).collect(),
+        });
+    }
+    list.retain(|one| one.values.iter().any(|value| *value != one.values[0]));
+    list
+}
+
+/// The letter of a run: A for the first.
+fn letter(at: usize) -> char {
+    char::from(b'A' + u8::try_from(at).unwrap_or(0))
+}
+
+/// The comparison as a document, free of any output format.
+pub fn document(sides: &[Side]) -> Document {
+    page::document(sides)
+}

@@ -1,0 +1,254 @@
+//! The page of a comparison: verdict, players on one clock, tables, histories over each other.
+
+use barrelstack_motion::STANDARD_GRAVITY;
+use barrelstack_report::{
+    Axis, Block, Document, Figure, FigureKind, History, Mark, Pane, Players, Plot, Series,
+    SeriesStyle, Tone, Verdict,
+};
+
+use super::{Difference, Side, differences, letter, tables};
+use crate::assemble::PartKind;
+use crate::outcome::Outcome;
+use crate::report;
+
+pub(super) fn document(sides: &[Side]) -> Document {
+    let differing = differences(sides.iter().map(|side| &side.run.scenario));
+    let mut blocks = vec![Block::Players(players(sides))];
+    let mut section = |title: &str, content: Vec<Block>| {
+        if !content.is_empty() {
+            blocks.push(Block::Heading { level: 2, text: title.to_owned() });
+            blocks.extend(content);
+        }
+    };
+    section("What is different", vec![Block::Table(tables::inputs(sides, &differing))]);
+    section("What came of it", vec![Block::Table(tables::outcomes(sides))]);
+    section("Demands", vec![Block::Table(tables::demands(sides))]);
+    section("Histories", histories(sides));
+    section(
+        "Inputs in common",
+        vec![Block::Details {
+            summary: "Every input that is the same".into(),
+            blocks: vec![Block::Table(tables::common(sides, &differing))],
+        }],
+    );
+    Document {
+        title: format!("Comparison of {}", listed(sides.iter().map(|s| s.name.clone()))),
+        verdict: verdict(sides, &differing),
+        blocks,
+        provenance: provenance(sides),
+        warnings: sides
+            .iter()
+            .enumerate()
+            .flat_map(|(at, side)| {
+                side.summary.warnings.iter().map(move |text| format!("{}: {text}", letter(at)))
+            })
+            .collect(),
+    }
+}
+
+/// "a, b and c".
+fn listed(words: impl Iterator<Item = String>) -> String {
+    let mut words: Vec<String> = words.collect();
+    match (words.pop(), words.len()) {
+        (None, _) => String::new(),
+        (Some(last), 0) => last,
+        (Some(last), _) => format!("{} and {last}", words.join(", ")),
+    }
+}
+
+fn fate(side: &Side) -> String {
+    match &side.run.outcome {
+        Outcome::Stable => "stands".into(),
+        Outcome::Collapse { time, .. } => format!("gives way after {time:.1} s"),
+        Outcome::NotJudged => "ran to its end".into(),
+        Outcome::Invalid { .. } => "broke down and says nothing".into(),
+    }
+}
+
+fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
+    let fates: Vec<String> = sides.iter().map(fate).collect();
+    let alike = fates.iter().all(|one| *one == fates[0]);
+    let headline = if alike {
+        let who = if sides.len() == 2 { "Both".to_owned() } else { format!("All {}", sides.len()) };
+        let fate = fates.first().map(String::as_str).unwrap_or_default();
+        let plural = fate.replacen("stands", "stand", 1).replacen("gives", "give", 1);
+        let plural = plural.replacen("and says", "and say", 1);
+        format!("{who} {plural}.")
+    } else {
+        let parts = fates.iter().enumerate().map(|(at, fate)| format!("{} {fate}", letter(at)));
+        format!("{}.", listed(parts))
+    };
+    let mut sentences: Vec<String> = sides
+        .iter()
+        .enumerate()
+        .map(|(at, side)| format!("{} is {}.", letter(at), side.name))
+        .collect();
+    sentences.push(match differing {
+        [one] => format!(
+            "They differ in one input: {}, {}.",
+            one.path,
+            listed(one.values.iter().map(|value| {
+                value.as_deref().map_or_else(|| "absent".into(), report::readable)
+            }))
+        ),
+        many => format!("They differ in {} inputs, listed below.", many.len()),
+    });
+    sentences.push(
+        "Each is one run: small changes of friction or gaps can change what falls when, so judge a \
+         difference by many runs."
+            .into(),
+    );
+    Verdict { headline, sentences, tone: Tone::Neutral }
+}
+
+fn players(sides: &[Side]) -> Players {
+    Players {
+        id: "players".into(),
+        caption:
+            "The runs as computed, on one clock and to one scale. A run that has ended holds its \
+                  last frame."
+                .into(),
+        panes: sides
+            .iter()
+            .enumerate()
+            .map(|(at, side)| Pane {
+                mark: letter(at).into(),
+                name: side.name.clone(),
+                verdict: report::headline(&side.run, &side.summary),
+                tone: report::tone(&side.run),
+                scene: report::scene(&side.run),
+                traces: report::traces(&side.run),
+            })
+            .collect(),
+        ground: lanes(sides),
+    }
+}
+
+/// Whether one motion shakes all.
+fn one_motion(sides: &[Side]) -> bool {
+    let motion = |side: &Side| side.run.scenario.motion.clone();
+    sides.iter().all(|side| motion(side) == motion(&sides[0]))
+}
+
+/// The motion under the stages: that of the longest run where all share it, else one of each.
+fn lanes(sides: &[Side]) -> Vec<History> {
+    if one_motion(sides) {
+        let longest = sides.iter().max_by(|a, b| a.run.end_time.total_cmp(&b.run.end_time));
+        return longest.map(|side| report::ground_histories(&side.run)).unwrap_or_default();
+    }
+    let own = |(at, side)| {
+        let first: History = report::ground_histories(side).into_iter().next()?;
+        Some(History { label: format!("{}: {}", letter(at), first.label), ..first })
+    };
+    sides.iter().map(|side| &side.run).enumerate().filter_map(own).collect()
+}
+
+/// Histories of all runs over each other, a color and a dash for each run.
+fn histories(sides: &[Side]) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    let mut add = |id: &str, caption: &str, y: Axis, values: &dyn Fn(&Side) -> Option<Vec<f64>>| {
+        let series: Vec<Series> = sides
+            .iter()
+            .enumerate()
+            .filter_map(|(at, side)| {
+                let name = format!("{}: {}", letter(at), side.name);
+                let line = Series::new(name, side.run.recording.times.clone(), values(side)?);
+                let style = SeriesStyle { index: Some(at), ..SeriesStyle::default() };
+                Some(Series { style, ..line })
+            })
+            .collect();
+        if !series.is_empty() {
+            blocks.push(history(sides, id, caption, y, series));
+        }
+    };
+    add(
+        "top-displacements",
+        "Horizontal displacement of the top left barrel relative to the ground.",
+        Axis::new("displacement", "cm"),
+        &|side| displacement(side, PartKind::Barrel, side.run.assembly.levels),
+    );
+    add(
+        "base-displacements",
+        "Slip of the bottom rack on the ground.",
+        Axis::new("slip", "cm"),
+        &|side| displacement(side, PartKind::Rack, 1),
+    );
+    add(
+        "base-forces",
+        "Vertical force between the bottom rack and the ground.",
+        Axis::new("force", "kN"),
+        &|side| {
+            let base = side.run.recording.joints.first()?;
+            Some(base.vertical.iter().map(|v| 1e-3 * v).collect())
+        },
+    );
+    let acceleration = |side: &Side| {
+        let channel = side.run.recording.channel("ground acceleration x")?;
+        Some(channel.values.iter().map(|v| v / STANDARD_GRAVITY).collect::<Vec<f64>>())
+    };
+    if !one_motion(sides) {
+        add(
+            "ground-accelerations",
+            "Acceleration of the ground.",
+            Axis::new("acceleration", "g"),
+            &acceleration,
+        );
+    }
+    blocks
+}
+
+/// Displacement (cm) along x of the first body of a kind on a level.
+fn displacement(side: &Side, kind: PartKind, level: u32) -> Option<Vec<f64>> {
+    let assembly = &side.run.assembly;
+    let body = assembly.of_kind(kind).find(|b| assembly.parts[*b].level == Some(level))?;
+    let channel = side.run.recording.displacement(&assembly.parts[body].name)?;
+    Some(channel.values.iter().map(|v| 100.0 * v).collect())
+}
+
+fn history(sides: &[Side], id: &str, caption: &str, mut y: Axis, series: Vec<Series>) -> Block {
+    let marks = sides.iter().enumerate().filter_map(|(at, side)| {
+        let at_time = side.run.fates.collapse_time()?;
+        Some(Mark { at: at_time, label: format!("{} gives way", letter(at)) })
+    });
+    // What falls leaves the picture, so that what stands can be read.
+    let ranges: Vec<Option<[f64; 2]>> = series
+        .iter()
+        .zip(sides)
+        .map(|(one, side)| report::standing_range(&side.run, std::slice::from_ref(one)))
+        .collect();
+    if y.label != "force" && ranges.iter().any(Option::is_some) {
+        let own = |one: &Series| {
+            one.y.iter().fold([0.0_f64; 2], |range, v| [range[0].min(*v), range[1].max(*v)])
+        };
+        let all = series.iter().zip(&ranges).map(|(one, range)| range.unwrap_or_else(|| own(one)));
+        y.range = all.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+    }
+    Block::Figure(Figure {
+        id: id.to_owned(),
+        caption: caption.to_owned(),
+        kind: FigureKind::Plot(Plot {
+            x: Axis::new("time", "s"),
+            y,
+            series,
+            marks: marks.collect(),
+            interactive: true,
+            timeline: true,
+            ..Plot::default()
+        }),
+    })
+}
+
+/// What made the results: once where it is the same for all, else for each run.
+fn provenance(sides: &[Side]) -> Vec<(String, String)> {
+    let all: Vec<_> =
+        sides.iter().map(|side| report::provenance(&side.run, &side.summary)).collect();
+    let shared = |pair: &(String, String)| all.iter().all(|pairs| pairs.contains(pair));
+    let mut pairs = Vec::new();
+    for (at, own) in all.iter().enumerate() {
+        for pair in own.iter().filter(|pair| !shared(pair)) {
+            pairs.push((format!("{}: {}", letter(at), pair.0), pair.1.clone()));
+        }
+    }
+    pairs.extend(all.first().into_iter().flatten().filter(|pair| shared(pair)).cloned());
+    pairs
+}

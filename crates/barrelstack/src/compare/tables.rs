@@ -1,0 +1,98 @@
+//! The tables of a comparison, one column for every run.
+
+use barrelstack_report::{Cell, Column, Table};
+
+use super::{Difference, Side, letter};
+use crate::report;
+
+/// An empty table: first columns, then one for each run.
+fn table(caption: &str, first: &[(&str, &str)], sides: &[Side], last: &[(&str, &str)]) -> Table {
+    let mut table = Table::new(caption, first);
+    let letters = sides.iter().enumerate().map(|(at, _)| Column::new(letter(at), ""));
+    table.columns.extend(letters);
+    table.columns.extend(last.iter().map(|(name, unit)| Column::new(*name, *unit)));
+    table
+}
+
+fn text(value: Option<&String>) -> Cell {
+    value.map_or(Cell::Missing, Cell::text)
+}
+
+/// The inputs that differ.
+pub(super) fn inputs(sides: &[Side], differing: &[Difference]) -> Table {
+    let mut table = table(
+        "Inputs that differ. All others are equal.",
+        &[("input", "")],
+        sides,
+        &[("meaning", "")],
+    );
+    for one in differing {
+        let mut row = vec![Cell::text(&one.path)];
+        let shown = |value: &String| Cell::text(report::readable(value));
+        row.extend(one.values.iter().map(|v| v.as_ref().map_or(Cell::Missing, shown)));
+        row.push(Cell::text(one.help));
+        table.rows.push(row);
+    }
+    table
+}
+
+/// The inputs that are the same in all runs.
+pub(super) fn common(sides: &[Side], differing: &[Difference]) -> Table {
+    let mut table = Table::new(
+        "Inputs that all runs share.",
+        &[("input", ""), ("value", ""), ("source", ""), ("meaning", "")],
+    );
+    let Some(first) = sides.first() else { return table };
+    for setting in first.run.scenario.settings() {
+        if differing.iter().all(|one| one.path != setting.path) {
+            table.rows.push(report::setting_row(&setting).to_vec());
+        }
+    }
+    table
+}
+
+/// What became of each run.
+pub(super) fn outcomes(sides: &[Side]) -> Table {
+    let mut table = table("Outcomes.", &[("", "")], sides, &[]);
+    let mut row = |name: &str, cell: &dyn Fn(&Side) -> Cell| {
+        let mut row = vec![Cell::text(name)];
+        row.extend(sides.iter().map(cell));
+        table.rows.push(row);
+    };
+    let seconds =
+        |time: Option<f64>| time.map_or(Cell::Missing, |time| Cell::text(format!("{time:.2} s")));
+    row("run", &|side| Cell::text(&side.name));
+    row("outcome", &|side| Cell::text(side.summary.outcome.kind));
+    row("mode", &|side| side.summary.outcome.mode.map_or(Cell::Missing, Cell::text));
+    row("first loss of seat", &|side| seconds(side.summary.outcome.time));
+    row("first body", &|side| text(side.summary.outcome.first.as_ref()));
+    row("first fall", &|side| seconds(side.summary.outcome.first_fall));
+    row("barrels fallen", &|side| {
+        let outcome = &side.summary.outcome;
+        Cell::text(format!("{} of {}", outcome.barrels_fallen, outcome.barrels))
+    });
+    row("end of the run", &|side| seconds(Some(side.run.end_time)));
+    table
+}
+
+/// Demands on each stack while it stood.
+pub(super) fn demands(sides: &[Side]) -> Table {
+    let mut table = table(
+        "While each stack stood, unless said otherwise.",
+        &[("demand", ""), ("unit", "")],
+        sides,
+        &[],
+    );
+    let all: Vec<_> = sides.iter().map(|side| report::demands(&side.summary)).collect();
+    let Some(first) = all.first() else { return table };
+    for (at, one) in first.iter().enumerate() {
+        let values: Vec<Option<f64>> = all.iter().map(|list| list[at].value).collect();
+        if values.iter().all(Option::is_none) {
+            continue;
+        }
+        let mut row = vec![Cell::text(one.name), Cell::text(one.unit)];
+        row.extend(values.into_iter().map(|v| v.map_or(Cell::Missing, |v| Cell::Number(v, 3))));
+        table.rows.push(row);
+    }
+    table
+}

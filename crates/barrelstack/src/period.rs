@@ -1,0 +1,146 @@
+//! The period of rocking, which grows with its amplitude: of a rigid block, and as measured in a run.
+
+use barrelstack_dynamics::Motion;
+
+use crate::assemble::{Assembly, PartKind};
+use crate::run::Run;
+
+/// The rigid block that a stack would be if nothing in it moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidBlock {
+    /// Distance (m) from the edge about which it rocks to the center of mass.
+    pub radius: f64,
+    /// Angle (rad) at the edge between that line and the vertical: the tilt of no return.
+    pub slenderness: f64,
+    /// Frequency parameter `p` (1/s): `p² = m g R / I`, `I` about the edge.
+    pub frequency: f64,
+}
+
+/// How far (share of the height) above the lowest point of the scene still counts as its foot.
+const FOOT: f64 = 1e-3;
+
+impl RigidBlock {
+    /// The block of all free bodies as they are assembled, under gravity (m/s²); none where nothing
+    /// stands.
+    pub fn of(assembly: &Assembly, gravity: f64) -> Option<Self> {
+        let bodies =
+            || assembly.model.bodies().iter().enumerate().filter(|(_, b)| b.motion == Motion::Free);
+        let mass: f64 = bodies().map(|(_, body)| body.mass).sum();
+        let points = || {
+            bodies().flat_map(|(i, body)| {
+                let outlines = assembly.parts[i].outlines.iter();
+                outlines.flat_map(move |o| o.points.iter().map(move |p| body.pose.position + *p))
+            })
+        };
+        let low = points().map(|p| p.z).fold(f64::INFINITY, f64::min);
+        let high = points().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max);
+        let foot = || points().filter(|p| p.z <= low + FOOT * (high - low)).map(|p| p.x);
+        let left = foot().fold(f64::INFINITY, f64::min);
+        let right = foot().fold(f64::NEG_INFINITY, f64::max);
+        let center = |axis: fn(barrelstack_dynamics::Vec2) -> f64| {
+            bodies().map(|(_, body)| body.mass * axis(body.pose.position)).sum::<f64>() / mass
+        };
+        let (x, z) = (center(|p| p.x), center(|p| p.z) - low);
+        // It rocks about the nearer edge first.
+        let edge = if x - left < right - x { left } else { right };
+        let (half, radius) = ((x - edge).abs(), (x - edge).hypot(z));
+        let inertia: f64 = bodies()
+            .map(|(_, body)| {
+                let arm = (body.pose.position.x - edge).hypot(body.pose.position.z - low);
+                body.inertia + body.mass * arm * arm
+            })
+            .sum();
+        let frequency = (mass * gravity * radius / inertia).sqrt();
+        let block = Self { radius, slenderness: libm::atan2(half, z), frequency };
+        (half > 0.0 && frequency.is_finite()).then_some(block)
+    }
+
+    /// Period (s) of free rocking between tilts of `±tilt` (rad), no energy lost:
+    ///
+    /// ```text
+    /// T = (4/p) arcosh( 1 / (1 − θ₀/α) )
+    /// ```
+    ///
+    /// for slender blocks (Housner 1963, eq. 4); 0 at rest, infinite at the tilt of no return.
+    pub fn period(&self, tilt: f64) -> f64 {
+        let share = (tilt.abs() / self.slenderness).min(1.0);
+        4.0 / self.frequency * libm::acosh(1.0 / (1.0 - share))
+    }
+}
+
+/// One swing of a history to one side and back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Swing {
+    /// When (s) it begins.
+    pub start: f64,
+    /// Period (s) of a motion made of such swings: twice as long as it takes.
+    pub period: f64,
+    /// Its largest value without the sign, in the unit of the history.
+    pub amplitude: f64,
+}
+
+/// Smallest swing that counts, as a share of the largest.
+const SMALLEST: f64 = 0.1;
+
+/// The swings of a history, each from one zero crossing to the next; crossings lie between samples
+/// on a straight line.
+///
+/// Swings below a tenth of the largest are left out: there small impacts cross zero at random.
+pub fn swings(times: &[f64], values: &[f64]) -> Vec<Swing> {
+    let count = times.len().min(values.len());
+    let mut crossings: Vec<(usize, f64)> = Vec::new();
+    for k in 1..count {
+        let (before, after) = (values[k - 1], values[k]);
+        if (before < 0.0 && after >= 0.0) || (before > 0.0 && after <= 0.0) {
+            let share = before / (before - after);
+            crossings.push((k, times[k - 1] + share * (times[k] - times[k - 1])));
+        }
+    }
+    let mut swings: Vec<Swing> = crossings
+        .windows(2)
+        .map(|pair| {
+            let [(first, start), (last, end)] = [pair[0], pair[1]];
+            let amplitude = values[first..last].iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+            Swing { start, period: 2.0 * (end - start), amplitude }
+        })
+        .collect();
+    let largest = swings.iter().map(|swing| swing.amplitude).fold(0.0, f64::max);
+    swings.retain(|swing| swing.amplitude > SMALLEST * largest);
+    swings
+}
+
+/// How the top of a stack moved against its foot while it stood.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drift {
+    /// Height (m) of the point that is followed: the center of the top left barrel, at rest.
+    pub height: f64,
+    /// Largest drift (m), without the sign.
+    pub largest: f64,
+    /// Its swings, amplitudes in m.
+    pub swings: Vec<Swing>,
+}
+
+/// The drift of a stack: the displacement of its top left barrel less that of its bottom rack. None
+/// for a free scene.
+pub fn drift(run: &Run) -> Option<Drift> {
+    let (recording, assembly) = (&run.recording, &run.assembly);
+    let of = |kind: PartKind, level: u32| {
+        assembly.of_kind(kind).find(|body| assembly.parts[*body].level == Some(level))
+    };
+    let (top, foot) = (of(PartKind::Barrel, assembly.levels)?, of(PartKind::Rack, 1)?);
+    let end = run.fates.collapse_time().unwrap_or(f64::INFINITY);
+    let standing = recording.times.iter().take_while(|time| **time < end).count();
+    let moved = |body: usize| recording.displacement(&assembly.parts[body].name);
+    let drift: Vec<f64> = moved(top)?
+        .values
+        .iter()
+        .zip(&moved(foot)?.values)
+        .take(standing)
+        .map(|(top, foot)| top - foot)
+        .collect();
+    Some(Drift {
+        height: assembly.model.bodies()[top].pose.position.z,
+        largest: drift.iter().fold(0.0, |most, v| v.abs().max(most)),
+        swings: swings(&recording.times[..standing], &drift),
+    })
+}

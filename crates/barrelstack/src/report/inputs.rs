@@ -1,0 +1,89 @@
+//! The inputs of a run as a table: every value with its unit, its meaning and where it comes from.
+
+use barrelstack_report::{Block, Cell, Table, significant};
+
+use crate::run::Run;
+use crate::scenario::{Setting, Source, catalog};
+
+/// A setting as a row: input, value, source, meaning.
+pub(crate) fn setting_row(setting: &Setting) -> [Cell; 4] {
+    [
+        Cell::text(&setting.path),
+        Cell::text(readable(&setting.value)),
+        Cell::text(setting.source.words()),
+        Cell::text(setting.help),
+    ]
+}
+
+/// A value as people read it: numbers, also before a unit, to six significant digits.
+pub(crate) fn readable(value: &str) -> String {
+    let (first, rest) = value.split_once(' ').unwrap_or((value, ""));
+    match first.parse::<f64>() {
+        Ok(number) if first.len() > DIGITS && number != 0.0 => {
+            // Zeros behind the digits that count say nothing.
+            let shown = significant(number, DIGITS);
+            let short = if shown.contains('.') && !shown.contains('×') {
+                shown.trim_end_matches('0').trim_end_matches('.')
+            } else {
+                &shown
+            };
+            format!("{short} {rest}").trim_end().to_owned()
+        }
+        _ => value.to_owned(),
+    }
+}
+
+/// Significant digits of an input in print; the scenario beside the report has them all.
+const DIGITS: usize = 6;
+
+/// What was chosen, in sight; every value, folded.
+pub(super) fn inputs(run: &Run) -> Vec<Block> {
+    let columns = [("input", ""), ("value", ""), ("source", ""), ("meaning", "")];
+    let mut chosen = Table::new(
+        "Inputs that differ from their defaults. Quantities are in SI units.",
+        &[("input", ""), ("value", ""), ("meaning", "")],
+    );
+    let mut all = Table::new("Every input.", &columns);
+    for setting in run.scenario.settings() {
+        let row = setting_row(&setting);
+        if setting.source == Source::Given {
+            let [input, value, _, meaning] = &row;
+            chosen.rows.push([input, value, meaning].map(Cell::clone).to_vec());
+        }
+        all.rows.push(row.to_vec());
+    }
+    let mut blocks = vec![Block::Table(chosen)];
+    blocks.extend(dimensions(run));
+    blocks.push(Block::Details {
+        summary: format!("All {} inputs with every default written out", all.rows.len()),
+        blocks: vec![Block::Table(all)],
+    });
+    blocks
+}
+
+/// Where the dimensions of the catalog come from.
+fn dimensions(run: &Run) -> Option<Block> {
+    let stack = run.scenario.stack()?;
+    let barrel = catalog::BARRELS.iter().find(|known| known.name == stack.barrel.base);
+    let rack = catalog::RACKS.iter().find(|known| known.name == stack.rack.base);
+    let mut sources = Vec::new();
+    sources.extend(barrel.map(|known| format!("Barrel {}: {}.", known.name, known.source)));
+    sources.extend(rack.map(|known| format!("Rack {}: {}.", known.name, known.source)));
+    (!sources.is_empty()).then_some(Block::List(sources))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::readable;
+
+    #[test]
+    fn long_numbers_are_rounded_and_everything_else_is_left_alone() {
+        assert_eq!(readable("0.6428363673489367 m"), "0.642836 m");
+        assert_eq!(readable("980000 N/m"), "980000 N/m");
+        assert_eq!(readable("12345678 N"), "1.23457×10⁷ N");
+        assert_eq!(readable("9.806650000001 m/s^2"), "9.80665 m/s^2");
+        assert_eq!(readable("transverse"), "transverse");
+        assert_eq!(readable("napa-college-2014 E"), "napa-college-2014 E");
+        assert_eq!(readable("0.0000000"), "0.0000000");
+    }
+}

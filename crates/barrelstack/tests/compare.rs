@@ -1,0 +1,108 @@
+//! Comparisons: what differs, what is refused, what the page says.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
+use std::ops::ControlFlow;
+
+use barrelstack::compare::{self, CompareError, Side, differences};
+use barrelstack::scenario::Source;
+use barrelstack::{Scenario, Summary};
+use barrelstack_report::{Block, Document, Table, markdown};
+
+const MU: &str = "interface.rack-ground.friction.coefficient";
+
+fn scenario(name: &str, changes: &[&str]) -> Scenario {
+    let changes: Vec<String> = changes.iter().map(|change| (*change).to_owned()).collect();
+    Scenario::builtin(name, &changes).unwrap()
+}
+
+fn side(name: &str, scenario: &Scenario) -> Side {
+    let run = barrelstack::run(scenario, &mut |_| ControlFlow::Continue(())).unwrap();
+    let summary = Summary::of(&run, None);
+    Side { name: name.into(), run, summary }
+}
+
+/// The rows of the table under a heading, as text.
+fn table<'a>(document: &'a Document, heading: &str) -> &'a Table {
+    let at = document
+        .blocks
+        .iter()
+        .position(|block| matches!(block, Block::Heading { text, .. } if text == heading));
+    let Block::Table(table) = &document.blocks[at.unwrap() + 1] else {
+        panic!("no table follows {heading}")
+    };
+    table
+}
+
+#[test]
+fn only_inputs_that_differ_are_listed_with_their_values_and_meaning() {
+    let sure = scenario("candia-8-barrels", &[]);
+    let slippery = scenario("candia-8-barrels", &[&format!("{MU}=0.1")]);
+    let found = differences([&sure, &slippery]);
+    let one = found.iter().find(|one| one.path == MU).unwrap();
+    let values: Vec<&str> = one.values.iter().flatten().map(String::as_str).collect();
+    assert_eq!(values, ["0.5", "0.1"]);
+    assert!(one.help.to_lowercase().contains("friction"));
+    assert!(found.iter().all(|one| one.path.starts_with("interface.rack-ground.friction.")));
+    assert!(differences([&sure, &sure]).is_empty());
+}
+
+#[test]
+fn an_input_that_one_run_has_not_is_absent_there() {
+    let pulse = scenario("candia-8-barrels", &[]);
+    let record = scenario("demo-napa", &[]);
+    let found = differences([&pulse, &record]);
+    let bundled = found.iter().find(|one| one.path == "motion.bundled").unwrap();
+    assert_eq!(bundled.values, [None, Some("napa-college-2014".to_owned())]);
+    // The title says nothing about the physics.
+    assert!(found.iter().all(|one| one.path != "title"));
+}
+
+#[test]
+fn settings_say_where_they_come_from() {
+    let settings = scenario("demo-napa", &[]).settings();
+    let source = |path: &str| settings.iter().find(|one| one.path == path).unwrap().source;
+    assert_eq!(source("stack.levels"), Source::Given);
+    assert_eq!(source("stack.mirror"), Source::Default);
+    assert_eq!(source("stack.gap"), Source::Default);
+    assert!(matches!(source("stack.barrel.mass"), Source::Derived(_)));
+    assert!(settings.len() > 50 && settings.iter().all(|one| !one.help.is_empty()));
+}
+
+#[test]
+fn too_few_too_many_and_the_same_twice_are_refused() {
+    let named = |levels: u32| {
+        (format!("{levels}"), scenario("demo-napa", &[&format!("stack.levels={levels}")]))
+    };
+    assert_eq!(compare::check(&[named(3)]), Err(CompareError::TooFew(1)));
+    let error = compare::check(&[named(3), named(4), named(3)]).unwrap_err();
+    assert_eq!(error.to_string(), "3 and 3 ask for the same run: every input is equal");
+    let many: Vec<_> = (2..9).map(named).collect();
+    assert_eq!(compare::check(&many), Err(CompareError::TooMany { found: 7, most: 6 }));
+    assert_eq!(compare::check(&many[..6]), Ok(()));
+}
+
+#[test]
+fn the_page_sets_outcomes_and_demands_side_by_side() {
+    let changes = |levels: &str| {
+        scenario("candia-8-barrels", &[levels, "run.stop_after_collapse=0.1 s", "run.duration=2 s"])
+    };
+    let sides = [side("four", &changes("stack.levels=4")), side("two", &changes("stack.levels=2"))];
+    let document = compare::document(&sides);
+    let Block::Players(players) = &document.blocks[0] else { panic!("players come first") };
+    assert_eq!(players.panes.len(), 2);
+    let outcomes = table(&document, "What came of it");
+    assert_eq!(outcomes.columns.len(), 3);
+    let demands = table(&document, "Demands");
+    let drift = demands.rows.iter().find(|row| format!("{:?}", row[0]).contains("drift")).unwrap();
+    // The numbers are those of the summaries.
+    for (cell, side) in drift[2..].iter().zip(&sides) {
+        let own = 100.0 * side.summary.demands.top_drift_ratio.unwrap();
+        assert_eq!(*cell, barrelstack_report::Cell::Number(own, 3));
+    }
+    let inputs = table(&document, "What is different");
+    assert_eq!(inputs.rows.len(), 1);
+    let text = markdown(&document, "figures").text;
+    assert!(text.contains("They differ in one input: stack.levels, 4 and 2."), "{text}");
+    assert!(text.contains("A is four.\nB is two.\n"), "{text}");
+}

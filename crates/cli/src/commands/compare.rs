@@ -1,0 +1,137 @@
+//! `barrelstack compare`: two or more runs side by side.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use barrelstack::compare::{self, Difference, Side, differences};
+use barrelstack::export::Folder;
+use barrelstack::outcome::Outcome;
+
+use crate::args::ScenarioArgs;
+use crate::printer;
+
+/// What the help of `compare` ends with.
+const EXAMPLES: &str = "\
+Examples:
+  barrelstack compare demo-napa --against stack.levels=4
+  barrelstack compare mine.toml --against interface.rack-ground.friction.coefficient=0.1
+  barrelstack compare strapped.toml loose.toml --record my-site.AT2 --out comparison";
+
+/// Arguments of `compare`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct CompareArgs {
+    /// Scenario files (TOML) or names of built-in scenarios.
+    #[arg(value_name = "SCENARIO", required = true)]
+    scenarios: Vec<String>,
+    /// One more run: the first scenario with this value changed; may be repeated.
+    #[arg(long, value_name = "PATH=VALUE")]
+    against: Vec<String>,
+    /// Change a value in all runs, such as run.duration="20 s"; may be repeated.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    set: Vec<String>,
+    /// The file of the ground motion of all runs, in place of the scenarios' own.
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Where to write report.html, report.md and figures/; must be new or empty.
+    #[arg(long, value_name = "DIR", default_value = "barrelstack-compare")]
+    out: PathBuf,
+    /// Let the folder hold files, and replace those of an earlier comparison.
+    #[arg(long)]
+    overwrite: bool,
+    /// Print one JSON document in place of the sentences for people.
+    #[arg(long)]
+    json: bool,
+    /// Show no progress.
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Runs all scenarios and writes the comparison.
+pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
+    let asked = asked(args);
+    let mut scenarios = Vec::new();
+    for (name, one) in &asked {
+        scenarios.push((name.clone(), super::load(one)?));
+    }
+    compare::check(&scenarios)?;
+    let folder = Folder::prepare(&args.out, args.overwrite)?;
+    let mut sides = Vec::new();
+    for ((name, scenario), (_, one)) in scenarios.iter().zip(&asked) {
+        let (run, summary) = super::run::watched(scenario, !args.quiet)
+            .map_err(|error| super::placed(error, one))?;
+        if run.interrupted {
+            printer::warning("stopped before all runs were done; nothing was written");
+            return Ok(ExitCode::from(130));
+        }
+        sides.push(Side { name: name.clone(), run, summary });
+    }
+    let document = compare::document(&sides);
+    folder.write_comparison(&document)?;
+    let differing = differences(sides.iter().map(|side| &side.run.scenario));
+    if args.json {
+        printer::lines([json(&sides, &differing)?])?;
+    } else {
+        let verdict = &document.verdict;
+        let mut lines = vec![verdict.headline.clone()];
+        lines.extend(verdict.sentences.iter().map(|sentence| format!("  {sentence}")));
+        lines.extend(table(&differing));
+        lines.extend([String::new(), format!("report: {}", folder.report().display())]);
+        printer::lines(lines)?;
+    }
+    for side in &sides {
+        for text in &side.summary.warnings {
+            printer::warning(&format!("{}: {text}", side.name));
+        }
+    }
+    let broken = sides.iter().any(|side| matches!(side.run.outcome, Outcome::Invalid { .. }));
+    Ok(if broken { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// The runs asked for, with a short name for each.
+fn asked(args: &CompareArgs) -> Vec<(String, ScenarioArgs)> {
+    let with = |scenario: &String, more: Option<&String>| ScenarioArgs {
+        scenario: scenario.clone(),
+        set: args.set.iter().chain(more).cloned().collect(),
+        record: args.record.clone(),
+    };
+    let files = args.scenarios.iter().map(|name| (short(name), with(name, None)));
+    let changed = args.scenarios.iter().take(1).flat_map(|first| {
+        args.against.iter().map(|change| (spaced(change), with(first, Some(change))))
+    });
+    files.chain(changed).collect()
+}
+
+/// The name of a file without its folders and its ending.
+fn short(name: &str) -> String {
+    let stem = Path::new(name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    stem.unwrap_or_else(|| name.to_owned())
+}
+
+/// A change as it is read: `stack.levels = 4`.
+fn spaced(change: &str) -> String {
+    change.split_once('=').map_or_else(
+        || change.to_owned(),
+        |(path, value)| format!("{} = {}", path.trim(), value.trim()),
+    )
+}
+
+/// The differences as lines: the input, then its value in each run.
+fn table(differing: &[Difference]) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for one in differing {
+        let values: Vec<&str> =
+            one.values.iter().map(|value| value.as_deref().unwrap_or("–")).collect();
+        lines.push(format!("  {:<44} {}", one.path, values.join("  |  ")));
+    }
+    lines
+}
+
+fn json(sides: &[Side], differing: &[Difference]) -> anyhow::Result<String> {
+    let runs: Vec<serde_json::Value> = sides
+        .iter()
+        .map(|side| serde_json::json!({ "name": side.name, "summary": side.summary }))
+        .collect();
+    let document = serde_json::json!({ "schema": 1, "runs": runs, "differences": differing });
+    Ok(serde_json::to_string_pretty(&document)?)
+}

@@ -1,0 +1,116 @@
+//! `compare`, and `run --verify` with a folder: what is printed and written.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::{barrelstack, names, refused, stderr, stdout};
+use serde_json::Value;
+
+const SHORT: &str = "--set=run.stop_after_collapse=0.1 s";
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+#[test]
+fn two_runs_become_one_page_and_a_few_lines() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("both");
+    let output = barrelstack([
+        "compare",
+        "candia-8-barrels",
+        "--against=interface.rack-ground.friction.coefficient=0.1",
+        SHORT,
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = stdout(&output);
+    assert!(text.contains("interface.rack-ground.friction.coefficient   0.5  |  0.1\n"), "{text}");
+    assert!(text.contains("\nreport: "), "{text}");
+    assert_eq!(names(&out).unwrap(), ["figures", "report.html", "report.md"]);
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("What is different") && page.contains("player several"));
+    // Every figure that the text names is there.
+    let markdown = fs::read_to_string(out.join("report.md")).unwrap();
+    let links: Vec<&str> = markdown.split("](figures/").skip(1).collect();
+    assert!(links.len() > 8, "{markdown}");
+    for link in links {
+        let name = link.split(')').next().unwrap();
+        assert!(out.join("figures").join(name).is_file(), "{name}");
+    }
+    // A second comparison does not replace the first in silence.
+    let again =
+        ["compare", "demo-napa", "--against=stack.levels=4", "--out", out.to_str().unwrap()];
+    refused("occupied", &barrelstack(again), Path::new("/nowhere"), &["--overwrite"]);
+}
+
+#[test]
+fn as_json_a_comparison_is_one_document() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = barrelstack([
+        "compare",
+        "candia-8-barrels",
+        "candia-8-barrels-half-scale",
+        SHORT,
+        "--json",
+        "--out",
+        folder.path().to_str().unwrap(),
+    ]);
+    let document = json(&stdout(&output));
+    assert_eq!(document["runs"].as_array().unwrap().len(), 2);
+    assert_eq!(document["runs"][1]["summary"]["outcome"]["kind"], "collapse");
+    let paths: Vec<&str> = document["differences"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| one["path"].as_str().unwrap())
+        .collect();
+    assert_eq!(paths, ["run.similitude"]);
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused_before_anything_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("none");
+    for (arguments, words) in [
+        (vec!["demo-napa"], ["found 1", "--against PATH=VALUE"]),
+        (vec!["demo-napa", "demo-napa"], ["demo-napa and demo-napa", "the same run"]),
+        (vec!["demo-napa", "--against=stack.levels=5"], ["stack.levels = 5", "the same run"]),
+        (vec!["demo-napa", "demo-nappa"], ["demo-nappa", "did you mean `demo-napa`"]),
+        (vec!["demo-napa", "--against=stack.levles=4"], ["stack.levles", "did you mean `levels`"]),
+    ] {
+        let all = ["compare"].into_iter().chain(arguments).chain(["--out", out.to_str().unwrap()]);
+        refused("not compared", &barrelstack(all), &out, &words);
+        assert!(!out.exists());
+    }
+}
+
+#[test]
+fn a_verified_run_keeps_its_verification_in_summary_and_report() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let output =
+        barrelstack(["run", "candia-8-barrels", SHORT, "--verify", "--json", "--out", out]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let summary = fs::read_to_string(folder.path().join("summary.json")).unwrap();
+    assert_eq!(summary, stdout(&output));
+    let repeats = json(&summary)["verification"]["repeats"].as_array().unwrap().len();
+    assert!(repeats >= 5, "{repeats}");
+    let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(page.contains(">How far to trust this run</h2>"));
+    assert_eq!(page.matches("<td>disturbed by 1\u{a0}nm, ").count(), 4);
+    // Without it there is no such section.
+    let other = tempfile::tempdir().unwrap();
+    barrelstack(["run", "candia-8-barrels", SHORT, "--out", other.path().to_str().unwrap()]);
+    let plain = fs::read_to_string(other.path().join("report.html")).unwrap();
+    assert!(!plain.contains("How far to trust this run"));
+    assert!(
+        json(&fs::read_to_string(other.path().join("summary.json")).unwrap())["verification"]
+            .is_null()
+    );
+}

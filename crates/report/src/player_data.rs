@@ -1,0 +1,152 @@
+//! The page's form of a player: panes with bodies, packed frames and events, and what they share.
+
+use serde_json::{Value, json};
+
+use crate::{
+    ContactForce, History, Player, Players, Polyline, Scene, Trace,
+    pack::{self, POSE_QUANTUM, TIME_QUANTUM},
+    scene::{Extent, window},
+};
+
+/// A single player.
+///
+/// Poses are multiples of 2⁻¹⁴ (m and rad), times of 2⁻²⁰ s, places of forces of 2⁻¹⁰ m and
+/// forces of a power of two at most 2⁻¹² of the largest component.
+pub(crate) fn of_player(player: &Player, id: &str) -> Value {
+    let view = whole_window(&player.scene);
+    let lanes: Vec<Value> = player.scene.ground.iter().map(history).collect();
+    json!({
+        "id": id,
+        "panes": [pane("", &player.scene, &player.traces, &view)],
+        "ground": lanes,
+    })
+}
+
+/// Several panes, all to one scale: every window is as large as the largest, their feet level.
+pub(crate) fn of_players(players: &Players, id: &str) -> Value {
+    let windows: Vec<Extent> = players.panes.iter().map(|p| whole_window(&p.scene)).collect();
+    let most = |size: fn(&Extent) -> f64| windows.iter().map(size).fold(0.0, f64::max);
+    let (width, height) = (most(Extent::width), most(Extent::height));
+    let bottom = windows.iter().map(|w| w.lower[1]).fold(f64::INFINITY, f64::min);
+    let panes: Vec<Value> = players
+        .panes
+        .iter()
+        .zip(&windows)
+        .map(|(one, own)| {
+            let middle = 0.5 * (own.lower[0] + own.upper[0]);
+            let view = Extent {
+                lower: [middle - 0.5 * width, bottom],
+                upper: [middle + 0.5 * width, bottom + height],
+            };
+            pane(&one.mark, &one.scene, &one.traces, &view)
+        })
+        .collect();
+    let lanes: Vec<Value> = players.ground.iter().map(history).collect();
+    json!({ "id": id, "panes": panes, "ground": lanes })
+}
+
+fn whole_window(scene: &Scene) -> Extent {
+    let all: Vec<usize> = (0..scene.frames.len()).collect();
+    window(scene, &all)
+}
+
+fn pane(mark: &str, scene: &Scene, traces: &[Trace], view: &Extent) -> Value {
+    let count = scene.frames.len();
+    let bodies: Vec<Value> = scene
+        .bodies
+        .iter()
+        .map(|body| {
+            json!({
+                "name": body.name,
+                "role": body.role.class(),
+                "outlines": body.outlines.iter().map(polyline).collect::<Vec<_>>(),
+                "marks": body.marks.iter().map(polyline).collect::<Vec<_>>(),
+            })
+        })
+        .collect();
+    let mut channels = Vec::with_capacity(3 * scene.bodies.len());
+    for body in 0..scene.bodies.len() {
+        for component in 0..3 {
+            let value = |f: usize| scene.frames.pose(f, body).map_or(f64::NAN, |p| p[component]);
+            channels.push((0..count).map(value).collect::<Vec<f64>>());
+        }
+    }
+    let times = vec![scene.frames.times[..count].to_vec()];
+    let events: Vec<Value> = scene
+        .events
+        .iter()
+        .filter(|event| event.time.is_finite())
+        .map(|event| {
+            json!({
+                "t": event.time,
+                "body": event.body.filter(|b| *b < scene.bodies.len()),
+                "kind": event.kind.class(),
+                "text": event.text,
+            })
+        })
+        .collect();
+    let traces: Vec<Value> = traces
+        .iter()
+        .filter(|t| t.body < scene.bodies.len() && t.point.iter().all(|v| v.is_finite()))
+        .map(|t| json!({ "body": t.body, "point": t.point, "label": t.label }))
+        .collect();
+    json!({
+        "mark": mark,
+        "bodies": bodies,
+        "times": pack::channels(&times, count, TIME_QUANTUM),
+        "poses": pack::channels(&channels, count, POSE_QUANTUM),
+        "forces": forces(&scene.frames.forces, count),
+        "events": events,
+        "traces": traces,
+        "view": [view.lower[0], view.lower[1], view.upper[0], view.upper[1]],
+    })
+}
+
+fn polyline(line: &Polyline) -> Value {
+    // A tenth of a millimeter, like the poses; it keeps the numbers short.
+    let short = |v: f64| (v * 1e4).round() / 1e4;
+    let finite = line.points.iter().filter(|p| p.iter().all(|v| v.is_finite()));
+    let points: Vec<f64> = finite.flatten().map(|v| short(*v)).collect();
+    json!({ "closed": line.closed, "points": points })
+}
+
+fn history(history: &History) -> Value {
+    let count = history.times.len().min(history.values.len());
+    json!({
+        "label": history.label,
+        "unit": history.unit,
+        "t": pack::column(&history.times[..count], false),
+        "v": pack::column(&history.values[..count], false),
+    })
+}
+
+/// Forces as four channels with a slot for each place in the longest list; absent ones are gaps.
+fn forces(frames: &[Vec<ContactForce>], count: usize) -> Value {
+    let frames = &frames[..frames.len().min(count)];
+    let slots = frames.iter().map(Vec::len).max().unwrap_or(0);
+    if slots == 0 {
+        return Value::Null;
+    }
+    let pick = |value: fn(&ContactForce) -> f64| -> Vec<Vec<f64>> {
+        (0..slots)
+            .map(|slot| {
+                let at = |f: usize| {
+                    let force = frames.get(f).and_then(|list| list.get(slot));
+                    force.filter(|f| f.fx != 0.0 || f.fz != 0.0).map_or(f64::NAN, value)
+                };
+                (0..count).map(at).collect()
+            })
+            .collect()
+    };
+    let finite = frames.iter().flatten().flat_map(|f| [f.fx.abs(), f.fz.abs()]);
+    let peak = finite.filter(|v| v.is_finite()).fold(0.0, f64::max);
+    let quantum = pack::quantum_for(&[0.0, peak]) * 16.0;
+    let place = 1.0 / 1024.0;
+    json!({
+        "slots": slots,
+        "x": pack::channels(&pick(|f| f.x), count, place),
+        "z": pack::channels(&pick(|f| f.z), count, place),
+        "fx": pack::channels(&pick(|f| f.fx), count, quantum),
+        "fz": pack::channels(&pick(|f| f.fz), count, quantum),
+    })
+}

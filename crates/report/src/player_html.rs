@@ -1,0 +1,125 @@
+//! Players as markup: stages, controls, the pictures on paper, and the list of events.
+
+use crate::{
+    Event, FigureKind, Pane, Player, Players, escape,
+    html::{Writer, sign},
+    number, player_data,
+};
+
+/// Events shown without unfolding.
+const OPEN_EVENTS: usize = 4;
+
+/// Controls, with a place for the stages.
+const CONTROLS: &str = include_str!("../assets/player.html");
+
+/// Where the drawing of one scene comes.
+const STAGE: &str = include_str!("../assets/stage.html");
+
+impl Writer<'_> {
+    pub(crate) fn player(&mut self, player: &Player) {
+        let id = self.names.take(&player.id);
+        let place = self.payload.players.len();
+        self.payload.players.push(player_data::of_player(player, &id));
+        self.put(&format!(
+            "<figure class=\"player\" id=\"figure-{id}\" data-player=\"{place}\">\n"
+        ));
+        self.put(&CONTROLS.replace("{stages}", STAGE));
+        self.put("<div class=\"paper\">\n");
+        if let FigureKind::Strip(strip) = player.paper_figure(&self.document.blocks).kind {
+            self.strip(&strip, &id);
+        }
+        self.put("</div>\n");
+        self.caption(&player.caption);
+        let events: Vec<(&str, &Event)> =
+            player.scene.events.iter().map(|event| ("", event)).collect();
+        self.events(events);
+        self.put("</figure>\n");
+    }
+
+    pub(crate) fn players(&mut self, players: &Players) {
+        let id = self.names.take(&players.id);
+        let place = self.payload.players.len();
+        self.payload.players.push(player_data::of_players(players, &id));
+        self.put(&format!(
+            "<figure class=\"player several\" id=\"figure-{id}\" data-player=\"{place}\">\n"
+        ));
+        let mut stages = String::from("<div class=\"panes\">\n");
+        for pane in &players.panes {
+            stages.push_str("<section class=\"pane\">\n");
+            stages.push_str(&pane_head(pane));
+            stages.push_str(STAGE);
+            stages.push_str("</section>\n");
+        }
+        stages.push_str("</div>\n");
+        self.put(&CONTROLS.replace("{stages}", &stages));
+        self.put("<div class=\"paper\">\n");
+        for (pane, figure) in players.panes.iter().zip(players.paper_figures()) {
+            self.put(&pane_head(pane));
+            let name = self.names.take(&figure.id);
+            if let FigureKind::Strip(strip) = figure.kind {
+                self.strip(&strip, &name);
+            }
+        }
+        self.put("</div>\n");
+        self.caption(&players.caption);
+        let mut events: Vec<(&str, &Event)> = players
+            .panes
+            .iter()
+            .flat_map(|pane| pane.scene.events.iter().map(|event| (pane.mark.as_str(), event)))
+            .collect();
+        events.sort_by(|a, b| a.1.time.total_cmp(&b.1.time));
+        self.events(events);
+        self.put("</figure>\n");
+    }
+
+    /// Events with the mark of their pane; an empty one where there is only one.
+    fn events(&mut self, mut events: Vec<(&str, &Event)>) {
+        events.retain(|(_, event)| event.time.is_finite());
+        if events.is_empty() {
+            return;
+        }
+        // A fold that hides a single line would cost that line.
+        let open = if events.len() > OPEN_EVENTS + 1 { OPEN_EVENTS } else { events.len() };
+        let (first, rest) = events.split_at(open);
+        self.event_list(first);
+        if !rest.is_empty() {
+            self.put(&format!(
+                "<details class=\"more\">\n<summary>{} more events</summary>\n",
+                rest.len()
+            ));
+            self.event_list(rest);
+            self.put("</details>\n");
+        }
+    }
+
+    fn event_list(&mut self, events: &[(&str, &Event)]) {
+        self.put("<ol class=\"events\" aria-label=\"Events\">\n");
+        for (pane, event) in events {
+            self.put(&format!(
+                "<li><button type=\"button\" data-time=\"{}\"><i class=\"event {}\" aria-hidden=\"true\"></i><span class=\"when\">{}\u{a0}s</span><span class=\"what\">{}</span>",
+                event.time,
+                event.kind.class(),
+                number::fixed(event.time, 2),
+                escape::html(event.kind.word())
+            ));
+            self.put("<span class=\"text\">");
+            if !pane.is_empty() {
+                self.put(&format!("<b class=\"mark\">{}</b> ", escape::html(pane)));
+            }
+            self.element("", &event.text, "</span></button></li>");
+        }
+        self.put("</ol>\n");
+    }
+}
+
+/// The name and the verdict above a pane.
+fn pane_head(pane: &Pane) -> String {
+    format!(
+        "<div class=\"pane-head {}\">{}<p><b><span class=\"mark\">{}</span> {}</b> <span>{}</span></p></div>\n",
+        pane.tone.class(),
+        sign(pane.tone),
+        escape::html(&pane.mark),
+        escape::html(&number::tied(&pane.name)),
+        escape::html(&number::tied(&pane.verdict))
+    )
+}
