@@ -154,13 +154,12 @@ fn losses_count_barrels_and_burst_them_by_the_height_of_their_fall() {
 #[test]
 fn a_hazard_curve_gives_annual_rates_that_agree_with_the_closed_form() {
     // λ = 10⁻³ (x/0.5)⁻² from 1 cm/s to 50 m/s.
-    let rows: String = (0..=40)
-        .map(|i| (100.0_f64.ln() * -1.0) + 0.2 * f64::from(i))
-        .map(|u| {
-            let x = u.exp();
-            format!("{},{}\n", 100.0 * x, 1e-3 * (x / 0.5).powi(-2))
-        })
-        .collect();
+    let mut rows = String::new();
+    for i in 0..=40 {
+        let x = (0.2 * f64::from(i) - 100.0_f64.ln()).exp();
+        rows += &[100.0 * x, 1e-3 * (x / 0.5).powi(-2)].map(|v| v.to_string()).join(",");
+        rows += "\n";
+    }
     let hazard =
         SiteHazard::parse("site.csv", &format!("pgv (cm/s),rate (1/year)\n{rows}")).unwrap();
     let request = Request { hazard: Some(hazard), years: Some(50.0) };

@@ -1,4 +1,6 @@
 //! Cases in lanes come to the same bits as alone.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
+#![expect(clippy::print_stdout, reason = "what was compared, and in which lanes")]
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -11,7 +13,7 @@ use barrelstack_dynamics::lanes::Width;
 /// How many random cases: all of them with optimization, a share of them without.
 const CASES: u64 = if cfg!(debug_assertions) { 64 } else { 1000 };
 
-/// Numbers between 0 and 1, the same on every machine (SplitMix64).
+/// Numbers between 0 and 1, the same on every machine (`SplitMix64`).
 struct Random(u64);
 
 impl Random {
@@ -20,7 +22,7 @@ impl Random {
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        (z ^ (z >> 31)) as f64 / 18_446_744_073_709_551_616.0
+        (z ^ (z >> 31)) as f64 / 2.0_f64.powi(64)
     }
 
     fn between(&mut self, low: f64, high: f64) -> f64 {
@@ -103,7 +105,7 @@ fn a_case_of_an_ensemble_is_a_run() {
 fn what_stands_beside_a_case_changes_nothing_about_it() {
     let cases: Vec<Prepared> = (0..24).map(|seed| prepared(random_case(seed))).collect();
     let all = results(Width::widest(), &cases);
-    let mut reversed: Vec<Prepared> = cases.clone();
+    let mut reversed = cases;
     reversed.reverse();
     let mut again = results(Width::widest(), &reversed);
     again.reverse();

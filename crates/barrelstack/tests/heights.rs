@@ -23,7 +23,7 @@ fn every_height_direction_motion_and_level_is_a_run() {
     assert!(matches!(result, Err(HeightsError::Study(StudyError::Stopped))), "{result:?}");
     // Two components of the bundled record and three synthetic motions; the record unscaled beside them.
     let stacks = HEIGHTS.len() * View::ALL.len();
-    assert_eq!(runs as usize, stacks * (VELOCITIES.len() * 5 + 2));
+    assert_eq!(usize::try_from(runs).unwrap(), stacks * (VELOCITIES.len() * 5 + 2));
 }
 
 #[test]

@@ -45,18 +45,18 @@ fn a_study_ends_with_a_page_and_report_adds_what_it_means_at_a_site() {
     let (study, out, hazard) = (at("two.toml"), at("out"), at("site.csv"));
     fs::write(&study, STUDY).unwrap();
     fs::write(&hazard, "pgv (cm/s),rate (1/year)\n5,0.1\n50,0.005\n200,0.0001\n").unwrap();
-    let said = stdout(&barrelstack(&["study", &study, "--out", &out]));
+    let said = stdout(&barrelstack(["study", &study, "--out", &out]));
     assert!(said.contains("page: "), "{said}");
     for file in ["index.html", "index.md", "decision.json", "figures"] {
         assert!(folder.path().join("out").join(file).exists(), "{file}");
     }
     let before = fs::read(folder.path().join("out/index.html")).unwrap();
-    let again = barrelstack(&["study", "report", &out]);
+    let again = barrelstack(["study", "report", &out]);
     assert!(again.status.success(), "{}", stderr(&again));
     assert_eq!(fs::read(folder.path().join("out/index.html")).unwrap(), before);
 
     let json =
-        barrelstack(&["study", "report", &out, "--hazard", &hazard, "--years", "30", "--json"]);
+        barrelstack(["study", "report", &out, "--hazard", &hazard, "--years", "30", "--json"]);
     let found: serde_json::Value = serde_json::from_str(&stdout(&json)).unwrap();
     assert_eq!(found["cases"], 12);
     assert_eq!(found["fragility"][0]["limit_state"], "collapse");

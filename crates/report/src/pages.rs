@@ -8,7 +8,7 @@ use crate::{
     font::Font,
     number,
     pdf::{Page, pdf},
-    sheet::{Sheet, row_height, wrap},
+    sheet::{Sheet, baseline, row_height, wrap},
     style::{Style, Tag},
 };
 
@@ -238,12 +238,11 @@ impl<'a> Flow<'a> {
             Block::Table(_) => 66.0,
             Block::Heading { .. } => 24.0 + self.least(rest),
             Block::Details { blocks, .. } => 24.0 + self.least(blocks),
-            Block::List(_) => 28.0,
             // A paragraph in front of a figure leads over to it.
             Block::Paragraph(_) if matches!(rest.first(), Some(Block::Figure(_))) => {
                 40.0 + self.least(rest)
             }
-            Block::Paragraph(_) => 28.0,
+            Block::Paragraph(_) | Block::List(_) => 28.0,
         };
         least.min(0.8 * (self.floor() - MARGIN[1]))
     }
@@ -337,7 +336,7 @@ impl<'a> Flow<'a> {
         for (column, lines) in cells.iter().enumerate() {
             let (x, anchor) = sheet.place(column);
             for (line, text) in lines.iter().enumerate() {
-                let at = [MARGIN[0] + x, top + sheet.baseline(line)];
+                let at = [MARGIN[0] + x, top + baseline(line)];
                 self.page().drawing.text(class, at, anchor, text);
             }
         }

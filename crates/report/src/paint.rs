@@ -87,7 +87,9 @@ impl<'d> Walk<'d, '_> {
     }
 
     fn items(&mut self, items: &'d [Item], place: &Place) {
-        items.iter().for_each(|item| self.item(item, place));
+        for item in items {
+            self.item(item, place);
+        }
     }
 
     fn item(&mut self, item: &'d Item, place: &Place) {
@@ -139,7 +141,9 @@ impl<'d> Walk<'d, '_> {
             Item::Scene { scale, origin, bodies } => {
                 let world =
                     Place { origin: place.at(*origin), scale: place.scale * scale, ..*place };
-                bodies.iter().for_each(|placed| self.placed(placed, &world));
+                for placed in bodies {
+                    self.placed(placed, &world);
+                }
             }
         }
     }

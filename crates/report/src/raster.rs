@@ -54,9 +54,10 @@ pub(crate) fn rasterize(drawing: &Drawing, scale: f64) -> Pixmap {
     // Both sides are between 1 and LARGEST, so there is a picture of that size.
     let mut pixels = Pixmap::new(width, height).expect("a picture of this size");
     pixels.fill(Color::WHITE);
-    let mut painter = Pixels { pixels, mask: None, clips: Vec::new(), glyphs: HashMap::new() };
+    let mut painter =
+        Pixels { canvas: pixels, mask: None, clips: Vec::new(), glyphs: HashMap::new() };
     paint(drawing, scale, &mut painter);
-    painter.pixels
+    painter.canvas
 }
 
 #[expect(
@@ -75,7 +76,7 @@ fn short(value: f64) -> f32 {
 }
 
 struct Pixels {
-    pixels: Pixmap,
+    canvas: Pixmap,
     /// What may be painted; None where everything may.
     mask: Option<Mask>,
     /// Lower and upper corners of the rectangles in force, each within the one before.
@@ -88,7 +89,7 @@ impl Pixels {
         if let Some(ink) = style.fill {
             let rule = FillRule::Winding;
             let mask = self.mask.as_ref();
-            self.pixels.fill_path(path, &solid(ink), rule, Transform::identity(), mask);
+            self.canvas.fill_path(path, &solid(ink), rule, Transform::identity(), mask);
         }
         if let (Some(ink), true) = (style.stroke, style.stroke_width > 0.0) {
             let stroke = Stroke {
@@ -99,13 +100,13 @@ impl Pixels {
                 ..Stroke::default()
             };
             let mask = self.mask.as_ref();
-            self.pixels.stroke_path(path, &solid(ink), &stroke, Transform::identity(), mask);
+            self.canvas.stroke_path(path, &solid(ink), &stroke, Transform::identity(), mask);
         }
     }
 
     /// Makes the mask anew from the rectangles in force.
     fn remask(&mut self) {
-        let (width, height) = (self.pixels.width(), self.pixels.height());
+        let (width, height) = (self.canvas.width(), self.canvas.height());
         self.mask = self.clips.last().and_then(|&[left, top, right, bottom]| {
             let all = left <= 0.0
                 && top <= 0.0
@@ -180,7 +181,7 @@ impl Painter for Pixels {
                     .post_concat(turn)
                     .post_translate(short(word.at[0]), short(word.at[1]));
                 let mask = self.mask.as_ref();
-                self.pixels.fill_path(path, &paint, FillRule::Winding, place, mask);
+                self.canvas.fill_path(path, &paint, FillRule::Winding, place, mask);
             }
             pen += width * word.size;
         }

@@ -74,11 +74,11 @@ impl Sheet {
             (left, Anchor::Start)
         }
     }
+}
 
-    /// Where a line of a row stands, from the row's top (points).
-    pub(crate) fn baseline(&self, line: usize) -> f64 {
-        0.5 * AIR + 8.5 + LEADING * line as f64
-    }
+/// Where a line of a row stands, from the row's top (points).
+pub(crate) fn baseline(line: usize) -> f64 {
+    0.5 * AIR + 8.5 + LEADING * line as f64
 }
 
 /// Height of a row (points).

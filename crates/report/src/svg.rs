@@ -40,7 +40,9 @@ impl Drawing {
 
 fn markup(items: &[Item]) -> String {
     let mut writer = Writer(String::new());
-    items.iter().for_each(|item| writer.item(item));
+    for item in items {
+        writer.item(item);
+    }
     writer.0
 }
 
@@ -74,7 +76,9 @@ impl Writer {
                 self.put(format_args!(r#"<defs><clipPath id="{id}">"#));
                 self.rect("", *lower, *size);
                 self.put(format_args!(r#"</clipPath></defs><g clip-path="url(#{id})">"#));
-                items.iter().for_each(|item| self.item(item));
+                for item in items {
+                    self.item(item);
+                }
                 self.put(format_args!("</g>"));
             }
             Item::Nested { at, scale, drawing } => self.nested(*at, *scale, drawing),
@@ -143,7 +147,9 @@ impl Writer {
         self.put(format_args!(
             r#"<svg x="{x}" y="{y}" width="{wide}" height="{high}" viewBox="0 0 {w} {h}">"#
         ));
-        drawing.items.iter().for_each(|item| self.item(item));
+        for item in &drawing.items {
+            self.item(item);
+        }
         self.put(format_args!("</svg>"));
     }
 
@@ -151,7 +157,9 @@ impl Writer {
         self.put(format_args!("<defs>"));
         for body in bodies {
             self.put(format_args!(r#"<g id="{}">"#, body.id));
-            body.items.iter().for_each(|item| self.item(item));
+            for item in &body.items {
+                self.item(item);
+            }
             self.put(format_args!("</g>"));
         }
         self.put(format_args!("</defs>"));
