@@ -22,8 +22,6 @@ columns = 2
 [base.run]
 duration = \"0.4 s\"
 stop_after_collapse = \"0.01 s\"
-[base.interface.barrel-rack.normal]
-stiffness = \"2 kN/cm\"
 ";
 
 /// A pulse that fells the stack of [`BASE`] when it is strong.

@@ -143,7 +143,7 @@ fn read(opened: &Opened, stem: &str, folder: &Path) -> Result<Study, StudyError>
     let cases = study.cases();
     if cases > MOST_CASES {
         let message = format!(
-            "the study has {cases} cases, more than {MOST_CASES}: take fewer values, or a sampled design"
+            "the study has more than {MOST_CASES} cases: take fewer values, or a sampled design"
         );
         return Err(opened
             .sources

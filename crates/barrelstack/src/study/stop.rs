@@ -84,15 +84,15 @@ mod tests {
 
     #[test]
     fn the_interval_is_that_of_wilson() {
-        // statsmodels.stats.proportion.proportion_confint(method="wilson").
+        // scipy.stats.binomtest(hits, of).proportion_ci(0.95, "wilson").
         let cases = [
-            (0, 10, [0.0, 0.277_532_799_862_889]),
-            (10, 20, [0.299_298_021_714_419, 0.700_701_978_285_581]),
-            (3, 4, [0.300_641_842_582_402, 0.954_412_739_190_281]),
+            (0, 10, [0.0, 0.277_532_799_862_889_26]),
+            (10, 20, [0.299_298_008_198_212_4, 0.700_701_991_801_787_6]),
+            (3, 4, [0.300_641_842_582_401_84, 0.954_412_739_190_299_5]),
         ];
         for (hits, of, [low, high]) in cases {
             let (_, interval) = wilson(hits, of).unwrap();
-            // Measured: 5e-14.
+            // Measured: 2e-16.
             assert!(
                 (interval[0] - low).abs() < 1e-12 && (interval[1] - high).abs() < 1e-12,
                 "{interval:?}"

@@ -184,7 +184,8 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     drop(live);
     if damaged > 0 {
         printer::warning(&format!(
-            "{damaged} damaged shards were found in {}; they were set aside there with the ending .damaged and made anew",
+            "{} found in {}: set aside there with the ending .damaged, and made anew",
+            answer::counted(damaged as u64, "damaged shard"),
             out.join("shards").display()
         ));
     }
@@ -224,11 +225,11 @@ fn plan(args: &PlanArgs) -> anyhow::Result<()> {
     let mut lines = vec![
         study.title.clone(),
         format!(
-            "  {} design, {most}{} cases in {} chunks, {} motions",
+            "  {} design, {most}{} in {}, {}",
             study.design.name(),
-            study.cases(),
-            study.chunk_count(),
-            study.motions()
+            answer::counted(study.cases(), "case"),
+            answer::counted(study.chunk_count() as u64, "chunk"),
+            answer::counted(study.motions() as u64, "motion")
         ),
         String::new(),
         format!("  {:>8}  {unit:>8}  {:>10}  {:>10}", "chunk", "first", "last"),

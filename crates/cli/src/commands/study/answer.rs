@@ -5,6 +5,11 @@ use std::path::Path;
 use barrelstack::study::{Collected, Status, StudyTable, Tally};
 use serde_json::{Value, json};
 
+/// A number of things, such as "1 case" and "2 cases".
+pub(super) fn counted(count: u64, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
 /// A probability with its interval, in percent.
 fn percent((p, [low, high]): (f64, [f64; 2])) -> String {
     format!("{:.1} % ({:.1} to {:.1} %)", 100.0 * p, 100.0 * low, 100.0 * high)
@@ -55,7 +60,7 @@ pub(super) fn lines(collected: &Collected, folder: &Path) -> Vec<String> {
             provenance.chunks_done, provenance.chunks
         )
     };
-    lines.push(format!("  {} cases{state}", tally.cases));
+    lines.push(format!("  {}{state}", counted(tally.cases, "case")));
     if let Some(collapse) = tally.collapse() {
         lines.push(format!(
             "  {} of {} collapse: {}",
@@ -72,7 +77,8 @@ pub(super) fn lines(collected: &Collected, folder: &Path) -> Vec<String> {
     let other = tally.cases - tally.judged;
     if other > 0 {
         lines.push(format!(
-            "  {other} cases have no verdict; the column `error` says why, most often:"
+            "  {} without a verdict; the column `error` says why, most often:",
+            counted(other, "case")
         ));
         lines.extend(
             counts(table, "error")
