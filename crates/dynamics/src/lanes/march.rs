@@ -62,7 +62,7 @@ pub trait Crew<'a, R: Real> {
 /// Runs all cases of a crew, as many side by side as a bundle has lanes.
 ///
 /// A lane gets the next case as soon as its own has ended.
-/// Every case takes the same steps to the same bits as [`simulate`](crate::simulate) takes alone:
+/// Every case takes the same steps to the same bits as [`simulate`](crate::simulate()) takes alone:
 /// lanes share nothing but the list of contact elements, which is a matter of speed, and the order
 /// of work.
 /// Only methods of a fixed step march.
