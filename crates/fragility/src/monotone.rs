@@ -132,13 +132,17 @@ pub fn monotony(
     Monotony { stripes: sorted, isotonic: chances, deviance: observed, p, falls }
 }
 
-/// The pair of stripes, the first of the lower intensity, whose fractions fall most.
+/// The pair of stripes, the first of the lower intensity, whose fractions fall most; of several, the
+/// one nearest to each other.
 fn steepest(stripes: &[Stripe]) -> Option<(Stripe, Stripe)> {
     let mut found: Option<(f64, Stripe, Stripe)> = None;
     for (i, from) in stripes.iter().enumerate() {
         for to in &stripes[i + 1..] {
             let drop = from.fraction() - to.fraction();
-            if drop > 0.0 && found.is_none_or(|(most, ..)| drop > most) {
+            let more = |(most, earlier, _): (f64, Stripe, Stripe)| {
+                drop > most || (drop == most && from.intensity > earlier.intensity)
+            };
+            if drop > 0.0 && found.is_none_or(more) {
                 found = Some((drop, *from, *to));
             }
         }

@@ -55,7 +55,11 @@ impl Measure {
 
     /// An intensity with its unit, in three digits.
     pub fn words(&self, intensity: f64) -> String {
-        let number = barrelstack_report::significant(self.shown(intensity), 3);
+        let shown = self.shown(intensity);
+        // A level as it was asked for: 50 and not 50.0, though 100 × 0.36 is not quite 36.
+        let whole = shown >= 10.0 && (shown - shown.round()).abs() < 1e-9 * shown;
+        let number =
+            if whole { format!("{shown:.0}") } else { barrelstack_report::significant(shown, 3) };
         if self.shown_unit.is_empty() { number } else { format!("{number} {}", self.shown_unit) }
     }
 }

@@ -8,7 +8,7 @@ use super::curve::{BandKind, LEVEL, LimitCurve};
 use super::hazard::Site;
 use super::loss::{Breakage, WINE};
 use super::measures::MeasureRow;
-use super::words::{self, capital, percent};
+use super::words::{self, capital, count, percent};
 use super::{Decision, figures};
 use crate::study::Provenance;
 
@@ -115,8 +115,8 @@ pub(super) fn raw(curve: &LimitCurve, measure: &Measure) -> Table {
         });
         table.rows.push(vec![
             Cell::Number(measure.shown(stripe.intensity), 3),
-            Cell::Number(f64::from(stripe.cases), 6),
-            Cell::Number(f64::from(stripe.failures), 6),
+            count(stripe.cases),
+            count(stripe.failures),
             Cell::text(format!("{:.2}", stripe.fraction())),
             range(wilson.low, wilson.high),
             range(exact.low, exact.high),
@@ -240,7 +240,7 @@ fn losses(decision: &Decision) -> Table {
         let [few, central, many] = loss.burst;
         table.rows.push(vec![
             Cell::Number(measure.shown(loss.intensity), 3),
-            Cell::Number(loss.cases as f64, 6),
+            count(loss.cases as f64),
             Cell::Number(loss.fallen, 2),
             if loss.fallen_error.is_finite() {
                 Cell::Number(1.96 * loss.fallen_error, 2)
@@ -298,7 +298,7 @@ fn at_site(site: &Site, measure: &Measure) -> Vec<Block> {
             ("95 % interval", "1/year"),
             ("annual rate (raw fractions)", "1/year"),
             ("once in", "years"),
-            (&format!("chance in {} years", significant(site.years, 3)), ""),
+            (&format!("chance in {} years", site.years), ""),
         ],
     );
     for limit in &site.limits {
@@ -352,15 +352,15 @@ fn effects(decision: &Decision) -> Table {
             ("95 % interval", ""),
         ],
     );
-    let count = decision.effects.len();
+    let rows = decision.effects.len();
     for (row, effect) in decision.effects.iter().enumerate() {
         for (at, group) in effect.groups.iter().enumerate() {
             let first = |text: String| Cell::text(if at == 0 { text } else { String::new() });
             table.rows.push(vec![
-                first((count - row).to_string()),
+                first((rows - row).to_string()),
                 first(effect.factor.clone()),
                 Cell::text(&group.label),
-                Cell::Number(f64::from(group.cases), 6),
+                count(group.cases),
                 Cell::text(percent(group.share())),
                 Cell::text(format!(
                     "{} to {}",
@@ -429,8 +429,8 @@ fn motions(decision: &Decision, made: &Provenance) -> Table {
         table.rows.push(vec![
             Cell::text(name),
             source.map_or(Cell::Missing, |motion| Cell::text(&motion.source)),
-            Cell::Number(of().count() as f64, 6),
-            Cell::Number(of().filter(|case| case.collapsed).count() as f64, 6),
+            count(of().count() as f64),
+            count(of().filter(|case| case.collapsed).count() as f64),
         ]);
     }
     table

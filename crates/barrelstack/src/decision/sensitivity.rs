@@ -96,7 +96,9 @@ fn groups(seen: &[(Option<Value>, &Case)], unit: &str) -> Vec<Group> {
         })
         .collect();
     let with_unit = |text: String| if unit.is_empty() { text } else { format!("{text} {unit}") };
-    let short = |x: f64| barrelstack_report::significant(x, 3);
+    let short = |x: f64| {
+        if x.fract() == 0.0 { format!("{x}") } else { barrelstack_report::significant(x, 3) }
+    };
     let Some(mut numbers) = numbers else {
         let mut by_text: BTreeMap<String, Vec<&Case>> = BTreeMap::new();
         for (value, case) in seen {

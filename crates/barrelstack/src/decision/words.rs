@@ -1,6 +1,6 @@
 //! What the page says in words: verdict and warnings.
 
-use barrelstack_report::significant;
+use barrelstack_report::{Cell, significant};
 
 use super::Decision;
 use super::cases::Cases;
@@ -20,6 +20,13 @@ pub(crate) fn percent(share: f64) -> String {
         v if v < 10.0 => format!("{} %", significant(v, 2)),
         v => format!("{} %", significant(v.round(), 3)),
     }
+}
+
+/// A count as a cell: all of its digits and no others.
+pub(super) fn count(count: impl Into<f64>) -> Cell {
+    let count: f64 = count.into();
+    let digits = format!("{count:.0}").len();
+    Cell::Number(count, digits)
 }
 
 /// Once in how many years.
@@ -104,7 +111,7 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
             site.hazard.file,
             period(annual),
             percent(rate.chance),
-            significant(site.years, 3),
+            site.years,
             significant(site.fallen.low, 2)
         ));
     }

@@ -66,7 +66,7 @@ fn felt(velocity: f64) -> &'static str {
 }
 
 fn shaking(velocity: f64) -> String {
-    format!("{} cm/s", significant(100.0 * velocity, 3))
+    format!("{:.0} cm/s", 100.0 * velocity)
 }
 
 /// Counts of a height at a level of shaking in the direction in which more stacks collapse.
