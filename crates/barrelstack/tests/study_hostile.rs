@@ -31,7 +31,7 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
     (
         1,
         "[base]\nextends = \"candia-9-barrels\" # HERE\n",
-        &["no \"candia-9-barrels\"", "did you mean `candia-8-barrels`"],
+        &["no \"candia-9-barrels\"", "did you mean `candia-6-barrels`"],
     ),
     (
         1,

@@ -44,7 +44,7 @@ pub(super) fn headline(decision: &Decision) -> String {
     let measure = cases.measure();
     let collapsed = cases.all.iter().filter(|case| case.collapsed).count();
     match &curve.fit {
-        Ok(_) if fit_is_doubtful(curve) => format!(
+        _ if fit_is_doubtful(curve) => format!(
             "{collapsed} of {} cases collapse, and collapse does not simply grow with {}: read the raw fractions.",
             cases.all.len(),
             measure.label

@@ -25,8 +25,6 @@ pub use topology::Topology;
 pub enum Width {
     /// One number after the other.
     Scalar,
-    /// What every processor of the kind can do: SSE2 on x86-64.
-    Baseline,
     /// AVX2.
     Avx2,
     /// AVX-512 of the kind that Ice Lake brought.
@@ -43,7 +41,7 @@ pub trait Task {
 
 impl Width {
     /// All of them, the narrowest first.
-    pub const ALL: [Self; 4] = [Self::Scalar, Self::Baseline, Self::Avx2, Self::Avx512];
+    pub const ALL: [Self; 3] = [Self::Scalar, Self::Avx2, Self::Avx512];
 
     /// The widest that this machine has.
     pub fn widest() -> Self {
@@ -54,7 +52,6 @@ impl Width {
     pub fn is_here(self) -> bool {
         match self {
             Self::Scalar => true,
-            Self::Baseline => cfg!(target_arch = "x86_64"),
             Self::Avx2 => units::has_avx2(),
             Self::Avx512 => units::has_avx512(),
         }
@@ -64,7 +61,6 @@ impl Width {
     pub fn name(self) -> &'static str {
         match self {
             Self::Scalar => "scalar",
-            Self::Baseline => "baseline",
             Self::Avx2 => "avx2",
             Self::Avx512 => "avx512",
         }
@@ -77,7 +73,7 @@ impl Width {
         }
         match self {
             Self::Scalar => Some(task.run::<f64>()),
-            Self::Baseline | Self::Avx2 | Self::Avx512 => units::run(self, task),
+            Self::Avx2 | Self::Avx512 => units::run(self, task),
         }
     }
 }
@@ -90,15 +86,11 @@ impl Width {
 #[cfg(target_arch = "x86_64")]
 #[expect(unsafe_code, reason = "tokens as constants; every way to them asks the machine first")]
 mod units {
-    use fearless_simd::{Avx2, Avx512, Level, Sse2};
+    use fearless_simd::{Avx2, Avx512, Level};
 
     use super::bundle::{Bundle, Unit};
     use super::{Task, Width};
 
-    impl Unit for Sse2 {
-        // SAFETY: every x86-64 processor has SSE2.
-        const TOKEN: Self = unsafe { Self::assume_supported() };
-    }
     impl Unit for Avx2 {
         // SAFETY: `run` is the only user, and asks `has_avx2` first.
         const TOKEN: Self = unsafe { Self::assume_supported() };
@@ -119,7 +111,6 @@ mod units {
     pub(super) fn run<T: Task>(width: Width, task: T) -> Option<T::Output> {
         match width {
             Width::Scalar => Some(task.run::<f64>()),
-            Width::Baseline => Some(task.run::<Bundle<Sse2>>()),
             Width::Avx2 => has_avx2().then(|| task.run::<Bundle<Avx2>>()),
             Width::Avx512 => has_avx512().then(|| task.run::<Bundle<Avx512>>()),
         }
