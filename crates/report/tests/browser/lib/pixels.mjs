@@ -11,7 +11,7 @@ export async function prepare(page) {
     const load = async (url) => createImageBitmap(await (await fetch(url)).blob());
     const canvasOf = (width, height) => new OffscreenCanvas(Math.max(1, Math.round(width)), Math.max(1, Math.round(height)));
     const urlOf = async (canvas, type) => {
-      const bytes = new Uint8Array(await (await canvas.convertToBlob({ type, quality: 0.8 })).arrayBuffer());
+      const bytes = new Uint8Array(await (await canvas.convertToBlob({ type, quality: 0.92 })).arrayBuffer());
       let text = "";
       for (let k = 0; k < bytes.length; k += 8192) text += String.fromCharCode(...bytes.subarray(k, k + 8192));
       return btoa(text);
@@ -40,7 +40,7 @@ export async function prepare(page) {
       return context.getImageData(0, 0, soft.width, soft.height).data;
     };
 
-    window.compare = async (newUrl, keptUrl, scale, pairs, step) => {
+    window.compare = async (newUrl, keptUrl, scale, pairs, step, grain) => {
       const [now, kept] = [await load(newUrl), await load(keptUrl)];
       const shares = [];
       for (const { was, is } of pairs) {
@@ -64,7 +64,7 @@ export async function prepare(page) {
             const most = Math.max(Math.abs(a[k] - b[k]), Math.abs(a[k + 1] - b[k + 1]), Math.abs(a[k + 2] - b[k + 2]));
             if (most > 255 * step) changed += 1;
           }
-          least = Math.min(least, changed / (a.length / 4));
+          least = Math.min(least, Math.max(0, changed - grain) / (a.length / 4));
           if (least < 0.002) break;
         }
         shares.push(least);
