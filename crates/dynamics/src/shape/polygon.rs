@@ -28,12 +28,15 @@ pub struct Polygon<R = f64> {
 struct Side<R> {
     /// Where it starts (m).
     start: Vec2<R>,
+    /// Its middle (m). Distances are measured from here and not from an end, since the other end is
+    /// the start in the mirror: so a mirrored polygon rounds as this one does.
+    middle: Vec2<R>,
     /// Unit vector along it.
     along: Vec2<R>,
     /// Unit vector out of the polygon.
     outward: Vec2<R>,
-    /// Its length (m).
-    length: R,
+    /// Half its length (m).
+    half_length: R,
 }
 
 /// Why corners do not make a convex polygon.
@@ -85,14 +88,15 @@ impl<R: Real> Polygon<R> {
         let mut nearest_squared = R::splat(f64::INFINITY);
         let mut nearest = Vec2::new(zero, zero);
         for side in &self.sides {
-            let offset = point - side.start;
+            let offset = point - side.middle;
             let height = offset.dot(side.outward);
             let higher = deepest.lt(height);
             deepest = R::select(higher, height, deepest);
             deepest_normal = Vec2::select(higher, side.outward, deepest_normal);
 
-            let reached = offset.dot(side.along).max(zero).min(side.length);
-            let apart = offset - side.along * reached;
+            // Beside the side its start is a candidate; its end is the start of the next one.
+            let above = offset.dot(side.along).abs().le(side.half_length);
+            let apart = Vec2::select(above, side.outward * height, point - side.start);
             let apart_squared = apart.dot(apart);
             let closer = apart_squared.lt(nearest_squared);
             nearest_squared = R::select(closer, apart_squared, nearest_squared);
@@ -111,7 +115,7 @@ impl<R: Real> Polygon<R> {
     pub(super) fn may_touch(&self, point: Vec2<R>) -> R::Mask {
         let mut highest = R::splat(f64::NEG_INFINITY);
         for side in &self.sides {
-            highest = highest.max((point - side.start).dot(side.outward));
+            highest = highest.max((point - side.middle).dot(side.outward));
         }
         highest.lt(self.corner_radius)
     }
@@ -142,16 +146,18 @@ impl<R: Real> Lanewise for Side<R> {
     fn in_all(single: &Side<f64>) -> Self {
         Self {
             start: Lanewise::in_all(&single.start),
+            middle: Lanewise::in_all(&single.middle),
             along: Lanewise::in_all(&single.along),
             outward: Lanewise::in_all(&single.outward),
-            length: Lanewise::in_all(&single.length),
+            half_length: Lanewise::in_all(&single.half_length),
         }
     }
     fn put(&mut self, lane: usize, single: &Side<f64>) {
         self.start.put(lane, &single.start);
+        self.middle.put(lane, &single.middle);
         self.along.put(lane, &single.along);
         self.outward.put(lane, &single.outward);
-        self.length.put(lane, &single.length);
+        self.half_length.put(lane, &single.half_length);
     }
 }
 
@@ -213,8 +219,13 @@ impl Polygon {
             .map(|i| {
                 let (start, end) = (core[i], core[(i + 1) % core.len()]);
                 let along = unit(end - start);
-                let length = (end - start).length();
-                Side { start, along, outward: -along.quarter_turn(), length }
+                Side {
+                    start,
+                    middle: (start + end) * 0.5,
+                    along,
+                    outward: -along.quarter_turn(),
+                    half_length: 0.5 * (end - start).length(),
+                }
             })
             .collect();
         Self { sides, corner_radius }
@@ -283,7 +294,7 @@ impl Polygon {
 
     /// The same number of equal parts on every side, and a node at every end.
     pub fn nodes_per_side(&self, parts: usize) -> Vec<BoundaryNode> {
-        let longest = self.sides.iter().map(|side| side.length).fold(0.0, f64::max);
+        let longest = self.sides.iter().map(|side| 2.0 * side.half_length).fold(0.0, f64::max);
         if self.corner_radius > 0.0 {
             return self.nodes(longest / parts.max(1) as f64);
         }
@@ -292,7 +303,7 @@ impl Polygon {
             .iter()
             .flat_map(|side| {
                 (0..parts.max(1)).map(move |k| {
-                    side.start + side.along * (side.length * k as f64 / parts.max(1) as f64)
+                    side.start + side.along * (2.0 * side.half_length * k as f64 / parts.max(1) as f64)
                 })
             })
             .collect();
