@@ -1,110 +1,22 @@
-//! How much arithmetic a step takes, counted by a number that counts, and how much of the machine's
-//! peak that is.
-
-use std::cell::Cell;
-use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+//! How much arithmetic a step takes, and how much of the machine's peak that is.
 
 use barrelstack_dynamics::lanes::{Case, Crew, End, Task, Width, march};
 use barrelstack_dynamics::real::Real;
 use barrelstack_dynamics::{Method, Planar, Scratch, State};
+use barrelstack_validation::counting::{Counting, Operations};
 use barrelstack_validation::drive::Shake;
 
 use crate::scene::Scene;
 use crate::time;
 
-thread_local! {
-    static DONE: Cell<[u64; 3]> = const { Cell::new([0; 3]) };
-}
-
-/// Kinds of operations.
-const PLAIN: usize = 0;
-const DIVISION: usize = 1;
-const CHOICE: usize = 2;
-
-fn count(kind: usize) {
-    let mut done = DONE.get();
-    done[kind] += 1;
-    DONE.set(done);
-}
-
-/// A number that counts what is done with it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Counting(f64);
-
-impl Real for Counting {
-    type Mask = bool;
-    const LANES: usize = 1;
-
-    fn splat(value: f64) -> Self {
-        Self(value)
-    }
-    fn sqrt(self) -> Self {
-        count(DIVISION);
-        Self(self.0.sqrt())
-    }
-    fn abs(self) -> Self {
-        count(CHOICE);
-        Self(self.0.abs())
-    }
-    fn lt(self, other: Self) -> bool {
-        count(CHOICE);
-        self.0 < other.0
-    }
-    fn le(self, other: Self) -> bool {
-        count(CHOICE);
-        self.0 <= other.0
-    }
-    fn select(mask: bool, yes: Self, no: Self) -> Self {
-        count(CHOICE);
-        if mask { yes } else { no }
-    }
-    fn lane(self, _: usize) -> f64 {
-        self.0
-    }
-    fn from_lanes(mut value: impl FnMut(usize) -> f64) -> Self {
-        Self(value(0))
-    }
-}
-
-macro_rules! counted {
-    ($($operation:ident $method:ident $kind:expr),*) => {$(
-        impl $operation for Counting {
-            type Output = Self;
-            fn $method(self, other: Self) -> Self {
-                count($kind);
-                Self($operation::$method(self.0, other.0))
-            }
-        }
-    )*};
-}
-counted!(Add add PLAIN, Sub sub PLAIN, Mul mul PLAIN, Div div DIVISION);
-
-impl Neg for Counting {
-    type Output = Self;
-    fn neg(self) -> Self {
-        count(CHOICE);
-        Self(-self.0)
-    }
-}
-impl AddAssign for Counting {
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-impl SubAssign for Counting {
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
-    }
-}
-
 /// Prints the operations of a step, and the share of the machine's peak that lanes reach.
 pub(crate) fn per_step(scene: &Scene, method: Method, step: f64) {
     let end_time = 1.0;
-    DONE.set([0; 3]);
     let mut one = One { scene, step, end_time, waiting: true, contacts: 0, steps: 0 };
-    march::<Counting, _>(method, &mut one);
+    let done = Operations::of(|| march::<Counting, _>(method, &mut one));
     let steps = one.steps as f64;
-    let [plain, divisions, choices] = DONE.get().map(|count| count as f64 / steps);
+    let [plain, divisions, choices] =
+        [done.plain, done.divisions, done.choices].map(|count| count as f64 / steps);
     println!("arithmetic of a step of one stack, counted over {steps} steps");
     println!("  contacts that touch            {:10.1}", one.contacts as f64 / steps);
     println!("  additions and multiplications  {plain:10.0}");

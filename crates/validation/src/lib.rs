@@ -20,6 +20,7 @@
 //! ([`cases`]); anything else is a function in one of the [`problems`].
 
 pub mod cases;
+pub mod counting;
 pub mod drive;
 pub mod execute;
 pub mod oracle;

@@ -303,7 +303,8 @@ impl Polygon {
             .iter()
             .flat_map(|side| {
                 (0..parts.max(1)).map(move |k| {
-                    side.start + side.along * (2.0 * side.half_length * k as f64 / parts.max(1) as f64)
+                    side.start
+                        + side.along * (2.0 * side.half_length * k as f64 / parts.max(1) as f64)
                 })
             })
             .collect();

@@ -1,0 +1,123 @@
+//! A number that counts what is done with it, so that the work of a step can be held against what it was.
+//!
+//! Counts do not depend on the machine, its load, or the compiler: they are the instruction counts of the
+//! physics.
+
+use std::cell::Cell;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+use barrelstack_dynamics::real::Real;
+
+thread_local! {
+    static DONE: Cell<Operations> = const { Cell::new(Operations::NONE) };
+}
+
+/// How many operations were done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Operations {
+    /// Additions, subtractions and multiplications.
+    pub plain: u64,
+    /// Divisions and square roots.
+    pub divisions: u64,
+    /// Comparisons, choices between two numbers, and changes of sign.
+    pub choices: u64,
+}
+
+impl Operations {
+    const NONE: Self = Self { plain: 0, divisions: 0, choices: 0 };
+
+    /// What this thread does in `work` with numbers that count.
+    pub fn of(work: impl FnOnce()) -> Self {
+        DONE.set(Self::NONE);
+        work();
+        DONE.get()
+    }
+}
+
+fn count(one: fn(&mut Operations) -> &mut u64) {
+    let mut done = DONE.get();
+    *one(&mut done) += 1;
+    DONE.set(done);
+}
+
+fn plain() {
+    count(|done| &mut done.plain);
+}
+
+fn division() {
+    count(|done| &mut done.divisions);
+}
+
+fn choice() {
+    count(|done| &mut done.choices);
+}
+
+/// A number that counts what is done with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Counting(f64);
+
+impl Real for Counting {
+    type Mask = bool;
+    const LANES: usize = 1;
+
+    fn splat(value: f64) -> Self {
+        Self(value)
+    }
+    fn sqrt(self) -> Self {
+        division();
+        Self(self.0.sqrt())
+    }
+    fn abs(self) -> Self {
+        choice();
+        Self(self.0.abs())
+    }
+    fn lt(self, other: Self) -> bool {
+        choice();
+        self.0 < other.0
+    }
+    fn le(self, other: Self) -> bool {
+        choice();
+        self.0 <= other.0
+    }
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        choice();
+        if mask { yes } else { no }
+    }
+    fn lane(self, _: usize) -> f64 {
+        self.0
+    }
+    fn from_lanes(mut value: impl FnMut(usize) -> f64) -> Self {
+        Self(value(0))
+    }
+}
+
+macro_rules! counted {
+    ($($operation:ident $method:ident $kind:expr),*) => {$(
+        impl $operation for Counting {
+            type Output = Self;
+            fn $method(self, other: Self) -> Self {
+                $kind();
+                Self($operation::$method(self.0, other.0))
+            }
+        }
+    )*};
+}
+counted!(Add add plain, Sub sub plain, Mul mul plain, Div div division);
+
+impl Neg for Counting {
+    type Output = Self;
+    fn neg(self) -> Self {
+        choice();
+        Self(-self.0)
+    }
+}
+impl AddAssign for Counting {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+impl SubAssign for Counting {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}

@@ -1,0 +1,80 @@
+//! How much arithmetic a step takes, to the last operation.
+//!
+//! Times depend on the machine and on who else uses it; these counts do not.
+
+use barrelstack::Scenario;
+use barrelstack::assemble::assemble;
+use barrelstack_dynamics::lanes::{Case, Crew, End, march};
+use barrelstack_dynamics::{Method, Model, Planar, Scratch, State, settle};
+use barrelstack_validation::counting::{Counting, Operations};
+use barrelstack_validation::drive::Shake;
+use barrelstack_validation::problems::consensus;
+
+/// What a step took when it was last looked at: scene, method, nodes that touch, and operations a step.
+///
+/// A smaller figure is progress, and is written down here; a larger one wants a reason in the commit.
+const KNOWN: [(&str, Method, [u64; 4]); 4] = [
+    ("five codes", Method::VelocityVerlet, [24, 5938, 72, 1732]),
+    ("five codes", Method::SemiImplicitEuler, [24, 5720, 72, 1719]),
+    ("five codes", Method::RungeKutta4, [24, 21191, 276, 5812]),
+    ("paper", Method::VelocityVerlet, [80, 11531, 150, 3582]),
+];
+
+/// Steps over which is averaged: the stack rocks and nothing has fallen.
+const STEPS: u64 = 1000;
+
+/// The ground of the paper's benchmark, smaller, so that both stacks stand.
+const GROUND: Shake = Shake::Swing { amplitude: 0.05, omega: 5.846 };
+
+#[test]
+#[allow(clippy::print_stdout, reason = "the counts, to be written down when they get smaller")]
+fn a_step_takes_no_more_arithmetic_than_it_did() {
+    let five_codes = consensus::eight_barrels(20.0).unwrap();
+    let paper = assemble(&Scenario::builtin("candia-8-barrels", &[]).unwrap()).unwrap().model;
+    let now = KNOWN.map(|(name, method, _)| {
+        let model = if name == "paper" { &paper } else { &five_codes };
+        (name, method, per_step(model, method))
+    });
+    println!("touching nodes, plain operations, divisions, choices: {now:#?}");
+    assert_eq!(now, KNOWN);
+}
+
+/// Touching nodes, plain operations, divisions and choices of a step.
+fn per_step(model: &Model<Planar>, method: Method) -> [u64; 4] {
+    let mut rest = State::initial(model);
+    settle(model, &mut rest, &mut Scratch::new(model), 1e-4, 1e-9).unwrap();
+    let time_step = 0.25e-3;
+    let end_time = time_step * STEPS as f64;
+    let case = Case { model, state: rest, drive: GROUND, time_step, end_time };
+    let mut one = One { case: Some(case), contacts: 0, steps: 0 };
+    let done = Operations::of(|| march::<Counting, _>(method, &mut one));
+    assert_eq!(one.steps, STEPS);
+    [one.contacts, done.plain, done.divisions, done.choices].map(|count| count / STEPS)
+}
+
+struct One<'a> {
+    case: Option<Case<'a, Shake>>,
+    contacts: u64,
+    steps: u64,
+}
+
+impl<'a> Crew<'a, Counting> for One<'a> {
+    type Drive = Shake;
+
+    fn next(&mut self, _: usize) -> Option<Case<'a, Shake>> {
+        self.case.take()
+    }
+    fn start(&mut self, _: usize, _: &State<Planar>, _: &Scratch<Planar>) {}
+    fn observe(
+        &mut self,
+        _: &State<Planar<Counting>>,
+        scratch: &Scratch<Planar<Counting>>,
+    ) -> bool {
+        self.steps += 1;
+        self.contacts += scratch.touching() as u64;
+        false
+    }
+    fn end(&mut self, _: usize, end: End) {
+        assert!(end.finish.is_ok(), "{:?}", end.finish);
+    }
+}
