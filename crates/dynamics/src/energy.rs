@@ -2,11 +2,12 @@
 
 use crate::body::Motion;
 use crate::forces::{Losses, Scratch};
-use crate::lanes::Lanewise;
+use crate::lanes::{Lanewise, put_masks};
 use crate::model::Model;
 use crate::real::Real;
 use crate::space::{Linear, Planar, Pose, Space, Wrench};
 use crate::state::State;
+use crate::strap::newly;
 
 /// Energies and works at one time (J), since the start of the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -15,11 +16,11 @@ pub struct EnergySummary {
     pub kinetic: f64,
     /// Potential energy in gravity, relative to the start.
     pub potential: f64,
-    /// Stored in normal springs.
+    /// Stored in normal springs and in straps.
     pub elastic: f64,
     /// Stored in sticks.
     pub stick: f64,
-    /// Lost in contact dampers.
+    /// Lost in the dampers of contacts and straps, and with straps that tore.
     pub damped: f64,
     /// Lost to friction (sliding and the damping of sticks).
     pub friction: f64,
@@ -68,6 +69,8 @@ pub struct EnergyLedger<S: Space> {
     losses: Vec<Losses<S>>,
     /// Contact forces on the bodies at the last entry.
     wrenches: Vec<Wrench<S>>,
+    /// Which straps were torn then.
+    torn: Vec<<S::Real as Real>::Mask>,
     stored: Stored<S::Real>,
     /// Absolute work of the ground plus the largest drop of potential energy.
     ground_flow: S::Real,
@@ -104,6 +107,7 @@ impl<S: Space> EnergyLedger<S> {
             poses: state.poses.clone(),
             losses: scratch.losses.clone(),
             wrenches: scratch.wrenches.clone(),
+            torn: state.torn.clone(),
             stored,
             ground_flow: S::Real::zero(),
             deepest: stored.potential,
@@ -133,6 +137,10 @@ impl<S: Space> EnergyLedger<S> {
             if body.motion == Motion::Prescribed {
                 step.ground -= self.wrenches[i].plus(scratch.wrenches[i]).power(way) * half;
             }
+        }
+        for ((before, now), pull) in self.torn.iter_mut().zip(&state.torn).zip(&scratch.pulls) {
+            step.damped += S::Real::select(newly(*before, *now), pull.energy, S::Real::zero());
+            *before = *now;
         }
         self.works.damped += step.damped;
         self.works.friction += step.friction;
@@ -196,6 +204,7 @@ impl<R: Real> EnergyLedger<Planar<R>> {
         stored.stick.put(lane, &from.stick);
         self.ground_flow.put(lane, &single.ground_flow);
         self.deepest.put(lane, &single.deepest);
+        put_masks(&mut self.torn, lane, &single.torn);
     }
 }
 
@@ -212,6 +221,9 @@ fn stored<S: Space>(model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) ->
         stored.potential -= body.mass * model.gravity.dot(state.poses[i].position);
     }
     stored.elastic = scratch.totals.elastic;
+    for (torn, pull) in state.torn.iter().zip(&scratch.pulls) {
+        stored.elastic += S::Real::select(*torn, S::Real::zero(), pull.energy);
+    }
     stored.stick = scratch.totals.stick;
     stored
 }

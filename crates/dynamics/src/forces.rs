@@ -8,6 +8,7 @@ use crate::real::{Mask, Real};
 use crate::shape::{Gap, Surface};
 use crate::space::{Linear, Space, Twist, Wrench};
 use crate::state::State;
+use crate::strap::{self, Pull};
 
 /// One contact element that touches.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +51,7 @@ pub struct ContactTotals<R> {
 /// The energy ledger multiplies them by the motion of the body.
 #[derive(Clone, Copy, Debug)]
 pub struct Losses<S: Space> {
-    /// Of contact dampers.
+    /// Of the dampers of contacts and straps.
     pub damped: Wrench<S>,
     /// Of friction, sticks included.
     pub friction: Wrench<S>,
@@ -87,7 +88,9 @@ pub struct Scratch<S: Space> {
     pub pair_forces: Vec<PairForce<S>>,
     /// Their energies.
     pub totals: ContactTotals<S::Real>,
-    /// Contact forces on every body and their moments about its center of mass.
+    /// What the straps do, in their order.
+    pub pulls: Vec<Pull<S::Real>>,
+    /// Forces of contacts and straps on every body, and their moments about its center of mass.
     pub wrenches: Vec<Wrench<S>>,
     /// What of the forces on every body takes energy away.
     pub losses: Vec<Losses<S>>,
@@ -128,6 +131,7 @@ impl<S: Space> Scratch<S> {
             keeps_contacts: true,
             pair_forces: Vec::new(),
             totals: ContactTotals::default(),
+            pulls: vec![Pull::default(); model.straps.len()],
             wrenches: vec![Wrench::default(); count],
             losses: vec![Losses::default(); count],
             accelerations: vec![Twist::default(); count],
@@ -192,7 +196,27 @@ pub(crate) fn evaluate_within<S: Space>(
     }
     S::Real::scope(
         #[inline(always)]
-        || accelerate(model, state, scratch),
+        || {
+            pull(model, state, scratch);
+            accelerate(model, state, scratch);
+        },
+    );
+}
+
+/// The straps.
+#[inline(always)]
+fn pull<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
+    let Scratch { wrenches, losses, rotations, pulls, .. } = scratch;
+    strap::pull_all(
+        model,
+        state,
+        rotations,
+        pulls,
+        #[inline(always)]
+        |body, wrench, damped| {
+            wrenches[body] += wrench;
+            losses[body].damped += damped;
+        },
     );
 }
 
@@ -481,11 +505,14 @@ fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratc
 }
 
 /// Accepts the state that `scratch` was evaluated at: the memory of every stick is cut back to what
-/// friction can hold, and elements that do not touch forget.
+/// friction can hold, elements that do not touch forget, and straps that cannot hold tear.
 pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
     S::Real::scope(
         #[inline(always)]
-        || commit_all(model, &mut state.elements, scratch),
+        || {
+            commit_all(model, &mut state.elements, scratch);
+            strap::tear(model, &mut state.torn, &scratch.pulls);
+        },
     );
 }
 

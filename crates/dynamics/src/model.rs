@@ -5,6 +5,7 @@ use crate::contact::Interface;
 use crate::real::Real;
 use crate::shape::Surface;
 use crate::space::Space;
+use crate::strap::Strap;
 
 /// Index of an interface in its model.
 pub type InterfaceId = usize;
@@ -30,6 +31,7 @@ pub struct Model<S: Space> {
     pub(crate) bodies: Vec<Body<S>>,
     pub(crate) interfaces: Vec<Interface<S>>,
     pub(crate) pairs: Vec<ContactPair>,
+    pub(crate) straps: Vec<Strap<S>>,
     pub(crate) gravity: S::Vector,
     pub(crate) reach: Vec<f64>,
 }
@@ -67,6 +69,14 @@ pub enum ModelError {
     Unbounded {
         /// The body.
         name: String,
+    },
+    /// A strap that is none.
+    #[error("strap \"{name}\": {problem}")]
+    Strap {
+        /// The strap.
+        name: String,
+        /// What is wrong with it.
+        problem: &'static str,
     },
     /// A pair that names something that is not there.
     #[error("contact pair {pair} names {what} {index}, but there are only {count}")]
@@ -132,7 +142,22 @@ impl<S: Space> Model<S> {
             check("interface", p.interface, interfaces.len())?;
         }
         let reach = bodies.iter().map(Body::reach).collect();
-        Ok(Self { bodies, interfaces, pairs, gravity, reach })
+        Ok(Self { bodies, interfaces, pairs, straps: Vec::new(), gravity, reach })
+    }
+
+    /// The model with straps between its bodies, in the order in which their forces are summed.
+    ///
+    /// # Errors
+    /// When a strap ties a body to itself or to one that is not there, or a constant is not a number
+    /// that it can be.
+    pub fn with_straps(mut self, straps: Vec<Strap<S>>) -> Result<Self, ModelError> {
+        for strap in &straps {
+            if let Some(problem) = strap.problem(self.bodies.len()) {
+                return Err(ModelError::Strap { name: strap.name.clone(), problem });
+            }
+        }
+        self.straps = straps;
+        Ok(self)
     }
 
     /// The bodies, in the order of their ids.
@@ -148,6 +173,11 @@ impl<S: Space> Model<S> {
     /// The contact pairs, in the order in which their forces are summed.
     pub fn pairs(&self) -> &[ContactPair] {
         &self.pairs
+    }
+
+    /// The straps, in the order of [`Scratch::pulls`](crate::Scratch::pulls).
+    pub fn straps(&self) -> &[Strap<S>] {
+        &self.straps
     }
 
     /// Acceleration of free fall (m/s²).

@@ -16,6 +16,8 @@ pub struct State<S: Space> {
     pub twists: Vec<Twist<S>>,
     /// The contact elements within reach, with the memory of their sticks.
     pub elements: Elements<S>,
+    /// Which straps are torn.
+    pub torn: Vec<<S::Real as Real>::Mask>,
 }
 
 impl<S: Space> State<S> {
@@ -26,6 +28,7 @@ impl<S: Space> State<S> {
             poses: model.bodies.iter().map(|b| b.pose).collect(),
             twists: model.bodies.iter().map(|b| b.twist).collect(),
             elements: Elements::default(),
+            torn: vec![Default::default(); model.straps.len()],
         };
         state.elements.rebuild(model, &state.poses, &state.twists);
         state

@@ -7,6 +7,7 @@ use crate::model::Model;
 use crate::real::{Mask, Real};
 use crate::shape::{BarrelProfile, Circle, Cradle, Shape};
 use crate::space::{Planar, Pose, Rotation2, Twist, Vec2, Wrench};
+use crate::strap::Strap;
 
 /// A thing made of bundles of numbers, into each lane of which the same thing made of single numbers
 /// can be put.
@@ -116,6 +117,15 @@ macro_rules! variants {
     };
 }
 
+/// Puts truth values into one lane.
+pub(crate) fn put_masks<M: Mask>(masks: &mut [M], lane: usize, single: &[bool]) {
+    assert_eq!(masks.len(), single.len(), "{ALIKE}");
+    for (mask, single) in masks.iter_mut().zip(single) {
+        let others = *mask;
+        *mask = M::from_lanes(|l| if l == lane { *single } else { others.lane(l) });
+    }
+}
+
 fields!(Vec2<R>, Vec2, Vec2 { x, z });
 fields!(Rotation2<R>, Rotation2, Rotation2 { cos, sin });
 fields!(Pose<Planar<R>>, Pose<Planar>, Pose { position, orientation });
@@ -142,9 +152,7 @@ impl<R: Real> Lanewise for Stick<Planar<R>> {
     }
     fn put(&mut self, lane: usize, single: &Self::Single) {
         self.displacement.put(lane, &single.displacement);
-        let others = self.slipping;
-        self.slipping =
-            Mask::from_lanes(|l| if l == lane { single.slipping } else { others.lane(l) });
+        put_masks(std::slice::from_mut(&mut self.slipping), lane, &[single.slipping]);
     }
 }
 
@@ -304,6 +312,28 @@ impl<R: Real> Lanewise for Body<Planar<R>> {
     }
 }
 
+impl<R: Real> Lanewise for Strap<Planar<R>> {
+    type Single = Strap<Planar>;
+    fn in_all(single: &Self::Single) -> Self {
+        Self {
+            name: single.name.clone(),
+            bodies: single.bodies,
+            points: Lanewise::in_all(&single.points),
+            length: Lanewise::in_all(&single.length),
+            stiffness: Lanewise::in_all(&single.stiffness),
+            damping: Lanewise::in_all(&single.damping),
+            strength: Lanewise::in_all(&single.strength),
+        }
+    }
+    fn put(&mut self, lane: usize, single: &Self::Single) {
+        self.points.put(lane, &single.points);
+        self.length.put(lane, &single.length);
+        self.stiffness.put(lane, &single.stiffness);
+        self.damping.put(lane, &single.damping);
+        self.strength.put(lane, &single.strength);
+    }
+}
+
 impl<R: Real> Lanewise for Model<Planar<R>> {
     type Single = Model<Planar>;
     fn in_all(single: &Self::Single) -> Self {
@@ -311,6 +341,7 @@ impl<R: Real> Lanewise for Model<Planar<R>> {
             bodies: Lanewise::in_all(&single.bodies),
             interfaces: Lanewise::in_all(&single.interfaces),
             pairs: single.pairs.clone(),
+            straps: Lanewise::in_all(&single.straps),
             gravity: Lanewise::in_all(&single.gravity),
             reach: single.reach.clone(),
         }
@@ -318,6 +349,7 @@ impl<R: Real> Lanewise for Model<Planar<R>> {
     fn put(&mut self, lane: usize, single: &Self::Single) {
         self.bodies.put(lane, &single.bodies);
         self.interfaces.put(lane, &single.interfaces);
+        self.straps.put(lane, &single.straps);
         self.gravity.put(lane, &single.gravity);
         for (reach, single) in self.reach.iter_mut().zip(&single.reach) {
             // Balls that hold the body of every lane.

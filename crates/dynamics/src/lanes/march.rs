@@ -10,7 +10,7 @@ use crate::simulate::{Finish, RunError, lost_body};
 use crate::space::{Planar, Twist, Vec2};
 use crate::state::State;
 
-use super::Lanewise;
+use super::{Lanewise, put_masks};
 
 /// A case that is ready to run: its model, the state it starts from, its ground, and how long.
 pub struct Case<'a, D> {
@@ -213,6 +213,7 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         self.state.time.put(lane, &state.time);
         self.state.poses.put(lane, &state.poses);
         self.state.twists.put(lane, &state.twists);
+        put_masks(&mut self.state.torn, lane, &state.torn);
         self.scratch.accelerations.put(lane, &scratch.accelerations);
         let origins =
             self.state.elements.rebuild(&self.model, &self.state.poses, &self.state.twists);

@@ -16,7 +16,7 @@ mod topology;
 
 use crate::real::Real;
 
-pub(crate) use lanewise::Lanewise;
+pub(crate) use lanewise::{Lanewise, put_masks};
 pub use march::{Case, Crew, End, march};
 pub use topology::Topology;
 

@@ -2,7 +2,7 @@
 
 use std::mem::{Discriminant, discriminant};
 
-use crate::body::{Body, Motion, Nodes};
+use crate::body::{Body, BodyId, Motion, Nodes};
 use crate::contact::{Basis, Exponent, FrictionLaw, Interface, NormalLaw};
 use crate::model::{ContactPair, Model};
 use crate::shape::Shape;
@@ -15,6 +15,8 @@ pub struct Topology {
     bodies: Vec<BodyKind>,
     interfaces: Vec<InterfaceKind>,
     pairs: Vec<ContactPair>,
+    /// The bodies that straps tie.
+    straps: Vec<[BodyId; 2]>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -42,6 +44,7 @@ impl Topology {
             bodies: model.bodies.iter().map(BodyKind::of).collect(),
             interfaces: model.interfaces.iter().map(InterfaceKind::of).collect(),
             pairs: model.pairs.clone(),
+            straps: model.straps.iter().map(|strap| strap.bodies).collect(),
         }
     }
 }
