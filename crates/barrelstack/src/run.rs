@@ -198,22 +198,22 @@ pub(crate) struct Standing {
 /// # Errors
 /// When it cannot be built, or does not stand.
 pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunFailure> {
-    let assembly = assemble(scenario)?;
-    let model = &assembly.model;
-    let mut state = State::initial(model);
-    let mut scratch = Scratch::new(model);
+    let mut assembly = assemble(scenario)?;
+    let mut state = State::initial(&assembly.model);
+    let mut scratch = Scratch::new(&assembly.model);
     check_overlap(&assembly, &state, &mut scratch, scenario.run.similitude)?;
     let step = time_step(scenario, &assembly)?;
     check_length(end_time, step)?;
     let settled = if scenario.run.settle {
         Some(at_rest(scenario, &assembly, &mut state, &mut scratch)?)
     } else {
-        barrelstack_dynamics::evaluate(model, &state, &mut scratch);
+        barrelstack_dynamics::evaluate(&assembly.model, &state, &mut scratch);
         None
     };
+    assembly.strap(&mut state).map_err(AssembleError::from)?;
     if matches!(scenario.scene, Scene::Free(_)) {
         // Equilibrium is that of the places; what the scenario sets in motion starts from there.
-        state.twists = model.bodies().iter().map(|b| b.twist).collect();
+        state.twists = assembly.model.bodies().iter().map(|b| b.twist).collect();
     }
     Ok(Standing { assembly, state, scratch, settled, step })
 }
@@ -281,7 +281,7 @@ pub(crate) fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64,
     let Some(step) = scenario.run.step.map(|step| step * scale) else {
         return Ok(default_step(assembly, scale));
     };
-    let critical = critical_time_step(&assembly.model);
+    let critical = critical_time_step(assembly);
     let adapts = matches!(scenario.run.method, scenario::Method::BogackiShampine { .. });
     if adapts || step < critical {
         return Ok(step);

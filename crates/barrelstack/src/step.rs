@@ -1,7 +1,9 @@
 //! The time step when none is given: from the stiffest contact.
 
 use barrelstack_dynamics::body::Motion;
-use barrelstack_dynamics::{Basis, Body, ContactPair, Model, Nodes, Planar, Shape};
+use barrelstack_dynamics::{
+    Basis, Body, ContactPair, Linear as _, Model, Nodes, Planar, Shape, Strap,
+};
 
 use crate::assemble::Assembly;
 
@@ -21,19 +23,33 @@ const REFERENCE: f64 = 0.01;
 /// The time step (s): a share of the critical one, rounded down to a number that is easily said at full
 /// scale; `time_scale` is that of similitude.
 pub fn default_step(assembly: &Assembly, time_scale: f64) -> f64 {
-    let model = &assembly.model;
-    let damping = 1.0 / fastest(model, damping_rate);
-    let step = (SHARE * critical_time_step(model)).min(DAMPING_SHARE * damping) / time_scale;
+    let damping =
+        fastest(&assembly.model, damping_rate) + of_straps(assembly, |strap| strap.damping);
+    let step = (SHARE * critical_time_step(assembly)).min(DAMPING_SHARE / damping) / time_scale;
     let full_scale = if step.is_finite() { round_down(step) } else { 1e-3 };
     full_scale * time_scale
 }
 
-/// The critical time step (s) of a model; infinite when nothing can touch.
+/// The critical time step (s) of what was built; infinite when nothing can touch.
 ///
 /// For an explicit method it is 2/ω, with ω² = Σk/m for the stiffest body: the springs of all nodes of
-/// one of its boundaries that face one target, over its mass.
-pub fn critical_time_step(model: &Model<Planar>) -> f64 {
-    2.0 / fastest(model, stiffness_rate).sqrt()
+/// one of its boundaries that face one target, over its mass, and those of its straps.
+pub fn critical_time_step(assembly: &Assembly) -> f64 {
+    let contacts = fastest(&assembly.model, stiffness_rate);
+    2.0 / (contacts + of_straps(assembly, |strap| strap.stiffness)).sqrt()
+}
+
+/// The largest rate that the straps of any body give it: the sum of a constant of theirs over its mass,
+/// and over its inertia by the square of the arm.
+fn of_straps(assembly: &Assembly, constant: fn(&Strap<Planar>) -> f64) -> f64 {
+    let mut rates = vec![0.0; assembly.parts.len()];
+    for strap in assembly.loose.iter().chain(assembly.model.straps()) {
+        for (id, point) in strap.bodies.into_iter().zip(strap.points) {
+            let body = &assembly.model.bodies()[id];
+            rates[id] += constant(strap) * (1.0 / body.mass + point.dot(point) / body.inertia);
+        }
+    }
+    rates.into_iter().fold(0.0, f64::max)
 }
 
 /// The largest rate over all pairs and their free bodies. A body is held from below and above, so each

@@ -145,19 +145,20 @@ impl<S: Space> Model<S> {
         Ok(Self { bodies, interfaces, pairs, straps: Vec::new(), gravity, reach })
     }
 
-    /// The model with straps between its bodies, in the order in which their forces are summed.
+    /// Puts straps between the bodies, in place of those before, in the order in which their forces
+    /// are summed. A state of the model must have one entry of `torn` for each.
     ///
     /// # Errors
     /// When a strap ties a body to itself or to one that is not there, or a constant is not a number
     /// that it can be.
-    pub fn with_straps(mut self, straps: Vec<Strap<S>>) -> Result<Self, ModelError> {
+    pub fn fasten(&mut self, straps: Vec<Strap<S>>) -> Result<(), ModelError> {
         for strap in &straps {
             if let Some(problem) = strap.problem(self.bodies.len()) {
                 return Err(ModelError::Strap { name: strap.name.clone(), problem });
             }
         }
         self.straps = straps;
-        Ok(self)
+        Ok(())
     }
 
     /// The bodies, in the order of their ids.

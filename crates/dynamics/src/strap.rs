@@ -72,6 +72,16 @@ impl<S: Space> Strap<S> {
         }
     }
 
+    /// The distance of its points (m).
+    pub fn span(&self, state: &State<S>) -> S::Real {
+        let [first, second] = [0, 1].map(|at| {
+            let pose = state.poses[self.bodies[at]];
+            pose.position + S::rotate(S::rotation(pose.orientation), self.points[at])
+        });
+        let apart = second - first;
+        apart.dot(apart).sqrt()
+    }
+
     #[inline(always)]
     fn taut(
         &self,

@@ -37,8 +37,9 @@ fn scene(bodies: Vec<Body<Planar>>, straps: Vec<Strap<Planar>>, gravity: Vec2) -
     let law = NormalLaw::SpeedGap { stiffness: 1e6, damping: 0.0 };
     let interface = interface(law, FrictionLaw::Frictionless);
     let pairs = common::all_pairs(&bodies);
-    let model = Model::new(bodies, vec![interface], pairs, gravity).unwrap();
-    Scene::of(model.with_straps(straps).unwrap())
+    let mut model = Model::new(bodies, vec![interface], pairs, gravity).unwrap();
+    model.fasten(straps).unwrap();
+    Scene::of(model)
 }
 
 /// A disc that hangs slack by a height (m), at rest.
@@ -214,8 +215,8 @@ fn what_is_no_strap_is_refused_with_its_name() {
         (Strap { strength: 0.0, ..hung() }, "strength"),
     ];
     for (strap, word) in wrong {
-        let model = hanging(hung(), 0.0).model;
-        let message = model.with_straps(vec![strap]).unwrap_err().to_string();
+        let mut model = hanging(hung(), 0.0).model;
+        let message = model.fasten(vec![strap]).unwrap_err().to_string();
         assert!(message.contains("strap") && message.contains(word), "{message}");
     }
 }

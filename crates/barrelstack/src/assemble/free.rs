@@ -46,7 +46,15 @@ pub(super) fn assemble(
         interfaces.push(interface(&name, &law.law, scale));
     }
     let model = Model::new(bodies, interfaces, pairs, Vec2::new(0.0, -gravity))?;
-    Ok(Assembly { model, parts, height: 0.0, levels: 0, view: None, rack_reach: 0.0 })
+    Ok(Assembly {
+        model,
+        parts,
+        loose: Vec::new(),
+        height: 0.0,
+        levels: 0,
+        view: None,
+        rack_reach: 0.0,
+    })
 }
 
 /// Every body of the first kind against every one of the second.

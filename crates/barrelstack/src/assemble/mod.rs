@@ -6,9 +6,10 @@ mod interfaces;
 mod longitudinal;
 mod similitude;
 mod stack;
+mod straps;
 mod transverse;
 
-use barrelstack_dynamics::{BodyId, Model, ModelError, Planar, Shape, Vec2};
+use barrelstack_dynamics::{BodyId, Model, ModelError, Planar, Shape, Strap, Vec2};
 
 use crate::scenario::{Scenario, Scene, View};
 
@@ -76,6 +77,8 @@ pub struct Assembly {
     pub model: Model<Planar>,
     /// One part for every body, in the same order.
     pub parts: Vec<Part>,
+    /// Straps that are put on once the stack stands, with their slack for their length.
+    pub(crate) loose: Vec<Strap<Planar>>,
     /// Height (m) of the stack from the ground to the top of the highest barrel; zero for a free scene.
     pub height: f64,
     /// Number of levels; zero for a free scene.

@@ -4,7 +4,7 @@ use barrelstack_dynamics::{Interface, Model, Planar, Vec2};
 
 use super::builder::{BARREL_BARREL, BARREL_GROUND, BARREL_RACK, Builder, RACK_GROUND, RACK_RACK};
 use super::interfaces::interface;
-use super::{AssembleError, Assembly, Similitude, longitudinal, transverse};
+use super::{AssembleError, Assembly, Similitude, longitudinal, straps, transverse};
 use crate::scenario::{StackInterfaces, StackSpec, View};
 
 /// Builds a stack in its view.
@@ -21,12 +21,14 @@ pub(super) fn assemble(
     if spec.mirror {
         builder.mirror();
     }
+    let loose = straps::straps(spec, scale, &builder.parts, &builder.bodies);
     let pairs = builder.pairs();
     let interfaces = laws(&spec.interfaces, scale);
     let model = Model::new(builder.bodies, interfaces, pairs, Vec2::new(0.0, -gravity))?;
     Ok(Assembly {
         model,
         parts: builder.parts,
+        loose,
         height: height * scale.length,
         levels: spec.levels,
         view: Some(spec.view),

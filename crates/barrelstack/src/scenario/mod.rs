@@ -55,6 +55,7 @@ pub mod run;
 pub mod schema;
 pub mod shape;
 pub mod stack;
+pub mod strap;
 pub(crate) mod template;
 pub(crate) mod tree;
 mod unit;
@@ -76,6 +77,7 @@ pub use root::ROOT;
 pub use run::{Method, OutcomeSpec, RecordSpec, RunSpec};
 pub use shape::{Shape, Uniform};
 pub use stack::{BodyOverride, StackBody, StackInterfaces, StackSpec, View};
+pub use strap::{Straps, Ties};
 
 /// A checked scenario in SI units.
 #[derive(Debug, Clone, PartialEq)]

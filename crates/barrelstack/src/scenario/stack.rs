@@ -9,6 +9,7 @@ use super::interface::{self, INTERFACE, Interface};
 use super::quantity::rounded;
 use super::rack::{self, RACK, Rack};
 use super::reader::Reader;
+use super::strap::{self, STRAP, Straps};
 use super::tree::Table;
 use super::writer::Writer;
 
@@ -38,6 +39,8 @@ pub struct StackSpec {
     pub mirror: bool,
     /// Free distance between racks side by side (m).
     pub gap: f64,
+    /// Straps on the highest levels.
+    pub straps: Straps,
     /// Bodies that differ, in the order of the file.
     pub overrides: Vec<BodyOverride>,
     /// Laws of contact.
@@ -157,6 +160,7 @@ pub static STACK: Section = Section {
             Default::Value("\"0.05 m\""),
             "Free distance between racks side by side.",
         ),
+        Field::new("strap", Kind::Table(&STRAP), Default::Nothing, "Straps on the highest levels."),
         Field::new(
             "override",
             Kind::Tables(&OVERRIDE),
@@ -235,14 +239,16 @@ pub(super) fn read(
 ) -> Result<StackSpec, ScenarioError> {
     let rack = rack::read(reader.section("rack")?)?;
     let barrel = barrel::read(reader.section("barrel")?, rack.rail_half_spacing)?;
+    let levels = reader.integer("levels")?;
     let mut stack = StackSpec {
         view: reader.choice("view")?,
-        levels: reader.integer("levels")?,
+        levels,
         columns: reader.integer("columns")?,
         barrel,
         rack,
         mirror: reader.flag("mirror")?,
         gap: reader.quantity("gap")?,
+        straps: strap::read(reader.section("strap")?, levels)?,
         overrides: Vec::new(),
         interfaces,
     };
@@ -361,6 +367,7 @@ pub(super) fn write(stack: &StackSpec) -> Table {
     writer.quantity("gap", stack.gap);
     writer.table("barrel", barrel::write(&stack.barrel));
     writer.table("rack", rack::write(&stack.rack));
+    writer.table("strap", strap::write(&stack.straps));
     writer.tables("override", stack.overrides.iter().map(write_override).collect());
     writer.finish()
 }
