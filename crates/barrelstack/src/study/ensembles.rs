@@ -8,7 +8,7 @@ use crate::scenario::field::Named as _;
 use crate::scenario::reader::Reader;
 use crate::scenario::template::{self, Opened};
 use crate::scenario::tree::{Entry, Node, Table, Value};
-use crate::scenario::{Problem, Scale, ScenarioError};
+use crate::scenario::{Problem, Scale, ScenarioError, no_record_to_scale_by};
 use crate::system;
 
 use super::design::seed_of;
@@ -40,6 +40,9 @@ pub(super) fn read(
     if let Some(synthetic) = set.optional_section("synthetic")? {
         let scale =
             motion_of(set, opened, number, &[("bundled", Value::Text(first_bundled()))])?.scale;
+        if scale.needs_record() {
+            return Err(no_record_to_scale_by(set));
+        }
         return ensemble(synthetic, name, number, seed, scale);
     }
     let mut sources: Vec<(String, Vec<(&str, Value)>)> = Vec::new();
