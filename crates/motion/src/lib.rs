@@ -68,6 +68,7 @@ mod sampled;
 mod select;
 mod synthesis;
 mod target;
+mod told;
 mod units;
 mod wavelets;
 pub mod write;
