@@ -69,6 +69,7 @@ mod sampled;
 mod select;
 mod synthesis;
 mod target;
+mod told;
 mod units;
 mod wavelets;
 pub mod write;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use barrelstack_motion::{BooreSource, CloughPenzien, Envelope, Pulse};
+use barrelstack_motion::{BooreSource, CloughPenzien, Envelope, NearFault, Pulse};
 
 use crate::scenario::field::Named as _;
 use crate::scenario::reader::Reader;
@@ -228,7 +228,7 @@ fn ensemble(
             };
             Making::CloughPenzien { noise, envelope, duration: reader.quantity("duration")? }
         }
-        Maker::NearFault => Making::NearFault {
+        Maker::NearFault => Making::NearFault(NearFault {
             pulse: Pulse::MavroeidisPapageorgiou {
                 velocity: reader.quantity("pulse_velocity")?,
                 period: reader.quantity("pulse_period")?,
@@ -238,7 +238,7 @@ fn ensemble(
             start: reader.quantity("start")?,
             rest: source(&reader)?,
             crossover: reader.number("crossover")?,
-        },
+        }),
     };
     reader.finish();
     let name = name.unwrap_or_else(|| kind.name().to_owned());

@@ -198,7 +198,7 @@ impl BooreSource {
         let a = self.acceleration(time_step, seed)?;
         let corner = (0.2 * self.corner_frequency()).max(0.05);
         let chain = Processing { taper: 0.02, high_pass: Some(corner), ..Processing::compact() };
-        let made = format!("stochastic method: {self:?}, seed {seed}");
+        let made = format!("stochastic method: {self}, seed {seed}");
         motion(&format!("boore M{} {seed}", self.magnitude), time_step, &a, &chain, made)
     }
 }
