@@ -5,6 +5,8 @@ use std::process::{Command, ExitCode, Stdio};
 
 use anyhow::{Context as _, bail};
 
+use crate::steps::cargo;
+
 /// Where the checks stand in the repository.
 const SCRIPT: &str = "crates/report/tests/browser/check.mjs";
 
@@ -58,7 +60,7 @@ impl Check {
         Ok(command)
     }
 
-    /// The program in release, which the tests in release have built.
+    /// Where [`Self::build`] leaves the program.
     fn program(&self) -> PathBuf {
         let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
         let target = target.unwrap_or_else(|| PathBuf::from("target"));
@@ -68,9 +70,8 @@ impl Check {
 
     /// Builds the program in release.
     pub(crate) fn build(&self) -> anyhow::Result<()> {
-        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let build = ["build", "--quiet", "--release", "--package", "barrelstack-cli"];
-        let status = Command::new(cargo).args(build).current_dir(&self.root).status();
+        let status = Command::new(cargo()).args(build).current_dir(&self.root).status();
         if !status.context("cargo does not start")?.success() {
             bail!("the program does not build: see above");
         }

@@ -55,9 +55,14 @@ fn main() -> ExitCode {
 
 /// Runs a program of the workspace in release and passes its words and its status on.
 fn release(program: &[&str], words: &[&str]) -> ExitCode {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let run = ["run", "--quiet", "--release"];
-    match std::process::Command::new(cargo).args(run).args(program).arg("--").args(words).status() {
+    match std::process::Command::new(steps::cargo())
+        .args(run)
+        .args(program)
+        .arg("--")
+        .args(words)
+        .status()
+    {
         Ok(status) if status.success() => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,
         Err(error) => {

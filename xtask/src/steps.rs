@@ -146,7 +146,7 @@ fn watched(command: &mut Command) -> anyhow::Result<(bool, Tally)> {
 }
 
 /// The cargo that started this program, so that a chosen toolchain stays chosen.
-fn cargo() -> OsString {
+pub(crate) fn cargo() -> OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 

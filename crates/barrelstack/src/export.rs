@@ -11,7 +11,7 @@ use crate::summary::Summary;
 use crate::system;
 use crate::verify::Verification;
 
-/// The names of all files that a run writes; nothing else in a folder is ever touched.
+/// The names of the files that every run writes.
 const FILES: [&str; 8] = [
     "summary.json",
     "scenario.toml",
@@ -158,7 +158,7 @@ impl Folder {
         written
     }
 
-    /// Writes the report on paper beside the other files and gives its path.
+    /// Writes the report on paper, `report.pdf`, beside the other files.
     ///
     /// # Errors
     /// When the system refuses.
@@ -168,19 +168,10 @@ impl Folder {
         summary: &Summary,
         verification: Option<&Verification>,
         paper: Paper,
-    ) -> Result<PathBuf, ExportError> {
-        const NAME: &str = "report.pdf";
+    ) -> Result<(), ExportError> {
         let document = report::verified_document(run, summary, verification);
         let bytes = document_pdf(&document, paper);
-        let path = self.path.join(NAME);
-        let written = std::fs::write(self.temporary(NAME), bytes)
-            .and_then(|()| std::fs::rename(self.temporary(NAME), &path));
-        written.map_err(|error| {
-            // It may never have been made, and that is well.
-            let _ = std::fs::remove_file(self.temporary(NAME));
-            self.refused(NAME, &error)
-        })?;
-        Ok(path)
+        self.put(&std::iter::once(("report.pdf", bytes.as_slice())))
     }
 
     fn temporary(&self, name: &str) -> PathBuf {

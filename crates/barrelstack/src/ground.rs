@@ -118,12 +118,17 @@ pub(crate) fn scaled(
         }
         Scale::Pga(target) => motion = motion.scale_to(IntensityMeasure::Pga, target)?,
         Scale::Pgv(target) => motion = motion.scale_to(IntensityMeasure::Pgv, target)?,
-        Scale::Measure { measure, value, of } => {
-            // Both horizontals are at hand only where the record is read; it is scaled there.
-            if horizontals(of).is_none() {
-                motion = motion.scale_to(measure, value)?;
+        Scale::Measure { measure, value, of } => match (horizontals(of), &spec.source) {
+            (None, _) => motion = motion.scale_to(measure, value)?,
+            // Scaled where it was read, with both horizontals at hand.
+            (Some(_), MotionSource::Record(_)) => {}
+            (Some(over), MotionSource::None | MotionSource::Sine(_) | MotionSource::Pulse(_)) => {
+                return Err(MotionError::NotScalable {
+                    measure: format!("{measure}, {over} of both horizontals,"),
+                    reason: "only a record has two".to_owned(),
+                });
             }
-        }
+        },
     }
     for length in [spec.similitude, run_scale] {
         if length != 1.0 {

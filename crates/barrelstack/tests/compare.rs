@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use barrelstack::compare::{self, CompareError, Side, differences};
 use barrelstack::scenario::Source;
 use barrelstack::{Scenario, Summary};
-use barrelstack_report::{Block, Document, Table, markdown};
+use barrelstack_report::{Block, Document, FigureKind, Plot, Table, figures, markdown};
 
 const MU: &str = "interface.rack-ground.friction.coefficient";
 
@@ -32,6 +32,21 @@ fn table<'a>(document: &'a Document, heading: &str) -> &'a Table {
         panic!("no table follows {heading}")
     };
     table
+}
+
+/// The plot of a name.
+fn plot(document: &Document, id: &str) -> Plot {
+    let found = figures(document).into_iter().find(|(name, _)| name == id);
+    let Some(FigureKind::Plot(plot)) = found.map(|(_, figure)| figure.kind) else {
+        panic!("there is no plot {id}")
+    };
+    plot
+}
+
+/// The names of the histories under the players.
+fn lanes(document: &Document) -> Vec<&str> {
+    let Block::Players(players) = &document.blocks[0] else { panic!("players come first") };
+    players.ground.iter().map(|history| history.label.as_str()).collect()
 }
 
 #[test]
@@ -105,4 +120,33 @@ fn the_page_sets_outcomes_and_demands_side_by_side() {
     let text = markdown(&document, "figures").text;
     assert!(text.contains("They differ in one input: stack.levels, 4 and 2."), "{text}");
     assert!(text.contains("A is four.\nB is two.\n"), "{text}");
+}
+
+#[test]
+fn what_falls_leaves_the_picture_whichever_run_comes_first() {
+    let disc = side("disc", &scenario("rolling-disc", &["run.duration=0.2 s"]));
+    let changes = ["run.stop_after_collapse=1 s"];
+    let stack = side("stack", &scenario("candia-8-barrels", &changes));
+    assert!(stack.run.fates.collapse_time().is_some());
+    let range = |sides: &[Side], id: &str| plot(&compare::document(sides), id).y.range;
+    let orders = [[disc.clone(), stack.clone()], [stack, disc]];
+    let [first, second] = orders.each_ref().map(|sides| range(sides, "top-displacements"));
+    assert!(first.is_some() && first == second, "{first:?} {second:?}");
+    // What shook the ground after the collapse is no less worth seeing.
+    for sides in &orders {
+        assert_eq!(range(sides, "ground-accelerations"), None);
+    }
+}
+
+#[test]
+fn a_length_scale_makes_another_motion() {
+    let run = |more: &[&str]| {
+        let changes = [&["run.duration=0.2 s"], more].concat();
+        side("run", &scenario("candia-8-barrels", &changes))
+    };
+    let sides = [run(&[]), run(&["run.similitude=0.5"]), run(&["stack.levels=2"])];
+    let document = compare::document(&sides[..2]);
+    assert_eq!(lanes(&document), ["A: ground acceleration", "B: ground acceleration"]);
+    let shared = compare::document(&[sides[0].clone(), sides[2].clone()]);
+    assert_eq!(lanes(&shared), ["ground acceleration", "ground velocity"]);
 }

@@ -163,6 +163,12 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
     ),
     (
         2,
+        "[[motion]]\nsynthetic = { kind = \"clough-penzien\", count = 2 }\n\
+         scale = { measure = \"pgv\", value = \"1 m/s\", of = \"rotd50\" } # HERE\n",
+        &["of both horizontals needs a recorded motion"],
+    ),
+    (
+        2,
         "[[motion]]\nbundled = \"napa-college-2014\"\n[motion.each]\nscale = { pga = \"1 g\" } # HERE\n",
         &["not in `each`"],
     ),

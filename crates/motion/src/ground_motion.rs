@@ -44,7 +44,7 @@ impl GroundMotion {
     pub fn from_pulse(name: impl Into<String>, pulse: Pulse) -> Result<Self, MotionError> {
         pulse.check()?;
         let mut motion = Self::new(name, History::Analytic(pulse), None);
-        motion.provenance.push(format!("closed form: {pulse:?}"));
+        motion.provenance.push(format!("closed form: {pulse}"));
         Ok(motion)
     }
 

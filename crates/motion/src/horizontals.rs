@@ -7,7 +7,7 @@ use crate::error::MotionError;
 use crate::intensity::IntensityMeasure;
 use crate::math::{self, PI};
 use crate::rotd::{DIRECTIONS, rotated_peak, rotated_spectrum};
-use crate::sampled::Sampled;
+use crate::sampled::{Sampled, running_trapezoid};
 
 /// How the measures of two horizontals become one number.
 ///
@@ -32,8 +32,9 @@ pub enum Horizontals {
 }
 
 impl Horizontals {
-    /// The measure of two components of one step (SI units); the longer one is cut to the shorter.
+    /// The measure of two components of one step (SI units).
     ///
+    /// Over directions the longer one is cut to the shorter; the geometric mean takes each whole.
     /// Peaks and spectral accelerations are taken from the convex hull of the two responses, all
     /// other measures from the motion turned degree by degree.
     ///
@@ -62,7 +63,11 @@ impl Horizontals {
             }
             (_, IntensityMeasure::Pga) => rotated_peak(first.acceleration(), second.acceleration()),
             (_, IntensityMeasure::Pgv) => rotated_peak(first.velocity(), second.velocity()),
-            (_, IntensityMeasure::Pgd) => rotated_peak(first.displacement(), second.displacement()),
+            (_, IntensityMeasure::Pgd) => {
+                // By trapezoids, as the measure of one component is.
+                let along = |one: &Sampled| running_trapezoid(one.time_step(), one.velocity());
+                rotated_peak(&along(first), &along(second))
+            }
             (_, IntensityMeasure::Sa { period, damping }) => {
                 let (a, b) = (first.acceleration(), second.acceleration());
                 return rotated_spectrum(first.time_step(), a, b, &[period], damping)

@@ -34,7 +34,8 @@
 //! - Reading: [`read`], [`FORMATS`], [`ReadError`]; parts and components: [`Record::join`],
 //!   [`Record::gather`].
 //! - Choosing and processing: [`Component`], [`Record::ground_motion`], [`Processing`].
-//! - Measuring: [`IntensityMeasure`], [`Horizontals`], [`ResponseSpectrum`], [`rotated_spectrum`], [`dominant_pulse`].
+//! - Measuring: [`IntensityMeasure`], [`Horizontals`], [`ResponseSpectrum`], [`rotated_spectrum`],
+//!   [`dominant_pulse`].
 //! - Scaling and matching: [`GroundMotion::scale_to`], [`GroundMotion::froude`],
 //!   [`GroundMotion::match_spectrum`], [`TargetSpectrum`].
 //! - Making: [`Pulse`], [`CloughPenzien`], [`BooreSource`], [`NearFault`], all from stated seeds of
@@ -68,6 +69,7 @@ mod sampled;
 mod select;
 mod synthesis;
 mod target;
+mod told;
 mod units;
 mod wavelets;
 pub mod write;

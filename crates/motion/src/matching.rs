@@ -23,7 +23,8 @@ pub enum MatchMethod {
     /// (Lilhanand and Tseng 1988; Al Atik and Abrahamson 2010, Earthquake Spectra 26:601-617).
     ///
     /// Keeps the character of the motion; slower.
-    /// Where it stalls, rounds in the frequency domain shake it loose.
+    /// Where it stalls, rounds in the frequency domain follow; if that fails too, the match begins
+    /// anew with the frequency domain first, and the provenance says so.
     Time,
 }
 
@@ -38,12 +39,12 @@ pub struct Matching {
     pub longest: f64,
     /// Largest relative misfit accepted at any matched period.
     pub tolerance: f64,
-    /// Most rounds.
+    /// Most rounds of one method in a row; the methods take turns where one stalls.
     pub rounds: usize,
 }
 
 impl Default for Matching {
-    /// Time domain, 0.1 to 3 s, 5 %, at most 120 rounds.
+    /// Time domain, 0.1 to 3 s, 5 %, at most 100 rounds.
     fn default() -> Self {
         Self {
             method: MatchMethod::Time,
@@ -79,6 +80,24 @@ pub struct Matched {
     pub misfit: f64,
     /// Rounds done.
     pub rounds: usize,
+    /// The method asked for.
+    pub chosen: MatchMethod,
+    /// The method that began: the one asked for, or the frequency domain where wavelets alone
+    /// stalled.
+    pub first: MatchMethod,
+}
+
+impl Matched {
+    /// Where it was matched, for a sentence: "matched in …".
+    pub fn domain(&self) -> &'static str {
+        match (self.first, self.chosen) {
+            (MatchMethod::Time, _) => "the time domain",
+            (MatchMethod::Frequency, MatchMethod::Frequency) => "the frequency domain",
+            (MatchMethod::Frequency, MatchMethod::Time) => {
+                "the frequency domain, where the time domain stalled,"
+            }
+        }
+    }
 }
 
 impl GroundMotion {
@@ -141,7 +160,8 @@ impl GroundMotion {
             });
         }
         let start: Vec<f64> = given.iter().map(|a| a * factor).collect();
-        let (acceleration, misfit, rounds) = work.alternate(start, settings)?;
+        let (Best { acceleration, misfit, round: rounds }, first) =
+            work.alternate(&start, settings)?;
         if !(misfit <= settings.tolerance) {
             return Err(MotionError::NotConverged {
                 what: "spectral matching".to_owned(),
@@ -156,18 +176,16 @@ impl GroundMotion {
         let vertical = self.vertical.as_ref().map(|history| history.scaled(factor));
         let mut motion = GroundMotion::new(self.name.clone(), horizontal, vertical);
         motion.provenance.clone_from(&self.provenance);
-        motion.provenance.push(format!(
-            "scaled by {factor:.4} and matched in {} to {target:?} from {} to {} s: misfit at most \
+        let mut matched = Matched { motion, misfit, rounds, chosen: settings.method, first };
+        matched.motion.provenance.push(format!(
+            "scaled by {factor:.4} and matched in {} to {target} from {} to {} s: misfit at most \
              {:.2} % after {rounds} rounds, ends closed",
-            match settings.method {
-                MatchMethod::Frequency => "the frequency domain",
-                MatchMethod::Time => "the time domain",
-            },
+            matched.domain(),
             settings.shortest,
             settings.longest,
             100.0 * misfit
         ));
-        Ok(Matched { motion, misfit, rounds })
+        Ok(matched)
     }
 }
 
@@ -282,32 +300,56 @@ impl Work<'_> {
         Ok(self.chain.apply(self.time_step, acceleration, 0.0)?.acceleration)
     }
 
-    /// The chosen method first, then the other on what it left, until the tolerance is met.
+    /// The best motion and the method that began: the chosen one, or the frequency domain where
+    /// wavelets first do not meet the tolerance.
     fn alternate(
         &self,
-        start: Vec<f64>,
+        start: &[f64],
         settings: &Matching,
-    ) -> Result<(Vec<f64>, f64, usize), MotionError> {
+    ) -> Result<(Best, MatchMethod), MotionError> {
         use MatchMethod::{Frequency, Time};
-        let order: &[MatchMethod] = match settings.method {
-            Frequency => &[Frequency, Time, Frequency, Time, Frequency, Time],
-            Time => &[Time, Frequency, Time, Frequency, Time],
-        };
-        let (mut a, mut rounds) = (start, 0);
-        let mut best = Best::new(&a);
-        for method in order {
+        let mut best = Best::new(start);
+        let mut rounds = 0;
+        if settings.method == Time {
+            let turns = [Time, Frequency, Time, Frequency, Time];
+            rounds = self.take_turns(&turns, start, settings, rounds, &mut best)?;
+            if best.misfit <= settings.tolerance {
+                return Ok((best, Time));
+            }
+        }
+        let stalled = best.misfit;
+        let turns = [Frequency, Time, Frequency, Time, Frequency, Time];
+        self.take_turns(&turns, start, settings, rounds, &mut best)?;
+        let first = if best.misfit < stalled { Frequency } else { settings.method };
+        Ok((best, first))
+    }
+
+    /// Each method on what the one before it left, until the tolerance is met; gives all rounds
+    /// done so far.
+    fn take_turns(
+        &self,
+        turns: &[MatchMethod],
+        start: &[f64],
+        settings: &Matching,
+        mut rounds: usize,
+        best: &mut Best,
+    ) -> Result<usize, MotionError> {
+        let mut a = start.to_vec();
+        for method in turns {
             let (next, more) = match method {
-                Frequency => self.in_frequency(&a, settings)?,
-                Time => wavelets::match_in_time(self, &a, settings)?,
+                MatchMethod::Frequency => self.in_frequency(&a, settings)?,
+                MatchMethod::Time => wavelets::match_in_time(self, &a, settings)?,
             };
             rounds += more;
             best.offer(&next, self.checked_misfit(&next)?, rounds);
-            if best.misfit <= CLEAR * settings.tolerance {
+            // The frequency domain would go from its own best motion where it went before.
+            let stuck = *method == MatchMethod::Time && more == 1;
+            if best.misfit <= CLEAR * settings.tolerance || stuck {
                 break;
             }
             a = next;
         }
-        Ok((best.acceleration, best.misfit, rounds))
+        Ok(rounds)
     }
 
     fn in_frequency(

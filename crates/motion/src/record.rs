@@ -120,7 +120,7 @@ impl Channel {
 
     /// Peak displacement (m) by plain integration, trapezoids throughout.
     pub fn pgd(&self) -> f64 {
-        crate::sampled::trapezoid_peak(self.time_step, &self.velocity())
+        math::peak(&crate::sampled::running_trapezoid(self.time_step, &self.velocity()))
     }
 
     fn velocity(&self) -> Vec<f64> {

@@ -1,4 +1,4 @@
-//! What headers of plain columns say of their names and units.
+//! What headers of plain columns say of their names, units and initial velocities.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by unwrap")]
 
@@ -34,5 +34,18 @@ fn a_unit_behind_every_name_is_a_stated_one() {
     for header in ["time (s),EW (cm/s2),NS (g)", "time (s),EW,NS", "time (s),EW (cm/s2),NS"] {
         let error = table(header).unwrap_err();
         assert_eq!(error.refusal, Refusal::Missing, "{header}: {error}");
+    }
+}
+
+#[test]
+fn an_initial_velocity_that_cannot_be_used_is_refused_with_its_line() {
+    for stated in ["0.1", "0.1 x", "0.1 0.2 0.3", "0.1 NaN"] {
+        let text = format!(
+            "# acceleration (m/s2)\n# initial velocity (m/s): {stated}\n\
+             time (s),EW (m/s2),NS (m/s2)\n0,1,2\n0.1,2,1\n0.2,1,0\n"
+        );
+        let error = read(text.as_bytes(), "t.csv", &ReadOptions::default()).unwrap_err();
+        assert_eq!((error.refusal, error.line), (Refusal::Damaged, Some(2)), "{error}");
+        assert!(error.to_string().contains("2 velocities (m/s)"), "{error}");
     }
 }

@@ -279,6 +279,15 @@ fn what_is_no_acceleration_is_refused_by_name() {
 }
 
 #[test]
+fn a_known_layout_without_a_reader_is_refused_by_name() {
+    let rows = "   1.00  -2.00\n".repeat(20);
+    let text = format!("STATION\nSAMPLES/SEC=200\nDATA TYPE=AC\n{rows}");
+    let error = read(text.as_bytes(), "blocks.044", &ReadOptions::default()).unwrap_err();
+    assert_eq!((error.refusal, error.line), (Refusal::Unrecognized, Some(3)), "{error}");
+    assert!(error.to_string().contains("USGS layout of 1987"), "{error}");
+}
+
+#[test]
 fn what_a_format_does_not_say_must_be_given() {
     for (file, word) in [
         ("columns/bare.txt", "time step"),

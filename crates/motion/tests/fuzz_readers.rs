@@ -10,9 +10,13 @@
 )]
 
 mod fuzz;
+#[path = "fuzz/large.rs"]
+#[expect(dead_code, reason = "absurd large files are for the long run")]
+mod large;
 
 use barrelstack_motion::{
-    AccelerationUnit, Component, Direction, FORMATS, Horizontals, IntensityMeasure, Random, read,
+    AccelerationUnit, Component, Direction, FORMATS, Horizontals, IntensityMeasure, Random,
+    ReadOptions, read,
 };
 use fuzz::{must_hold, mutate, options, samples, samples_of};
 
@@ -24,6 +28,42 @@ fn every_format_has_a_sample_to_be_damaged() {
     let samples = samples();
     for format in FORMATS {
         assert!(!samples_of(format, &samples).is_empty(), "{} has no sample", format.name);
+    }
+}
+
+#[test]
+fn samples_grow_to_large_files_that_their_readers_take() {
+    // In the others several blocks, a length in seconds or rising times must agree with the count.
+    let growing = [
+        "sac",
+        "esm",
+        "afad",
+        "miniseed",
+        "barrelstack",
+        "smc",
+        "csmip-v1",
+        "bhrc",
+        "cosmos",
+        "unam",
+        "peer",
+        "columns",
+    ];
+    let samples = samples();
+    let given = ReadOptions {
+        unit: Some(AccelerationUnit::Gal),
+        time_step: Some(0.01),
+        sensitivity: Some(1000.0),
+    };
+    for name in growing {
+        let format = FORMATS.iter().find(|format| format.name == name).unwrap();
+        let most = samples_of(format, &samples)
+            .iter()
+            .flat_map(|sample| large::sound(&sample.bytes))
+            .filter_map(|bytes| format.read(&bytes, "large", &given).ok())
+            .map(|record| record.channels.iter().map(|c| c.acceleration.len()).sum::<usize>())
+            .max();
+        // Measured 71 379 values and more; no sample has more than 400.
+        assert!(most > Some(50_000), "{name}: {most:?}");
     }
 }
 

@@ -170,6 +170,12 @@ fn two_horizontals_are_scaled_to_any_measure_over_all_directions() {
         let single = measure.of(&one).unwrap().max(measure.of(&two).unwrap());
         assert!(of(Horizontals::RotD100) >= single * (1.0 - 1e-12), "{measure}");
     }
+    // Beside a component at rest the largest is the measure of the other.
+    let still = one.scaled(0.0);
+    for measure in [IntensityMeasure::Pga, IntensityMeasure::Pgv, IntensityMeasure::Pgd] {
+        let largest = Horizontals::RotD100.of(measure, &one, &still).unwrap();
+        assert_eq!(largest, measure.of(&one).unwrap(), "{measure}");
+    }
     let time = Horizontals::RotD50.scale_factor(IntensityMeasure::D5_95, &one, &two, 3.0);
     assert!(time.unwrap_err().to_string().contains("does not change"));
     // Turned Arias intensities have a closed form: their median is that at 45 degrees of the axes.

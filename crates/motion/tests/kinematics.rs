@@ -6,7 +6,10 @@
     reason = "a test fails by unwrap and tells by print"
 )]
 
+mod consistency;
+
 use barrelstack_motion::{Delayed, GroundMotion, History, IntensityMeasure, Pulse, Sampled};
+use consistency::{derivatives_of_one_another, scattered};
 
 fn pulses() -> Vec<Pulse> {
     vec![
@@ -36,11 +39,6 @@ fn integral(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
         sum += if k % 2 == 0 { 2.0 } else { 4.0 } * f(from + h * f64::from(k));
     }
     sum * h / 3.0
-}
-
-/// A fixed sequence in 0..1 that visits times without pattern.
-fn scattered(n: u32) -> impl Iterator<Item = f64> {
-    (1..=n).map(|k| (f64::from(k) * 0.618_033_988_749_894_9).fract())
 }
 
 #[test]
@@ -109,16 +107,7 @@ fn end_displacements_are_the_published_ones() {
 fn samples_are_consistent_between_samples() {
     let a: Vec<f64> = scattered(500).map(|x| x - 0.5).collect();
     let motion = Sampled::new(0.02, a).unwrap();
-    for x in scattered(1000) {
-        let t = x * motion.duration();
-        let k = (t / 0.02).floor();
-        let (start, here) = (motion.at(k * 0.02), motion.at(t));
-        // Simpson's rule is exact for the linear acceleration and the quadratic velocity.
-        let v = start.velocity + integral(k * 0.02, t, |t| motion.at(t).acceleration);
-        let d = start.displacement + integral(k * 0.02, t, |t| motion.at(t).velocity);
-        assert!((v - here.velocity).abs() < 1e-13); // measured 3e-15
-        assert!((d - here.displacement).abs() < 1e-13); // measured 1e-14
-    }
+    derivatives_of_one_another("scattered accelerations", &motion);
 }
 
 #[test]

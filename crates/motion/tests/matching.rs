@@ -11,35 +11,24 @@ use barrelstack_motion::{
     STANDARD_GRAVITY, SiteClass, TargetSpectrum, bundled, response,
 };
 
-/// The first 20 s of the bundled record, to keep the tests quick.
+/// Every second sample of the first 20 s of the bundled record, to keep the tests quick.
 fn napa() -> GroundMotion {
     let mut record = bundled("napa-college-2014").unwrap();
     for channel in &mut record.channels {
-        channel.acceleration.truncate(4000);
+        channel.time_step *= 2.0;
+        channel.acceleration = channel.acceleration.iter().take(4000).step_by(2).copied().collect();
     }
     record
         .ground_motion(&Component::Horizontal1, Some(&Component::Vertical), &Processing::compact())
         .unwrap()
 }
 
-fn targets() -> Vec<TargetSpectrum> {
-    vec![
-        TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0, damping: 0.05 },
-        TargetSpectrum::Eurocode8 {
-            ground_acceleration: 0.3,
-            site: SiteClass::B,
-            small_magnitude: false,
-            damping: 0.05,
-        },
-        TargetSpectrum::NCh433 { zone: ChileanZone::Three, site: SiteClass::D },
-        TargetSpectrum::NCh2745 { zone: ChileanZone::Two, soil: NCh2745Soil::II, damping: 0.05 },
-        TargetSpectrum::Nzs1170 {
-            hazard: 0.4,
-            return_period: 1.0,
-            site: SiteClass::C,
-            fault_distance: None,
-        },
-    ]
+fn asce() -> TargetSpectrum {
+    TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0, damping: 0.05 }
+}
+
+fn nch2745() -> TargetSpectrum {
+    TargetSpectrum::NCh2745 { zone: ChileanZone::Two, soil: NCh2745Soil::II, damping: 0.05 }
 }
 
 /// Largest misfit on a grid of its own, 1000 periods to a decade.
@@ -57,31 +46,82 @@ fn misfit(motion: &GroundMotion, target: &TargetSpectrum) -> f64 {
         .fold(0.0, f64::max)
 }
 
-#[test]
-fn both_methods_meet_every_code_spectrum_and_do_not_drift() {
+/// Panics unless each method meets the target within 5 % and leaves a motion that ends at rest.
+fn both_methods_meet(target: &TargetSpectrum) {
     let start = napa();
-    for (k, target) in targets().into_iter().enumerate() {
-        // Both methods on the first; each code once, to stay within seconds.
-        let methods = match k {
-            0 => vec![MatchMethod::Frequency, MatchMethod::Time],
-            _ if k % 2 == 0 => vec![MatchMethod::Frequency],
-            _ => vec![MatchMethod::Time],
-        };
-        for method in methods {
-            let settings = Matching { method, ..Matching::default() };
-            let matched = start.match_spectrum(&target, &settings).unwrap();
-            let between = misfit(&matched.motion, &target);
-            println!("{method:?}: {:.3} at its periods, {between:.3} between", matched.misfit);
-            assert!(matched.misfit <= 0.05);
-            assert!(between <= 0.05, "{method:?} {target:?}: {between}"); // measured 0.0498
-            let motion = &matched.motion;
-            let end = motion.horizontal.at(motion.horizontal.duration());
-            assert!(end.velocity.abs() < 1e-3 * motion.pgv());
-            assert!(end.displacement.abs() < 1e-2 * motion.pgd());
-            assert!(motion.provenance.iter().any(|step| step.contains("matched in")));
-            assert!(motion.vertical.is_some());
-        }
+    for method in [MatchMethod::Frequency, MatchMethod::Time] {
+        let settings = Matching { method, ..Matching::default() };
+        let matched = start.match_spectrum(target, &settings).unwrap();
+        let between = misfit(&matched.motion, target);
+        println!("{method:?} {target}: {:.4} at its periods, {between:.4} between", matched.misfit);
+        assert!(matched.misfit <= 0.05 && between <= 0.05, "{method:?} {target}: {between}");
+        let motion = &matched.motion;
+        let end = motion.horizontal.at(motion.horizontal.duration());
+        // Measured 5e-16 and 3e-14 at most.
+        assert!(end.velocity.abs() < 1e-12 * motion.pgv());
+        assert!(end.displacement.abs() < 1e-10 * motion.pgd());
+        let told = motion.provenance.last().unwrap();
+        assert!(told.contains(&format!("matched in {} to {target}", matched.domain())), "{told}");
+        assert!(motion.vertical.is_some());
     }
+}
+
+// Beside each target the largest misfit measured in frequency and in time.
+
+#[test]
+fn both_methods_meet_asce_7() {
+    both_methods_meet(&asce()); // 0.0457 and 0.0438
+}
+
+#[test]
+fn both_methods_meet_eurocode_8() {
+    // 0.0437 and 0.0375
+    both_methods_meet(&TargetSpectrum::Eurocode8 {
+        ground_acceleration: 0.3,
+        site: SiteClass::B,
+        small_magnitude: false,
+        damping: 0.05,
+    });
+}
+
+#[test]
+fn both_methods_meet_nch433() {
+    // 0.0396 and 0.0490
+    both_methods_meet(&TargetSpectrum::NCh433 { zone: ChileanZone::Three, site: SiteClass::D });
+}
+
+#[test]
+fn both_methods_meet_nch2745() {
+    both_methods_meet(&nch2745()); // 0.0338 and 0.0465
+}
+
+#[test]
+fn both_methods_meet_nzs_1170() {
+    // 0.0467 and 0.0405
+    both_methods_meet(&TargetSpectrum::Nzs1170 {
+        hazard: 0.4,
+        return_period: 1.0,
+        site: SiteClass::C,
+        fault_distance: None,
+    });
+}
+
+#[test]
+fn both_methods_meet_ac156() {
+    // 0.0436 and 0.0357
+    both_methods_meet(&TargetSpectrum::Ac156 { sds: 0.8, height_ratio: 0.5 });
+}
+
+#[test]
+fn where_wavelets_stall_the_frequency_domain_begins_and_says_so() {
+    let settings = Matching { tolerance: 0.08, rounds: 20, ..Matching::default() };
+    let matched = napa().match_spectrum(&nch2745(), &settings).unwrap();
+    assert_eq!((matched.chosen, matched.first), (MatchMethod::Time, MatchMethod::Frequency));
+    assert!(matched.misfit <= 0.08); // measured 0.0637; wavelets first leave more than 0.08
+    let told = matched.motion.provenance.last().unwrap();
+    assert!(
+        told.contains("the frequency domain, where the time domain stalled, to NCh2745 (zone 2")
+    );
 }
 
 #[test]
@@ -90,13 +130,13 @@ fn a_table_is_matched_like_a_code() {
         [0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0].iter().map(|t| (*t, 6.0 / (1.0 + 3.0 * t))).collect();
     let target = TargetSpectrum::Table { points: table, damping: 0.05 };
     let matched = napa().match_spectrum(&target, &Matching::default()).unwrap();
-    assert!(matched.misfit <= 0.05);
+    assert!(matched.misfit <= 0.05); // measured 0.0498
 }
 
 #[test]
 fn impossible_matches_are_refused_in_words() {
     let motion = napa();
-    let target = &targets()[0];
+    let target = &asce();
     let short = Matching { shortest: 0.001, ..Matching::default() };
     assert!(motion.match_spectrum(target, &short).unwrap_err().to_string().contains("four steps"));
     let hopeless = Matching { tolerance: 1e-6, rounds: 2, ..Matching::default() };
@@ -221,6 +261,6 @@ fn a_motion_is_matched_at_the_damping_of_its_target() {
     for period in [0.15, 0.4, 0.9, 2.2] {
         let peaks = response(sampled.time_step(), sampled.acceleration(), period, 0.1).unwrap();
         let off = peaks.pseudo_acceleration / target.acceleration(period) - 1.0;
-        assert!(off.abs() <= 0.05, "{period} s: {off}");
+        assert!(off.abs() <= 0.05, "{period} s: {off}"); // measured 0.008 at most
     }
 }

@@ -6,12 +6,15 @@
     reason = "a test fails by unwrap and tells by print"
 )]
 
+mod consistency;
+
 use std::fmt::Write as _;
 
 use barrelstack_motion::{
     Channel, Component, Direction, History, MeanRemoval, Pads, Processing, ReadOptions, Record,
     STANDARD_GRAVITY, Sampled, Stage, bundled, read,
 };
+use consistency::derivatives_of_one_another;
 
 fn sampled(history: &History) -> &Sampled {
     match history {
@@ -165,11 +168,6 @@ fn unreasonable_settings_are_refused() {
     assert!(whole.apply(0.01, &a, 0.0).unwrap().acceleration.iter().all(|v| v.abs() < 1e-15));
 }
 
-/// Times without pattern in 0..1.
-fn scattered(n: u32) -> impl Iterator<Item = f64> {
-    (1..=n).map(|k| (f64::from(k) * 0.618_033_988_749_894_9).fract())
-}
-
 #[test]
 fn every_sample_of_a_raw_record_comes_to_rest_and_stays_consistent() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
@@ -204,22 +202,11 @@ fn every_sample_of_a_raw_record_comes_to_rest_and_stays_consistent() {
     assert!(seen >= 40, "{seen}");
 }
 
-/// End velocity and displacement, and the integrals over parts of a step at scattered times.
 fn consistent_and_closed(name: &str, motion: &Sampled) {
     let end = motion.at(motion.duration());
     assert!(end.velocity.abs() < 1e-3 * motion.pgv(), "{name}"); // measured 1e-13
     assert!(end.displacement.abs() < 1e-2 * motion.pgd(), "{name}"); // measured 1e-12
-    for x in scattered(100) {
-        let t = x * motion.duration();
-        let from = (t / motion.time_step()).floor() * motion.time_step();
-        let (a, m, b) = (motion.at(from), motion.at(0.5 * (from + t)), motion.at(t));
-        // Simpson's rule is exact for a linear acceleration and a quadratic velocity.
-        let h = (t - from) / 6.0;
-        let v = a.velocity + h * (a.acceleration + 4.0 * m.acceleration + b.acceleration);
-        let d = a.displacement + h * (a.velocity + 4.0 * m.velocity + b.velocity);
-        assert!((v - b.velocity).abs() <= 1e-12 * motion.pgv(), "{name} at {t}"); // measured 1e-15
-        assert!((d - b.displacement).abs() <= 1e-12 * motion.pgd(), "{name} at {t}");
-    }
+    derivatives_of_one_another(name, motion);
 }
 
 #[test]
@@ -230,7 +217,7 @@ fn parts_of_every_kind_are_joined_by_name_or_by_order() {
         part.file = file.to_owned();
         part.channels.truncate(1);
         // Plain columns name their only channel after the file.
-        part.channels[0].name = barrelstack_name(file);
+        part.channels[0].name = stem(file);
         part.channels[0].acceleration = part.channels[0].acceleration[from..to].to_vec();
         part
     };
@@ -253,7 +240,7 @@ fn parts_of_every_kind_are_joined_by_name_or_by_order() {
     assert!(off < 1e-12, "{off}");
 }
 
-fn barrelstack_name(file: &str) -> String {
+fn stem(file: &str) -> String {
     file.trim_end_matches(".txt").to_owned()
 }
 

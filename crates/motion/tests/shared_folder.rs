@@ -8,14 +8,17 @@
     reason = "a test fails by unwrap and tells by print"
 )]
 
+mod consistency;
+
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use barrelstack_motion::{
     AccelerationUnit, Component, History, Processing, ReadError, ReadOptions, Record, Refusal,
-    STANDARD_GRAVITY, Sampled, Stage, read,
+    STANDARD_GRAVITY, Stage, read,
 };
+use consistency::derivatives_of_one_another;
 
 fn folder() -> Option<PathBuf> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions");
@@ -137,20 +140,6 @@ fn raw_records_come_to_rest_after_processing_and_stay_consistent() {
         worst.0, worst.1
     );
     assert!(seen >= 60, "{seen}");
-}
-
-/// Simpson's rule over a part of a step is exact for a linear acceleration and a quadratic velocity.
-fn derivatives_of_one_another(file: &str, motion: &Sampled) {
-    for k in 1..=200 {
-        let t = (f64::from(k) * 0.618_033_988_749_894_9).fract() * motion.duration();
-        let from = (t / motion.time_step()).floor() * motion.time_step();
-        let (a, m, b) = (motion.at(from), motion.at(0.5 * (from + t)), motion.at(t));
-        let h = (t - from) / 6.0;
-        let v = a.velocity + h * (a.acceleration + 4.0 * m.acceleration + b.acceleration);
-        let d = a.displacement + h * (a.velocity + 4.0 * m.velocity + b.velocity);
-        assert!((v - b.velocity).abs() <= 1e-12 * motion.pgv(), "{file} at {t}"); // measured 1e-15
-        assert!((d - b.displacement).abs() <= 1e-12 * motion.pgd(), "{file} at {t}");
-    }
 }
 
 fn page() -> PathBuf {

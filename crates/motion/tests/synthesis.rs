@@ -185,3 +185,27 @@ fn parameters_out_of_range_are_refused() {
         GroundMotion::from_pulse("x", Pulse::OneSine { acceleration: 1.0, period: 0.0 }).is_err()
     );
 }
+
+#[test]
+fn provenance_says_how_a_motion_was_made_in_words_and_units() {
+    let pulse = Pulse::Ricker { acceleration: 2.0, period: 0.5 };
+    let closed = GroundMotion::from_pulse("pulse", pulse).unwrap();
+    assert_eq!(closed.provenance, ["closed form: Ricker wavelet of 2 m/s2 and period 0.5 s"]);
+    let envelope = Envelope::Jennings { rise: 2.0, decay_start: 8.0, decay: 0.5 };
+    let noise = CloughPenzien::firm(1.5).motion(&envelope, 15.0, 0.01, 7).unwrap();
+    assert_eq!(
+        noise.provenance[0],
+        "Clough-Penzien noise: 1.5 m/s2 rms, ground of 15 rad/s and damping ratio 0.6, high-pass of \
+         1.5 rad/s and damping ratio 0.6, rising over 2 s and decaying from 8 s at 0.5 1/s \
+         (Jennings), 15 s long, seed 7"
+    );
+    let rest = BooreSource::western(6.0, 20.0);
+    let fault = NearFault { pulse, start: 1.0, rest, crossover: 1.2 };
+    assert_eq!(
+        fault.motion(0.01, 3).unwrap().provenance[0],
+        "near-fault motion: Ricker wavelet of 2 m/s2 and period 0.5 s from 1 s on, around it the \
+         stochastic method above 1.2 of the pulse's frequency: magnitude 6 at 20 km, stress \
+         parameter 70 bar, 3.5 km/s and 2.8 g/cm3 at the source, Q = 180 f^0.45, kappa 0.04 s, no \
+         site amplification, seed 3"
+    );
+}

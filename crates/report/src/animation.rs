@@ -146,7 +146,11 @@ fn painted(film: &Film, numbers: Range<usize>, scale: f64) -> Vec<(usize, Vec<u8
             .chunks(share)
             .map(|part| scope.spawn(move || part.iter().filter_map(paint).collect::<Vec<_>>()))
             .collect();
-        workers.into_iter().flat_map(|worker| worker.join().unwrap_or_default()).collect()
+        let joined = workers.into_iter().map(|worker| match worker.join() {
+            Ok(pictures) => pictures,
+            Err(panic) => std::panic::resume_unwind(panic),
+        });
+        joined.flatten().collect()
     })
 }
 

@@ -235,11 +235,9 @@ impl Plot {
             let at = x.at(mark.at);
             let center = at.clamp(left + half, (right - half).max(left + half));
             let free = ends.iter().position(|end| center - half > *end);
-            let row = free.or_else(|| {
-                ends.push(0.0);
-                Some(ends.len() - 1).filter(|row| *row < MARK_ROWS)
-            });
+            let row = free.or(Some(ends.len()).filter(|row| *row < MARK_ROWS));
             if let Some(row) = row {
+                ends.resize(ends.len().max(row + 1), 0.0);
                 ends[row] = center + half + 6.0;
             }
             PlacedMark { at, label: &mark.label, center, row }
@@ -324,5 +322,20 @@ impl Axis {
             Scale::Linear => linear_ticks(range[0], range[1], target),
             Scale::Log => log_ticks(range[0], range[1]),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_that_crowd_take_three_rows_and_no_more() {
+        let mark = |at: f64| Mark { at, label: "a label that is wide".into() };
+        let crowd = (0..6).map(|k| mark(5.0 + 0.01 * f64::from(k)));
+        let plot = Plot { marks: crowd.chain([mark(9.0)]).collect(), ..Plot::default() };
+        let x = Map { range: [0.0, 10.0], pixels: [50.0, 660.0], log: false };
+        let rows: Vec<Option<usize>> = plot.mark_layout(&x).iter().map(|mark| mark.row).collect();
+        assert_eq!(rows, [Some(0), Some(1), Some(2), None, None, None, Some(0)]);
     }
 }

@@ -72,7 +72,7 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
         let who = if sides.len() == 2 { "Both".to_owned() } else { format!("All {}", sides.len()) };
         let fate = fates.first().map(String::as_str).unwrap_or_default();
         let plural = fate.replacen("stands", "stand", 1).replacen("gives", "give", 1);
-        let plural = plural.replacen("and says", "and say", 1);
+        let plural = plural.replacen("and says", "and say", 1).replacen("its end", "their ends", 1);
         format!("{who} {plural}.")
     } else {
         let parts = fates.iter().enumerate().map(|(at, fate)| format!("{} {fate}", letter(at)));
@@ -124,10 +124,13 @@ fn players(sides: &[Side]) -> Players {
     }
 }
 
-/// Whether one motion shakes all.
+/// Whether one motion shakes all; a length scale of the run stretches its time.
 fn one_motion(sides: &[Side]) -> bool {
-    let motion = |side: &Side| side.run.scenario.motion.clone();
-    sides.iter().all(|side| motion(side) == motion(&sides[0]))
+    let asked = |side: &Side| {
+        let scenario = &side.run.scenario;
+        (scenario.motion.clone(), scenario.run.similitude)
+    };
+    sides.iter().all(|side| asked(side) == asked(&sides[0]))
 }
 
 /// The motion under the stages: that of the longest run where all share it, else one of each.
@@ -147,18 +150,18 @@ fn lanes(sides: &[Side]) -> Vec<History> {
 fn histories(sides: &[Side]) -> Vec<Block> {
     let mut blocks = Vec::new();
     let mut add = |id: &str, caption: &str, y: Axis, values: &dyn Fn(&Side) -> Option<Vec<f64>>| {
-        let series: Vec<Series> = sides
+        let lines: Vec<(&Side, Series)> = sides
             .iter()
             .enumerate()
             .filter_map(|(at, side)| {
                 let name = format!("{}: {}", letter(at), side.name);
                 let line = Series::new(name, side.run.recording.times.clone(), values(side)?);
                 let style = SeriesStyle { index: Some(at), ..SeriesStyle::default() };
-                Some(Series { style, ..line })
+                Some((side, Series { style, ..line }))
             })
             .collect();
-        if !series.is_empty() {
-            blocks.push(history(sides, id, caption, y, series));
+        if !lines.is_empty() {
+            blocks.push(history(sides, id, caption, y, lines));
         }
     };
     add(
@@ -205,22 +208,30 @@ fn displacement(side: &Side, kind: PartKind, level: u32) -> Option<Vec<f64>> {
     Some(channel.values.iter().map(|v| 100.0 * v).collect())
 }
 
-fn history(sides: &[Side], id: &str, caption: &str, mut y: Axis, series: Vec<Series>) -> Block {
+/// The figure of lines over time, each beside the run that it is of.
+fn history(
+    sides: &[Side],
+    id: &str,
+    caption: &str,
+    mut y: Axis,
+    lines: Vec<(&Side, Series)>,
+) -> Block {
     let marks = sides.iter().enumerate().filter_map(|(at, side)| {
         let at_time = side.run.fates.collapse_time()?;
         Some(Mark { at: at_time, label: format!("{} gives way", letter(at)) })
     });
-    // What falls leaves the picture, so that what stands can be read.
-    let ranges: Vec<Option<[f64; 2]>> = series
+    // What falls leaves the picture, so that what stands can be read; forces and accelerations are
+    // shown whole.
+    let ranges: Vec<Option<[f64; 2]>> = lines
         .iter()
-        .zip(sides)
-        .map(|(one, side)| report::standing_range(&side.run, std::slice::from_ref(one)))
+        .map(|(side, one)| report::standing_range(&side.run, std::slice::from_ref(one)))
         .collect();
-    if y.label != "force" && ranges.iter().any(Option::is_some) {
+    if y.unit == "cm" && ranges.iter().any(Option::is_some) {
         let own = |one: &Series| {
             one.y.iter().fold([0.0_f64; 2], |range, v| [range[0].min(*v), range[1].max(*v)])
         };
-        let all = series.iter().zip(&ranges).map(|(one, range)| range.unwrap_or_else(|| own(one)));
+        let all =
+            lines.iter().zip(&ranges).map(|((_, one), range)| range.unwrap_or_else(|| own(one)));
         y.range = all.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
     }
     Block::Figure(Figure {
@@ -229,7 +240,7 @@ fn history(sides: &[Side], id: &str, caption: &str, mut y: Axis, series: Vec<Ser
         kind: FigureKind::Plot(Plot {
             x: Axis::new("time", "s"),
             y,
-            series,
+            series: lines.into_iter().map(|(_, one)| one).collect(),
             marks: marks.collect(),
             interactive: true,
             timeline: true,

@@ -3,9 +3,9 @@
 mod terminal;
 
 use std::fmt::Write as _;
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use barrelstack_report::{
     Animation, Attachment, Document, Film, Format, Paper, Scene, document_pdf, figures, markdown,
@@ -13,6 +13,7 @@ use barrelstack_report::{
 };
 
 use crate::export::ExportError;
+use crate::pool;
 use crate::report;
 use crate::run::Run;
 use crate::summary::Summary;
@@ -232,7 +233,8 @@ fn animation(folder: &Path, scene: &Arc<Scene>, how: &Rendering) -> Result<usize
         + put(&folder.join("stack.png"), &animation.apng())?)
 }
 
-/// Numbered pictures, painted and written by all cores, each with one of them in memory.
+/// Numbered pictures, painted and written by all cores, each with one of them in memory, and the
+/// times of all.
 fn frames(folder: &Path, film: &Film, how: &Rendering) -> Result<usize, ExportError> {
     let digits = film.len().to_string().len().max(4);
     let pixels = how.formats.contains(&Format::Png);
@@ -240,23 +242,20 @@ fn frames(folder: &Path, film: &Film, how: &Rendering) -> Result<usize, ExportEr
         let format = if pixels { Format::Png } else { Format::Svg };
         format!("frame-{:0digits$}.{}", at + 1, format.extension())
     };
+    // Where one picture is refused, the rest would be too, and are not painted.
+    let refused = AtomicBool::new(false);
     let paint = |at: usize| {
+        if refused.load(Ordering::Relaxed) {
+            return Ok(0);
+        }
         let bytes = if pixels { film.png(at, 96.0) } else { film.svg(at).map(String::into_bytes) };
-        bytes.map_or(Ok(0), |bytes| put(&folder.join(name(at)), &bytes))
+        let written = bytes.map_or(Ok(0), |bytes| put(&folder.join(name(at)), &bytes));
+        refused.fetch_or(written.is_err(), Ordering::Relaxed);
+        written
     };
-    let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-    let worker = |first: usize| -> Result<usize, ExportError> {
-        (first..film.len()).step_by(cores).map(&paint).sum()
-    };
-    let worker = &worker;
-    let count = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..cores).map(|first| scope.spawn(move || worker(first))).collect();
-        let counts = workers.into_iter().map(|worker| match worker.join() {
-            Ok(count) => count,
-            Err(panic) => std::panic::resume_unwind(panic),
-        });
-        counts.sum::<Result<usize, ExportError>>()
-    })?;
+    let numbers: Vec<usize> = (0..film.len()).collect();
+    let painted = pool::map(&numbers, |at| paint(*at), &|_| ());
+    let count = painted.into_iter().sum::<Result<usize, ExportError>>()?;
     let mut times = String::from("file,time (s)\n");
     for (at, time) in (0..film.len()).filter_map(|at| Some((at, film.time(at)?))) {
         // Writing to a String cannot fail.

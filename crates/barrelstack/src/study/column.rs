@@ -130,7 +130,12 @@ impl Values {
             (Self::Number(values), Some(Value::Integer(value))) => values.push(Some(value as f64)),
             (Self::Text(values), Some(Value::Text(value))) => values.push(Some(value)),
             (_, Some(value)) => {
-                return Err(StudyError::Table(format!("{value:?} does not fit its column")));
+                let value = match value {
+                    Value::Integer(value) => value.to_string(),
+                    Value::Number(value) => value.to_string(),
+                    Value::Text(value) => format!("\"{value}\""),
+                };
+                return Err(StudyError::Table(format!("{value} does not fit its column")));
             }
         }
         Ok(())

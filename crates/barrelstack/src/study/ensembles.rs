@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use barrelstack_motion::{BooreSource, CloughPenzien, Envelope, Pulse};
+use barrelstack_motion::{BooreSource, CloughPenzien, Envelope, NearFault, Pulse};
 
 use crate::scenario::field::Named as _;
 use crate::scenario::reader::Reader;
 use crate::scenario::template::{self, Opened};
 use crate::scenario::tree::{Entry, Node, Table, Value};
-use crate::scenario::{Problem, Scale, ScenarioError};
+use crate::scenario::{Problem, Scale, ScenarioError, no_record_to_scale_by};
 use crate::system;
 
 use super::design::seed_of;
@@ -40,6 +40,9 @@ pub(super) fn read(
     if let Some(synthetic) = set.optional_section("synthetic")? {
         let scale =
             motion_of(set, opened, number, &[("bundled", Value::Text(first_bundled()))])?.scale;
+        if scale.needs_record() {
+            return Err(no_record_to_scale_by(set));
+        }
         return ensemble(synthetic, name, number, seed, scale);
     }
     let mut sources: Vec<(String, Vec<(&str, Value)>)> = Vec::new();
@@ -225,7 +228,7 @@ fn ensemble(
             };
             Making::CloughPenzien { noise, envelope, duration: reader.quantity("duration")? }
         }
-        Maker::NearFault => Making::NearFault {
+        Maker::NearFault => Making::NearFault(NearFault {
             pulse: Pulse::MavroeidisPapageorgiou {
                 velocity: reader.quantity("pulse_velocity")?,
                 period: reader.quantity("pulse_period")?,
@@ -235,7 +238,7 @@ fn ensemble(
             start: reader.quantity("start")?,
             rest: source(&reader)?,
             crossover: reader.number("crossover")?,
-        },
+        }),
     };
     reader.finish();
     let name = name.unwrap_or_else(|| kind.name().to_owned());

@@ -333,7 +333,7 @@ impl Study {
             let files = motion.shaking.files(Some(&base.motion));
             let source = match &motion.shaking {
                 Shaking::Synthetic(synthetic) => {
-                    format!("{:?}, seed {}", synthetic.maker, synthetic.seed)
+                    format!("{}, seed {}", synthetic.maker, synthetic.seed)
                 }
                 Shaking::Base | Shaking::Spec(_) if files.is_empty() => {
                     "made or bundled, as the study says".to_owned()

@@ -5,7 +5,6 @@ use std::sync::{Arc, Mutex};
 
 use barrelstack_motion::{
     BooreSource, CloughPenzien, Envelope, GroundMotion, IntensityMeasure, MotionError, NearFault,
-    Pulse,
 };
 
 use crate::ground::{self, Ground, GroundError};
@@ -49,7 +48,20 @@ pub(super) struct Synthetic {
 pub(super) enum Making {
     Boore(BooreSource),
     CloughPenzien { noise: CloughPenzien, envelope: Envelope, duration: f64 },
-    NearFault { pulse: Pulse, start: f64, rest: BooreSource, crossover: f64 },
+    NearFault(NearFault),
+}
+
+impl std::fmt::Display for Making {
+    /// How it is made, with units.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Boore(source) => write!(f, "stochastic method: {source}"),
+            Self::CloughPenzien { noise, envelope, duration } => {
+                write!(f, "Clough-Penzien noise: {noise}, {envelope}, {duration} s long")
+            }
+            Self::NearFault(fault) => write!(f, "near-fault motion: {fault}"),
+        }
+    }
 }
 
 impl Synthetic {
@@ -60,15 +72,7 @@ impl Synthetic {
             Making::CloughPenzien { noise, envelope, duration } => {
                 noise.motion(envelope, *duration, step, seed)
             }
-            Making::NearFault { pulse, start, rest, crossover } => {
-                let fault = NearFault {
-                    pulse: *pulse,
-                    start: *start,
-                    rest: rest.clone(),
-                    crossover: *crossover,
-                };
-                fault.motion(step, seed)
-            }
+            Making::NearFault(fault) => fault.motion(step, seed),
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use anyhow::bail;
 use barrelstack::compare::{self, Difference, Side, differences};
 use barrelstack::export::Folder;
 use barrelstack::outcome::Outcome;
@@ -50,6 +51,11 @@ pub(crate) struct CompareArgs {
 /// Runs all scenarios and writes the comparison.
 pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let asked = asked(args);
+    if asked.iter().filter(|(_, one)| one.scenario == "-").count() > 1 {
+        bail!(
+            "standard input can be read for one run only: write the scenario to a file and name it"
+        );
+    }
     let mut scenarios = Vec::new();
     for (name, one) in &asked {
         scenarios.push((name.clone(), super::load(one)?));

@@ -3,7 +3,7 @@
 //! Neither unit nor step is ever guessed: both come from header words, a time column, or the caller.
 
 use super::even::{Timed, even_steps};
-use super::source::{LARGEST_ACCELERATION, Source, latin1, parse_number, shorten};
+use super::source::{Source, latin1, shorten};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
@@ -91,7 +91,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     let names = if timed { names.get(1..).unwrap_or(&[]).to_vec() } else { names };
     let stem = super::file_stem(source.name);
     let several = columns.len() > 1;
-    let velocities = initial_velocities(source, first);
+    let velocities = initial_velocities(source, first, columns.len())?;
     for (k, column) in columns.into_iter().enumerate() {
         let fallback = if several { format!("column {}", k + 1) } else { stem.clone() };
         // A single column is often called "acceleration"; the file's name says more.
@@ -107,13 +107,17 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
 }
 
 /// Velocities (m/s) at the first samples, which files of our own state; none in all others.
-fn initial_velocities(source: &Source<'_>, first: usize) -> Vec<f64> {
-    let stated = (0..first)
-        .map(|line| source.text(line))
-        .find_map(|text| text.strip_prefix(INITIAL_VELOCITY).map(str::to_owned));
-    let numbers: Option<Vec<f64>> = stated
-        .and_then(|text| text.split_whitespace().map(|v| parse_number(v.as_bytes())).collect());
-    numbers.filter(|v| v.iter().all(|v| v.abs() <= LARGEST_ACCELERATION)).unwrap_or_default()
+fn initial_velocities(
+    source: &Source<'_>,
+    first: usize,
+    channels: usize,
+) -> Result<Vec<f64>, ReadError> {
+    for line in 0..first {
+        if let Some(text) = source.text(line).strip_prefix(INITIAL_VELOCITY) {
+            return super::initial_velocities(source, line, text, channels);
+        }
+    }
+    Ok(Vec::new())
 }
 
 fn is_comment(source: &Source<'_>, line: usize) -> bool {
@@ -167,8 +171,8 @@ fn count_and_step(source: &Source<'_>, first: usize) -> (Option<(usize, f64)>, u
 /// Most columns that are taken for components; more are one series in long lines.
 const MOST_COLUMNS: usize = 200;
 
-/// All rows as columns, or one column of very long rows; rows of several values without a common width are refused with their line,
-/// except a short last one.
+/// All rows as columns, or one column of very long rows; rows of several values without a common
+/// width are refused with their line, except a short last one.
 fn table(source: &Source<'_>, first: usize, end: usize) -> Result<Vec<Vec<f64>>, ReadError> {
     let mut row = Vec::new();
     source.tokens(first, LIMIT, &mut row)?;

@@ -31,7 +31,7 @@ use crate::error::{ReadError, Refusal};
 use crate::math::STANDARD_GRAVITY;
 use crate::record::Record;
 use crate::units::AccelerationUnit;
-use source::{LARGEST_ACCELERATION, Place, Source};
+use source::{LARGEST_ACCELERATION, Place, Source, parse_number, shorten};
 
 /// What the caller knows and a file may not say.
 ///
@@ -148,7 +148,7 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
             (),
             Refusal::Unrecognized,
             format!("one of {}", names()),
-            format!("\"{}\" as first line", source::shorten(&source.text(0))),
+            format!("\"{}\" as first line", shorten(&source.text(0))),
             "convert the file to plain columns, one value or time and value to a line",
         ));
     };
@@ -165,6 +165,29 @@ fn check_bytes(source: &Source<'_>) -> Result<(), ReadError> {
         return Ok(());
     };
     Err(source.error((), Refusal::Damaged, expected, found, remedy))
+}
+
+/// Velocities (m/s) at the first samples, as a header line of our own states them in `text`.
+fn initial_velocities(
+    source: &Source<'_>,
+    line: usize,
+    text: &str,
+    channels: usize,
+) -> Result<Vec<f64>, ReadError> {
+    let velocities: Option<Vec<f64>> =
+        text.split_whitespace().map(|word| parse_number(word.as_bytes())).collect();
+    // No velocity in m/s comes near what no acceleration in m/s² may pass.
+    velocities
+        .filter(|v| v.len() == channels && v.iter().all(|v| v.abs() <= LARGEST_ACCELERATION))
+        .ok_or_else(|| {
+            source.error(
+                line,
+                Refusal::Damaged,
+                format!("{channels} velocities (m/s), one to a channel"),
+                format!("\"{}\"", shorten(text)),
+                "correct the header line",
+            )
+        })
 }
 
 /// The names of all formats, for messages.

@@ -91,7 +91,10 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         }
         channels.push((words.join(" "), direction.unwrap_or_default()));
     }
-    let velocities = initial_velocities(source, end, channels.len())?;
+    let velocities = match field(source, end, "initial_velocity") {
+        None => Vec::new(),
+        Some((line, text)) => super::initial_velocities(source, line, &text, channels.len())?,
+    };
     let stage = match field(source, end, "stage") {
         None => Stage::Unknown,
         Some((line, text)) => match text.as_str() {
@@ -120,26 +123,4 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         record.channels.push(channel);
     }
     Ok(record)
-}
-
-/// Velocities (m/s) at the first samples, one to a channel; none where the line is missing.
-fn initial_velocities(
-    source: &Source<'_>,
-    end: usize,
-    channels: usize,
-) -> Result<Vec<f64>, ReadError> {
-    let Some((line, text)) = field(source, end, "initial_velocity") else { return Ok(Vec::new()) };
-    let velocities: Option<Vec<f64>> =
-        text.split_whitespace().map(|word| parse_number(word.as_bytes())).collect();
-    velocities
-        .filter(|v| v.len() == channels && v.iter().all(|v| v.abs() <= LARGEST_ACCELERATION))
-        .ok_or_else(|| {
-            source.error(
-                line,
-                Refusal::Damaged,
-                format!("{channels} velocities (m/s), one to a channel"),
-                format!("\"{}\"", shorten(&text)),
-                "correct the header line",
-            )
-        })
 }

@@ -59,7 +59,8 @@ const WINDOW_PEAK: f64 = 0.2;
 const WINDOW_END: f64 = 0.05;
 
 impl BooreSource {
-    /// A source of western North America: 70 bar, 3.5 km/s, 2.8 g/cm³, `Q = 180 f^0.45`, κ = 0.04 s.
+    /// A source of western North America of a moment magnitude at a distance (km): 70 bar, 3.5 km/s,
+    /// 2.8 g/cm³, `Q = 180 f^0.45`, κ = 0.04 s.
     pub fn western(magnitude: f64, distance: f64) -> Self {
         Self {
             magnitude,
@@ -197,7 +198,7 @@ impl BooreSource {
         let a = self.acceleration(time_step, seed)?;
         let corner = (0.2 * self.corner_frequency()).max(0.05);
         let chain = Processing { taper: 0.02, high_pass: Some(corner), ..Processing::compact() };
-        let made = format!("stochastic method: {self:?}, seed {seed}");
+        let made = format!("stochastic method: {self}, seed {seed}");
         motion(&format!("boore M{} {seed}", self.magnitude), time_step, &a, &chain, made)
     }
 }

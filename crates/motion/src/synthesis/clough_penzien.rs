@@ -216,7 +216,8 @@ impl CloughPenzien {
     ) -> Result<GroundMotion, MotionError> {
         let a = self.acceleration(envelope, duration, time_step, seed)?;
         let chain = Processing { taper: 0.02, close: true, ..Processing::none() };
-        let made = format!("Clough-Penzien noise: {self:?}, {envelope:?}, seed {seed}");
+        let made =
+            format!("Clough-Penzien noise: {self}, {envelope}, {duration} s long, seed {seed}");
         motion(&format!("clough-penzien {seed}"), time_step, &a, &chain, made)
     }
 }

@@ -51,10 +51,7 @@ impl NearFault {
             },
         ];
         let mut motion = GroundMotion::new(format!("near-fault {seed}"), History::Sum(parts), None);
-        motion.provenance.push(format!(
-            "near-fault pulse {:?} from {} s, rest {:?}, seed {seed}",
-            self.pulse, self.start, self.rest
-        ));
+        motion.provenance.push(format!("near-fault motion: {self}, seed {seed}"));
         motion.provenance.extend(rest.steps);
         Ok(motion)
     }

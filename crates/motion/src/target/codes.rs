@@ -130,36 +130,24 @@ pub(super) fn nzs1170(
 
 /// Spectral shape factor `Ch(T)` of table 3.1 (modal and time-history values at short periods).
 fn nzs_shape(site: SiteClass, t: f64) -> f64 {
-    let power = |a: f64, reference: f64| a * math::powf(reference / t, 0.75);
-    match site {
-        SiteClass::A | SiteClass::B => match t {
-            _ if t < 0.1 => 1.0 + 1.35 * t / 0.1,
-            _ if t < 0.3 => 2.35,
-            _ if t <= 1.5 => power(1.6, 0.5),
-            _ if t <= 3.0 => 1.05 / t,
-            _ => 3.15 / (t * t),
-        },
-        SiteClass::C => match t {
-            _ if t < 0.1 => 1.33 + 1.6 * t / 0.1,
-            _ if t < 0.3 => 2.93,
-            _ if t <= 1.5 => power(2.0, 0.5),
-            _ if t <= 3.0 => 1.32 / t,
-            _ => 3.96 / (t * t),
-        },
-        SiteClass::D => match t {
-            _ if t < 0.1 => 1.12 + 1.88 * t / 0.1,
-            _ if t < 0.56 => 3.0,
-            _ if t <= 1.5 => power(2.4, 0.75),
-            _ if t <= 3.0 => 2.14 / t,
-            _ => 6.42 / (t * t),
-        },
-        SiteClass::E => match t {
-            _ if t < 0.1 => 1.12 + 1.88 * t / 0.1,
-            _ if t < 1.0 => 3.0,
-            _ if t <= 1.5 => power(3.0, 1.0),
-            _ if t <= 3.0 => 3.32 / t,
-            _ => 9.96 / (t * t),
-        },
+    // Value at T = 0 and its rise up to 0.1 s, plateau and its end (s), then a (b/T)^0.75, and c/T and
+    // d/T² from 1.5 s and 3 s on.
+    let (start, slope, plateau, end, (a, b), c, d) = match site {
+        SiteClass::A | SiteClass::B => (1.0, 1.35, 2.35, 0.3, (1.6, 0.5), 1.05, 3.15),
+        SiteClass::C => (1.33, 1.6, 2.93, 0.3, (2.0, 0.5), 1.32, 3.96),
+        SiteClass::D => (1.12, 1.88, 3.0, 0.56, (2.4, 0.75), 2.14, 6.42),
+        SiteClass::E => (1.12, 1.88, 3.0, 1.0, (3.0, 1.0), 3.32, 9.96),
+    };
+    if t < 0.1 {
+        start + slope * t / 0.1
+    } else if t < end {
+        plateau
+    } else if t <= 1.5 {
+        a * math::powf(b / t, 0.75)
+    } else if t <= 3.0 {
+        c / t
+    } else {
+        d / (t * t)
     }
 }
 

@@ -32,6 +32,16 @@ pub enum ChileanZone {
     Three,
 }
 
+impl ChileanZone {
+    fn number(self) -> u8 {
+        match self {
+            Self::One => 1,
+            Self::Two => 2,
+            Self::Three => 3,
+        }
+    }
+}
+
 /// Soils of `NCh2745`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NCh2745Soil {
@@ -117,6 +127,39 @@ pub enum TargetSpectrum {
         /// Damping ratio of the oscillators that the accelerations are for.
         damping: f64,
     },
+}
+
+impl std::fmt::Display for TargetSpectrum {
+    /// The code, its parameters and their units.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Asce7 { sds, sd1, long_period, .. } => {
+                write!(f, "ASCE 7-16 (S_DS {sds} g, S_D1 {sd1} g, T_L {long_period} s")?;
+            }
+            Self::Eurocode8 { ground_acceleration, site, small_magnitude, .. } => {
+                let kind = if *small_magnitude { 2 } else { 1 };
+                let ground = ground_acceleration;
+                write!(f, "EN 1998-1 type {kind} (a_g {ground} g, ground {site:?}")?;
+            }
+            Self::NCh433 { zone, site } => {
+                write!(f, "NCh433 (zone {}, soil {site:?}", zone.number())?;
+            }
+            Self::NCh2745 { zone, soil, .. } => {
+                write!(f, "NCh2745 (zone {}, soil {soil:?}", zone.number())?;
+            }
+            Self::Nzs1170 { hazard, return_period, site, fault_distance } => {
+                write!(f, "NZS 1170.5 (Z {hazard}, R {return_period}, site {site:?}")?;
+                if let Some(distance) = fault_distance {
+                    write!(f, ", fault at {distance} km")?;
+                }
+            }
+            Self::Ac156 { sds, height_ratio } => {
+                write!(f, "AC156 (S_DS {sds} g, z/h {height_ratio}")?;
+            }
+            Self::Table { points, .. } => write!(f, "a table ({} periods", points.len())?,
+        }
+        write!(f, ", {} % damping)", 100.0 * self.damping())
+    }
 }
 
 impl TargetSpectrum {

@@ -6,8 +6,7 @@ pub(crate) const SIZE: usize = 1_000_000;
 /// Large files after the manner of a sample.
 pub(crate) fn files(sample: &[u8]) -> Vec<Vec<u8>> {
     let mut files = vec![repeated(sample, sample), repeated(&[], sample)];
-    files.extend(grown(sample));
-    files.extend(grown_words(sample));
+    files.extend(sound(sample));
     let head = &sample[..sample.len().min(4000)];
     for filling in [
         b"\n".as_slice(),
@@ -35,6 +34,12 @@ pub(crate) fn files(sample: &[u8]) -> Vec<Vec<u8>> {
     files
 }
 
+/// A sample grown to a large file, in each way that its format may count.
+pub(crate) fn sound(sample: &[u8]) -> Vec<Vec<u8>> {
+    let rows = [Counts::Values, Counts::Rows].into_iter().filter_map(|c| grown(sample, c));
+    rows.chain(grown_words(sample)).collect()
+}
+
 fn repeated(start: &[u8], filling: &[u8]) -> Vec<u8> {
     let mut file = start.to_vec();
     while file.len() < SIZE {
@@ -49,18 +54,26 @@ fn is_data(line: &[u8]) -> bool {
     !plain.is_empty() && plain.iter().all(|b| b.is_ascii_digit() || b"+-.eE \t,;".contains(b))
 }
 
+/// What the count in a header is one of; formats differ.
+#[derive(Clone, Copy)]
+enum Counts {
+    Values,
+    Rows,
+}
+
 /// The longest block of full rows of numbers repeated, and the counts in front of it corrected.
-fn grown(sample: &[u8]) -> Option<Vec<u8>> {
+fn grown(sample: &[u8], counts: Counts) -> Option<Vec<u8>> {
     let lines: Vec<&[u8]> = sample.split_inclusive(|&b| b == b'\n').collect();
     let mut best = 0..0;
     let mut from = 0;
     for k in 0..=lines.len() {
         let goes_on = k > from
             && k < lines.len()
+            && is_data(lines[from])
             && is_data(lines[k])
             && fields(lines[k]) == fields(lines[from]);
         if !goes_on {
-            if k - from > best.len() && is_data(lines[from]) {
+            if k - from > best.len() {
                 best = from..k;
             }
             from = k;
@@ -71,11 +84,14 @@ fn grown(sample: &[u8]) -> Option<Vec<u8>> {
         return None;
     }
     let times = (SIZE - sample.len().min(SIZE)) / block.len();
-    let per_line = fields(lines[best.start]);
-    let more = times * best.len() * per_line;
+    let rows = times * best.len();
+    let more = match counts {
+        Counts::Values => rows * fields(lines[best.start]),
+        Counts::Rows => rows,
+    };
     let mut file = Vec::with_capacity(SIZE);
     for line in &lines[..best.start] {
-        file.extend(with_counts(line, more, per_line));
+        file.extend(with_counts(line, more));
     }
     for _ in 0..=times {
         file.extend(&block);
@@ -88,9 +104,9 @@ fn fields(line: &[u8]) -> usize {
     line.split(|b| b.is_ascii_whitespace() || *b == b',').filter(|f| !f.is_empty()).count()
 }
 
-/// A header line with its counts, whole numbers from 95 to 300, raised by what was added: values, or
-/// rows where the number is one of rows.
-fn with_counts(line: &[u8], more: usize, per_line: usize) -> Vec<u8> {
+/// A header line with its counts, whole numbers from 101 to 103 as all samples have, raised by what was
+/// added.
+fn with_counts(line: &[u8], more: usize) -> Vec<u8> {
     let text: String = line.iter().map(|&b| char::from(b)).collect();
     let mut out = String::new();
     let mut rest = text.as_str();
@@ -100,7 +116,7 @@ fn with_counts(line: &[u8], more: usize, per_line: usize) -> Vec<u8> {
         let whole = !rest[..at].ends_with(['.', '-', '_']) && !rest[end..].starts_with('.');
         match word.parse::<usize>() {
             Ok(count @ 101..=103) if whole => {
-                let wide = (count + more / per_line.max(1)).to_string();
+                let wide = (count + more).to_string();
                 // In its columns, where blanks stand in front.
                 let blanks = rest[..at].len() - rest[..at].trim_end_matches(' ').len();
                 let eaten = (wide.len() - word.len()).min(blanks.saturating_sub(1));

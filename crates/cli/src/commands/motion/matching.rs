@@ -126,13 +126,10 @@ fn matched(
     }
     after.stage = Stage::Corrected;
     after.notes.push(format!(
-        "{}: scaled by {factor:.4} and matched in the {} domain to {} from {} to {} s: misfit at most \
+        "{}: scaled by {factor:.4} and matched in {} to {} from {} to {} s: misfit at most \
          {:.2} % after {} rounds, ends closed",
         channel.name,
-        match args.method {
-            Method::Time => "time",
-            Method::Frequency => "frequency",
-        },
+        matched.domain(),
         args.to,
         settings.shortest,
         settings.longest,

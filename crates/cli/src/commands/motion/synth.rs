@@ -214,9 +214,11 @@ impl Noise {
         };
         let duration = time("--duration", &self.duration)?;
         let made = format!(
-            "made by filtered noise (Clough and Penzien): {:?} soil, rms {}, {} long, rise {}, decay \
+            "made by filtered noise (Clough and Penzien): {} soil, rms {}, {} long, rise {}, decay \
              from {} to 1/e in {}, seed {}",
-            self.soil,
+            self.soil
+                .to_possible_value()
+                .map_or_else(String::new, |soil| soil.get_name().to_owned()),
             self.rms,
             self.duration,
             self.rise,

@@ -15,7 +15,7 @@ import { demand } from "./suite.mjs";
 const SCALE = 4;
 /** Share of a color's range by which a shrunk and blurred pixel may differ. */
 const STEP = 0.06;
-/** Pixels of a block that may differ by more for the grain of the kept picture; a heading has 800. */
+/** Pixels of a block that may differ by more for the grain of the kept picture; a heading on a phone has 600. */
 const GRAIN = 20;
 /** Share of the pixels of a block that may differ beside them. */
 const CHANGED = 0.01;
