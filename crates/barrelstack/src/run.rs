@@ -15,7 +15,7 @@ use crate::outcome::{Outcome, judge};
 use crate::overlap::check_overlap;
 use crate::scenario::{self, Scenario, Scene};
 use crate::step::{critical_time_step, default_step};
-use crate::watch::{Fates, Recording, Stresses, Thresholds, Watch};
+use crate::watch::{Fates, Recording, StrapFate, Stresses, Thresholds, Watch};
 
 /// Everything that was seen of a run.
 #[derive(Clone, Debug)]
@@ -30,6 +30,8 @@ pub struct Run {
     pub outcome: Outcome,
     /// What became of every body.
     pub fates: Fates,
+    /// What became of every strap, in the order of the model.
+    pub straps: Vec<StrapFate>,
     /// Stress along every boundary.
     pub stresses: Stresses,
     /// Frames and histories.
@@ -147,7 +149,7 @@ pub fn run(
         &mut told,
     );
     let result = simulate(model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
-    let Watch { recording, stresses, fates, interrupted, .. } = watch;
+    let Watch { recording, stresses, fates, straps, interrupted, .. } = watch;
     let stopped = interrupted && matches!(&result, Ok(totals) if totals.finish == Finish::Stopped);
     let ended = result.map(|totals| Ended::of(&totals));
     let Verdict { outcome, energy, steps, mut warnings } =
@@ -168,6 +170,7 @@ pub fn run(
         scenario: scenario.clone(),
         outcome,
         fates,
+        straps: straps.0,
         stresses,
         recording,
         energy,
@@ -211,6 +214,10 @@ pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunF
         None
     };
     assembly.strap(&mut state).map_err(AssembleError::from)?;
+    if scenario.run.settle && assembly.model.straps().iter().any(|s| s.length < s.span(&state)) {
+        // Straps that pull from the start press the stack together.
+        at_rest(scenario, &assembly, &mut state, &mut scratch)?;
+    }
     if matches!(scenario.scene, Scene::Free(_)) {
         // Equilibrium is that of the places; what the scenario sets in motion starts from there.
         state.twists = assembly.model.bodies().iter().map(|b| b.twist).collect();

@@ -27,6 +27,8 @@ pub struct Summary {
     pub demands: Demands,
     /// Forces between bodies.
     pub interfaces: Vec<JointSummary>,
+    /// Straps, where there are any.
+    pub straps: Vec<StrapSummary>,
     /// The energy books; null where numbers were lost.
     pub energy: Option<EnergyBooks>,
     /// What shook it.
@@ -140,6 +142,19 @@ pub struct JointSummary {
     pub peak_horizontal_at: f64,
 }
 
+/// One strap.
+#[derive(Clone, Debug, Serialize)]
+pub struct StrapSummary {
+    /// Such as "B5.1-R5 left".
+    pub name: String,
+    /// Largest tension.
+    pub peak_tension: f64,
+    /// When.
+    pub peak_tension_at: f64,
+    /// When it tore.
+    pub torn_at: Option<f64>,
+}
+
 /// The energy books at the end (J), relative to the start.
 #[derive(Clone, Debug, Serialize)]
 pub struct EnergyBooks {
@@ -147,11 +162,11 @@ pub struct EnergyBooks {
     pub kinetic: f64,
     /// Potential energy in gravity.
     pub potential: f64,
-    /// In contact springs.
+    /// In contact springs and straps.
     pub elastic: f64,
     /// In sticks.
     pub stick: f64,
-    /// Lost in contact dampers.
+    /// Lost in the dampers of contacts and straps, and with straps that tore.
     pub damped: f64,
     /// Lost to friction.
     pub friction: f64,
@@ -257,6 +272,7 @@ impl Summary {
                 demands(&run.assembly, &run.fates, Some(&run.stresses))
             },
             interfaces: joints(run),
+            straps: straps(run),
             energy: run.energy.as_ref().map(EnergyBooks::of),
             motion: run.ground.motion.as_ref().map(|motion| MotionSummary {
                 name: motion.name.clone(),
@@ -393,6 +409,18 @@ pub(crate) fn demands(assembly: &Assembly, fates: &Fates, stresses: Option<&Stre
                 .map(|b| fate(b).peak_slip),
         ),
     }
+}
+
+fn straps(run: &Run) -> Vec<StrapSummary> {
+    let straps = run.assembly.model.straps().iter().zip(&run.straps);
+    straps
+        .map(|(strap, fate)| StrapSummary {
+            name: strap.name.clone(),
+            peak_tension: fate.peak.0,
+            peak_tension_at: fate.peak.1,
+            torn_at: fate.torn_at,
+        })
+        .collect()
 }
 
 fn joints(run: &Run) -> Vec<JointSummary> {

@@ -2,6 +2,7 @@
 
 mod fate;
 mod recording;
+mod straps;
 mod stress;
 
 use std::ops::ControlFlow;
@@ -13,6 +14,7 @@ use crate::ground::Ground;
 
 pub use fate::{Fate, Fates, Loss, Thresholds};
 pub use recording::{Channel, Frames, JointForces, Recording};
+pub use straps::{StrapFate, StrapFates};
 pub use stress::{BoundaryPoint, StressEnvelope, Stresses};
 
 /// Everything that watches a run, together.
@@ -23,6 +25,8 @@ pub struct Watch<'a> {
     pub stresses: Stresses,
     /// Seats, falls, slips and tilts.
     pub fates: Fates,
+    /// What straps bore.
+    pub straps: StrapFates,
     ground: &'a Ground,
     assembly: &'a Assembly,
     /// How long (s) to go on after a collapse; none to go on to the end.
@@ -51,6 +55,7 @@ impl<'a> Watch<'a> {
             recording: Recording::new(assembly, state, rates),
             stresses: Stresses::new(assembly, scratch),
             fates: Fates::new(assembly, state, thresholds),
+            straps: StrapFates::default(),
             ground,
             assembly,
             after_collapse,
@@ -81,6 +86,7 @@ impl Observer<Planar> for Watch<'_> {
         energy: &EnergyLedger<Planar>,
     ) -> ControlFlow<()> {
         self.fates.observe(state, scratch);
+        self.straps.observe(state, scratch);
         // Envelopes are those of the standing stack: what falling barrels do to each other is another
         // question.
         if self.fates.collapse_time().is_none() {

@@ -30,12 +30,15 @@ impl Random {
     }
 }
 
-/// A stack of two to four levels with random friction, mass and stiffness under a random sine that
-/// topples about half of them.
+/// A stack of two to four levels with random friction and, one in five, straps that may tear, under a
+/// random sine that topples about half of them.
 fn random_case(seed: u64) -> Scenario {
     let mut random = Random(seed);
     let levels = 2 + seed % 3;
+    let strapped = if seed % 5 == 0 { 2 } else { 0 };
     let settings = [
+        format!("stack.strap.levels={strapped}"),
+        format!("stack.strap.strength=\"{:.1} kN\"", random.between(3.0, 12.0)),
         format!("stack.levels={levels}"),
         format!("motion.sine.period=\"{:.4} s\"", random.between(0.5, 1.3)),
         format!("motion.sine.amplitude=\"{:.4} cm\"", random.between(3.0, 16.0)),

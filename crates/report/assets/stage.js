@@ -91,6 +91,7 @@ function makeStage(data, canvas) {
     const toX = (x) => 0.5 * width + (x - view.x) * view.scale;
     const toY = (z) => height - FOOT - (z - view.z) * view.scale;
     for (let body = 0; body < shapes.length; body++) drawBody(context, body, frame, view, toX, toY);
+    drawTies(context, frame, time, toX, toY);
     if (stage.traces) drawTraces(context, frame, toX, toY);
     if (stage.names) drawNames(context, frame, view, toX, toY);
     if (stage.forces && data.forces) drawForces(context, frame, toX, toY);
@@ -123,6 +124,29 @@ function makeStage(data, canvas) {
       context.stroke(path);
     });
     context.restore();
+  }
+
+  // Straps, until they tear.
+  function drawTies(context, frame, time, toX, toY) {
+    context.lineCap = "round";
+    for (const { bodies, points, torn } of data.ties) {
+      if (torn !== null && time >= torn) continue;
+      const [a, b] = bodies.map((body, end) => {
+        const [x, z, angle] = [0, 1, 2].map((c) => data.poses[3 * body + c][frame]);
+        const [px, pz] = points[end], cos = Math.cos(angle), sin = Math.sin(angle);
+        return [toX(x + cos * px - sin * pz), toY(z + sin * px + cos * pz)];
+      });
+      if (!isFinite(a[0] + a[1] + b[0] + b[1])) continue;
+      // A dark line under a light one shows on wood, on steel and on paper.
+      for (const [style, wide] of [[paint.line, 4.4], [paint.device, 2.6]]) {
+        context.beginPath();
+        context.moveTo(...a);
+        context.lineTo(...b);
+        context.strokeStyle = style;
+        context.lineWidth = wide;
+        context.stroke();
+      }
+    }
   }
 
   // Strokes at even x of the ground's own frame, so that they move with it; only those in sight.

@@ -83,7 +83,7 @@ pub use player::{Pane, Player, Players};
 pub use plot::{Axis, Band, Mark, Plot, Scale, Series, SeriesStyle};
 pub use scene::{
     ContactForce, Event, EventKind, Frames, History, Point, Polyline, Pose2, Role, Scene,
-    SceneBody, Trace,
+    SceneBody, Tie, Trace,
 };
 pub use strip::{Panel, Strip};
 pub use table::{Cell, Column, Rating, Table};

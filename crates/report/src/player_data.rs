@@ -90,9 +90,16 @@ fn pane(mark: &str, scene: &Scene, traces: &[Trace], view: &Extent) -> Value {
         .filter(|t| t.body < scene.bodies.len() && t.point.iter().all(|v| v.is_finite()))
         .map(|t| json!({ "body": t.body, "point": t.point, "label": t.label }))
         .collect();
+    let ties: Vec<Value> = scene
+        .ties
+        .iter()
+        .filter(|tie| tie.bodies.iter().all(|body| *body < scene.bodies.len()))
+        .map(|tie| json!({ "bodies": tie.bodies, "points": tie.points, "torn": tie.torn_at }))
+        .collect();
     json!({
         "mark": mark,
         "bodies": bodies,
+        "ties": ties,
         "times": pack::channels(&times, count, TIME_QUANTUM),
         "poses": pack::channels(&channels, count, POSE_QUANTUM),
         "forces": forces(&scene.frames.forces, count),

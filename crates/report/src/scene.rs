@@ -229,11 +229,24 @@ pub struct History {
     pub values: Vec<f64>,
 }
 
+/// A line between a point of one body and a point of another, such as a strap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tie {
+    /// The bodies, by their places in [`Scene::bodies`].
+    pub bodies: [usize; 2],
+    /// The points, each in the frame of its body (m).
+    pub points: [Point; 2],
+    /// When it tears (s); it is not drawn after that.
+    pub torn_at: Option<f64>,
+}
+
 /// Bodies, their motion, events and the ground motion under them.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Scene {
     /// The bodies, drawn in this order.
     pub bodies: Vec<SceneBody>,
+    /// Lines between them, drawn over them.
+    pub ties: Vec<Tie>,
     /// Their poses.
     pub frames: Frames,
     /// What happened, in order of time.
@@ -243,6 +256,14 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The ends of a tie at a frame; none where it is torn or a body is not drawn.
+    pub(crate) fn ends(&self, tie: &Tie, frame: usize) -> Option<[Point; 2]> {
+        let time = *self.frames.times.get(frame)?;
+        let end = |at: usize| Some(place(self.frames.pose(frame, tie.bodies[at])?, tie.points[at]));
+        let whole = tie.torn_at.is_none_or(|torn| time < torn);
+        if whole { Some([end(0)?, end(1)?]) } else { None }
+    }
+
     /// The name of body `body`; "body 3" when it has no entry.
     pub fn name(&self, body: usize) -> String {
         self.bodies.get(body).map_or_else(|| format!("body {}", body + 1), |b| b.name.clone())

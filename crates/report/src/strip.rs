@@ -252,6 +252,10 @@ fn place_bodies(drawing: &mut Drawing, scene: &Scene, id: &str, frame: usize, vi
     });
     let (scale, origin) = (view.scale, view.origin());
     drawing.push(Item::Scene { scale, origin, bodies: placed.collect() });
+    for ends in scene.ties.iter().filter_map(|tie| scene.ends(tie, frame)) {
+        let run = ends.map(|end| view.on_page(end)).to_vec();
+        drawing.path("bs-strap", "", vec![run], false);
+    }
     for (at, [x, z, _]) in poses.iter().filter(|_| view.names) {
         let body = &scene.bodies[*at];
         if matches!(body.role, Role::Barrel | Role::Block) {

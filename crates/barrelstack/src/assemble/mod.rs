@@ -77,7 +77,8 @@ pub struct Assembly {
     pub model: Model<Planar>,
     /// One part for every body, in the same order.
     pub parts: Vec<Part>,
-    /// Straps that are put on once the stack stands, with their slack for their length.
+    /// Straps that are put on once the stack stands, with how much longer than their way
+    /// they will be for their length.
     pub(crate) loose: Vec<Strap<Planar>>,
     /// Height (m) of the stack from the ground to the top of the highest barrel; zero for a free scene.
     pub height: f64,

@@ -24,21 +24,21 @@ impl Assembly {
     }
 }
 
-/// The straps of a stack, not tightened yet, with their slack for their length: from the ground up,
-/// those on the left first.
+/// The straps of a stack, not tightened yet, with how much longer than their way they are for their
+/// length: from the ground up, those on the left first.
 pub(super) fn straps(
     spec: &StackSpec,
     scale: Similitude,
     parts: &[Part],
     bodies: &[Body<Planar>],
 ) -> Vec<Strap<Planar>> {
-    let Straps { levels, ties, stiffness, damping, slack, strength } = spec.straps;
+    let Straps { levels, ties, stiffness, damping, slack, pretension, strength } = spec.straps;
     let lowest = spec.levels - levels + 1;
     let strap = |upper: BodyId, lower: BodyId, side: &str, from: f64, along: f64| Strap {
         name: format!("{}-{} {side}", parts[upper].name, parts[lower].name),
         bodies: [upper, lower],
         points: [Vec2::new(from, 0.0), Vec2::new(along, 0.0)],
-        length: slack * scale.length,
+        length: (slack - pretension / stiffness) * scale.length,
         stiffness: stiffness * scale.stiffness(1.0, false),
         damping: damping * scale.damping(false),
         strength: strength.map_or(f64::INFINITY, |force| force * scale.force()),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use barrelstack_dynamics::Shape;
 use barrelstack_report::{
-    ContactForce, Event, EventKind, Frames, History, Polyline, Role, Scene, SceneBody,
+    ContactForce, Event, EventKind, Frames, History, Polyline, Role, Scene, SceneBody, Tie,
 };
 
 use crate::assemble::{Assembly, PartKind};
@@ -16,6 +16,7 @@ pub(crate) fn scene(run: &Run) -> Arc<Scene> {
     let frames = &run.recording.frames;
     Arc::new(Scene {
         bodies: (0..run.assembly.parts.len()).map(|i| body(&run.assembly, i)).collect(),
+        ties: ties(run),
         frames: Frames {
             times: frames.times.clone(),
             poses: frames.poses.clone(),
@@ -87,6 +88,17 @@ fn body(assembly: &Assembly, index: usize) -> SceneBody {
     }
 }
 
+fn ties(run: &Run) -> Vec<Tie> {
+    let straps = run.assembly.model.straps().iter().zip(&run.straps);
+    straps
+        .map(|(strap, fate)| Tie {
+            bodies: strap.bodies,
+            points: strap.points.map(|point| [point.x, point.z]),
+            torn_at: fate.torn_at,
+        })
+        .collect()
+}
+
 fn events(run: &Run) -> Vec<Event> {
     let mut events = Vec::new();
     for (i, part) in run.assembly.parts.iter().enumerate() {
@@ -107,6 +119,13 @@ fn events(run: &Run) -> Vec<Event> {
         if let (Some(time), PartKind::Barrel) = (fate.fell_at, part.kind) {
             let text = format!("{} falls", part.name);
             events.push(Event { time, body: Some(i), kind: EventKind::Fall, text });
+        }
+    }
+    for (strap, fate) in run.assembly.model.straps().iter().zip(&run.straps) {
+        if let Some(time) = fate.torn_at {
+            let text = format!("the strap {} tears", strap.name);
+            let body = Some(strap.bodies[0]);
+            events.push(Event { time, body, kind: EventKind::Note, text });
         }
     }
     events.sort_by(|a, b| a.time.total_cmp(&b.time));

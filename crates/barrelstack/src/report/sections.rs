@@ -33,6 +33,7 @@ pub(super) fn all(
     section(&mut blocks, "Demands", shown);
     section(&mut blocks, "Normal stress on barrels and racks", stresses(run));
     section(&mut blocks, "Forces between bodies", forces(run, summary));
+    section(&mut blocks, "Straps", straps(summary));
     section(&mut blocks, "Ground motion", motion(run));
     section(&mut blocks, "Energy books", energy(run, summary));
     section(&mut blocks, "Inputs", inputs::inputs(run));
@@ -330,6 +331,23 @@ pub(crate) fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
             },
         }),
     }
+}
+
+fn straps(summary: &Summary) -> Vec<Block> {
+    let mut table = Table::new(
+        "Largest tension of every strap in the whole run. Left and right are those of the picture.",
+        &[("strap", ""), ("tension, largest", "kN"), ("at", "s"), ("torn", "s")],
+    );
+    for strap in &summary.straps {
+        let at = (strap.peak_tension > 0.0).then_some(strap.peak_tension_at);
+        table.rows.push(vec![
+            Cell::text(&strap.name),
+            number(1e-3 * strap.peak_tension),
+            at.map_or(Cell::Missing, number),
+            strap.torn_at.map_or(Cell::Missing, number),
+        ]);
+    }
+    if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] }
 }
 
 fn forces(run: &Run, summary: &Summary) -> Vec<Block> {

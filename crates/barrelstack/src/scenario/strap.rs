@@ -29,6 +29,8 @@ pub struct Straps {
     pub damping: f64,
     /// How far one strap gives at rest before it pulls (m).
     pub slack: f64,
+    /// Force in one strap as it is put on (N).
+    pub pretension: f64,
     /// Force above which one strap tears (N); none if it never does.
     pub strength: Option<f64>,
 }
@@ -75,6 +77,12 @@ pub static STRAP: Section = Section {
             "How far one strap gives, on the stack at rest, before it pulls.",
         ),
         Field::new(
+            "pretension",
+            Kind::Quantity(&[Dimension::FORCE], Range::NOT_NEGATIVE),
+            Default::Value("\"0 N\""),
+            "Force in one strap as it is put on; the stack gives under it, and a part of it is lost.",
+        ),
+        Field::new(
             "strength",
             Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE),
             Default::Nothing,
@@ -93,8 +101,21 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, ScenarioEr
         stiffness: reader.quantity("stiffness")?,
         damping: reader.quantity("damping")?,
         slack: reader.quantity("slack")?,
+        pretension: reader.quantity("pretension")?,
         strength: reader.optional_quantity("strength")?,
     };
+    if straps.slack > 0.0 && straps.pretension > 0.0 {
+        let message = "a strap with pretension has no slack; leave one of the two out".to_owned();
+        return Err(reader.inconsistent("pretension", message));
+    }
+    if let Some(strength) = straps.strength.filter(|strength| *strength <= straps.pretension) {
+        let message = format!(
+            "`{}` of {} N is not below the strength of {strength} N",
+            reader.path_of("pretension"),
+            straps.pretension
+        );
+        return Err(reader.inconsistent("pretension", message));
+    }
     let refused = |message: String| Err(reader.inconsistent("levels", message));
     let path = reader.path_of("levels");
     if straps.levels > levels {
@@ -117,6 +138,7 @@ pub(super) fn write(straps: &Straps) -> Table {
     writer.quantity("stiffness", straps.stiffness);
     writer.quantity("damping", straps.damping);
     writer.quantity("slack", straps.slack);
+    writer.quantity("pretension", straps.pretension);
     writer.optional_quantity("strength", straps.strength);
     writer.finish()
 }

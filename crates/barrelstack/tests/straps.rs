@@ -1,0 +1,155 @@
+//! Straps on a stack: what they hold, what they bear, and what they must not depend on.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
+#![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
+
+use std::ops::ControlFlow;
+
+use barrelstack::outcome::Outcome;
+use barrelstack::{Run, Scenario, Summary};
+
+const TOGETHER: &str = "stack.strap.ties=\"levels-together\"";
+const PRETENSION: &str = "stack.strap.pretension=\"3 kN\"";
+
+fn scenario(name: &str, changes: &[&str]) -> Scenario {
+    let changes: Vec<String> = changes.iter().map(|change| (*change).to_owned()).collect();
+    Scenario::builtin(name, &changes).unwrap()
+}
+
+fn run(name: &str, changes: &[&str]) -> Run {
+    barrelstack::run(&scenario(name, changes), &mut |_| ControlFlow::Continue(())).unwrap()
+}
+
+/// A stack of two levels under a small sine, with straps that tie both together.
+fn small(changes: &[&str]) -> Run {
+    let all = [
+        &["stack.levels=2", "stack.strap.levels=2", TOGETHER, "run.duration=\"1 s\""][..],
+        &["motion.sine.amplitude=\"5 cm\""],
+        changes,
+    ]
+    .concat();
+    run("candia-8-barrels", &all)
+}
+
+#[test]
+fn a_stack_that_falls_stands_when_all_its_levels_are_strapped_together() {
+    let bare = run("demo-napa", &[]);
+    assert!(matches!(bare.outcome, Outcome::Collapse { .. }));
+    let held = run("demo-napa", &["stack.strap.levels=5", TOGETHER, PRETENSION]);
+    assert_eq!(held.outcome, Outcome::Stable);
+    let summary = Summary::of(&held, None);
+    // Ten barrels on both sides, four racks at both ends.
+    assert_eq!(summary.straps.len(), 28);
+    let most = summary.straps.iter().map(|strap| strap.peak_tension).fold(0.0, f64::max);
+    let residual = summary.energy.unwrap().residual_ratio;
+    println!("largest tension {most} N, residual {residual:e}");
+    assert!((3e3..6e3).contains(&most)); // measured 4228 N
+    assert!(residual < 1e-6); // measured 2.4e-8
+}
+
+#[test]
+fn straps_without_slack_bear_nothing_at_rest_and_leave_the_weight_where_it_is() {
+    let base = |run: &Run| run.recording.joints[0].at_rest;
+    let (bare, loose, tight) = (
+        small(&["stack.strap.levels=0", "stack.strap.ties=\"barrels-to-racks\""]),
+        small(&[]),
+        small(&[PRETENSION]),
+    );
+    println!("on the ground {} N, {} N, {} N", base(&bare), base(&loose), base(&tight));
+    assert_eq!(base(&bare), base(&loose));
+    // They pull inside the stack only.
+    assert!((base(&tight) / base(&bare) - 1.0).abs() < 1e-6);
+    // The stack gives: some of the pretension is lost, and none is gained.
+    let still = run(
+        "candia-8-barrels",
+        &[
+            "stack.strap.levels=4",
+            TOGETHER,
+            PRETENSION,
+            "motion.scale.factor=1e-6",
+            "run.duration=\"0.1 s\"",
+        ],
+    );
+    for strap in &Summary::of(&still, None).straps {
+        println!("{}: {} N", strap.name, strap.peak_tension);
+        assert!((1500.0..3000.0).contains(&strap.peak_tension), "{strap:?}");
+    }
+}
+
+#[test]
+fn a_mirrored_stack_has_the_same_tensions_on_the_other_side() {
+    let changes = [
+        "stack.strap.levels=3",
+        TOGETHER,
+        "stack.strap.strength=\"8 kN\"",
+        "run.duration=\"2.5 s\"",
+    ];
+    let straight = run("candia-8-barrels", &changes);
+    let turned = [&changes[..], &["stack.mirror=true", "motion.scale.factor=-1"]].concat();
+    let mirrored = run("candia-8-barrels", &turned);
+    let straps = |run: &Run| Summary::of(run, None).straps;
+    let (straight_straps, mirrored_straps) = (straps(&straight), straps(&mirrored));
+    assert!(straight_straps.iter().any(|strap| strap.torn_at.is_some()), "none tears");
+    for (a, b) in straight_straps.iter().zip(&mirrored_straps) {
+        let swapped = if a.name.ends_with("left") {
+            a.name.replace("left", "right")
+        } else {
+            a.name.replace("right", "left")
+        };
+        assert_eq!(swapped, b.name);
+        assert_eq!(
+            (a.peak_tension, a.peak_tension_at, a.torn_at),
+            (b.peak_tension, b.peak_tension_at, b.torn_at)
+        );
+    }
+    assert_eq!(straight.outcome, mirrored.outcome);
+}
+
+#[test]
+fn half_scale_straps_are_full_scale_straps_in_another_unit() {
+    let changes = [PRETENSION, "run.step=\"0.2 ms\""];
+    let full = Summary::of(&small(&changes), None).straps;
+    let half = Summary::of(&small(&[&changes[..], &["run.similitude=0.5"]].concat()), None).straps;
+    for (a, b) in full.iter().zip(&half) {
+        let apart = (b.peak_tension / (a.peak_tension / 8.0) - 1.0).abs();
+        println!("{}: {} N and {} N, {apart:e}", a.name, a.peak_tension, b.peak_tension);
+        assert!(apart < 1e-6);
+    }
+}
+
+#[test]
+fn the_result_does_not_hang_on_the_step() {
+    let peak = |step: &str| {
+        let straps = Summary::of(&small(&[PRETENSION, step]), None).straps;
+        straps.iter().map(|strap| strap.peak_tension).fold(0.0, f64::max)
+    };
+    let (whole, half) = (peak("run.step=\"0.2 ms\""), peak("run.step=\"0.1 ms\""));
+    println!("{whole} N, {half} N");
+    assert!((whole / half - 1.0).abs() < 1e-2);
+}
+
+#[test]
+fn along_the_barrels_both_straps_of_a_barrel_share_its_pull() {
+    let changes = ["stack.strap.levels=2", "stack.strap.slack=\"2 mm\"", "run.duration=\"4 s\""];
+    let straps = Summary::of(&run("candia-8-barrels-longitudinal", &changes), None).straps;
+    for pair in straps.chunks(2) {
+        assert!(pair[0].name.ends_with("front") && pair[1].name.ends_with("back"), "{pair:?}");
+        assert_eq!(pair[0].peak_tension, pair[1].peak_tension);
+    }
+    assert!(!straps.is_empty());
+}
+
+#[test]
+fn impossible_straps_are_refused_with_what_to_do() {
+    let wrong: [(&[&str], &str); 5] = [
+        (&["stack.strap.levels=9"], "the stack has only 4"),
+        (&["stack.strap.levels=1", TOGETHER], "ties at least 2"),
+        (&["stack.strap.slack=\"1 cm\"", PRETENSION], "leave one of the two out"),
+        (&["stack.strap.strength=\"2 kN\"", PRETENSION], "not below the strength"),
+        (&["stack.strap.stiffness=\"3 kN\""], "stiffness"),
+    ];
+    for (changes, words) in wrong {
+        let changes: Vec<String> = changes.iter().map(|change| (*change).to_owned()).collect();
+        let error = Scenario::builtin("candia-8-barrels", &changes).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    }
+}
