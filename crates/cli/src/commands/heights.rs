@@ -46,8 +46,12 @@ pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
         synthetic: args.synthetic,
         seed: args.seed,
     };
-    // Without a handler Ctrl-C ends the program at once, which loses nothing that is on the disk.
-    let _ = ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed));
+    // A second Ctrl-C, or one without a handler, ends the program at once, which loses nothing that is on the disk.
+    let _ = ctrlc::set_handler(|| {
+        if STOP.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    });
     let bar = ProgressBar::new(0);
     if let Ok(style) =
         ProgressStyle::with_template("{bar:30} {pos} of {len} runs  {elapsed}, {eta} to go")
@@ -115,12 +119,11 @@ fn print(found: &Heights) -> anyhow::Result<()> {
         lines.push(format!("  collapsed, shaken {}", view.words()));
         let heads = HEIGHTS.map(|levels| format!("{:>9}", format!("{levels} levels")));
         lines.push(format!("  {:>10}{}", "PGV", heads.concat()));
-        for (at, velocity) in VELOCITIES.iter().enumerate() {
+        for velocity in VELOCITIES {
             let cells = HEIGHTS.map(|levels| {
-                let stripe =
-                    found.of(levels, view).and_then(|height| height.by_velocity.stripes.get(at));
-                let share = stripe.map_or_else(String::new, |stripe| {
-                    format!("{:.0} %", 100.0 * stripe.fraction())
+                let at = found.of(levels, view).and_then(|height| height.at(velocity));
+                let share = at.map_or_else(String::new, |at| {
+                    format!("{:.0} %", 100.0 * at.stripe.fraction())
                 });
                 format!("{share:>9}")
             });
