@@ -56,7 +56,13 @@ pub(crate) fn refusal(reason: &FitError, told: impl Fn(f64) -> String) -> String
             told(*above),
             told(*below)
         ),
-        other => other.to_string(),
+        other @ (FitError::Empty
+        | FitError::Invalid { .. }
+        | FitError::BadDispersion(_)
+        | FitError::BadLevel(_)
+        | FitError::NotIncreasing
+        | FitError::NotConverged
+        | FitError::Unstable { .. }) => other.to_string(),
     }
 }
 

@@ -1,15 +1,14 @@
 //! `barrelstack heights`: how high is safe, on one page.
 
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::Context as _;
 use barrelstack::heights::{HEIGHTS, Heights, HeightsError, Request, VELOCITIES, View, heights};
 use barrelstack::study::{RunOptions, StudyError};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::interrupt::Interrupt;
 use crate::printer;
 
 /// Arguments of `heights`.
@@ -35,9 +34,6 @@ pub(crate) struct HeightsArgs {
     json: bool,
 }
 
-/// Set by Ctrl-C.
-static STOP: AtomicBool = AtomicBool::new(false);
-
 /// Runs every height in both directions, writes the page, prints the table.
 pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
     let request = Request {
@@ -46,12 +42,7 @@ pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
         synthetic: args.synthetic,
         seed: args.seed,
     };
-    // A second Ctrl-C, or one without a handler, ends the program at once, which loses nothing that is on the disk.
-    let _ = ctrlc::set_handler(|| {
-        if STOP.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-    });
+    let interrupt = Interrupt::listen();
     let bar = ProgressBar::new(0);
     if let Ok(style) =
         ProgressStyle::with_template("{bar:30} {pos} of {len} runs  {elapsed}, {eta} to go")
@@ -61,11 +52,7 @@ pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
     let result = heights(&request, &args.out, &RunOptions::default(), &|done, of| {
         bar.set_length(of);
         bar.set_position(done);
-        if STOP.load(Ordering::Relaxed) {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
+        interrupt.flow()
     });
     bar.finish_and_clear();
     let found = match result {
