@@ -7,9 +7,12 @@ use barrelstack_motion::{
     BooreSource, CloughPenzien, Envelope, GroundMotion, IntensityMeasure, MotionError, NearFault,
     Pulse,
 };
+use barrelstack_report::significant;
 
-use crate::ground::{self, Ground, GroundError};
-use crate::scenario::{FileRef, MotionSource, MotionSpec, RecordSource, Vertical, fnv1a};
+use crate::ground::{self, Ground, GroundError, RECORD_LIMIT};
+use crate::scenario::{
+    FileRef, MotionSource, MotionSpec, RecordMotion, RecordSource, Vertical, fnv1a,
+};
 use crate::system;
 
 use super::error::StudyError;
@@ -71,6 +74,28 @@ impl Synthetic {
             }
         }
     }
+
+    /// How it is made, in words.
+    fn told(&self) -> String {
+        let point = |source: &BooreSource| {
+            format!("magnitude {} at {} km", source.magnitude, source.path.distance)
+        };
+        let made = match &self.maker {
+            Making::Boore(source) => {
+                format!("the stochastic method for a point source (Boore 2003), {}", point(source))
+            }
+            Making::CloughPenzien { noise, duration, .. } => {
+                format!(
+                    "noise of Clough and Penzien, {} m/s2 rms for {duration} s",
+                    significant(noise.rms, 3)
+                )
+            }
+            Making::NearFault { rest, .. } => {
+                format!("a near-fault pulse on the stochastic method (Boore 2003), {}", point(rest))
+            }
+        };
+        format!("{made}, seed {}", self.seed)
+    }
 }
 
 impl Shaking {
@@ -87,6 +112,27 @@ impl Shaking {
                 };
                 let motion = ground::scaled(synthetic.motion()?, &spec, similitude)?;
                 Ok(Ground { motion: Some(motion), warnings: Vec::new() })
+            }
+        }
+    }
+
+    /// Where it comes from, as people would say it; the study has the numbers.
+    pub(super) fn source(&self, base: &MotionSpec) -> String {
+        let spec: &MotionSpec = match self {
+            Self::Base => base,
+            Self::Spec(spec) => spec,
+            Self::Synthetic(synthetic) => return synthetic.told(),
+        };
+        match &spec.source {
+            MotionSource::None => "ground at rest".to_owned(),
+            MotionSource::Sine(_) => "a harmonic motion".to_owned(),
+            MotionSource::Pulse(_) => "a pulse".to_owned(),
+            MotionSource::Record(RecordMotion { source: RecordSource::Bundled(name), .. }) => {
+                format!("the bundled record {name}")
+            }
+            MotionSource::Record(_) => {
+                let files = self.files(Some(base));
+                files.iter().map(|file| file.path.as_str()).collect::<Vec<_>>().join(" and ")
             }
         }
     }
@@ -111,9 +157,6 @@ impl Shaking {
         files
     }
 }
-
-/// Largest record (bytes) that is looked at.
-const RECORD_LIMIT: usize = 256 << 20;
 
 /// The fingerprint of the bytes of files; none where there are no files.
 pub(super) fn hash_files(name: &str, files: &[&FileRef]) -> Result<Option<u64>, StudyError> {
