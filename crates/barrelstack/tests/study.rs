@@ -332,6 +332,13 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
         .unwrap_err();
     let told = error.to_string();
     assert!(told.contains("belongs to another study: the study file has changed since"), "{told}");
+    let told =
+        Study::parse("test.toml", &format!("{BASE}{text}").replacen("seed = 7", "seed = 8", 1))
+            .unwrap()
+            .run(folder.path(), &RunOptions::default(), &|_| ControlFlow::Continue(()))
+            .unwrap_err()
+            .to_string();
+    assert!(told.contains("its seed is 7, that of this one 8"), "{told}");
     assert_eq!(std::fs::read(folder.path().join("study.json")).unwrap(), before);
 
     // A later version may lay folders out in another way.

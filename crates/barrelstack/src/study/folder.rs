@@ -188,6 +188,9 @@ fn difference(known: &Provenance, wanted: &Provenance) -> String {
     if known.version != wanted.version {
         return format!("it was made by version {}, this is {}", known.version, wanted.version);
     }
+    if known.seed != wanted.seed {
+        return format!("its seed is {}, that of this one {}", known.seed, wanted.seed);
+    }
     let changed = known.motions.iter().find(|motion| !wanted.motions.contains(motion));
     match changed {
         Some(motion) if wanted.motions.iter().any(|other| other.name == motion.name) => {
