@@ -28,7 +28,8 @@ use crate::study::Collected;
 
 pub(crate) use figures::{bars, chance_axis};
 pub(crate) use json::bounds as interval_json;
-pub(crate) use words::percent;
+pub(crate) use page::{heading, text};
+pub(crate) use words::{percent, refusal};
 
 pub use cases::{Case, Cases, Measure};
 pub use curve::{BandKind, LimitCurve};
@@ -123,7 +124,9 @@ pub fn decide(collected: &Collected, request: &Request) -> Result<Decision, Deci
     let measures = measures::compare(&cases);
     let effects = sensitivity::effects(collected, &cases);
     let site = match &request.hazard {
-        Some(hazard) => Some(Site::of(&cases, hazard, request.years.unwrap_or(50.0), &losses)?),
+        Some(hazard) => {
+            Some(Site::of(&cases, &curves, hazard, request.years.unwrap_or(50.0), &losses)?)
+        }
         None => None,
     };
     let warnings = words::warnings(&cases, &curves, &losses, site.as_ref(), &collected.provenance);
@@ -135,7 +138,7 @@ pub fn decide(collected: &Collected, request: &Request) -> Result<Decision, Deci
         effects,
         site,
         warnings,
-        document: page::empty(),
+        document: Document::default(),
     };
     decision.document = page::document(&decision, &collected.provenance);
     Ok(decision)

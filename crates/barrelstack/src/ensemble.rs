@@ -14,7 +14,7 @@ use std::sync::Arc;
 use barrelstack_dynamics::Method;
 use barrelstack_dynamics::lanes::{Topology, Width};
 
-use crate::run::{Standing, end_time, method, stand};
+use crate::run::{RunFailure, Standing, check_length, end_time, method, stand};
 use crate::scenario::Scenario;
 
 pub use case::{CaseResult, Prepared};
@@ -114,19 +114,24 @@ fn prepare<'a>(
     let time_scale = scenario.run.similitude.sqrt();
     let end_time = end_time(scenario, &case.ground, time_scale).map_err(|e| e.to_string())?;
     let known = stacks.iter().rposition(|stack| Arc::ptr_eq(&stack.scenario, scenario));
-    let stack = known.unwrap_or_else(|| {
-        let standing = stand(scenario, end_time).map_err(|failure| failure.to_string());
-        let standing = standing.map(|standing| {
-            let topology = Topology::of(&standing.assembly.model);
-            (standing, topology)
-        });
+    let stack = if let Some(stack) = known {
+        stack
+    } else {
+        let standing = match stand(scenario, end_time) {
+            // The fault of this motion: under a shorter one the stack may be run.
+            Err(failure @ RunFailure::Duration(_)) => return Err(failure.to_string()),
+            Err(failure) => Err(failure.to_string()),
+            Ok(standing) => {
+                let topology = Topology::of(&standing.assembly.model);
+                Ok((standing, topology))
+            }
+        };
         stacks.push(Stack { scenario: Arc::clone(scenario), standing });
         stacks.len() - 1
-    });
-    match &stacks[stack].standing {
-        Ok(_) => Ok(Run { case, index, stack, end_time }),
-        Err(reason) => Err(reason.clone()),
-    }
+    };
+    let (standing, _) = stacks[stack].standing.as_ref().map_err(Clone::clone)?;
+    check_length(end_time, standing.step).map_err(|failure| failure.to_string())?;
+    Ok(Run { case, index, stack, end_time })
 }
 
 /// The runs that may march together, in the order of their cases.

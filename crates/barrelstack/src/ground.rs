@@ -77,7 +77,7 @@ pub enum GroundError {
 }
 
 /// Largest record (bytes) that is read; the longest strong-motion files have a tenth of it.
-const RECORD_LIMIT: usize = 256 << 20;
+pub(crate) const RECORD_LIMIT: usize = 256 << 20;
 
 /// Reads or makes the motion of a scenario, scaled as it says.
 ///

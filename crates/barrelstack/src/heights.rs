@@ -3,6 +3,7 @@
 //! Stacks on one kind of rack are shaken by the bundled record of South Napa, by synthetic motions and by the
 //! user's own records, all scaled to the same levels of peak ground velocity; friction is drawn anew for each run.
 
+mod field;
 mod json;
 mod page;
 mod plan;
@@ -10,9 +11,10 @@ mod plan;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use barrelstack_fragility::{Interval, Stripe};
 use barrelstack_report::Document;
 
-use crate::decision::{Cases, DecisionError, LimitCurve, LimitState};
+use crate::decision::{Case, Cases, DecisionError, LimitCurve, LimitState};
 use crate::study::{Collected, Progress, RunOptions, Study, StudyError, Value};
 
 pub use plan::{HEIGHTS, VELOCITIES, View};
@@ -47,8 +49,35 @@ pub struct Height {
     pub by_velocity: LimitCurve,
     /// Collapse against PGA.
     pub by_acceleration: LimitCurve,
-    /// Share of the barrels that fall, at each of the levels of PGV.
+    /// Share of the barrels that fall, one for each stripe of `by_velocity`.
     pub fallen: Vec<f64>,
+}
+
+/// What becomes of stacks of one height in one direction at one level of PGV.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtLevel {
+    /// Counts of collapse.
+    pub stripe: Stripe,
+    /// Wilson's 95 % interval of the chance of collapse.
+    pub interval: Interval,
+    /// Mean share of the barrels that fall.
+    pub fallen: f64,
+}
+
+impl Height {
+    /// What becomes of them at a level of PGV (m/s), such as one of [`VELOCITIES`]; none where no run of that level
+    /// has a verdict.
+    pub fn at(&self, velocity: f64) -> Option<AtLevel> {
+        let curve = &self.by_velocity;
+        // Levels went through text in cm/s and back.
+        let same = |stripe: &Stripe| (stripe.intensity / velocity - 1.0).abs() < 1e-9;
+        let at = curve.stripes.iter().position(same)?;
+        Some(AtLevel {
+            stripe: curve.stripes[at],
+            interval: curve.intervals[at],
+            fallen: *self.fallen.get(at)?,
+        })
+    }
 }
 
 /// One run under the bundled record as it was recorded.
@@ -187,7 +216,7 @@ fn gather(request: &Request, found: &[(View, bool, Collected)]) -> Result<Height
         runs,
         left_out,
         warnings: Vec::new(),
-        document: page::empty(),
+        document: Document::default(),
     };
     all.warnings = page::warnings(&all);
     all.document = page::document(&all);
@@ -197,12 +226,9 @@ fn gather(request: &Request, found: &[(View, bool, Collected)]) -> Result<Height
 fn height(cases: &Cases, levels: u32, view: View) -> Height {
     let pga = cases.measures.iter().position(|measure| measure.name == "pga");
     let levels_of_shaking = cases.levels(cases.main);
-    let fallen = levels_of_shaking.iter().map(|(_, of)| {
-        let share = |case: &&crate::decision::Case| {
-            f64::from(case.fallen()) / f64::from(case.barrels.max(1))
-        };
-        of.iter().map(share).sum::<f64>() / of.len() as f64
-    });
+    let fallen = levels_of_shaking
+        .iter()
+        .map(|(_, of)| of.iter().map(|case| case.fallen_share()).sum::<f64>() / of.len() as f64);
     Height {
         levels,
         view,
@@ -220,17 +246,17 @@ fn levels_of(collected: &Collected, row: usize) -> Option<u32> {
 }
 
 fn recorded_runs(cases: &Cases, collected: &Collected, view: View) -> Vec<AsRecorded> {
-    let intensity = |name: &str, case: &crate::decision::Case| {
+    let intensity = |name: &str, case: &Case| {
         let at = cases.measures.iter().position(|measure| measure.name == name)?;
         case.intensities[at]
     };
-    let run = |case: &crate::decision::Case| {
+    let run = |case: &Case| {
         Some(AsRecorded {
             levels: levels_of(collected, case.row)?,
             view,
             motion: cases.records[case.record].clone(),
             collapsed: case.collapsed,
-            fallen: f64::from(case.fallen()) / f64::from(case.barrels.max(1)),
+            fallen: case.fallen_share(),
             velocity: intensity("pgv", case)?,
             acceleration: intensity("pga", case)?,
         })

@@ -370,7 +370,7 @@ pub(crate) fn end_time(
 }
 
 /// Refuses a run that would not end in a day.
-fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
+pub(crate) fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
     let steps = end_time / step;
     if steps <= MOST_STEPS {
         return Ok(());

@@ -55,7 +55,7 @@ pub use fields::STUDY;
 pub use folder::{Collected, MotionSource, Provenance, Status};
 pub use ida::Hunt;
 pub use plan::Chunk;
-pub use stop::{Tally, wilson};
+pub use stop::{StopRule, Tally};
 pub use table::StudyTable;
 
 use design::Cases;
@@ -161,7 +161,7 @@ impl Study {
     /// How many cases there are; of an adaptive design, at most.
     pub fn cases(&self) -> u64 {
         let runs = if let Design::Ida(hunt) = &self.design { hunt.runs } else { 1 };
-        self.cases.count(self) * u64::from(runs)
+        self.cases.count(self).saturating_mul(u64::from(runs))
     }
 
     /// Whether the number of cases depends on what becomes of them.

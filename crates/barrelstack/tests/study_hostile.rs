@@ -21,7 +21,7 @@ fn whole(parts: [&str; 5]) -> String {
 /// The mistakes: what is replaced (0 to 4), by what, and what the error must say. The line of the mistake ends with
 /// `# HERE`; without such a line the error is about the file as a whole or about a table that lacks something.
 const MISTAKES: &[(usize, &str, &[&str])] = &[
-    (0, "seed = 3\n", &["`schema` is missing from the scenario", "schema = 1"]),
+    (0, "seed = 3\n", &["`schema` is missing from the study", "schema = 1"]),
     (0, "schema = 2 # HERE\n", &["`schema` must be", "found the number 2"]),
     (0, "schema = 1\nseed = -1 # HERE\n", &["`seed` must be an integer from 0"]),
     (0, "schema = 1\nsede = 3 # HERE\n", &["unknown key `sede`", "did you mean `seed`"]),
@@ -136,6 +136,17 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
     ),
     (
         2,
+        "[[factor]]\nfield = \"motion.record\" # HERE\nvalues = [\"a.AT2\", \"b.AT2\"]\n",
+        &["`motion.record` names a file; list the `records` of [[motion]]"],
+    ),
+    (
+        2,
+        "[[motion]]\nsynthetic = { kind = \"boore\", count = 3, magnitude = 6, distance = \"8 km\" }\n\
+         scale = { measure = \"sa(1.0)\", value = \"0.3 g\", of = \"rotd50\" } # HERE\n",
+        &["of both horizontals needs a recorded motion"],
+    ),
+    (
+        2,
         "[[motion]]\nrecords = [\"nowhere.AT2\"]\n",
         &["cannot read the record nowhere.AT2: there is no such file", "correct the path"],
     ),
@@ -184,6 +195,11 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
         &["is an acceleration (m/s^2), expected a velocity"],
     ),
     (3, "[intensity]\nlevels = [\"0 m/s\"] # HERE\n", &["must be greater than 0"]),
+    (
+        3,
+        "[intensity]\ndistribution = { kind = \"normal\", mean = \"0.3 m/s\", deviation = \"0.1 m/s\" } # HERE\n",
+        &["a level has to be above zero", "cut it with `least`"],
+    ),
     (3, "[intensity]\nmeasure = \"pgv\"\n", &["[intensity] has no levels"]),
     (4, "", &["`design` is missing"]),
     (4, "[design]\nkind = \"lhs\" # HERE\n", &["there is no \"lhs\""]),
@@ -259,9 +275,13 @@ fn too_many_cases_are_refused_and_not_counted() {
     let many = ["rack-ground", "barrel-rack", "barrel-barrel", "barrel-ground", "rack-rack"]
         .map(factor)
         .concat();
-    let error =
-        Study::parse("case.toml", &whole([HEAD, SCENE, &many, INTENSITY, DESIGN])).unwrap_err();
-    assert!(error.to_string().contains("more than 10000000 cases: take fewer values"), "{error}");
+    let hunted = "[intensity]\nmeasure = \"pgv\"\n";
+    let hunt = "[design]\nkind = \"ida\"\nfirst = \"1 m/s\"\nstep = \"1 m/s\"\n";
+    for [intensity, design] in [[INTENSITY, DESIGN], [hunted, hunt]] {
+        let text = whole([HEAD, SCENE, &many, intensity, design]);
+        let error = Study::parse("case.toml", &text).unwrap_err().to_string();
+        assert!(error.contains("more than 10000000 cases: take fewer values"), "{error}");
+    }
 }
 
 #[test]

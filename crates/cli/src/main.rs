@@ -3,6 +3,7 @@
 mod args;
 mod commands;
 mod figures;
+mod interrupt;
 mod printer;
 mod progress;
 mod rows;

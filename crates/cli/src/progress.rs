@@ -2,39 +2,28 @@
 
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::interrupt::Interrupt;
+
 /// Tells how far a run is, and whether the user wants it to stop.
 pub(crate) struct Progress {
     bar: Option<ProgressBar>,
-    stop: Arc<AtomicBool>,
+    interrupt: Interrupt,
 }
 
 impl Progress {
     /// Starts; shows a line only when asked to and only on a terminal.
-    ///
-    /// The first Ctrl-C asks the run to stop at its next report; a second one, for a run that is not
-    /// there yet, ends the program; files are written under their own names only when whole.
     pub(crate) fn new(show: bool) -> Self {
-        let stop = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&stop);
-        // Without a handler, which a system may refuse, Ctrl-C ends the program as it always did.
-        let _ = ctrlc::set_handler(move || {
-            if flag.swap(true, Ordering::Relaxed) {
-                std::process::exit(130);
-            }
-        });
         let bar = (show && std::io::stderr().is_terminal()).then(|| {
             let bar = ProgressBar::new_spinner().with_style(style("{spinner} {msg}"));
             bar.set_message("the stack comes to rest");
             bar.enable_steady_tick(Duration::from_millis(100));
             bar
         });
-        Self { bar, stop }
+        Self { bar, interrupt: Interrupt::listen() }
     }
 
     /// The run has come this far.
@@ -51,11 +40,7 @@ impl Progress {
                 progress.time, progress.end_time
             ));
         }
-        if self.stop.load(Ordering::Relaxed) {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
+        self.interrupt.flow()
     }
 }
 

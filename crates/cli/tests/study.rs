@@ -190,7 +190,7 @@ fn mistakes_are_told_before_anything_is_made() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_is_told_in_plain_words() {
+fn a_folder_that_cannot_be_made_is_told_in_plain_words() {
     let folder = tempfile::tempdir().unwrap();
     let file = study(folder.path());
     // Nothing can be made below a file; a folder below /proc cannot be made at all.

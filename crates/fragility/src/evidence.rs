@@ -16,8 +16,8 @@ pub enum Capacity {
 }
 
 impl Capacity {
-    /// The lowest and the highest capacity that this allows.
-    pub(crate) fn bounds(self) -> (f64, f64) {
+    /// The lowest and the highest capacity that this allows; 0 and infinity where it does not bound it.
+    pub fn bounds(self) -> (f64, f64) {
         match self {
             Self::At(x) => (x, x),
             Self::Below(x) => (0.0, x),

@@ -62,7 +62,9 @@ pub use fit::{Dispersion, Fit, FitError, fit, moments};
 pub use goodness::{Goodness, Normality, goodness, goodness_by_simulation, normality};
 pub use hazard::{Contribution, Hazard, HazardError, Rate, chance_within};
 pub use ida::{Ida, Resurrection};
-pub use math::{chi_square_above, normal, normal_density, normal_quantile, student_beyond};
+pub use math::{
+    chi_square_above, normal, normal_density, normal_quantile, student_beyond, student_quantile,
+};
 pub use measures::{Demanded, Measured, demand_against, failure_against};
 pub use monotone::{Fall, Monotony, Returned, monotony, returns};
 pub use profile::{profile_band, profile_median};

@@ -67,7 +67,7 @@ fn resampling_whole_records_sees_the_dependence_that_counts_hide() {
 
 #[test]
 fn data_whose_resamples_mostly_have_no_curve_are_refused() {
-    // One overlap in six records: it is drawn out of most resamples.
+    // One overlap in five records: it is drawn out of most resamples.
     let all: Vec<Evidence> = [(0.3, false), (0.4, false), (0.5, true), (0.45, false), (0.44, true)]
         .iter()
         .enumerate()

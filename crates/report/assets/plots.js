@@ -38,7 +38,7 @@ function makePlot(raw, columns, figure, page) {
     values.push(value);
     const swatch = svg("svg", { viewBox: "0 0 28 8", class: "swatch", "aria-hidden": "true" },
       svg("line", { x1: 1, y1: 4, x2: 27, y2: 4, class: s.muted ? "series muted" : `series s${s.look}`,
-        "stroke-dasharray": s.muted ? "" : page.dashes[s.look] }));
+        "stroke-dasharray": s.dash }));
     const button = make("button", { type: "button", "aria-pressed": "true" }, swatch, s.label, value);
     button.addEventListener("click", () => {
       s.shown = !s.shown;
@@ -86,7 +86,7 @@ function makePlot(raw, columns, figure, page) {
         label: s.label, show: s.shown, spanGaps: false,
         stroke: s.muted ? soft : color("s" + s.look), width: s.muted ? 0.8 : 1.7,
         alpha: s.muted ? 0.6 : 1,
-        dash: s.muted ? undefined : page.dashes[s.look].split(" ").filter(Boolean).map(Number),
+        dash: s.dash.split(" ").filter(Boolean).map(Number),
         fill: s.area ? color("s" + s.look) + "28" : undefined,
         points: { show: s.dots, size: 6 },
       }))],

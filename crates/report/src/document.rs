@@ -6,7 +6,7 @@ use crate::{Figure, Player, Players, Table};
 ///
 /// [`html`](crate::html) and [`markdown`](crate::markdown) read the same value, so a number
 /// shown in one is the number shown in the other.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Document {
     /// Name of the run or study; the page title.
     pub title: String,
@@ -21,7 +21,7 @@ pub struct Document {
 }
 
 /// The answer in plain language.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verdict {
     /// One short sentence, the largest text of the page.
     pub headline: String,
@@ -32,7 +32,7 @@ pub struct Verdict {
 }
 
 /// The kind of answer; always shown as a sign and a word, never by color alone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tone {
     /// Everything that should stay up stayed up.
     Stands,
@@ -41,6 +41,7 @@ pub enum Tone {
     /// The run is not to be trusted.
     Invalid,
     /// No verdict: a study, a comparison, a record.
+    #[default]
     Neutral,
 }
 

@@ -59,6 +59,7 @@ impl Payload {
                     "x": x,
                     "y": y,
                     "look": plot.look(at),
+                    "dash": plot.dash(at),
                     "muted": s.style.muted,
                     "area": s.style.area,
                     "dots": s.style.dots,

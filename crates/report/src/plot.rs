@@ -1,6 +1,6 @@
 //! A plot: series over a pair of axes, with marks, levels and bands.
 
-use crate::{escape, number};
+use crate::{escape, number, style::DASHES};
 
 /// Lines over a pair of axes.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -103,7 +103,8 @@ impl Series {
 /// How a series is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct SeriesStyle {
-    /// Which color and dash pattern, from 0, modulo six; the place in the plot when `None`.
+    /// Which color and dash pattern, from 0; the place in the plot when `None`. Colors repeat after
+    /// six, each time with other dashes.
     pub index: Option<usize>,
     /// Shade between the line and zero (or the foot of the plot).
     pub area: bool,
@@ -144,8 +145,19 @@ impl Plot {
             })
     }
 
+    fn index(&self, at: usize) -> usize {
+        self.series[at].style.index.unwrap_or(at)
+    }
+
+    /// Which of the six colors a series has.
     pub(crate) fn look(&self, at: usize) -> usize {
-        self.series[at].style.index.unwrap_or(at) % 6
+        self.index(at) % 6
+    }
+
+    /// The dash pattern of a series, which differs where a color comes again.
+    pub(crate) fn dash(&self, at: usize) -> &'static str {
+        let round = self.index(at) / 6;
+        if self.series[at].style.muted { "" } else { DASHES[(self.look(at) + round) % 6] }
     }
 
     pub(crate) fn to_csv(&self) -> String {

@@ -4,7 +4,6 @@ use crate::{
     Axis, Mark, Plot, Scale,
     drawing::{Anchor, Drawing, Item, Runs, text_width},
     simplify::simplify,
-    style::DASHES,
     ticks::{Ticks, linear_ticks, log_ticks},
 };
 
@@ -92,10 +91,6 @@ impl Plot {
         } else {
             format!("series s{}", self.look(at))
         }
-    }
-
-    fn dash(&self, at: usize) -> &'static str {
-        if self.series[at].style.muted { "" } else { DASHES[self.look(at)] }
     }
 
     /// Where each legend entry goes, and the height they take together.

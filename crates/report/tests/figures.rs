@@ -129,6 +129,20 @@ fn a_missing_value_divides_a_line_in_two() {
 }
 
 #[test]
+fn where_a_color_comes_again_the_dashes_differ() {
+    let lines = (0..12).map(|_| Series::new("", vec![0.0, 1.0], vec![0.0, 1.0])).collect();
+    let svg = figure(FigureKind::Plot(plot(lines))).to_svg();
+    let tree = parsed(&svg);
+    let looks: Vec<_> = tree
+        .descendants()
+        .filter(|n| n.attribute("class").is_some_and(|class| class.starts_with("series s")))
+        .map(|n| (n.attribute("class"), n.attribute("stroke-dasharray")))
+        .collect();
+    let different: std::collections::BTreeSet<_> = looks.iter().collect();
+    assert_eq!((looks.len(), different.len()), (12, 12), "{looks:?}");
+}
+
+#[test]
 fn plot_csv_reads_back_to_the_same_bits_with_gaps_empty() {
     let values = vec![0.1 + 0.2, f64::NAN, -1e-300];
     let shared = vec![0.0, 1.0, 2.0];

@@ -2,10 +2,11 @@
 
 use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::math;
+use barrelstack_fragility::student_quantile;
 
 use super::least_squares::{self, Fit, Start};
 use super::result::{quoted, rounded, short};
-use super::statistics::{mean, student};
+use super::statistics::mean;
 use super::{CalibrateError, Calibration, Estimate, Table, impact};
 use crate::scenario::Dimension;
 
@@ -234,7 +235,7 @@ fn start_ratio(e: f64) -> f64 {
 fn log_interval(fit: Option<&Fit>, at: usize) -> Option<(f64, f64)> {
     let fit = fit.filter(|fit| fit.converged && fit.matters.iter().all(|matters| *matters))?;
     let variance = fit.covariance.as_ref()?[at][at];
-    Some((fit.parameters[at], student(0.95, fit.freedom) * variance.sqrt()))
+    Some((fit.parameters[at], student_quantile(0.95, fit.freedom) * variance.sqrt()))
 }
 
 fn no_rebound(striker: &Striker) -> String {

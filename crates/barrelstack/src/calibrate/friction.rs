@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 
 use barrelstack_dynamics::math;
+use barrelstack_fragility::student_quantile;
 
 use super::drop::GRAVITY;
 use super::result::{rounded, short};
-use super::statistics::{line, mean, student};
+use super::statistics::{line, mean};
 use super::{CalibrateError, Calibration, Estimate, Table};
 use crate::scenario::Dimension;
 
@@ -132,7 +133,8 @@ fn load_warning(table: &Table, rest: &[f64]) -> Result<Option<String>, Calibrate
     }
     let normal = table.positive("normal force", Dimension::FORCE)?;
     let Some(found) = line(&normal, rest) else { return Ok(None) };
-    let clear = found.slope.abs() > student(0.99, found.freedom) * found.slope_variance.sqrt();
+    let clear =
+        found.slope.abs() > student_quantile(0.99, found.freedom) * found.slope_variance.sqrt();
     let low = normal.iter().copied().fold(f64::INFINITY, f64::min);
     let high = normal.iter().copied().fold(0.0, f64::max);
     let at = |force: f64| short(found.intercept + found.slope * force);

@@ -3,11 +3,11 @@
 mod simulate;
 
 use barrelstack_dynamics::math;
+use barrelstack_fragility::student_quantile;
 
 use self::simulate::{Measured, Simulator};
 use super::least_squares::{Fit, Start, condition, fit, normalized};
 use super::result::short;
-use super::statistics::student;
 use super::{CalibrateError, Calibration, Estimate, Parameter, Table};
 use crate::run::RunFailure;
 use crate::scenario::Scenario;
@@ -180,7 +180,7 @@ fn estimates(
     found: &Fit,
     widening: f64,
 ) -> (Vec<Estimate>, Vec<Vec<f64>>) {
-    let t = student(0.95, found.freedom) * widening;
+    let t = student_quantile(0.95, found.freedom) * widening;
     let place = |at: usize| found.matters[..at].iter().filter(|matters| **matters).count();
     let known = |at: usize| found.covariance.as_ref().filter(|_| found.matters[at]);
     let estimate = |(at, parameter): (usize, &Parameter)| {

@@ -1,7 +1,9 @@
 //! Stiffness `k` from a press test: penetration against force.
 
+use barrelstack_fragility::student_quantile;
+
 use super::result::{quoted, short};
-use super::statistics::{line, student};
+use super::statistics::line;
 use super::{CalibrateError, Calibration, Estimate, Table};
 use crate::scenario::Dimension;
 
@@ -32,7 +34,7 @@ pub fn stiffness(
             "a slope and its scatter need at least three rows, at more than one penetration",
         )
     })?;
-    let (slope, t) = (found.slope, student(0.95, found.freedom));
+    let (slope, t) = (found.slope, student_quantile(0.95, found.freedom));
     if slope <= 0.0 {
         return Err(table.unsuited(format!(
             "the force falls with penetration ({} N/m): keep the rows of pressing, and count both \

@@ -92,6 +92,11 @@ impl Case {
     pub fn fallen(&self) -> u32 {
         u32::try_from(self.falls.len()).unwrap_or(u32::MAX)
     }
+
+    /// Share of its barrels that fell; 0 without barrels.
+    pub fn fallen_share(&self) -> f64 {
+        f64::from(self.fallen()) / f64::from(self.barrels.max(1))
+    }
 }
 
 /// The cases of a study that have a verdict.

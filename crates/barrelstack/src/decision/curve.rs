@@ -22,14 +22,14 @@ const REPLICATES: usize = 600;
 const DRAWS: usize = 500;
 
 /// Fewest records that can be resampled with sense.
-const FEWEST: usize = 8;
+pub(super) const FEWEST: usize = 8;
 
 /// Where a band comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BandKind {
     /// Whole records resampled: cases of one record may depend on each other.
     Records,
-    /// The likelihood of independent cases, for want of records.
+    /// The likelihood of independent cases, for want of records or of resampled data sets with a curve.
     Likelihood,
 }
 
@@ -117,6 +117,11 @@ impl LimitCurve {
         }
     }
 
+    /// Whether failure clearly becomes less likely somewhere, against what every curve takes for granted.
+    pub fn violates_order(&self) -> bool {
+        self.monotony.p < 0.05
+    }
+
     /// Chance of failure as the raw fractions say: between levels linear in the logarithm of the intensity, held
     /// above the highest, linear to nothing at rest below the lowest.
     pub fn raw(&self, intensity: f64) -> f64 {
@@ -170,15 +175,7 @@ fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> 
 
 /// Counts of hunts at eight levels: those that had failed there, of those of which it is known.
 fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
-    let bounds: Vec<(f64, f64)> = evidence
-        .iter()
-        .map(|item| match item.capacity {
-            Capacity::At(x) => (x, x),
-            Capacity::Below(x) => (0.0, x),
-            Capacity::Above(x) => (x, f64::INFINITY),
-            Capacity::Between(low, high) => (low, high),
-        })
-        .collect();
+    let bounds: Vec<(f64, f64)> = evidence.iter().map(|item| item.capacity.bounds()).collect();
     let ends = || bounds.iter().flat_map(|(low, high)| [*low, *high]);
     let sound = || ends().filter(|x| *x > 0.0 && x.is_finite());
     let (first, last) = (sound().fold(f64::INFINITY, f64::min), sound().fold(0.0, f64::max));
@@ -187,7 +184,8 @@ fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
     }
     let step = libm::log(last / first) / 7.0;
     (0..8)
-        .map(|i| first * libm::exp(step * f64::from(i)))
+        // The last exactly: rounded down it would miss what failed there.
+        .map(|i| if i == 7 { last } else { first * libm::exp(step * f64::from(i)) })
         .map(|intensity| {
             let failures = bounds.iter().map(|(_, high)| u32::from(*high <= intensity)).sum();
             let stood: u32 = bounds

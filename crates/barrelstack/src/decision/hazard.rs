@@ -106,35 +106,22 @@ pub struct Site {
     pub wine: [f64; 3],
     /// Where the rate of collapse comes from, by intensity.
     pub contributions: Vec<Contribution>,
-    /// Index of the measure.
-    pub measure: usize,
 }
 
 impl Site {
-    /// Folds the curves with the hazard.
+    /// Folds the curves over the measure of the study, of which the first is of collapse, with the hazard.
     pub(super) fn of(
         cases: &Cases,
+        curves: &[LimitCurve],
         hazard: &SiteHazard,
         years: f64,
         losses: &Losses,
     ) -> Result<Self, DecisionError> {
-        let known = cases.measures.iter().position(|m| m.name == hazard.measure);
-        let Some(measure) = known else {
+        if cases.measure().name != hazard.measure {
             return Err(CalibrateError::Unsuited {
                 file: hazard.file.clone(),
                 reason: format!(
-                    "the hazard is over {}, which the study does not have; give it over one of {}",
-                    hazard.measure,
-                    cases.measures.iter().map(|m| m.name.as_str()).collect::<Vec<_>>().join(", ")
-                ),
-            }
-            .into());
-        };
-        if measure != cases.main {
-            return Err(CalibrateError::Unsuited {
-                file: hazard.file.clone(),
-                reason: format!(
-                    "the hazard is over {}, but the motions of the study were scaled to {}; give the hazard over that",
+                    "the hazard is over {}, but the curves of the study are over {}; give the hazard over that",
                     hazard.measure,
                     cases.measure().name
                 ),
@@ -142,11 +129,8 @@ impl Site {
             .into());
         }
         let curve = &hazard.hazard;
-        let limits: Vec<LimitRate> = LimitState::worth_telling(cases)
-            .into_iter()
-            .map(|limit| rate(curve, years, &LimitCurve::of(cases, limit, measure)))
-            .collect();
-        let collapse = LimitCurve::of(cases, LimitState::SeatLost, measure);
+        let limits = curves.iter().map(|limit| rate(curve, years, limit)).collect();
+        let collapse = &curves[0];
         let chance = |x: f64| match &collapse.fit {
             Ok(fit) => fit.curve.probability(x),
             Err(_) => collapse.raw(x),
@@ -161,7 +145,6 @@ impl Site {
             wine: burst.map(|rate| rate.low * WINE),
             burst,
             contributions: curve.contributions(&edges(curve), chance),
-            measure,
         })
     }
 }

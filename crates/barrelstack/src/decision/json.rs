@@ -89,7 +89,7 @@ pub(super) fn of(decision: &Decision) -> Value {
 }
 
 /// A number, or null: JSON has no infinity.
-pub(crate) fn finite(value: f64) -> Option<f64> {
+fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 

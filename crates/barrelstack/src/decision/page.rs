@@ -12,17 +12,6 @@ use super::words::{self, capital, count, percent};
 use super::{Decision, figures};
 use crate::study::Provenance;
 
-/// A page to be filled.
-pub(super) fn empty() -> Document {
-    Document {
-        title: String::new(),
-        verdict: Verdict { headline: String::new(), sentences: Vec::new(), tone: Tone::Neutral },
-        blocks: Vec::new(),
-        provenance: Vec::new(),
-        warnings: Vec::new(),
-    }
-}
-
 /// The whole page.
 pub(super) fn document(decision: &Decision, made: &Provenance) -> Document {
     Document {
@@ -38,11 +27,12 @@ pub(super) fn document(decision: &Decision, made: &Provenance) -> Document {
     }
 }
 
-fn heading(text: &str) -> Block {
+/// What opens a section.
+pub(crate) fn heading(text: &str) -> Block {
     Block::Heading { level: 2, text: text.to_owned() }
 }
 
-fn text(text: impl Into<String>) -> Block {
+pub(crate) fn text(text: impl Into<String>) -> Block {
     Block::Paragraph(text.into())
 }
 
@@ -55,7 +45,7 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
         Block::Figure(figures::fragility(collapse, measure)),
         Block::Table(raw(collapse, measure)),
     ];
-    blocks.extend(judgment(collapse));
+    blocks.extend(judgment(collapse, measure));
     blocks.push(heading("Modes and numbers of barrels"));
     blocks.push(Block::Figure(figures::limits(&decision.curves, measure)));
     blocks.push(Block::Table(limits(&decision.curves, measure)));
@@ -127,10 +117,12 @@ pub(super) fn raw(curve: &LimitCurve, measure: &Measure) -> Table {
 }
 
 /// How the curve was made and whether to believe it.
-fn judgment(curve: &LimitCurve) -> Vec<Block> {
+fn judgment(curve: &LimitCurve, measure: &Measure) -> Vec<Block> {
     let mut said = Vec::new();
     match &curve.fit {
-        Err(reason) => said.push(format!("No curve: {reason}.")),
+        Err(reason) => {
+            said.push(format!("No curve: {}.", words::refusal(reason, |x| measure.words(x))));
+        }
         Ok(fit) => {
             said.push(format!(
                 "The curve has the greatest likelihood of all lognormal ones (Baker 2015); standard errors: {} of ln θ, \
@@ -211,11 +203,9 @@ fn limits(curves: &[LimitCurve], measure: &Measure) -> Table {
                 Cell::Number(curve.monotony.p, 2)
             },
             Cell::text(match fit {
-                Ok(_) if words::fit_is_doubtful(curve) => {
-                    "not monotone: use the raw fractions".into()
-                }
+                Ok(_) if curve.violates_order() => "not monotone: use the raw fractions".into(),
                 Ok(_) => String::new(),
-                Err(reason) => reason.to_string(),
+                Err(reason) => words::refusal(reason, |x| measure.words(x)),
             }),
         ]);
     }
@@ -276,8 +266,9 @@ fn assumptions() -> Vec<Block> {
         Block::Table(table),
         Block::List(vec![
             "No published test of dropped barrels with numbers was found. The central curve (lognormal, median fall 5 m, \
-             dispersion 0.6) was chosen so that stacks of four to six levels that come down whole lose 7 to 18 % of their \
-             barrels, since about one in ten of the barrels that toppled at Napa in 2014 was lost (Wines & Vines 2016)."
+             dispersion 0.6) was chosen so that of the barrels above the lowest level of stacks of four to six levels \
+             that come down whole 7 to 18 % burst, since about one in ten of the barrels that toppled at Napa in 2014 was \
+             lost (Wines & Vines 2016); from how high these fell is not known."
                 .into(),
             "A barrel that bursts loses its 225 L; barrels that hold lose nothing here, though bungs leak. What one stack \
              does to its neighbors, and racks and buildings, are not counted."

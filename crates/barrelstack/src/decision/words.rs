@@ -1,10 +1,11 @@
 //! What the page says in words: verdict and warnings.
 
+use barrelstack_fragility::FitError;
 use barrelstack_report::{Cell, significant};
 
 use super::Decision;
 use super::cases::Cases;
-use super::curve::{BandKind, LimitCurve};
+use super::curve::{BandKind, FEWEST, LimitCurve};
 use super::hazard::Site;
 use super::limit::LimitState;
 use super::loss::Losses;
@@ -18,7 +19,9 @@ pub(crate) fn percent(share: f64) -> String {
         v if v < 0.1 => "less than 0.1 %".to_owned(),
         v if v > 99.9 && v < 100.0 => "more than 99.9 %".to_owned(),
         v if v < 10.0 => format!("{} %", significant(v, 2)),
-        v => format!("{} %", significant(v.round(), 3)),
+        // Not all, so not 100 %.
+        v if v > 99.0 && v < 100.0 => format!("{} %", significant(v, 3)),
+        v => format!("{v:.0} %"),
     }
 }
 
@@ -29,12 +32,38 @@ pub(super) fn count(count: impl Into<f64>) -> Cell {
     Cell::Number(count, digits)
 }
 
-/// Once in how many years.
-pub(super) fn period(rate: f64) -> String {
+/// A collapse once in how many years.
+fn recurrence(rate: f64) -> String {
     if rate <= 0.0 {
-        return "never".to_owned();
+        return "no collapse".to_owned();
     }
-    format!("once in {} years", significant(1.0 / rate, 2))
+    format!("a collapse once in {} years", significant(1.0 / rate, 2))
+}
+
+/// Why there is no curve, with intensities as `told` says them.
+pub(crate) fn refusal(reason: &FitError, told: impl Fn(f64) -> String) -> String {
+    match reason {
+        FitError::NothingFailed { largest } => format!(
+            "no case failed up to {}, so the median lies above; add cases of higher intensity",
+            told(*largest)
+        ),
+        FitError::EverythingFailed { smallest } => format!(
+            "every case failed down to {}, so the median lies below; add cases of lower intensity",
+            told(*smallest)
+        ),
+        FitError::Separated { above, below } => format!(
+            "a single capacity between {} and {} explains every case; add cases between them",
+            told(*above),
+            told(*below)
+        ),
+        other @ (FitError::Empty
+        | FitError::Invalid { .. }
+        | FitError::BadDispersion(_)
+        | FitError::BadLevel(_)
+        | FitError::NotIncreasing
+        | FitError::NotConverged
+        | FitError::Unstable { .. }) => other.to_string(),
+    }
 }
 
 /// The largest words of the page.
@@ -43,12 +72,14 @@ pub(super) fn headline(decision: &Decision) -> String {
     let curve = &decision.curves[0];
     let measure = cases.measure();
     let collapsed = cases.all.iter().filter(|case| case.collapsed).count();
-    match &curve.fit {
-        _ if fit_is_doubtful(curve) => format!(
+    if curve.violates_order() {
+        return format!(
             "{collapsed} of {} cases collapse, and collapse does not simply grow with {}: read the raw fractions.",
             cases.all.len(),
             measure.label
-        ),
+        );
+    }
+    match &curve.fit {
         Ok(fit) => format!(
             "Half of the stacks collapse at a {} of {}.",
             measure.label,
@@ -56,11 +87,6 @@ pub(super) fn headline(decision: &Decision) -> String {
         ),
         Err(_) => format!("{collapsed} of {} cases collapse.", cases.all.len()),
     }
-}
-
-/// Whether the order that the curve takes for granted is clearly violated.
-pub(super) fn fit_is_doubtful(curve: &LimitCurve) -> bool {
-    curve.monotony.p < 0.05
 }
 
 /// The sentences under it.
@@ -80,19 +106,28 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
             } else {
                 "which the cases hardly bound".to_owned()
             };
+            let source = if curve.violates_order() {
+                "By a fitted curve, which hides that, the"
+            } else {
+                "The"
+            };
             said.push(format!(
-                "The median {} of collapse is {} ({band}), its dispersion {}.",
+                "{source} median {} of collapse is {} ({band}), its dispersion {}.",
                 measure.label,
                 measure.words(fit.curve.median),
                 significant(fit.curve.dispersion, 2)
             ));
             said.push(format!(
-                "One stack in ten collapses at {}, nine in ten at {}.",
+                "One stack in ten collapses at {}, nine in ten at {}{}.",
                 measure.words(fit.curve.intensity(0.1)),
-                measure.words(fit.curve.intensity(0.9))
+                measure.words(fit.curve.intensity(0.9)),
+                if curve.violates_order() { " by that curve" } else { "" }
             ));
         }
-        (Err(reason), _) => said.push(format!("No fragility curve is fitted: {reason}.")),
+        (Err(reason), _) => said.push(format!(
+            "No fragility curve is fitted: {}.",
+            refusal(reason, |x| measure.words(x))
+        )),
         (Ok(_), None) => {}
     }
     if let Some(last) = decision.losses.levels.last() {
@@ -107,9 +142,9 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
         let rate = &site.limits[0];
         let annual = rate.fitted.as_ref().unwrap_or(&rate.raw).low;
         said.push(format!(
-            "At the site of {} that is a collapse {}, a chance of {} in {} years, and {} barrels on the floor a year.",
+            "At the site of {} that is {}, a chance of {} in {} years, and {} barrels on the floor a year.",
             site.hazard.file,
-            period(annual),
+            recurrence(annual),
             percent(rate.chance),
             site.years,
             significant(site.fallen.low, 2)
@@ -144,6 +179,13 @@ pub(super) fn warnings(
     for curve in curves {
         said.extend(islands(cases, curve));
     }
+    if cases.hunted {
+        said.push(
+            "Levels were chosen by hunting for collapse, so that shares and means over all cases (losses, what matters) \
+             hold for the levels that were run and not for shaking of any given strength."
+                .to_owned(),
+        );
+    }
     let collapse = &curves[0];
     if collapse.limit == LimitState::SeatLost {
         if let Some(test) = collapse.goodness.filter(|test| test.freedom > 0 && test.p < 0.05) {
@@ -154,10 +196,14 @@ pub(super) fn warnings(
             ));
         }
         if collapse.fit.is_ok() && collapse.band_kind == BandKind::Likelihood {
+            let reason = if cases.records.len() < FEWEST {
+                format!("{} records are too few to be resampled", cases.records.len())
+            } else {
+                "most resampled data sets determine no curve".to_owned()
+            };
             said.push(format!(
-                "The band takes all cases as independent, since {} records are too few to be resampled; with the same \
-                 records at every level it is too narrow.",
-                cases.records.len()
+                "The band takes all cases as independent, since {reason}; with the same records at every level it is \
+                 too narrow."
             ));
         }
         if let Some(found) = collapse.replicates.as_ref().filter(|r| r.refused_share() > 0.025) {
@@ -189,11 +235,19 @@ pub(super) fn warnings(
 fn islands(cases: &Cases, curve: &LimitCurve) -> Vec<String> {
     let measure = &cases.measures[curve.measure];
     let falls = curve.monotony.significant(0.05);
+    let meaning = match curve.limit {
+        LimitState::Mode(_) => {
+            "Above it stacks stand or collapse in another mode, of which a fitted curve knows nothing"
+        }
+        LimitState::SeatLost | LimitState::Fallen(_) => {
+            "Below the stable window lies an island of it that a fitted curve smooths away"
+        }
+    };
     falls
         .map(|fall| {
             format!(
-                "{} is not monotone: {} of {} cases at {}, but only {} of {} at {} (p = {}). Below the stable window \
-                 lies an island of it that the fitted curve smooths away; use the raw fractions.",
+                "{} is not monotone: {} of {} cases at {}, but only {} of {} at {} (p = {}). {meaning}; use the \
+                 raw fractions.",
                 capital(&curve.limit.words()),
                 fall.from.failures,
                 fall.from.cases,
@@ -241,4 +295,25 @@ fn of_site(cases: &Cases, losses: &Losses, site: &Site) -> Vec<String> {
 pub(super) fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_share_reads_as_none_or_all_only_when_it_is() {
+        let shares = [0.0, 5e-4, 0.044, 0.5, 0.708, 299.0 / 300.0, 0.9995, 1.0];
+        let told = [
+            "0 %",
+            "less than 0.1 %",
+            "4.4 %",
+            "50 %",
+            "71 %",
+            "99.7 %",
+            "more than 99.9 %",
+            "100 %",
+        ];
+        assert_eq!(shares.map(percent), told);
+    }
 }

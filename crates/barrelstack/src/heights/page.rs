@@ -1,14 +1,14 @@
 //! The page: how high is safe, for someone with a minute.
 
-use barrelstack_fragility::{Interval, Stripe};
+use barrelstack_fragility::Interval;
 use barrelstack_report::{
     Axis, Block, Cell, Document, Figure, FigureKind, Plot, Rating, Series, SeriesStyle, Table,
     Tone, Verdict, significant,
 };
 
 use super::plan::{HEIGHTS, VELOCITIES, View};
-use super::{Height, Heights};
-use crate::decision::{LimitCurve, bars, chance_axis, percent};
+use super::{AtLevel, Heights, field};
+use crate::decision::{LimitCurve, bars, chance_axis, heading, percent, refusal, text};
 use crate::scenario::catalog;
 
 /// Largest share of collapse that is called low, and the largest upper bound of its interval.
@@ -16,17 +16,6 @@ const LOW: (f64, f64) = (0.05, 0.20);
 
 /// Largest share that is called medium.
 const MEDIUM: f64 = 0.25;
-
-/// A page to be filled.
-pub(super) fn empty() -> Document {
-    Document {
-        title: String::new(),
-        verdict: Verdict { headline: String::new(), sentences: Vec::new(), tone: Tone::Neutral },
-        blocks: Vec::new(),
-        provenance: Vec::new(),
-        warnings: Vec::new(),
-    }
-}
 
 /// The whole page.
 pub(super) fn document(all: &Heights) -> Document {
@@ -53,7 +42,8 @@ fn rack_source(name: &str) -> String {
     catalog::rack(name).map_or_else(String::new, |rack| format!("{name}: {}", rack.source))
 }
 
-/// How strong a peak ground velocity (m/s) is, in the words of shaking maps (Wald et al. 1999).
+/// How strong a peak ground velocity (m/s) is taken to be felt, in the words of shaking maps: an assumption, since the
+/// classes are those of earthquakes in California on average (Wald et al. 1999).
 fn felt(velocity: f64) -> &'static str {
     match 100.0 * velocity {
         v if v < 8.1 => "moderate (V)",
@@ -69,21 +59,17 @@ fn shaking(velocity: f64) -> String {
     format!("{:.0} cm/s", 100.0 * velocity)
 }
 
-/// Counts of a height at a level of shaking in the direction in which more stacks collapse.
-fn worse(all: &Heights, levels: u32, at: usize) -> Option<(&Height, Stripe, Interval)> {
+/// A height at a level of PGV (m/s) in the direction in which more stacks collapse.
+fn worse(all: &Heights, levels: u32, velocity: f64) -> Option<AtLevel> {
     View::ALL
         .into_iter()
-        .filter_map(|view| {
-            let height = all.of(levels, view)?;
-            let curve = &height.by_velocity;
-            Some((height, *curve.stripes.get(at)?, *curve.intervals.get(at)?))
-        })
-        .max_by(|a, b| a.1.fraction().total_cmp(&b.1.fraction()))
+        .filter_map(|view| all.of(levels, view)?.at(velocity))
+        .max_by(|a, b| a.stripe.fraction().total_cmp(&b.stripe.fraction()))
 }
 
-fn rating(stripe: &Stripe, interval: &Interval) -> Rating {
-    let share = stripe.fraction();
-    if share <= LOW.0 && interval.high <= LOW.1 {
+fn rating(at: &AtLevel) -> Rating {
+    let share = at.stripe.fraction();
+    if share <= LOW.0 && at.interval.high <= LOW.1 {
         Rating::Good
     } else if share <= MEDIUM {
         Rating::Fair
@@ -92,37 +78,33 @@ fn rating(stripe: &Stripe, interval: &Interval) -> Rating {
     }
 }
 
-/// The highest stack of which it and all lower ones are rated low at a level of shaking.
-fn highest_low(all: &Heights, at: usize) -> Option<u32> {
+/// The highest stack of which it and all lower ones are rated low at a level of PGV (m/s).
+fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
     HEIGHTS
         .into_iter()
         .take_while(|levels| {
-            worse(all, *levels, at)
-                .is_some_and(|(_, stripe, interval)| rating(&stripe, &interval) == Rating::Good)
+            worse(all, *levels, velocity).is_some_and(|at| rating(&at) == Rating::Good)
         })
         .last()
 }
 
 fn headline(all: &Heights) -> String {
-    let at = VELOCITIES.iter().rposition(|_| true).unwrap_or(0);
-    let strongest = (0..=at).rev().find_map(|at| Some((at, highest_low(all, at)?)));
-    let name = |levels: u32| format!("{levels} levels");
+    let strongest =
+        (0..VELOCITIES.len()).rev().find_map(|at| Some((at, highest_low(all, VELOCITIES[at])?)));
     match strongest {
         Some((at, levels)) => {
             let next = (at + 1 < VELOCITIES.len()).then(|| {
-                format!("; from {} on no height from two levels up is", shaking(VELOCITIES[at + 1]))
+                format!("; from {} on not even two levels are", shaking(VELOCITIES[at + 1]))
             });
             format!(
-                "Up to {} are low in risk in shaking of {}{}.",
-                name(levels),
+                "Up to {levels} levels are low in risk in shaking of {}{}.",
                 shaking(VELOCITIES[at]),
                 next.unwrap_or_default()
             )
         }
-        None => format!(
-            "No stack of two to six levels is low in risk, even in shaking of {}.",
-            shaking(VELOCITIES[0])
-        ),
+        None => {
+            format!("Not even two levels are low in risk in shaking of {}.", shaking(VELOCITIES[0]))
+        }
     }
 }
 
@@ -132,8 +114,8 @@ fn sentences(all: &Heights) -> Vec<String> {
         all.request.rack, all.runs, all.motions
     )];
     let share = |levels: u32| {
-        let at = VELOCITIES.iter().position(|v| *v >= 0.5)?;
-        Some((VELOCITIES[at], worse(all, levels, at)?.1.fraction()))
+        let velocity = VELOCITIES.into_iter().find(|v| *v >= 0.5)?;
+        Some((velocity, worse(all, levels, velocity)?.stripe.fraction()))
     };
     if let (Some((velocity, low)), Some((_, high))) = (share(3), share(6)) {
         said.push(format!(
@@ -147,29 +129,22 @@ fn sentences(all: &Heights) -> Vec<String> {
     said
 }
 
-fn heading(text: &str) -> Block {
-    Block::Heading { level: 2, text: text.to_owned() }
-}
-
-fn text(text: impl Into<String>) -> Block {
-    Block::Paragraph(text.into())
-}
-
 fn blocks(all: &Heights) -> Vec<Block> {
     let mut blocks = vec![
         heading("How high is safe"),
         Block::Table(card(all)),
         text(format!(
             "Each cell is the share of stacks that collapse in the direction in which more do, and the range in which the \
-             true chance lies with 95 % confidence. ✓ low: at most {}, and surely below {}. ! medium: at most {}. ✗ high: \
-             more.",
-            percent(LOW.0),
-            percent(LOW.1),
-            percent(MEDIUM)
+             true chance lies with 95 % confidence. ✓ low: at most {:.0} %, and the range ends at {:.0} % or below. \
+             ! medium: at most {:.0} %. ✗ high: more. These limits are a choice.",
+            100.0 * LOW.0,
+            100.0 * LOW.1,
+            100.0 * MEDIUM
         )),
         text(
             "Find your site's line: ask for the peak ground velocity of your design earthquake, or read it off a ShakeMap \
-             of a past one. The Roman numeral is the intensity that such shaking is felt as.",
+             of a past one. The Roman numeral is an assumption: the intensity that goes with such a velocity in \
+             California on average (Wald et al. 1999).",
         ),
         Block::Figure(chart(all)),
         heading("Both directions"),
@@ -180,7 +155,7 @@ fn blocks(all: &Heights) -> Vec<Block> {
     blocks.push(Block::Figure(medians(all)));
     blocks.push(Block::Table(median_table(all)));
     blocks.push(heading("Against what happened at Napa in 2014"));
-    blocks.extend(napa(all));
+    blocks.extend(field::napa(all));
     blocks.push(heading("What this rests on"));
     blocks.push(Block::List(rests_on(all)));
     blocks
@@ -191,8 +166,8 @@ fn height_columns() -> Vec<(&'static str, &'static str)> {
     [("shaking (PGV)", ""), ("felt as", "")].into_iter().chain(names.map(|n| (n, ""))).collect()
 }
 
-fn judged(stripe: &Stripe, interval: &Interval) -> Cell {
-    let rating = rating(stripe, interval);
+fn judged(at: &AtLevel) -> Cell {
+    let rating = rating(at);
     let sign = match rating {
         Rating::Good => "✓",
         Rating::Fair => "!",
@@ -203,9 +178,9 @@ fn judged(stripe: &Stripe, interval: &Interval) -> Cell {
         rating,
         format!(
             "{sign} {} % ({}–{})",
-            whole(stripe.fraction()),
-            whole(interval.low),
-            whole(interval.high)
+            whole(at.stripe.fraction()),
+            whole(at.interval.low),
+            whole(at.interval.high)
         ),
     )
 }
@@ -219,12 +194,12 @@ fn card(all: &Heights) -> Table {
         ),
         &height_columns(),
     );
-    for (at, velocity) in VELOCITIES.iter().enumerate() {
-        let mut row = vec![Cell::text(shaking(*velocity)), Cell::text(felt(*velocity))];
-        row.extend(HEIGHTS.map(|levels| {
-            worse(all, levels, at)
-                .map_or(Cell::Missing, |(_, stripe, interval)| judged(&stripe, &interval))
-        }));
+    for velocity in VELOCITIES {
+        let mut row = vec![Cell::text(shaking(velocity)), Cell::text(felt(velocity))];
+        row.extend(
+            HEIGHTS
+                .map(|levels| worse(all, levels, velocity).map_or(Cell::Missing, |at| judged(&at))),
+        );
         table.rows.push(row);
     }
     table
@@ -235,11 +210,13 @@ fn direction(all: &Heights, view: View) -> Table {
         format!("Collapse under shaking {}: collapsed stacks of those run.", view.words()),
         &height_columns(),
     );
-    for (at, velocity) in VELOCITIES.iter().enumerate() {
-        let mut row = vec![Cell::text(shaking(*velocity)), Cell::text(felt(*velocity))];
+    for velocity in VELOCITIES {
+        let mut row = vec![Cell::text(shaking(velocity)), Cell::text(felt(velocity))];
         row.extend(HEIGHTS.map(|levels| {
-            let stripe = all.of(levels, view).and_then(|height| height.by_velocity.stripes.get(at));
-            stripe.map_or(Cell::Missing, |s| Cell::text(format!("{} of {}", s.failures, s.cases)))
+            let found = all.of(levels, view).and_then(|height| height.at(velocity));
+            found.map_or(Cell::Missing, |at| {
+                Cell::text(format!("{} of {}", at.stripe.failures, at.stripe.cases))
+            })
         }));
         table.rows.push(row);
     }
@@ -259,8 +236,8 @@ fn chart(all: &Heights) -> Figure {
         let points: Vec<(f64, f64, Interval)> = HEIGHTS
             .into_iter()
             .filter_map(|levels| {
-                let (_, stripe, interval) = worse(all, levels, at)?;
-                Some((f64::from(levels) + shift, stripe.fraction(), interval))
+                let found = worse(all, levels, VELOCITIES[at])?;
+                Some((f64::from(levels) + shift, found.stripe.fraction(), found.interval))
             })
             .collect();
         let (x, y) = points.iter().map(|(x, y, _)| (*x, *y)).unzip();
@@ -310,8 +287,8 @@ fn medians(all: &Heights) -> Figure {
     }
     Figure {
         id: "medians".into(),
-        caption: "Peak ground velocity at which half of the stacks collapse, by the fitted curves, with 95 % intervals from \
-                  resampling the motions. A height without a dot has no curve: the table says why."
+        caption: "Peak ground velocity at which half of the stacks collapse, by the fitted curves, with 95 % intervals. \
+                  A height without a dot has no curve: the table says why."
             .into(),
         kind: FigureKind::Plot(Plot {
             x: level_axis(),
@@ -357,115 +334,11 @@ fn median_table(all: &Heights) -> Table {
             number(pga, |fit| fit.curve.median, g),
             number(pga, |fit| fit.curve.dispersion, 1.0),
             match &pgv.fit {
-                Ok(_) if pgv.monotony.p < 0.05 => Cell::text("not monotone: use the counts"),
+                Ok(_) if pgv.violates_order() => Cell::text("not monotone: use the counts"),
                 Ok(_) => Cell::text(""),
-                Err(reason) => Cell::text(reason.to_string()),
+                Err(reason) => Cell::text(refusal(reason, shaking)),
             },
         ]);
-    }
-    table
-}
-
-/// Ours beside the field.
-fn napa(all: &Heights) -> Vec<Block> {
-    let mut table = Table::new(
-        "Stacks of four to six levels: ours at the strength of shaking of Napa, and what was found there.",
-        &[("", ""), ("ours", ""), ("found at Napa", "")],
-    );
-    let range = |of: &dyn Fn(&Height, usize) -> Option<f64>| {
-        let mut found = Vec::new();
-        for (at, velocity) in VELOCITIES.iter().enumerate() {
-            if !(0.4..=0.75).contains(velocity) {
-                continue;
-            }
-            for height in all.heights.iter().filter(|height| height.levels >= 4) {
-                found.extend(of(height, at));
-            }
-        }
-        let low = found.iter().copied().fold(1.0, f64::min);
-        let high = found.iter().copied().fold(0.0, f64::max);
-        let mean = found.iter().sum::<f64>() / found.len().max(1) as f64;
-        format!(
-            "{} on average, {} to {} by height and direction",
-            percent(mean),
-            percent(low),
-            percent(high)
-        )
-    };
-    let collapse = range(&|height, at| height.by_velocity.stripes.get(at).map(Stripe::fraction));
-    let fallen = range(&|height, at| height.fallen.get(at).copied());
-    let row = |name: &str, ours: String, field: &str| {
-        vec![Cell::text(name), Cell::text(ours), Cell::text(field)]
-    };
-    table.rows.push(row(
-        "stacks that collapse, at 50 and 70 cm/s",
-        collapse,
-        "almost every stack in one room of 10,000 ft²; about half over a whole store",
-    ));
-    table.rows.push(row(
-        "barrels on the floor, at 50 and 70 cm/s",
-        fallen,
-        "half of 18,000 barrels of one store",
-    ));
-    let mut blocks = vec![Block::Table(table), Block::Table(recorded(all))];
-    blocks.push(Block::List(vec![
-        "In the field: peak accelerations above 0.5 g and velocities above 50 cm/s near Napa (USGS 2015); half of the \
-         18,000 barrels of one store fell, and in one of its rooms almost every stack (Wines & Vines 2014). Most of what \
-         collapsed in the county stood on portable racks for two barrels (FEMA P-1024, as reported by Wines & Vines 2017)."
-            .into(),
-        "That is a weak check. No share by height was ever published, the shaking at the stores was not recorded, and \
-         stacks there stood in rows that knock each other down, which is not modeled here and fells more."
-            .into(),
-        "Each of our runs shakes one plane. A real stack is shaken across and along at once and has both chances to fall: \
-         between the larger of the two and their sum."
-            .into(),
-    ]));
-    blocks
-}
-
-/// The bundled record as it is.
-fn recorded(all: &Heights) -> Table {
-    let mut table = Table::new(
-        "South Napa 2014 as recorded at Napa College, unscaled: what becomes of each stack (friction of the catalog).",
-        &[
-            ("component", ""),
-            ("PGV", "cm/s"),
-            ("PGA", "g"),
-            ("shaken", ""),
-            ("2 levels", ""),
-            ("3 levels", ""),
-            ("4 levels", ""),
-            ("5 levels", ""),
-            ("6 levels", ""),
-        ],
-    );
-    let mut rows: Vec<(&str, View)> = Vec::new();
-    for run in &all.recorded {
-        if !rows.contains(&(run.motion.as_str(), run.view)) {
-            rows.push((&run.motion, run.view));
-        }
-    }
-    for (motion, view) in rows {
-        let of = |levels: Option<u32>| {
-            all.recorded.iter().find(|run| {
-                run.motion == motion && run.view == view && levels.is_none_or(|l| run.levels == l)
-            })
-        };
-        let Some(any) = of(None) else { continue };
-        let mut row = vec![
-            Cell::text(motion),
-            Cell::Number(100.0 * any.velocity, 3),
-            Cell::Number(any.acceleration / barrelstack_motion::STANDARD_GRAVITY, 3),
-            Cell::text(view.words()),
-        ];
-        row.extend(HEIGHTS.map(|levels| match of(Some(levels)) {
-            Some(run) if run.collapsed => {
-                Cell::text(format!("falls ({} of the barrels)", percent(run.fallen)))
-            }
-            Some(_) => Cell::text("stands"),
-            None => Cell::Missing,
-        }));
-        table.rows.push(row);
     }
     table
 }

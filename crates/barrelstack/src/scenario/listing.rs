@@ -3,6 +3,7 @@
 use super::Scenario;
 use super::field::{Default, Field, Section};
 use super::quantity::Quantity;
+use super::reader::item_name;
 use super::root::{self, ROOT};
 use super::tree::{Origin, Table, Value, parse_value};
 use super::writer::inline;
@@ -45,7 +46,7 @@ impl Source {
 impl Scenario {
     /// Every value but the title, in the order of the file with all defaults written out.
     ///
-    /// Items of lists are known by their name, else by their number from 1, as in overrides.
+    /// Items of lists are known by their name or the pair they join, else by their number from 1, as in overrides.
     pub fn settings(&self) -> Vec<Setting> {
         let mut settings = Vec::new();
         gather(&mut settings, &root::write(self), &ROOT, "");
@@ -65,7 +66,7 @@ fn gather(list: &mut Vec<Setting>, table: &Table, section: &'static Section, pat
             (Value::Array(items), Some(inner)) => {
                 for (at, item) in items.iter().enumerate() {
                     let Value::Table(table) = &item.value else { continue };
-                    gather(list, table, inner, &format!("{path}.{}", name_of(table, at)));
+                    gather(list, table, inner, &format!("{path}.{}", item_name(item, at)));
                 }
             }
             (value, _) => list.push(Setting {
@@ -75,13 +76,6 @@ fn gather(list: &mut Vec<Setting>, table: &Table, section: &'static Section, pat
                 source: source(field, value),
             }),
         }
-    }
-}
-
-fn name_of(table: &Table, at: usize) -> String {
-    match table.get("name").map(|entry| &entry.node.value) {
-        Some(Value::Text(name)) => name.clone(),
-        _ => (at + 1).to_string(),
     }
 }
 

@@ -67,7 +67,6 @@ pub use error::{Place, Problem, ScenarioError};
 pub use free::{FreeBody, FreeInterface, FreeScene, Ground, Nodes, Viscous};
 pub use interface::{Basis, Damping, Friction, Interface, NormalLaw};
 pub use listing::{Setting, Source};
-pub(crate) use motion::no_record_to_scale_by;
 pub use motion::{
     Amplitude, Direction, FileRef, MeasuredOn, MotionSource, MotionSpec, Processing, Pulse,
     PulseKind, RecordMotion, RecordSource, Scale, Sine, Vertical,

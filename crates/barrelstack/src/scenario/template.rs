@@ -47,6 +47,16 @@ impl Opened {
         Ok(Self { sources, table, access })
     }
 
+    /// The name of the file without its ending.
+    pub(crate) fn stem(&self) -> String {
+        load::stem(&self.sources.files[0].name)
+    }
+
+    /// The folder of the file.
+    pub(crate) fn folder(&self) -> &Path {
+        &self.sources.files[0].folder
+    }
+
     /// The scenario in the table of a key, laid over what it extends; `motion` tells whether it needs one of its
     /// own.
     pub(crate) fn template(

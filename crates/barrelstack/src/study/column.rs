@@ -140,18 +140,6 @@ impl Values {
         }
         Ok(())
     }
-
-    /// Appends the values of the given rows of another column of the same kind.
-    pub(super) fn take(
-        &mut self,
-        from: &Self,
-        rows: impl Iterator<Item = usize>,
-    ) -> Result<(), StudyError> {
-        for row in rows {
-            self.push(from.get(row))?;
-        }
-        Ok(())
-    }
 }
 
 /// A column with its values.

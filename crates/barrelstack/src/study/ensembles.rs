@@ -7,8 +7,8 @@ use barrelstack_motion::{BooreSource, CloughPenzien, Envelope, NearFault, Pulse}
 use crate::scenario::field::Named as _;
 use crate::scenario::reader::Reader;
 use crate::scenario::template::{self, Opened};
-use crate::scenario::tree::{Entry, Node, Table, Value};
-use crate::scenario::{Problem, Scale, ScenarioError, no_record_to_scale_by};
+use crate::scenario::tree::{Entry, Node, Table, Value, parse_value};
+use crate::scenario::{Problem, Scale, ScenarioError};
 use crate::system;
 
 use super::design::seed_of;
@@ -24,7 +24,6 @@ pub(super) fn read(
     opened: &Opened,
     number: usize,
     seed: u64,
-    folder: &Path,
 ) -> Result<Vec<Motion>, ScenarioError> {
     let name = set.optional_text("name")?;
     let files = set.texts("records")?;
@@ -38,11 +37,10 @@ pub(super) fn read(
         set.skip(table);
     }
     if let Some(synthetic) = set.optional_section("synthetic")? {
-        let scale =
-            motion_of(set, opened, number, &[("bundled", Value::Text(first_bundled()))])?.scale;
-        if scale.needs_record() {
-            return Err(no_record_to_scale_by(set));
-        }
+        // A formula stands in where only the scale is read: what a record alone can be scaled to is refused.
+        let stand_in = "{ amplitude = \"1 g\", period = \"1 s\", cycles = 1 }";
+        let stand_in = parse_value(stand_in, set.origin_of("synthetic")).value;
+        let scale = motion_of(set, opened, number, &[("sine", stand_in)])?.scale;
         return ensemble(synthetic, name, number, seed, scale);
     }
     let mut sources: Vec<(String, Vec<(&str, Value)>)> = Vec::new();
@@ -50,7 +48,7 @@ pub(super) fn read(
         sources.push((name.clone(), vec![("bundled", Value::Text(name))]));
     }
     let listed = match &from_folder {
-        Some(from) => matching(set, &folder.join(from), from, &pattern)?,
+        Some(from) => matching(set, &opened.folder().join(from), from, &pattern)?,
         None => files,
     };
     for file in listed {
@@ -90,11 +88,6 @@ pub(super) fn read(
         }
     }
     Ok(motions)
-}
-
-/// Any bundled record: it stands in where only the scale of a motion is read.
-fn first_bundled() -> String {
-    barrelstack_motion::BUNDLED.first().map_or_else(String::new, |name| (*name).to_owned())
 }
 
 /// The motion that `each`, `sine`, `pulse` and `scale` of a set describe, with further entries.

@@ -49,10 +49,13 @@ pub enum StudyError {
         /// What shows it.
         reason: String,
     },
+    /// There is no built-in study of that name.
+    #[error("{0}")]
+    BuiltIn(String),
     /// A table that does not hold together.
     #[error("{0}")]
     Table(String),
-    /// A chunk that the study does not have, or that is not needed.
+    /// A chunk that the study does not have.
     #[error("{0}")]
     Chunk(String),
     /// The caller asked to stop.

@@ -86,7 +86,7 @@ impl Study {
         let place = Folder::open(folder, self)?;
         place.clean()?;
         let (done, damaged) = self.done(&place)?;
-        let rule = self.provenance()?.stop;
+        let rule = self.stop_rule();
         let mut progress =
             Progress { cases: self.cases(), chunks: self.chunk_count(), ..Progress::default() };
         progress.tally = done.values().fold(Tally::default(), |sum, tally| sum.plus(*tally));

@@ -21,6 +21,9 @@ use super::plan::Chunks;
 use super::setting::{Domain, Setting};
 use super::{Factor, Intensity, Levels, Study, Variation, ensembles};
 
+/// The quantile that is tried for the low end of a distribution, and from 1 for the high end.
+const LOW: f64 = 1e-6;
+
 /// Most cases that a design may have.
 const MOST_CASES: u64 = 10_000_000;
 
@@ -30,8 +33,7 @@ impl Study {
     /// # Errors
     /// The first problem found, at its place.
     pub fn load(path: &Path) -> Result<Self, StudyError> {
-        let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        read(&Opened::load(path)?, &stem(path), &folder)
+        read(&Opened::load(path)?)
     }
 
     /// Reads a study from text; it may extend built-in scenarios only, and `source_name` is shown in errors.
@@ -39,9 +41,7 @@ impl Study {
     /// # Errors
     /// As [`Study::load`].
     pub fn parse(source_name: &str, text: &str) -> Result<Self, StudyError> {
-        let path = Path::new(source_name);
-        let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        read(&Opened::parse(source_name, text)?, &stem(path), &folder)
+        read(&Opened::parse(source_name, text)?)
     }
 
     /// Reads a built-in study.
@@ -53,7 +53,7 @@ impl Study {
             let known: Vec<&str> = super::builtin::names().collect();
             let near = nearest(name, &known)
                 .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
-            return Err(StudyError::Table(format!(
+            return Err(StudyError::BuiltIn(format!(
                 "there is no built-in study \"{name}\"{near} (there are: {})",
                 known.join(", ")
             )));
@@ -62,11 +62,7 @@ impl Study {
     }
 }
 
-fn stem(path: &Path) -> String {
-    path.file_stem().map_or_else(|| "study".to_owned(), |stem| stem.to_string_lossy().into_owned())
-}
-
-fn read(opened: &Opened, stem: &str, folder: &Path) -> Result<Study, StudyError> {
+fn read(opened: &Opened) -> Result<Study, StudyError> {
     let top = Reader::open(
         &opened.sources,
         &STUDY,
@@ -75,7 +71,7 @@ fn read(opened: &Opened, stem: &str, folder: &Path) -> Result<Study, StudyError>
         Origin::Whole(0),
     )?;
     top.integer("schema")?;
-    let title = top.optional_text("title")?.unwrap_or_else(|| stem.to_owned());
+    let title = top.optional_text("title")?.unwrap_or_else(|| opened.stem());
     let seed = u64::from(top.integer("seed")?);
     // The base is read by the scenario's own reader; here it only has to be a table.
     let base = top.table("base")?;
@@ -91,7 +87,7 @@ fn read(opened: &Opened, stem: &str, folder: &Path) -> Result<Study, StudyError>
 
     let mut motions = Vec::new();
     for (number, set) in (1..).zip(sets) {
-        motions.extend(ensembles::read(&set, opened, number, seed, folder)?);
+        motions.extend(ensembles::read(&set, opened, number, seed)?);
         set.finish();
     }
     let own = motions.is_empty();
@@ -244,7 +240,7 @@ fn read_factor(
         Variation::Values(values) => values.clone(),
         Variation::Distribution(distribution) => match distribution.settings() {
             Some(settings) => settings.cloned().collect(),
-            None => [1e-6, 0.5, 1.0 - 1e-6].map(|u| distribution.quantile(u)).to_vec(),
+            None => [LOW, 0.5, 1.0 - LOW].map(|u| distribution.quantile(u)).to_vec(),
         },
     };
     for setting in &ends {
@@ -274,6 +270,11 @@ fn domain_of(
     };
     if path.starts_with("motion.") && !own_motion {
         let message = format!("`{path}` is set by [[motion]]; vary it there");
+        return Err(reader.inconsistent(key, message));
+    }
+    if matches!(path, "motion.record" | "motion.vertical_record") {
+        // What these files hold is part of the fingerprint of the study only where [[motion]] lists them.
+        let message = format!("`{path}` names a file; list the `records` of [[motion]]");
         return Err(reader.inconsistent(key, message));
     }
     if matches!(path, "title" | "schema" | "extends") || path.starts_with("record.") {
@@ -362,6 +363,12 @@ fn read_intensity(reader: Reader<'_>) -> Result<Intensity, ScenarioError> {
         return Err(reader.inconsistent("measure", message));
     };
     let (variation, _) = read_variation(&reader, Domain::positive(dimensions), "levels")?;
+    if let Some(Variation::Distribution(distribution)) = &variation
+        && distribution.quantile(LOW).number() <= 0.0
+    {
+        let message = "a level has to be above zero, and some of the distribution are not; cut it with `least`";
+        return Err(reader.inconsistent("distribution", message.to_owned()));
+    }
     reader.finish();
     let levels = match variation {
         Some(Variation::Values(values)) => {

@@ -20,7 +20,7 @@ use crate::system;
 use super::column::ColumnSpec;
 use super::design::Design;
 use super::error::StudyError;
-use super::motions::{Shaking, hash_files};
+use super::motions::hash_files;
 use super::stop::{StopRule, Tally};
 use super::table::StudyTable;
 use super::{Intensity, Study};
@@ -114,29 +114,24 @@ impl Folder {
         if path.is_file() {
             return refuse("is a file, not a folder; name another".to_owned());
         }
-        let manifest = path.join(MANIFEST);
+        let (manifest, shards) = (path.join(MANIFEST), path.join(SHARDS));
+        // Listed before the manifest is looked for: what another run makes in between comes after its manifest.
+        let foreign = first_in(path, &[SHARDS]).or_else(|| first_in(&shards, &[]));
         if manifest.is_file() {
             let known = manifest_of(path)?;
-            let wanted = study.provenance()?;
-            if known.study_hash != wanted.study_hash {
+            if known.study_hash != study.fingerprint() {
                 return refuse(format!(
                     "belongs to another study: {}; name another folder, or go back to the study that it belongs to \
                      (a copy of its file is {})",
-                    difference(&known, &wanted),
+                    difference(&known, &study.provenance()?),
                     path.join("study.toml").display()
                 ));
             }
-        } else {
-            let first = fs::read_dir(path).into_iter().flatten().flatten();
-            let first = first.map(|entry| entry.file_name().to_string_lossy().into_owned());
-            if let Some(first) = first.filter(|name| name != SHARDS && !name.starts_with('.')).min()
-            {
-                return refuse(format!(
-                    "holds {first} and is no folder of a study; name another, new or empty"
-                ));
-            }
+        } else if let Some(foreign) = foreign {
+            return refuse(format!(
+                "holds {foreign} and is no folder of a study; name another, new or empty"
+            ));
         }
-        let shards = path.join(SHARDS);
         fs::create_dir_all(&shards)
             .map_err(|error| StudyError::system("make the folder", &shards, &error))?;
         if !manifest.is_file() {
@@ -144,7 +139,7 @@ impl Folder {
                 .map_err(|error| StudyError::Table(error.to_string()))?;
             write_whole(&manifest, format!("{text}\n").as_bytes())?;
         }
-        // After the manifest, so that a folder without one holds nothing of ours but shards.
+        // After the manifest, so that a folder without one holds nothing of ours but an empty folder of shards.
         let copy = path.join("study.toml");
         if !copy.is_file() {
             write_whole(&copy, study.text.as_bytes())?;
@@ -158,17 +153,16 @@ impl Folder {
     }
 
     /// Removes what killed runs left behind.
-    pub(super) fn clean(&self) -> Result<usize, StudyError> {
-        let mut removed = 0;
+    pub(super) fn clean(&self) -> Result<(), StudyError> {
         for folder in [self.path.clone(), self.path.join(SHARDS)] {
             for path in list(&folder)? {
-                let leftover = path.extension().is_some_and(|extension| extension == "part");
-                if leftover && fs::remove_file(&path).is_ok() {
-                    removed += 1;
+                if path.extension().is_some_and(|extension| extension == "part") {
+                    // Its run may be alive and have given it its name by now.
+                    drop(fs::remove_file(&path));
                 }
             }
         }
-        Ok(removed)
+        Ok(())
     }
 
     /// Writes the shard of a chunk: under another name first, so that it has its name only when it is whole and on the
@@ -194,10 +188,14 @@ fn difference(known: &Provenance, wanted: &Provenance) -> String {
     if known.version != wanted.version {
         return format!("it was made by version {}, this is {}", known.version, wanted.version);
     }
+    if known.seed != wanted.seed {
+        return format!("its seed is {}, that of this one {}", known.seed, wanted.seed);
+    }
     let changed = known.motions.iter().find(|motion| !wanted.motions.contains(motion));
     match changed {
         Some(motion) if wanted.motions.iter().any(|other| other.name == motion.name) => {
-            format!("the record \"{}\" has changed", motion.name)
+            let what = if motion.hash.is_some() { "record" } else { "motion" };
+            format!("the {what} \"{}\" has changed", motion.name)
         }
         Some(motion) => format!("it has the motion \"{}\", which this one has not", motion.name),
         None if known.title == wanted.title => "the study file has changed since".to_owned(),
@@ -223,11 +221,27 @@ fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
         path: path.clone(),
         reason,
     })?;
-    serde_json::from_slice(&bytes).map_err(|error| {
+    let known: Provenance = serde_json::from_slice(&bytes).map_err(|error| {
         refuse(format!(
             "holds a {MANIFEST} that is no manifest of a study: {error}; name another folder"
         ))
-    })
+    })?;
+    if known.schema != LAYOUT {
+        return Err(refuse(format!(
+            "was written by version {} in layout {} of such folders, and this version reads layout {LAYOUT}; use that \
+             version, or name another folder",
+            known.version, known.schema
+        )));
+    }
+    Ok(known)
+}
+
+/// The first name in a folder but for some names and hidden ones, as a sentence may give it; none where there is no
+/// folder.
+fn first_in(folder: &Path, but: &[&str]) -> Option<String> {
+    let names = fs::read_dir(folder).ok()?.flatten();
+    let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    names.filter(|name| !but.contains(&name.as_str()) && !name.starts_with('.')).min()
 }
 
 /// The files of a folder, sorted.
@@ -331,37 +345,21 @@ impl Study {
         let base = self.template.with([])?;
         let motions = self.motions.iter().map(|motion| {
             let files = motion.shaking.files(Some(&base.motion));
-            let source = match &motion.shaking {
-                Shaking::Synthetic(synthetic) => {
-                    format!("{}, seed {}", synthetic.maker, synthetic.seed)
-                }
-                Shaking::Base | Shaking::Spec(_) if files.is_empty() => {
-                    "made or bundled, as the study says".to_owned()
-                }
-                Shaking::Base | Shaking::Spec(_) => {
-                    files.iter().map(|file| file.path.as_str()).collect::<Vec<_>>().join(" and ")
-                }
-            };
+            let source = motion.shaking.source(&base.motion);
             let hash = hash_files(&motion.name, &files)?.map(|hash| format!("{hash:016x}"));
             Ok(MotionSource { name: motion.name.clone(), source, hash })
         });
         let motions = motions.collect::<Result<_, StudyError>>()?;
-        let stop =
-            if let Design::MonteCarlo { half_width: Some(half_width), least, .. } = self.design {
-                Some(StopRule { half_width, least })
-            } else {
-                None
-            };
         Ok(Provenance {
             schema: LAYOUT,
             program: "barrelstack".to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             title: self.title.clone(),
-            study_hash: format!("{:016x}", self.hash()),
+            study_hash: self.fingerprint(),
             seed: self.seed,
             design: self.design.name().to_owned(),
             measure: self.intensity.as_ref().map(|Intensity { measure, .. }| measure.to_string()),
-            stop,
+            stop: self.stop_rule(),
             motions,
             columns: self.columns(),
             chunks: self.chunk_count(),
@@ -369,6 +367,17 @@ impl Study {
             cases: 0,
             complete: false,
         })
+    }
+
+    /// The fingerprint as files have it.
+    fn fingerprint(&self) -> String {
+        format!("{:016x}", self.hash())
+    }
+
+    /// When there are enough cases; none where all are run.
+    pub(super) fn stop_rule(&self) -> Option<StopRule> {
+        let Design::MonteCarlo { half_width, least, .. } = self.design else { return None };
+        half_width.map(|half_width| StopRule { half_width, least })
     }
 }
 

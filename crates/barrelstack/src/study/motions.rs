@@ -7,8 +7,10 @@ use barrelstack_motion::{
     BooreSource, CloughPenzien, Envelope, GroundMotion, IntensityMeasure, MotionError, NearFault,
 };
 
-use crate::ground::{self, Ground, GroundError};
-use crate::scenario::{FileRef, MotionSource, MotionSpec, RecordSource, Vertical, fnv1a};
+use crate::ground::{self, Ground, GroundError, RECORD_LIMIT};
+use crate::scenario::{
+    FileRef, MotionSource, MotionSpec, RecordMotion, RecordSource, Vertical, fnv1a,
+};
 use crate::system;
 
 use super::error::StudyError;
@@ -95,6 +97,29 @@ impl Shaking {
         }
     }
 
+    /// Where it comes from, as people would say it; the study has the numbers.
+    pub(super) fn source(&self, base: &MotionSpec) -> String {
+        let spec: &MotionSpec = match self {
+            Self::Base => base,
+            Self::Spec(spec) => spec,
+            Self::Synthetic(synthetic) => {
+                return format!("{}, seed {}", synthetic.maker, synthetic.seed);
+            }
+        };
+        match &spec.source {
+            MotionSource::None => "ground at rest".to_owned(),
+            MotionSource::Sine(_) => "a harmonic motion".to_owned(),
+            MotionSource::Pulse(_) => "a pulse".to_owned(),
+            MotionSource::Record(RecordMotion { source: RecordSource::Bundled(name), .. }) => {
+                format!("the bundled record {name}")
+            }
+            MotionSource::Record(_) => {
+                let files = self.files(Some(base));
+                files.iter().map(|file| file.path.as_str()).collect::<Vec<_>>().join(" and ")
+            }
+        }
+    }
+
     /// The files that it is read from.
     pub(super) fn files<'a>(&'a self, base: Option<&'a MotionSpec>) -> Vec<&'a FileRef> {
         let spec = match self {
@@ -115,9 +140,6 @@ impl Shaking {
         files
     }
 }
-
-/// Largest record (bytes) that is looked at.
-const RECORD_LIMIT: usize = 256 << 20;
 
 /// The fingerprint of the bytes of files; none where there are no files.
 pub(super) fn hash_files(name: &str, files: &[&FileRef]) -> Result<Option<u64>, StudyError> {

@@ -75,7 +75,7 @@ impl Chunks {
         match self {
             Self::Even { count, size } => {
                 let first = chunk as u64 * u64::from(*size);
-                (first..count.min(&(first + u64::from(*size))).to_owned()).collect()
+                (first..(first + u64::from(*size)).min(*count)).collect()
             }
             Self::Listed(chunks) => {
                 chunks.get(chunk).into_iter().flatten().map(|number| u64::from(*number)).collect()

@@ -7,7 +7,7 @@ use crate::scenario::{Scenario, ScenarioError};
 use super::design::{Case, Design, seed_of};
 use super::error::StudyError;
 use super::ida::{Hunt, Seen};
-use super::motions::{Shaken, Shelf};
+use super::motions::{Shaken, Shaking, Shelf, Synthetic};
 use super::setting::Setting;
 use super::table::StudyTable;
 use super::{Study, Value};
@@ -200,14 +200,16 @@ impl Study {
     /// Names the first motion that cannot be had.
     pub(super) fn try_motions(&self, shelf: &Shelf) -> Result<(), StudyError> {
         let scenario = self.template.with([])?;
-        let mut synthetic = false;
+        let mut tried: Option<&Synthetic> = None;
         for motion in &self.motions {
-            // Realizations of ensembles differ in their numbers alone: one speaks for all.
-            if matches!(motion.shaking, super::motions::Shaking::Synthetic(_)) {
-                if synthetic {
+            // Realizations of an ensemble differ in their seeds alone: the first speaks for all.
+            if let Shaking::Synthetic(synthetic) = &motion.shaking {
+                if tried.is_some_and(|tried| {
+                    Synthetic { seed: tried.seed, ..(**synthetic).clone() } == *tried
+                }) {
                     continue;
                 }
-                synthetic = true;
+                tried = Some(synthetic);
             }
             shelf.unscaled(motion, &scenario.motion, scenario.run.similitude)?;
         }

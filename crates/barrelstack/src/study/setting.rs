@@ -136,27 +136,13 @@ impl Domain {
         node: &Node,
     ) -> Result<Setting, ScenarioError> {
         let kind = self.kind;
-        let wrong = || {
-            let expected = kind.to_string();
-            let found = node.value.describe();
-            let field = reader.path_of(name);
-            reader.error_at(node.origin, Problem::WrongType { field, expected, found })
-        };
         let value = match (kind, &node.value) {
             (Kind::Number(range), _) => Value::Number(reader.read_number(name, node, range)?),
             (Kind::Quantity(_, range), _) => {
                 // The written number is read again by the scenario, to the same bits.
                 Value::Number(reader.read_quantity(name, node, &[self.dimension], range)?.value)
             }
-            (Kind::Integer(least, greatest), Written::Integer(Some(value))) => {
-                if !(least..=greatest).contains(value) {
-                    let (field, range) = (reader.path_of(name), kind.to_string());
-                    let found = node.value.describe();
-                    let problem = Problem::OutOfRange { field, range, found };
-                    return Err(reader.error_at(node.origin, problem));
-                }
-                Value::Integer(*value)
-            }
+            (Kind::Integer(..), _) => Value::Integer(reader.read_integer(name, node, kind)?),
             (Kind::Choice(names) | Kind::ChoiceOrTable(names, ..), _) => {
                 Value::Text(reader.read_name(name, node, &names())?)
             }
@@ -166,7 +152,7 @@ impl Domain {
                 Kind::Text | Kind::Label | Kind::TextOrFalse | Kind::WordOr(..),
                 Written::Text(text),
             ) => Value::Text(text.clone()),
-            _ => return Err(wrong()),
+            _ => return Err(reader.wrong_type(name, kind, node)),
         };
         Ok(Setting { node: node.clone(), value })
     }

@@ -1,5 +1,6 @@
 //! When enough cases have been run: the collapse probability and its interval.
 
+use barrelstack_fragility::wilson;
 use serde::{Deserialize, Serialize};
 
 use super::table::StudyTable;
@@ -44,7 +45,14 @@ impl Tally {
 
     /// The fraction of judged cases that collapsed, with its 95 % interval (Wilson); none without any.
     pub fn collapse(&self) -> Option<(f64, [f64; 2])> {
-        wilson(self.collapsed, self.judged)
+        if self.judged == 0 {
+            return None;
+        }
+        // A study has ten million cases at most.
+        let [collapsed, judged] =
+            [self.collapsed, self.judged].map(|count| u32::try_from(count).unwrap_or(u32::MAX));
+        let interval = wilson(collapsed, judged, 0.95);
+        Some((f64::from(collapsed) / f64::from(judged), [interval.low, interval.high]))
     }
 }
 
@@ -65,22 +73,9 @@ impl StopRule {
     }
 }
 
-/// A fraction and its 95 % score interval (Wilson 1927); none of nothing.
-pub fn wilson(hits: u64, of: u64) -> Option<(f64, [f64; 2])> {
-    if of == 0 {
-        return None;
-    }
-    let z2 = 1.959_963_984_540_054_f64.powi(2);
-    let n = of as f64;
-    let p = hits as f64 / n;
-    let center = (p + 0.5 * z2 / n) / (1.0 + z2 / n);
-    let half = (z2 * (p * (1.0 - p) / n + 0.25 * z2 / (n * n))).sqrt() / (1.0 + z2 / n);
-    Some((p, [(center - half).max(0.0), (center + half).min(1.0)]))
-}
-
 #[cfg(test)]
 mod tests {
-    use super::wilson;
+    use super::Tally;
 
     #[test]
     fn the_interval_is_that_of_wilson() {
@@ -91,13 +86,14 @@ mod tests {
             (3, 4, [0.300_641_842_582_401_84, 0.954_412_739_190_299_5]),
         ];
         for (hits, of, [low, high]) in cases {
-            let (_, interval) = wilson(hits, of).unwrap();
+            let tally = Tally { cases: of, judged: of, collapsed: hits };
+            let (_, interval) = tally.collapse().unwrap();
             // Measured: 2e-16.
             assert!(
                 (interval[0] - low).abs() < 1e-12 && (interval[1] - high).abs() < 1e-12,
                 "{interval:?}"
             );
         }
-        assert_eq!(wilson(0, 0), None);
+        assert_eq!(Tally::default().collapse(), None);
     }
 }

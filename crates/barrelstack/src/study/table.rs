@@ -12,22 +12,13 @@ use super::shard;
 /// A value is `None` where it does not apply (the mode of a stack that stood) or is not known (anything of a
 /// case that could not run, whose reason stands in `error`).
 ///
-/// ```
-/// # fn main() -> Result<(), barrelstack::study::StudyError> {
-/// use barrelstack::study::{Collected, StudyTable};
+/// ```no_run
+/// use barrelstack::study::{Collected, Tally};
 ///
-/// fn collapse_fraction(table: &StudyTable) -> Option<f64> {
-///     let outcomes = table.texts("outcome")?;
-///     let judged = outcomes.iter().flatten().filter(|kind| *kind != "invalid").count();
-///     let collapsed = outcomes.iter().flatten().filter(|kind| *kind == "collapse").count();
-///     Some(collapsed as f64 / judged as f64)
-/// }
-///
-/// fn of_folder(folder: &std::path::Path) -> Result<Option<f64>, barrelstack::study::StudyError> {
-///     Ok(collapse_fraction(&Collected::read(folder)?.table))
-/// }
-/// # Ok(())
-/// # }
+/// let table = Collected::read(std::path::Path::new("results"))?.table;
+/// let strongest = table.numbers("pgv").unwrap_or_default().iter().flatten().copied().fold(0.0, f64::max);
+/// println!("{} of {} collapse, up to {strongest} m/s", Tally::of(&table).collapsed, table.rows());
+/// # Ok::<(), barrelstack::study::StudyError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudyTable {
@@ -101,7 +92,7 @@ impl StudyTable {
         let mut table = Self::empty(specs);
         for (number, column) in table.columns.iter_mut().enumerate() {
             for (_, part, row) in &order {
-                column.values.take(&parts[*part].columns[number].values, std::iter::once(*row))?;
+                column.values.push(parts[*part].columns[number].values.get(*row))?;
             }
         }
         Ok(table)

@@ -1,15 +1,14 @@
 //! `barrelstack heights`: how high is safe, on one page.
 
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::Context as _;
 use barrelstack::heights::{HEIGHTS, Heights, HeightsError, Request, VELOCITIES, View, heights};
 use barrelstack::study::{RunOptions, StudyError};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::interrupt::Interrupt;
 use crate::printer;
 
 /// Arguments of `heights`.
@@ -35,9 +34,6 @@ pub(crate) struct HeightsArgs {
     json: bool,
 }
 
-/// Set by Ctrl-C.
-static STOP: AtomicBool = AtomicBool::new(false);
-
 /// Runs every height in both directions, writes the page, prints the table.
 pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
     let request = Request {
@@ -46,8 +42,7 @@ pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
         synthetic: args.synthetic,
         seed: args.seed,
     };
-    // Without a handler Ctrl-C ends the program at once, which loses nothing that is on the disk.
-    let _ = ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed));
+    let interrupt = Interrupt::listen();
     let bar = ProgressBar::new(0);
     if let Ok(style) =
         ProgressStyle::with_template("{bar:30} {pos} of {len} runs  {elapsed}, {eta} to go")
@@ -57,11 +52,7 @@ pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
     let result = heights(&request, &args.out, &RunOptions::default(), &|done, of| {
         bar.set_length(of);
         bar.set_position(done);
-        if STOP.load(Ordering::Relaxed) {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
+        interrupt.flow()
     });
     bar.finish_and_clear();
     let found = match result {
@@ -115,12 +106,11 @@ fn print(found: &Heights) -> anyhow::Result<()> {
         lines.push(format!("  collapsed, shaken {}", view.words()));
         let heads = HEIGHTS.map(|levels| format!("{:>9}", format!("{levels} levels")));
         lines.push(format!("  {:>10}{}", "PGV", heads.concat()));
-        for (at, velocity) in VELOCITIES.iter().enumerate() {
+        for velocity in VELOCITIES {
             let cells = HEIGHTS.map(|levels| {
-                let stripe =
-                    found.of(levels, view).and_then(|height| height.by_velocity.stripes.get(at));
-                let share = stripe.map_or_else(String::new, |stripe| {
-                    format!("{:.0} %", 100.0 * stripe.fraction())
+                let at = found.of(levels, view).and_then(|height| height.at(velocity));
+                let share = at.map_or_else(String::new, |at| {
+                    format!("{:.0} %", 100.0 * at.stripe.fraction())
                 });
                 format!("{share:>9}")
             });

@@ -20,7 +20,7 @@ fn stripes() -> Vec<Stripe> {
 }
 
 fn fitted(stripes: &[Stripe]) -> Result<Fit, Failure> {
-    fit(&evidence(stripes), Dispersion::Free).map_err(|error| Failure::Absent(error.to_string()))
+    fit(&evidence(stripes), Dispersion::Free).map_err(|error| absent(&error))
 }
 
 /// One number of the fit of the eight stripes, right to half a unit of its last printed digit.

@@ -8,7 +8,7 @@ mod fields;
 mod text;
 
 pub use fields::{MOTION, PULSE, SCALE, SINE};
-pub(crate) use text::{no_record_to_scale_by, read};
+pub(crate) use text::read;
 pub(super) use text::{rest, write};
 
 /// A file named by a scenario.
@@ -205,13 +205,6 @@ pub enum Scale {
         /// What it is measured on.
         of: MeasuredOn,
     },
-}
-
-impl Scale {
-    /// Whether it is about both horizontals, which only a record has.
-    pub(crate) fn needs_record(&self) -> bool {
-        matches!(self, Self::Measure { of, .. } if *of != MeasuredOn::Component)
-    }
 }
 
 /// What the measure of a scaling is taken of.

@@ -10,8 +10,8 @@ use crate::scenario::writer::Writer;
 
 use super::fields::{LONGEST, MOTION, PULSE, PulseName, SCALE, SINE, SOURCES};
 use super::{
-    Amplitude, MotionSource, MotionSpec, Pulse, PulseKind, RecordMotion, RecordSource, Scale, Sine,
-    Vertical,
+    Amplitude, MeasuredOn, MotionSource, MotionSpec, Pulse, PulseKind, RecordMotion, RecordSource,
+    Scale, Sine, Vertical,
 };
 
 /// A ground at rest.
@@ -46,21 +46,17 @@ pub(crate) fn read(reader: Reader<'_>) -> Result<MotionSpec, ScenarioError> {
         Some(scale) => read_scale(scale)?,
         None => Scale::Factor(1.0),
     };
-    if scale.needs_record() && !matches!(source, MotionSource::Record(_)) {
-        return Err(no_record_to_scale_by(&reader));
+    let both = matches!(scale, Scale::Measure { of, .. } if of != MeasuredOn::Component);
+    if both && !matches!(source, MotionSource::Record(_)) {
+        let message = format!(
+            "`{}` of both horizontals needs a recorded motion; leave `of` out",
+            reader.path_of("scale")
+        );
+        return Err(reader.inconsistent("scale", message));
     }
     let similitude = reader.number("similitude")?;
     reader.finish();
     Ok(MotionSpec { source, scale, similitude })
-}
-
-/// A `scale` of both horizontals, where the motion is made and has but one.
-pub(crate) fn no_record_to_scale_by(reader: &Reader<'_>) -> ScenarioError {
-    let message = format!(
-        "`{}` of both horizontals needs a recorded motion; leave `of` out",
-        reader.path_of("scale")
-    );
-    reader.inconsistent("scale", message)
 }
 
 /// Reads all fields of a record but its source, which the caller puts in.

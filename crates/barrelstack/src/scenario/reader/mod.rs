@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use super::error::{Problem, ScenarioError};
 use super::field::{Default, Field, Kind, Section, Variant};
 use super::quantity::shorten;
+use super::root::ROOT;
 use super::tree::{Node, Origin, Sources, Table, Value};
 
 mod values;
@@ -117,7 +118,13 @@ impl<'a> Reader<'a> {
 
     /// The section as users know it.
     pub(crate) fn label(&self) -> String {
-        if self.path.is_empty() { "the scenario".to_owned() } else { format!("[{}]", self.path) }
+        if !self.path.is_empty() {
+            format!("[{}]", self.path)
+        } else if self.section.name == ROOT.name {
+            "the scenario".to_owned()
+        } else {
+            format!("the {}", self.section.name)
+        }
     }
 
     /// The full path of a field.

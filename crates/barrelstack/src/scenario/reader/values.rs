@@ -114,24 +114,29 @@ impl Reader<'_> {
     /// An integer that may be absent.
     pub(crate) fn optional_integer(&self, name: &'static str) -> Result<Option<u32>> {
         self.value(name, |reader, field, node| {
-            let Kind::Integer(least, greatest) = field.kind else {
-                reader.defined_otherwise(name);
-            };
-            let Value::Integer(value) = node.value else {
-                return Err(reader.wrong_type(name, field.kind, node));
-            };
-            value
-                .filter(|value| (least..=greatest).contains(value))
-                .and_then(|value| u32::try_from(value).ok())
-                .ok_or_else(|| {
-                    let problem = Problem::OutOfRange {
-                        field: reader.path_of(name),
-                        range: field.kind.to_string(),
-                        found: node.value.describe(),
-                    };
-                    reader.sources.error(node.origin, problem)
-                })
+            let value = reader.read_integer(name, node, field.kind)?;
+            u32::try_from(value).map_err(|_| reader.integer_out_of_range(name, node, field.kind))
         })
+    }
+
+    /// The value of a node that holds an integer of a kind.
+    pub(crate) fn read_integer(&self, name: &str, node: &Node, kind: Kind) -> Result<i64> {
+        let Kind::Integer(least, greatest) = kind else { self.defined_otherwise(name) };
+        let Value::Integer(value) = node.value else {
+            return Err(self.wrong_type(name, kind, node));
+        };
+        value
+            .filter(|value| (least..=greatest).contains(value))
+            .ok_or_else(|| self.integer_out_of_range(name, node, kind))
+    }
+
+    fn integer_out_of_range(&self, name: &str, node: &Node, kind: Kind) -> ScenarioError {
+        let problem = Problem::OutOfRange {
+            field: self.path_of(name),
+            range: kind.to_string(),
+            found: node.value.describe(),
+        };
+        self.sources.error(node.origin, problem)
     }
 
     /// `true` or `false`.

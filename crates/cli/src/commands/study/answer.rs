@@ -30,6 +30,7 @@ fn counts(table: &StudyTable, column: &str) -> Vec<(String, usize)> {
 
 /// Levels that several cases share, ascending, with how their cases ended; none where levels are drawn.
 fn levels(table: &StudyTable) -> Vec<(f64, Tally)> {
+    const MOST: usize = 30;
     let mut levels: Vec<(f64, Tally)> = Vec::new();
     let (Some(values), Some(outcomes)) = (table.numbers("level"), table.texts("outcome")) else {
         return levels;
@@ -40,10 +41,13 @@ fn levels(table: &StudyTable) -> Vec<(f64, Tally)> {
             levels.push((*level, Tally::default()));
             levels.len() - 1
         });
+        if at >= MOST {
+            return Vec::new();
+        }
         levels[at].1.add(outcome);
     }
     levels.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let shared = levels.len() > 1 && levels.len() <= 30 && 2 * levels.len() <= table.rows();
+    let shared = levels.len() > 1 && 2 * levels.len() <= table.rows();
     if shared { levels } else { Vec::new() }
 }
 

@@ -2,45 +2,36 @@
 
 use std::io::IsTerminal as _;
 use std::ops::ControlFlow;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use barrelstack::study::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::interrupt::Interrupt;
+
 /// Tells how far a study is, and whether the user wants it to stop.
 pub(super) struct Live {
     bar: Option<ProgressBar>,
-    stop: Arc<AtomicBool>,
+    interrupt: Interrupt,
     damaged: AtomicUsize,
 }
 
 impl Live {
     /// Starts; shows a line only when asked to and only on a terminal.
-    ///
-    /// The first Ctrl-C asks for a stop, a second one ends the program; shards have their names only when whole.
     pub(super) fn new(show: bool) -> Self {
-        let stop = Arc::new(AtomicBool::new(false));
-        let asked = Arc::clone(&stop);
-        // Without a handler Ctrl-C ends the program, which loses the chunks at work and nothing else.
-        drop(ctrlc::set_handler(move || {
-            if asked.swap(true, Ordering::Relaxed) {
-                std::process::exit(130);
-            }
-        }));
         let bar = (show && std::io::stderr().is_terminal()).then(|| {
             let bar = ProgressBar::no_length();
             bar.set_style(style("{spinner} reading the motions"));
             bar.enable_steady_tick(Duration::from_millis(200));
             bar
         });
-        Self { bar, stop, damaged: AtomicUsize::new(0) }
+        Self { bar, interrupt: Interrupt::listen(), damaged: AtomicUsize::new(0) }
     }
 
     /// Whether the user asked to stop.
     pub(super) fn stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
+        self.interrupt.asked()
     }
 
     /// How many shards were damaged and set aside.
@@ -71,7 +62,7 @@ impl Live {
                 ));
             }
         }
-        if self.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        self.interrupt.flow()
     }
 }
 
