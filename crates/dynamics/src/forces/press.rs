@@ -1,0 +1,250 @@
+//! The contacts of one pair: from gaps to forces on both bodies.
+
+use crate::body::Nodes;
+use crate::contact::{FrictionLaw, NormalLaw};
+use crate::elements::{Elements, Group, PairFrame};
+use crate::model::Model;
+use crate::real::{Mask, Real};
+use crate::shape::{Gap, Surface};
+use crate::space::{Linear, Space, Twist, Wrench};
+use crate::state::State;
+
+use super::{Contact, ContactTotals, PairForce, Pressed, Scratch};
+
+/// The contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
+///
+/// The paper's laws have a loop of their own, in which nothing is asked at every contact.
+#[inline(always)]
+pub(super) fn touch<S: Space>(
+    model: &Model<S>,
+    state: &State<S>,
+    step: S::Real,
+    group: &Group,
+    scratch: &mut Scratch<S>,
+) {
+    let interface = &model.interfaces[model.pairs[group.pair].interface];
+    match (interface.normal, interface.friction) {
+        (
+            NormalLaw::SpeedGap { stiffness, damping },
+            FrictionLaw::Coulomb {
+                static_coefficient,
+                kinetic_coefficient,
+                tangential_stiffness,
+                tangential_damping,
+            },
+        ) => {
+            let normal = NormalLaw::SpeedGap { stiffness, damping };
+            let friction = FrictionLaw::Coulomb {
+                static_coefficient,
+                kinetic_coefficient,
+                tangential_stiffness,
+                tangential_damping,
+            };
+            touch_by(normal, friction, model, state, step, group, scratch);
+        }
+        (normal, friction) => touch_by(normal, friction, model, state, step, group, scratch),
+    }
+}
+
+/// The contacts of one pair by its laws.
+#[inline(always)]
+fn touch_by<S: Space>(
+    normal: NormalLaw<S::Real>,
+    friction: FrictionLaw<S::Real>,
+    model: &Model<S>,
+    state: &State<S>,
+    step: S::Real,
+    group: &Group,
+    scratch: &mut Scratch<S>,
+) {
+    let pair = &model.pairs[group.pair];
+    let frame = PairFrame::new(model, pair, &state.poses, &scratch.rotations);
+    let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
+    let mut press = Press {
+        normal,
+        friction,
+        step,
+        frame: &frame,
+        twists: (state.twists[pair.contactor], state.twists[pair.target]),
+        meeting: None,
+        pair: group.pair,
+        elements: &state.elements,
+        sum: PairWrench::default(),
+        totals: scratch.totals,
+        slip_rates: &mut scratch.slip_rates,
+        pressed: &mut scratch.pressed,
+        contacts: scratch.keeps_contacts.then_some(&mut scratch.contacts),
+    };
+    match model.pair_nodes(pair) {
+        Nodes::Fixed(_) => {
+            let nodes = &state.elements.positions[group.first..group.end];
+            surface.penetrated_by(
+                nodes.len(),
+                #[inline(always)]
+                |index| frame.to_surface(nodes[index]),
+                #[inline(always)]
+                |index, node, gap| press.node(group.first + index, node, gap),
+            );
+        }
+        Nodes::Rolling { center, radius, .. } => {
+            let center = frame.to_surface(*center);
+            let mut gap = surface.gap(center);
+            gap.distance -= *radius;
+            if gap.distance.lt(S::Real::zero()).any() {
+                press.node(group.first, center - gap.normal * *radius, gap);
+            }
+        }
+    }
+    let Press { meeting, sum, totals, .. } = press;
+    let Some(meeting) = meeting else { return };
+    scratch.totals = totals;
+    let damped = meeting.on_bodies(sum.damped);
+    let friction = meeting.on_bodies(sum.friction);
+    let (on_contactor, on_target) = meeting.on_bodies(sum.normal.plus(sum.friction));
+    scratch.wrenches[pair.contactor] += on_contactor;
+    scratch.wrenches[pair.target] += on_target;
+    let losses = &mut scratch.losses;
+    losses[pair.contactor].damped += damped.0;
+    losses[pair.target].damped += damped.1;
+    losses[pair.contactor].friction += friction.0;
+    losses[pair.target].friction += friction.1;
+    scratch.pair_forces.push(PairForce { pair: group.pair, force: on_contactor.force });
+}
+
+/// Nodes of a pair that press into a surface, one after the other.
+struct Press<'a, S: Space> {
+    normal: NormalLaw<S::Real>,
+    friction: FrictionLaw<S::Real>,
+    /// The step (s) that the forces stand for.
+    step: S::Real,
+    frame: &'a PairFrame<S>,
+    /// Twists of contactor and target.
+    twists: (Twist<S>, Twist<S>),
+    /// How the bodies meet; asked for by the first node that presses.
+    meeting: Option<Meeting<'a, S>>,
+    pair: usize,
+    elements: &'a Elements<S>,
+    sum: PairWrench<S>,
+    totals: ContactTotals<S::Real>,
+    slip_rates: &'a mut [S::Tangent],
+    pressed: &'a mut Vec<Pressed<S>>,
+    contacts: Option<&'a mut Vec<Contact<S>>>,
+}
+
+impl<S: Space> Press<'_, S> {
+    /// The forces of a node at `node` (m), which penetrates in at least one lane; in the frame of the
+    /// target's surface.
+    #[inline(always)]
+    fn node(&mut self, element: usize, node: S::Vector, gap: Gap<S>) {
+        if self.meeting.is_none() {
+            self.meeting = Some(Meeting::new(self.frame, self.twists.0, self.twists.1));
+        }
+        let Some(meeting) = &self.meeting else { return };
+        let contact = meeting.contact(self.pair, self.elements, element, node, gap);
+        let touching = contact.touching;
+        let weight = S::Real::select(touching, self.elements.weights[element], S::Real::zero());
+        let (depth, rate) = (contact.penetration, contact.penetration_rate);
+        let normal = self.normal.force(depth, rate).within_step(depth, rate, self.step);
+        let normal_force = normal.total * weight;
+        let stick = self.elements.sticks[element];
+        let friction = self.friction.force::<S>(stick, contact.slip_rate, normal_force, weight);
+        self.totals.elastic += normal.energy * weight;
+        self.totals.stick += friction.energy;
+
+        let damped = normal_force - normal.elastic * weight;
+        let arm = contact.point - self.frame.contactor;
+        let lever = S::moment(arm, contact.normal);
+        let sum = &mut self.sum;
+        sum.normal += Wrench { force: contact.normal * normal_force, moment: lever * normal_force };
+        sum.damped += Wrench { force: contact.normal * damped, moment: lever * damped };
+        let sliding = -S::along(friction.force, contact.normal);
+        sum.friction += Wrench { force: sliding, moment: S::moment(arm, sliding) };
+
+        self.slip_rates[element] = contact.slip_rate;
+        self.pressed.push(Pressed { element, pair: self.pair, touching, normal_force });
+        if let Some(contacts) = &mut self.contacts {
+            contacts.push(Contact { normal_force, friction_force: friction.force, ..contact });
+        }
+    }
+}
+
+/// Sums of contact forces on the contactor of a pair, in the frame of the target's surface, with their
+/// moments about the contactor's center of mass.
+#[derive(Clone, Copy, Default)]
+struct PairWrench<S: Space> {
+    normal: Wrench<S>,
+    /// The part of the normal forces that dampers make.
+    damped: Wrench<S>,
+    friction: Wrench<S>,
+}
+
+/// Two bodies at their contact, seen from the target's surface.
+struct Meeting<'a, S: Space> {
+    frame: &'a PairFrame<S>,
+    /// Center of mass of the contactor from that of the target (m).
+    apart: S::Vector,
+    /// Velocity (m/s), at the contactor's center of mass, of the contactor relative to the target.
+    linear: S::Vector,
+    /// Spin (rad/s) of the contactor relative to the target.
+    spin: S::Spin,
+}
+
+impl<'a, S: Space> Meeting<'a, S> {
+    #[inline(always)]
+    fn new(frame: &'a PairFrame<S>, contactor: Twist<S>, target: Twist<S>) -> Self {
+        let apart = frame.contactor - frame.target;
+        let target_spin = S::unrotate_spin(frame.rotation, target.angular);
+        Self {
+            frame,
+            apart,
+            linear: S::unrotate(frame.rotation, contactor.linear - target.linear)
+                - S::velocity_at(target_spin, apart),
+            spin: S::unrotate_spin(frame.rotation, contactor.angular) - target_spin,
+        }
+    }
+
+    /// Where and how fast a node at `node` (m, in the surface's frame) touches; no forces yet.
+    ///
+    /// Both bodies feel the force at the companion point, and both velocities are taken there:
+    /// so the pair conserves momentum, and force times relative velocity is the power it loses.
+    #[inline(always)]
+    fn contact(
+        &self,
+        pair: usize,
+        elements: &Elements<S>,
+        element: usize,
+        node: S::Vector,
+        gap: Gap<S>,
+    ) -> Contact<S> {
+        let zero = S::Real::zero();
+        let touching = gap.distance.lt(zero);
+        let point = node - gap.normal * gap.distance;
+        let velocity = self.linear + S::velocity_at(self.spin, point - self.frame.contactor);
+        let counted = S::Real::select(touching, S::Real::splat(1.0), zero);
+        Contact {
+            element,
+            pair,
+            node: elements.nodes[element],
+            touching,
+            point,
+            normal: gap.normal,
+            penetration: S::Real::select(touching, -gap.distance, zero),
+            penetration_rate: -velocity.dot(gap.normal),
+            normal_force: zero,
+            slip_rate: S::tangential(velocity, gap.normal) * counted,
+            friction_force: S::Tangent::default(),
+        }
+    }
+
+    /// What a wrench of [`PairWrench`] does to contactor and target, in the inertial frame.
+    #[inline(always)]
+    fn on_bodies(&self, wrench: Wrench<S>) -> (Wrench<S>, Wrench<S>) {
+        let rotation = self.frame.rotation;
+        let force = S::rotate(rotation, wrench.force);
+        let about_target = wrench.moment + S::moment(self.apart, wrench.force);
+        (
+            Wrench { force, moment: S::rotate_spin(rotation, wrench.moment) },
+            Wrench { force: -force, moment: -S::rotate_spin(rotation, about_target) },
+        )
+    }
+}
