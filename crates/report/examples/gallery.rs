@@ -100,7 +100,8 @@ fn scene() -> Scene {
         history("ground acceleration", "g", ground_acceleration),
         history("ground displacement", "cm", |t| 100.0 * ground_displacement(t)),
     ];
-    Scene { bodies, frames: Frames { times, poses, forces }, events, ground }
+    let frames = Frames { times, poses, forces };
+    Scene { bodies, frames, events, ground, ..Scene::default() }
 }
 
 fn frame(t: f64, homes: &[[f64; 2]]) -> Vec<[f64; 3]> {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use barrelstack_report::{
     Axis, Band, BoundarySample, Envelope, Figure, FigureKind, Mark, Panel, Plot, Polyline, Scene,
-    Series, SeriesStyle, Strip, attachments,
+    Series, SeriesStyle, Strip, Tie, attachments,
 };
 use common::{HOSTILE, document, player, scene};
 
@@ -216,6 +216,27 @@ fn the_hatch_of_the_ground_covers_the_picture_and_not_the_county() {
         .max()
         .unwrap();
     assert!((10..120).contains(&hatch), "{hatch}");
+}
+
+#[test]
+fn a_tie_is_drawn_between_its_bodies_until_it_tears() {
+    let mut tied = scene(2, 60);
+    let torn_at = tied.frames.times[30];
+    let points = [[0.0, 0.1], [0.0, -0.1]];
+    tied.ties = vec![
+        Tie { bodies: [1, 2], points, torn_at: None },
+        Tie { bodies: [1, 2], points, torn_at: Some(torn_at) },
+        // A body that is not there.
+        Tie { bodies: [1, 9], points, torn_at: None },
+    ];
+    let panels = [0.0, tied.frames.times[59]].map(|time| Panel { time, note: String::new() });
+    let panels =
+        |at: usize| Strip { scene: Arc::new(tied.clone()), panels: vec![panels[at].clone()] };
+    let drawn = |at: usize| {
+        let svg = figure(FigureKind::Strip(panels(at))).to_svg();
+        parsed(&svg).descendants().filter(|n| n.attribute("class") == Some("bs-strap")).count()
+    };
+    assert_eq!((drawn(0), drawn(1)), (2, 1));
 }
 
 #[test]

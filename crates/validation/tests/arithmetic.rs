@@ -1,6 +1,7 @@
 //! How much arithmetic a step takes, to the last operation.
 //!
 //! Times depend on the machine and on who else uses it; these counts do not.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 
 use barrelstack::Scenario;
 use barrelstack::assemble::assemble;

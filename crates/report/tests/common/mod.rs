@@ -69,7 +69,8 @@ pub(crate) fn scene(bodies: usize, frames: usize) -> Scene {
     };
     let events =
         vec![Event { time: 0.1, body: Some(1), kind: EventKind::Fall, text: "B1 falls".into() }];
-    Scene { bodies: list, frames: Frames { times, poses, forces }, events, ground: vec![history] }
+    let frames = Frames { times, poses, forces };
+    Scene { bodies: list, frames, events, ground: vec![history], ..Scene::default() }
 }
 
 pub(crate) fn player(scene: Scene) -> Block {
