@@ -22,6 +22,7 @@
 pub mod cases;
 pub mod drive;
 pub mod execute;
+pub mod ode;
 pub mod oracle;
 pub mod page;
 pub mod problem;
