@@ -107,6 +107,9 @@ pub fn document(problems: &[Problem], rows: &[Row], effort: Effort, seconds: f64
     let mut blocks = vec![Block::Heading { level: 2, text: "What is not claimed".into() }];
     blocks.push(Block::List(LIMITS.iter().map(|text| (*text).to_owned()).collect()));
     blocks.push(Block::Heading { level: 2, text: "What is not answered, and why".into() });
+    let numbers =
+        "Numbers such as 4.2 are sections of the project's list of problems, validation.md.";
+    blocks.push(Block::Paragraph(numbers.into()));
     blocks.push(Block::List(ABSENT.iter().map(|(what, why)| format!("{what}: {why}")).collect()));
     let mut theories: Vec<&str> = vec![];
     for problem in problems {

@@ -79,7 +79,9 @@ fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
     let exact = solution(rates, [0.5 * alpha, 0.0], (0.0, until))[0];
     problem(
         &format!("rocking-{name}"),
-        format!("block of α = {alpha} let go at φ = 0.5 on ground that makes a sine of {push} g"),
+        format!(
+            "block of α = {alpha} let go at φ = 0.5, ground in a sine of {push} g, {omega} rad/s"
+        ),
         ("lean after 1 s, without impact", "rad"),
         exact,
         (1e-4, 1e-3), // measured 2.1e-6 and 1.3e-4
@@ -126,7 +128,7 @@ fn corner() -> Problem {
     problem(
         "corner-springs",
         "block of α = 0.25 at φ = 0.5 on a soft, lightly damped corner (200 rad/s, ζ = 0.1)".into(),
-        ("angle after 0.8 s of a sine of 0.3 g", "rad"),
+        ("angle after 0.8 s of a sine of 0.3 g, 6 rad/s", "rad"),
         exact,
         (1e-6, 1e-4), // measured 1.5e-7 and 2.5e-6
         Box::new(move |effort| {
