@@ -5,14 +5,13 @@
 //! A verdict that all repeats share is robust even so.
 
 use std::fmt::Write as _;
-use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde::Serialize;
 
 use crate::assemble::PartKind;
+use crate::pool;
 use crate::run::{Progress, Run, RunFailure, run};
 use crate::scenario::{
     Basis, BodyOverride, Method, Nodes, Scenario, Scene, StackBody, StackSpec, View,
@@ -39,8 +38,8 @@ pub struct Verification {
     /// Until when no body of any repeat is that far from where the run has it; none where that holds
     /// for all that both ran.
     pub predictable_until: Option<f64>,
-    /// Whether all repeats, of which there are some, end as the run does: the same kind, mode and first body, and every fall
-    /// before they part at the same time.
+    /// Whether all repeats, of which there are some, end as the run does: the same kind, mode and first
+    /// body, and every fall before they part at the same time.
     pub robust: bool,
     /// The repeats.
     pub repeats: Vec<Repeat>,
@@ -61,6 +60,10 @@ pub struct Repeat {
     pub apart_at: Option<f64>,
     /// Largest difference of a fall before any repeat parts from the run; none where nothing falls.
     pub fall_difference: Option<f64>,
+    /// Whether it ends as the run does: the same outcome, and every fall before any repeat parts from
+    /// the run at the same time.
+    #[serde(skip)]
+    alike: bool,
     /// When each barrel had fallen.
     #[serde(skip)]
     falls: Vec<Option<f64>>,
@@ -114,48 +117,29 @@ pub fn verify(
     Ok(judge(base, repeats, skipped))
 }
 
-/// Where a thread leaves what came of a repeat; none inside where the repeat was stopped.
-type Slot = Mutex<Option<Result<Option<Repeat>, RunFailure>>>;
-
 /// Runs all repeats on all cores; none where one was stopped.
 fn repeat_all(
     base: &Run,
     changes: &[(String, Scenario)],
     progress: &mut (dyn FnMut(Progress) -> ControlFlow<()> + Send),
 ) -> Result<Vec<Option<Repeat>>, RunFailure> {
-    let next = AtomicUsize::new(0);
     let reached = Mutex::new((vec![0.0; changes.len()], progress));
-    let slots: Vec<Slot> = changes.iter().map(|_| Mutex::new(None)).collect();
     let end_time = base.simulation.end_time * changes.len() as f64;
-    let work = || {
-        loop {
-            let at = next.fetch_add(1, Ordering::Relaxed);
-            let Some((change, scenario)) = changes.get(at) else { break };
-            let mut told = |now: Progress| match reached.lock() {
-                Ok(mut shared) => {
-                    let (times, progress) = &mut *shared;
-                    times[at] = now.time;
-                    progress(Progress { time: times.iter().sum(), end_time })
-                }
-                // Another repeat has panicked; this one is of no use any more.
-                Err(_) => ControlFlow::Break(()),
-            };
-            let done = run(scenario, &mut told)
-                .map(|run| (!run.interrupted).then(|| compare(base, &run, change)));
-            if let Ok(mut slot) = slots[at].lock() {
-                *slot = Some(done);
+    let repeat = |(at, (change, scenario)): &(usize, &(String, Scenario))| {
+        let mut told = |now: Progress| match reached.lock() {
+            Ok(mut shared) => {
+                let (times, progress) = &mut *shared;
+                times[*at] = now.time;
+                progress(Progress { time: times.iter().sum(), end_time })
             }
-        }
+            // Another repeat has panicked; this one is of no use any more.
+            Err(_) => ControlFlow::Break(()),
+        };
+        let run = run(scenario, &mut told)?;
+        Ok((!run.interrupted).then(|| compare(base, &run, change)))
     };
-    let threads = std::thread::available_parallelism().map_or(1, NonZero::get).min(changes.len());
-    std::thread::scope(|scope| {
-        for _ in 1..threads {
-            scope.spawn(work);
-        }
-        work();
-    });
-    // A slot that was never filled belongs to a thread that panicked, which the scope passes on.
-    slots.into_iter().map(|slot| slot.into_inner().ok().flatten().unwrap_or(Ok(None))).collect()
+    let tasks: Vec<(usize, &(String, Scenario))> = changes.iter().enumerate().collect();
+    pool::map(&tasks, repeat, &|_| ()).into_iter().collect()
 }
 
 /// The run with half its step; with an adaptive method, with a tenth of its tolerance.
@@ -267,6 +251,7 @@ fn compare(base: &Run, other: &Run, change: &str) -> Repeat {
     Repeat {
         change: change.to_owned(),
         same_outcome,
+        alike: same_outcome,
         apart_at: apart_at(base, other),
         fall_difference: None,
         falls: falls(other),
@@ -326,7 +311,6 @@ fn judge(base: &Run, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verific
     let until = predictable_until.unwrap_or(f64::INFINITY);
     let scale = base.scenario.run.similitude;
     let own = falls(base);
-    let mut robust = !repeats.is_empty();
     for repeat in &mut repeats {
         let pairs = own.iter().zip(&repeat.falls);
         // What one run still has standing where the other has it down differs without end.
@@ -337,8 +321,9 @@ fn judge(base: &Run, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verific
         });
         repeat.fall_difference = differences.reduce(f64::max);
         let same_falls = repeat.fall_difference.is_none_or(|most| most <= SAME_FALL * scale.sqrt());
-        robust &= repeat.same_outcome && same_falls;
+        repeat.alike &= same_falls;
     }
+    let robust = !repeats.is_empty() && repeats.iter().all(|repeat| repeat.alike);
     Verification { apart: APART * scale, predictable_until, robust, repeats, skipped }
 }
 
@@ -365,7 +350,7 @@ impl Verification {
             ];
         }
         let count = self.repeats.len();
-        let same = self.repeats.iter().filter(|repeat| repeat.same_outcome).count();
+        let alike = self.repeats.iter().filter(|repeat| repeat.alike).count();
         let judged = self.repeats.iter().any(|repeat| repeat.outcome.kind != "not-judged");
         let mut sentences = Vec::new();
         if judged && self.robust {
@@ -375,8 +360,8 @@ impl Verification {
             ));
         } else if judged {
             sentences.push(format!(
-                "The outcome is not robust: only {same} of {count} repeats, with a finer step or barrels \
-                 a nanometer elsewhere, give way or stand in the same way; judge this stack by many runs."
+                "The outcome is not robust: only {alike} of {count} repeats, with a finer step or barrels \
+                 a nanometer elsewhere, end alike; judge this stack by many runs."
             ));
         }
         let centimeters = barrelstack_report::significant(100.0 * self.apart, 2);
@@ -410,7 +395,7 @@ impl Verification {
                 ),
             },
         )];
-        let same = self.repeats.iter().filter(|repeat| repeat.same_outcome).count();
+        let alike = self.repeats.iter().filter(|repeat| repeat.alike).count();
         rows.push((
             "outcome".to_owned(),
             if self.repeats.is_empty() {
@@ -420,7 +405,7 @@ impl Verification {
             } else if self.robust {
                 format!("robust: the same in all {} repeats", self.repeats.len())
             } else {
-                format!("not robust: the same in {same} of {} repeats", self.repeats.len())
+                format!("not robust: the same in {alike} of {} repeats", self.repeats.len())
             },
         ));
         for repeat in &self.repeats {

@@ -250,6 +250,6 @@ fn in_the_heap_no_barrel_lies_deep_in_a_beam() {
         }
     }
     println!("deepest: {deepest:?}");
-    // measured 0.091 m where the beam had nodes at its corners, cradles and bearings alone
+    // measured 0.012 m, and 0.091 m where the beam had nodes at its corners, cradles and bearings alone
     assert!(deepest.0 < 0.03, "{deepest:?}");
 }

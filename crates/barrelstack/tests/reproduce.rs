@@ -127,7 +127,7 @@ fn every_figure_of_the_paper_is_drawn() {
 }
 
 #[test]
-#[ignore = "runs every case a second time; the pool is what could break it"]
+#[cfg_attr(debug_assertions, ignore = "runs every case a second time; run in release")]
 fn the_page_is_the_same_every_time() {
     let again = reproduce(None, false, &|_, _| ()).unwrap();
     assert_eq!(html(&again), html(found()));

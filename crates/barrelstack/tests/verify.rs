@@ -147,6 +147,6 @@ fn the_two_cases_of_the_documentation_are_what_it_says() {
     let edge = two_levels(0.645_295);
     let found = verified(&edge);
     assert!(!found.robust, "{:#?}", found.rows());
-    // measured: the run collapses at 7.57 s, with half the step it stands
+    // measured: the run collapses at 7.58 s, with half the step it stands
     assert!(found.repeats.iter().any(|repeat| !repeat.same_outcome), "{:#?}", found.rows());
 }

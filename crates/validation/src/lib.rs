@@ -23,6 +23,7 @@ pub mod cases;
 pub mod counting;
 pub mod drive;
 pub mod execute;
+pub mod ode;
 pub mod oracle;
 pub mod page;
 pub mod problem;

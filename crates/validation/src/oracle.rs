@@ -3,6 +3,7 @@
 //!
 //! Nothing of the contact code is in it: classical Runge–Kutta steps, the instants of uplift and
 //! impact by bisection.
+//! A library's integrator stands behind it where motion is smooth (the problems `ode/own-integrator-…`).
 
 use barrelstack_dynamics::math::{cos, sin, tan};
 
@@ -71,6 +72,20 @@ impl Rocker {
             theta + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4),
             spin + h / 6.0 * (l1 + 2.0 * l2 + 2.0 * l3 + l4),
         )
+    }
+
+    /// Lean (rad) and spin (rad/s) after a time (s) on one corner, in a number of equal steps; `start` is
+    /// that at time zero, the lean above zero.
+    pub(crate) fn stretch(
+        &self,
+        start: (f64, f64),
+        acceleration: impl Fn(f64) -> f64,
+        until: f64,
+        steps: u32,
+    ) -> (f64, f64) {
+        let push = |t: f64| acceleration(t) / GRAVITY;
+        let length = until / f64::from(steps);
+        (0..steps).fold(start, |at, i| self.step(at, 1.0, (f64::from(i) * length, length), &push))
     }
 
     /// Whether a block that nothing pushes any more can only lose what it has.

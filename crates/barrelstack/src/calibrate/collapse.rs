@@ -5,6 +5,8 @@ mod likelihood;
 mod observed;
 mod sampler;
 
+use std::sync::Arc;
+
 use barrelstack_dynamics::math;
 use barrelstack_motion::Random;
 
@@ -13,8 +15,10 @@ use self::observed::{Mode, Observed};
 use self::sampler::{Draw, Posterior, sample};
 use super::least_squares::normalized;
 use super::parameters::Tunable;
-use super::result::short;
+use super::result::{inseparable, short};
 use super::{CalibrateError, Calibration, Estimate, Parameter, Table};
+use crate::ensemble::Prepared;
+use crate::ground::{Ground, ground};
 use crate::run::RunFailure;
 use crate::scenario::Scenario;
 
@@ -92,6 +96,8 @@ struct Trial<'a> {
     tunable: Tunable,
     /// Runs until the end of the watch.
     scenario: Scenario,
+    /// What shakes it.
+    ground: Arc<Ground>,
     /// Standard deviation (m at full scale) of places.
     scatter: f64,
 }
@@ -128,14 +134,15 @@ pub fn collapse(
     let mut courses: Vec<Option<Seen>> = Vec::new();
     let posterior = sample(parameters.len(), settings.simulations, settings.seed, |draws| {
         let before = courses.len();
-        let batch: Vec<Scenario> = draws
+        let batch: Vec<Prepared> = draws
             .iter()
             .flat_map(|draw| {
                 // One generator for all tests of a draw: each stack is built anew.
                 let mut random = Random::new(draw.seed);
                 let built = |trial: &Trial<'_>| {
                     let scenario = trial.tunable.at(&trial.scenario, &point(draw));
-                    placed(&scenario, trial.scatter, &mut random)
+                    let scenario = Arc::new(placed(&scenario, trial.scatter, &mut random));
+                    Prepared { scenario, ground: Arc::clone(&trial.ground) }
                 };
                 trials.iter().map(built).collect::<Vec<_>>()
             })
@@ -212,6 +219,13 @@ fn trials<'a>(
     parameters: &[Parameter],
     settings: &Settings,
 ) -> Result<Vec<Trial<'a>>, CalibrateError> {
+    if scenarios.len() != observations.tests.len() {
+        return Err(CalibrateError::Scenario(format!(
+            "{} scenarios do not go with {} tests: give one for each, in their order",
+            scenarios.len(),
+            observations.tests.len()
+        )));
+    }
     let mut trials: Vec<Trial<'_>> = Vec::new();
     for (at, (observed, scenario)) in observations.tests.iter().zip(scenarios).enumerate() {
         let tunable = Tunable::new(scenario, parameters)?;
@@ -219,9 +233,6 @@ fn trials<'a>(
         let mut scenario = scenario.clone();
         scenario.run.duration = Some(observed.until / scale.sqrt());
         scenario.run.stop_after_collapse = None;
-        // Nothing is drawn of these runs.
-        scenario.record.frame_rate = 1.0;
-        scenario.record.history_rate = 1.0;
         if let Some(lead) = trials.first() {
             let differs = |p: &&Parameter| lead.tunable.start(**p) != tunable.start(**p);
             if let Some(parameter) = parameters.iter().find(differs) {
@@ -234,7 +245,9 @@ fn trials<'a>(
             }
         }
         check(at, observed, &scenario)?;
-        trials.push(Trial { observed, tunable, scenario, scatter: settings.placement / scale });
+        let ground = Arc::new(ground(&scenario).map_err(RunFailure::from)?);
+        let scatter = settings.placement / scale;
+        trials.push(Trial { observed, tunable, scenario, ground, scatter });
     }
     Ok(trials)
 }
@@ -310,15 +323,7 @@ fn identifiability(
             ));
         }
     }
-    for (i, row) in correlation.iter().enumerate() {
-        for (j, value) in row.iter().enumerate().skip(i + 1).filter(|(_, v)| v.abs() > ALIKE) {
-            warnings.push(format!(
-                "{} and {} cannot be told apart by what was seen: correlation {value:.2}; state one of \
-                 them from a test of its own (--fit without it)",
-                estimates[i].name, estimates[j].name
-            ));
-        }
-    }
+    warnings.extend(inseparable(estimates, correlation, ALIKE));
     if posterior.power < 1.0 {
         warnings.push(format!(
             "too few simulations came near to what was seen, so its likelihood counts to the power {} and \

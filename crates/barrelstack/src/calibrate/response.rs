@@ -7,7 +7,7 @@ use barrelstack_fragility::student_quantile;
 
 use self::simulate::{Measured, Simulator};
 use super::least_squares::{Fit, Start, condition, fit, normalized};
-use super::result::short;
+use super::result::{inseparable, short};
 use super::{CalibrateError, Calibration, Estimate, Parameter, Table};
 use crate::run::RunFailure;
 use crate::scenario::Scenario;
@@ -232,15 +232,7 @@ fn identifiability(
             ));
         }
     }
-    for (i, row) in correlation.iter().enumerate() {
-        for (j, value) in row.iter().enumerate().skip(i + 1).filter(|(_, v)| v.abs() > ALIKE) {
-            warnings.push(format!(
-                "{} and {} cannot be told apart by this test: correlation {value:.3}; state one of them \
-                 from a test of its own (--fit without it)",
-                estimates[i].name, estimates[j].name
-            ));
-        }
-    }
+    warnings.extend(inseparable(estimates, correlation, ALIKE));
     if condition > ILL {
         warnings.push(format!(
             "the parameters together are ill determined (condition number {}): fit fewer of them, or \

@@ -135,6 +135,25 @@ impl Calibration {
     }
 }
 
+/// A warning for every two estimates whose correlation is above a limit.
+pub(super) fn inseparable(
+    estimates: &[Estimate],
+    correlation: &[Vec<f64>],
+    limit: f64,
+) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (i, row) in correlation.iter().enumerate() {
+        for (j, value) in row.iter().enumerate().skip(i + 1).filter(|(_, v)| v.abs() > limit) {
+            warnings.push(format!(
+                "{} and {} cannot be told apart by what was measured: correlation {value:.3}; state one \
+                 of them from a test of its own (--fit without it)",
+                estimates[i].name, estimates[j].name
+            ));
+        }
+    }
+    warnings
+}
+
 fn bounded(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }

@@ -28,6 +28,8 @@ pub struct CaseResult {
     pub first_fall: Option<f64>,
     /// How many barrels there are.
     pub barrels: usize,
+    /// When (s) each barrel had fallen, by name, in the order of the barrels; none where it stood.
+    pub falls: Vec<(String, Option<f64>)>,
     /// Largest drop (m) of each barrel that fell, in the order of the barrels.
     pub fall_heights: Vec<f64>,
     /// Demands on the stack; all none where it could not run or broke down.
@@ -50,12 +52,14 @@ impl CaseResult {
         let sound = !matches!(verdict.outcome, Outcome::Invalid { .. });
         let barrels: Vec<usize> = assembly.of_kind(PartKind::Barrel).collect();
         let all = || barrels.iter().map(|body| fates.fate(*body));
+        let fall = |body: &usize| (assembly.parts[*body].name.clone(), fates.fate(*body).fell_at);
         let heights = || all().filter(|fate| fate.fell_at.is_some()).map(|fate| fate.drop);
         let residual = all().map(|fate| fate.residual_displacement);
         let largest = |most: f64, value: f64| if value.abs() > most.abs() { value } else { most };
         Self {
             first_fall: fates.first_fall().filter(|_| sound),
             barrels: barrels.len(),
+            falls: if sound { barrels.iter().map(fall).collect() } else { Vec::new() },
             fall_heights: if sound { heights().collect() } else { Vec::new() },
             demands: if sound { demands(assembly, fates, None) } else { Demands::default() },
             residual_displacement: (sound && !barrels.is_empty())
@@ -74,6 +78,7 @@ impl CaseResult {
             outcome: Err(reason),
             first_fall: None,
             barrels: 0,
+            falls: Vec::new(),
             fall_heights: Vec::new(),
             demands: Demands::default(),
             residual_displacement: None,

@@ -6,7 +6,7 @@ use barrelstack_report::{Block, Cell, Table};
 use super::cases::Cases;
 use super::ensemble;
 use super::pool::Job;
-use super::vary::{self, with};
+use super::vary::{self, brief, with};
 use crate::scenario::{Cradle, Scenario, StackSpec};
 use crate::summary::Summary;
 
@@ -54,15 +54,6 @@ pub(super) struct Tried {
     pub(super) same_mode: usize,
     /// Of how many.
     pub(super) members: usize,
-}
-
-/// A scenario that is stopped a while (s) after its collapse and of which nothing is drawn.
-fn brief(scenario: &Scenario, after: f64) -> Scenario {
-    let mut brief = scenario.clone();
-    brief.run.stop_after_collapse = Some(after);
-    brief.record.frame_rate = 1.0;
-    brief.record.history_rate = 1.0;
-    brief
 }
 
 /// The runs: for each rack the six barrels, the eight barrels, and these with every combination.

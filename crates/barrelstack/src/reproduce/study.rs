@@ -1,7 +1,7 @@
 //! What moves a case: one quantity that the paper leaves open changed at a time, down and up.
 
 use super::pool::Job;
-use super::vary::{self, with};
+use super::vary::{self, brief, with};
 use crate::scenario::{Scenario, StackSpec};
 use crate::summary::Summary;
 
@@ -102,13 +102,9 @@ type Ends<'a> = [(&'a str, &'a dyn Fn(&mut StackSpec)); 2];
 
 /// The factors of a case.
 pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
-    let mut base = base.clone();
     let (duration, after) = subject.duration();
+    let mut base = brief(base, after);
     base.run.duration = Some(duration);
-    base.run.stop_after_collapse = Some(after);
-    // Nothing is drawn of these runs.
-    base.record.frame_rate = 1.0;
-    base.record.history_rate = 1.0;
     let base = &base;
     let Some(stack) = base.stack() else { return Vec::new() };
     let rack = &stack.rack;

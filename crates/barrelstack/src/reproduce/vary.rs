@@ -13,6 +13,15 @@ pub(super) fn with(scenario: &Scenario, change: impl FnOnce(&mut StackSpec)) -> 
     changed
 }
 
+/// A scenario that is stopped a while (s) after its collapse and of which nothing is drawn.
+pub(super) fn brief(scenario: &Scenario, after: f64) -> Scenario {
+    let mut brief = scenario.clone();
+    brief.run.stop_after_collapse = Some(after);
+    brief.record.frame_rate = 1.0;
+    brief.record.history_rate = 1.0;
+    brief
+}
+
 /// Every interface of a stack.
 fn interfaces(stack: &mut StackSpec) -> [&mut Interface; 5] {
     let all = &mut stack.interfaces;

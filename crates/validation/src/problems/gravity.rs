@@ -187,7 +187,10 @@ fn overhang(n: u32) -> Problem {
     let exact = theory::overhang(n, 1.0);
     Problem {
         id: format!("gravity/overhang-{n}"),
-        title: format!("{n} equal bricks of 1 m over the end of a table"),
+        title: match n {
+            1 => "a brick of 1 m over the end of a table".into(),
+            _ => format!("{n} equal bricks of 1 m over the end of a table"),
+        },
         source: "the harmonic stack; validation.md 4.9".into(),
         quantity: "farthest overhang",
         unit: "m",

@@ -61,7 +61,7 @@ fn of_harmonic(
         quantity,
         unit,
         exact,
-        tolerance: Tolerance::Relative(1e-6),
+        tolerance: Tolerance::Relative(1e-6), // measured 2.1e-7
         fast: None,
         run: Box::new(move |_| Ok(Outcome::of(measured(&measure, &harmonic()?)?))),
     }
@@ -87,7 +87,7 @@ fn of_push(period: f64) -> Problem {
         quantity: "pseudo-acceleration over the push",
         unit: "",
         exact: overshoot(),
-        tolerance: Tolerance::Relative(1e-5),
+        tolerance: Tolerance::Relative(1e-5), // measured 1.3e-6
         fast: None,
         run: Box::new(move |_| {
             let motion = push(period / 1000.0)?;
@@ -101,15 +101,16 @@ fn of_push(period: f64) -> Problem {
 fn short_period() -> Problem {
     Problem {
         id: "intensity/short-period".into(),
-        title: "the harmonic at a period of 2 ms, a twentieth of the step of a 20 Hz record".into(),
+        title: "the harmonic in twelve samples a cycle, at a period of a twentieth of their step"
+            .into(),
         source: SOURCE.into(),
         quantity: "Sa over PGA",
         unit: "",
         exact: 1.0,
-        tolerance: Tolerance::Relative(1e-3),
+        tolerance: Tolerance::Relative(1e-3), // measured 1.0e-4
         fast: None,
         run: Box::new(|_| {
-            // 25 samples a second, interpolated between them by the recursion itself.
+            // Twelve samples a cycle are steps of 42 ms, interpolated between them by the recursion itself.
             let wave = |i: u32| AMPLITUDE * sin(TAU * f64::from(i) / 12.0);
             let motion = sampled(PERIOD / 12.0, (0..=12 * CYCLES).map(wave).collect())?;
             let short = IntensityMeasure::Sa { period: 0.002, damping: DAMPING };
@@ -128,7 +129,7 @@ fn housner_intensity() -> Problem {
         quantity: "Housner intensity",
         unit: "m",
         exact,
-        tolerance: Tolerance::Relative(1e-3),
+        tolerance: Tolerance::Relative(1e-3), // measured 6.7e-7
         fast: None,
         run: Box::new(|_| {
             let measure = IntensityMeasure::Housner { damping: DAMPING };

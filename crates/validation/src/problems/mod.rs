@@ -7,6 +7,7 @@ mod housner;
 mod intensity;
 mod invariances;
 mod measured;
+mod ode;
 mod pulses;
 mod regimes;
 mod restitution;
@@ -29,6 +30,7 @@ pub fn all() -> Vec<Problem> {
         measured::problems(),
         gravity::problems(),
         stacks::problems(),
+        ode::problems(),
         invariances::problems(),
         intensity::problems(),
         statistics::problems(),

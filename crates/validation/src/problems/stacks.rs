@@ -83,7 +83,10 @@ fn opens(name: &str, sizes: &'static [(f64, f64)]) -> Problem {
     let (exact, joint) = least_ratio(sizes);
     Problem {
         id: format!("stacks/opens-{name}"),
-        title: format!("{} blocks on each other, joint {} opens first", sizes.len(), joint + 1),
+        title: match sizes.len() {
+            1 => "a block on the ground".into(),
+            count => format!("{count} blocks on each other, joint {} opens first", joint + 1),
+        },
         source: UPLIFT.into(),
         quantity: "ground acceleration that opens a joint",
         unit: "g",

@@ -1,17 +1,19 @@
 //! Many collapses simulated, and what an observer would have seen of each.
 
-use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use barrelstack_motion::Random;
 
 use super::observed::{Mode, Time};
-use crate::assemble::PartKind;
+use crate::ensemble::{self, Audience, CaseResult, Prepared};
 use crate::outcome::Outcome;
 use crate::pool;
-use crate::run::{Run, run};
 use crate::scenario::{BodyOverride, Scenario, Scene, StackBody};
 
-/// What an observer would have seen of a run.
+/// Cases that a thread takes at once: enough to fill lanes, few enough that all threads have some.
+const BATCH: usize = 32;
+
+/// What an observer would have seen of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Seen {
     /// How the stack went.
@@ -23,21 +25,16 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    fn of(run: &Run) -> Option<Self> {
-        let mode = match &run.outcome {
-            Outcome::Stable => Mode::Stands,
-            Outcome::Collapse { mode, .. } => Mode::Collapse(*mode),
+    fn of(case: &CaseResult) -> Option<Self> {
+        let (mode, loss) = match case.outcome.as_ref().ok()? {
+            Outcome::Stable => (Mode::Stands, Time::Never),
+            Outcome::Collapse { mode, time, .. } => (Mode::Collapse(*mode), Time::At(*time)),
             Outcome::Invalid { .. } | Outcome::NotJudged => return None,
         };
-        let time = |time: Option<f64>| time.map_or(Time::Never, Time::At);
-        let parts = &run.assembly.parts;
-        let barrels = run.assembly.of_kind(PartKind::Barrel);
-        let fall = |body: usize| (parts[body].name.clone(), time(run.fates.fate(body).fell_at));
-        Some(Self {
-            mode,
-            loss: time(run.fates.collapse_time()),
-            falls: barrels.map(fall).collect(),
-        })
+        let fall = |(barrel, time): &(String, Option<f64>)| {
+            (barrel.clone(), time.map_or(Time::Never, Time::At))
+        };
+        Some(Self { mode, loss, falls: case.falls.iter().map(fall).collect() })
     }
 
     /// The first barrel to fall, and when.
@@ -55,15 +52,20 @@ impl Seen {
     }
 }
 
-/// Simulates all scenarios, in their order; none where one cannot be simulated.
+/// Simulates all cases on all cores, in their order; none where one cannot be simulated.
 ///
-/// The one place that runs stacks for the calibration of collapses.
-pub(super) fn simulate(scenarios: &[Scenario], done: &(dyn Fn(usize) + Sync)) -> Vec<Option<Seen>> {
-    let one = |scenario: &Scenario| {
-        let run = run(scenario, &mut |_| ControlFlow::Continue(())).ok()?;
-        Seen::of(&run)
+/// `done` hears how many cases are done.
+pub(super) fn simulate(cases: &[Prepared], done: &(dyn Fn(usize) + Sync)) -> Vec<Option<Seen>> {
+    let finished = AtomicUsize::new(0);
+    let together = |cases: &&[Prepared]| -> Vec<Option<Seen>> {
+        let mut tell = |_: &CaseResult| done(finished.fetch_add(1, Ordering::Relaxed) + 1);
+        let mut audience = Audience { tell: &mut tell, stop: &|| false };
+        // Nobody stops it, so every case has its result.
+        let results = ensemble::simulate(cases, &mut audience).unwrap_or_default();
+        results.iter().map(Seen::of).collect()
     };
-    pool::map(scenarios, one, done)
+    let batches: Vec<&[Prepared]> = cases.chunks(BATCH).collect();
+    pool::map(&batches, together, &|_| ()).into_iter().flatten().collect()
 }
 
 /// A scenario with every rack and every barrel set down a little beside its place, by normal deviates

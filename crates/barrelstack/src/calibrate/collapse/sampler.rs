@@ -69,7 +69,7 @@ pub(super) fn sample(
         reason = "a share of a count"
     )]
     let first = ((FIRST * count as f64) as usize).max(1);
-    let each = (count - first).div_ceil(ROUNDS);
+    let each = count.saturating_sub(first).div_ceil(ROUNDS);
     let mut draws = numbered(hypercube(first, dimensions, &mut random), 0, seed);
     let mut logs = evaluate(&draws);
     let mut proposals: Vec<Proposal> = Vec::new();
@@ -132,7 +132,10 @@ fn weights(logs: &[f64], densities: &[f64], power: f64) -> Option<Vec<f64>> {
     if most == f64::NEG_INFINITY {
         return None;
     }
-    let weight = |(log, density): (&f64, &f64)| math::exp(power * (log - most)) / density;
+    let weight = |(log, density): (&f64, &f64)| {
+        // What cannot be stays impossible to the power zero.
+        if *log == f64::NEG_INFINITY { 0.0 } else { math::exp(power * (log - most)) / density }
+    };
     let weights: Vec<f64> = logs.iter().zip(densities).map(weight).collect();
     let sum: f64 = weights.iter().sum();
     Some(weights.into_iter().map(|weight| weight / sum).collect())
@@ -279,7 +282,7 @@ impl Posterior {
 
 #[cfg(test)]
 mod tests {
-    use super::{mirrored_normal, sample};
+    use super::{Draw, mirrored_normal, sample};
 
     #[test]
     fn a_mirrored_kernel_loses_nothing_at_the_walls() {
@@ -323,5 +326,20 @@ mod tests {
         assert!((found.quantile(0, 0.025) + 0.95).abs() < 0.04);
         assert!((found.quantile(0, 0.975) - 0.95).abs() < 0.04);
         assert!(sample(1, 50, 1, |draws| vec![f64::NEG_INFINITY; draws.len()]).is_none());
+    }
+
+    #[test]
+    fn too_few_draws_flatten_the_likelihood_and_what_cannot_be_weighs_nothing() {
+        // Fifteen draws in the first round, fewer than a result rests on, half of them impossible.
+        let possible = |x: f64| if x < 0.0 { 0.0 } else { f64::NEG_INFINITY };
+        let found = sample(1, 50, 1, |draws| draws.iter().map(|d| possible(d.point[0])).collect());
+        let found = found.unwrap();
+        assert!((0.0..1.0).contains(&found.power), "{}", found.power);
+        let sum: f64 = found.weights.iter().sum();
+        assert!((sum - 1.0).abs() < 1e-12, "{sum}");
+        let impossible = |(draw, _): &(&Draw, &f64)| draw.point[0] >= 0.0;
+        let mut weights = found.draws.iter().zip(&found.weights).filter(impossible);
+        assert!(weights.all(|(_, weight)| *weight == 0.0));
+        assert!(sample(1, 0, 1, |draws| vec![0.0; draws.len()]).is_some());
     }
 }

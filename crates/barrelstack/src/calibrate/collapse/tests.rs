@@ -1,13 +1,16 @@
 //! Coverage of the intervals over a hundred campaigns.
 #![allow(clippy::print_stdout, reason = "the coverage is shown")]
 
+use std::sync::Arc;
+
 use barrelstack_motion::Random;
 
 use super::ensemble::{Seen, placed, simulate};
 use super::likelihood::Errors;
 use super::observed::{Mode, Observed, Time};
 use super::sampler::{Draw, Posterior};
-use super::{Parameter, Tunable};
+use super::{Parameter, Prepared, Tunable};
+use crate::ground::{Ground, ground};
 use crate::scenario::Scenario;
 
 const ALL: [Parameter; 3] =
@@ -31,7 +34,7 @@ fn noted(seen: &Seen, until: f64, errors: &Errors, random: &mut Random) -> Obser
 /// Every campaign draws its truth from the range, builds three stacks with other placements, notes how
 /// they go, and looks for the parameters with one table of simulations that all campaigns share.
 #[test]
-#[ignore = "2700 simulations, three minutes of one core; run with --release -- --ignored"]
+#[cfg_attr(debug_assertions, ignore = "2700 simulations take many minutes; run in release")]
 fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
     const TESTS: usize = 3;
     const TABLE: usize = 800;
@@ -39,17 +42,15 @@ fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
     let scenarios: Vec<Scenario> = ["3 in", "4 in", "6 in"]
         .into_iter()
         .map(|amplitude| {
-            let changes = [
-                format!("motion.sine.amplitude={amplitude}"),
-                format!("run.duration={until} s"),
-                "record.frame_rate=1 Hz".to_owned(),
-                "record.history_rate=1 Hz".to_owned(),
-            ];
+            let changes =
+                [format!("motion.sine.amplitude={amplitude}"), format!("run.duration={until} s")];
             let mut scenario = Scenario::builtin("candia-8-barrels", &changes).unwrap();
             scenario.run.stop_after_collapse = None;
             scenario
         })
         .collect();
+    let grounds: Vec<Arc<Ground>> =
+        scenarios.iter().map(|scenario| Arc::new(ground(scenario).unwrap())).collect();
     let tunable = Tunable::new(&scenarios[0], &ALL).unwrap();
     let mut random = Random::new(2008);
     let draws: Vec<Draw> = (0..TABLE + 100)
@@ -58,14 +59,16 @@ fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
             seed: random.bits(),
         })
         .collect();
-    let batch: Vec<Scenario> = draws
+    let batch: Vec<Prepared> = draws
         .iter()
         .flat_map(|draw| {
             let mut random = Random::new(draw.seed);
             let point: Vec<f64> = draw.point.iter().map(|x| reach * x).collect();
-            let built =
-                |scenario: &Scenario| placed(&tunable.at(scenario, &point), 1e-3, &mut random);
-            scenarios.iter().map(built).collect::<Vec<_>>()
+            let built = |(scenario, ground): (&Scenario, &Arc<Ground>)| Prepared {
+                scenario: Arc::new(placed(&tunable.at(scenario, &point), 1e-3, &mut random)),
+                ground: Arc::clone(ground),
+            };
+            scenarios.iter().zip(&grounds).map(built).collect::<Vec<_>>()
         })
         .collect();
     let seen: Vec<Seen> = simulate(&batch, &|_| ()).into_iter().map(Option::unwrap).collect();
@@ -90,6 +93,6 @@ fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
     println!("{collapsed} of {} stacks collapse", seen.len());
     println!("k, c and μ covered in {covered:?} of 100 campaigns");
     println!("mean width of the intervals over that of the range: {width:.2?}");
-    // measured 94, 94 and 97; widths 0.75, 0.97 and 0.60: collapses say nothing about c
+    // measured 94, 93 and 97; widths 0.75, 0.97 and 0.60: collapses say nothing about c
     assert!(covered.iter().all(|covered| *covered >= 90), "{covered:?}");
 }

@@ -1,0 +1,378 @@
+//! Smooth motions, against equations written apart from the contact code and solved by a library.
+//!
+//! Two kinds: rigid motion, which contact comes to as it stiffens, and the very equations of springs
+//! and dampers, of which only the time step is an approximation.
+
+use barrelstack_dynamics::contact::restitution;
+use barrelstack_dynamics::math::{acos, atan2, cos, sin};
+use barrelstack_dynamics::shape::Cradle;
+use barrelstack_dynamics::{FrictionLaw, NormalLaw, Shape, Still, Vec2};
+
+use crate::drive::{Both, Shake};
+use crate::ode::solution;
+use crate::oracle::Rocker;
+use crate::problem::refine;
+use crate::rocking::{Corner, RockingBlock};
+use crate::scene::{
+    DOWN, Scene, block, centered, coulomb, disc, floor, ground_of, interface, points, pose,
+};
+use crate::{Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
+
+use super::housner::firm;
+
+const SOURCE: &str =
+    "equations of motion, solved by the library differential-equations 0.7, DOP853";
+const MASS: f64 = 100.0;
+
+/// The problems of this theory.
+pub(super) fn problems() -> Vec<Problem> {
+    vec![
+        rocking("leaning", (0.25, 6.0, 0.3)),
+        rocking("over", (0.40, 5.0, 0.6)),
+        corner(),
+        springs(),
+        pendulum(),
+        bowl(),
+        flight(),
+        own_lean(),
+        own_peak(),
+    ]
+}
+
+fn problem(
+    name: &str,
+    title: String,
+    (quantity, unit): (&'static str, &'static str),
+    exact: f64,
+    (full, fast): (f64, f64),
+    run: crate::problem::Run,
+) -> Problem {
+    Problem {
+        id: format!("ode/{name}"),
+        title,
+        source: SOURCE.into(),
+        quantity,
+        unit,
+        exact,
+        tolerance: Tolerance::Relative(full),
+        fast: Some(Tolerance::Relative(fast)),
+        run,
+    }
+}
+
+/// Acceleration `a sin ωt` of ground that starts at rest: velocity (m/s) and displacement (m).
+fn ground(a: f64, omega: f64, t: f64) -> (f64, f64) {
+    let velocity = a / omega * (1.0 - cos(omega * t));
+    (velocity, a / omega * (t - sin(omega * t) / omega))
+}
+
+/// A block that leans on one corner while the ground makes one sine of `push` g, first away from the
+/// corner: it sways about the lean at which it would fall, or goes over.
+fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
+    let (radius, until) = (1.0, 1.0);
+    // Moments about the corner: I θ″ = −m R [g sin(α − θ) + a cos(α − θ)] with I = 4/3 m R².
+    let rates = move |t: f64, y: &[f64; 2]| {
+        let a = -push * GRAVITY * sin(omega * t);
+        let moment = GRAVITY * sin(alpha - y[0]) + a * cos(alpha - y[0]);
+        [y[1], -0.75 / radius * moment]
+    };
+    let exact = solution(rates, [0.5 * alpha, 0.0], (0.0, until))[0];
+    problem(
+        &format!("rocking-{name}"),
+        format!(
+            "block of α = {alpha} let go at φ = 0.5, ground in a sine of {push} g, {omega} rad/s"
+        ),
+        ("lean after 1 s, without impact", "rad"),
+        exact,
+        (1e-4, 1e-3), // measured 2.1e-6 and 1.3e-4
+        Box::new(move |effort| {
+            refine(effort, exact, |level| {
+                let block = firm(effort, radius, alpha).refined(level - 1);
+                let acceleration = -push * GRAVITY;
+                let drive = Shake::Sine { acceleration, omega, half_waves: 2.0 };
+                let mut scene = block.scene(0.5 * alpha)?;
+                scene.run(&drive, block.step(), until)?;
+                Ok(-scene.state.poses[1].orientation)
+            })
+        }),
+    )
+}
+
+/// The same block on a soft corner: normal spring and damper, stick with spring and damper, in full.
+fn corner() -> Problem {
+    let (alpha, omega, push, until) = (0.25, 6.0, 0.3, 0.8);
+    let block = RockingBlock {
+        corner: Corner::KelvinVoigt,
+        contact_frequency: 200.0,
+        damping_ratio: 0.1,
+        ..RockingBlock::new(1.0, alpha)
+    };
+    let (k, c) = (200.0 * 200.0, 2.0 * 0.1 * 200.0); // of a unit of mass
+    let (width, height) = (sin(alpha), cos(alpha));
+    // x, z, angle of the center, their rates, and the stretch of the stick. Both bodies feel the force
+    // on the floor below the corner, and the velocities are taken there.
+    let rates = move |t: f64, y: &[f64; 7]| {
+        let [_, z, angle, vx, vz, spin, stick] = *y;
+        let (right, up) =
+            (width * cos(angle) + height * sin(angle), width * sin(angle) - height * cos(angle));
+        let slip = vx + spin * z - ground(-push * GRAVITY, omega, t).0;
+        let press = (-k * (z + up) - c * (vz + spin * right)).max(0.0);
+        let drag = k * stick + c * slip;
+        // I = m R²/3 about the center.
+        let turn = 3.0 * (right * press - z * drag);
+        [vx, vz, spin, -drag, press - GRAVITY, turn, slip]
+    };
+    let lean = 0.5 * alpha;
+    let start = cos(alpha - lean) - GRAVITY / k;
+    let exact = solution(rates, [0.0, start, -lean, 0.0, 0.0, 0.0, 0.0], (0.0, until))[2];
+    problem(
+        "corner-springs",
+        "block of α = 0.25 at φ = 0.5 on a soft, lightly damped corner (200 rad/s, ζ = 0.1)".into(),
+        ("angle after 0.8 s of a sine of 0.3 g, 6 rad/s", "rad"),
+        exact,
+        (1e-6, 1e-4), // measured 1.5e-7 and 2.5e-6
+        Box::new(move |effort| {
+            refine(effort, exact, |level| {
+                let acceleration = -push * GRAVITY;
+                let drive = Shake::Sine { acceleration, omega, half_waves: 2.0 };
+                let mut scene = block.scene(lean)?;
+                scene.run(&drive, 4e-4 / 2.0_f64.powi(level), until)?;
+                Ok(scene.state.poses[1].orientation)
+            })
+        }),
+    )
+}
+
+/// A block that bounces and pitches on two springs, never leaving them, while the floor goes up and down.
+fn springs() -> Problem {
+    let (half_width, half_height, until) = (0.4, 0.3, 1.0);
+    let (frequency, zeta) = (60.0, 0.02);
+    let (stiffness, damping) = (MASS * frequency * frequency, 2.0 * zeta * MASS * frequency);
+    let (push, omega) = (1.5, 40.0);
+    let (start, tilt) = (half_height - 0.8 * MASS * GRAVITY / (2.0 * stiffness), 1e-3);
+    let inertia = MASS * (half_width * half_width + half_height * half_height) / 3.0;
+    // A corner's place to the right of the center, and above it.
+    let corner = move |side: f64, angle: f64| {
+        (
+            side * half_width * cos(angle) + half_height * sin(angle),
+            side * half_width * sin(angle) - half_height * cos(angle),
+        )
+    };
+    let rates = move |t: f64, y: &[f64; 4]| {
+        let [z, angle, rise, spin] = *y;
+        let (floor_rise, floor) = ground(push, omega, t);
+        let (mut force, mut moment) = (0.0, 0.0);
+        for side in [-1.0, 1.0] {
+            let (right, up) = corner(side, angle);
+            let press = stiffness * (floor - z - up) + damping * (floor_rise - rise - spin * right);
+            force += press.max(0.0);
+            moment += right * press.max(0.0);
+        }
+        [rise, spin, force / MASS - GRAVITY, moment / inertia]
+    };
+    let depth = move |z: f64, angle: f64| ground(push, omega, until).1 - z - corner(-1.0, angle).1;
+    let [z, angle, ..] = solution(rates, [start, tilt, 0.0, 0.0], (0.0, until));
+    let exact = depth(z, angle);
+    problem(
+        "two-springs",
+        "tilted block on two smooth springs (60 rad/s, ζ = 0.02) on a floor that shakes up and down"
+            .into(),
+        ("penetration of the left corner after 1 s", "m"),
+        exact,
+        (1e-4, 1e-3), // measured 2.3e-6 and 3.6e-5
+        Box::new(move |effort| {
+            refine(effort, exact, |level| {
+                let size = (2.0 * half_width, 2.0 * half_height);
+                let body = block("block", size, MASS, pose(0.0, start, tilt));
+                let law = NormalLaw::KelvinVoigt { stiffness, damping };
+                let laws = interface(law, FrictionLaw::Frictionless);
+                let mut scene = Scene::new(vec![floor(), body], laws, DOWN)?;
+                let z = Shake::Sine { acceleration: push, omega, half_waves: 100.0 };
+                let drive = Both { x: Shake::Cruise(0.0), z };
+                scene.run(&drive, 4e-4 / 2.0_f64.powi(level), until)?;
+                let there = scene.state.poses[1];
+                Ok(depth(there.position.z, there.orientation))
+            })
+        }),
+    )
+}
+
+/// Radii (m) of the cradle and of the disc in it.
+const CRADLE: f64 = 0.6;
+const DISC: f64 = 0.35;
+
+/// A solid disc in a wide cradle at an angle (rad), sunk to rest, with stiffer contact and a shorter
+/// step for each refinement; and that step (s).
+fn cradled(angle: f64, friction: f64, level: i32) -> Result<(Scene, f64), Failure> {
+    let stiffness = 1e8 * 4.0_f64.powi(level);
+    let arm = CRADLE - DISC + MASS * GRAVITY * cos(angle) / stiffness;
+    let center = Vec2::new(arm * sin(angle), -arm * cos(angle));
+    let body = disc("disc", DISC, MASS, 0.5 * DISC * DISC, center);
+    let cradle = ground_of(vec![centered(Shape::Cradle(Cradle::new(CRADLE, 1.5)))]);
+    let damping = |zeta: f64| restitution::damping(stiffness, zeta, MASS);
+    let law = NormalLaw::KelvinVoigt { stiffness, damping: damping(1.0) };
+    let laws = interface(law, coulomb(friction, stiffness, damping(0.5)));
+    Ok((Scene::new(vec![cradle, body], laws, DOWN)?, 1e-4 / 2.0_f64.powi(level)))
+}
+
+/// Angle (rad) of the disc in its cradle, positive to the right.
+fn angle_in_cradle(scene: &Scene) -> f64 {
+    let place = scene.state.poses[1].position;
+    atan2(place.x, -place.z)
+}
+
+/// Rolling without slip, at large angles.
+fn pendulum() -> Problem {
+    let until = 1.1;
+    let length = 1.5 * (CRADLE - DISC);
+    let rates = move |_: f64, y: &[f64; 2]| [y[1], -GRAVITY / length * sin(y[0])];
+    let exact = solution(rates, [1.0, 0.0], (0.0, until))[0];
+    problem(
+        "cradle-pendulum",
+        "solid disc let go at 1 rad in a round cradle of 0.6 m, rolling".into(),
+        ("angle after 1.1 s", "rad"),
+        exact,
+        (1e-4, 1e-3), // measured 2.4e-5 and 3.9e-4
+        Box::new(move |effort| {
+            refine(effort, exact, |level| {
+                let (mut scene, step) = cradled(1.0, 0.9, level)?;
+                scene.run(&Still, step, until)?;
+                Ok(angle_in_cradle(&scene))
+            })
+        }),
+    )
+}
+
+/// A disc that spins so fast that it slips one way all the while and climbs its cradle.
+fn bowl() -> Problem {
+    let (friction, spin, until) = (0.4, 40.0, 0.6);
+    let arm = CRADLE - DISC;
+    // m d φ″ = −m g sin φ − μN and I ω′ = −r μN, with N = m (g cos φ + d φ′²), I = ½ m r².
+    let rates = move |_: f64, y: &[f64; 3]| {
+        let press = GRAVITY * cos(y[0]) + arm * y[1] * y[1];
+        let drag = friction * press;
+        [y[1], (-GRAVITY * sin(y[0]) - drag) / arm, -2.0 * drag / DISC]
+    };
+    let exact = solution(rates, [0.0, 0.0, spin], (0.0, until))[0];
+    problem(
+        "cradle-slip",
+        "solid disc, μ = 0.4, set down in a round cradle of 0.6 m at 40 rad/s, slipping".into(),
+        ("angle after 0.6 s", "rad"),
+        exact,
+        (1e-4, 1e-3), // measured 2.7e-6 and 4.4e-5
+        Box::new(move |effort| {
+            refine(effort, exact, |level| {
+                let (mut scene, step) = cradled(0.0, friction, level)?;
+                scene.state.twists[1].angular = spin;
+                scene.run(&Still, step, until)?;
+                Ok(angle_in_cradle(&scene))
+            })
+        }),
+    )
+}
+
+/// A thrown body whose drag couples flight and spin, seen from ground that shakes.
+fn flight() -> Problem {
+    let until = 1.0;
+    let (inertia, push, omega) = (8.0, 3.0, 7.0);
+    let drag = [[60.0, 10.0, 5.0], [10.0, 90.0, -8.0], [5.0, -8.0, 4.0]];
+    let start = [2.0, 5.0, 3.0];
+    let rates = move |_: f64, y: &[f64; 4]| {
+        let force = |row: [f64; 3]| row[0] * y[1] + row[1] * y[2] + row[2] * y[3];
+        let [x, z, turn] = drag.map(force);
+        [y[1], -x / MASS, -GRAVITY - z / MASS, -turn / inertia]
+    };
+    let [x, ..] = solution(rates, [0.0, start[0], start[1], start[2]], (0.0, until));
+    let exact = x - ground(push, omega, until).1;
+    problem(
+        "flight",
+        "thrown body with a full matrix of viscous drag, seen from ground that shakes".into(),
+        ("place along the ground after 1 s", "m"),
+        exact,
+        (1e-6, 1e-4), // measured 2.8e-9 and 4.6e-8
+        Box::new(move |effort| {
+            refine(effort, exact, |level| {
+                let mut body = block("body", (0.5, 0.5), MASS, pose(0.0, 50.0, 0.0));
+                body.inertia = inertia;
+                body.damping = Some(drag);
+                body.nodes = vec![points(&[])];
+                let law = NormalLaw::KelvinVoigt { stiffness: 1e6, damping: 0.0 };
+                let laws = interface(law, FrictionLaw::Frictionless);
+                let mut scene = Scene::new(vec![floor(), body], laws, DOWN)?;
+                let twist = &mut scene.state.twists[1];
+                (twist.linear, twist.angular) = (Vec2::new(start[0], start[1]), start[2]);
+                let drive = Shake::Sine { acceleration: push, omega, half_waves: 100.0 };
+                scene.run(&drive, 2e-3 / 2.0_f64.powi(level), until)?;
+                Ok(scene.relative(1))
+            })
+        }),
+    )
+}
+
+/// The block of the ensembles, as the integrator of this crate has it.
+fn rigid() -> Rocker {
+    let alpha = 0.25;
+    let restitution = theory::housner_restitution(alpha);
+    Rocker { alpha, rate: theory::rocking_rate(1.0), restitution, slender: false }
+}
+
+/// The integrator that judges ensembles, on a stretch without impact.
+fn own_lean() -> Problem {
+    let (omega, push, until) = (6.0, 0.3, 1.0);
+    let rigid = rigid();
+    let acceleration = move |t: f64| -push * GRAVITY * sin(omega * t);
+    let rates = move |t: f64, y: &[f64; 2]| {
+        let from_upright = rigid.alpha - y[0];
+        let moment = GRAVITY * sin(from_upright) + acceleration(t) * cos(from_upright);
+        [y[1], -0.75 * moment]
+    };
+    let start = 0.5 * rigid.alpha;
+    let exact = solution(rates, [start, 0.0], (0.0, until))[0];
+    problem(
+        "own-integrator-lean",
+        "rocking-leaning by this crate's own integrator for rigid blocks, in steps of 10 ms and less"
+            .into(),
+        ("lean after 1 s, without impact", "rad"),
+        exact,
+        (1e-8, 1e-6), // measured 6.6e-11 and 1.7e-8
+        Box::new(move |effort| {
+            refine(effort, exact, |level| {
+                let steps = 100 << level;
+                Ok(rigid.stretch((start, 0.0), acceleration, until, steps).0)
+            })
+        }),
+    )
+}
+
+/// The same from rest: uplift, one swing under a half-sine, and the peak that it has left to reach.
+fn own_peak() -> Problem {
+    let rigid = rigid();
+    let omega = 2.0 * rigid.rate;
+    let strength = 1.7 * GRAVITY * rigid.uplift();
+    let share = rigid.uplift() * GRAVITY / strength;
+    let lift = atan2(share, (1.0 - share * share).sqrt()) / omega;
+    let end = std::f64::consts::PI / omega;
+    // The ground goes right, so the block leans left: lean is positive all the same.
+    let rates = move |t: f64, y: &[f64; 2]| {
+        let from_upright = rigid.alpha - y[0];
+        let moment = GRAVITY * sin(from_upright) - strength * sin(omega * t) * cos(from_upright);
+        [y[1], -0.75 * moment]
+    };
+    let [lean, spin] = solution(rates, [0.0, 0.0], (lift, end));
+    // Energy from there on: ½ θ′² = p² [cos(α − peak) − cos(α − θ)].
+    let left = cos(rigid.alpha - lean) + 0.5 * spin * spin / (rigid.rate * rigid.rate);
+    let exact = rigid.alpha - acos(left);
+    problem(
+        "own-integrator-peak",
+        "the block at rest under a half-sine of 1.7 g tan α, by the same, in the steps of the ensembles"
+            .into(),
+        ("largest lean", "rad"),
+        exact,
+        (1e-5, 1e-5), // measured 1.9e-7
+        Box::new(move |_| {
+            let drive = Shake::Sine { acceleration: strength, omega, half_waves: 1.0 };
+            let ride = rigid.ride(|t| drive.acceleration(t), drive.end(), 5e-4, 8.0);
+            Ok(Outcome::of(ride.peak))
+        }),
+    )
+}
