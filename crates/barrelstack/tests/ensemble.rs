@@ -36,7 +36,7 @@ impl Random {
 fn random_case(seed: u64) -> Scenario {
     let mut random = Random(seed);
     let levels = 2 + seed % 3;
-    let strapped = if seed % 5 == 0 { 2 } else { 0 };
+    let strapped = if seed.is_multiple_of(5) { 2 } else { 0 };
     let settings = [
         format!("stack.strap.levels={strapped}"),
         format!("stack.strap.strength=\"{:.1} kN\"", random.between(3.0, 12.0)),
