@@ -6,7 +6,7 @@ use barrelstack_report::significant;
 use crate::assemble::PartKind;
 use crate::outcome::{CollapseMode, Outcome};
 use crate::run::Run;
-use crate::summary::{MotionSummary, Summary};
+use crate::summary::{MotionSummary, StrapSummary, Summary};
 use crate::verify::Verification;
 
 /// The answer in one sentence.
@@ -72,6 +72,23 @@ fn course(run: &Run, mode: CollapseMode, first: &str, part: &str) -> String {
     }
 }
 
+/// What the straps bore; none where there are none.
+fn straps(straps: &[StrapSummary]) -> Option<String> {
+    let strained = straps.iter().max_by(|a, b| a.peak_tension.total_cmp(&b.peak_tension))?;
+    let kilonewtons = significant(1e-3 * strained.peak_tension, 2);
+    let torn = straps.iter().filter_map(|strap| strap.torn_at);
+    let first = torn.clone().reduce(f64::min);
+    Some(match (torn.count(), first) {
+        (0, _) | (_, None) => {
+            format!("All {} straps hold; one bears up to {kilonewtons} kN.", straps.len())
+        }
+        (1, Some(time)) => format!("One of {} straps tears, after {time:.1} s.", straps.len()),
+        (count, Some(time)) => {
+            format!("{count} of {} straps tear, the first after {time:.1} s.", straps.len())
+        }
+    })
+}
+
 /// What shook the ground, and how much.
 fn shaking(motion: &MotionSummary) -> String {
     let name = &motion.name;
@@ -117,6 +134,7 @@ pub(super) fn details(
         Outcome::NotJudged => {}
         Outcome::Invalid { reason } => sentences.push(format!("{}.", capital(reason))),
     }
+    sentences.extend(straps(&summary.straps));
     sentences.extend(summary.motion.as_ref().map(shaking));
     let judged = matches!(run.outcome, Outcome::Stable | Outcome::Collapse { .. });
     if let Some(found) = verification {
