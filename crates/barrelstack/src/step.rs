@@ -43,7 +43,7 @@ pub fn critical_time_step(assembly: &Assembly) -> f64 {
 /// and over its inertia by the square of the arm.
 fn of_straps(assembly: &Assembly, constant: fn(&Strap<Planar>) -> f64) -> f64 {
     let mut rates = vec![0.0; assembly.parts.len()];
-    for strap in assembly.loose.iter().chain(assembly.model.straps()) {
+    for strap in assembly.loose.iter().map(|loose| &loose.strap).chain(assembly.model.straps()) {
         for (id, point) in strap.bodies.into_iter().zip(strap.points) {
             let body = &assembly.model.bodies()[id];
             rates[id] += constant(strap) * (1.0 / body.mass + point.dot(point) / body.inertia);

@@ -144,6 +144,16 @@ fn along_the_barrels_both_straps_of_a_barrel_share_its_pull() {
 }
 
 #[test]
+fn a_pretension_that_a_strap_is_too_short_for_is_refused_with_its_length() {
+    let changes = ["stack.strap.levels=1", "stack.strap.stiffness=\"3 kN/m\"", PRETENSION];
+    let scenario = scenario("candia-8-barrels", &changes);
+    let error = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    let said = error.to_string();
+    println!("{said}");
+    assert!(said.contains("by 1.000 m") && said.contains("less pretension"), "{said}");
+}
+
+#[test]
 fn impossible_straps_are_refused_with_what_to_do() {
     let wrong: [(&[&str], &str); 5] = [
         (&["stack.strap.levels=9"], "the stack has only 4"),

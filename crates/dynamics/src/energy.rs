@@ -7,7 +7,6 @@ use crate::model::Model;
 use crate::real::Real;
 use crate::space::{Linear, Planar, Pose, Space, Wrench};
 use crate::state::State;
-use crate::strap::newly;
 
 /// Energies and works at one time (J), since the start of the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -139,7 +138,7 @@ impl<S: Space> EnergyLedger<S> {
             }
         }
         for ((before, now), pull) in self.torn.iter_mut().zip(&state.torn).zip(&scratch.pulls) {
-            step.damped += S::Real::select(newly(*before, *now), pull.energy, S::Real::zero());
+            step.damped += S::Real::select(*now & !*before, pull.energy, S::Real::zero());
             *before = *now;
         }
         self.works.damped += step.damped;

@@ -2,7 +2,7 @@
 
 use crate::body::BodyId;
 use crate::model::Model;
-use crate::real::{Mask, Real};
+use crate::real::Real;
 use crate::space::{Linear, Space, Wrench};
 use crate::state::State;
 
@@ -38,11 +38,12 @@ pub struct Pull<R> {
     pub energy: R,
 }
 
-/// How a strap pulls, and the unit vector from its first point to its second.
-struct Taut<S: Space> {
-    pull: Pull<S::Real>,
+/// How a strap pulls.
+pub(crate) struct Taut<S: Space> {
+    pub(crate) pull: Pull<S::Real>,
     /// The part of the tension that the damper makes (N).
     damped: S::Real,
+    /// The unit vector from its first point to its second.
     along: S::Vector,
     /// From the centers of mass to the points (m), in the inertial frame.
     arms: [S::Vector; 2],
@@ -82,8 +83,9 @@ impl<S: Space> Strap<S> {
         apart.dot(apart).sqrt()
     }
 
+    /// How it pulls at a state; not at all in lanes where it is torn.
     #[inline(always)]
-    fn taut(
+    pub(crate) fn taut(
         &self,
         state: &State<S>,
         rotations: &[S::Rotation],
@@ -115,25 +117,19 @@ impl<S: Space> Strap<S> {
     }
 }
 
-/// What the straps of a model do to its bodies: `act` is told of each body the whole wrench about its
-/// center of mass, and of that the part that dampers make.
-#[inline(always)]
-pub(crate) fn pull_all<S: Space>(
-    model: &Model<S>,
-    state: &State<S>,
-    rotations: &[S::Rotation],
-    pulls: &mut Vec<Pull<S::Real>>,
-    mut act: impl FnMut(BodyId, Wrench<S>, Wrench<S>),
-) {
-    pulls.clear();
-    for (strap, torn) in model.straps.iter().zip(&state.torn) {
-        let Taut { pull, damped, along, arms } = strap.taut(state, rotations, *torn);
-        for (at, toward) in [(0, along), (1, -along)] {
-            let lever = S::moment(arms[at], toward);
-            let by = |size: S::Real| Wrench { force: toward * size, moment: lever * size };
-            act(strap.bodies[at], by(pull.tension), by(damped));
-        }
-        pulls.push(pull);
+impl<S: Space> Taut<S> {
+    /// What the strap does to each of its bodies: the whole wrench about the center of mass, and of that
+    /// the part that its damper makes.
+    #[inline(always)]
+    pub(crate) fn on_bodies(&self) -> [(Wrench<S>, Wrench<S>); 2] {
+        [(self.arms[0], self.along), (self.arms[1], -self.along)].map(
+            #[inline(always)]
+            |(arm, toward)| {
+                let lever = S::moment(arm, toward);
+                let by = |size: S::Real| Wrench { force: toward * size, moment: lever * size };
+                (by(self.pull.tension), by(self.damped))
+            },
+        )
     }
 }
 
@@ -147,10 +143,4 @@ pub(crate) fn tear<S: Space>(
     for ((strap, torn), pull) in model.straps.iter().zip(torn).zip(pulls) {
         *torn = *torn | strap.strength.lt(pull.tension);
     }
-}
-
-/// Whether a mask changed to true in at least one lane.
-#[inline(always)]
-pub(crate) fn newly<M: Mask>(before: M, now: M) -> M {
-    now & !before
 }

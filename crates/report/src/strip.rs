@@ -254,7 +254,7 @@ fn place_bodies(drawing: &mut Drawing, scene: &Scene, id: &str, frame: usize, vi
     drawing.push(Item::Scene { scale, origin, bodies: placed.collect() });
     for ends in scene.ties.iter().filter_map(|tie| scene.ends(tie, frame)) {
         let run = ends.map(|end| view.on_page(end)).to_vec();
-        drawing.path("bs-strap", "", vec![run], false);
+        drawing.path("bs-tie", "", vec![run], false);
     }
     for (at, [x, z, _]) in poses.iter().filter(|_| view.names) {
         let body = &scene.bodies[*at];

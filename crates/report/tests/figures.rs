@@ -234,7 +234,7 @@ fn a_tie_is_drawn_between_its_bodies_until_it_tears() {
         |at: usize| Strip { scene: Arc::new(tied.clone()), panels: vec![panels[at].clone()] };
     let drawn = |at: usize| {
         let svg = figure(FigureKind::Strip(panels(at))).to_svg();
-        parsed(&svg).descendants().filter(|n| n.attribute("class") == Some("bs-strap")).count()
+        parsed(&svg).descendants().filter(|n| n.attribute("class") == Some("bs-tie")).count()
     };
     assert_eq!((drawn(0), drawn(1)), (2, 1));
 }

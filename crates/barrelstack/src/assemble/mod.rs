@@ -9,7 +9,7 @@ mod stack;
 mod straps;
 mod transverse;
 
-use barrelstack_dynamics::{BodyId, Model, ModelError, Planar, Shape, Strap, Vec2};
+use barrelstack_dynamics::{BodyId, Model, ModelError, Planar, Shape, Vec2};
 
 use crate::scenario::{Scenario, Scene, View};
 
@@ -77,9 +77,8 @@ pub struct Assembly {
     pub model: Model<Planar>,
     /// One part for every body, in the same order.
     pub parts: Vec<Part>,
-    /// Straps that are put on once the stack stands, with how much longer than their way
-    /// they will be for their length.
-    pub(crate) loose: Vec<Strap<Planar>>,
+    /// Straps that are put on once the stack stands.
+    pub(crate) loose: Vec<straps::Loose>,
     /// Height (m) of the stack from the ground to the top of the highest barrel; zero for a free scene.
     pub height: f64,
     /// Number of levels; zero for a free scene.

@@ -21,7 +21,7 @@ pub(super) fn assemble(
     if spec.mirror {
         builder.mirror();
     }
-    let loose = straps::straps(spec, scale, &builder.parts, &builder.bodies);
+    let loose = straps::straps(spec, scale, &builder.parts, &builder.bodies)?;
     let pairs = builder.pairs();
     let interfaces = laws(&spec.interfaces, scale);
     let model = Model::new(builder.bodies, interfaces, pairs, Vec2::new(0.0, -gravity))?;

@@ -6,42 +6,69 @@
 
 use barrelstack_dynamics::{Body, BodyId, ModelError, Planar, State, Strap, Vec2};
 
-use super::{Assembly, Part, PartKind, Similitude};
+use super::{AssembleError, Assembly, Part, PartKind, Similitude};
 use crate::scenario::{StackSpec, Straps, Ties, View};
+
+/// A strap that is not tightened yet.
+#[derive(Clone, Debug)]
+pub(crate) struct Loose {
+    /// As the stack is drawn, before it sinks into its contacts.
+    pub(crate) strap: Strap<Planar>,
+    /// How much longer (m) it will be than the way between its ends; negative under pretension.
+    give: f64,
+}
 
 impl Assembly {
     /// Puts on the straps and tightens them as the stack stands in `state`.
     ///
     /// # Errors
-    /// Never for straps of a scenario: their constants were checked when it was read.
+    /// When a strap that was sound as drawn is not on the settled stack.
     pub(crate) fn strap(&mut self, state: &mut State<Planar>) -> Result<(), ModelError> {
-        let mut straps = std::mem::take(&mut self.loose);
-        for strap in &mut straps {
-            strap.length += strap.span(state);
-        }
+        let tighten = |Loose { mut strap, give }| {
+            strap.length = strap.span(state) + give;
+            strap
+        };
+        let straps: Vec<_> = std::mem::take(&mut self.loose).into_iter().map(tighten).collect();
         state.torn = vec![false; straps.len()];
         self.model.fasten(straps)
     }
 }
 
-/// The straps of a stack, not tightened yet, with how much longer than their way they are for their
-/// length: from the ground up, those on the left first.
+/// The straps of a stack: from the ground up, those on the left first.
+///
+/// # Errors
+/// When the pretension would stretch a strap over more than its whole way.
 pub(super) fn straps(
     spec: &StackSpec,
     scale: Similitude,
     parts: &[Part],
     bodies: &[Body<Planar>],
-) -> Vec<Strap<Planar>> {
+) -> Result<Vec<Loose>, AssembleError> {
     let Straps { levels, ties, stiffness, damping, slack, pretension, strength } = spec.straps;
     let lowest = spec.levels - levels + 1;
-    let strap = |upper: BodyId, lower: BodyId, side: &str, from: f64, along: f64| Strap {
-        name: format!("{}-{} {side}", parts[upper].name, parts[lower].name),
-        bodies: [upper, lower],
-        points: [Vec2::new(from, 0.0), Vec2::new(along, 0.0)],
-        length: (slack - pretension / stiffness) * scale.length,
-        stiffness: stiffness * scale.stiffness(1.0, false),
-        damping: damping * scale.damping(false),
-        strength: strength.map_or(f64::INFINITY, |force| force * scale.force()),
+    let give = (slack - pretension / stiffness) * scale.length;
+    // Every strap is plumb on the stack as drawn.
+    let strap = |upper: BodyId, lower: BodyId, side: &str, from: f64| {
+        let apart = bodies[upper].pose.position - bodies[lower].pose.position;
+        let name = format!("{}-{} {side}", parts[upper].name, parts[lower].name);
+        if apart.z + give <= 0.0 {
+            return Err(AssembleError::Stack(format!(
+                "the pretension of {pretension} N stretches a strap of {stiffness} N/m by {:.3} m, but the strap \
+                 {name} is only {:.3} m long: take a stiffer strap, or less pretension",
+                pretension / stiffness,
+                apart.z / scale.length
+            )));
+        }
+        let strap = Strap {
+            name,
+            bodies: [upper, lower],
+            points: [Vec2::new(from, 0.0), Vec2::new(from + apart.x, 0.0)],
+            length: apart.z + give,
+            stiffness: stiffness * scale.stiffness(1.0, false),
+            damping: damping * scale.damping(false),
+            strength: strength.map_or(f64::INFINITY, |force| force * scale.force()),
+        };
+        Ok(Loose { strap, give })
     };
     // In the mirror left and right change places, in the order of sums, too.
     let mut sides = [("left", -1.0), ("right", 1.0)];
@@ -51,7 +78,6 @@ pub(super) fn straps(
     let mut all = Vec::new();
     for (body, part) in parts.iter().enumerate() {
         let strapped = part.level.is_some_and(|level| level >= lowest);
-        let x = |body: BodyId| bodies[body].pose.position.x;
         match (part.kind, part.carrier) {
             (PartKind::Barrel, Some(rack)) if strapped => {
                 for (side, sign) in sides {
@@ -60,7 +86,7 @@ pub(super) fn straps(
                         View::Longitudinal if sign < 0.0 => ("front", 0.0),
                         View::Longitudinal => ("back", 0.0),
                     };
-                    all.push(strap(body, rack, side, from, x(body) + from - x(rack)));
+                    all.push(strap(body, rack, side, from)?);
                 }
             }
             (PartKind::Rack, _) if ties == Ties::LevelsTogether => {
@@ -72,12 +98,11 @@ pub(super) fn straps(
                 });
                 let Some(below) = below.filter(|_| part.level > Some(lowest)) else { continue };
                 for (side, sign) in sides {
-                    let from = sign * part.size;
-                    all.push(strap(body, below, side, from, x(body) + from - x(below)));
+                    all.push(strap(body, below, side, sign * part.size)?);
                 }
             }
             _ => {}
         }
     }
-    all
+    Ok(all)
 }

@@ -210,17 +210,15 @@ pub(crate) fn evaluate_within<S: Space>(
 #[inline(always)]
 fn pull<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
     let Scratch { wrenches, losses, rotations, pulls, .. } = scratch;
-    strap::pull_all(
-        model,
-        state,
-        rotations,
-        pulls,
-        #[inline(always)]
-        |body, wrench, damped| {
-            wrenches[body] += wrench;
+    pulls.clear();
+    for (strap, torn) in model.straps.iter().zip(&state.torn) {
+        let taut = strap.taut(state, rotations, *torn);
+        for (body, (whole, damped)) in strap.bodies.into_iter().zip(taut.on_bodies()) {
+            wrenches[body] += whole;
             losses[body].damped += damped;
-        },
-    );
+        }
+        pulls.push(taut.pull);
+    }
 }
 
 /// Rotations of the state at hand, and nothing else yet.
