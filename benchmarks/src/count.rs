@@ -3,7 +3,7 @@
 use barrelstack_dynamics::lanes::{Case, Crew, End, Task, Width, march};
 use barrelstack_dynamics::real::Real;
 use barrelstack_dynamics::{Method, Planar, Scratch, State};
-use barrelstack_validation::counting::{Counting, Operations};
+use barrelstack_validation::counting::Work;
 use barrelstack_validation::drive::Shake;
 
 use crate::scene::Scene;
@@ -12,13 +12,12 @@ use crate::time;
 /// Prints the operations of a step, and the share of the machine's peak that lanes reach.
 pub(crate) fn per_step(scene: &Scene, method: Method, step: f64) {
     let end_time = 1.0;
-    let mut one = One { scene, step, end_time, waiting: true, contacts: 0, steps: 0 };
-    let done = Operations::of(|| march::<Counting, _>(method, &mut one));
-    let steps = one.steps as f64;
-    let [plain, divisions, choices] =
-        [done.plain, done.divisions, done.choices].map(|count| count as f64 / steps);
+    let Work { steps, touching, operations } = Work::of(method, case(scene, step, end_time));
+    let steps = steps as f64;
+    let [plain, divisions, choices] = [operations.plain, operations.divisions, operations.choices]
+        .map(|count| count as f64 / steps);
     println!("arithmetic of a step of one stack, counted over {steps} steps");
-    println!("  contacts that touch            {:10.1}", one.contacts as f64 / steps);
+    println!("  contacts that touch            {:10.1}", touching as f64 / steps);
     println!("  additions and multiplications  {plain:10.0}");
     println!("  divisions and square roots     {divisions:10.0}");
     println!("  comparisons, choices, signs    {choices:10.0}");
@@ -107,33 +106,4 @@ impl<'a, R: Real> Crew<'a, R> for Repeated<'a> {
 fn case(scene: &Scene, time_step: f64, end_time: f64) -> Case<'_, Shake> {
     let drive = Scene::ground(1.0);
     Case { model: &scene.model, state: scene.rest.clone(), drive, time_step, end_time }
-}
-
-/// One stack, whose contacts are counted.
-struct One<'a> {
-    scene: &'a Scene,
-    step: f64,
-    end_time: f64,
-    waiting: bool,
-    contacts: usize,
-    steps: usize,
-}
-
-impl<'a> Crew<'a, Counting> for One<'a> {
-    type Drive = Shake;
-
-    fn next(&mut self, _: usize) -> Option<Case<'a, Shake>> {
-        std::mem::take(&mut self.waiting).then(|| case(self.scene, self.step, self.end_time))
-    }
-    fn start(&mut self, _: usize, _: &State<Planar>, _: &Scratch<Planar>) {}
-    fn observe(
-        &mut self,
-        _: &State<Planar<Counting>>,
-        scratch: &Scratch<Planar<Counting>>,
-    ) -> bool {
-        self.steps += 1;
-        self.contacts += scratch.touching();
-        false
-    }
-    fn end(&mut self, _: usize, _: End) {}
 }

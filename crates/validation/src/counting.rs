@@ -6,7 +6,9 @@
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
+use barrelstack_dynamics::lanes::{Case, Crew, End, march};
 use barrelstack_dynamics::real::Real;
+use barrelstack_dynamics::{Drive, Method, Planar, Scratch, State};
 
 thread_local! {
     static DONE: Cell<Operations> = const { Cell::new(Operations::NONE) };
@@ -120,4 +122,50 @@ impl SubAssign for Counting {
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
+}
+
+/// The work of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Work {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Nodes that touch, summed over the steps.
+    pub touching: u64,
+    /// All that was done, the start included.
+    pub operations: Operations,
+}
+
+impl Work {
+    /// Runs a case with numbers that count.
+    pub fn of<D: Drive<Planar>>(method: Method, case: Case<'_, D>) -> Self {
+        let mut one = One { case: Some(case), touching: 0, steps: 0 };
+        let operations = Operations::of(|| march::<Counting, _>(method, &mut one));
+        Self { steps: one.steps, touching: one.touching, operations }
+    }
+}
+
+/// One case, whose touching nodes are counted.
+struct One<'a, D> {
+    case: Option<Case<'a, D>>,
+    touching: u64,
+    steps: u64,
+}
+
+impl<'a, D: Drive<Planar>> Crew<'a, Counting> for One<'a, D> {
+    type Drive = D;
+
+    fn next(&mut self, _: usize) -> Option<Case<'a, D>> {
+        self.case.take()
+    }
+    fn start(&mut self, _: usize, _: &State<Planar>, _: &Scratch<Planar>) {}
+    fn observe(
+        &mut self,
+        _: &State<Planar<Counting>>,
+        scratch: &Scratch<Planar<Counting>>,
+    ) -> bool {
+        self.steps += 1;
+        self.touching += scratch.touching() as u64;
+        false
+    }
+    fn end(&mut self, _: usize, _: End) {}
 }

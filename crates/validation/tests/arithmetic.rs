@@ -5,9 +5,9 @@
 
 use barrelstack::Scenario;
 use barrelstack::assemble::assemble;
-use barrelstack_dynamics::lanes::{Case, Crew, End, march};
+use barrelstack_dynamics::lanes::Case;
 use barrelstack_dynamics::{Method, Model, Planar, Scratch, State, settle};
-use barrelstack_validation::counting::{Counting, Operations};
+use barrelstack_validation::counting::{Operations, Work};
 use barrelstack_validation::drive::Shake;
 use barrelstack_validation::problems::consensus;
 
@@ -47,35 +47,8 @@ fn per_step(model: &Model<Planar>, method: Method) -> [u64; 4] {
     let time_step = 0.25e-3;
     let end_time = time_step * STEPS as f64;
     let case = Case { model, state: rest, drive: GROUND, time_step, end_time };
-    let mut one = One { case: Some(case), contacts: 0, steps: 0 };
-    let done = Operations::of(|| march::<Counting, _>(method, &mut one));
-    assert_eq!(one.steps, STEPS);
-    [one.contacts, done.plain, done.divisions, done.choices].map(|count| count / STEPS)
-}
-
-struct One<'a> {
-    case: Option<Case<'a, Shake>>,
-    contacts: u64,
-    steps: u64,
-}
-
-impl<'a> Crew<'a, Counting> for One<'a> {
-    type Drive = Shake;
-
-    fn next(&mut self, _: usize) -> Option<Case<'a, Shake>> {
-        self.case.take()
-    }
-    fn start(&mut self, _: usize, _: &State<Planar>, _: &Scratch<Planar>) {}
-    fn observe(
-        &mut self,
-        _: &State<Planar<Counting>>,
-        scratch: &Scratch<Planar<Counting>>,
-    ) -> bool {
-        self.steps += 1;
-        self.contacts += scratch.touching() as u64;
-        false
-    }
-    fn end(&mut self, _: usize, end: End) {
-        assert!(end.finish.is_ok(), "{:?}", end.finish);
-    }
+    let Work { steps, touching, operations } = Work::of(method, case);
+    assert_eq!(steps, STEPS);
+    let Operations { plain, divisions, choices } = operations;
+    [touching, plain, divisions, choices].map(|count| count / STEPS)
 }
