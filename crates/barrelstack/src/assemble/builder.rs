@@ -191,7 +191,14 @@ impl<'a> Builder<'a> {
         let mut join = |contactor: BodyId, target: BodyId, interface: usize| {
             for nodes in 0..self.bodies[contactor].nodes.len() {
                 for surface in 0..self.bodies[target].surfaces.len() {
-                    pairs.push(ContactPair { contactor, nodes, target, surface, interface });
+                    pairs.push(ContactPair {
+                        contactor,
+                        nodes,
+                        target,
+                        surface,
+                        interface,
+                        counts: Counts::Everywhere,
+                    });
                 }
             }
         };

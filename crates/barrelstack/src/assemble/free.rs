@@ -81,7 +81,14 @@ fn join(
             }
             for nodes in 0..bodies[contactor].nodes.len() {
                 for surface in 0..bodies[target].surfaces.len() {
-                    pairs.push(ContactPair { contactor, nodes, target, surface, interface });
+                    pairs.push(ContactPair {
+                        contactor,
+                        nodes,
+                        target,
+                        surface,
+                        interface,
+                        counts: Counts::Everywhere,
+                    });
                 }
             }
         }
@@ -103,6 +110,7 @@ fn ground(scene: &FreeScene) -> Body<Planar> {
             rotation: Rotation2::identity(),
         }],
         nodes: Vec::new(),
+        faces: Vec::new(),
     }
 }
 
@@ -150,6 +158,7 @@ fn free_body(body: &FreeBody, scale: Similitude) -> Result<(Body<Planar>, Part),
         },
         surfaces: vec![Placed { surface: shape, offset: -center, rotation: Rotation2::identity() }],
         nodes: vec![nodes],
+        faces: Vec::new(),
     };
     Ok((body, part))
 }
