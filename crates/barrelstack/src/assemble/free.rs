@@ -3,7 +3,7 @@
 use barrelstack_dynamics::shape::{BarrelProfile, Circle, Cradle, HalfPlane, Polygon};
 use barrelstack_dynamics::space::{Rotation2, Space};
 use barrelstack_dynamics::{
-    Body, BodyId, ContactPair, Model, Motion, Node, Nodes, Placed, Planar, Pose, Shape, Twist, Vec2,
+    Body, BodyId, ContactPair, Counts, Model, Motion, Node, Nodes, Placed, Planar, Pose, Shape, Twist, Vec2,
 };
 
 use super::interfaces::interface;
@@ -43,7 +43,7 @@ pub(super) fn assemble(
         }
         join(&bodies, &kinds, [contactor_kind.as_str(), target_kind.as_str()], index, &mut pairs);
         let name = format!("{contactor_kind}-{target_kind}");
-        interfaces.push(interface(&name, &law.law, scale));
+        interfaces.push(interface(&name, &law.law, 1.0, scale));
     }
     let model = Model::new(bodies, interfaces, pairs, Vec2::new(0.0, -gravity))?;
     Ok(Assembly {
