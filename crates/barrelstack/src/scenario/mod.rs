@@ -72,7 +72,7 @@ pub use motion::{
     PulseKind, RecordMotion, RecordSource, Scale, Sine, Vertical,
 };
 pub use quantity::{Quantity, QuantityError};
-pub use rack::{Cradle, Posts, Rack, RackKind};
+pub use rack::{Cradle, Posts, Rack, RackKind, SeatContact};
 pub use root::ROOT;
 pub use run::{Method, OutcomeSpec, RecordSpec, RunSpec, Until};
 pub use shape::{Shape, Uniform};
