@@ -118,7 +118,8 @@ fn add_rack(
         mass,
         // The rails carry the mass, as two lines of it, each a rectangle of tube.
         inertia: mass
-            * (half_width.powi(2) + (rack.rail_width.powi(2) + rack.clearance.powi(2)) / 12.0),
+            * (half_width * half_width
+                + (rack.rail_width * rack.rail_width + rack.clearance * rack.clearance) / 12.0),
         position: Vec2::new(underside.x + offset, underside.z + half_height),
         size: half_width,
         surfaces,

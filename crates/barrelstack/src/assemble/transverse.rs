@@ -103,7 +103,7 @@ fn add_rack(
         level,
         column,
         mass,
-        inertia: mass * (rack.width.powi(2) + rack.beam_height.powi(2)) / 12.0,
+        inertia: mass * (rack.width * rack.width + rack.beam_height * rack.beam_height) / 12.0,
         position: center,
         size: 0.5 * rack.width,
         surfaces: Vec::new(),
