@@ -33,9 +33,10 @@ pub mod scenario;
 pub mod step;
 pub mod study;
 pub mod summary;
-mod system;
 pub mod verify;
 pub mod watch;
+
+use barrelstack_input::system;
 
 pub use check::check;
 pub use run::{Progress, Run, RunFailure, run};
