@@ -204,7 +204,7 @@ pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunF
     let mut assembly = assemble(scenario)?;
     let mut state = State::initial(&assembly.model);
     let mut scratch = Scratch::new(&assembly.model);
-    check_overlap(&assembly, &state, &mut scratch, scenario.run.similitude)?;
+    check_overlap(&assembly, &state, scenario.run.similitude)?;
     let step = time_step(scenario, &assembly)?;
     check_length(end_time, step)?;
     let settled = if scenario.run.settle {

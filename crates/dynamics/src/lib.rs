@@ -49,12 +49,12 @@ pub mod space;
 pub mod state;
 pub mod strap;
 
-pub use body::{Body, BodyId, Motion, Node, Nodes, Placed};
+pub use body::{Body, BodyId, Face, Motion, Node, Nodes, Placed, Round};
 pub use contact::{Basis, FrictionLaw, Interface, NormalLaw};
 pub use energy::{EnergyLedger, EnergySummary};
 pub use forces::{Contact, Scratch, evaluate};
 pub use integrate::{Drive, Method, Still};
-pub use model::{ContactPair, InterfaceId, Model, ModelError};
+pub use model::{ContactPair, Counts, InterfaceId, Model, ModelError};
 pub use settle::{SettleError, Settled, settle};
 pub use shape::Shape;
 pub use simulate::{Finish, Observer, RunError, Simulation, simulate};

@@ -2,10 +2,10 @@
 
 use barrelstack_dynamics::{Interface, Model, Planar, Vec2};
 
-use super::builder::{BARREL_BARREL, BARREL_GROUND, BARREL_RACK, Builder, RACK_GROUND, RACK_RACK};
+use super::builder::Builder;
 use super::interfaces::interface;
-use super::{AssembleError, Assembly, Similitude, longitudinal, straps, transverse};
-use crate::scenario::{StackInterfaces, StackSpec, View};
+use super::{AssembleError, Assembly, Similitude, longitudinal, pairs, straps, transverse};
+use crate::scenario::{StackSpec, View};
 
 /// Builds a stack in its view.
 pub(super) fn assemble(
@@ -22,8 +22,8 @@ pub(super) fn assemble(
         builder.mirror();
     }
     let loose = straps::straps(spec, scale, &builder.parts, &builder.bodies)?;
-    let pairs = builder.pairs();
-    let interfaces = laws(&spec.interfaces, scale);
+    let pairs = pairs::pairs(&builder);
+    let interfaces = laws(spec, scale);
     let model = Model::new(builder.bodies, interfaces, pairs, Vec2::new(0.0, -gravity))?;
     Ok(Assembly {
         model,
@@ -36,15 +36,16 @@ pub(super) fn assemble(
     })
 }
 
-/// The laws of contact, each at the place of its id.
-fn laws(laws: &StackInterfaces, scale: Similitude) -> Vec<Interface<Planar>> {
-    let mut named = [
-        (RACK_GROUND, "rack-ground", &laws.rack_ground),
-        (BARREL_RACK, "barrel-rack", &laws.barrel_rack),
-        (BARREL_BARREL, "barrel-barrel", &laws.barrel_barrel),
-        (BARREL_GROUND, "barrel-ground", &laws.barrel_ground),
-        (RACK_RACK, "rack-rack", &laws.rack_rack),
-    ];
-    named.sort_by_key(|(id, _, _)| *id);
-    named.into_iter().map(|(_, name, law)| interface(name, law, scale)).collect()
+/// The laws of contact, each at the place of its id. Across the barrels a seat may stand for several
+/// elements one behind the other.
+fn laws(spec: &StackSpec, scale: Similitude) -> Vec<Interface<Planar>> {
+    let behind = match spec.view {
+        View::Transverse => spec.rack.contact.behind_each_other(),
+        View::Longitudinal => 1.0,
+    };
+    let named = spec.interfaces.named().into_iter().enumerate();
+    let law = |(id, (name, law))| {
+        interface(name, law, if id < pairs::SEATS { behind } else { 1.0 }, scale)
+    };
+    named.map(law).collect()
 }

@@ -215,7 +215,7 @@ fn set(interface: &mut Interface, to: &Constants) {
             *stiffness = to.stiffness;
             *damping = Damping::Coefficient(to.damping);
         }
-        NormalLaw::HuntCrossley { .. } | NormalLaw::Hertz { .. } => {}
+        NormalLaw::HuntCrossley { .. } | NormalLaw::Hertz { .. } | NormalLaw::Rebound { .. } => {}
     }
     match &mut interface.friction {
         Friction::Coulomb { coefficient, static_coefficient, .. } => {

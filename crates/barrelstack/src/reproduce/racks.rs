@@ -20,18 +20,18 @@ type Rack = (&'static str, fn(&mut StackSpec));
 const RACKS: [Rack; 3] = [
     ("cradle ±30°, bearing ±6.5 cm", |stack| {
         cradle(stack, 30.0);
-        stack.rack.bearing_half_length = 0.065;
+        stack.rack.foot_half_length = 0.065;
     }),
     ("cradle ±30°, bearing ±6.75 cm, 25 kg, pitch 73.5 cm, clearance 6.5 cm", |stack| {
         cradle(stack, 30.0);
         let rack = &mut stack.rack;
-        (rack.bearing_half_length, rack.mass) = (0.0675, 25.0);
+        (rack.foot_half_length, rack.mass) = (0.0675, 25.0);
         (rack.pitch, rack.clearance) = (0.735, 0.065);
     }),
     ("cradle ±31°, bearing ±6.7 cm, nodes every 0.7 cm, 38 kg, pitch 79.5 cm", |stack| {
         cradle(stack, 31.0);
         let rack = &mut stack.rack;
-        (rack.bearing_half_length, rack.node_spacing) = (0.067, 0.007);
+        (rack.foot_half_length, rack.node_spacing) = (0.067, 0.007);
         (rack.mass, rack.pitch) = (38.0, 0.795);
     }),
 ];

@@ -22,33 +22,28 @@ pub(super) fn brief(scenario: &Scenario, after: f64) -> Scenario {
     brief
 }
 
-/// Every interface of a stack.
-fn interfaces(stack: &mut StackSpec) -> [&mut Interface; 5] {
+/// The interfaces of the seats of a stack.
+fn seats(stack: &mut StackSpec) -> [&mut Interface; 3] {
     let all = &mut stack.interfaces;
-    [
-        &mut all.rack_ground,
-        &mut all.barrel_rack,
-        &mut all.barrel_barrel,
-        &mut all.barrel_ground,
-        &mut all.rack_rack,
-    ]
+    [&mut all.rack_ground, &mut all.barrel_rack, &mut all.rack_rack]
 }
 
-/// Multiplies the contact stiffness everywhere.
+/// Multiplies the contact stiffness of all seats.
 pub(super) fn stiffness(stack: &mut StackSpec, factor: f64) {
-    for interface in interfaces(stack) {
+    for interface in seats(stack) {
         match &mut interface.normal {
             NormalLaw::SpeedGap { stiffness, .. }
             | NormalLaw::KelvinVoigt { stiffness, .. }
             | NormalLaw::HuntCrossley { stiffness, .. }
+            | NormalLaw::Rebound { stiffness, .. }
             | NormalLaw::Hertz { stiffness } => *stiffness *= factor,
         }
     }
 }
 
-/// Multiplies the contact damping everywhere it is stated as a coefficient.
+/// Multiplies the contact damping of all seats where it is stated as a coefficient.
 pub(super) fn damping(stack: &mut StackSpec, factor: f64) {
-    for interface in interfaces(stack) {
+    for interface in seats(stack) {
         if let NormalLaw::SpeedGap { damping: Damping::Coefficient(c), .. }
         | NormalLaw::KelvinVoigt { damping: Damping::Coefficient(c), .. } = &mut interface.normal
         {
@@ -81,7 +76,7 @@ pub(super) fn rack_ground_friction(stack: &mut StackSpec, factor: f64) {
 
 /// Multiplies the tangential over the normal stiffness of sticks everywhere.
 pub(super) fn stick_stiffness(stack: &mut StackSpec, factor: f64) {
-    for interface in interfaces(stack) {
+    for interface in seats(stack) {
         if let Friction::Coulomb { tangential_stiffness_ratio, .. } = &mut interface.friction {
             *tangential_stiffness_ratio *= factor;
         }

@@ -65,7 +65,7 @@ pub use motion::{
     Amplitude, Direction, MeasuredOn, MotionSource, MotionSpec, Processing, Pulse, PulseKind,
     RecordMotion, RecordSource, Scale, Sine, Vertical,
 };
-pub use rack::{Cradle, Posts, Rack, RackKind};
+pub use rack::{Cradle, Posts, Rack, RackKind, SeatContact};
 pub use root::ROOT;
 pub use run::{Method, OutcomeSpec, RecordSpec, RunSpec};
 pub use shape::{Shape, Uniform};

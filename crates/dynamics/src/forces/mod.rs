@@ -340,6 +340,7 @@ fn commit_pair<S: Space>(
 pub fn tributary_length<S: Space>(model: &Model<S>, pair: &ContactPair, node: usize) -> S::Real {
     match model.pair_nodes(pair) {
         Nodes::Fixed(nodes) => nodes[node].tributary_length,
+        Nodes::Rounds(rounds) => rounds[node].tributary_length,
         Nodes::Rolling { tributary_length, .. } => *tributary_length,
     }
 }

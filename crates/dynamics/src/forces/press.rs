@@ -1,9 +1,9 @@
 //! The contacts of one pair: from gaps to forces on both bodies.
 
-use crate::body::Nodes;
+use crate::body::{Nodes, Round};
 use crate::contact::{FrictionLaw, NormalLaw};
 use crate::elements::{Elements, Group, PairFrame};
-use crate::model::Model;
+use crate::model::{Counts, Model};
 use crate::real::{Mask, Real};
 use crate::shape::{Gap, Surface};
 use crate::space::{Linear, Space, Twist, Wrench};
@@ -60,7 +60,18 @@ fn touch_by<S: Space>(
     let pair = &model.pairs[group.pair];
     let frame = PairFrame::new(model, pair, &state.poses, &scratch.rotations);
     let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
+    let counted = match (pair.counts, frame.before(model, pair)) {
+        (_, None) => None,
+        (Counts::BehindFace(_), Some(before)) => Some(before.le(S::Real::zero())),
+        (Counts::Everywhere | Counts::BeforeFace(_), Some(before)) => {
+            Some(S::Real::zero().lt(before))
+        }
+    };
+    if counted.is_some_and(|counted| !counted.any()) {
+        return;
+    }
     let mut press = Press {
+        counted,
         normal,
         friction,
         step,
@@ -86,6 +97,7 @@ fn touch_by<S: Space>(
                 |index, node, gap| press.node(group.first + index, node, gap),
             );
         }
+        Nodes::Rounds(rounds) => press.rounds(model, rounds, group, surface),
         Nodes::Rolling { center, radius, .. } => {
             let center = frame.to_surface(*center);
             let mut gap = surface.gap(center);
@@ -113,6 +125,8 @@ fn touch_by<S: Space>(
 
 /// Nodes of a pair that press into a surface, one after the other.
 struct Press<'a, S: Space> {
+    /// Where the contacts of the pair count; none if everywhere.
+    counted: Option<<S::Real as Real>::Mask>,
     normal: NormalLaw<S::Real>,
     friction: FrictionLaw<S::Real>,
     /// The step (s) that the forces stand for.
@@ -131,11 +145,69 @@ struct Press<'a, S: Space> {
     contacts: Option<&'a mut Vec<Contact<S>>>,
 }
 
+/// How much longer (m) a side is for a corner of the first of two bodies than for one of the second:
+/// where two corners lie one above the other, one contact is counted and not two or none.
+const SLACK: f64 = 1e-9;
+
+/// How far past the limits of a round piece a normal may point, on the way to another round piece.
+const LIMIT: f64 = 2e-7;
+
 impl<S: Space> Press<'_, S> {
+    /// The round pieces of a convex boundary, each with its deepest point.
+    ///
+    /// A round piece against a straight side is a contact of this pair wherever it is deepest, or ends
+    /// straight; against a round piece it is one if each lies in the limits of the other, and then it
+    /// belongs to the pair whose contactor is the first of the two bodies.
+    #[inline(always)]
+    fn rounds(
+        &mut self,
+        model: &Model<S>,
+        rounds: &[Round<S>],
+        group: &Group,
+        surface: &S::Surface,
+    ) {
+        let zero = S::Real::zero();
+        let pair = &model.pairs[self.pair];
+        let first = pair.contactor < pair.target;
+        let slack = S::Real::splat(if first { SLACK } else { -SLACK });
+        for element in group.first..group.end {
+            let round = &rounds[self.elements.nodes[element] as usize];
+            let center = self.frame.to_surface(round.center);
+            let (mut gap, against_round) = surface.nearest(center, slack);
+            gap.distance = gap.distance - round.radius;
+            if !gap.distance.lt(zero).any() {
+                continue;
+            }
+            let toward = self.frame.to_contactor(-gap.normal);
+            let mut deepest = !<S::Real as Real>::Mask::default();
+            for limit in round.arc_limits.iter().flatten() {
+                let past = toward.dot(*limit);
+                deepest = deepest & if round.takes_limit { past.le(zero) } else { past.lt(zero) };
+            }
+            let mut counts = !against_round & deepest;
+            if first {
+                let [a, b] = round.limits;
+                let limit = S::Real::splat(LIMIT);
+                let within = toward.dot(a).le(limit) & toward.dot(b).le(limit);
+                counts = counts | (against_round & within);
+            }
+            let counts = counts & (-round.greatest_depth).lt(gap.distance);
+            if (counts & gap.distance.lt(zero)).any() {
+                gap.distance = S::Real::select(counts, gap.distance, S::Real::splat(1.0));
+                // Both bodies feel the force midway between their boundaries, whichever of them tests.
+                let inset = round.radius - gap.distance * S::Real::splat(0.5);
+                self.node(element, center - gap.normal * inset, gap);
+            }
+        }
+    }
+
     /// The forces of a node at `node` (m), which penetrates in at least one lane; in the frame of the
     /// target's surface.
     #[inline(always)]
-    fn node(&mut self, element: usize, node: S::Vector, gap: Gap<S>) {
+    fn node(&mut self, element: usize, node: S::Vector, mut gap: Gap<S>) {
+        if let Some(counted) = self.counted {
+            gap.distance = S::Real::select(counted, gap.distance, S::Real::splat(1.0));
+        }
         if self.meeting.is_none() {
             self.meeting = Some(Meeting::new(self.frame, self.twists.0, self.twists.1));
         }

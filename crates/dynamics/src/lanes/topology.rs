@@ -59,6 +59,7 @@ impl BodyKind {
         };
         let count = |nodes: &Nodes<Planar>| match nodes {
             Nodes::Fixed(nodes) => nodes.len(),
+            Nodes::Rounds(rounds) => rounds.len(),
             Nodes::Rolling { .. } => 1,
         };
         let surfaces = body.surfaces.iter().map(|placed| &placed.surface);
@@ -77,7 +78,8 @@ impl InterfaceKind {
             NormalLaw::HuntCrossley { exponent, .. } => Some(exponent),
             NormalLaw::SpeedGap { .. }
             | NormalLaw::KelvinVoigt { .. }
-            | NormalLaw::Hertz { .. } => None,
+            | NormalLaw::Hertz { .. }
+            | NormalLaw::Rebound { .. } => None,
         };
         Self {
             normal: discriminant(&interface.normal),

@@ -11,6 +11,7 @@ mod half_plane;
 mod polygon;
 mod profile;
 
+use crate::body::Round;
 use crate::real::{Mask, Real};
 use crate::space::{Linear, Planar, Space, Vec2};
 
@@ -33,6 +34,12 @@ pub struct Gap<S: Space> {
 pub trait Surface<S: Space>: Clone + std::fmt::Debug + Send + Sync + 'static {
     /// Signed distance and outward normal at a point (m).
     fn gap(&self, point: S::Vector) -> Gap<S>;
+
+    /// The same, and whether the nearest piece of boundary is a round one.
+    ///
+    /// A straight side counts as longer at both ends by `slack` (m): of two corners one above the other
+    /// one has a side before it and the other has not, whatever the last digit says.
+    fn nearest(&self, point: S::Vector, slack: S::Real) -> (Gap<S>, <S::Real as Real>::Mask);
 
     /// A cheap test that holds wherever `gap(point).distance < 0`, and may hold elsewhere.
     #[inline(always)]
@@ -108,6 +115,18 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
             Self::Polygon(shape) => shape.gap(point),
             Self::Cradle(shape) => shape.gap(point),
             Self::BarrelProfile(shape) => shape.gap(point),
+        }
+    }
+
+    #[inline(always)]
+    fn nearest(&self, point: Vec2<R>, slack: R) -> (Gap<Planar<R>>, R::Mask) {
+        match self {
+            Self::Circle(shape) => (shape.gap(point), !R::Mask::default()),
+            Self::HalfPlane(shape) => (shape.gap(point), R::Mask::default()),
+            Self::Polygon(shape) => shape.nearest(point, slack),
+            // A cradle is concave and is touched by nodes only.
+            Self::Cradle(shape) => (shape.gap(point), R::Mask::default()),
+            Self::BarrelProfile(shape) => shape.nearest(point),
         }
     }
 
@@ -197,6 +216,17 @@ impl Shape {
             Self::Polygon(shape) => shape.nodes(spacing),
             Self::Cradle(shape) => shape.nodes(spacing),
             Self::BarrelProfile(shape) => shape.nodes(spacing),
+        }
+    }
+
+    /// The round pieces of the boundary, each contact of which stands for `tributary_length` (m); none
+    /// for a half-plane, which has none, and for a cradle, which is not convex.
+    pub fn rounds(&self, tributary_length: f64) -> Vec<Round<Planar>> {
+        match self {
+            Self::Circle(shape) => shape.rounds(tributary_length),
+            Self::HalfPlane(_) | Self::Cradle(_) => Vec::new(),
+            Self::Polygon(shape) => shape.rounds(tributary_length),
+            Self::BarrelProfile(shape) => shape.rounds(tributary_length),
         }
     }
 

@@ -3,6 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{BoundaryNode, Gap, Piece, Section, nodes_along};
+use crate::body::Round;
 use crate::math;
 use crate::real::Real;
 use crate::space::{Planar, Vec2};
@@ -26,6 +27,12 @@ pub struct BarrelProfile<R = f64> {
 impl<R: Real> BarrelProfile<R> {
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec2<R>) -> Gap<Planar<R>> {
+        self.nearest(point).0
+    }
+
+    /// The gap, and whether a stave or a corner is nearest, and not a head.
+    #[inline(always)]
+    pub(super) fn nearest(&self, point: Vec2<R>) -> (Gap<Planar<R>>, R::Mask) {
         let (zero, one) = (R::zero(), R::splat(1.0));
         // By symmetry only the quarter of positive x and z is looked at.
         let (left, below) = (point.x.lt(zero), point.z.lt(zero));
@@ -56,13 +63,14 @@ impl<R: Real> BarrelProfile<R> {
         let face_distance = R::select(by_head, head_distance, arc_distance);
         let face_normal = Vec2::select(by_head, flat, arc_normal);
         let normal = Vec2::select(by_corner, from_corner * (one / safe), face_normal);
-        Gap {
+        let gap = Gap {
             distance: R::select(by_corner, corner_distance, face_distance),
             normal: Vec2::new(
                 R::select(left, -normal.x, normal.x),
                 R::select(below, -normal.z, normal.z),
             ),
-        }
+        };
+        (gap, by_corner | !by_head)
     }
 
     pub(super) fn reach(&self) -> f64 {
@@ -96,6 +104,41 @@ impl BarrelProfile {
     /// Half the angle (rad) over which a stave bends.
     fn half_stave(&self) -> f64 {
         math::atan2(self.half_length, self.stave_radius - self.bilge_radius + self.head_radius)
+    }
+
+    /// The four corners and the two staves.
+    pub(super) fn rounds(&self, tributary_length: f64) -> Vec<Round<Planar>> {
+        let rise = self.stave_radius - self.bilge_radius;
+        // Where a stave ends its normal leans by an angle with this sine and cosine.
+        let sin = self.half_length / self.stave_radius;
+        let cos = (rise + self.head_radius) / self.stave_radius;
+        let corner = |x: f64, z: f64| {
+            let toward_bilge = Vec2::new(-cos * x, sin * z);
+            Round {
+                center: Vec2::new(x * self.half_length, z * self.head_radius),
+                radius: 0.0,
+                limits: [toward_bilge, Vec2::new(0.0, -z)],
+                arc_limits: [Some(toward_bilge), None],
+                takes_limit: false,
+                greatest_depth: f64::INFINITY,
+                tributary_length,
+            }
+        };
+        let stave = |z: f64| {
+            let limits = [Vec2::new(cos, -sin * z), Vec2::new(-cos, -sin * z)];
+            Round {
+                center: Vec2::new(0.0, -z * rise),
+                radius: self.stave_radius,
+                limits,
+                arc_limits: limits.map(Some),
+                takes_limit: true,
+                greatest_depth: self.head_radius,
+                tributary_length,
+            }
+        };
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let corners = corners.into_iter().map(|(x, z)| corner(x, z));
+        corners.chain([1.0, -1.0].map(stave)).collect()
     }
 
     /// The chain from the right head over the top, the left head and the bottom.
