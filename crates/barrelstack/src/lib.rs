@@ -22,7 +22,7 @@ pub mod export;
 pub mod ground;
 pub mod heights;
 pub mod outcome;
-mod overlap;
+pub mod overlap;
 pub mod period;
 mod pool;
 pub mod render;

@@ -32,7 +32,7 @@ pub(crate) fn check_overlap(
 
 /// Two bodies that stand in each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Overlap {
+pub struct Overlap {
     /// The bodies, the lower id first.
     pub bodies: [BodyId; 2],
     /// The shortest way (m) that parts the two deepest of their convex parts.
@@ -40,7 +40,7 @@ pub(crate) struct Overlap {
 }
 
 /// The convex outlines of all bodies of a model, in their frames.
-pub(crate) struct Boundaries {
+pub struct Boundaries {
     bodies: Vec<Vec<Outline>>,
 }
 
@@ -54,14 +54,13 @@ enum Outline {
 
 impl Boundaries {
     /// The boundaries of a model as they are drawn.
-    pub(crate) fn new(model: &Model<Planar>) -> Self {
+    pub fn new(model: &Model<Planar>) -> Self {
         let outline = |placed: &barrelstack_dynamics::Placed<Planar>| {
             let place = |point: Vec2| placed.offset + placed.rotation.apply(point);
             match &placed.surface {
-                Shape::HalfPlane(_) => Some(Outline::Below(
-                    placed.offset,
-                    placed.rotation.apply(Vec2::new(0.0, 1.0)),
-                )),
+                Shape::HalfPlane(_) => {
+                    Some(Outline::Below(placed.offset, placed.rotation.apply(Vec2::new(0.0, 1.0))))
+                }
                 Shape::Circle(circle) => Some(Outline::Polygon(
                     (0..AROUND)
                         .map(|i| {
@@ -83,12 +82,12 @@ impl Boundaries {
     }
 
     /// The deepest overlap of any two bodies at these poses; none where no two overlap.
-    pub(crate) fn deepest(&self, poses: &[Pose<Planar>]) -> Option<Overlap> {
+    pub fn deepest(&self, poses: &[Pose<Planar>]) -> Option<Overlap> {
         self.overlaps(poses).into_iter().max_by(|a, b| a.depth.total_cmp(&b.depth))
     }
 
     /// All bodies that overlap at these poses.
-    pub(crate) fn overlaps(&self, poses: &[Pose<Planar>]) -> Vec<Overlap> {
+    pub fn overlaps(&self, poses: &[Pose<Planar>]) -> Vec<Overlap> {
         let placed: Vec<Vec<(Outline, [f64; 4])>> = self
             .bodies
             .iter()
@@ -101,9 +100,8 @@ impl Boundaries {
                 let mut depth = 0.0_f64;
                 for (a, box_a) in &placed[first] {
                     for (b, box_b) in &placed[second] {
-                        let apart = (0..2).any(|k| {
-                            box_a[k] > box_b[k + 2] || box_b[k] > box_a[k + 2]
-                        });
+                        let apart =
+                            (0..2).any(|k| box_a[k] > box_b[k + 2] || box_b[k] > box_a[k + 2]);
                         if !apart {
                             depth = depth.max(parting(a, b));
                         }
@@ -165,7 +163,8 @@ fn least_along(sides: &[Vec2], corners: &[Vec2]) -> f64 {
     for (i, from) in sides.iter().enumerate() {
         let along = sides[(i + 1) % sides.len()] - *from;
         let outward = -along.quarter_turn() * (1.0 / along.length());
-        let lowest = corners.iter().map(|c| (*c - *from).dot(outward)).fold(f64::INFINITY, f64::min);
+        let lowest =
+            corners.iter().map(|c| (*c - *from).dot(outward)).fold(f64::INFINITY, f64::min);
         least = least.min(-lowest);
         if least <= 0.0 {
             break;

@@ -83,8 +83,8 @@ impl Pairs<'_> {
         counts: [Counts; 2],
     ) {
         let sets = [(a, self.touch(a, solid_a).exact), (b, self.touch(b, solid_b).exact)];
-        let rolls =
-            sets.map(|(id, set)| matches!(self.builder.bodies[id].nodes[set], Nodes::Rolling { .. }));
+        let rolls = sets
+            .map(|(id, set)| matches!(self.builder.bodies[id].nodes[set], Nodes::Rolling { .. }));
         if rolls[0] || !rolls[1] {
             self.push(sets[0], (b, solid_b), interface, counts[0]);
         }
@@ -138,10 +138,8 @@ impl Pairs<'_> {
                 Some(face) => {
                     let before = Counts::BeforeFace(face.face);
                     self.push((rack, face.nodes), (barrel, 0), interface, before);
-                    let behind = [
-                        Counts::BehindFaceOfTarget(face.face),
-                        Counts::BehindFace(face.face),
-                    ];
+                    let behind =
+                        [Counts::BehindFaceOfTarget(face.face), Counts::BehindFace(face.face)];
                     self.exact((barrel, 0), (rack, solid), interface, behind);
                 }
                 None => {
