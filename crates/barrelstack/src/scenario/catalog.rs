@@ -176,9 +176,10 @@ pub const RACKS: &[CatalogRack] = &[
         name: "rack-on-rack",
         kind: RackKind::OnRacks,
         mass: 60.0,
-        posts: Some(Posts { height: 0.89, half_spacing: 0.70, spigot: 0.03 }),
+        width: 1.60,
+        posts: Some(Posts { height: 0.89, half_spacing: 0.77, spigot: 0.03 }),
         source: "racks that carry load on posts (Wines & Vines 2014, 2016); every number is an assumption, the post \
-                 height makes the usual level pitch",
+                 height makes the usual level pitch, and the posts stand clear of the barrels",
         ..TWO_BARREL
     },
     CatalogRack {
