@@ -209,7 +209,8 @@ impl<S: Space> Press<'_, S> {
             let mut counts = counts & (-round.greatest_depth).lt(gap.distance);
             for (outward, distance) in round.sides.iter().flatten() {
                 let point = round.center + toward * (round.radius + gap.distance);
-                counts = counts & (point.dot(*outward) - *distance).le(gap.distance);
+                let nearer = gap.distance.lt(point.dot(*outward) - *distance);
+                counts = counts & !(against_round & nearer);
             }
             if (counts & gap.distance.lt(zero)).any() {
                 gap.distance = S::Real::select(counts, gap.distance, S::Real::splat(1.0));
