@@ -77,7 +77,7 @@ pub enum GroundError {
 }
 
 /// Largest record (bytes) that is read; the longest strong-motion files have a tenth of it.
-pub(crate) const RECORD_LIMIT: usize = 256 << 20;
+pub const RECORD_LIMIT: usize = 256 << 20;
 
 /// Reads or makes the motion of a scenario, scaled as it says.
 ///
@@ -91,7 +91,7 @@ pub fn ground(scenario: &Scenario) -> Result<Ground, GroundError> {
 ///
 /// # Errors
 /// As [`ground`].
-pub(crate) fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
+pub fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
     let mut ground = match &spec.source {
         MotionSource::None => return Ok(Ground::default()),
         MotionSource::Record(record) => recorded(record, spec.scale)?,
@@ -105,7 +105,10 @@ pub(crate) fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, Grou
 }
 
 /// A motion scaled and stretched as a scenario says, for a stack of a length scale.
-pub(crate) fn scaled(
+///
+/// # Errors
+/// When it cannot be scaled so.
+pub fn scaled(
     mut motion: GroundMotion,
     spec: &MotionSpec,
     run_scale: f64,

@@ -283,7 +283,7 @@ pub(crate) fn conclude(
 /// # Errors
 /// When the step asked for is above the critical one, with which no explicit method of a fixed step
 /// says anything.
-pub(crate) fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFailure> {
+pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFailure> {
     let scale = scenario.run.similitude.sqrt();
     let Some(step) = scenario.run.step.map(|step| step * scale) else {
         return Ok(default_step(assembly, scale));

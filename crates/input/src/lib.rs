@@ -20,6 +20,7 @@ pub mod field;
 mod file_ref;
 mod fingerprint;
 pub mod listing;
+pub mod measured;
 pub mod merge;
 pub mod quantity;
 pub mod reader;

@@ -216,7 +216,7 @@ fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> 
 
 /// The range that shows a stack while it stands and as it gives way; what falls leaves the picture, as
 /// in the paper's histories. None where nothing collapses: then everything is shown.
-pub(crate) fn standing_range(run: &Run, series: &[Series]) -> Option<[f64; 2]> {
+pub fn standing_range(run: &Run, series: &[Series]) -> Option<[f64; 2]> {
     let until = run.fates.collapse_time()? + 0.5;
     let mut range = [0.0_f64; 2];
     for one in series {
@@ -278,7 +278,8 @@ fn stresses(run: &Run) -> Vec<Block> {
     blocks
 }
 
-pub(crate) fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
+/// The normal stress along the boundary of a body, at rest and at its largest.
+pub fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
     let name = &run.assembly.parts[envelope.body].name;
     let mut samples = Vec::new();
     let (mut at_rest, mut peak) = (Vec::new(), Vec::new());
