@@ -232,6 +232,8 @@ pub struct RunSummary {
     pub contact_evaluations: u64,
     /// Simulated time reached.
     pub end_time: f64,
+    /// Why it ended: "rest", "after-collapse", "duration", "patience", "interrupted" or "broken".
+    pub ending: &'static str,
     /// Whether it was stopped early by the user.
     pub interrupted: bool,
     /// What contact constants are stated for: "node", "length" or "mixed".
@@ -289,6 +291,7 @@ impl Summary {
                 evaluations: run.work.evaluations,
                 contact_evaluations: run.work.contact_evaluations,
                 end_time: run.end_time,
+                ending: run.ending.name(),
                 interrupted: run.interrupted,
                 stiffness_basis: run.stiffness_basis(),
                 similitude: run.scenario.run.similitude,

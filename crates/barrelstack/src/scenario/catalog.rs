@@ -110,6 +110,8 @@ pub struct CatalogRack {
     pub foot_half_length: f64,
     /// How a seat is divided into contact elements.
     pub contact: SeatContact,
+    /// Penetration of a seat (m) beyond which the solids themselves meet.
+    pub seat_stroke: f64,
     /// Distance between contact nodes (m).
     pub node_spacing: f64,
     /// Posts, if any.
@@ -136,6 +138,7 @@ const TWO_BARREL: CatalogRack = CatalogRack {
     foot_half_length: 0.06,
     cradle: Cradle::Supports { angle: 28.0 * PI / 180.0 },
     contact: SeatContact::Rails,
+    seat_stroke: 0.02,
     node_spacing: 0.01,
     posts: None,
     source: "portable steel rack for two barrels on a footprint of 38 in by 58 in, which makes pitch and width (Wines & \
@@ -175,6 +178,7 @@ pub const RACKS: &[CatalogRack] = &[
         foot_half_length: 0.06,
         cradle: Cradle::Supports { angle: 30.0 * PI / 180.0 },
         contact: SeatContact::Nodes,
+        seat_stroke: 0.03,
         source: "rack of Candia, de la Llera and Almazán (2008), whose text gives no dimensions: a solid beam on feet, \
                  reconstructed so that one geometry shows the paper's modes, times, drift and stress amplification",
         ..TWO_BARREL

@@ -68,7 +68,7 @@ pub use motion::{
 };
 pub use rack::{Cradle, Posts, Rack, RackKind, SeatContact};
 pub use root::ROOT;
-pub use run::{Method, OutcomeSpec, RecordSpec, RunSpec};
+pub use run::{Method, OutcomeSpec, RecordSpec, RunSpec, Until};
 pub use shape::{Shape, Uniform};
 pub use stack::{BodyOverride, StackBody, StackInterfaces, StackSpec, View};
 pub use strap::{Straps, Ties};

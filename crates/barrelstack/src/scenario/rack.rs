@@ -107,6 +107,8 @@ pub struct Rack {
     pub foot_half_length: f64,
     /// How a seat is divided into contact elements.
     pub contact: SeatContact,
+    /// Penetration of a seat (m) beyond which the solids themselves meet, as in impacts.
+    pub seat_stroke: f64,
     /// Distance between contact nodes on rails and undersides (m).
     pub node_spacing: f64,
     /// Posts; present exactly when `kind` is [`RackKind::OnRacks`].
@@ -276,6 +278,12 @@ pub static RACK: Section = Section {
              undersides, one element, or one for each of two rails.",
         ),
         Field::new(
+            "seat_stroke",
+            size(1e-4, 1.0),
+            CATALOG,
+            "Penetration of a seat beyond which the solids themselves meet, by the law of impacts.",
+        ),
+        Field::new(
             "node_spacing",
             size(1e-3, 0.5),
             CATALOG,
@@ -354,6 +362,7 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
         foot_height: or("foot_height", known.foot_height)?,
         foot_half_length: or("foot_half_length", known.foot_half_length)?,
         contact: reader.optional_choice("contact")?.unwrap_or(known.contact),
+        seat_stroke: or("seat_stroke", known.seat_stroke)?,
         node_spacing: or("node_spacing", known.node_spacing)?,
         posts,
     };
@@ -415,6 +424,7 @@ pub(super) fn write(rack: &Rack) -> Table {
     writer.quantity("foot_height", rack.foot_height);
     writer.quantity("foot_half_length", rack.foot_half_length);
     writer.choice("contact", rack.contact);
+    writer.quantity("seat_stroke", rack.seat_stroke);
     writer.quantity("node_spacing", rack.node_spacing);
     if let Some(posts) = rack.posts {
         writer.quantity("post_height", posts.height);

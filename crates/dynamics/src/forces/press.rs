@@ -1,7 +1,7 @@
 //! The contacts of one pair: from gaps to forces on both bodies.
 
 use crate::body::{Nodes, Round};
-use crate::contact::{FrictionLaw, NormalLaw};
+use crate::contact::{FrictionLaw, NormalLaw, Stop};
 use crate::elements::{Elements, Group, PairFrame};
 use crate::model::{Counts, Model};
 use crate::real::{Mask, Real};
@@ -62,7 +62,9 @@ fn touch_by<S: Space>(
     let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
     let counted = match (pair.counts, frame.before(model, pair)) {
         (_, None) => None,
-        (Counts::BehindFace(_), Some(before)) => Some(before.le(S::Real::zero())),
+        (Counts::BehindFace(_) | Counts::BehindFaceOfTarget(_), Some(before)) => {
+            Some(before.le(S::Real::zero()))
+        }
         (Counts::Everywhere | Counts::BeforeFace(_), Some(before)) => {
             Some(S::Real::zero().lt(before))
         }
@@ -71,6 +73,7 @@ fn touch_by<S: Space>(
         return;
     }
     let mut press = Press {
+        stop: model.interfaces[pair.interface].stop,
         counted,
         normal,
         friction,
@@ -125,6 +128,7 @@ fn touch_by<S: Space>(
 
 /// Nodes of a pair that press into a surface, one after the other.
 struct Press<'a, S: Space> {
+    stop: Option<Stop<S::Real>>,
     /// Where the contacts of the pair count; none if everywhere.
     counted: Option<<S::Real as Real>::Mask>,
     normal: NormalLaw<S::Real>,
@@ -216,7 +220,11 @@ impl<S: Space> Press<'_, S> {
         let touching = contact.touching;
         let weight = S::Real::select(touching, self.elements.weights[element], S::Real::zero());
         let (depth, rate) = (contact.penetration, contact.penetration_rate);
-        let normal = self.normal.force(depth, rate).within_step(depth, rate, self.step);
+        let mut normal = self.normal.force(depth, rate);
+        if let Some(stop) = self.stop {
+            normal = stop.add(normal, depth, rate);
+        }
+        let normal = normal.within_step(depth, rate, self.step);
         let normal_force = normal.total * weight;
         let stick = self.elements.sticks[element];
         let friction = self.friction.force::<S>(stick, contact.slip_rate, normal_force, weight);
