@@ -15,6 +15,7 @@
 pub mod assemble;
 pub mod check;
 pub mod compare;
+pub mod demand;
 pub mod ensemble;
 pub mod export;
 pub mod ground;

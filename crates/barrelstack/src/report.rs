@@ -18,7 +18,7 @@ use crate::summary::Summary;
 use crate::verify::Verification;
 
 pub(crate) use inputs::{readable, setting_row};
-pub(crate) use sections::{demands, traces};
+pub(crate) use sections::traces;
 pub use sections::{standing_range, stress_figure};
 pub(crate) use words::{headline, provenance};
 
