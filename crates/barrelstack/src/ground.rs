@@ -59,7 +59,7 @@ pub enum GroundError {
     #[error(transparent)]
     Motion(#[from] MotionError),
     /// The record has no vertical component of the name that the scenario asks for.
-    #[error("{error}; for a record without one: --set motion.vertical=false")]
+    #[error("{error}; for a record without one say `motion.vertical = false`")]
     Vertical {
         /// What is missing, and what there is.
         error: MotionError,
@@ -162,10 +162,10 @@ fn recorded(spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
             })?
         }
         RecordSource::File(file) => {
-            let obtain = spec.obtain.as_ref().map_or_else(
-                || "; correct the path, or name another file with --record FILE".to_owned(),
-                |how| format!("; {how}, then name your file with --record FILE"),
-            );
+            let obtain = spec
+                .obtain
+                .as_ref()
+                .map_or_else(|| "; correct the path".to_owned(), |how| format!("; {how}"));
             read_file(&file.resolve(), &options, &obtain)?
         }
     };

@@ -239,7 +239,7 @@ fn trials<'a>(
             if let Some(parameter) = parameters.iter().find(differs) {
                 return Err(CalibrateError::Scenario(format!(
                     "the scenarios of test 1 and test {} state another {}: one value is looked for, so \
-                     state the same, or leave it out (--fit)",
+                     state the same, or do not fit it",
                     at + 1,
                     parameter.name()
                 )));
@@ -313,13 +313,12 @@ fn identifiability(
         if width > (1.0 - TOLD) * 1.9 {
             warnings.push(format!(
                 "what was seen says nothing about {}: its interval is the range that was tried, not a \
-                 measurement; test it on its own, or leave it out (--fit)",
+                 measurement; test it on its own, or do not fit it",
                 estimate.name
             ));
         } else if posterior.quantile(at, 0.975) > 0.98 || posterior.quantile(at, 0.025) < -0.98 {
             warnings.push(format!(
-                "the interval of {} reaches the end of what was tried (a factor of {within}): widen it \
-                 (--within)",
+                "the interval of {} reaches the end of what was tried (a factor of {within}): widen it",
                 estimate.name
             ));
         }
@@ -328,7 +327,7 @@ fn identifiability(
     if posterior.power < 1.0 {
         warnings.push(format!(
             "too few simulations came near to what was seen, so its likelihood counts to the power {} and \
-             the intervals are wider than they need be: ask for more (--simulations)",
+             the intervals are wider than they need be: ask for more",
             short(posterior.power)
         ));
     }

@@ -84,8 +84,8 @@ pub fn drop(
         ));
     } else {
         warnings.push(
-            "gravity during the impact is left out, so slow impacts show too little restitution: give \
-             --mass and --stiffness for the damping c"
+            "gravity during the impact is left out, so slow impacts show too little restitution: give the \
+             mass and the stiffness for the damping c"
                 .to_owned(),
         );
         scenario = format!(

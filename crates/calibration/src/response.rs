@@ -110,8 +110,7 @@ pub fn response(
     let mut warnings = simulated.warnings;
     if !found.converged {
         warnings.push(
-            "the fit did not settle: start closer (--set), shorten the window (--until) or fit fewer \
-             parameters (--fit)"
+            "the fit did not settle: start closer, shorten the window or fit fewer parameters"
                 .to_owned(),
         );
     }

@@ -145,7 +145,7 @@ pub(super) fn inseparable(
         for (j, value) in row.iter().enumerate().skip(i + 1).filter(|(_, v)| v.abs() > limit) {
             warnings.push(format!(
                 "{} and {} cannot be told apart by what was measured: correlation {value:.3}; state one \
-                 of them from a test of its own (--fit without it)",
+                 of them from a test of its own and fit the other",
                 estimates[i].name, estimates[j].name
             ));
         }

@@ -52,8 +52,8 @@ pub(super) fn headline(rows: &[Comparison]) -> String {
 
 fn warnings(motion: &Motion) -> Vec<String> {
     const OBTAIN: &str = "download record sequence number 995 (Northridge-01, LA - Hollywood Stor FF) \
-                          from the PEER NGA-West2 database, keep the component PEL360 and name it: \
-                          barrelstack reproduce --record FILE";
+                          from the PEER NGA-West2 database, keep the component PEL360 and reproduce the \
+                          paper with it";
     match motion {
         Motion::Paper { .. } => Vec::new(),
         Motion::Other { file, pga } => vec![format!(

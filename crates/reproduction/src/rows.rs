@@ -210,7 +210,7 @@ fn six(results: &Results) -> Vec<Comparison> {
             row.verdict = Verdict::NotCompared;
             row.ours = "–".into();
             row.difference = None;
-            row.why = "needs the paper's record: --record FILE".into();
+            row.why = "needs the paper's record".into();
         }
     }
     rows

@@ -60,7 +60,7 @@ fn what_needs_the_papers_record_is_not_compared_without_it() {
         }
     }
     let [warning] = found().document.warnings.as_slice() else { panic!("one warning") };
-    assert!(warning.contains("--record FILE") && warning.contains("995"), "{warning}");
+    assert!(warning.contains("PEL360") && warning.contains("995"), "{warning}");
 }
 
 #[test]

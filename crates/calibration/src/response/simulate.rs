@@ -125,7 +125,7 @@ impl<'a> Simulator<'a> {
         match &run.outcome {
             Outcome::Collapse { time, .. } => warnings.push(format!(
                 "with the values of the scenario the stack collapses at {time:.2} s, within the window: end \
-                 it before (--until)"
+                 it before"
             )),
             Outcome::Invalid { reason } => {
                 return Err(CalibrateError::Scenario(reason.clone()));

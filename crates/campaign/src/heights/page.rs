@@ -375,7 +375,7 @@ fn rests_on(all: &Heights) -> Vec<String> {
             .into(),
         "Intervals count every motion as one observation and hold for motions like these, not for what the model leaves out."
             .into(),
-        "Racks are those of the catalog, of which several dimensions are assumptions. `barrelstack study` runs the same for \
+        "Racks are those of the catalog, of which several dimensions are assumptions. A study runs the same for \
          racks and rooms of your own: the folder holds the studies of this page."
             .into(),
     ]

@@ -266,7 +266,7 @@ fn domain_of(
 ) -> Result<Domain, ScenarioError> {
     let Some(field) = template.field(path) else {
         let message = format!(
-            "a scenario has no field `{path}`{}; `barrelstack scenarios fields` lists them all",
+            "a scenario has no field `{path}`{}",
             template
                 .nearest(path)
                 .map_or(String::new(), |near| format!(", did you mean `{near}`?"))

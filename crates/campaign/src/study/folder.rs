@@ -211,11 +211,9 @@ fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
     let path = folder.join(MANIFEST);
     if !path.is_file() {
         return Err(refuse(if folder.is_dir() {
-            format!(
-                "is no folder of a study: it has no {MANIFEST}; name one that `barrelstack study` wrote"
-            )
+            format!("is no folder of a study: it has no {MANIFEST}; name one that a study wrote")
         } else {
-            "is not there; name a folder that `barrelstack study` wrote".to_owned()
+            "is not there; name a folder that a study wrote".to_owned()
         }));
     }
     let bytes = system::read(&path, FILE_LIMIT).map_err(|reason| StudyError::System {
