@@ -20,7 +20,7 @@ pub mod ensemble;
 pub mod export;
 pub mod ground;
 pub mod outcome;
-mod overlap;
+pub mod overlap;
 pub mod period;
 pub mod pool;
 pub mod render;

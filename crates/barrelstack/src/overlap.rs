@@ -32,7 +32,7 @@ pub(crate) fn check_overlap(
 
 /// Two bodies that stand in each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Overlap {
+pub struct Overlap {
     /// The bodies, the lower id first.
     pub bodies: [BodyId; 2],
     /// The shortest way (m) that parts the two deepest of their convex parts.
@@ -40,7 +40,7 @@ pub(crate) struct Overlap {
 }
 
 /// The convex outlines of all bodies of a model, in their frames.
-pub(crate) struct Boundaries {
+pub struct Boundaries {
     bodies: Vec<Vec<Outline>>,
 }
 
@@ -54,7 +54,7 @@ enum Outline {
 
 impl Boundaries {
     /// The boundaries of a model as they are drawn.
-    pub(crate) fn new(model: &Model<Planar>) -> Self {
+    pub fn new(model: &Model<Planar>) -> Self {
         let outline = |placed: &barrelstack_dynamics::Placed<Planar>| {
             let place = |point: Vec2| placed.offset + placed.rotation.apply(point);
             match &placed.surface {
@@ -82,12 +82,12 @@ impl Boundaries {
     }
 
     /// The deepest overlap of any two bodies at these poses; none where no two overlap.
-    pub(crate) fn deepest(&self, poses: &[Pose<Planar>]) -> Option<Overlap> {
+    pub fn deepest(&self, poses: &[Pose<Planar>]) -> Option<Overlap> {
         self.overlaps(poses).into_iter().max_by(|a, b| a.depth.total_cmp(&b.depth))
     }
 
     /// All bodies that overlap at these poses.
-    pub(crate) fn overlaps(&self, poses: &[Pose<Planar>]) -> Vec<Overlap> {
+    pub fn overlaps(&self, poses: &[Pose<Planar>]) -> Vec<Overlap> {
         let placed: Vec<Vec<(Outline, [f64; 4])>> = self
             .bodies
             .iter()

@@ -150,6 +150,21 @@ const TWO_BARREL: CatalogRack = CatalogRack {
 pub const RACKS: &[CatalogRack] = &[
     TWO_BARREL,
     CatalogRack {
+        name: "two-barrel-feet",
+        foot_height: 0.06,
+        source: "`two-barrel` with a foot over each barrel below, as wide as that of the reconstructed `candia-2008`: \
+                 an assumption",
+        ..TWO_BARREL
+    },
+    CatalogRack {
+        name: "single-bar",
+        mass: 35.0,
+        contact: SeatContact::Element,
+        source: "single-bar version of the rack for two barrels (Wines & Vines 2016); the numbers are those of \
+                 `two-barrel`, the mass is an assumption",
+        ..TWO_BARREL
+    },
+    CatalogRack {
         name: "four-barrel",
         mass: 80.0,
         barrels_deep: 2,
@@ -168,15 +183,16 @@ pub const RACKS: &[CatalogRack] = &[
     },
     CatalogRack {
         name: "candia-2008",
-        mass: 30.0,
+        mass: 40.0,
         pitch: 0.76,
         width: 1.50,
-        rail_half_spacing: 0.30,
-        clearance: 0.12,
+        rail_half_spacing: 0.24,
+        rail_width: 0.06,
+        clearance: 0.16,
         beam_height: 0.04,
         foot_height: 0.06,
-        foot_half_length: 0.06,
-        cradle: Cradle::Supports { angle: 30.0 * PI / 180.0 },
+        foot_half_length: 0.065,
+        cradle: Cradle::Supports { angle: 31.0 * PI / 180.0 },
         contact: SeatContact::Nodes,
         seat_stroke: 0.03,
         source: "rack of Candia, de la Llera and Almazán (2008), whose text gives no dimensions: a solid beam on feet, \

@@ -118,6 +118,8 @@ pub struct Rack {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Base {
     TwoBarrel,
+    TwoBarrelFeet,
+    SingleBar,
     FourBarrel,
     RackOnRack,
     Candia2008,
@@ -126,6 +128,8 @@ enum Base {
 impl Named for Base {
     const NAMES: &'static [(&'static str, Self)] = &[
         ("two-barrel", Self::TwoBarrel),
+        ("two-barrel-feet", Self::TwoBarrelFeet),
+        ("single-bar", Self::SingleBar),
         ("four-barrel", Self::FourBarrel),
         ("rack-on-rack", Self::RackOnRack),
         ("candia-2008", Self::Candia2008),
@@ -293,7 +297,21 @@ pub static RACK: Section = Section {
     variants: Some(Variants {
         tag: "base",
         list: &[
-            Variant { name: "two-barrel", help: "Lies on the barrels below.", fields: &[] },
+            Variant {
+                name: "two-barrel",
+                help: "Lies on the barrels below with straight tubes.",
+                fields: &[],
+            },
+            Variant {
+                name: "two-barrel-feet",
+                help: "Stands on the barrels below with feet.",
+                fields: &[],
+            },
+            Variant {
+                name: "single-bar",
+                help: "Lies on the barrels below with one bar in place of two.",
+                fields: &[],
+            },
             Variant { name: "four-barrel", help: "Two racks end to end.", fields: &[] },
             Variant {
                 name: "rack-on-rack",
@@ -344,7 +362,15 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
             half_spacing: or("post_half_spacing", posts.half_spacing)?,
             spigot: or("post_spigot", posts.spigot)?,
         }),
-        (Base::TwoBarrel | Base::FourBarrel | Base::RackOnRack | Base::Candia2008, _) => None,
+        (
+            Base::TwoBarrel
+            | Base::TwoBarrelFeet
+            | Base::SingleBar
+            | Base::FourBarrel
+            | Base::RackOnRack
+            | Base::Candia2008,
+            _,
+        ) => None,
     };
     let rack = Rack {
         base: known.name.to_owned(),
