@@ -1,6 +1,7 @@
 //! One row for every number and every finding that the paper states.
 
 use barrelstack::summary::Summary;
+use barrelstack_report::significant;
 
 use super::compare::{Comparison, Number, Verdict, finding};
 use super::results::Results;
@@ -20,13 +21,8 @@ pub(super) fn all(results: &Results) -> Vec<Comparison> {
     rows
 }
 
-/// Three digits of a number.
-fn digits(value: f64) -> String {
-    barrelstack_report::significant(value, 3)
-}
-
 fn seconds(value: f64) -> String {
-    format!("{} s", digits(value))
+    format!("{} s", significant(value, 3))
 }
 
 /// The words of a mode, or what there is in its place.
@@ -85,7 +81,8 @@ fn six(results: &Results) -> Vec<Comparison> {
     let (summary, slippery) = (&results.six.summary, &results.slippery.summary);
     let outcome = &summary.outcome;
     let demands = &summary.demands;
-    let shown = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), digits);
+    let shown =
+        |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| significant(value, 3));
     let centimeters = |value: Option<f64>| {
         value
             .map_or_else(|| "–".to_owned(), |v| barrelstack_report::significant(100.0 * v.abs(), 2))
@@ -155,10 +152,10 @@ fn six(results: &Results) -> Vec<Comparison> {
             "grows on top, not at the bottom",
             format!(
                 "top {} → {} cm, bottom {} → {} cm",
-                digits(100.0 * top_rest),
-                digits(100.0 * top),
-                digits(100.0 * bottom_rest),
-                digits(100.0 * bottom)
+                significant(100.0 * top_rest, 3),
+                significant(100.0 * top, 3),
+                significant(100.0 * bottom_rest, 3),
+                significant(100.0 * bottom, 3)
             ),
             top > 1.2 * top_rest && (top - top_rest) > 2.0 * (bottom - bottom_rest),
             "Length of boundary under stress, at rest → at any time while the stack stands; on top \
@@ -298,8 +295,8 @@ fn eight(results: &Results) -> Vec<Comparison> {
             format!(
                 "At the end of the run B4.1 lies {} m from its place and B4.2 {} m, negative to the \
                  left; what has fallen rolls on.",
-                digits(places[0]),
-                digits(places[1])
+                significant(places[0], 3),
+                significant(places[1], 3)
             ),
         ),
         finding(
@@ -363,7 +360,7 @@ fn scales(results: &Results) -> Vec<Comparison> {
             "sine of 2 in, 0.76 s against 4 in, 0.76 √2 s",
             "same acceleration",
             accelerations
-                .map(|a| format!("{} g", digits(a / barrelstack_motion::STANDARD_GRAVITY)))
+                .map(|a| format!("{} g", significant(a / barrelstack_motion::STANDARD_GRAVITY, 3)))
                 .join(" and "),
             (accelerations[0] / accelerations[1] - 1.0).abs() < 1e-9,
             "half scale and full scale".into(),
@@ -375,7 +372,7 @@ fn scales(results: &Results) -> Vec<Comparison> {
             if apart < 1e-6 {
                 "less than 0.001 mm apart".into()
             } else {
-                format!("{} mm apart at most", digits(1e3 * apart))
+                format!("{} mm apart at most", significant(1e3 * apart, 3))
             },
             apart < 1e-3 && full.outcome.first == half.outcome.first,
             "Largest distance of any body at full scale up to the first loss of seat. The paper sets \
@@ -405,7 +402,7 @@ fn parameters(results: &Results) -> Vec<Comparison> {
     let agreement =
         (!results.ensemble.is_empty()).then(|| ensemble::agreement(base, &results.ensemble));
     let span = |[low, high]: [f64; 2], factor: f64| {
-        format!("{} to {}", digits(low * factor), digits(high * factor))
+        format!("{} to {}", significant(low * factor, 3), significant(high * factor, 3))
     };
     let measured = &results.measured;
     let walk = base.bodies.iter().find(|b| b.name == "R3").map_or(0.0, |b| b.peak_slip);
@@ -438,8 +435,8 @@ fn parameters(results: &Results) -> Vec<Comparison> {
                 span(agreement.fall, 1.0),
                 span(agreement.drift, 100.0),
                 span(agreement.amplification, 1.0),
-                digits(100.0 * walk),
-                digits(100.0 * results.eight.run.assembly.rack_reach)
+                significant(100.0 * walk, 3),
+                significant(100.0 * results.eight.run.assembly.rack_reach, 3)
             ),
         ));
     }
