@@ -288,7 +288,8 @@ pub(super) fn rack_names() -> Vec<&'static str> {
     RACKS.iter().map(|rack| rack.name).collect()
 }
 
-pub(crate) fn record_names() -> Vec<&'static str> {
+/// Names of the records shipped with the program.
+pub fn record_names() -> Vec<&'static str> {
     RECORDS.iter().map(|(name, _)| *name).collect()
 }
 
