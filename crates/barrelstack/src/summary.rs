@@ -83,6 +83,10 @@ pub struct BodySummary {
     pub fell_at: Option<f64>,
     /// Largest drop below its place at rest, for what fell.
     pub fall_height: Option<f64>,
+    /// When it landed: when it went down less than half as fast as it had since it fell.
+    pub landed_at: Option<f64>,
+    /// Its largest speed downward until then.
+    pub landing_speed: Option<f64>,
     /// Displacement along x relative to the ground, at the end.
     pub residual_displacement: f64,
     /// Largest displacement along x relative to the ground, while the stack stood.
@@ -366,6 +370,8 @@ fn bodies(run: &Run) -> Vec<BodySummary> {
                 left_seat_at: fate.left_seat.map(|(time, _)| time),
                 fell_at: fate.fell_at,
                 fall_height: fate.fell_at.map(|_| fate.drop),
+                landed_at: fate.landed_at,
+                landing_speed: fate.landing_speed,
                 residual_displacement: fate.residual_displacement,
                 peak_displacement: fate.peak_displacement,
                 residual_slip: fate.residual_slip,

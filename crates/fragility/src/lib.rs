@@ -41,6 +41,9 @@
 //! Resampling takes its uniform numbers from the caller (`FnMut() -> f64`), so that the generator,
 //! the seed and the bits are the caller's.
 
+// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod bootstrap;
 mod curve;
 mod evidence;

@@ -23,7 +23,7 @@ impl Named for SceneKind {
 
 /// The top of a scenario file.
 pub static ROOT: Section = Section {
-    name: "root",
+    name: "scenario",
     help: "What stands where, what shakes it, and how it is run.",
     fields: &[
         Field::new(
