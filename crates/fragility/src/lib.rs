@@ -58,8 +58,9 @@ mod modes;
 mod monotone;
 mod profile;
 mod proportion;
+mod records;
 
-pub use bootstrap::{Replicates, bootstrap, simulate};
+pub use bootstrap::{Replicates, simulate};
 pub use curve::Lognormal;
 pub use evidence::{Capacity, Evidence, Stripe, evidence, stripes};
 pub use fit::{Dispersion, Fit, FitError, fit, moments};
@@ -76,3 +77,4 @@ pub use modes::Shares;
 pub use monotone::{Fall, Monotony, Returned, monotony, returns};
 pub use profile::{profile_band, profile_median};
 pub use proportion::{Interval, clopper_pearson, wilson};
+pub use records::{LeaveOneOut, grouped_mean, leave_one_out};

@@ -83,7 +83,7 @@ pub(super) fn of(decision: &Decision) -> Value {
                 "intensity": loss.intensity,
                 "cases": loss.cases,
                 "barrels_fallen": loss.fallen,
-                "barrels_fallen_standard_error": finite(loss.fallen_error),
+                "barrels_fallen_interval": bounds(loss.interval),
                 "barrels_burst": loss.burst,
             })).collect::<Vec<_>>(),
         })),
@@ -138,8 +138,9 @@ fn curve(curve: &LimitCurve) -> Value {
         "median_interval": curve.median.filter(|_| fit.is_some()).map(bounds),
         "no_curve": curve.fit.as_ref().err().map(ToString::to_string),
         "band": match curve.band_kind {
-            BandKind::Records => "bootstrap over records",
+            BandKind::Records => "jackknife over records",
             BandKind::Likelihood => "profile likelihood",
+            BandKind::None => "none",
         },
         "band_at": curve.grid.iter().zip(&curve.band).map(|(x, band)| json!({
             "intensity": x, "interval": bounds(*band),

@@ -154,8 +154,13 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
             ));
             said.push(match curve.band_kind {
                 BandKind::Records => {
-                    "The band comes from resampling whole records, so that cases of one record may \
-                                      depend on each other; it is corrected for bias."
+                    "The band comes from leaving out one record at a time, so that cases of one \
+                     record may depend on each other, with Student's t for their number."
+                        .to_owned()
+                }
+                BandKind::None => {
+                    "There is no band: without one of the records there is no curve, so that the \
+                     curve hangs on that record."
                         .to_owned()
                 }
                 BandKind::Likelihood => {
@@ -263,7 +268,7 @@ fn losses(losses: &Losses, measure: &Measure) -> Table {
             (measure.label.as_str(), measure.shown_unit),
             ("cases", ""),
             ("barrels fallen", ""),
-            ("± (95 %)", ""),
+            ("95 % interval", ""),
             ("burst, central", ""),
             ("burst, range", ""),
             ("wine lost, central", "L"),
@@ -275,11 +280,11 @@ fn losses(losses: &Losses, measure: &Measure) -> Table {
             Cell::Number(measure.shown(loss.intensity), 3),
             count(loss.cases as f64),
             Cell::Number(loss.fallen, 2),
-            if loss.fallen_error.is_finite() {
-                Cell::Number(1.96 * loss.fallen_error, 2)
-            } else {
-                Cell::Missing
-            },
+            Cell::text(format!(
+                "{} to {}",
+                significant(loss.interval.low, 2),
+                significant(loss.interval.high, 2)
+            )),
             Cell::Number(central, 2),
             Cell::text(format!("{} to {}", significant(few, 2), significant(many, 2))),
             Cell::Number(1000.0 * WINE * central, 2),
