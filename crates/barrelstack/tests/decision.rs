@@ -74,6 +74,7 @@ fn study(falls: impl Fn(usize, f64) -> usize) -> Collected {
         measure: Some("pgv".into()),
         stop: None,
         drawn: vec!["friction".into()],
+        varied: Vec::new(),
         motions,
         columns: table.specs().cloned().collect(),
         chunks: 1,

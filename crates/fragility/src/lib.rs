@@ -51,6 +51,7 @@ mod fit;
 mod goodness;
 mod hazard;
 mod ida;
+mod indices;
 mod likelihood;
 mod math;
 mod measures;
@@ -69,6 +70,7 @@ pub use goodness::{
 };
 pub use hazard::{Contribution, Hazard, HazardError, Rate, chance_within};
 pub use ida::{Ida, Resurrection};
+pub use indices::{Index, sobol_indices};
 pub use math::{
     chi_square_above, normal, normal_density, normal_quantile, student_beyond, student_quantile,
 };

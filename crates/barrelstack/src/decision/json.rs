@@ -87,6 +87,18 @@ pub(super) fn of(decision: &Decision) -> Value {
                 "barrels_burst": loss.burst,
             })).collect::<Vec<_>>(),
         })),
+        "sobol_indices": decision.sensitivities.iter().map(|of| json!({
+            "result": of.result,
+            "blocks": of.blocks,
+            "blocks_left_out": of.left_out,
+            "inputs": of.inputs.iter().map(|(name, index)| json!({
+                "input": name,
+                "first": index.first,
+                "first_interval": bounds(index.first_interval),
+                "total": index.total,
+                "total_interval": bounds(index.total_interval),
+            })).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
         "effects": decision.effects.iter().map(|effect| json!({
             "factor": effect.factor,
             "groups": effect.groups.iter().map(|group| json!({

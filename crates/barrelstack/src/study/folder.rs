@@ -57,6 +57,8 @@ pub struct Provenance {
     pub stop: Option<StopRule>,
     /// Factors that are drawn anew for each case of a motion.
     pub drawn: Vec<String>,
+    /// What a design for sensitivity exchanges, in the order of the cases of a block; empty for others.
+    pub varied: Vec<String>,
     /// The motions, in order.
     pub motions: Vec<MotionSource>,
     /// The columns of the table.
@@ -363,6 +365,18 @@ impl Study {
             measure: self.intensity.as_ref().map(|Intensity { measure, .. }| measure.to_string()),
             stop: self.stop_rule(),
             drawn: self.drawn(),
+            varied: match self.design {
+                Design::Saltelli { .. } => {
+                    self.varied().into_iter().map(|(_, name)| name).collect()
+                }
+                Design::FullFactorial
+                | Design::OneAtATime { .. }
+                | Design::LatinHypercube { .. }
+                | Design::Sobol { .. }
+                | Design::MonteCarlo { .. }
+                | Design::Stripes
+                | Design::Ida(_) => Vec::new(),
+            },
             motions,
             columns: self.columns(),
             chunks: self.chunk_count(),
