@@ -11,6 +11,7 @@
 
 mod cases;
 mod curve;
+mod export;
 mod figures;
 mod hazard;
 mod indices;
@@ -35,6 +36,7 @@ pub(crate) use words::{percent, refusal};
 
 pub use cases::{Case, Cases, Measure};
 pub use curve::{BandKind, LimitCurve};
+pub use export::{ExportError, Exported, export};
 pub use hazard::{Lost, Site, SiteHazard};
 pub use indices::Sensitivity;
 pub use limit::LimitState;
