@@ -47,8 +47,11 @@
 )]
 
 mod bundled;
+mod corners;
 mod direction;
 mod error;
+mod fault_axes;
+mod fiv3;
 mod format;
 mod fourier;
 mod ground_motion;
@@ -60,6 +63,7 @@ mod matching;
 mod math;
 mod process;
 mod pulse;
+mod pulse_class;
 mod pulse_fit;
 mod random;
 mod record;
@@ -67,6 +71,7 @@ mod response;
 mod rotd;
 mod sampled;
 mod select;
+mod selection;
 mod synthesis;
 mod target;
 mod told;
@@ -75,8 +80,10 @@ mod wavelets;
 pub mod write;
 
 pub use bundled::{BUNDLED, bundled};
+pub use corners::{Corners, NoiseCriterion, noise_corners};
 pub use direction::{Direction, Orientation};
 pub use error::{MotionError, ReadError, ReadFailure, Refusal};
+pub use fault_axes::Turned;
 pub use format::{FORMATS, Format, ReadOptions, read, slammer_step, station_xml_sensitivities};
 pub use fourier::FourierSpectrum;
 pub use ground_motion::GroundMotion;
@@ -87,6 +94,7 @@ pub use matching::{MatchMethod, Matched, Matching};
 pub use math::STANDARD_GRAVITY;
 pub use process::{MeanRemoval, Pads, Processed, Processing, Residuals};
 pub use pulse::Pulse;
+pub use pulse_class::{ClassifiedPulse, classify_component, classify_pair};
 pub use pulse_fit::{PulseFit, dominant_pulse};
 pub use random::Random;
 pub use record::{Channel, Quantity, Record, Stage, StatedPeak, Warning};
@@ -96,6 +104,10 @@ pub use response::{
 pub use rotd::{RotatedPeak, rotated_peak, rotated_spectrum};
 pub use sampled::{Kinematics, Sampled};
 pub use select::Component;
+pub use selection::{
+    Candidate, Choosing, Chosen, Condition, Selection, SelectionTarget, select,
+    spectral_correlation,
+};
 pub use synthesis::{BooreSource, CloughPenzien, Envelope, NearFault, Path, SiteAmplification};
 pub use target::{ChileanZone, NCh2745Soil, SiteClass, TargetSpectrum};
 pub use units::AccelerationUnit;

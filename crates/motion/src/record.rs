@@ -123,7 +123,7 @@ impl Channel {
         math::peak(&crate::sampled::running_trapezoid(self.time_step, &self.velocity()))
     }
 
-    fn velocity(&self) -> Vec<f64> {
+    pub(crate) fn velocity(&self) -> Vec<f64> {
         crate::sampled::integrate(self.time_step, &self.acceleration, self.initial_velocity).0
     }
 
