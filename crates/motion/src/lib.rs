@@ -67,10 +67,12 @@ mod response;
 mod rotd;
 mod sampled;
 mod select;
+mod site;
 mod synthesis;
 mod target;
 mod told;
 mod units;
+mod utc;
 mod wavelets;
 pub mod write;
 
@@ -96,6 +98,8 @@ pub use response::{
 pub use rotd::{RotatedPeak, rotated_peak, rotated_spectrum};
 pub use sampled::{Kinematics, Sampled};
 pub use select::Component;
+pub use site::Site;
 pub use synthesis::{BooreSource, CloughPenzien, Envelope, NearFault, Path, SiteAmplification};
 pub use target::{ChileanZone, NCh2745Soil, SiteClass, TargetSpectrum};
 pub use units::AccelerationUnit;
+pub use utc::Utc;
