@@ -72,10 +72,12 @@ mod rotd;
 mod sampled;
 mod select;
 mod selection;
+mod site;
 mod synthesis;
 mod target;
 mod told;
 mod units;
+mod utc;
 mod wavelets;
 pub mod write;
 
@@ -108,6 +110,8 @@ pub use selection::{
     Candidate, Choosing, Chosen, Condition, Selection, SelectionTarget, select,
     spectral_correlation,
 };
+pub use site::Site;
 pub use synthesis::{BooreSource, CloughPenzien, Envelope, NearFault, Path, SiteAmplification};
 pub use target::{ChileanZone, NCh2745Soil, SiteClass, TargetSpectrum};
 pub use units::AccelerationUnit;
+pub use utc::Utc;

@@ -4,6 +4,8 @@ use std::fmt;
 
 use crate::direction::{Direction, Orientation};
 use crate::math;
+use crate::site::Site;
+use crate::utc::Utc;
 
 /// How far a record was processed before it was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,6 +82,10 @@ pub struct Channel {
     pub acceleration: Vec<f64>,
     /// Velocity at the first sample (m/s), stated by some corrected records; 0 otherwise.
     pub initial_velocity: f64,
+    /// Instant of the first sample, where the file states it.
+    pub start: Option<Utc>,
+    /// Station, sensor and place.
+    pub site: Site,
     /// Peaks stated in the header.
     pub peaks: Vec<StatedPeak>,
 }
@@ -98,6 +104,8 @@ impl Channel {
             time_step,
             acceleration,
             initial_velocity: 0.0,
+            start: None,
+            site: Site::default(),
             peaks: Vec::new(),
         }
     }
@@ -183,6 +191,14 @@ impl Record {
             channels: Vec::new(),
             warnings: Vec::new(),
             notes: Vec::new(),
+        }
+    }
+
+    /// Gives all channels one start and one place; the station is filled in when reading ends.
+    pub(crate) fn place(&mut self, start: Option<Utc>, site: &Site) {
+        for channel in &mut self.channels {
+            channel.start = start;
+            channel.site = site.clone();
         }
     }
 

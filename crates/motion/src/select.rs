@@ -291,6 +291,7 @@ fn rotate(
         one.time_step,
         acceleration,
     );
+    (channel.start, channel.site) = (one.start, one.site);
     channel.initial_velocity =
         weight_one * one.initial_velocity + weight_two * two.initial_velocity;
     Ok(channel)

@@ -10,6 +10,8 @@ use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::math;
 use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::site::Site;
+use crate::utc::{DateOrder, Utc};
 
 pub(crate) const FORMAT: Format =
     Format { name: "cwa", title: "CWA/CWB text (Taiwan)", sniff, read };
@@ -149,6 +151,13 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         }
         record.channels.push(channel);
     }
+    let stated = |key: &str| number(source, key).map(|(_, value)| value);
+    let position = stated("#StationLatitude(N):").zip(stated("#StationLongitude(E):"));
+    // Taiwan is eight hours ahead.
+    let start = field(source, "#StartTime(GMT+08):")
+        .and_then(|(_, text)| Utc::in_header(&text, DateOrder::DayFirst))
+        .map(|local| local.later(-8.0 * 3600.0));
+    record.place(start, &Site::default().at(position));
     Ok(record)
 }
 

@@ -227,6 +227,11 @@ fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
         ));
     }
     drop_dead_channels(source, record)?;
+    for channel in &mut record.channels {
+        if channel.site.station.is_empty() {
+            channel.site.station.clone_from(&record.station);
+        }
+    }
     for index in 0..record.channels.len() {
         let channel = &mut record.channels[index];
         let label = channel.name.clone();

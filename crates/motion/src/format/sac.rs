@@ -7,6 +7,8 @@ use super::{Format, ReadOptions};
 use crate::direction::{Direction, Orientation};
 use crate::error::{ReadError, Refusal};
 use crate::record::{Channel, Record, Stage};
+use crate::site::Site;
+use crate::utc::Utc;
 
 pub(crate) const FORMAT: Format = Format { name: "sac", title: "SAC binary", sniff, read };
 
@@ -164,6 +166,21 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
         name
     };
     super::remove_offset(&mut record, &name, &mut values);
-    record.channels.push(Channel::new(name, direction, time_step, values));
+    let mut channel = Channel::new(name, direction, time_step, values);
+    channel.start = start(bytes, big);
+    // Five decimals of a degree are more than single precision holds.
+    let real = |index: usize| real(bytes, index, big).map(|value| (value * 1e5).round() / 1e5);
+    // Words 31 to 33: latitude, longitude, elevation; the "hole" is the location code.
+    channel.site = Site { sensor: text(464, 8), elevation: real(33), ..Site::default() }
+        .at(real(31).zip(real(32)));
+    record.channels.push(channel);
     Ok(record)
+}
+
+/// Words 70 to 75, the reference instant, and word 5, the time of the first sample after it.
+fn start(bytes: &[u8], big: bool) -> Option<Utc> {
+    let part = |index: usize| i64::from(integer(bytes, index, big));
+    let seconds = part(74) as f64 + 1e-3 * part(75) as f64;
+    let reference = Utc::ordinal(part(70), part(71), part(72), part(73), seconds)?;
+    Some(reference.later(real(bytes, 5, big)?))
 }

@@ -14,6 +14,7 @@
 //!
 //! One column stands for each channel, numbers as the shortest decimals that read back to the same
 //! double.
+//! `# recorded:` tells start (UTC), place and sensor, once or for each channel.
 //! `# initial_velocity:` (m/s, one to a channel) stands there where one is not zero.
 //! `az=` is the azimuth (degrees clockwise from north); `vertical` means positive upward;
 //! `horizontal` a horizontal of unknown azimuth; a name alone an unknown direction.
@@ -53,6 +54,9 @@ pub fn text(record: &Record) -> Result<String, MotionError> {
             None => head("processing", &note),
         }
     }
+    for words in recorded(record) {
+        head("recorded", &words);
+    }
     head("stage", &record.stage.to_string());
     head("unit", "m/s2");
     head("time_step", &format!("{step}"));
@@ -77,6 +81,35 @@ pub fn text(record: &Record) -> Result<String, MotionError> {
         text.push('\n');
     }
     Ok(text)
+}
+
+/// Start and place of the channels: one line if they share them, else one to a channel; none if
+/// nothing is known.
+pub(super) fn recorded(record: &Record) -> Vec<String> {
+    let words = |channel: &Channel| {
+        let site = &channel.site;
+        let number = |key: &str, value: Option<f64>| value.map(|value| format!("{key} {value}"));
+        let text = |key: &str, value: &str| {
+            let value = super::line(&value.replace(',', " "));
+            (!value.is_empty()).then(|| format!("{key} {value}"))
+        };
+        let other = site.station != record.station;
+        let parts = [
+            channel.start.map(|start| format!("start {start}")),
+            number("latitude", site.latitude),
+            number("longitude", site.longitude),
+            number("elevation", site.elevation),
+            number("vs30", site.vs30),
+            text("sensor", &site.sensor),
+            other.then(|| text("station", &site.station)).flatten(),
+        ];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    };
+    let mut all: Vec<String> = record.channels.iter().map(words).collect();
+    if all.iter().all(|words| *words == all[0]) {
+        all.truncate(usize::from(!all[0].is_empty()));
+    }
+    all
 }
 
 /// Notes that a header of this form gave under a key of their own.

@@ -123,6 +123,11 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
         ]);
     }
     lines.extend(channels.lines());
+    let recorded = recorded(record);
+    if !recorded.is_empty() {
+        lines.push(String::new());
+        lines.extend(recorded.lines());
+    }
     let stated = stated(record);
     if !stated.is_empty() {
         lines.push(String::new());
@@ -182,6 +187,37 @@ pub(super) fn direction(channel: &Channel) -> String {
     }
 }
 
+/// When and where each channel was recorded, as far as the file tells; columns that would be empty
+/// are left out.
+fn recorded(record: &Record) -> Table {
+    let degrees = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.4}"));
+    let meters = |value: Option<f64>| value.map_or_else(String::new, number);
+    type Cell<'a> = &'a dyn Fn(&Channel) -> String;
+    let several = record.channels.iter().any(|c| c.site.station != record.station);
+    let station = |c: &Channel| if several { c.site.station.clone() } else { String::new() };
+    let columns: [(&str, Cell<'_>); 7] = [
+        ("station", &station),
+        ("sensor", &|c| c.site.sensor.clone()),
+        ("start (UTC)", &|c| c.start.map_or_else(String::new, |start| start.to_string())),
+        ("latitude", &|c| degrees(c.site.latitude)),
+        ("longitude", &|c| degrees(c.site.longitude)),
+        ("elevation (m)", &|c| meters(c.site.elevation)),
+        ("Vs30 (m/s)", &|c| meters(c.site.vs30)),
+    ];
+    let told: Vec<_> = columns
+        .iter()
+        .filter(|(_, cell)| record.channels.iter().any(|channel| !cell(channel).is_empty()))
+        .collect();
+    let words = told.iter().filter(|(head, _)| ["station", "sensor"].contains(head)).count();
+    let head = std::iter::once("channel").chain(told.iter().map(|(head, _)| *head));
+    let mut table = Table::new(1 + words, head.map(str::to_owned));
+    for channel in record.channels.iter().filter(|_| !told.is_empty()) {
+        let cells = told.iter().map(|(_, cell)| cell(channel));
+        table.row(std::iter::once(channel.name.clone()).chain(cells));
+    }
+    table
+}
+
 /// Peaks of the header beside those of the numbers.
 fn stated(record: &Record) -> Table {
     let head = ["channel", "stated peak", "unit", "header", "numbers", "agree"];
@@ -239,6 +275,13 @@ fn document(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Valu
             "name": channel.name,
             "azimuth": channel.direction.azimuth,
             "vertical": channel.is_vertical(),
+            "start": channel.start.map(|start| start.to_string()),
+            "station": channel.site.station,
+            "sensor": channel.site.sensor,
+            "latitude": channel.site.latitude,
+            "longitude": channel.site.longitude,
+            "elevation": channel.site.elevation,
+            "vs30": channel.site.vs30,
             "samples": channel.acceleration.len(),
             "time_step": channel.time_step,
             "duration": channel.duration(),
