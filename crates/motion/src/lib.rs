@@ -47,6 +47,7 @@
 )]
 
 mod bundled;
+mod collection;
 mod corners;
 mod direction;
 mod error;
@@ -82,6 +83,10 @@ mod wavelets;
 pub mod write;
 
 pub use bundled::{BUNDLED, bundled};
+pub use collection::{
+    FlatRow, Flatfile, Measured, MeasuredComponent, MeasuredPair, RecordFiles, group_files,
+    measure, record_sequence_number,
+};
 pub use corners::{Corners, NoiseCriterion, noise_corners};
 pub use direction::{Direction, Orientation};
 pub use error::{MotionError, ReadError, ReadFailure, Refusal};

@@ -56,16 +56,22 @@ pub struct Corners {
 impl Corners {
     /// How they were found, for provenance.
     pub fn sentence(&self, criterion: &NoiseCriterion) -> String {
+        let unknown = 1.0 / self.arrival;
         format!(
-            "corners {:.4} and {:.2} Hz from the noise of the first {:.2} s: signal-to-noise ratio of \
-             at least {} between them, {:.1} from {} to {} Hz",
+            "corners {:.4} and {:.2} Hz, between which the signal is at least {} times the noise of \
+             the first {:.2} s, and {:.1} times from {} to {} Hz{}",
             self.high_pass,
             self.low_pass,
-            self.arrival,
             criterion.ratio,
+            self.arrival,
             self.least_ratio,
             criterion.from,
-            criterion.to
+            criterion.to,
+            if self.high_pass < unknown {
+                format!(" (so short a noise says little below {unknown:.2} Hz)")
+            } else {
+                String::new()
+            }
         )
     }
 }
@@ -108,6 +114,12 @@ pub fn noise_corners(
     if shaking < SHORTEST_SHAKING {
         return Err(refuse(format!(
             "{shaking:.2} s after the arrival, where {SHORTEST_SHAKING} s are needed"
+        )));
+    }
+    let first = a[0];
+    if a[..split].iter().all(|value| *value == first) {
+        return Err(refuse(format!(
+            "the noise of {arrival:.2} s before the shaking is below the file's last digit"
         )));
     }
     let spectra = Spectra::of(dt, &a[..split], &a[split..], criterion.bandwidth);
