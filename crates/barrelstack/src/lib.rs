@@ -21,7 +21,7 @@ pub mod heights;
 pub mod outcome;
 mod overlap;
 pub mod period;
-mod pool;
+pub mod pool;
 pub mod render;
 pub mod report;
 pub mod reproduce;

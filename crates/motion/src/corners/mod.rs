@@ -79,7 +79,7 @@ impl Corners {
 /// Noise and signal of a channel, smoothed.
 struct Spectra {
     frequency: Vec<f64>,
-    /// Signal over noise, the noise brought to the length of the shaking.
+    /// Signal over noise, see [`noise_corners`].
     ratio: Vec<f64>,
 }
 
@@ -87,6 +87,7 @@ struct Spectra {
 ///
 /// The spectrum of the noise, multiplied with the root of the ratio of the lengths, is that of the
 /// noise within the shaking; what stands above it is signal.
+/// Their ratio is divided by the same root, which asks more where the noise is short.
 /// The band is the first in which signal over noise keeps the criterion from its lower to its upper
 /// frequency; the high-pass is no lower than one over the duration and than where the ratio has its
 /// minimum below its peak; the low-pass is at most 0.75 of the Nyquist frequency and 40 Hz.
@@ -183,7 +184,7 @@ impl Spectra {
         let ratio = smooth(shaking)
             .iter()
             .zip(smooth(noise))
-            .map(|(all, noise)| (all - stretch * noise) / (stretch * noise))
+            .map(|(all, noise)| (all - stretch * noise) / (stretch * noise) / stretch)
             .collect::<Vec<f64>>();
         // Below one over the length of the shaking nothing is known.
         let known = 1.0 / (shaking.len() as f64 * dt);

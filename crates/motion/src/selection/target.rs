@@ -16,6 +16,13 @@ pub struct Condition {
     pub acceleration: f64,
 }
 
+impl Condition {
+    /// Sa a number of standard deviations of ln Sa above a median (m/s²).
+    pub fn at_epsilon(period: f64, median: f64, deviation: f64, epsilon: f64) -> Self {
+        Self { period, acceleration: median * math::exp(deviation * epsilon) }
+    }
+}
+
 /// Mean and standard deviation of the logarithm of spectral accelerations, period by period, and
 /// what correlates them.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,10 +1,15 @@
 //! `barrelstack motion info`: what a file holds, so that a wrong unit or step is seen.
 
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::bail;
 use barrelstack_motion::{
     Channel, FORMATS, Orientation, Quantity, Record, STANDARD_GRAVITY, Stage,
 };
 use serde_json::{Value, json};
 
+use super::folder::{self, Batch, FolderArgs, Worked};
 use super::input::Input;
 use super::measures::{self, FURTHER, Shown, USUAL};
 use super::table::{Table, number};
@@ -24,10 +29,22 @@ pub(super) struct InfoArgs {
     /// Print one JSON document, in SI units.
     #[arg(long)]
     json: bool,
+    /// Where the table of folders goes.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    folder: FolderArgs,
 }
 
 /// Prints header, channels, stated peaks and measures of every record.
-pub(super) fn info(args: &InfoArgs) -> anyhow::Result<()> {
+pub(super) fn info(args: &InfoArgs) -> anyhow::Result<ExitCode> {
+    match &args.out {
+        Some(out) => return table(args, out),
+        None if args.input.has_folder() => {
+            bail!("a folder is measured as a table: say where it goes, with --out DIR")
+        }
+        None => {}
+    }
     let records = args.input.read_each()?;
     let records =
         if args.input.join { vec![args.input.unite(&records)?] } else { together(&records)? };
@@ -53,7 +70,25 @@ pub(super) fn info(args: &InfoArgs) -> anyhow::Result<()> {
     for record in &records {
         warn(record);
     }
-    Ok(())
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Measures whole folders.
+fn table(args: &InfoArgs, out: &Path) -> anyhow::Result<ExitCode> {
+    if args.json || args.all_measures || args.input.join {
+        bail!(
+            "--json, --all-measures and --join are for files; the table of a folder has its own columns"
+        );
+    }
+    let batch = Batch {
+        input: &args.input,
+        out,
+        folder: &args.folder,
+        settings: "info".to_owned(),
+        periods: None,
+        ending: None,
+    };
+    folder::run(&batch, &|_, record| Ok(Worked::as_read(record.clone())))?.tell()
 }
 
 /// Neighboring files of one event, station and step are one record.
@@ -190,9 +225,9 @@ pub(super) fn direction(channel: &Channel) -> String {
 /// When and where each channel was recorded, as far as the file tells; columns that would be empty
 /// are left out.
 fn recorded(record: &Record) -> Table {
+    type Cell<'a> = &'a dyn Fn(&Channel) -> String;
     let degrees = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.4}"));
     let meters = |value: Option<f64>| value.map_or_else(String::new, number);
-    type Cell<'a> = &'a dyn Fn(&Channel) -> String;
     let several = record.channels.iter().any(|c| c.site.station != record.station);
     let station = |c: &Channel| if several { c.site.station.clone() } else { String::new() };
     let columns: [(&str, Cell<'_>); 7] = [

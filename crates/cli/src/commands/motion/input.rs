@@ -19,7 +19,8 @@ const LIMIT: u64 = 256 << 20;
 #[derive(Debug, clap::Args)]
 pub(super) struct Input {
     /// Motion files of any known format, or napa-college-2014, which comes with the program; several
-    /// are taken as components of one record (info shows files that cannot be apart).
+    /// are taken as components of one record (info shows files that cannot be apart). Info, plot,
+    /// process and convert take folders too, and all records in them.
     #[arg(required = true, value_name = "FILE")]
     pub(super) files: Vec<String>,
     /// Take several files as parts of one long record and join them where they overlap.
@@ -78,7 +79,30 @@ impl Chain {
 impl Input {
     /// Every file by itself.
     pub(super) fn read_each(&self) -> anyhow::Result<Vec<Record>> {
-        let options = ReadOptions {
+        let options = self.options()?;
+        self.files.iter().map(|file| read_file(file, &options)).collect()
+    }
+
+    /// The record of one file's bytes.
+    pub(super) fn read_bytes(&self, bytes: &[u8], file: &str) -> anyhow::Result<Record> {
+        read_bytes(bytes, file, &self.options()?)
+    }
+
+    /// Whether a folder is among the files.
+    pub(super) fn has_folder(&self) -> bool {
+        self.files.iter().any(|file| Path::new(file).is_dir())
+    }
+
+    /// What was told of the files, as words.
+    pub(super) fn told(&self) -> String {
+        format!(
+            "unit {:?}, step {:?}, sensitivity {:?}",
+            self.unit, self.time_step, self.sensitivity
+        )
+    }
+
+    fn options(&self) -> anyhow::Result<ReadOptions> {
+        Ok(ReadOptions {
             unit: self
                 .unit
                 .as_deref()
@@ -91,8 +115,7 @@ impl Input {
                 .map(|text| quantity("--time-step", text, Dimension::TIME))
                 .transpose()?,
             sensitivity: self.sensitivity,
-        };
-        self.files.iter().map(|file| read_file(file, &options)).collect()
+        })
     }
 
     /// All files as one record.
@@ -172,7 +195,7 @@ pub(super) fn processed(record: &Record, chain: &Processing) -> Result<Record, M
 }
 
 /// Channels of one record end together; the longer ones lose their last samples.
-fn cut_to_shortest(record: &mut Record) {
+pub(super) fn cut_to_shortest(record: &mut Record) {
     let shortest = record.channels.iter().map(|c| c.acceleration.len()).min().unwrap_or(0);
     for channel in &mut record.channels {
         let extra = channel.acceleration.len() - shortest;
@@ -231,8 +254,11 @@ fn read_file(file: &str, options: &ReadOptions) -> anyhow::Result<Record> {
     if let (false, Some(record)) = (path.exists(), bundled(file)) {
         return Ok(record);
     }
-    let bytes = bytes(path)?;
-    read(&bytes, file, options).map_err(|error| {
+    read_bytes(&bytes(path)?, file, options)
+}
+
+fn read_bytes(bytes: &[u8], file: &str, options: &ReadOptions) -> anyhow::Result<Record> {
+    read(bytes, file, options).map_err(|error| {
         if error.refusal != Refusal::Missing {
             return error.into();
         }

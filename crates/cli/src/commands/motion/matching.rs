@@ -1,5 +1,7 @@
 //! `barrelstack motion match`: a motion whose response spectrum follows a target.
 
+use std::path::PathBuf;
+
 use anyhow::bail;
 use barrelstack::scenario::Dimension;
 use barrelstack_motion::{
@@ -11,9 +13,11 @@ use clap::ValueEnum;
 use super::input::{self, Chain, Choice, Input, quantity};
 use super::measures::{self, sampled};
 use super::output::Output;
+use super::panels;
 use super::process::share;
 use super::table::{Table, number, percent};
 use super::target;
+use crate::printer;
 
 /// Arguments of `match`.
 #[derive(Debug, clap::Args)]
@@ -44,6 +48,9 @@ pub(super) struct MatchArgs {
     tolerance: String,
     #[command(flatten)]
     output: Output,
+    /// Draw target, before and after as panels, as .png, .svg or .pdf.
+    #[arg(long, value_name = "FILE")]
+    figure: Option<PathBuf>,
 }
 
 /// How the motion is changed.
@@ -58,6 +65,9 @@ enum Method {
 /// Matches and writes.
 pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<()> {
     let target = args.output.prepare()?;
+    if let Some(figure) = &args.figure {
+        panels::vacant_picture(figure, args.output.overwrite)?;
+    }
     let spectrum = target::target(&args.to)?;
     let settings = Matching {
         method: match args.method {
@@ -75,7 +85,14 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<()> {
     let mut lines = measures::before_after(&before, &after)?.lines();
     lines.push(String::new());
     lines.extend(comparison(args, &before, &after, &spectrum, &settings)?.lines());
-    super::change::finish(&target, &read, &after, lines)
+    super::change::finish(&target, &read, &after, lines)?;
+    if let Some(figure) = &args.figure {
+        let place = place(args, &before)?;
+        let one = |record| panels::only(record, place);
+        panels::write(figure, &panels::compared(&one(&before)?, &one(&after)?, Some(&spectrum))?)?;
+        printer::lines([format!("written: {}", figure.display())])?;
+    }
+    Ok(())
 }
 
 /// Which channel is matched.
