@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::bail;
 use barrelstack_motion::{
-    Channel, FORMATS, Orientation, Quantity, Record, STANDARD_GRAVITY, Stage,
+    Channel, FORMATS, NoiseCriterion, Orientation, Quantity, Record, STANDARD_GRAVITY, Stage,
 };
 use serde_json::{Value, json};
 
@@ -192,6 +192,10 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
         lines.push(String::new());
         lines.extend(measures::pulses(record).into_iter().map(|line| format!("  {line}")));
     }
+    if record.stage == Stage::Raw {
+        lines.extend([String::new(), "  corners that the noise before the shaking suggests".to_owned()]);
+        lines.extend(corners(record).into_iter().map(|line| format!("    {line}")));
+    }
     if !record.notes.is_empty() {
         lines.extend([String::new(), "  what was done".to_owned()]);
         lines.extend(
@@ -220,6 +224,18 @@ pub(super) fn direction(channel: &Channel) -> String {
         (None, Some(Orientation::Horizontal)) => "horizontal".to_owned(),
         (None, None) => "unknown".to_owned(),
     }
+}
+
+/// Corners of every channel, one sentence each; process takes them with `--corners auto`.
+fn corners(record: &Record) -> Vec<String> {
+    let criterion = NoiseCriterion::default();
+    let found = record.channels.iter().zip(record.noise_corners(&criterion));
+    found
+        .map(|(channel, corners)| match corners {
+            Ok(corners) => format!("{}: {}", channel.name, corners.sentence(&criterion)),
+            Err(error) => format!("none: {error}"),
+        })
+        .collect()
 }
 
 /// When and where each channel was recorded, as far as the file tells; columns that would be empty
@@ -279,7 +295,8 @@ fn stated(record: &Record) -> Table {
 
 fn document(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Value> {
     let mut channels = Vec::new();
-    for channel in &record.channels {
+    let corners = record.noise_corners(&NoiseCriterion::default());
+    for (channel, corners) in record.channels.iter().zip(corners) {
         let motion = measures::sampled(channel)?;
         let mut values = serde_json::Map::new();
         for Shown { measure, .. } in shown {
@@ -322,6 +339,12 @@ fn document(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Valu
             "duration": channel.duration(),
             "initial_velocity": channel.initial_velocity,
             "stated_peaks": peaks,
+            "noise_corners": corners.ok().map(|c| json!({
+                "high_pass": c.high_pass,
+                "low_pass": c.low_pass,
+                "arrival": c.arrival,
+                "least_ratio": c.least_ratio,
+            })),
             "measures": values,
             "velocity_pulse": pulse,
         }));

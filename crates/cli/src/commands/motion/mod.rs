@@ -27,6 +27,8 @@ const AFTER_HELP: &str = "\
 Start with:
   barrelstack motion info my-site.AT2                    duration, PGA, PGV, PGD: is the unit right?
   barrelstack motion plot my-site.AT2 -o pictures        accelerations, velocities, spectra as SVG
+  barrelstack motion info records --out table            a whole folder: one row a record, CSV and Parquet
+  barrelstack motion select records --target ec8:ag=0.3,site=B --out set   a set for a study
   barrelstack motion scale my-site.AT2 --to \"pgv=60 cm/s\" -o strong.txt
   barrelstack run demo-napa --record strong.txt --set motion.vertical=false
 

@@ -60,8 +60,9 @@ impl Kind {
 }
 
 /// A record: acceleration, velocity and displacement of every component with their peaks, build-up of
-/// the Arias intensity, response spectra and Fourier amplitudes.
-pub(super) fn record(record: &Record) -> anyhow::Result<Figure> {
+/// the Arias intensity, response spectra, and Fourier amplitudes with the corners that the noise of
+/// the record as `read` suggests.
+pub(super) fn record(record: &Record, read: &Record) -> anyhow::Result<Figure> {
     let mut rows = Vec::new();
     for channel in &record.channels {
         let motion = sampled(channel)?;
@@ -73,7 +74,7 @@ pub(super) fn record(record: &Record) -> anyhow::Result<Figure> {
         });
         rows.push(row.to_vec());
     }
-    let corners = record.noise_corners(&NoiseCriterion::default());
+    let corners = read.noise_corners(&NoiseCriterion::default());
     let corners: Vec<(f64, f64)> =
         corners.into_iter().flatten().map(|c| (c.high_pass, c.low_pass)).collect();
     let channels: Vec<(String, &Channel)> =
@@ -101,9 +102,8 @@ pub(super) fn compared(
     let mut channels = Vec::new();
     for (old, new) in before.channels.iter().zip(&after.channels) {
         let (was, is) = (sampled(old)?, sampled(new)?);
-        // Pads put the recorded part later; where both begin is told by the strongest motion.
-        let shift = new.time_step * at_peak(is.acceleration())
-            - old.time_step * at_peak(was.acceleration());
+        // What is longer has pads at both ends: the recorded part begins later.
+        let shift = 0.5 * (new.duration() - old.duration());
         let row = Kind::ALL.map(|kind| {
             let values = kind.values(&is);
             let marks = peak_mark(kind, new.time_step, &values).into_iter().collect();

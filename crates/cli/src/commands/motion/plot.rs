@@ -100,7 +100,7 @@ pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<ExitCode> {
     let record = args.choice.take(&read, Chain::Default)?;
     let figures: Vec<(Figure, &Path)> = files
         .iter()
-        .map(|(kind, path)| Ok((figure(*kind, &record, &damping)?, path.as_path())))
+        .map(|(kind, path)| Ok((figure(*kind, &record, &read, &damping)?, path.as_path())))
         .collect::<anyhow::Result<_>>()?;
     if !is_file(&args.output) {
         std::fs::create_dir_all(&args.output)
@@ -141,7 +141,7 @@ fn folders(args: &PlotArgs) -> anyhow::Result<ExitCode> {
     };
     let work = |source: &Source, record: &Record| {
         let chosen = args.choice.take(record, Chain::Default)?;
-        let figure = panels::record(&chosen)?;
+        let figure = panels::record(&chosen, record)?;
         for format in &formats {
             let path = source.beside(out, format.extension());
             output::make_folder_of(&path)?;
@@ -209,9 +209,14 @@ fn files(args: &PlotArgs) -> anyhow::Result<Vec<(Kind, PathBuf)>> {
         .collect())
 }
 
-fn figure(kind: Kind, record: &Record, damping: &[f64]) -> anyhow::Result<Figure> {
+fn figure(
+    kind: Kind,
+    record: &Record,
+    read: &Record,
+    damping: &[f64],
+) -> anyhow::Result<Figure> {
     if kind == Kind::Panels {
-        return panels::record(record);
+        return panels::record(record, read);
     }
     let mut plot = Plot::default();
     // The strongest first: the weaker ones are drawn over it and stay in sight.
@@ -228,7 +233,7 @@ fn figure(kind: Kind, record: &Record, damping: &[f64]) -> anyhow::Result<Figure
         Kind::Displacement => (time(), Axis::new("displacement", "cm")),
         Kind::Arias => (time(), Axis::new("Arias intensity", "m/s")),
         Kind::Response => {
-            (Axis::new("period", "s").log(), Axis::new("pseudo-spectral acceleration", "g"))
+            (Axis::new("period", "s").log(), Axis::new("pseudo-spectral acceleration", "g").log())
         }
         Kind::Fourier => {
             (Axis::new("frequency", "Hz").log(), Axis::new("Fourier amplitude", "m/s").log())
