@@ -6,7 +6,7 @@ use crate::ground_motion::GroundMotion;
 use crate::history::History;
 use crate::math;
 use crate::process::{Pads, Processing};
-use crate::response::response;
+use crate::response::pseudo_accelerations;
 use crate::sampled::Sampled;
 use crate::target::TargetSpectrum;
 use crate::wavelets;
@@ -150,7 +150,7 @@ impl GroundMotion {
         };
         let work =
             Work { time_step, target, judged, judged_goal, checked, checked_goal, damping, chain };
-        let now = work.spectrum(&work.judged, &given)?;
+        let now = work.spectrum(&work.judged, &given);
         let factor = mean_ratio(&work.judged_goal, &now);
         if !(factor.is_finite() && factor > 0.0) {
             return Err(MotionError::Zero {
@@ -276,24 +276,29 @@ pub(crate) struct Work<'a> {
 
 impl Work<'_> {
     /// Pseudo-accelerations at some periods.
-    fn spectrum(&self, periods: &[f64], acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
-        periods
-            .iter()
-            .map(|&period| {
-                response(self.time_step, acceleration, period, self.damping)
-                    .map(|peaks| peaks.pseudo_acceleration)
-            })
-            .collect()
+    fn spectrum(&self, periods: &[f64], acceleration: &[f64]) -> Vec<f64> {
+        pseudo_accelerations(self.time_step, acceleration, periods, self.damping)
     }
 
     /// Largest relative misfit at the judged periods.
-    pub(crate) fn misfit(&self, acceleration: &[f64]) -> Result<f64, MotionError> {
-        Ok(misfit_of(&self.judged_goal, &self.spectrum(&self.judged, acceleration)?))
+    pub(crate) fn misfit(&self, acceleration: &[f64]) -> f64 {
+        misfit_of(&self.judged_goal, &self.spectrum(&self.judged, acceleration))
+    }
+
+    /// A mean of the misfits at the judged periods in which the largest outweigh all others.
+    pub(crate) fn roughness(&self, acceleration: &[f64]) -> f64 {
+        let now = self.spectrum(&self.judged, acceleration);
+        let powers = self.judged_goal.iter().zip(&now).map(|(g, n)| {
+            let square = (n / g - 1.0) * (n / g - 1.0);
+            let fourth = square * square;
+            fourth * fourth * fourth
+        });
+        math::powf(powers.sum::<f64>() / now.len() as f64, 1.0 / 12.0)
     }
 
     /// Largest relative misfit at all periods that are checked.
-    fn checked_misfit(&self, acceleration: &[f64]) -> Result<f64, MotionError> {
-        Ok(misfit_of(&self.checked_goal, &self.spectrum(&self.checked, acceleration)?))
+    fn checked_misfit(&self, acceleration: &[f64]) -> f64 {
+        misfit_of(&self.checked_goal, &self.spectrum(&self.checked, acceleration))
     }
 
     pub(crate) fn close(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
@@ -319,8 +324,12 @@ impl Work<'_> {
         }
         let stalled = best.misfit;
         let turns = [Frequency, Time, Frequency, Time, Frequency, Time];
-        self.take_turns(&turns, start, settings, rounds, &mut best)?;
+        let rounds = self.take_turns(&turns, start, settings, rounds, &mut best)?;
         let first = if best.misfit < stalled { Frequency } else { settings.method };
+        if best.misfit > settings.tolerance {
+            let (polished, more) = wavelets::polish(self, &best.acceleration, settings)?;
+            best.offer(&polished, self.checked_misfit(&polished), rounds + more);
+        }
         Ok((best, first))
     }
 
@@ -341,7 +350,7 @@ impl Work<'_> {
                 MatchMethod::Time => wavelets::match_in_time(self, &a, settings)?,
             };
             rounds += more;
-            best.offer(&next, self.checked_misfit(&next)?, rounds);
+            best.offer(&next, self.checked_misfit(&next), rounds);
             // The frequency domain would go from its own best motion where it went before.
             let stuck = *method == MatchMethod::Time && more == 1;
             if best.misfit <= CLEAR * settings.tolerance || stuck {
@@ -363,7 +372,7 @@ impl Work<'_> {
         // Ratios over the logarithm of frequency, from long periods to short ones.
         let ln_f: Vec<f64> = self.judged.iter().rev().map(|t| -math::ln(*t)).collect();
         for round in 1..=settings.rounds {
-            let now = self.spectrum(&self.judged, &a)?;
+            let now = self.spectrum(&self.judged, &a);
             best.offer(&a, misfit_of(&self.judged_goal, &now), round);
             if best.misfit <= GOOD_ENOUGH * settings.tolerance {
                 break;

@@ -176,6 +176,9 @@ pub struct Record {
     pub channels: Vec<Channel>,
     /// What the reader noticed.
     pub warnings: Vec<Warning>,
+    /// Whether channels of different stations and sensors may be combined, because the caller wished
+    /// it; readers never set it.
+    pub mixed: bool,
     /// What the reader did to the numbers beyond changing units, one sentence each.
     pub notes: Vec<String>,
 }
@@ -190,6 +193,7 @@ impl Record {
             stage,
             channels: Vec::new(),
             warnings: Vec::new(),
+            mixed: false,
             notes: Vec::new(),
         }
     }

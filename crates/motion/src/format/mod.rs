@@ -291,7 +291,15 @@ fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
             record.warn(None, message);
         }
     }
-    Ok(())
+    record.align_each_site().map_err(|error| {
+        source.error(
+            (),
+            Refusal::Damaged,
+            "channels of one station and sensor that were recorded at one time",
+            error.to_string(),
+            "split the file by time",
+        )
+    })
 }
 
 /// A positive whole number from a header.

@@ -64,9 +64,7 @@ fn together(records: &[Record]) -> anyhow::Result<Vec<Record>> {
             let first = &group[0];
             let same_step =
                 |a: &Channel, b: &Channel| (a.time_step / b.time_step - 1.0).abs() < 1e-9;
-            first.format == record.format
-                && first.event == record.event
-                && first.station == record.station
+            Record::gather(&[first.clone(), record.clone()]).is_ok()
                 && !(first.event.is_empty() && first.station.is_empty())
                 && same_step(&first.channels[0], &record.channels[0])
         };
@@ -138,8 +136,13 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
         record.channels.iter().map(|channel| (channel.name.clone(), channel)).collect();
     lines.extend(measures::table(&columns, shown)?.lines());
     if all {
-        let rotated = measures::rotated(record)?;
-        if !rotated.is_empty() {
+        let rotated = measures::rotated(record);
+        if let Err(error) = &rotated
+            && record.channels.len() > 1
+        {
+            lines.extend([String::new(), format!("  no measure over all directions: {error}")]);
+        }
+        if let Ok(rotated) = rotated {
             let head = ["over all directions", "unit", "RotD50", "RotD100"];
             let mut table = Table::new(2, head.map(str::to_owned));
             for row in rotated {
@@ -187,12 +190,14 @@ pub(super) fn direction(channel: &Channel) -> String {
     }
 }
 
+/// What a channel has in one column.
+type Cell<'a> = &'a dyn Fn(&Channel) -> String;
+
 /// When and where each channel was recorded, as far as the file tells; columns that would be empty
 /// are left out.
 fn recorded(record: &Record) -> Table {
     let degrees = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.4}"));
     let meters = |value: Option<f64>| value.map_or_else(String::new, number);
-    type Cell<'a> = &'a dyn Fn(&Channel) -> String;
     let several = record.channels.iter().any(|c| c.site.station != record.station);
     let station = |c: &Channel| if several { c.site.station.clone() } else { String::new() };
     let columns: [(&str, Cell<'_>); 7] = [
@@ -291,7 +296,7 @@ fn document(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Valu
             "velocity_pulse": pulse,
         }));
     }
-    let rotated = if all { measures::rotated(record)? } else { Vec::new() };
+    let rotated = if all { measures::rotated(record).unwrap_or_default() } else { Vec::new() };
     let rotated: Vec<Value> = rotated
         .iter()
         .map(|row| {
