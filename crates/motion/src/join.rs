@@ -45,7 +45,7 @@ impl Record {
                 require_step(&gathered.channels[0], &channel)?;
                 gathered.channels.push(channel);
             }
-            if record.stage != gathered.stage && kinship(first, record).is_none() {
+            if record.stage != gathered.stage && first.unlike(record).is_none() {
                 gathered.warn(
                     None,
                     format!(
@@ -57,7 +57,7 @@ impl Record {
             gathered.warnings.extend(record.warnings.iter().cloned());
             gathered.notes.extend(record.notes.iter().cloned());
             gathered.file = format!("{}, {}", gathered.file, record.file);
-            if let Some(what) = kinship(first, record) {
+            if let Some(what) = first.unlike(record) {
                 gathered.mixed = true;
                 gathered.warn(None, format!("taken together although {what}"));
             }
@@ -74,6 +74,31 @@ impl Record {
             gathered.align()?;
         }
         Ok(gathered)
+    }
+
+    /// Why two files hold no components of one record, if they tell.
+    pub fn unlike(&self, other: &Self) -> Option<String> {
+        let one = self;
+        let files = format!("{} and {}", one.file, other.file);
+        for a in &one.channels {
+            if let Some(what) = other.channels.iter().find_map(|b| a.site.differs(&b.site)) {
+                return Some(format!("{files} are of {what}"));
+            }
+        }
+        let differ =
+            |a: &str, b: &str| !a.is_empty() && !b.is_empty() && !a.eq_ignore_ascii_case(b);
+        // Files of the user's own making may stand beside those of a publisher.
+        let own = |record: &Self| ["barrelstack", "columns"].contains(&record.format);
+        if differ(one.format, other.format) && !own(one) && !own(other) {
+            return Some(format!("{files} have the formats {} and {}", one.format, other.format));
+        }
+        if differ(&one.event, &other.event) {
+            return Some(format!("{files} are of \"{}\" and \"{}\"", one.event, other.event));
+        }
+        let stages = (one.stage, other.stage);
+        let known = one.stage != Stage::Unknown && other.stage != Stage::Unknown;
+        (known && one.stage != other.stage)
+            .then(|| format!("{files} are {} and {}", stages.0, stages.1))
     }
 
     /// Parts of one long record joined where they overlap.
@@ -97,31 +122,8 @@ impl Record {
     }
 }
 
-/// Why two files are no components of one record, if they tell.
-fn kinship(one: &Record, other: &Record) -> Option<String> {
-    let files = format!("{} and {}", one.file, other.file);
-    for a in &one.channels {
-        if let Some(what) = other.channels.iter().find_map(|b| a.site.differs(&b.site)) {
-            return Some(format!("{files} are of {what}"));
-        }
-    }
-    let differ = |a: &str, b: &str| !a.is_empty() && !b.is_empty() && !a.eq_ignore_ascii_case(b);
-    // Files of the user's own making may stand beside those of a publisher.
-    let own = |record: &Record| ["barrelstack", "columns"].contains(&record.format);
-    if differ(one.format, other.format) && !own(one) && !own(other) {
-        return Some(format!("{files} have the formats {} and {}", one.format, other.format));
-    }
-    if differ(&one.event, &other.event) {
-        return Some(format!("{files} are of \"{}\" and \"{}\"", one.event, other.event));
-    }
-    let stages = (one.stage, other.stage);
-    let known = one.stage != Stage::Unknown && other.stage != Stage::Unknown;
-    (known && one.stage != other.stage)
-        .then(|| format!("{files} are {} and {}", stages.0, stages.1))
-}
-
 fn require_kin(one: &Record, other: &Record) -> Result<(), MotionError> {
-    match kinship(one, other) {
+    match one.unlike(other) {
         None => Ok(()),
         Some(what) => Err(MotionError::Mismatch {
             what,

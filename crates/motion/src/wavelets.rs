@@ -1,7 +1,7 @@
 //! Time-domain matching: wavelets added where the responses peak.
 
 use crate::error::MotionError;
-use crate::matching::{Best, GOOD_ENOUGH, Matching, Work, matched_periods};
+use crate::matching::{Best, GOOD_ENOUGH, Matching, PATIENCE, Work, matched_periods};
 use crate::math::{self, TAU};
 use crate::response::{Bank, Step, TOGETHER};
 
@@ -17,8 +17,11 @@ const RIDGE: f64 = 1e-2;
 
 /// Times a correction is solved again so that it lifts no other extremum above its goal.
 const BOUNDING: usize = 5;
-/// Rounds without gain after which polishing ends; every round matches other periods.
-const PATIENCE: usize = 12;
+/// Shares of a correction that are tried: twice the last one that helped, half of one that did not.
+const LARGEST_SHARE: f64 = 0.8;
+const SMALLEST_SHARE: f64 = 0.05;
+/// Share of the tolerance at which polishing ends.
+const POLISHED: f64 = 0.95;
 
 /// A local extremum of an oscillator's response.
 #[derive(Clone, Copy)]
@@ -58,8 +61,9 @@ pub(crate) fn match_in_time(
         if round == 2 * settings.rounds / 3 + 1 && best.round > 0 {
             a.clone_from(&best.acceleration);
         }
-        best.offer(&a, work.misfit(&a), round);
-        if best.misfit <= GOOD_ENOUGH * settings.tolerance {
+        best.offer(&a, work.judged_misfit(&a), round);
+        let stalled = watching && round > best.round.max(2 * settings.rounds / 3) + PATIENCE;
+        if best.misfit <= GOOD_ENOUGH * settings.tolerance || stalled {
             break;
         }
         a = work.close(&corrected(work, &a, &matched_periods(settings, round), watching))?;
@@ -74,26 +78,31 @@ pub(crate) fn polish(
     start: &[f64],
     settings: &Matching,
 ) -> Result<(Vec<f64>, usize), MotionError> {
-    let mut best = Best::new(start);
-    best.offer(start, work.roughness(start), 0);
+    let mut best = start.to_vec();
+    let (_, mut roughness) = work.misfit_and_roughness(start);
+    let (mut gained, mut share) = (0, LARGEST_SHARE);
     for round in 1..=settings.rounds {
-        let from = best.acceleration.clone();
-        let full = work.close(&bounded(work, &from, &matched_periods(settings, round)))?;
-        for share in [0.6, 0.3, 0.15, 0.05] {
+        let full = work.close(&bounded(work, &best, &matched_periods(settings, round)))?;
+        for _ in 0..2 {
             let tried: Vec<f64> =
-                from.iter().zip(&full).map(|(a, b)| a + share * (b - a)).collect();
-            let before = best.misfit;
-            best.offer(&tried, work.roughness(&tried), round);
-            if best.misfit < before {
+                best.iter().zip(&full).map(|(a, b)| a + share * (b - a)).collect();
+            let (misfit, now) = work.misfit_and_roughness(&tried);
+            if now < roughness {
+                (best, roughness, gained) = (tried, now, round);
+                let target = POLISHED * settings.tolerance;
+                if misfit <= target && work.misfit(&best) <= target {
+                    return Ok((best, round));
+                }
+                share = (2.0 * share).min(LARGEST_SHARE);
                 break;
             }
+            share = (0.5 * share).max(SMALLEST_SHARE);
         }
-        let good = work.misfit(&best.acceleration) <= GOOD_ENOUGH * settings.tolerance;
-        if good || round > best.round + PATIENCE {
+        if round > gained + PATIENCE {
             break;
         }
     }
-    Ok((best.acceleration, best.round))
+    Ok((best, gained))
 }
 
 /// The motion with the wavelets of one round added.

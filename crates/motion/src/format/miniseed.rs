@@ -24,7 +24,7 @@ fn sniff(source: &Source<'_>) -> bool {
         && b[..6].iter().all(|c| c.is_ascii_digit() || *c == b' ')
         && matches!(b[6], b'D' | b'R' | b'Q' | b'M')
         && matches!(b[7], b' ' | 0)
-        && b[8..20].iter().all(|c| c.is_ascii_alphanumeric() || *c == b' ')
+        && b[8..20].iter().all(|c| c.is_ascii_alphanumeric() || matches!(*c, b' ' | b'-'))
 }
 
 /// One data record's header.
