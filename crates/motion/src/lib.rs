@@ -46,6 +46,7 @@
     reason = "`!(x > 0.0)` refuses NaN with everything else that is not above zero"
 )]
 
+mod align;
 mod bundled;
 mod collection;
 mod corners;

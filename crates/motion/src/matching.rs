@@ -6,7 +6,7 @@ use crate::ground_motion::GroundMotion;
 use crate::history::History;
 use crate::math;
 use crate::process::{Pads, Processing};
-use crate::response::response;
+use crate::response::pseudo_accelerations;
 use crate::sampled::Sampled;
 use crate::target::TargetSpectrum;
 use crate::wavelets;
@@ -59,6 +59,9 @@ impl Default for Matching {
 /// Exponent of target over spectrum in one round of the frequency domain.
 const AMPLITUDE_STEP: f64 = 0.7;
 
+/// Steps to the shortest matched period: a peak between two samples is then missed by 1.2 % at most; with
+/// ten steps it would be 5 %, as much as a match may be off.
+const STEPS_A_PERIOD: f64 = 20.0;
 /// Periods to a decade at which the spectrum is matched.
 const PER_DECADE: f64 = 60.0;
 /// Periods judged to one matched, so that nothing hides between.
@@ -67,6 +70,8 @@ const JUDGED: usize = 3;
 const CHECKED: usize = 6;
 /// Share of the tolerance at which no further method is tried.
 const CLEAR: f64 = 0.98;
+/// Rounds without gain after which a method gives up.
+pub(crate) const PATIENCE: usize = 15;
 /// Share of the tolerance at which the rounds end.
 pub(crate) const GOOD_ENOUGH: f64 = 0.7;
 
@@ -150,7 +155,7 @@ impl GroundMotion {
         };
         let work =
             Work { time_step, target, judged, judged_goal, checked, checked_goal, damping, chain };
-        let now = work.spectrum(&work.judged, &given)?;
+        let now = work.spectrum(&work.judged, &given);
         let factor = mean_ratio(&work.judged_goal, &now);
         if !(factor.is_finite() && factor > 0.0) {
             return Err(MotionError::Zero {
@@ -206,12 +211,12 @@ fn check(settings: &Matching, time_step: f64) -> Result<(), MotionError> {
     Ok(())
 }
 
-/// The same piecewise-linear motion in steps of at most a tenth of the shortest period, so that
+/// The same piecewise-linear motion in at least [`STEPS_A_PERIOD`] steps to the shortest period, so that
 /// wavelets and peaks are resolved.
 fn subdivided(motion: &Sampled, shortest: f64) -> (f64, Vec<f64>) {
-    let parts = (10.0 * motion.time_step() / shortest * (1.0 - 1e-9)).ceil().max(1.0);
+    let parts = (STEPS_A_PERIOD * motion.time_step() / shortest * (1.0 - 1e-9)).ceil().max(1.0);
     let a = motion.acceleration();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 3")]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 5")]
     let count = parts as usize;
     let mut fine = Vec::with_capacity(count * a.len());
     for pair in a.windows(2) {
@@ -276,24 +281,33 @@ pub(crate) struct Work<'a> {
 
 impl Work<'_> {
     /// Pseudo-accelerations at some periods.
-    fn spectrum(&self, periods: &[f64], acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
-        periods
-            .iter()
-            .map(|&period| {
-                response(self.time_step, acceleration, period, self.damping)
-                    .map(|peaks| peaks.pseudo_acceleration)
-            })
-            .collect()
+    fn spectrum(&self, periods: &[f64], acceleration: &[f64]) -> Vec<f64> {
+        pseudo_accelerations(self.time_step, acceleration, periods, self.damping)
     }
 
-    /// Largest relative misfit at the judged periods.
-    pub(crate) fn misfit(&self, acceleration: &[f64]) -> Result<f64, MotionError> {
-        Ok(misfit_of(&self.judged_goal, &self.spectrum(&self.judged, acceleration)?))
+    /// Largest relative misfit at the judged periods, which are few enough for every round.
+    pub(crate) fn judged_misfit(&self, acceleration: &[f64]) -> f64 {
+        misfit_of(&self.judged_goal, &self.spectrum(&self.judged, acceleration))
     }
 
     /// Largest relative misfit at all periods that are checked.
-    fn checked_misfit(&self, acceleration: &[f64]) -> Result<f64, MotionError> {
-        Ok(misfit_of(&self.checked_goal, &self.spectrum(&self.checked, acceleration)?))
+    pub(crate) fn misfit(&self, acceleration: &[f64]) -> f64 {
+        misfit_of(&self.checked_goal, &self.spectrum(&self.checked, acceleration))
+    }
+
+    /// At every second period that is checked: the largest relative misfit, and a mean of all misfits in
+    /// which the largest outweigh the others.
+    pub(crate) fn misfit_and_roughness(&self, acceleration: &[f64]) -> (f64, f64) {
+        let half = |all: &[f64]| all.iter().copied().step_by(2).collect::<Vec<f64>>();
+        let (periods, goal) = (half(&self.checked), half(&self.checked_goal));
+        let now = self.spectrum(&periods, acceleration);
+        let powers = goal.iter().zip(&now).map(|(g, n)| {
+            let square = (n / g - 1.0) * (n / g - 1.0);
+            let fourth = square * square;
+            fourth * fourth * fourth
+        });
+        let mean = powers.sum::<f64>() / now.len() as f64;
+        (misfit_of(&goal, &now), math::powf(mean, 1.0 / 12.0))
     }
 
     pub(crate) fn close(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
@@ -311,21 +325,19 @@ impl Work<'_> {
         let mut best = Best::new(start);
         let mut rounds = 0;
         if settings.method == Time {
-            let turns = [Time, Frequency, Time, Frequency, Time];
-            rounds = self.take_turns(&turns, start, settings, rounds, &mut best)?;
+            rounds = self.take_turns(&[Time], start, settings, rounds, &mut best)?;
             if best.misfit <= settings.tolerance {
                 return Ok((best, Time));
             }
         }
         let stalled = best.misfit;
-        let turns = [Frequency, Time, Frequency, Time, Frequency, Time];
-        self.take_turns(&turns, start, settings, rounds, &mut best)?;
+        self.take_turns(&[Frequency, Time, Frequency, Time], start, settings, rounds, &mut best)?;
         let first = if best.misfit < stalled { Frequency } else { settings.method };
         Ok((best, first))
     }
 
-    /// Each method on what the one before it left, until the tolerance is met; gives all rounds
-    /// done so far.
+    /// Each method on what the one before it left, polished by wavelets, until the tolerance is met;
+    /// gives all rounds done so far.
     fn take_turns(
         &self,
         turns: &[MatchMethod],
@@ -341,13 +353,17 @@ impl Work<'_> {
                 MatchMethod::Time => wavelets::match_in_time(self, &a, settings)?,
             };
             rounds += more;
-            best.offer(&next, self.checked_misfit(&next)?, rounds);
-            // The frequency domain would go from its own best motion where it went before.
-            let stuck = *method == MatchMethod::Time && more == 1;
-            if best.misfit <= CLEAR * settings.tolerance || stuck {
+            best.offer(&next, self.misfit(&next), rounds);
+            if best.misfit <= CLEAR * settings.tolerance {
                 break;
             }
-            a = next;
+            let (polished, more) = wavelets::polish(self, &next, settings)?;
+            rounds += more;
+            best.offer(&polished, self.misfit(&polished), rounds);
+            if best.misfit <= CLEAR * settings.tolerance {
+                break;
+            }
+            a = polished;
         }
         Ok(rounds)
     }
@@ -363,9 +379,9 @@ impl Work<'_> {
         // Ratios over the logarithm of frequency, from long periods to short ones.
         let ln_f: Vec<f64> = self.judged.iter().rev().map(|t| -math::ln(*t)).collect();
         for round in 1..=settings.rounds {
-            let now = self.spectrum(&self.judged, &a)?;
+            let now = self.spectrum(&self.judged, &a);
             best.offer(&a, misfit_of(&self.judged_goal, &now), round);
-            if best.misfit <= GOOD_ENOUGH * settings.tolerance {
+            if best.misfit <= GOOD_ENOUGH * settings.tolerance || round > best.round + PATIENCE {
                 break;
             }
             let ratio: Vec<f64> = self

@@ -131,6 +131,21 @@ impl Channel {
         math::peak(&crate::sampled::running_trapezoid(self.time_step, &self.velocity()))
     }
 
+    /// Why this can be no strong motion, if step, count or length say so.
+    pub fn implausible(&self) -> Option<String> {
+        let (step, count, length) = (self.time_step, self.acceleration.len(), self.duration());
+        let what = if !(1e-4..=0.1).contains(&step) {
+            format!("a step of {step} s, and strong motion has 0.0001 to 0.1 s")
+        } else if count < 50 {
+            format!("{count} samples, and no strong motion has fewer than 50")
+        } else if length < 1.0 {
+            format!("a length of {length} s, and no strong motion has less than 1 s")
+        } else {
+            return None;
+        };
+        Some(format!("channel {} has {what}", self.name))
+    }
+
     pub(crate) fn velocity(&self) -> Vec<f64> {
         crate::sampled::integrate(self.time_step, &self.acceleration, self.initial_velocity).0
     }
@@ -176,6 +191,9 @@ pub struct Record {
     pub channels: Vec<Channel>,
     /// What the reader noticed.
     pub warnings: Vec<Warning>,
+    /// Whether channels of different stations and sensors may be combined, because the caller wished
+    /// it; readers never set it.
+    pub mixed: bool,
     /// What the reader did to the numbers beyond changing units, one sentence each.
     pub notes: Vec<String>,
 }
@@ -190,6 +208,7 @@ impl Record {
             stage,
             channels: Vec::new(),
             warnings: Vec::new(),
+            mixed: false,
             notes: Vec::new(),
         }
     }

@@ -19,7 +19,8 @@ fn known(low: f64, high: f64, seed: u64) -> Channel {
     let mut random = Random::new(seed);
     let n = 8000;
     let noise: Vec<f64> = (0..n).map(|_| 1e-3 * random.normal()).collect();
-    let band = Processing { high_pass: Some(low), low_pass: Some(high), order: 8, ..Processing::none() };
+    let band =
+        Processing { high_pass: Some(low), low_pass: Some(high), order: 8, ..Processing::none() };
     let white: Vec<f64> = (0..n).map(|_| random.normal()).collect();
     let filtered = Processing { pads: barrelstack_motion::Pads::Removed, ..band }
         .apply(STEP, &white, 0.0)
@@ -64,10 +65,7 @@ fn the_arrival_is_found_and_shared_by_all_channels() {
     assert!((found[0].arrival - ARRIVAL).abs() < 0.2, "{found:?}");
     assert_eq!(found[0].arrival, found[1].arrival);
     // Both horizontals share the narrower band.
-    assert_eq!(
-        (found[0].high_pass, found[0].low_pass),
-        (found[1].high_pass, found[1].low_pass)
-    );
+    assert_eq!((found[0].high_pass, found[0].low_pass), (found[1].high_pass, found[1].low_pass));
 }
 
 #[test]
@@ -86,7 +84,11 @@ fn a_record_without_noise_is_told_why_it_has_no_corners() {
         acceleration: good.acceleration.iter().take(2000).cycle().take(8000).copied().collect(),
         ..good
     };
-    assert!(told(&weak, ARRIVAL).contains("signal over noise falls to"), "{}", told(&weak, ARRIVAL));
+    assert!(
+        told(&weak, ARRIVAL).contains("signal over noise falls to"),
+        "{}",
+        told(&weak, ARRIVAL)
+    );
 }
 
 #[test]

@@ -5,7 +5,10 @@
 use std::io::Write as _;
 use std::path::Path;
 
-use barrelstack_motion::{AccelerationUnit, ReadOptions, Record, Site, read, write};
+use barrelstack_motion::{
+    AccelerationUnit, Channel, Direction, Processing, ReadOptions, Record, Site, Stage, Utc, read,
+    write,
+};
 
 fn options() -> ReadOptions {
     ReadOptions { unit: Some(AccelerationUnit::G), time_step: None, sensitivity: Some(1000.0) }
@@ -146,4 +149,142 @@ fn our_own_text_keeps_start_and_place() {
     let broken = write::text(&record).unwrap().replace("vs30 330", "vs30 soft");
     let error = read(broken.as_bytes(), "broken.txt", &ReadOptions::default()).unwrap_err();
     assert!(error.to_string().contains("vs30"), "{error}");
+}
+
+/// A record of one channel of our own making: a wave of ten seconds at 100 Hz that began `late`
+/// seconds after the full minute.
+fn wave(name: &str, late: f64, seconds: u32) -> Record {
+    let mut record = sample("barrelstack/example.txt");
+    let origin: Utc = "2014-08-24T10:20:00.000Z".parse().unwrap();
+    let values = (0..100 * seconds).map(|k| motion_at(late + f64::from(k) / 100.0)).collect();
+    let mut channel = Channel::new(name, Direction::parse(name), 0.01, values);
+    channel.start = Some(origin.later(late));
+    record.channels = vec![channel];
+    record.file = format!("{name}.txt");
+    record
+}
+
+fn motion_at(t: f64) -> f64 {
+    (2.0 * t).sin() + 0.3 * (37.0 * t).cos()
+}
+
+#[test]
+fn channels_that_begin_apart_are_cut_to_their_common_span() {
+    let gathered = Record::gather(&[wave("N", 20.0, 30), wave("E", 0.0, 40)]).unwrap();
+    let [north, east] = gathered.channels.as_slice() else { panic!("two channels") };
+    // Both last from 20 to 39.99 s after the minute and hold the same wave.
+    assert_eq!(north.acceleration.len(), 2000);
+    assert_eq!(east.acceleration.len(), 2000);
+    assert_eq!(north.start, east.start);
+    let off = north.acceleration.iter().zip(&east.acceleration).map(|(a, b)| (a - b).abs());
+    assert!(off.fold(0.0, f64::max) < 1e-9);
+    let told = gathered.notes.join("\n");
+    assert!(told.contains("channel E begins 20.0000 s before N: 2000 samples outside"), "{told}");
+    assert!(told.contains("channel N: 1000 samples outside"), "{told}");
+}
+
+#[test]
+fn parts_of_a_step_are_shifted() {
+    let gathered = Record::gather(&[wave("N", 0.0, 20), wave("E", 1.0036, 20)]).unwrap();
+    let [north, east] = gathered.channels.as_slice() else { panic!("two channels") };
+    assert_eq!(north.start, east.start);
+    let n = east.acceleration.len().min(north.acceleration.len());
+    assert!((1898..=1901).contains(&n), "{n}");
+    // Away from the ends, where less is known; measured 2.3e-6.
+    let off = north.acceleration[..n].iter().zip(&east.acceleration).map(|(a, b)| (a - b).abs());
+    let worst = off.skip(32).take(n - 64).fold(0.0, f64::max);
+    assert!(worst < 4e-6, "{worst:e}");
+    assert!(gathered.notes.join("\n").contains("shifted by 0.360 of a step"));
+}
+
+#[test]
+fn channels_without_a_common_span_are_refused() {
+    let error = Record::gather(&[wave("N", 0.0, 10), wave("E", 20.0, 10)]).unwrap_err();
+    assert!(error.to_string().contains("no span in common"), "{error}");
+}
+
+/// The sample with its channel's last letter, second of the start and location changed.
+fn seed(letter: u8, second: u8, location: [u8; 2]) -> Vec<u8> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/miniseed/int32.mseed");
+    let mut bytes = std::fs::read(path).unwrap();
+    let length = 1 << bytes[54];
+    for record in bytes.chunks_mut(length) {
+        record[13..15].copy_from_slice(&location);
+        record[17] = letter;
+        record[26] += second;
+    }
+    bytes
+}
+
+#[test]
+fn channels_of_one_seed_file_begin_together() {
+    let whole = read(&seed(b'E', 0, *b"00"), "one.mseed", &options()).unwrap();
+    let count = whole.channels[0].acceleration.len();
+    let both = [seed(b'E', 0, *b"00"), seed(b'N', 1, *b"00")].concat();
+    let record = read(&both, "both.mseed", &options()).unwrap();
+    for channel in &record.channels {
+        // The second begins a hundred samples later.
+        assert_eq!(channel.acceleration.len(), count - 100);
+        assert_eq!(start(&record), "2003-01-02T01:02:01.000Z");
+    }
+    assert!(record.notes.join("\n").contains("begins 1.0000 s before"));
+    let apart = [seed(b'E', 0, *b"00"), seed(b'N', 50, *b"00")].concat();
+    let error = read(&apart, "apart.mseed", &options()).unwrap_err();
+    assert!(error.to_string().contains("no span in common"), "{error}");
+    // Two sensors in one file are read, and not combined.
+    let sensors = [seed(b'E', 0, *b"00"), seed(b'N', 0, *b"10")].concat();
+    let record = read(&sensors, "sensors.mseed", &options()).unwrap();
+    assert_eq!(record.station, "ZZ.XXXX");
+    let error = record.horizontal_pair().unwrap_err().to_string();
+    assert!(error.contains("sensor \"00\" and sensor \"10\""), "{error}");
+    let mixed = Record { mixed: true, ..record };
+    assert!(mixed.horizontal_pair().is_ok());
+    // What programs print for an empty location code.
+    let empty = read(&seed(b'E', 0, *b"--"), "empty.mseed", &options()).unwrap();
+    assert_eq!(empty.channels[0].site.sensor, "");
+}
+
+#[test]
+fn files_of_other_stations_sensors_events_and_publishers_are_not_combined() {
+    let refused = |one: &Record, other: &Record, word: &str| {
+        let error = Record::gather(&[one.clone(), other.clone()]).unwrap_err().to_string();
+        assert!(error.contains(word), "{word}: {error}");
+    };
+    let one = sample("knet/example.EW");
+    let mut other = one.clone();
+    other.channels[0].site.station = "XXX002".to_owned();
+    refused(&one, &other, "station \"XXX002\"");
+    refused(&one, &sample("knet/borehole.NS1"), "sensor \"surface\" and sensor \"borehole\"");
+    let one = sample("peer/nga-west2.AT2");
+    let other = Record { event: "Another, 1/2/1903".to_owned(), ..one.clone() };
+    refused(&one, &other, "Another");
+    let copy = Record { stage: Stage::Raw, ..one.clone() };
+    refused(&one, &copy, "corrected and raw");
+    let copy = Record { format: "smc", ..one.clone() };
+    refused(&one, &copy, "formats peer and smc");
+    // Asked for, they are, and the record says so.
+    let mixed = Record::gather_mixed(&[one.clone(), copy]).unwrap();
+    assert!(
+        mixed.mixed && mixed.warnings.iter().any(|w| w.message.contains("taken together although"))
+    );
+    let kin = Record::gather(&[one, sample("peer/cut-header.AT2")]).unwrap();
+    assert!(kin.notes.join("\n").contains("taken for simultaneous"));
+}
+
+#[test]
+fn measures_of_both_horizontals_need_directions_that_are_known_and_perpendicular() {
+    let pair = |a: &str, b: &str| {
+        let mut record = wave("N", 0.0, 10);
+        let values = record.channels[0].acceleration.clone();
+        let channel = |name: &str| Channel::new(name, Direction::parse(name), 0.01, values.clone());
+        record.channels = vec![channel(a), channel(b)];
+        record.horizontals(&Processing::none()).map(|_| ()).map_err(|error| error.to_string())
+    };
+    for (a, b) in [("N", "E"), ("L", "T"), ("N28W", "S62W"), ("4", "90"), ("HN1", "HN2")] {
+        assert_eq!(pair(a, b), Ok(()), "{a} {b}");
+    }
+    assert!(pair("N", "column 2").unwrap_err().contains("whether channel \"column 2\""));
+    assert!(pair("N", "S").unwrap_err().contains("not perpendicular"));
+    assert!(pair("0", "30").unwrap_err().contains("not perpendicular"));
+    assert!(pair("N", "UP").unwrap_err().contains("no channel"));
 }

@@ -7,8 +7,8 @@
 )]
 
 use barrelstack_motion::{
-    Candidate, Choosing, Condition, Random, STANDARD_GRAVITY, SelectionTarget, TargetSpectrum, select,
-    spectral_correlation,
+    Candidate, Choosing, Condition, Random, STANDARD_GRAVITY, SelectionTarget, TargetSpectrum,
+    select, spectral_correlation,
 };
 
 /// Median (g) and standard deviation of ln Sa of Campbell and Bozorgnia (2008) for M 7 at 10 km, Vs30
@@ -95,14 +95,14 @@ fn the_conditional_spectrum_is_that_of_an_independent_implementation() {
     let target = target(Some(2.0));
     // ln of g, and standard deviations, from the same model and correlations in OpenQuake.
     let mean = [
-        -0.873_238, -0.712_083, -0.586_521, -0.366_379, -0.253_645, -0.238_353, -0.228_271, -0.215_878,
-        -0.215_348, -0.345_793, -0.460_539, -0.673_763, -0.853_586, -1.040_178, -1.253_446, -1.698_212,
-        -1.933_283, -2.712_021, -3.253_362,
+        -0.873_238, -0.712_083, -0.586_521, -0.366_379, -0.253_645, -0.238_353, -0.228_271,
+        -0.215_878, -0.215_348, -0.345_793, -0.460_539, -0.673_763, -0.853_586, -1.040_178,
+        -1.253_446, -1.698_212, -1.933_283, -2.712_021, -3.253_362,
     ];
     let deviation = [
-        0.506_997, 0.534_424, 0.542_489, 0.541_802, 0.532_478, 0.531_706, 0.531_703, 0.527_249, 0.524_952,
-        0.507_071, 0.471_313, 0.385_607, 0.280_423, 0.0, 0.198_132, 0.344_367, 0.449_172, 0.592_774,
-        0.699_126,
+        0.506_997, 0.534_424, 0.542_489, 0.541_802, 0.532_478, 0.531_706, 0.531_703, 0.527_249,
+        0.524_952, 0.507_071, 0.471_313, 0.385_607, 0.280_423, 0.0, 0.198_132, 0.344_367,
+        0.449_172, 0.592_774, 0.699_126,
     ];
     for k in 0..mean.len() {
         let ours = target.mean()[k] - STANDARD_GRAVITY.ln();
@@ -178,5 +178,7 @@ fn what_cannot_be_chosen_is_refused_with_the_numbers() {
     assert_eq!(told, "size of the set: expected at least 2, found 1");
     let given = Some(Condition { period: 0.31, acceleration: 1.0 });
     let told = SelectionTarget::new(&[0.1, 1.0], &[1.0, 1.0], &[0.5, 0.5], given);
-    assert!(told.unwrap_err().to_string().contains("expected one of the target's, 0.1, 1, found 0.31"));
+    assert!(
+        told.unwrap_err().to_string().contains("expected one of the target's, 0.1, 1, found 0.31")
+    );
 }

@@ -56,14 +56,16 @@ pub struct Measured {
     pub horizontals: Vec<MeasuredComponent>,
     /// The first vertical component.
     pub vertical: Option<MeasuredComponent>,
-    /// Both horizontals, if there are two.
+    /// Both horizontals, if they are a pair.
     pub pair: Option<MeasuredPair>,
+    /// Why there is no pair.
+    pub no_pair: Option<String>,
 }
 
 /// Measures a record after processing, its spectra at `periods` (s).
 ///
 /// # Errors
-/// If the record has no channel, the two horizontals do not fit together, or a setting is out of range.
+/// If the record has no channel or a setting is out of range.
 pub fn measure(
     record: &Record,
     processing: &Processing,
@@ -84,13 +86,14 @@ pub fn measure(
     }
     let vertical = record.channels.iter().find(|c| c.is_vertical());
     let vertical = vertical.map(|c| component(c, &motion(c)?, periods)).transpose()?;
-    let pair = if flat.len() == 2 {
-        let (first, second) = record.horizontals(processing)?;
-        Some(both(&first, &second, periods)?)
-    } else {
-        None
+    let (pair, no_pair) = match record.horizontal_pair() {
+        Ok(_) => {
+            let (first, second) = record.horizontals(processing)?;
+            (Some(both(&first, &second, periods)?), None)
+        }
+        Err(error) => (None, Some(error.to_string())),
     };
-    Ok(Measured { horizontals, vertical, pair })
+    Ok(Measured { horizontals, vertical, pair, no_pair })
 }
 
 fn component(

@@ -71,10 +71,10 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let first = names_line + 1;
     let mut columns = super::rows(source, first, source.lines.len(), names.len(), limit)?;
     let found = columns.first().map_or(0, Vec::len);
-    super::check_count(source, &mut record, count_line, count, found)?;
+    let used = super::check_count(source, &mut record, count_line, count, found)?;
     let peaks = field(source, "RAW PGA VALUES").map(|(_, text)| text).unwrap_or_default();
     for (name, column) in names.iter().zip(&mut columns) {
-        let values: Vec<f64> = column.iter().map(|value| value * GAL).collect();
+        let values: Vec<f64> = column[..used].iter().map(|value| value * GAL).collect();
         let mut channel = Channel::new(*name, Direction::parse(name), time_step, values);
         let stated = peaks
             .split_once(&format!("({name})"))

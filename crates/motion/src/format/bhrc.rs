@@ -74,7 +74,8 @@ fn read_component(
         ));
     }
     let unit = AccelerationUnit::TenthG;
-    let (mut values, mut next) = source.fixed(
+    let (mut values, mut next) = source.counted(
+        record,
         first + HEADER_LINES,
         count,
         Columns::new(10, 13),

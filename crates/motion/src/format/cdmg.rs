@@ -69,13 +69,13 @@ fn read_block(
     let unit = unit(source, if equal { data } else { first + 11 }, options)?;
     let limit = LARGEST_ACCELERATION / unit.factor();
     let (time_step, mut values, mut next) = if equal {
-        read_equal(source, data, limit)?
+        read_equal(source, record, data, limit)?
     } else {
         let count = source
             .number_after(first + 10, "POINTS")
             .ok_or_else(|| missing(source, first + 10, "the number of points"))?;
         let count = super::whole(source, first + 10, "a number of points", count)?;
-        let (numbers, next) = source.fixed(data, 2 * count, pairs, limit.max(1e6))?;
+        let (numbers, next) = source.counted(record, data, 2 * count, pairs, limit.max(1e6))?;
         let timed = Timed {
             first_line: data,
             per_line: pairs.per_line / 2,
@@ -122,6 +122,7 @@ fn read_block(
 /// `12001 POINTS OF ACCEL DATA EQUALLY SPACED AT .005 SEC.  (UNITS: G)`.
 fn read_equal(
     source: &Source<'_>,
+    record: &mut Record,
     line: usize,
     limit: f64,
 ) -> Result<(f64, Vec<f64>, usize), ReadError> {
@@ -138,7 +139,7 @@ fn read_equal(
         .filter(|step| step.is_finite() && *step > 0.0)
         .ok_or_else(|| missing(source, line, "the step"))?;
     let columns = format_in(source, line).unwrap_or(Columns::new(8, 9));
-    let (values, next) = source.fixed(line + 1, count, columns, limit)?;
+    let (values, next) = source.counted(record, line + 1, count, columns, limit)?;
     Ok((time_step, values, next))
 }
 

@@ -153,7 +153,7 @@ fn read_channel(
     let count = super::whole(source, line, "a number of points", count)?;
     let columns =
         format_after(source, line).ok_or_else(|| damaged(source, line, "a Fortran format"))?;
-    let (mut values, mut next) = source.fixed(line + 1, count, columns, 1e12)?;
+    let (mut values, mut next) = source.counted(record, line + 1, count, columns, 1e12)?;
     let quantity = header.integer(2);
     let unit = header.integer(3);
     let refuse = |found: String| {

@@ -84,7 +84,7 @@ fn read_channel(
         record.station = station_name(source, name_line.saturating_sub(1));
     }
     let (accelerations, mut next) =
-        read_block(source, first + HEADER_LINES, "acc", LARGEST_ACCELERATION * 1000.0)?
+        read_block(source, record, first + HEADER_LINES, "acc", LARGEST_ACCELERATION * 1000.0)?
             .ok_or_else(|| {
                 source.error(
                     first + HEADER_LINES,
@@ -103,7 +103,7 @@ fn read_channel(
     let mut measured =
         vec![(Quantity::Acceleration, unit.factor(), math::peak(&channel.acceleration))];
     for (key, quantity) in [("vel", Quantity::Velocity), ("dis", Quantity::Displacement)] {
-        if let Some((block, after)) = read_block(source, next, key, 1e9)? {
+        if let Some((block, after)) = read_block(source, record, next, key, 1e9)? {
             measured.push((quantity, 0.01, 0.01 * math::peak(&block)));
             next = after;
         }
@@ -155,6 +155,7 @@ fn read_channel(
 /// One block of `key` (acc, vel, dis) if its data line stands here.
 fn read_block(
     source: &Source<'_>,
+    record: &mut Record,
     line: usize,
     key: &str,
     limit: f64,
@@ -165,7 +166,7 @@ fn read_block(
     let Some((count, _)) = leading_number(source.raw(line)) else { return Ok(None) };
     let count = super::whole(source, line, "a number of points", count)?;
     let columns = format_in(source, line).unwrap_or(Columns::new(8, 10));
-    source.fixed(line + 1, count, columns, limit).map(Some)
+    source.counted(record, line + 1, count, columns, limit).map(Some)
 }
 
 fn unit(

@@ -102,7 +102,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     record.event = field(source, "#Origin Time").map(|(_, text)| text).unwrap_or_default();
     let rows = time.len();
     let timed = Timed { first_line: format_line + 1, per_line: 1, time, values, resolution: 0.001 };
-    let (mut time_step, values) = even_steps(source, &mut record, "all", timed)?;
+    let (mut time_step, mut values) = even_steps(source, &mut record, "all", timed)?;
     if let Some((line, rate)) = number(source, "#SampleRate(Hz):") {
         if (rate * time_step - 1.0).abs() < 1e-3 {
             time_step = 1.0 / rate;
@@ -120,7 +120,8 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             let stated = super::whole(source, line, "a record length", stated)?;
             // Whole seconds are stated; up to one second more or less is rounding.
             if (rows as f64 - stated as f64).abs() > rate {
-                super::check_count(source, &mut record, line, stated, rows)?;
+                let used = super::check_count(source, &mut record, line, stated, rows)?;
+                values.iter_mut().for_each(|column| column.truncate(used));
             } else if rows != stated {
                 record.warn(
                     line + 1,

@@ -115,7 +115,8 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         let value = source.within(line, 0, value, limit)?;
         values.push(value * unit.factor());
     }
-    super::check_count(source, &mut record, count_line, count, values.len())?;
+    let used = super::check_count(source, &mut record, count_line, count, values.len())?;
+    values.truncate(used);
     let name = text("STREAM");
     let mut channel = Channel::new(name.clone(), Direction::parse(&name), time_step, values);
     channel.start = start(&text("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS"));

@@ -71,6 +71,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let (name, direction, borehole) = direction(&direction_text);
     let first = field(source, "Memo").map_or(HEADER_LINES, |(line, _)| line + 1);
     let counts = read_counts(source, first, LARGEST_ACCELERATION / factor)?;
+    let mut used = counts.len();
     let (duration_line, duration) = need("Duration")?;
     if let Some((seconds, _)) = leading_number(duration.as_bytes()) {
         let stated = (seconds * rate).round();
@@ -79,7 +80,8 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             // Whole seconds are stated; up to one second more or less is rounding.
             let second = super::whole(source, duration_line, "a sampling frequency", rate.ceil())?;
             if counts.len().abs_diff(stated) > second {
-                super::check_count(source, &mut record, duration_line, stated, counts.len())?;
+                let (line, found) = (duration_line, counts.len());
+                used = super::check_count(source, &mut record, line, stated, found)?;
             } else if counts.len() != stated {
                 record.warn(
                     duration_line + 1,
@@ -88,7 +90,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             }
         }
     }
-    let mut values: Vec<f64> = counts.iter().map(|count| count * factor).collect();
+    let mut values: Vec<f64> = counts[..used].iter().map(|count| count * factor).collect();
     let offset = math::mean(&values);
     for value in &mut values {
         *value -= offset;

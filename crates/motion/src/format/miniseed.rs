@@ -24,7 +24,7 @@ fn sniff(source: &Source<'_>) -> bool {
         && b[..6].iter().all(|c| c.is_ascii_digit() || *c == b' ')
         && matches!(b[6], b'D' | b'R' | b'Q' | b'M')
         && matches!(b[7], b' ' | 0)
-        && b[8..20].iter().all(|c| c.is_ascii_alphanumeric() || *c == b' ')
+        && b[8..20].iter().all(|c| c.is_ascii_alphanumeric() || matches!(*c, b' ' | b'-'))
 }
 
 /// One data record's header.
@@ -33,8 +33,8 @@ struct Header {
     channel: String,
     samples: usize,
     rate: f64,
-    location: String,
     station: String,
+    location: String,
     start: Utc,
     data: usize,
     length: usize,
@@ -192,7 +192,7 @@ fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
     let location = Some(part(13, 15)).filter(|code| code != "--").unwrap_or_default();
     let station = format!("{}.{}", part(18, 20), part(8, 13));
     let big = order == 1;
-    Ok(Header { id, channel, location, station, samples, rate, start, data, length, encoding, big })
+    Ok(Header { id, channel, samples, rate, station, location, start, data, length, encoding, big })
 }
 
 /// Joins records of one channel; a gap or overlap is an error, because nothing may be made up.

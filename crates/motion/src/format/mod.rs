@@ -281,6 +281,7 @@ fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
                 ));
             }
         }
+        messages.extend(record.channels[index].implausible());
         let in_g = pga / STANDARD_GRAVITY;
         if in_g > 3.0 {
             messages.push(format!("channel {label}: PGA is {in_g:.3} g; check the unit"));
@@ -291,7 +292,15 @@ fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
             record.warn(None, message);
         }
     }
-    Ok(())
+    record.align_each_site().map_err(|error| {
+        source.error(
+            (),
+            Refusal::Damaged,
+            "channels of one station and sensor that were recorded at one time",
+            error.to_string(),
+            "split the file by time",
+        )
+    })
 }
 
 /// A positive whole number from a header.
@@ -309,24 +318,34 @@ fn whole(source: &Source<'_>, line: usize, what: &str, value: f64) -> Result<usi
     ))
 }
 
-/// Compares a stated count with the values found: one less or two more are used with a warning,
-/// because headers in circulation are off by that much; anything else means a cut or mixed file.
+/// How many of the values found are used where a count is stated: one less or two more all are, because
+/// headers in circulation are off by that much; of more only the stated number; fewer mean a cut file.
 fn check_count(
     source: &Source<'_>,
     record: &mut Record,
     line: usize,
     stated: usize,
     found: usize,
-) -> Result<(), ReadError> {
+) -> Result<usize, ReadError> {
     if stated == found {
-        return Ok(());
+        return Ok(found);
     }
     if found + 1 == stated || found == stated + 1 || found == stated + 2 {
         record.warn(
             line + 1,
             format!("the header states {stated} values, the file holds {found}; all are used"),
         );
-        return Ok(());
+        return Ok(found);
+    }
+    if found > stated {
+        record.warn(
+            line + 1,
+            format!(
+                "the header states {stated} values, the file holds {found}; the last {} are left out",
+                found - stated
+            ),
+        );
+        return Ok(stated);
     }
     let column = source.find(line, &stated.to_string());
     Err(source.error(

@@ -71,15 +71,12 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         }
     }
     let limit = LARGEST_ACCELERATION / GAL;
-    let (numbers, next) = source.fixed(data, count, Columns::new(8, 10), limit)?;
+    let (numbers, next) = source.counted(&mut record, data, count, Columns::new(8, 10), limit)?;
     if next < source.lines.len() {
-        return Err(source.error(
-            next,
-            Refusal::Damaged,
-            format!("the end of the file after {count} values"),
-            format!("\"{}\"", shorten(&source.text(next))),
-            "the header states fewer values than the file holds; get the file again",
-        ));
+        record.warn(
+            next + 1,
+            format!("what follows the {count} values is left out, from this line to the last"),
+        );
     }
     let name = component(source);
     let (time_step, values) = if let Some(rate) = real(1).filter(|rate| *rate > 0.0) {

@@ -1,6 +1,7 @@
 //! The bytes of a text file by line and column, and numbers read from them or refused with a place.
 
 use crate::error::{ReadError, ReadFailure, Refusal};
+use crate::record::Record;
 
 /// Largest acceleration any reader accepts (m/s²), about a thousand g's.
 pub(crate) const LARGEST_ACCELERATION: f64 = 1e4;
@@ -62,7 +63,8 @@ impl<'a> Source<'a> {
         let count = text.split(|&byte| byte == separator).count();
         let mut lines: Vec<&[u8]> = Vec::with_capacity(count);
         lines.extend(text.split(|&byte| byte == separator).map(|mut line| {
-            while let [rest @ .., b'\r'] = line {
+            // Some agencies fill their lines up with NUL.
+            while let [rest @ .., b'\r' | 0] = line {
                 line = rest;
             }
             line
@@ -186,6 +188,54 @@ impl<'a> Source<'a> {
         columns: Columns,
         limit: f64,
     ) -> Result<(Vec<f64>, usize), ReadError> {
+        self.fixed_or_more(line, count, columns, limit, false)
+            .map(|(values, next, _)| (values, next))
+    }
+
+    /// As [`Source::fixed`] where the count came first: what stands behind the last number, on its line
+    /// and on further lines of numbers, is left out with a warning.
+    pub(crate) fn counted(
+        &self,
+        record: &mut Record,
+        line: usize,
+        count: usize,
+        columns: Columns,
+        limit: f64,
+    ) -> Result<(Vec<f64>, usize), ReadError> {
+        let (values, mut next, mut more) = self.fixed_or_more(line, count, columns, limit, true)?;
+        let mut numbers = Vec::new();
+        while next < self.lines.len() {
+            numbers.clear();
+            let filler = self.raw(next).is_empty()
+                || (self.tokens(next, f64::INFINITY, &mut numbers).is_ok() && !numbers.is_empty());
+            if !filler {
+                break;
+            }
+            more += numbers.len();
+            next += 1;
+        }
+        if more > 0 {
+            record.warn(
+                next,
+                format!(
+                    "{more} numbers stand behind the {count} that the header states; they are left \
+                     out"
+                ),
+            );
+        }
+        Ok((values, next))
+    }
+
+    /// Values, the next line, and how many numbers in excess the last line had where `lenient`.
+    fn fixed_or_more(
+        &self,
+        line: usize,
+        count: usize,
+        columns: Columns,
+        limit: f64,
+        lenient: bool,
+    ) -> Result<(Vec<f64>, usize, usize), ReadError> {
+        let mut more = 0;
         let mut values = Vec::with_capacity(count.min(self.bytes.len()));
         let mut at = line;
         while values.len() < count {
@@ -199,14 +249,19 @@ impl<'a> Source<'a> {
             if let Err(error) = self.fixed_line(at, wanted, columns, limit, &mut values) {
                 values.truncate(before);
                 let mut tokens = Vec::with_capacity(wanted);
-                if self.tokens(at, limit, &mut tokens).is_err() || tokens.len() != wanted {
+                let read = self.tokens(at, limit, &mut tokens).is_ok();
+                let last = lenient && before + wanted == count && wanted < columns.per_line;
+                if read && last && tokens.len() > wanted {
+                    more = tokens.len() - wanted;
+                    tokens.truncate(wanted);
+                } else if !read || tokens.len() != wanted {
                     return Err(error);
                 }
                 values.append(&mut tokens);
             }
             at += 1;
         }
-        Ok((values, at))
+        Ok((values, at, more))
     }
 
     fn fixed_line(

@@ -113,21 +113,19 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         }
     }
     let found = values.first().map_or(0, Vec::len);
-    super::check_count(source, &mut record, count_line, count, found)?;
+    // Here one or two in excess are left out too.
     if found > count {
         for column in &mut values {
             column.truncate(count);
         }
-        record
-            .notes
-            .push(format!("{} rows beyond the {count} stated were left out", found - count));
-        record.warnings.retain(|warning| warning.line != Some(count_line + 1));
         record.warn(
             count_line + 1,
             format!(
                 "the header states {count} samples, the file holds {found}; the rest is left out"
             ),
         );
+    } else {
+        super::check_count(source, &mut record, count_line, count, found)?;
     }
     record.station = need("CLAVE DE LA ESTACION")?.1;
     record.event = field(source, "FECHA DEL SISMO").map(|(_, text)| text).unwrap_or_default();

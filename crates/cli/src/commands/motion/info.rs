@@ -99,9 +99,7 @@ fn together(records: &[Record]) -> anyhow::Result<Vec<Record>> {
             let first = &group[0];
             let same_step =
                 |a: &Channel, b: &Channel| (a.time_step / b.time_step - 1.0).abs() < 1e-9;
-            first.format == record.format
-                && first.event == record.event
-                && first.station == record.station
+            Record::gather(&[first.clone(), record.clone()]).is_ok()
                 && !(first.event.is_empty() && first.station.is_empty())
                 && same_step(&first.channels[0], &record.channels[0])
         };
@@ -173,8 +171,13 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
         record.channels.iter().map(|channel| (channel.name.clone(), channel)).collect();
     lines.extend(measures::table(&columns, shown)?.lines());
     if all {
-        let rotated = measures::rotated(record)?;
-        if !rotated.is_empty() {
+        let rotated = measures::rotated(record);
+        if let Err(error) = &rotated
+            && record.channels.len() > 1
+        {
+            lines.extend([String::new(), format!("  no measure over all directions: {error}")]);
+        }
+        if let Ok(rotated) = rotated {
             let head = ["over all directions", "unit", "RotD50", "RotD100"];
             let mut table = Table::new(2, head.map(str::to_owned));
             for row in rotated {
@@ -193,7 +196,10 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
         lines.extend(measures::pulses(record).into_iter().map(|line| format!("  {line}")));
     }
     if record.stage == Stage::Raw {
-        lines.extend([String::new(), "  corners that the noise before the shaking suggests".to_owned()]);
+        lines.extend([
+            String::new(),
+            "  corners that the noise before the shaking suggests".to_owned(),
+        ]);
         lines.extend(corners(record).into_iter().map(|line| format!("    {line}")));
     }
     if !record.notes.is_empty() {
@@ -238,10 +244,12 @@ fn corners(record: &Record) -> Vec<String> {
         .collect()
 }
 
+/// What a channel has in one column.
+type Cell<'a> = &'a dyn Fn(&Channel) -> String;
+
 /// When and where each channel was recorded, as far as the file tells; columns that would be empty
 /// are left out.
 fn recorded(record: &Record) -> Table {
-    type Cell<'a> = &'a dyn Fn(&Channel) -> String;
     let degrees = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.4}"));
     let meters = |value: Option<f64>| value.map_or_else(String::new, number);
     let several = record.channels.iter().any(|c| c.site.station != record.station);
@@ -349,7 +357,7 @@ fn document(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Valu
             "velocity_pulse": pulse,
         }));
     }
-    let rotated = if all { measures::rotated(record)? } else { Vec::new() };
+    let rotated = if all { measures::rotated(record).unwrap_or_default() } else { Vec::new() };
     let rotated: Vec<Value> = rotated
         .iter()
         .map(|row| {

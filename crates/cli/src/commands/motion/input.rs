@@ -26,6 +26,10 @@ pub(super) struct Input {
     /// Take several files as parts of one long record and join them where they overlap.
     #[arg(long)]
     pub(super) join: bool,
+    /// Take several files together although they are of different stations, sensors, events or
+    /// publishers, and combine their components.
+    #[arg(long, conflicts_with = "join")]
+    pub(super) allow_mixed: bool,
     /// Unit of acceleration where the file states none: g, g/10, m/s2, cm/s2, gal or mm/s2.
     #[arg(long, value_name = "UNIT")]
     unit: Option<String>,
@@ -79,13 +83,23 @@ impl Chain {
 impl Input {
     /// Every file by itself.
     pub(super) fn read_each(&self) -> anyhow::Result<Vec<Record>> {
+        let mut records = self.read_as_they_are()?;
+        for record in &mut records {
+            record.mixed = self.allow_mixed;
+        }
+        Ok(records)
+    }
+
+    fn read_as_they_are(&self) -> anyhow::Result<Vec<Record>> {
         let options = self.options()?;
         self.files.iter().map(|file| read_file(file, &options)).collect()
     }
 
     /// The record of one file's bytes.
     pub(super) fn read_bytes(&self, bytes: &[u8], file: &str) -> anyhow::Result<Record> {
-        read_bytes(bytes, file, &self.options()?)
+        let mut record = read_bytes(bytes, file, &self.options()?)?;
+        record.mixed = self.allow_mixed;
+        Ok(record)
     }
 
     /// Whether a folder is among the files.
@@ -96,8 +110,8 @@ impl Input {
     /// What was told of the files, as words.
     pub(super) fn told(&self) -> String {
         format!(
-            "unit {:?}, step {:?}, sensitivity {:?}",
-            self.unit, self.time_step, self.sensitivity
+            "unit {:?}, step {:?}, sensitivity {:?}, mixed {}",
+            self.unit, self.time_step, self.sensitivity, self.allow_mixed
         )
     }
 
@@ -128,7 +142,14 @@ impl Input {
         if self.join {
             return Ok(Record::join(records)?);
         }
-        Ok(Record::gather(records)?)
+        if self.allow_mixed {
+            return Ok(Record::gather_mixed(records)?);
+        }
+        // What differs between the files can be overruled; steps and times cannot.
+        Record::gather(records).map_err(|error| match Record::gather_mixed(records) {
+            Ok(_) => anyhow!("{error}, or add --allow-mixed"),
+            Err(_) => error.into(),
+        })
     }
 }
 

@@ -137,14 +137,6 @@ pub(super) fn pulses(record: &Record) -> Vec<String> {
     record.channels.iter().map(sentence).collect()
 }
 
-/// The first two horizontals, if there are two of one step.
-pub(super) fn horizontals(record: &Record) -> Option<(&Channel, &Channel)> {
-    let mut flat = record.channels.iter().filter(|channel| !channel.is_vertical());
-    let (one, two) = (flat.next()?, flat.next()?);
-    let even = (one.time_step / two.time_step - 1.0).abs() < 1e-9;
-    even.then_some((one, two))
-}
-
 /// A measure over all horizontal directions.
 pub(super) struct Rotated {
     /// The measure.
@@ -155,9 +147,9 @@ pub(super) struct Rotated {
     pub(super) peak: RotatedPeak,
 }
 
-/// `RotD50` and `RotD100` of the two horizontals; nothing if there are not two.
+/// `RotD50` and `RotD100` of the two horizontals.
 pub(super) fn rotated(record: &Record) -> Result<Vec<Rotated>, MotionError> {
-    let Some((one, two)) = horizontals(record) else { return Ok(Vec::new()) };
+    let (one, two) = record.horizontal_pair()?;
     let (first, second) = (sampled(one)?, sampled(two)?);
     let (a, b) = (first.acceleration(), second.acceleration());
     let mut rows = vec![

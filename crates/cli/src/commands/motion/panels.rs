@@ -11,7 +11,7 @@ use barrelstack_report::{
     Axis, Band, Figure, FigureKind, Format, Mark, Panels, Plot, Series, significant,
 };
 
-use super::measures::{horizontals, sampled};
+use super::measures::sampled;
 use super::output::{store, vacant};
 
 /// Damping ratio of the spectra.
@@ -233,7 +233,7 @@ fn response(
         let values = in_g(spectrum.pseudo_acceleration());
         plot.series.push(Series::new(name.as_str(), periods.clone(), values));
     }
-    if let Some((one, two)) = whole.and_then(horizontals) {
+    if let Some((one, two)) = whole.and_then(|record| record.horizontal_pair().ok()) {
         let peaks = rotated_spectrum(
             one.time_step,
             &one.acceleration,

@@ -209,12 +209,7 @@ fn files(args: &PlotArgs) -> anyhow::Result<Vec<(Kind, PathBuf)>> {
         .collect())
 }
 
-fn figure(
-    kind: Kind,
-    record: &Record,
-    read: &Record,
-    damping: &[f64],
-) -> anyhow::Result<Figure> {
+fn figure(kind: Kind, record: &Record, read: &Record, damping: &[f64]) -> anyhow::Result<Figure> {
     if kind == Kind::Panels {
         return panels::record(record, read);
     }

@@ -315,6 +315,7 @@ fn write(
         stage: Stage::Corrected,
         channels: vec![channel],
         warnings: Vec::new(),
+        mixed: false,
         notes: motion.provenance,
     };
     let columns: Vec<_> = record.channels.iter().map(|c| (c.name.clone(), c)).collect();

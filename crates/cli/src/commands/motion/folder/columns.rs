@@ -90,6 +90,8 @@ pub(super) fn cells(found: Option<&Found<'_>>, periods: &[f64]) -> Vec<Cell> {
     cells.push(number("pga_rotd50", "m/s2", im, pair.map(|pair| pair.peaks[0])));
     cells.push(number("pgv_rotd50", "m/s", im, pair.map(|pair| pair.peaks[1])));
     let both = pair.and_then(|pair| pair.pulse.as_ref());
+    let why = found.and_then(|f| f.measured.no_pair.clone());
+    cells.push(text("no_rotd50_because", why));
     pulse(&mut cells, "shahi_baker", both);
     let angle = both.map(|pulse| pulse.angle);
     cells.push(number("shahi_baker_direction_from_h1", "deg", im, angle));

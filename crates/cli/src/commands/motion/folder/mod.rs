@@ -271,10 +271,10 @@ fn entry(
     }
     let whole =
         source.paths().iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ");
-    let record = match Record::gather(&records) {
+    let record = match input.unite(&records) {
         Ok(record) => record,
         Err(error) => {
-            entry.refused.push((whole.clone(), format!("{whole}: no record together: {error}")));
+            entry.refused.push((whole.clone(), format!("{whole}: no record together: {error:#}")));
             return (entry, true);
         }
     };
