@@ -34,8 +34,11 @@
 //! - Reading: [`read`], [`FORMATS`], [`ReadError`]; parts and components: [`Record::join`],
 //!   [`Record::gather`].
 //! - Choosing and processing: [`Component`], [`Record::ground_motion`], [`Processing`].
+//! - Corners from the noise: [`Record::noise_corners`]; across and along a fault:
+//!   [`Record::fault_axes`].
 //! - Measuring: [`IntensityMeasure`], [`Horizontals`], [`ResponseSpectrum`], [`rotated_spectrum`],
-//!   [`dominant_pulse`].
+//!   [`dominant_pulse`], [`classify_component`], [`classify_pair`].
+//! - Many records: [`group_files`], [`measure`], [`Flatfile`]; a set for a target: [`select`].
 //! - Scaling and matching: [`GroundMotion::scale_to`], [`GroundMotion::froude`],
 //!   [`GroundMotion::match_spectrum`], [`TargetSpectrum`].
 //! - Making: [`Pulse`], [`CloughPenzien`], [`BooreSource`], [`NearFault`], all from stated seeds of

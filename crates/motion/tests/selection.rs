@@ -53,7 +53,7 @@ fn library(count: usize) -> Vec<Candidate> {
         let along = |i: usize| {
             let x = (MODEL[i].0 / 0.6).ln();
             let smooth = ripple[i] + ripple[i.saturating_sub(1)];
-            0.8 * level + 0.35 * tilt * x - 0.12 * bow * x * x + 0.2 * smooth
+            0.8 * level + 0.4 * tilt * x - 0.15 * bow * x * x + 0.06 * smooth
         };
         let spectrum =
             (0..MODEL.len()).map(|i| STANDARD_GRAVITY * MODEL[i].1 * along(i).exp()).collect();

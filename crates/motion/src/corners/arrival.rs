@@ -4,7 +4,7 @@ use crate::math;
 
 /// Share of the peak at which the shaking has begun for sure.
 const SURE: f64 = 0.2;
-/// Part of the time up to there in which the arrival is looked for a second time, behind the first.
+/// How far a search reaches behind what was found before, as a part of the time up to the strong motion.
 const BEHIND: f64 = 0.1;
 
 /// Time (s) after the first sample of the first arrival; 0 if the shaking is there from the start.
@@ -18,11 +18,11 @@ pub(super) fn arrival(time_step: f64, a: &[f64]) -> f64 {
     let level = math::mean(&a[..a.len().min(100)]);
     let peak = a.iter().fold(0.0_f64, |peak, a| peak.max((a - level).abs()));
     let Some(strong) = a.iter().position(|a| (a - level).abs() >= SURE * peak) else { return 0.0 };
-    let Some(first) = split(&a[..strong]) else { return 0.0 };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, small")]
-    let behind = (BEHIND * strong as f64) as usize;
-    let again = split(&a[..(first + behind).min(strong)]).unwrap_or(first);
-    time_step * again as f64
+    let behind = (BEHIND * strong as f64).ceil() as usize;
+    let until = |end: usize| &a[..(end + behind).min(a.len())];
+    let Some(first) = split(until(strong)) else { return 0.0 };
+    time_step * split(until(first)).unwrap_or(first) as f64
 }
 
 /// Where two stretches of constant variance meet; None if there are too few samples.

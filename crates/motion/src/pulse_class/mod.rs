@@ -109,7 +109,7 @@ pub fn classify_pair(first: &Sampled, second: &Sampled) -> Result<ClassifiedPuls
             indicator,
             period: wavelet::period(pulse.scale),
             late,
-            angle: math::atan2(s, c).to_degrees().rem_euclid(180.0),
+            angle: half_turn(math::atan2(s, c).to_degrees()),
             pgv,
         };
         if judged.pulse_like {
@@ -119,6 +119,13 @@ pub fn classify_pair(first: &Sampled, second: &Sampled) -> Result<ClassifiedPuls
         map.take_out(found);
     }
     best.ok_or_else(still)
+}
+
+/// A direction (degrees) from 0 to below 180.
+fn half_turn(degrees: f64) -> f64 {
+    // The remainder of a little less than nothing is rounded to the whole.
+    let angle = degrees.rem_euclid(180.0);
+    if angle < 180.0 { angle } else { 0.0 }
 }
 
 fn still() -> MotionError {
