@@ -69,7 +69,7 @@ pub(crate) fn motion(args: &MotionArgs) -> anyhow::Result<ExitCode> {
         MotionCommand::Convert(args) => change::convert(args),
         MotionCommand::Process(args) => process::process(args),
         MotionCommand::Scale(args) => scale::scale(args),
-        MotionCommand::Match(args) => matching::match_spectrum(args),
+        MotionCommand::Match(args) => return matching::match_spectrum(args),
         MotionCommand::Spectrum(args) => spectrum::spectrum(args),
         MotionCommand::Synth(args) => synth::synth(args),
     }?;
