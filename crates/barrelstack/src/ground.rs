@@ -185,7 +185,7 @@ fn recorded(spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
             warnings.extend(other.warnings.iter().map(|w| format!("{}: {w}", other.file)));
             let (record, other, told) = on_one_clock(&record, &horizontal, other)?;
             warnings.extend(told);
-            let own = processing;
+            let own = processing.clone();
             let processing = match spec.processing {
                 ProcessingSpec::None => Processing::none(),
                 ProcessingSpec::Default => default_processing(&other),

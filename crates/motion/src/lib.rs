@@ -101,7 +101,7 @@ pub use ground_motion::GroundMotion;
 pub use history::{Delayed, History};
 pub use horizontals::Horizontals;
 pub use intensity::{IntensityMeasure, arias, husid};
-pub use matching::{MatchMethod, Matched, Matching};
+pub use matching::{MatchMethod, Matched, Matching, Missed};
 pub use math::STANDARD_GRAVITY;
 pub use process::{MeanRemoval, Pads, Processed, Processing, Residuals};
 pub use pulse::Pulse;

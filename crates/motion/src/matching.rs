@@ -75,6 +75,17 @@ pub(crate) const PATIENCE: usize = 15;
 /// Share of the tolerance at which the rounds end.
 pub(crate) const GOOD_ENOUGH: f64 = 0.7;
 
+/// A range of periods over which a spectrum misses its target on one side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Missed {
+    /// Shortest period (s).
+    pub from: f64,
+    /// Longest period (s).
+    pub to: f64,
+    /// Largest relative misfit of the range, negative where the spectrum lies below the target.
+    pub misfit: f64,
+}
+
 /// A matched motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matched {
@@ -83,6 +94,8 @@ pub struct Matched {
     /// Largest relative misfit from the shortest to the longest period, on a grid of 1080 periods to a
     /// decade.
     pub misfit: f64,
+    /// Ranges of periods where the spectrum is off by more than the tolerance; none if it was met.
+    pub missed: Vec<Missed>,
     /// Rounds done.
     pub rounds: usize,
     /// The method asked for.
@@ -93,6 +106,16 @@ pub struct Matched {
 }
 
 impl Matched {
+    /// The missed ranges, for a sentence: "by +5.6 % at 0.41 to 0.43 s, ...".
+    pub fn missed_in_words(&self) -> String {
+        let words = |missed: &Missed| {
+            let (from, to) = (format!("{:.3}", missed.from), format!("{:.3}", missed.to));
+            let periods = if from == to { from } else { format!("{from} to {to}") };
+            format!("by {:+.1} % at {periods} s", 100.0 * missed.misfit)
+        };
+        self.missed.iter().map(words).collect::<Vec<_>>().join(", ")
+    }
+
     /// Where it was matched, for a sentence: "matched in …".
     pub fn domain(&self) -> &'static str {
         match (self.first, self.chosen) {
@@ -127,6 +150,35 @@ impl GroundMotion {
     /// # Ok::<(), barrelstack_motion::MotionError>(())
     /// ```
     pub fn match_spectrum(
+        &self,
+        target: &TargetSpectrum,
+        settings: &Matching,
+    ) -> Result<Matched, MotionError> {
+        let matched = self.match_spectrum_nearly(target, settings)?;
+        if matched.missed.is_empty() {
+            return Ok(matched);
+        }
+        Err(MotionError::NotConverged {
+            what: "spectral matching".to_owned(),
+            reached: format!(
+                "a misfit of {:.1} % ({})",
+                100.0 * matched.misfit,
+                matched.missed_in_words()
+            ),
+            rounds: matched.rounds,
+            wanted: format!("{:.1} %", 100.0 * settings.tolerance),
+            remedy: "start from a motion closer to the target, accept a larger tolerance, or take \
+                     the best motion as it is"
+                .to_owned(),
+        })
+    }
+
+    /// As [`GroundMotion::match_spectrum`], and where the tolerance is not reached the best motion that
+    /// was found, with the periods that it misses ([`Matched::missed`]).
+    ///
+    /// # Errors
+    /// If a setting is out of range or the motion does not move.
+    pub fn match_spectrum_nearly(
         &self,
         target: &TargetSpectrum,
         settings: &Matching,
@@ -167,21 +219,13 @@ impl GroundMotion {
         let start: Vec<f64> = given.iter().map(|a| a * factor).collect();
         let (Best { acceleration, misfit, round: rounds }, first) =
             work.alternate(&start, settings)?;
-        if !(misfit <= settings.tolerance) {
-            return Err(MotionError::NotConverged {
-                what: "spectral matching".to_owned(),
-                reached: format!("a misfit of {:.1} %", 100.0 * misfit),
-                rounds,
-                wanted: format!("{:.1} %", 100.0 * settings.tolerance),
-                remedy: "start from a motion closer to the target, or accept a larger tolerance"
-                    .to_owned(),
-            });
-        }
+        let missed = work.missed(&acceleration, settings.tolerance);
         let horizontal = History::Sampled(Sampled::new(time_step, acceleration)?);
         let vertical = self.vertical.as_ref().map(|history| history.scaled(factor));
         let mut motion = GroundMotion::new(self.name.clone(), horizontal, vertical);
         motion.provenance.clone_from(&self.provenance);
-        let mut matched = Matched { motion, misfit, rounds, chosen: settings.method, first };
+        let chosen = settings.method;
+        let mut matched = Matched { motion, misfit, missed, rounds, chosen, first };
         matched.motion.provenance.push(format!(
             "scaled by {factor:.4} and matched in {} to {target} from {} to {} s: misfit at most \
              {:.2} % after {rounds} rounds, ends closed",
@@ -190,6 +234,10 @@ impl GroundMotion {
             settings.longest,
             100.0 * misfit
         ));
+        if !matched.missed.is_empty() {
+            let words = matched.missed_in_words();
+            matched.motion.provenance.push(format!("the target is missed {words}"));
+        }
         Ok(matched)
     }
 }
@@ -293,6 +341,31 @@ impl Work<'_> {
     /// Largest relative misfit at all periods that are checked.
     pub(crate) fn misfit(&self, acceleration: &[f64]) -> f64 {
         misfit_of(&self.checked_goal, &self.spectrum(&self.checked, acceleration))
+    }
+
+    /// Where the spectrum lies outside the tolerance.
+    fn missed(&self, acceleration: &[f64], tolerance: f64) -> Vec<Missed> {
+        let now = self.spectrum(&self.checked, acceleration);
+        let mut ranges: Vec<Missed> = Vec::new();
+        let mut open = false;
+        for ((&period, n), g) in self.checked.iter().zip(&now).zip(&self.checked_goal) {
+            let misfit = n / g - 1.0;
+            if misfit.abs() <= tolerance {
+                open = false;
+                continue;
+            }
+            match ranges.last_mut() {
+                Some(last) if open && last.misfit.signum() == misfit.signum() => {
+                    last.to = period;
+                    if misfit.abs() > last.misfit.abs() {
+                        last.misfit = misfit;
+                    }
+                }
+                _ => ranges.push(Missed { from: period, to: period, misfit }),
+            }
+            open = true;
+        }
+        ranges
     }
 
     /// At every second period that is checked: the largest relative misfit, and a mean of all misfits in

@@ -14,6 +14,8 @@ mod geonet;
 mod knet;
 mod miniseed;
 mod native;
+mod npz;
+mod packed;
 mod peer;
 mod refused;
 mod renadic;
@@ -101,6 +103,7 @@ pub const FORMATS: &[Format] = &[
     sac::FORMAT,
     miniseed::FORMAT,
     native::FORMAT,
+    npz::FORMAT,
     smc::FORMAT,
     geonet::FORMAT,
     renadic::FORMAT,
@@ -120,9 +123,10 @@ pub const FORMATS: &[Format] = &[
 
 /// Files that are known and refused, tried first.
 const KNOWN_OTHERS: &[Format] =
-    &[refused::HDF5, refused::ARCHIVE, refused::XML, refused::USGS_BLOCKS, slammer::FORMAT];
+    &[refused::HDF5, refused::XML, refused::USGS_BLOCKS, slammer::FORMAT];
 
-/// Reads a strong-motion file of any format; `name` is used in messages only.
+/// Reads a strong-motion file of any format, also one inside a gzip or zip file; `name` is used in
+/// messages only.
 ///
 /// # Errors
 /// If no format fits, the file holds no acceleration, is damaged, or lacks a unit, step or
@@ -141,7 +145,19 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
     let source = Source::new(name, bytes);
     check_bytes(&source)?;
     check_options(&source, options)?;
-    let Some(format) = KNOWN_OTHERS.iter().chain(FORMATS).find(|format| (format.sniff)(&source))
+    if let Some((bytes, inside)) = packed::unpack(&source)? {
+        let inside = Source::new(&inside, &bytes);
+        check_bytes(&inside)?;
+        let mut record = read_any(&inside, options)?;
+        record.file = name.to_owned();
+        return Ok(record);
+    }
+    read_any(&source, options)
+}
+
+/// Reads bytes that are not packed.
+fn read_any(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+    let Some(format) = KNOWN_OTHERS.iter().chain(FORMATS).find(|format| (format.sniff)(source))
     else {
         source.require_text()?;
         return Err(source.error(
@@ -152,7 +168,7 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
             "convert the file to plain columns, one value or time and value to a line",
         ));
     };
-    format.read_source(&source, options)
+    format.read_source(source, options)
 }
 
 /// Refuses what no format is.

@@ -24,11 +24,10 @@ use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
 use crate::units::AccelerationUnit;
 use crate::utc::Utc;
+use crate::write::TITLE;
 
 pub(crate) const FORMAT: Format =
     Format { name: "barrelstack", title: "plain text form of this crate", sniff, read };
-
-const TITLE: &str = "# barrelstack motion 1";
 
 fn sniff(source: &Source<'_>) -> bool {
     written(source, 0).starts_with("# barrelstack motion")
@@ -52,6 +51,18 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let end = (0..source.lines.len())
         .find(|&line| !written(source, line).starts_with('#'))
         .ok_or_else(|| source.cut("rows of numbers after the header", "none"))?;
+    described(source, end, |names, limit| {
+        super::rows(source, end, source.lines.len(), names.len(), limit)
+    })
+}
+
+/// The record that the header in the lines before `end` describes; `columns` gives the numbers of the
+/// channels named, none of them above a limit, in the unit that the header states.
+pub(super) fn described(
+    source: &Source<'_>,
+    end: usize,
+    columns: impl FnOnce(&[&str], f64) -> Result<Vec<Vec<f64>>, ReadError>,
+) -> Result<Record, ReadError> {
     let refuse = |line: usize, expected: &str, found: &str| {
         source.error(
             line,
@@ -116,7 +127,8 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     };
     let places = places(source, end, channels.len())?;
     let limit = LARGEST_ACCELERATION / unit.factor();
-    let columns = super::rows(source, end, source.lines.len(), channels.len(), limit)?;
+    let names: Vec<&str> = channels.iter().map(|(name, _)| name.as_str()).collect();
+    let columns = columns(&names, limit)?;
     let mut record = Record::new(FORMAT.name, source.name, stage);
     record.station = field(source, end, "station").map(|(_, text)| text).unwrap_or_default();
     record.event = field(source, end, "event").map(|(_, text)| text).unwrap_or_default();

@@ -15,9 +15,6 @@ pub(crate) const HDF5: Format = Format {
 pub(crate) const XML: Format =
     Format { name: "xml", title: "StationXML and QuakeML (refused)", sniff: is_xml, read: xml };
 
-pub(crate) const ARCHIVE: Format =
-    Format { name: "archive", title: "zip and gzip (refused)", sniff: is_archive, read: archive };
-
 /// Blocks of acceleration, velocity and displacement that the USGS gave out around 1987; no sample of
 /// them can be passed on, so that a reader could not be tested.
 pub(crate) const USGS_BLOCKS: Format = Format {
@@ -54,20 +51,6 @@ fn hdf5(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         "a strong-motion file",
         "an HDF5 container",
         "export the acceleration series to plain columns first",
-    ))
-}
-
-fn is_archive(source: &Source<'_>) -> bool {
-    source.bytes.starts_with(b"PK\x03\x04") || source.bytes.starts_with(&[0x1F, 0x8B])
-}
-
-fn archive(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
-    Err(source.error(
-        (),
-        Refusal::Unrecognized,
-        "a strong-motion file",
-        "a compressed archive",
-        "unpack it first",
     ))
 }
 

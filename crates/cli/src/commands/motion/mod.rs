@@ -77,7 +77,7 @@ pub(crate) fn motion(args: &MotionArgs) -> anyhow::Result<ExitCode> {
         MotionCommand::Process(args) => return process::process(args),
         MotionCommand::Select(args) => return select::select(args),
         MotionCommand::Scale(args) => scale::scale(args),
-        MotionCommand::Match(args) => matching::match_spectrum(args),
+        MotionCommand::Match(args) => return matching::match_spectrum(args),
         MotionCommand::Spectrum(args) => spectrum::spectrum(args),
         MotionCommand::Synth(args) => synth::synth(args),
     }?;
