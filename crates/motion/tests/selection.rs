@@ -44,22 +44,26 @@ fn target(epsilon: Option<f64>) -> SelectionTarget {
     SelectionTarget::new(&periods, &median, &sigma, condition).unwrap()
 }
 
-/// Spectra that vary as a library of records does: in level, tilt and ripple.
+/// Spectra drawn from the model, correlated over the periods as published.
 fn library(count: usize) -> Vec<Candidate> {
+    let n = MODEL.len();
+    // Cholesky's factor of the correlations; these are rounded, so a little stands on the diagonal.
+    let mut root = vec![vec![0.0; n]; n];
+    for i in 0..n {
+        for j in 0..=i {
+            let known: f64 = (0..j).map(|k| root[i][k] * root[j][k]).sum();
+            let left = spectral_correlation(MODEL[i].0, MODEL[j].0) - known;
+            root[i][j] = if i == j { (left + 0.01).sqrt() } else { left / root[j][j] };
+        }
+    }
     let mut random = Random::new(5);
-    let one = |k: usize, random: &mut Random| {
-        let (level, tilt, bow) = (random.normal(), random.normal(), random.normal());
-        let ripple: Vec<f64> = (0..MODEL.len()).map(|_| random.normal()).collect();
-        let along = |i: usize| {
-            let x = (MODEL[i].0 / 0.6).ln();
-            let smooth = ripple[i] + ripple[i.saturating_sub(1)];
-            0.8 * level + 0.4 * tilt * x - 0.15 * bow * x * x + 0.06 * smooth
-        };
-        let spectrum =
-            (0..MODEL.len()).map(|i| STANDARD_GRAVITY * MODEL[i].1 * along(i).exp()).collect();
-        Candidate { spectrum, group: format!("event {}", k % 40) }
+    let one = |k: usize| {
+        let deviates: Vec<f64> = (0..n).map(|_| random.normal()).collect();
+        let along = |i: usize| (0..=i).map(|j| root[i][j] * deviates[j]).sum::<f64>();
+        let sa = |i: usize| STANDARD_GRAVITY * MODEL[i].1 * (MODEL[i].2 * along(i)).exp();
+        Candidate { spectrum: (0..n).map(sa).collect(), group: format!("event {}", k % 40) }
     };
-    (0..count).map(|k| one(k, &mut random)).collect()
+    (0..count).map(one).collect()
 }
 
 fn choosing(count: usize) -> Choosing {

@@ -4,7 +4,7 @@ use crate::error::MotionError;
 use crate::horizontals::Horizontals;
 use crate::intensity::IntensityMeasure;
 use crate::process::Processing;
-use crate::pulse_class::{ClassifiedPulse, classify_component, classify_pair};
+use crate::pulse_class::{ClassifiedPulse, classify_all, classify_component};
 use crate::record::{Channel, Record};
 use crate::response::response;
 use crate::rotd::{RotatedPeak, rotated_spectrum};
@@ -89,9 +89,22 @@ pub fn measure(
     let (pair, no_pair) = match record.horizontal_pair() {
         Ok(_) => {
             let (first, second) = record.horizontals(processing)?;
-            (Some(both(&first, &second, periods)?), None)
+            let mut pair = both(&first, &second, periods)?;
+            // A motion without a velocity has no pulse, which is no reason to refuse it.
+            if let Ok((singles, together)) = classify_all(&first, &second) {
+                pair.pulse = Some(together);
+                for (component, pulse) in horizontals.iter_mut().zip(singles) {
+                    component.pulse = Some(pulse);
+                }
+            }
+            (Some(pair), None)
         }
-        Err(error) => (None, Some(error.to_string())),
+        Err(error) => {
+            for (component, channel) in horizontals.iter_mut().zip(&flat) {
+                component.pulse = classify_component(&motion(channel)?).ok();
+            }
+            (None, Some(error.to_string()))
+        }
     };
     Ok(Measured { horizontals, vertical, pair, no_pair })
 }
@@ -114,8 +127,7 @@ fn component(
         cav: IntensityMeasure::Cav.of(motion)?,
         duration: IntensityMeasure::D5_95.of(motion)?,
         fiv3: FIV3.of(motion)?,
-        // A motion without a velocity has no pulse, which is no reason to refuse it.
-        pulse: if channel.is_vertical() { None } else { classify_component(motion).ok() },
+        pulse: None,
         spectrum,
     })
 }
@@ -131,6 +143,6 @@ fn both(first: &Sampled, second: &Sampled, periods: &[f64]) -> Result<MeasuredPa
             periods,
             DAMPING,
         )?,
-        pulse: classify_pair(first, second).ok(),
+        pulse: None,
     })
 }

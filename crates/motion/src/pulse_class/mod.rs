@@ -54,14 +54,34 @@ pub struct ClassifiedPulse {
 /// If the motion is shorter than the shortest pulse or does not move.
 pub fn classify_component(motion: &Sampled) -> Result<ClassifiedPulse, MotionError> {
     let thin = Thinned::of(motion, None)?;
-    let mut map = Map::of(&thin);
+    let [map, ..] = Map::of(&thin);
+    single(&thin.first, thin.time_step, &map)
+}
+
+/// Both horizontals one by one as [`classify_component`], and together as [`classify_pair`], in one
+/// go.
+///
+/// # Errors
+/// As [`classify_pair`].
+pub(crate) fn classify_all(
+    first: &Sampled,
+    second: &Sampled,
+) -> Result<([ClassifiedPulse; 2], ClassifiedPulse), MotionError> {
+    let thin = Thinned::of(first, Some(second))?;
+    let [one, two, both] = Map::of(&thin);
+    let singles =
+        [single(&thin.first, thin.time_step, &one)?, single(&thin.second, thin.time_step, &two)?];
+    Ok((singles, double(&thin, both)?))
+}
+
+fn single(velocity: &[f64], time_step: f64, map: &Map) -> Result<ClassifiedPulse, MotionError> {
     let found = map.strongest().ok_or_else(still)?;
-    let pulse = Extracted::of(&thin.first, thin.time_step, found);
-    let (pgv_ratio, energy_ratio) = pulse.ratios(&thin.first);
+    let pulse = Extracted::of(velocity, time_step, found);
+    let (pgv_ratio, energy_ratio) = pulse.ratios(velocity);
     let exponent = -23.3 + 14.6 * pgv_ratio + 20.5 * energy_ratio;
     let indicator = 1.0 / (1.0 + math::exp(exponent));
-    let late = time_of(&thin.first, 0.2) <= time_of(&pulse.velocity, 0.1);
-    let pgv = math::peak(&thin.first);
+    let late = time_of(velocity, 0.2) <= time_of(&pulse.velocity, 0.1);
+    let pgv = math::peak(velocity);
     Ok(ClassifiedPulse {
         pulse_like: indicator > 0.85 && pgv >= 0.3 && !late,
         indicator,
@@ -87,7 +107,11 @@ pub fn classify_component(motion: &Sampled) -> Result<ClassifiedPulse, MotionErr
 /// If the steps differ, or as [`classify_component`].
 pub fn classify_pair(first: &Sampled, second: &Sampled) -> Result<ClassifiedPulse, MotionError> {
     let thin = Thinned::of(first, Some(second))?;
-    let mut map = Map::of(&thin);
+    let [_, _, both] = Map::of(&thin);
+    double(&thin, both)
+}
+
+fn double(thin: &Thinned, mut map: Map) -> Result<ClassifiedPulse, MotionError> {
     let mut best: Option<ClassifiedPulse> = None;
     for _ in 0..PULSES {
         let Some(found) = map.strongest() else { break };
@@ -186,6 +210,14 @@ struct Found {
     coefficients: (f64, f64),
 }
 
+impl Found {
+    /// Square of the coefficients.
+    fn strength(self) -> f64 {
+        let (x, y) = self.coefficients;
+        x * x + y * y
+    }
+}
+
 /// The strongest wavelet of every time.
 struct Map {
     best: Vec<Option<Found>>,
@@ -193,38 +225,34 @@ struct Map {
 }
 
 impl Map {
-    fn of(thin: &Thinned) -> Self {
+    /// The maps of the first component, of the second, and of both together.
+    fn of(thin: &Thinned) -> [Self; 3] {
         let (least, largest) = (wavelet::scale(PERIODS.0), wavelet::scale(PERIODS.1));
         let step = (largest - least) / SCALES as f64;
         let wavelet = |k: usize| Wavelet::new(least + step * k as f64, thin.time_step);
         let pair = Pair::new(&thin.first, &thin.second, &wavelet(SCALES));
-        let mut best: Vec<Option<Found>> = vec![None; thin.first.len()];
-        let mut strength = vec![0.0; thin.first.len()];
+        let empty = || Self { best: vec![None; thin.first.len()], time_step: thin.time_step };
+        let mut maps = [empty(), empty(), empty()];
         for k in 0..=SCALES {
             let scale = least + step * k as f64;
             let scales = ((scale - step).max(least), (scale + step).min(largest));
-            for (at, coefficients) in pair.coefficients(&wavelet(k)).into_iter().enumerate() {
-                let (x, y) = coefficients;
-                let squared = x * x + y * y;
-                if squared > strength[at] {
-                    strength[at] = squared;
-                    best[at] = Some(Found { scales, scale, at, coefficients });
+            for (at, (x, y)) in pair.coefficients(&wavelet(k)).into_iter().enumerate() {
+                let views = [(x, 0.0), (0.0, y), (x, y)];
+                for (map, coefficients) in maps.iter_mut().zip(views) {
+                    let next = Found { scales, scale, at, coefficients };
+                    let before = map.best[at].map_or(0.0, Found::strength);
+                    if next.strength() > before {
+                        map.best[at] = Some(next);
+                    }
                 }
             }
         }
-        Self { best, time_step: thin.time_step }
+        maps
     }
 
-    fn strongest(&mut self) -> Option<Found> {
-        let strength = |found: &Found| {
-            let (x, y) = found.coefficients;
-            x * x + y * y
-        };
-        self.best
-            .iter()
-            .flatten()
-            .copied()
-            .reduce(|best, next| if strength(&next) > strength(&best) { next } else { best })
+    fn strongest(&self) -> Option<Found> {
+        let found = self.best.iter().flatten().copied();
+        found.reduce(|best, next| if next.strength() > best.strength() { next } else { best })
     }
 
     /// Leaves out the times around a pulse.
