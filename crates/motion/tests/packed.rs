@@ -48,7 +48,10 @@ fn an_archive_of_other_arrays_is_refused() {
     let record = given(&bytes("barrelstack/example.txt"), "example.txt");
     let mut cut = write::npz(&record).unwrap();
     cut.truncate(cut.len() / 2);
-    assert_eq!(read(&cut, "cut.npz", &ReadOptions::default()).unwrap_err().refusal, Refusal::Damaged);
+    assert_eq!(
+        read(&cut, "cut.npz", &ReadOptions::default()).unwrap_err().refusal,
+        Refusal::Damaged
+    );
 }
 
 fn gzipped(bytes: &[u8]) -> Vec<u8> {
@@ -89,7 +92,10 @@ fn archives_that_hold_no_single_record_are_refused_in_words() {
         assert!(error.contains(word), "{word}: {error}");
     };
     let at2 = bytes("peer/nga-west2.AT2");
-    refused(&zipped(&[("a.AT2", at2.as_slice()), ("b.AT2", at2.as_slice())]), "2 files (a.AT2, b.AT2)");
+    refused(
+        &zipped(&[("a.AT2", at2.as_slice()), ("b.AT2", at2.as_slice())]),
+        "2 files (a.AT2, b.AT2)",
+    );
     refused(&zipped(&[]), "expected");
     let gz = gzipped(&at2);
     refused(&gz[..gz.len() / 2], "can be unpacked");
