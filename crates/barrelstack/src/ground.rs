@@ -185,13 +185,12 @@ fn recorded(spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
             warnings.extend(other.warnings.iter().map(|w| format!("{}: {w}", other.file)));
             let (record, other, told) = on_one_clock(&record, &horizontal, other)?;
             warnings.extend(told);
-            let own = processing.clone();
-            let processing = match spec.processing {
+            let theirs = match spec.processing {
                 ProcessingSpec::None => Processing::none(),
                 ProcessingSpec::Default => default_processing(&other),
             };
-            let vertical = other.ground_motion(&Component::Number(1), None, &processing)?;
-            let mut motion = record.ground_motion(&Component::Number(1), None, &own)?;
+            let vertical = other.ground_motion(&Component::Number(1), None, &theirs)?;
+            let mut motion = record.ground_motion(&Component::Number(1), None, &processing)?;
             motion.provenance.extend(vertical.provenance);
             let provenance = motion.provenance;
             let mut joined =

@@ -4,6 +4,7 @@ use crate::error::MotionError;
 use crate::fourier::{apply_gain, forward_real, inverse};
 use crate::ground_motion::GroundMotion;
 use crate::history::History;
+use crate::matched::{Matched, Missed};
 use crate::math;
 use crate::process::{Pads, Processing};
 use crate::response::pseudo_accelerations;
@@ -74,59 +75,6 @@ const CLEAR: f64 = 0.98;
 pub(crate) const PATIENCE: usize = 15;
 /// Share of the tolerance at which the rounds end.
 pub(crate) const GOOD_ENOUGH: f64 = 0.7;
-
-/// A range of periods over which a spectrum misses its target on one side.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Missed {
-    /// Shortest period (s).
-    pub from: f64,
-    /// Longest period (s).
-    pub to: f64,
-    /// Largest relative misfit of the range, negative where the spectrum lies below the target.
-    pub misfit: f64,
-}
-
-/// A matched motion.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Matched {
-    /// The motion; its horizontal component is matched, the vertical takes the same first scaling.
-    pub motion: GroundMotion,
-    /// Largest relative misfit from the shortest to the longest period, on a grid of 1080 periods to a
-    /// decade.
-    pub misfit: f64,
-    /// Ranges of periods where the spectrum is off by more than the tolerance; none if it was met.
-    pub missed: Vec<Missed>,
-    /// Rounds done.
-    pub rounds: usize,
-    /// The method asked for.
-    pub chosen: MatchMethod,
-    /// The method that began: the one asked for, or the frequency domain where wavelets alone
-    /// stalled.
-    pub first: MatchMethod,
-}
-
-impl Matched {
-    /// The missed ranges, for a sentence: "by +5.6 % at 0.41 to 0.43 s, ...".
-    pub fn missed_in_words(&self) -> String {
-        let words = |missed: &Missed| {
-            let (from, to) = (format!("{:.3}", missed.from), format!("{:.3}", missed.to));
-            let periods = if from == to { from } else { format!("{from} to {to}") };
-            format!("by {:+.1} % at {periods} s", 100.0 * missed.misfit)
-        };
-        self.missed.iter().map(words).collect::<Vec<_>>().join(", ")
-    }
-
-    /// Where it was matched, for a sentence: "matched in …".
-    pub fn domain(&self) -> &'static str {
-        match (self.first, self.chosen) {
-            (MatchMethod::Time, _) => "the time domain",
-            (MatchMethod::Frequency, MatchMethod::Frequency) => "the frequency domain",
-            (MatchMethod::Frequency, MatchMethod::Time) => {
-                "the frequency domain, where the time domain stalled,"
-            }
-        }
-    }
-}
 
 impl GroundMotion {
     /// The motion with its horizontal component matched to a target spectrum.
@@ -368,19 +316,27 @@ impl Work<'_> {
         ranges
     }
 
-    /// At every second period that is checked: the largest relative misfit, and a mean of all misfits in
-    /// which the largest outweigh the others.
-    pub(crate) fn misfit_and_roughness(&self, acceleration: &[f64]) -> (f64, f64) {
+    /// How the spectrum lies about its target at every second period that is checked.
+    pub(crate) fn fit(&self, acceleration: &[f64]) -> Fit {
         let half = |all: &[f64]| all.iter().copied().step_by(2).collect::<Vec<f64>>();
         let (periods, goal) = (half(&self.checked), half(&self.checked_goal));
         let now = self.spectrum(&periods, acceleration);
-        let powers = goal.iter().zip(&now).map(|(g, n)| {
-            let square = (n / g - 1.0) * (n / g - 1.0);
+        let misfits: Vec<f64> = goal.iter().zip(&now).map(|(g, n)| (n / g - 1.0).abs()).collect();
+        let powers = misfits.iter().map(|misfit| {
+            let square = misfit * misfit;
             let fourth = square * square;
             fourth * fourth * fourth
         });
         let mean = powers.sum::<f64>() / now.len() as f64;
-        (misfit_of(&goal, &now), math::powf(mean, 1.0 / 12.0))
+        let peak = |&k: &usize| {
+            let at = |k: Option<usize>| k.and_then(|k| misfits.get(k)).copied().unwrap_or(0.0);
+            misfits[k] >= at(k.checked_sub(1)) && misfits[k] > at(k.checked_add(1))
+        };
+        Fit {
+            misfit: misfits.iter().copied().fold(0.0, f64::max),
+            roughness: math::powf(mean, 1.0 / 12.0),
+            worst: (0..misfits.len()).filter(peak).map(|k| (periods[k], misfits[k])).collect(),
+        }
     }
 
     pub(crate) fn close(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
@@ -474,6 +430,16 @@ impl Work<'_> {
         }
         Ok((best.acceleration, best.round))
     }
+}
+
+/// How a spectrum lies about its target.
+pub(crate) struct Fit {
+    /// Largest relative misfit.
+    pub(crate) misfit: f64,
+    /// A mean of all misfits in which the largest outweigh the others.
+    pub(crate) roughness: f64,
+    /// Periods (s) of locally largest misfit, and that misfit.
+    pub(crate) worst: Vec<(f64, f64)>,
 }
 
 /// The best motion so far.

@@ -22,6 +22,11 @@ const LARGEST_SHARE: f64 = 0.8;
 const SMALLEST_SHARE: f64 = 0.05;
 /// Share of the tolerance at which polishing ends.
 const POLISHED: f64 = 0.95;
+/// Share of the tolerance within which polishing leaves a peak as it is: the less is asked for, the less
+/// is disturbed.
+const BAND: f64 = 0.6;
+/// Ratio of two periods that are too near each other for wavelets of their own.
+const NEIGHBOR: f64 = 1.006;
 
 /// A local extremum of an oscillator's response.
 #[derive(Clone, Copy)]
@@ -79,18 +84,29 @@ pub(crate) fn polish(
     settings: &Matching,
 ) -> Result<(Vec<f64>, usize), MotionError> {
     let mut best = start.to_vec();
-    let (_, mut roughness) = work.misfit_and_roughness(start);
+    let mut fit = work.fit(start);
     let (mut gained, mut share) = (0, LARGEST_SHARE);
+    let target = POLISHED * settings.tolerance;
     for round in 1..=settings.rounds {
-        let full = work.close(&bounded(work, &best, &matched_periods(settings, round)))?;
+        // Every third round asks for all, lest the rest wander to the edge of the band.
+        let band = if round % 3 == 0 { 0.0 } else { BAND * settings.tolerance };
+        let mut periods = matched_periods(settings, round);
+        periods.extend(
+            fit.worst
+                .iter()
+                .filter(|(_, misfit)| *misfit > BAND * settings.tolerance)
+                .map(|(t, _)| *t),
+        );
+        periods.sort_by(f64::total_cmp);
+        periods.dedup_by(|b, a| *b < NEIGHBOR * *a);
+        let full = work.close(&bounded(work, &best, &periods, band))?;
         for _ in 0..2 {
             let tried: Vec<f64> =
                 best.iter().zip(&full).map(|(a, b)| a + share * (b - a)).collect();
-            let (misfit, now) = work.misfit_and_roughness(&tried);
-            if now < roughness {
-                (best, roughness, gained) = (tried, now, round);
-                let target = POLISHED * settings.tolerance;
-                if misfit <= target && work.misfit(&best) <= target {
+            let now = work.fit(&tried);
+            if now.roughness < fit.roughness {
+                (best, fit, gained) = (tried, now, round);
+                if fit.misfit <= target && work.misfit(&best) <= target {
                     return Ok((best, round));
                 }
                 share = (2.0 * share).min(LARGEST_SHARE);
@@ -139,9 +155,9 @@ fn added(a: &[f64], wavelets: &[Wavelet], amplitudes: &[f64]) -> Vec<f64> {
     sum
 }
 
-/// The motion with wavelets that bring every peak to its goal and lift no other extremum above it: what
-/// a solution would lift is asked for as well, and the system is solved again.
-fn bounded(work: &Work<'_>, a: &[f64], periods: &[f64]) -> Vec<f64> {
+/// The motion with wavelets that bring every peak into the band about its goal and lift no other extremum
+/// above it: what a solution would lift is asked for as well, and the system is solved again.
+fn bounded(work: &Work<'_>, a: &[f64], periods: &[f64], band: f64) -> Vec<f64> {
     let oscillators = oscillators(work, periods);
     let (mut wavelets, mut demands, mut values) = (Vec::new(), Vec::new(), Vec::new());
     let mut active = Vec::new();
@@ -155,7 +171,9 @@ fn bounded(work: &Work<'_>, a: &[f64], periods: &[f64]) -> Vec<f64> {
         }
         for extremum in extrema {
             let Extremum { sample, value } = extremum;
-            let change = oscillator.goal * value.signum() - value;
+            let bounds = (1.0 - band, 1.0 + band);
+            let size = value.abs().clamp(bounds.0 * oscillator.goal, bounds.1 * oscillator.goal);
+            let change = (size - value.abs()) * value.signum();
             demands.push(Demand { oscillator: k, sample, change, weight: 1.0 });
             values.push(value);
             active.push(sample == peak.sample);
@@ -177,7 +195,7 @@ fn bounded(work: &Work<'_>, a: &[f64], periods: &[f64]) -> Vec<f64> {
         for (k, row) in rows.chunks_exact(count).enumerate() {
             let change: f64 = row.iter().zip(&amplitudes).map(|(r, b)| r * b).sum();
             let goal = oscillators[demands[k].oscillator].goal;
-            if !active[k] && (values[k] + change).abs() > goal {
+            if !active[k] && (values[k] + change).abs() > (1.0 + band) * goal {
                 (active[k], more) = (true, true);
             }
         }

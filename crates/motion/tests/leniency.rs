@@ -88,7 +88,7 @@ fn film(times: &[f64]) -> String {
     let last = times.last().unwrap();
     head[10] = format!("NO. OF POINTS = {:6}      DURATION = {last:7.3} SEC", times.len());
     // The peak that the header states is another file's.
-    head[11] = "UNITS ARE SEC AND G/10".to_owned();
+    "UNITS ARE SEC AND G/10".clone_into(&mut head[11]);
     let mut out = head.join("\n");
     for (k, t) in times.iter().enumerate() {
         if k % 5 == 0 {

@@ -6,12 +6,17 @@ use std::io::Write as _;
 use std::path::Path;
 
 use barrelstack_motion::{
-    AccelerationUnit, Channel, Direction, Processing, ReadOptions, Record, Site, Stage, Utc, read,
-    write,
+    AccelerationUnit, Channel, Direction, Processing, Quantity, ReadOptions, Record, Site, Stage,
+    Utc, read, station_xml, write,
 };
 
 fn options() -> ReadOptions {
-    ReadOptions { unit: Some(AccelerationUnit::G), time_step: None, sensitivity: Some(1000.0) }
+    ReadOptions {
+        unit: Some(AccelerationUnit::G),
+        time_step: None,
+        sensitivity: Some(1000.0),
+        ..ReadOptions::default()
+    }
 }
 
 fn sample(file: &str) -> Record {
@@ -287,4 +292,75 @@ fn measures_of_both_horizontals_need_directions_that_are_known_and_perpendicular
     assert!(pair("N", "S").unwrap_err().contains("not perpendicular"));
     assert!(pair("0", "30").unwrap_err().contains("not perpendicular"));
     assert!(pair("N", "UP").unwrap_err().contains("no channel"));
+}
+
+const STATION_XML: &str = r#"<?xml version="1.0"?>
+<FDSNStationXML xmlns="http://www.fdsn.org/xml/station/1">
+ <Network code="ZZ"><Station code="XXXX">
+  <Channel code="HNE" locationCode="00" startDate="1990-01-01T00:00:00" endDate="2000-01-01T00:00:00">
+   <Response><InstrumentSensitivity><Value>1</Value>
+    <InputUnits><Name>M/S**2</Name></InputUnits></InstrumentSensitivity></Response>
+  </Channel>
+  <Channel locationCode="00" code="HNE" startDate="2000-01-01T00:00:00">
+   <Latitude>38.5</Latitude><Longitude>-120.5</Longitude><Elevation>697</Elevation>
+   <Azimuth>85.5</Azimuth><Dip>0</Dip>
+   <Response><InstrumentSensitivity><Value>2000</Value>
+    <InputUnits><Name>m/s**2</Name></InputUnits></InstrumentSensitivity></Response>
+  </Channel>
+  <Channel locationCode="00" code="HHE" startDate="2000-01-01T00:00:00">
+   <Response><InstrumentSensitivity><Value>500</Value>
+    <InputUnits><Name>M/S</Name></InputUnits></InstrumentSensitivity></Response>
+  </Channel>
+ </Station></Network>
+</FDSNStationXML>"#;
+
+#[test]
+fn station_xml_gives_each_channel_its_sensitivity_direction_and_place() {
+    let bytes = seed(b'E', 0, *b"00");
+    let by_number = read(&bytes, "a.mseed", &options()).unwrap();
+    let instruments = station_xml(STATION_XML).unwrap();
+    assert_eq!(instruments.len(), 3);
+    let known = ReadOptions { instruments, ..ReadOptions::default() };
+    let record = read(&bytes, "a.mseed", &known).unwrap();
+    let (one, two) = (&by_number.channels[0], &record.channels[0]);
+    // The sensitivity of its time, 2000 and not 1, against the 1000 of the options.
+    assert!((two.pga() / one.pga() - 0.5).abs() < 1e-12);
+    assert_eq!(two.direction.azimuth, Some(85.5));
+    assert_eq!((two.site.latitude, two.site.elevation), (Some(38.5), Some(697.0)));
+    // Another location code is another channel.
+    let error = read(&seed(b'E', 0, *b"10"), "a.mseed", &known).unwrap_err();
+    assert!(error.to_string().contains("a sensitivity for channel HNE"), "{error}");
+    assert!(station_xml("<FDSNStationXML>").is_err());
+}
+
+#[test]
+fn channels_of_seismometers_are_refused_or_differentiated() {
+    let mut bytes = seed(b'E', 0, *b"00");
+    let length = 1 << bytes[54];
+    for record in bytes.chunks_mut(length) {
+        record[16] = b'H';
+    }
+    let error = read(&bytes, "a.mseed", &options()).unwrap_err().to_string();
+    assert!(error.contains("HHE, which records velocity (a high-gain seismometer)"), "{error}");
+    let known =
+        ReadOptions { instruments: station_xml(STATION_XML).unwrap(), ..ReadOptions::default() };
+    let error = read(&bytes, "a.mseed", &known).unwrap_err().to_string();
+    assert!(error.contains("its metadata say"), "{error}");
+    let asked = |quantity| ReadOptions { recorded: Some(quantity), ..options() };
+    let velocity = read(&bytes, "a.mseed", &asked(Quantity::Velocity)).unwrap();
+    assert!(velocity.notes.join("\n").contains("velocity differentiated once"));
+    let plain = read(&bytes, "a.mseed", &asked(Quantity::Acceleration)).unwrap();
+    // Integrated again it is what was recorded, but for a constant and half a step.
+    let again: Vec<f64> = velocity.channels[0]
+        .acceleration
+        .iter()
+        .scan(0.0, |sum, a| {
+            *sum += a * 0.01;
+            Some(*sum)
+        })
+        .collect();
+    let recorded = &plain.channels[0].acceleration;
+    let shift = |k: usize| f64::midpoint(recorded[k], recorded[k + 1]) - again[k];
+    let spread = (1..recorded.len() - 2).map(|k| (shift(k) - shift(1)).abs()).fold(0.0, f64::max);
+    assert!(spread < 0.01 * plain.channels[0].pga(), "{spread}");
 }

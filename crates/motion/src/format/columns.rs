@@ -88,7 +88,9 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     if let Some((stated, _)) = stated {
         let line = first.saturating_sub(1);
         let used = super::check_count(source, &mut record, line, stated, count)?;
-        columns.iter_mut().for_each(|column| column.truncate(used));
+        for column in &mut columns {
+            column.truncate(used);
+        }
     }
     let unit = unit(source, first, options, &columns, &mut record)?;
     let names = if timed { names.get(1..).unwrap_or(&[]).to_vec() } else { names };

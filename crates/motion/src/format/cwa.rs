@@ -121,7 +121,9 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             // Whole seconds are stated; up to one second more or less is rounding.
             if (rows as f64 - stated as f64).abs() > rate {
                 let used = super::check_count(source, &mut record, line, stated, rows)?;
-                values.iter_mut().for_each(|column| column.truncate(used));
+                for column in &mut values {
+                    column.truncate(used);
+                }
             } else if rows != stated {
                 record.warn(
                     line + 1,

@@ -7,9 +7,10 @@
 use std::collections::BTreeMap;
 
 use super::source::{Source, latin1};
-use super::{Format, ReadOptions};
+use super::{Format, ReadOptions, seed};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
+use crate::instrument::SeedName;
 use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
 use crate::utc::Utc;
@@ -29,12 +30,9 @@ fn sniff(source: &Source<'_>) -> bool {
 
 /// One data record's header.
 struct Header {
-    id: String,
-    channel: String,
+    id: SeedName,
     samples: usize,
     rate: f64,
-    station: String,
-    location: String,
     start: Utc,
     data: usize,
     length: usize,
@@ -44,9 +42,6 @@ struct Header {
 
 /// One channel's samples so far.
 struct Trace {
-    channel: String,
-    station: String,
-    location: String,
     rate: f64,
     start: Utc,
     end: Utc,
@@ -55,7 +50,7 @@ struct Trace {
 
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
     let bytes = source.bytes;
-    let mut traces: BTreeMap<String, Trace> = BTreeMap::new();
+    let mut traces: BTreeMap<SeedName, Trace> = BTreeMap::new();
     let mut at = 0;
     while at + FIXED_HEADER <= bytes.len() {
         let header = header(source, at)?;
@@ -80,29 +75,46 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
             format!("{} bytes in all", bytes.len()),
         ));
     }
-    let Some(sensitivity) = options.sensitivity else {
-        return Err(source.error(
-            (),
-            Refusal::Missing,
-            "a sensitivity (miniSEED holds counts)",
-            "none",
-            "state the counts per m/s2 from the station's StationXML (InstrumentSensitivity)",
-        ));
-    };
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
-    let mut stations: Vec<&str> = traces.values().map(|trace| trace.station.as_str()).collect();
+    let mut stations: Vec<String> =
+        traces.keys().map(|id| format!("{}.{}", id.network, id.station)).collect();
     stations.dedup();
     record.station = stations.join(", ");
-    for trace in traces.into_values() {
-        let mut values: Vec<f64> = trace.values.iter().map(|count| count / sensitivity).collect();
-        super::remove_offset(&mut record, &trace.channel, &mut values);
-        let direction = Direction::parse(&trace.channel);
-        let mut channel = Channel::new(trace.channel, direction, 1.0 / trace.rate, values);
+    for (id, trace) in traces {
+        let known = options.instruments.iter().find(|i| i.describes(&id, Some(trace.start)));
+        let sensitivity = known.map(|known| known.sensitivity).or(options.sensitivity);
+        let sensitivity = sensitivity.ok_or_else(|| {
+            source.error(
+                (),
+                Refusal::Missing,
+                format!("a sensitivity for channel {} (miniSEED holds counts)", id.channel),
+                "none",
+                "state the counts per m/s2 from the station's StationXML (InstrumentSensitivity)",
+            )
+        })?;
+        let step = 1.0 / trace.rate;
+        let values: Vec<f64> = trace.values.iter().map(|count| count / sensitivity).collect();
+        let mut values =
+            seed::as_acceleration(source, &mut record, options, &id, known, step, values)?;
+        if !seed::differentiates(options) {
+            super::remove_offset(&mut record, &id.channel, &mut values);
+        }
+        record.notes.push(format!(
+            "channel {}: counts divided by {sensitivity} counts per m/s2, as given",
+            id.channel
+        ));
+        let direction = known
+            .and_then(|known| known.direction)
+            .unwrap_or_else(|| Direction::parse(&id.channel));
+        let station = format!("{}.{}", id.network, id.station);
+        let mut channel = Channel::new(id.channel, direction, step, values);
         channel.start = Some(trace.start);
-        channel.site = Site { station: trace.station, sensor: trace.location, ..Site::default() };
+        channel.site = Site { station, sensor: id.location, ..Site::default() };
+        if let Some(known) = known {
+            known.complete(&mut channel.site);
+        }
         record.channels.push(channel);
     }
-    record.notes.push(format!("counts divided by {sensitivity} counts per m/s2, as given"));
     Ok(record)
 }
 
@@ -139,7 +151,10 @@ fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
         ));
     }
     let part = |from: usize, to: usize| latin1(&bytes[from..to]).trim().to_owned();
-    let id = format!("{}.{}.{}.{}", part(18, 20), part(8, 13), part(13, 15), part(15, 18));
+    // Blanks are an empty location code, and so is what programs print for one.
+    let location = Some(part(13, 15)).filter(|code| code != "--").unwrap_or_default();
+    let id =
+        SeedName { network: part(18, 20), station: part(8, 13), location, channel: part(15, 18) };
     let (hour, minute, second) = (bytes[24].into(), bytes[25].into(), f64::from(bytes[26]));
     let seconds = second + f64::from(two(bytes, 28, big)) * 1e-4;
     let Some(mut start) = Utc::ordinal(year.into(), day.into(), hour, minute, seconds) else {
@@ -187,32 +202,20 @@ fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
             format!("data at byte {data} of {length}, {rate} Hz"),
         ));
     }
-    let channel = part(15, 18);
-    // Blanks are an empty location code, and so is what programs print for one.
-    let location = Some(part(13, 15)).filter(|code| code != "--").unwrap_or_default();
-    let station = format!("{}.{}", part(18, 20), part(8, 13));
     let big = order == 1;
-    Ok(Header { id, channel, samples, rate, station, location, start, data, length, encoding, big })
+    Ok(Header { id, samples, rate, start, data, length, encoding, big })
 }
 
 /// Joins records of one channel; a gap or overlap is an error, because nothing may be made up.
 fn append(
     source: &Source<'_>,
-    traces: &mut BTreeMap<String, Trace>,
+    traces: &mut BTreeMap<SeedName, Trace>,
     header: &Header,
     mut values: Vec<f64>,
 ) -> Result<(), ReadError> {
     let end = header.start.later(values.len() as f64 / header.rate);
     let Some(trace) = traces.get_mut(&header.id) else {
-        let trace = Trace {
-            channel: header.channel.clone(),
-            station: header.station.clone(),
-            location: header.location.clone(),
-            rate: header.rate,
-            start: header.start,
-            end,
-            values,
-        };
+        let trace = Trace { rate: header.rate, start: header.start, end, values };
         traces.insert(header.id.clone(), trace);
         return Ok(());
     };
@@ -220,7 +223,7 @@ fn append(
     if trace.rate != header.rate || off.abs() > 0.6 / header.rate {
         return Err(damaged(
             source,
-            &format!("{} without gaps at one rate", header.id),
+            &format!("{} without gaps at one rate", header.id.channel),
             format!("{off:.4} s between records at {} and {} Hz", trace.rate, header.rate),
         ));
     }

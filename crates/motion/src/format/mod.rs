@@ -15,23 +15,25 @@ mod knet;
 mod miniseed;
 mod native;
 mod npz;
+mod number;
 mod packed;
 mod peer;
 mod refused;
 mod renadic;
 mod sac;
+mod seed;
 mod slammer;
 mod smc;
 mod source;
 mod unam;
 mod usc;
 
-pub use refused::station_xml_sensitivities;
 pub use slammer::slammer_step;
 
 use crate::error::{ReadError, Refusal};
+use crate::instrument::Instrument;
 use crate::math::STANDARD_GRAVITY;
-use crate::record::Record;
+use crate::record::{Quantity, Record};
 use crate::units::AccelerationUnit;
 use source::{LARGEST_ACCELERATION, Place, Source, parse_number, shorten};
 
@@ -45,8 +47,14 @@ pub struct ReadOptions {
     pub unit: Option<AccelerationUnit>,
     /// Step (s) for formats that state none.
     pub time_step: Option<f64>,
-    /// Counts to one m/s² for formats that hold counts.
+    /// Counts to one m/s² for formats that hold counts; to one m/s or m where [`ReadOptions::recorded`]
+    /// says that velocity or displacement was recorded.
     pub sensitivity: Option<f64>,
+    /// Metadata of single channels; the first that fits a channel goes before the sensitivity for all.
+    pub instruments: Vec<Instrument>,
+    /// What SEED and SAC files hold, where the caller knows better than their channel codes; velocity
+    /// and displacement are differentiated.
+    pub recorded: Option<Quantity>,
 }
 
 /// A readable format.
@@ -84,6 +92,11 @@ impl Format {
     fn read_source(&self, source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
         let mut record = (self.read)(source, options)?;
         record.format = self.name;
+        if options.recorded.is_some()
+            && ![sac::FORMAT.name, miniseed::FORMAT.name].contains(&self.name)
+        {
+            record.warn(None, "the file states what it holds; what was said of it was ignored");
+        }
         if options.time_step.is_some() && self.name != columns::FORMAT.name {
             record.warn(None, "the file states its step; the time step given was ignored");
         }
@@ -149,7 +162,7 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
         let inside = Source::new(&inside, &bytes);
         check_bytes(&inside)?;
         let mut record = read_any(&inside, options)?;
-        record.file = name.to_owned();
+        name.clone_into(&mut record.file);
         return Ok(record);
     }
     read_any(&source, options)

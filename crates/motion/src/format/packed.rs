@@ -1,5 +1,6 @@
 //! One record inside a gzip or zip file.
 
+use std::borrow::Cow;
 use std::io::{Cursor, Read};
 
 use super::source::{Source, shorten};
@@ -23,7 +24,7 @@ pub(super) fn unpack(source: &Source<'_>) -> Result<Option<(Vec<u8>, String)>, R
     // Folders, and what one system adds about its own files, are no records.
     let files: Vec<String> = archive
         .file_names()
-        .map(|name| name.map_or_else(|_| "without a legible name".to_owned(), |n| n.into_owned()))
+        .map(|name| name.map_or_else(|_| "without a legible name".to_owned(), Cow::into_owned))
         .filter(|name| !name.ends_with('/') && !name.starts_with("__MACOSX"))
         .collect();
     let [name] = files.as_slice() else {

@@ -43,7 +43,6 @@ fn list(text: &str) -> Vec<String> {
     text.trim_start_matches('/').split('/').map(|part| part.trim().to_owned()).collect()
 }
 
-#[expect(clippy::too_many_lines, reason = "one header, read from top to bottom")]
 fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let need = |key: &str| {
         field(source, key).filter(|(_, value)| !value.is_empty()).ok_or_else(|| {

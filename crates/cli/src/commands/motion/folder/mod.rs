@@ -148,15 +148,14 @@ pub(super) fn run(
         if interrupt.asked() {
             return Ok(None);
         }
-        let (contents, hash) = contents(source);
+        let hash = fingerprint_of(source);
         let made = |ending: &str| source.beside(batch.out, ending).exists();
         let known = journal.known(&source.record.name, hash);
         if let Some(entry) = known.filter(|e| e.row.is_none() || batch.ending.is_none_or(made)) {
             before.fetch_add(1, Ordering::Relaxed);
             return Ok(Some(entry));
         }
-        let (entry, sure) =
-            entry(batch.input, source, contents, hash, &periods, flatfile.as_ref(), work);
+        let (entry, sure) = entry(batch.input, source, hash, &periods, flatfile.as_ref(), work);
         if sure {
             journal.note(&entry)?;
         }
@@ -232,15 +231,14 @@ impl Measurements {
     }
 }
 
-/// Bytes of the files of a source, or why they could not be had, and their fingerprint.
-fn contents(source: &Source) -> (Vec<anyhow::Result<Vec<u8>>>, u64) {
-    let contents: Vec<_> = source.paths().iter().map(|path| input::bytes(path)).collect();
+/// Fingerprint of the bytes of the files of a source; of one that cannot be read, as of none.
+fn fingerprint_of(source: &Source) -> u64 {
     let mut all = Vec::new();
-    for bytes in &contents {
-        let hash = bytes.as_ref().map_or(0, |bytes| fnv1a(bytes));
+    for path in source.paths() {
+        let hash = input::bytes(&path).map_or(0, |bytes| fnv1a(&bytes));
         all.extend_from_slice(&hash.to_le_bytes());
     }
-    (contents, fnv1a(&all))
+    fnv1a(&all)
 }
 
 /// Reads, works on and measures one record.
@@ -250,7 +248,6 @@ fn contents(source: &Source) -> (Vec<anyhow::Result<Vec<u8>>>, u64) {
 fn entry(
     input: &Input,
     source: &Source,
-    contents: Vec<anyhow::Result<Vec<u8>>>,
     hash: u64,
     periods: &[f64],
     flatfile: Option<&(Flatfile, u64)>,
@@ -259,9 +256,9 @@ fn entry(
     let mut entry =
         Entry { record: source.record.name.clone(), hash, row: None, refused: Vec::new() };
     let mut records = Vec::new();
-    for (path, bytes) in source.paths().iter().zip(contents) {
+    for path in source.paths() {
         let file = path.display().to_string();
-        match bytes.and_then(|bytes| input.read_bytes(&bytes, &file)) {
+        match input.read_alone(&file) {
             Ok(record) => records.push(record),
             Err(error) => entry.refused.push((file, format!("{error:#}"))),
         }
