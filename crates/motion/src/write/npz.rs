@@ -1,5 +1,6 @@
 //! NumPy's archive of arrays.
 
+use std::collections::BTreeSet;
 use std::io;
 
 use crate::error::MotionError;
@@ -9,6 +10,10 @@ use crate::sampled::integrate;
 /// A record as a NumPy archive: `time` (s) and for every channel `NAME_acceleration` (m/s²),
 /// `NAME_velocity` (m/s) and `NAME_displacement` (m); signs other than letters and digits in names
 /// become underscores.
+///
+/// What the header of our own text form tells stands in arrays of strings beside them, such as `station`,
+/// `unit`, `channels` and `processing` (one to a step), so that [`crate::read`] gives the record back
+/// bit for bit; `azimuth` has degrees clockwise from north, not a number where unknown.
 ///
 /// ```
 /// use barrelstack_motion::{bundled, write};
@@ -24,20 +29,32 @@ pub fn npz(record: &Record) -> Result<Vec<u8>, MotionError> {
     let time: Vec<f64> = (0..rows).map(|row| row as f64 * step).collect();
     let mut series = Vec::new();
     for (channel, name) in record.channels.iter().zip(super::names(&record.channels)) {
-        let name: String =
-            name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+        let name = array_name(&name);
         let acceleration = channel.acceleration[..rows].to_vec();
         let (velocity, displacement) = integrate(step, &acceleration, channel.initial_velocity);
         series.push((format!("{name}_acceleration"), acceleration));
         series.push((format!("{name}_velocity"), velocity));
         series.push((format!("{name}_displacement"), displacement));
     }
-    let mut arrays = vec![("time".to_owned(), time.as_slice())];
-    arrays.extend(series.iter().map(|(name, values)| (name.clone(), values.as_slice())));
-    archive(&arrays).map_err(|error| MotionError::Mismatch {
+    let azimuth: Vec<f64> =
+        record.channels.iter().map(|c| c.direction.azimuth.unwrap_or(f64::NAN)).collect();
+    let mut arrays = vec![("time".to_owned(), npy(&time)), ("azimuth".to_owned(), npy(&azimuth))];
+    arrays.extend(series.iter().map(|(name, values)| (name.clone(), npy(values))));
+    let head = super::text::head(record, step);
+    for key in head.iter().map(|(key, _)| *key).collect::<BTreeSet<_>>() {
+        let values =
+            head.iter().filter(|(other, _)| *other == key).map(|(_, value)| value.as_str());
+        arrays.push((key.to_owned(), npy_words(&values.collect::<Vec<_>>())));
+    }
+    zipped(&arrays).map_err(|error| MotionError::Mismatch {
         what: format!("the arrays make no archive: {error}"),
         remedy: "give the channels names of their own".to_owned(),
     })
+}
+
+/// The part of an array's name that stands for its channel.
+pub(crate) fn array_name(channel: &str) -> String {
+    channel.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect()
 }
 
 /// NumPy's archive of named arrays: an uncompressed zip of one `.npy` for each.
@@ -47,19 +64,23 @@ pub fn npz(record: &Record) -> Result<Vec<u8>, MotionError> {
 /// # Errors
 /// If a name occurs twice or an array is beyond the size of the format.
 pub fn archive(arrays: &[(String, &[f64])]) -> io::Result<Vec<u8>> {
+    zipped(&arrays.iter().map(|(name, values)| (name.clone(), npy(values))).collect::<Vec<_>>())
+}
+
+fn zipped(arrays: &[(String, Vec<u8>)]) -> io::Result<Vec<u8>> {
     let refuse = |reason: String| Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
     let (mut archive, mut directory) = (Vec::new(), Vec::new());
-    for (at, (name, values)) in arrays.iter().enumerate() {
+    for (at, (name, bytes)) in arrays.iter().enumerate() {
         if arrays[..at].iter().any(|(earlier, _)| earlier == name) {
             return refuse(format!("two of them are called {name}"));
         }
-        let (file, bytes) = (format!("{name}.npy"), npy(values));
+        let file = format!("{name}.npy");
         let (Ok(start), Ok(size), Ok(length)) =
             (u32::try_from(archive.len()), u32::try_from(bytes.len()), u16::try_from(file.len()))
         else {
             return refuse(format!("{name} ends beyond 4 GB, or its name beyond 64 kB"));
         };
-        let entry = entry(crc32fast::hash(&bytes), size, length);
+        let entry = entry(crc32fast::hash(bytes), size, length);
         archive.extend(b"PK\x03\x04");
         archive.extend(entry);
         archive.extend(file.as_bytes());
@@ -106,10 +127,28 @@ fn entry(sum: u32, size: u32, name_length: u16) -> [u8; 26] {
     entry
 }
 
-/// NumPy's array format, version 1.0: a magic word, a padded description, the numbers.
+/// An array of numbers.
 fn npy(values: &[f64]) -> Vec<u8> {
+    let mut bytes = npy_head("<f8", values.len());
+    bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+    bytes
+}
+
+/// An array of strings, all as long as the longest, in UCS-4 as NumPy has them.
+fn npy_words(words: &[&str]) -> Vec<u8> {
+    let longest = words.iter().map(|word| word.chars().count()).max().unwrap_or(0).max(1);
+    let mut bytes = npy_head(&format!("<U{longest}"), words.len());
+    for word in words {
+        let padded = word.chars().map(u32::from).chain(std::iter::repeat(0)).take(longest);
+        bytes.extend(padded.flat_map(u32::to_le_bytes));
+    }
+    bytes
+}
+
+/// NumPy's array format, version 1.0: a magic word and a padded description; the items follow.
+fn npy_head(kind: &str, count: usize) -> Vec<u8> {
     let mut description =
-        format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}", values.len());
+        format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({count},), }}");
     // Magic, version, length, description and line feed together fill a multiple of 64 bytes.
     while (10 + description.len() + 1) % 64 != 0 {
         description.push(' ');
@@ -118,7 +157,6 @@ fn npy(values: &[f64]) -> Vec<u8> {
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
     bytes.extend(u16::try_from(description.len()).unwrap_or(u16::MAX).to_le_bytes());
     bytes.extend(description.as_bytes());
-    bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
     bytes
 }
 
