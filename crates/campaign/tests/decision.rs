@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
-use barrelstack_campaign::decision::{DecisionError, LimitState, Request, SiteHazard, decide, export};
+use barrelstack_campaign::decision::{
+    DecisionError, LimitState, Request, SiteHazard, decide, export,
+};
 use barrelstack_campaign::study::{
     Collected, Column, ColumnSpec, MotionSource, Provenance, Role, StudyTable, ValueKind, Values,
 };
