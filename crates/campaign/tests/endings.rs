@@ -6,8 +6,8 @@ use std::io::Write as _;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use barrelstack::decision::{Request, decide};
-use barrelstack::study::{Collected, Endings, RunOptions, Study};
+use barrelstack_campaign::decision::{Request, decide};
+use barrelstack_campaign::study::{Collected, Endings, RunOptions, Study};
 
 /// Four records that may not be bundled; says so where they are not there.
 fn records() -> Option<String> {
@@ -96,7 +96,7 @@ fn whole_motions_have_the_verdicts_of_two_minutes_and_a_cut_is_told_everywhere()
 #[test]
 fn the_shipped_example_loses_what_it_loses_without_any_stop() {
     // A part of the motions of the shipped study, which has 240 cases: the least and the most at every level.
-    let example = barrelstack::study::builtin("napa-four-levels").unwrap();
+    let example = barrelstack_campaign::study::builtin("napa-four-levels").unwrap();
     let example = example.replace("count = 23", "count = 3");
     let until = "[base.run]\nuntil = \"duration\"\nduration = \"150 s\"\n";
     let without = example.replace("\n# The coefficient", &format!("{until}\n# The coefficient"));
