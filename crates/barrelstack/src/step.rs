@@ -11,7 +11,7 @@ use crate::assemble::Assembly;
 ///
 /// With it the six- and eight-barrel cases of the paper close their energy books to better than
 /// 5e-5, and halving the step moves no fall by more than 3 ms.
-const SHARE: f64 = 0.1;
+const SHARE: f64 = 0.08;
 
 /// Share of the time 1/γ in which dampers stop a body: beyond the whole of it, velocities predicted
 /// from the last step overshoot.
