@@ -5,7 +5,8 @@ use barrelstack_dynamics::{Scratch, State};
 use crate::assemble::{PartKind, assemble};
 use crate::ground::ground;
 use crate::overlap::check_overlap;
-use crate::run::{RunFailure, at_rest, time_step};
+use crate::rest::at_rest;
+use crate::run::{RunFailure, time_step};
 use crate::scenario::Scenario;
 
 /// What a check found.
@@ -51,7 +52,7 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
     lines.push(format!("  time step     {:.3} ms", 1e3 * step));
     if scenario.run.settle {
         let start = state.poses.clone();
-        let settled = at_rest(scenario, &assembly, &mut state, &mut scratch)?;
+        let settled = at_rest(&assembly, &mut state, &mut scratch)?;
         let deepest = state
             .poses
             .iter()
@@ -64,6 +65,14 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
             settled.steps,
             1e3 * deepest,
             settled.unbalanced
+        ));
+        let locked = settled.locked;
+        lines.push(format!(
+            "  friction      locked in as the stack sank: {:.0} % of the normal forces, at {} contacts \
+             that hold and {} at their limit",
+            100.0 * locked.friction,
+            locked.holding,
+            locked.slipping
         ));
     }
     let ground = ground(scenario)?;

@@ -25,6 +25,7 @@ mod pool;
 pub mod render;
 pub mod report;
 pub mod reproduce;
+mod rest;
 pub mod run;
 pub mod scenario;
 pub mod step;
@@ -35,6 +36,7 @@ pub mod verify;
 pub mod watch;
 
 pub use check::check;
+pub use rest::Restless;
 pub use run::{Progress, Run, RunFailure, run};
 pub use scenario::Scenario;
 pub use summary::Summary;

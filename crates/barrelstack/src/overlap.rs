@@ -58,10 +58,9 @@ impl Boundaries {
         let outline = |placed: &barrelstack_dynamics::Placed<Planar>| {
             let place = |point: Vec2| placed.offset + placed.rotation.apply(point);
             match &placed.surface {
-                Shape::HalfPlane(_) => Some(Outline::Below(
-                    placed.offset,
-                    placed.rotation.apply(Vec2::new(0.0, 1.0)),
-                )),
+                Shape::HalfPlane(_) => {
+                    Some(Outline::Below(placed.offset, placed.rotation.apply(Vec2::new(0.0, 1.0))))
+                }
                 Shape::Circle(circle) => Some(Outline::Polygon(
                     (0..AROUND)
                         .map(|i| {
@@ -101,9 +100,8 @@ impl Boundaries {
                 let mut depth = 0.0_f64;
                 for (a, box_a) in &placed[first] {
                     for (b, box_b) in &placed[second] {
-                        let apart = (0..2).any(|k| {
-                            box_a[k] > box_b[k + 2] || box_b[k] > box_a[k + 2]
-                        });
+                        let apart =
+                            (0..2).any(|k| box_a[k] > box_b[k + 2] || box_b[k] > box_a[k + 2]);
                         if !apart {
                             depth = depth.max(parting(a, b));
                         }
@@ -165,7 +163,8 @@ fn least_along(sides: &[Vec2], corners: &[Vec2]) -> f64 {
     for (i, from) in sides.iter().enumerate() {
         let along = sides[(i + 1) % sides.len()] - *from;
         let outward = -along.quarter_turn() * (1.0 / along.length());
-        let lowest = corners.iter().map(|c| (*c - *from).dot(outward)).fold(f64::INFINITY, f64::min);
+        let lowest =
+            corners.iter().map(|c| (*c - *from).dot(outward)).fold(f64::INFINITY, f64::min);
         least = least.min(-lowest);
         if least <= 0.0 {
             break;

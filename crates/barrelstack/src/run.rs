@@ -5,14 +5,15 @@ use std::ops::ControlFlow;
 use barrelstack_dynamics::contact::Basis;
 use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::{
-    EnergySummary, Finish, Method, Motion, Planar, RunError, Scratch, SettleError, Settled,
-    Simulation, State, settle, simulate,
+    EnergySummary, Finish, Method, Motion, Planar, RunError, Scratch, Settled, Simulation, State,
+    simulate,
 };
 
 use crate::assemble::{AssembleError, Assembly, assemble};
 use crate::ground::{Ground, GroundError, ground};
 use crate::outcome::{Outcome, judge};
 use crate::overlap::check_overlap;
+use crate::rest::{Restless, at_rest};
 use crate::scenario::{self, Scenario, Scene};
 use crate::step::{critical_time_step, default_step};
 use crate::watch::{Fates, Recording, StrapFate, Stresses, Thresholds, Watch};
@@ -83,7 +84,7 @@ pub enum RunFailure {
     Assemble(#[from] AssembleError),
     /// The stack does not stand by itself.
     #[error(transparent)]
-    Settle(#[from] SettleError),
+    Settle(#[from] Restless),
     /// The step is too long for the contacts.
     #[error("run.step = {asked} ms is too long: {reason}; try {instead} ms, or leave it out")]
     Step {
@@ -99,9 +100,6 @@ pub enum RunFailure {
     Duration(String),
 }
 
-/// Largest share of gravity that may be left unbalanced at rest.
-const SETTLE_TOLERANCE: f64 = 1e-10;
-
 /// Share of the energy that went through, missing from the books, above which a run is invalid.
 ///
 /// A hundred times what leads to a warning, and a thousand times what a sound step leaves open.
@@ -109,9 +107,6 @@ const BOOKS_BROKEN: f64 = 0.1;
 
 /// Most steps of a run; a stack takes some 10⁵ steps a second.
 const MOST_STEPS: f64 = 1e9;
-
-/// Share of the way of the body that goes furthest from which a body counts as gone with it.
-const LOST_SHARE: f64 = 0.25;
 
 /// Runs a scenario.
 ///
@@ -208,7 +203,7 @@ pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunF
     let step = time_step(scenario, &assembly)?;
     check_length(end_time, step)?;
     let settled = if scenario.run.settle {
-        Some(at_rest(scenario, &assembly, &mut state, &mut scratch)?)
+        Some(at_rest(&assembly, &mut state, &mut scratch)?)
     } else {
         barrelstack_dynamics::evaluate(&assembly.model, &state, &mut scratch);
         None
@@ -216,7 +211,7 @@ pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunF
     assembly.strap(&mut state).map_err(AssembleError::from)?;
     if scenario.run.settle && assembly.model.straps().iter().any(|s| s.length < s.span(&state)) {
         // Straps that pull from the start press the stack together.
-        at_rest(scenario, &assembly, &mut state, &mut scratch)?;
+        at_rest(&assembly, &mut state, &mut scratch)?;
     }
     if matches!(scenario.scene, Scene::Free(_)) {
         // Equilibrium is that of the places; what the scenario sets in motion starts from there.
@@ -303,29 +298,6 @@ pub(crate) fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64,
 /// A step (s) in milliseconds, to be printed.
 fn milliseconds(step: f64) -> f64 {
     (1e9 * step).round() / 1e6
-}
-
-/// Lets the stack come to rest, with the step that its stiffest contact suggests: where it comes to rest
-/// does not depend on the step of the run.
-///
-/// # Errors
-/// When it does not; names the lowest of the bodies that go, which the others lose their hold with.
-pub(crate) fn at_rest(
-    scenario: &Scenario,
-    assembly: &Assembly,
-    state: &mut State<Planar>,
-    scratch: &mut Scratch<Planar>,
-) -> Result<Settled, SettleError> {
-    let step = default_step(assembly, scenario.run.similitude.sqrt());
-    let start = state.poses.clone();
-    settle(&assembly.model, state, scratch, step, SETTLE_TOLERANCE).map_err(|error| {
-        let SettleError::NotAtRest { body, moved } = error;
-        let ways = state.poses.iter().zip(&start).map(|(a, b)| (a.position - b.position).length());
-        let lowest = ways.enumerate().find(|(_, way)| *way > LOST_SHARE * moved);
-        lowest.map_or(SettleError::NotAtRest { body, moved }, |(lowest, way)| {
-            SettleError::NotAtRest { body: assembly.parts[lowest].name.clone(), moved: way }
-        })
-    })
 }
 
 pub(crate) fn method(scenario: &Scenario) -> Method {

@@ -2,9 +2,7 @@
 
 use barrelstack_dynamics::shape::HalfPlane;
 use barrelstack_dynamics::space::Rotation2;
-use barrelstack_dynamics::{
-    Body, BodyId, Motion, Nodes, Placed, Planar, Pose, Shape, Twist, Vec2,
-};
+use barrelstack_dynamics::{Body, BodyId, Motion, Nodes, Placed, Planar, Pose, Shape, Twist, Vec2};
 
 use super::solid::{Solid, Touch, uniform};
 use super::{Part, PartKind, Similitude, outline_of};
@@ -98,7 +96,8 @@ impl<'a> Builder<'a> {
         };
         let add = |solid: Solid| solid.add_to(&mut body, center, length, draft.tributary);
         let touches = draft.solids.into_iter().map(add).collect();
-        let outlines = body.surfaces.iter().map(|placed| outline_of(&placed.surface, placed.offset));
+        let outlines =
+            body.surfaces.iter().map(|placed| outline_of(&placed.surface, placed.offset));
         self.parts.push(Part {
             name: draft.name,
             kind: draft.kind,

@@ -3,7 +3,8 @@
 use barrelstack_dynamics::shape::{BarrelProfile, Circle, Cradle, HalfPlane, Polygon};
 use barrelstack_dynamics::space::{Rotation2, Space};
 use barrelstack_dynamics::{
-    Body, BodyId, ContactPair, Counts, Model, Motion, Node, Nodes, Placed, Planar, Pose, Shape, Twist, Vec2,
+    Body, BodyId, ContactPair, Counts, Model, Motion, Node, Nodes, Placed, Planar, Pose, Shape,
+    Twist, Vec2,
 };
 
 use super::interfaces::interface;

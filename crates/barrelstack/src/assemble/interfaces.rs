@@ -110,7 +110,8 @@ fn friction(
             let damping = match normal {
                 // Its damping is not one of a rate alone.
                 NormalLaw::Rebound { .. } => {
-                    let mass = STICK_MASS * scale.mass() / if per_length { scale.length } else { 1.0 };
+                    let mass =
+                        STICK_MASS * scale.mass() / if per_length { scale.length } else { 1.0 };
                     restitution::damping(stiffness, STICK_DAMPING_RATIO, mass)
                 }
                 NormalLaw::SpeedGap { .. }

@@ -161,5 +161,7 @@ fn seat_height(profile: &BarrelProfile, rack: &Rack) -> f64 {
     let corner = corner_of(rack);
     let across = rack.rail_half_spacing - 0.5 * rack.rail_width + corner;
     let apart = profile.stave_radius + corner;
-    (apart * apart - across * across).sqrt() - corner - (profile.stave_radius - profile.bilge_radius)
+    (apart * apart - across * across).sqrt()
+        - corner
+        - (profile.stave_radius - profile.bilge_radius)
 }

@@ -85,8 +85,8 @@ impl Pairs<'_> {
         counts: Counts,
     ) {
         let sets = [(a, self.touch(a, solid_a).exact), (b, self.touch(b, solid_b).exact)];
-        let rolls =
-            sets.map(|(id, set)| matches!(self.builder.bodies[id].nodes[set], Nodes::Rolling { .. }));
+        let rolls = sets
+            .map(|(id, set)| matches!(self.builder.bodies[id].nodes[set], Nodes::Rolling { .. }));
         if rolls[0] || !rolls[1] {
             self.push(sets[0], (b, solid_b), interface, counts);
         }

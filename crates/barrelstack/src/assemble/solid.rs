@@ -150,8 +150,7 @@ pub(super) fn uniform(solids: &[Solid]) -> (Vec2, f64) {
     }
     let about = |(place, section): (Vec2, barrelstack_dynamics::shape::Section)| {
         let apart = place - center;
-        section.measure / area
-            * (section.gyration_squared + apart.x * apart.x + apart.z * apart.z)
+        section.measure / area * (section.gyration_squared + apart.x * apart.x + apart.z * apart.z)
     };
     (center, sections().map(about).sum())
 }

@@ -230,7 +230,11 @@ pub const PAIRS: [CatalogPair; 8] = [
         coefficient: 0.4,
         source: "as rack on ground in the six-barrel example of Candia, de la Llera and Almazán (2008)",
     },
-    CatalogPair { name: "fallen-rack-rack", coefficient: 0.3, source: "steel on steel, assumption" },
+    CatalogPair {
+        name: "fallen-rack-rack",
+        coefficient: 0.3,
+        source: "steel on steel, assumption",
+    },
 ];
 
 /// The pair of a name.

@@ -169,7 +169,8 @@ impl Stresses {
             };
             // The points of a rack are those of its fixed nodes, set after set.
             let fixed = |set: &Nodes<Planar>| matches!(set, Nodes::Fixed(_));
-            let before = sets[..pair.nodes].iter().filter(|set| fixed(set)).map(count).sum::<usize>();
+            let before =
+                sets[..pair.nodes].iter().filter(|set| fixed(set)).map(count).sum::<usize>();
             let rack = of_body[pair.contactor]
                 .filter(|at: &usize| fixed(&sets[pair.nodes]) && envelopes[*at].is_on_nodes());
             presses.extend((0..count(&sets[pair.nodes])).map(|node| Press {

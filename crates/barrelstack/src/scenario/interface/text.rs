@@ -46,10 +46,13 @@ pub(in crate::scenario) fn read(
     let stiffness_dimension = stiffness_dimension(exponent, basis);
     let stiffness = match quantity_in(&reader, "stiffness", stiffness_dimension)? {
         Some(stiffness) => stiffness,
-        None => match (constants, defaults.filter(|_| law == Law::Rebound && basis == Basis::Node)) {
+        None => match (constants, defaults.filter(|_| law == Law::Rebound && basis == Basis::Node))
+        {
             (Some(constants), _) => constants.stiffness,
             (None, Some(constants)) => constants.rebound_stiffness,
-            (None, None) => return Err(missing_quantity(&reader, "stiffness", stiffness_dimension)),
+            (None, None) => {
+                return Err(missing_quantity(&reader, "stiffness", stiffness_dimension));
+            }
         },
     };
     let normal = match law {
