@@ -33,6 +33,9 @@ fn remedy(lack: &Lack) -> String {
         Lack::Support => {
             "put something under it, or let it fall from the start (run.settle = false)".to_owned()
         }
+        Lack::Stiffness { interface, .. } => format!(
+            "see whether interface.{interface}.stiffness has the right unit, or take fewer levels"
+        ),
         Lack::Friction { interface, .. } => format!(
             "a larger coefficient of interface.{interface}.friction may hold it, or a place where it \
              does not slide"

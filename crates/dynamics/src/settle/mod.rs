@@ -12,7 +12,7 @@ use crate::forces::{Scratch, evaluate};
 use crate::integrate::{Integrator, Still};
 use crate::model::Model;
 use crate::real::{Mask, Real};
-use crate::space::{Linear, Pose, Space, Twist};
+use crate::space::{Linear, Space, Twist};
 use crate::state::State;
 
 use refusal::Departure;
@@ -43,9 +43,6 @@ pub struct Locked {
 
 /// Steps after which forces that do not balance never will.
 const MOST_STEPS: u64 = 40_000;
-
-/// Share of its reach by which a body that stays may move while it sinks into its contacts.
-const LEFT: f64 = 0.5;
 
 /// Steps between two looks for bodies that have left.
 const LOOK: u64 = 20;
@@ -99,7 +96,7 @@ fn sink<S: Space>(
 ) -> Result<(u64, f64), SettleError> {
     let gravity = gravity(model).largest_lane();
     let mut relaxation = Relaxation::new(model);
-    let mut departure = Departure::new(state.poses.clone());
+    let mut departure = Departure::new(model, state.poses.clone());
     let mut steps = 0;
     loop {
         relaxation.weigh(model, state, scratch);
@@ -108,11 +105,8 @@ fn sink<S: Space>(
         if relaxation.resting.all() {
             return Ok((steps, left_over.worst / gravity));
         }
-        departure.watch(model, state, scratch, &relaxation.met);
-        if steps % LOOK == 0
-            && let Some(gone) = departure.gone(model, state)
-        {
-            return Err(gone);
+        if steps % LOOK == 0 {
+            departure.watch(model, state, scratch, &relaxation.met)?;
         }
         if steps == MOST_STEPS {
             let left_over = (steps, left_over.body, left_over.worst / gravity);
@@ -164,7 +158,7 @@ fn unbalanced<S: Space>(
         let rounding = S::Real::splat(ROUNDING) * place * relaxation.stiffness(i) / body.mass;
         left.rests = left.rests & acceleration.lt(S::Real::splat(allowed) + rounding);
         let worst = acceleration.largest_lane();
-        if !(worst <= left.worst) {
+        if worst > left.worst {
             (left.body, left.worst) = (i, worst);
         }
     }
@@ -192,12 +186,6 @@ impl Locked {
         }
         locked
     }
-}
-
-/// How far a body has gone (m), in the lane where it is most.
-fn moved<S: Space>(state: &State<S>, start: &[Pose<S>], body: usize) -> f64 {
-    let way = state.poses[body].position - start[body].position;
-    way.dot(way).sqrt().largest_lane()
 }
 
 /// The magnitude of gravity (m/s²), not less than what keeps it fit to divide by.

@@ -1,6 +1,6 @@
 //! Why bodies do not come to rest: which one goes, and what it lacks.
 
-use crate::body::{BodyId, Motion};
+use crate::body::BodyId;
 use crate::contact::FrictionLaw;
 use crate::forces::{Contact, Scratch};
 use crate::model::Model;
@@ -8,14 +8,20 @@ use crate::real::{Mask, Real};
 use crate::space::{Linear, Pose, Space};
 use crate::state::State;
 
-use super::{LEFT, extent, moved};
+use super::{extent, gravity};
 
 /// Share of its reach that a body has moved when it is looked at for what it lacks: more than it sinks,
 /// and not so much that all is lost.
 const GOING: f64 = 0.1;
 
+/// Share of its reach by which a body that stays may stray.
+const LEFT: f64 = 0.5;
+
 /// Share of the way of the body that goes furthest from which a body goes with it.
 const WITH_IT: f64 = 0.25;
+
+/// Share of its way that is penetration where a body sinks.
+const SINKS: f64 = 0.5;
 
 /// Share of the way of its center of mass by which the boundary of a body that turns over has turned: all
 /// of it where it rolls, or tips over its corner.
@@ -39,6 +45,19 @@ pub enum Lack {
     /// Nothing was ever in touch with it.
     #[error("nothing lies under it, and nothing holds it")]
     Support,
+    /// What it lies on gives way under it.
+    #[error(
+        "it sinks {depth:.3} m into \"{on}\": the contacts of {interface} are too soft for what lies \
+         on them"
+    )]
+    Stiffness {
+        /// The body it lies on.
+        on: String,
+        /// The interface between the two.
+        interface: String,
+        /// The penetration (m).
+        depth: f64,
+    },
     /// All its contacts slip.
     #[error("it slides on \"{on}\", more than the friction of {interface} can hold")]
     Friction {
@@ -84,16 +103,40 @@ pub enum Lack {
 /// Watches for bodies that go.
 pub(super) struct Departure<S: Space> {
     start: Vec<Pose<S>>,
+    /// The bodies, the lowest first.
+    upward: Vec<BodyId>,
     /// The lowest body that went when the first did, and what it lacked then.
     first: Option<(BodyId, Lack)>,
 }
 
 impl<S: Space> Departure<S> {
-    pub(super) fn new(start: Vec<Pose<S>>) -> Self {
-        Self { start, first: None }
+    pub(super) fn new(model: &Model<S>, start: Vec<Pose<S>>) -> Self {
+        let height = |body: BodyId| -start[body].position.dot(model.gravity).lane(0);
+        let mut upward: Vec<BodyId> = (0..start.len()).collect();
+        upward.sort_by(|a, b| height(*a).total_cmp(&height(*b)));
+        Self { start, upward, first: None }
     }
 
-    /// Notes what the first body lacks that moves further than sinking explains.
+    /// How far every body has strayed (m): sideways, up, or down by more than any body below it, since what
+    /// lies on soft contacts sinks with them.
+    fn strayed(&self, model: &Model<S>, state: &State<S>) -> Vec<f64> {
+        let down = model.gravity * (S::Real::splat(1.0) / gravity(model));
+        let mut strayed = vec![0.0; self.start.len()];
+        let mut sunk = S::Real::zero();
+        for body in &self.upward {
+            let way = state.poses[*body].position - self.start[*body].position;
+            let fallen = way.dot(down);
+            let sideways = way - down * fallen;
+            let sideways = sideways.dot(sideways).sqrt();
+            let far = sideways.max(-fallen).max(fallen - sunk).largest_lane();
+            strayed[*body] = if far.is_finite() { far } else { f64::INFINITY };
+            sunk = sunk.max(fallen);
+        }
+        strayed
+    }
+
+    /// Looks for bodies that go: notes what the first lacks that strays further than sinking explains, and
+    /// says so once a body has left.
     ///
     /// By the time that it has left, it has met other bodies and pushed them away.
     pub(super) fn watch(
@@ -102,45 +145,48 @@ impl<S: Space> Departure<S> {
         state: &State<S>,
         scratch: &Scratch<S>,
         met: &[bool],
-    ) {
-        let way = |body| moved(state, &self.start, body);
-        let goes = |body: BodyId| {
-            model.bodies[body].motion == Motion::Free && !(way(body) < GOING * extent(model, body))
-        };
-        if self.first.is_some() || !(0..model.bodies.len()).any(goes) {
-            return;
+    ) -> Result<(), SettleError> {
+        let strayed = self.strayed(model, state);
+        let share = |body: &BodyId| strayed[*body] / extent(model, *body);
+        let most = self.upward.iter().map(share).fold(0.0, f64::max);
+        if most < GOING {
+            return Ok(());
         }
-        let most = (0..model.bodies.len()).map(way).fold(0.0, f64::max);
-        let going: Vec<bool> = (0..model.bodies.len()).map(|b| way(b) > WITH_IT * most).collect();
-        let height = |body: BodyId| -self.start[body].position.dot(model.gravity).lane(0);
-        let lowest = (0..model.bodies.len())
-            .filter(|body| going[*body])
-            .min_by(|a, b| height(*a).total_cmp(&height(*b)));
-        let Some(body) = lowest else { return };
-        self.first = Some((body, self.lack(body, model, state, scratch, met, &going)));
+        let (first, lack) = if let Some(first) = self.first.take() {
+            first
+        } else {
+            let farthest = strayed.iter().copied().fold(0.0, f64::max);
+            let going: Vec<bool> = strayed.iter().map(|way| *way >= WITH_IT * farthest).collect();
+            let lowest = self.upward.iter().copied().find(|body| going[*body]).unwrap_or_default();
+            (lowest, self.lack(lowest, model, state, scratch, met, &going))
+        };
+        if most < LEFT {
+            self.first = Some((first, lack));
+            return Ok(());
+        }
+        Err(self.refusal(model, state, first, lack))
     }
 
-    /// Why there is no rest, once a body has left.
-    pub(super) fn gone(&self, model: &Model<S>, state: &State<S>) -> Option<SettleError> {
-        let left = |body: BodyId| !(moved(state, &self.start, body) < LEFT * extent(model, body));
-        let bodies = 0..model.bodies.len();
-        let left =
-            bodies.into_iter().any(|body| model.bodies[body].motion == Motion::Free && left(body));
-        let (body, lack) = self.first.clone().filter(|_| left)?;
-        let moved = moved(state, &self.start, body);
-        Some(SettleError { body: model.bodies[body].name.clone(), moved, lack })
-    }
-
-    /// Why there is no rest, though all are where they were.
+    /// Why there is no rest, though no body has left: for the body that feels most of what is left.
     pub(super) fn unbalanced(
-        &self,
+        &mut self,
         model: &Model<S>,
         state: &State<S>,
         (steps, body, unbalanced): (u64, BodyId, f64),
     ) -> SettleError {
-        let (body, lack) = self.first.clone().unwrap_or((body, Lack::Time { steps, unbalanced }));
-        let moved = moved(state, &self.start, body);
+        let (body, lack) = self.first.take().unwrap_or((body, Lack::Time { steps, unbalanced }));
+        self.refusal(model, state, body, lack)
+    }
+
+    fn refusal(&self, model: &Model<S>, state: &State<S>, body: BodyId, lack: Lack) -> SettleError {
+        let moved = self.moved(state, body);
         SettleError { body: model.bodies[body].name.clone(), moved, lack }
+    }
+
+    /// How far a body has gone (m), in the lane where it is most.
+    fn moved(&self, state: &State<S>, body: BodyId) -> f64 {
+        let way = state.poses[body].position - self.start[body].position;
+        way.dot(way).sqrt().largest_lane()
     }
 
     /// What a body lacks that goes, with those others that go.
@@ -176,11 +222,18 @@ impl<S: Space> Departure<S> {
             let on = model.bodies[partner(creeping)].name.clone();
             return Lack::Stick { on, interface: law(creeping).name.clone() };
         }
+        let depth = |contact: &Contact<S>| contact.penetration.largest_lane();
+        let deepest = bearing.iter().max_by(|a, b| depth(a).total_cmp(&depth(b)));
+        if let Some(deepest) = deepest.filter(|c| depth(c) > SINKS * self.moved(state, body)) {
+            let on = model.bodies[partner(deepest)].name.clone();
+            let (interface, depth) = (law(deepest).name.clone(), depth(deepest));
+            return Lack::Stiffness { on, interface, depth };
+        }
         let turn = S::spin_magnitude(S::turn_between(
             self.start[body].orientation,
             state.poses[body].orientation,
         ));
-        if turn.largest_lane() * model.reach[body] > TURNS * moved(state, &self.start, body) {
+        if turn.largest_lane() * model.reach[body] > TURNS * self.moved(state, body) {
             return Lack::Balance { on };
         }
         let slips = |contact: &&Contact<S>| {

@@ -1,6 +1,6 @@
 //! Relaxation: steps with fictitious masses, in which nothing has a speed.
 
-use crate::body::{Body, Motion};
+use crate::body::Motion;
 use crate::contact::Stick;
 use crate::forces::{self, Scratch, evaluate};
 use crate::model::Model;
@@ -17,8 +17,12 @@ use super::{extent, gravity};
 /// stiffness: so 1 is just stable for springs, and the rest is for friction that breaks.
 const MARGIN: f64 = 2.0;
 
-/// Share of its reach that a body without contacts falls in its first step.
+/// Share of its reach that a body falls in its first step while nothing holds it.
 const FIRST_FALL: f64 = 1e-4;
+
+/// Share of its reach that a body moves in a step at most: contacts that stiffen with penetration are soft
+/// when they are met.
+const LONGEST_WAY: f64 = 2e-3;
 
 /// Velocities (per step of relaxation) that forces see: a power of two, by which bits do not change, so
 /// small that no damper feels it and that of smooth friction laws only what holds at rest is left.
@@ -66,24 +70,18 @@ pub(super) struct Relaxation<S: Space> {
 impl<S: Space> Relaxation<S> {
     /// At the start: nothing moves, and no body has been held.
     pub(super) fn new(model: &Model<S>) -> Self {
-        let gravity = gravity(model);
-        let held = |(i, body): (usize, &Body<S>)| {
-            let extent = S::Real::splat(extent(model, i));
-            let way = body.mass * gravity / (S::Real::splat(FIRST_FALL) * extent);
-            Held { way, turn: way * extent * extent }
-        };
         Self {
             resting: Default::default(),
             met: vec![false; model.bodies.len()],
             ways: vec![Twist::default(); model.bodies.len()],
-            held: model.bodies.iter().enumerate().map(held).collect(),
+            held: vec![Held { way: S::Real::zero(), turn: S::Real::zero() }; model.bodies.len()],
             touches: Vec::new(),
             touched: Vec::new(),
             since: S::Real::zero(),
         }
     }
 
-    /// The stiffness (N/m) that a body's contacts add up to, or have.
+    /// The most stiffness (N/m) that a body's contacts have added up to.
     pub(super) fn stiffness(&self, body: usize) -> S::Real {
         self.held[body].way
     }
@@ -203,13 +201,25 @@ impl<S: Space> Relaxation<S> {
         let carried = self.since / (self.since + S::Real::splat(3.0));
         let carried = S::Real::select(against | self.resting, zero, carried);
         let given = S::Real::select(self.resting, zero, S::Real::splat(1.0 / MARGIN));
+        let gravity = gravity(model);
         for (i, forces) in each(model, scratch).enumerate() {
-            if model.bodies[i].motion == Motion::Prescribed {
+            let body = &model.bodies[i];
+            if body.motion == Motion::Prescribed {
                 continue;
             }
+            let extent = S::Real::splat(extent(model, i));
             let (way, held) = (&mut self.ways[i], self.held[i]);
-            way.linear = way.linear * carried + forces.force * (given / held.way);
-            way.angular = way.angular * carried + forces.moment * (given / held.turn);
+            let falling = body.mass * gravity / (S::Real::splat(FIRST_FALL) * extent);
+            let holds = zero.lt(held.way);
+            let stiffness = S::Real::select(holds, held.way, falling);
+            // What holds a body in one point through its center of mass does not resist its turn.
+            let turning = held.turn.max(S::Real::splat(1e-3) * stiffness * extent * extent);
+            let linear = way.linear * carried + forces.force * (given / stiffness);
+            let angular = way.angular * carried + forces.moment * (given / turning);
+            let length = linear.dot(linear).sqrt().max(S::spin_magnitude(angular) * extent);
+            let longest = S::Real::splat(LONGEST_WAY) * extent;
+            let cut = longest / length.max(longest);
+            *way = Twist { linear: linear * cut, angular: angular * cut };
         }
     }
 
