@@ -301,3 +301,20 @@ fn dampers_do_not_decide_whether_a_stack_comes_to_rest_nor_where() {
         }
     }
 }
+
+#[test]
+#[ignore = "look"]
+fn look() {
+    for seed in [0, 27] {
+        let tried = tried("demo-napa", &random_stack(seed));
+        let start = State::initial(&tried.assembly.model);
+        for (time, rate) in [(20.0, 20.0), (60.0, 20.0), (20.0, 5.0), (20.0, 1.0)] {
+            println!("{seed} refused: {time} s at {rate}: {:.3e}", motion(&tried.assembly, &start, time, rate, 0.0));
+        }
+    }
+    let tried = tried("demo-napa", &random_stack(2));
+    println!("{:?} {:?}", random_stack(2), tried.result);
+    for (time, rate, push) in [(0.2, 0.0, 0.0), (1.0, 0.0, 0.0), (0.2, 0.0, 1e-6), (0.5, 0.0, 1e-6), (1.0, 0.0, 1e-6), (1.0, 0.0, 1e-8), (10.0, 5.0, 0.0), (10.0, 5.0, 1e-6)] {
+        println!("2: {time} s at {rate} push {push:e}: {:.3e}", motion(&tried.assembly, &tried.state, time, rate, push));
+    }
+}
