@@ -8,6 +8,7 @@ use crate::overlap::check_overlap;
 use crate::rest::at_rest;
 use crate::run::{RunFailure, time_step};
 use crate::scenario::Scenario;
+use crate::stick::SoftStick;
 
 /// What a check found.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,6 +86,10 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
             100.0 * motion.pgv(),
             100.0 * motion.pgd()
         ));
+    }
+    if scenario.run.settle {
+        let soft = SoftStick::of(&assembly, &scratch, ground.motion.as_ref());
+        lines.extend(soft.iter().map(|stick| format!("  stick         {stick}")));
     }
     lines.extend(ground.warnings.iter().map(|warning| format!("  warning       {warning}")));
     lines.push(format!("  fingerprint   {:016x}", scenario.fingerprint()));

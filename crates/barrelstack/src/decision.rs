@@ -17,6 +17,7 @@ mod json;
 mod limit;
 mod loss;
 mod measures;
+mod modes;
 mod page;
 mod sensitivity;
 mod words;
@@ -33,10 +34,11 @@ pub(crate) use words::{percent, refusal};
 
 pub use cases::{Case, Cases, Measure};
 pub use curve::{BandKind, LimitCurve};
-pub use hazard::{Site, SiteHazard};
+pub use hazard::{Lost, Site, SiteHazard};
 pub use limit::LimitState;
 pub use loss::{Breakage, Losses};
 pub use measures::MeasureRow;
+pub use modes::ModeIncidence;
 pub use sensitivity::{Effect, Group};
 
 /// What else a decision rests on.
@@ -55,10 +57,12 @@ pub struct Decision {
     pub cases: Cases,
     /// One curve a limit state, over the measure of the study; the first is the loss of the first seat.
     pub curves: Vec<LimitCurve>,
+    /// How collapse divides among its modes over the measure of the study, the most frequent first.
+    pub modes: Vec<ModeIncidence>,
     /// Every measure, the most efficient first.
     pub measures: Vec<MeasureRow>,
-    /// Barrels and wine lost at each level.
-    pub losses: Losses,
+    /// Barrels and wine lost at each level, or why they are not known.
+    pub losses: Result<Losses, String>,
     /// What varied factors change, the largest effect first.
     pub effects: Vec<Effect>,
     /// What it means at the site.
@@ -120,19 +124,28 @@ pub fn decide(collected: &Collected, request: &Request) -> Result<Decision, Deci
         .into_iter()
         .map(|limit| LimitCurve::of(&cases, limit, cases.main))
         .collect();
+    let modes = modes::of(&cases, &curves[0]);
     let losses = Losses::of(&cases);
     let measures = measures::compare(&cases);
     let effects = sensitivity::effects(collected, &cases);
     let site = match &request.hazard {
         Some(hazard) => {
-            Some(Site::of(&cases, &curves, hazard, request.years.unwrap_or(50.0), &losses)?)
+            let losses = losses.as_ref().ok();
+            Some(Site::of(&cases, &curves, hazard, request.years.unwrap_or(50.0), losses)?)
         }
         None => None,
     };
-    let warnings = words::warnings(&cases, &curves, &losses, site.as_ref(), &collected.provenance);
+    let warnings = words::warnings(
+        &cases,
+        &curves,
+        losses.as_ref().ok(),
+        site.as_ref(),
+        &collected.provenance,
+    );
     let mut decision = Decision {
         cases,
         curves,
+        modes,
         measures,
         losses,
         effects,

@@ -23,6 +23,13 @@ pub struct Ground {
     pub warnings: Vec<String>,
 }
 
+impl Ground {
+    /// When (s) it is still: the end of its motion.
+    pub fn end(&self) -> f64 {
+        self.motion.as_ref().map_or(0.0, |motion| motion.duration)
+    }
+}
+
 impl Drive<Planar> for Ground {
     fn at(&self, time: f64) -> (Vec2, Vec2) {
         let Some(motion) = &self.motion else { return Default::default() };

@@ -114,6 +114,8 @@ pub struct Heights {
     pub runs: usize,
     /// Runs without a verdict.
     pub left_out: usize,
+    /// What is to be known of runs that were not followed until nothing moved.
+    pub ends: Vec<String>,
     /// What the reader must know.
     pub warnings: Vec<String>,
     /// The page.
@@ -194,10 +196,12 @@ pub fn heights(
 fn gather(request: &Request, found: &[(View, bool, Collected)]) -> Result<Heights, HeightsError> {
     let (mut heights, mut recorded) = (Vec::new(), Vec::new());
     let (mut runs, mut left_out, mut motions) = (0, 0, 0);
+    let mut ends = Vec::new();
     for (view, as_recorded, collected) in found {
         let cases = Cases::read(collected)?;
         runs += collected.table.rows();
         left_out += cases.left_out;
+        ends.extend(cases.endings.sentences());
         if *as_recorded {
             recorded.extend(recorded_runs(&cases, collected, *view));
             continue;
@@ -215,6 +219,7 @@ fn gather(request: &Request, found: &[(View, bool, Collected)]) -> Result<Height
         motions,
         runs,
         left_out,
+        ends,
         warnings: Vec::new(),
         document: Document::default(),
     };
@@ -225,7 +230,7 @@ fn gather(request: &Request, found: &[(View, bool, Collected)]) -> Result<Height
 
 fn height(cases: &Cases, levels: u32, view: View) -> Height {
     let pga = cases.measures.iter().position(|measure| measure.name == "pga");
-    let levels_of_shaking = cases.levels(cases.main);
+    let levels_of_shaking = cases.groups(cases.main);
     let fallen = levels_of_shaking
         .iter()
         .map(|(_, of)| of.iter().map(|case| case.fallen_share()).sum::<f64>() / of.len() as f64);

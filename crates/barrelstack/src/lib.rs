@@ -9,6 +9,9 @@
 //!                     Summary (JSON) · files · report (HTML, Markdown)
 //! ```
 
+// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 pub mod assemble;
 pub mod calibrate;
 pub mod check;
@@ -19,7 +22,7 @@ pub mod export;
 pub mod ground;
 pub mod heights;
 pub mod outcome;
-mod overlap;
+pub mod overlap;
 pub mod period;
 mod pool;
 pub mod render;
@@ -29,11 +32,13 @@ mod rest;
 pub mod run;
 pub mod scenario;
 pub mod step;
+mod stick;
 pub mod study;
 pub mod summary;
-mod system;
 pub mod verify;
 pub mod watch;
+
+use barrelstack_input::system;
 
 pub use check::check;
 pub use rest::Restless;

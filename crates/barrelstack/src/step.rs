@@ -2,7 +2,7 @@
 
 use barrelstack_dynamics::body::Motion;
 use barrelstack_dynamics::{
-    Basis, Body, ContactPair, Linear as _, Model, Nodes, NormalLaw, Planar, Shape, Strap,
+    Basis, Body, ContactPair, Linear as _, Model, Nodes, NormalLaw, Planar, Shape, Strap, math,
 };
 
 use crate::assemble::Assembly;
@@ -87,7 +87,9 @@ fn fastest(
 
 /// Σk/m (1/s²) of the nodes that face a target at a time: a quarter of those around a body at most.
 fn stiffness_rate(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>) -> f64 {
-    let stiffness = model.interfaces()[pair.interface].normal.tangent_stiffness(REFERENCE);
+    let interface = &model.interfaces()[pair.interface];
+    let normal = interface.normal.tangent_stiffness(REFERENCE);
+    let stiffness = normal.max(interface.friction.stick_stiffness());
     facing(model, pair, 0.25) * stiffness / body.mass
 }
 
@@ -133,21 +135,24 @@ fn facing(model: &Model<Planar>, pair: &ContactPair, share: f64) -> f64 {
 fn mean_square_arm(nodes: &Nodes<Planar>) -> f64 {
     match nodes {
         Nodes::Fixed(nodes) if !nodes.is_empty() => {
-            let sum: f64 = nodes.iter().map(|n| n.position.length().powi(2)).sum();
-            sum / nodes.len() as f64
+            mean_square(nodes.iter().map(|node| node.position.length()))
         }
         Nodes::Rounds(rounds) if !rounds.is_empty() => {
-            let sum: f64 = rounds.iter().map(|r| r.center.length().powi(2)).sum();
-            sum / rounds.len() as f64
+            mean_square(rounds.iter().map(|round| round.center.length()))
         }
         Nodes::Fixed(_) | Nodes::Rounds(_) | Nodes::Rolling { .. } => 0.0,
     }
 }
 
+fn mean_square(arms: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = arms.len() as f64;
+    arms.map(|arm| arm * arm).sum::<f64>() / count
+}
+
 /// The largest of these digits times a power of ten that is not above a number.
 fn round_down(value: f64) -> f64 {
     const DIGITS: [f64; 8] = [1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
-    let power = 10.0_f64.powf(value.log10().floor());
+    let power = math::pow(10.0, math::log10(value).floor());
     let digit = value / power;
     power * DIGITS.into_iter().rev().find(|kept| digit >= *kept).unwrap_or(1.0)
 }

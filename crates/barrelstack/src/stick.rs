@@ -8,7 +8,8 @@
 use std::fmt;
 
 use barrelstack_dynamics::forces::tributary_length;
-use barrelstack_dynamics::{Basis, FrictionLaw, Planar, Scratch};
+use barrelstack_dynamics::{Basis, FrictionLaw, Interface, Planar, Scratch};
+use barrelstack_motion::GroundMotion;
 
 use crate::assemble::Assembly;
 
@@ -20,7 +21,7 @@ const TOLD: f64 = 0.05;
 pub(crate) struct SoftStick {
     interface: String,
     /// Stretch (m) at which the sticks of all its contacts at rest yield together.
-    pub(crate) yields: f64,
+    yields: f64,
     /// Displacement of the ground (m).
     swing: f64,
     /// Error of slip, as a share of it.
@@ -28,8 +29,13 @@ pub(crate) struct SoftStick {
 }
 
 impl SoftStick {
-    /// Those of a stack at rest, for ground that swings by a displacement (m).
-    pub(crate) fn of(assembly: &Assembly, rest: &Scratch<Planar>, swing: f64) -> Vec<Self> {
+    /// Those of a stack at rest, for a motion of the ground.
+    pub(crate) fn of(
+        assembly: &Assembly,
+        rest: &Scratch<Planar>,
+        motion: Option<&GroundMotion>,
+    ) -> Vec<Self> {
+        let Some(swing) = motion.map(GroundMotion::pgd) else { return Vec::new() };
         let model = &assembly.model;
         let mut sums = vec![(0.0, 0.0); model.interfaces().len()];
         for contact in &rest.contacts {
@@ -45,13 +51,18 @@ impl SoftStick {
                 sums[pair.interface].1 += stiffness;
             }
         }
-        let soft = |(interface, (limit, stiffness)): (&barrelstack_dynamics::Interface<Planar>, (f64, f64))| {
+        let soft = |(interface, (limit, stiffness)): (&Interface<Planar>, (f64, f64))| {
             let yields = limit / stiffness;
             let error = (yields / swing).sqrt();
             let interface = interface.name.clone();
             (error > TOLD).then_some(Self { interface, yields, swing, error })
         };
         model.interfaces().iter().zip(sums).filter_map(soft).collect()
+    }
+
+    /// Whether bodies that slipped by so much (m) did more than stretch it.
+    pub(crate) fn shows_in(&self, slip: f64) -> bool {
+        slip > 2.0 * self.yields
     }
 }
 

@@ -26,6 +26,7 @@ mod builtin;
 mod column;
 mod design;
 mod distribution;
+mod endings;
 mod ensembles;
 mod error;
 mod execute;
@@ -49,6 +50,7 @@ pub use builtin::{get as builtin, names as builtin_names};
 pub use column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
 pub use design::Design;
 pub use distribution::Distribution;
+pub use endings::{Endings, Following};
 pub use error::StudyError;
 pub use execute::{Progress, RunOptions};
 pub use fields::STUDY;
@@ -139,14 +141,15 @@ enum Levels {
 
 /// The schema (JSON Schema 2020-12) of a study file, for completion and checking in editors.
 pub fn json_schema() -> serde_json::Value {
-    crate::scenario::schema::of_file("barrelstack study", &STUDY)
+    barrelstack_input::schema::of_file("barrelstack study", &STUDY)
 }
 
 /// Every table and field of a study file in Markdown; those of `[base]` are those of a scenario file.
 pub fn reference() -> String {
-    let fields = crate::scenario::reference::of_tables(
+    let fields = barrelstack_input::reference::of_tables(
         &STUDY,
-        &["root", "motion", "sine", "pulse", "scale"],
+        &["scenario", "motion", "sine", "pulse", "scale"],
+        "a scenario file has there",
     );
     format!("# Fields of a study file\n\n{fields}")
 }

@@ -83,6 +83,10 @@ pub struct BodySummary {
     pub fell_at: Option<f64>,
     /// Largest drop below its place at rest, for what fell.
     pub fall_height: Option<f64>,
+    /// When it landed: when it went down less than half as fast as it had since it fell.
+    pub landed_at: Option<f64>,
+    /// Its largest speed downward until then.
+    pub landing_speed: Option<f64>,
     /// Displacement along x relative to the ground, at the end.
     pub residual_displacement: f64,
     /// Largest displacement along x relative to the ground, while the stack stood.
@@ -232,6 +236,8 @@ pub struct RunSummary {
     pub contact_evaluations: u64,
     /// Simulated time reached.
     pub end_time: f64,
+    /// Why it ended: "rest", "after-collapse", "duration", "patience", "interrupted" or "broken".
+    pub ending: &'static str,
     /// Whether it was stopped early by the user.
     pub interrupted: bool,
     /// What contact constants are stated for: "node", "length" or "mixed".
@@ -289,6 +295,7 @@ impl Summary {
                 evaluations: run.work.evaluations,
                 contact_evaluations: run.work.contact_evaluations,
                 end_time: run.end_time,
+                ending: run.ending.name(),
                 interrupted: run.interrupted,
                 stiffness_basis: run.stiffness_basis(),
                 similitude: run.scenario.run.similitude,
@@ -363,6 +370,8 @@ fn bodies(run: &Run) -> Vec<BodySummary> {
                 left_seat_at: fate.left_seat.map(|(time, _)| time),
                 fell_at: fate.fell_at,
                 fall_height: fate.fell_at.map(|_| fate.drop),
+                landed_at: fate.landed_at,
+                landing_speed: fate.landing_speed,
                 residual_displacement: fate.residual_displacement,
                 peak_displacement: fate.peak_displacement,
                 residual_slip: fate.residual_slip,

@@ -1,5 +1,7 @@
 //! The `barrelstack` command: arguments, progress, printing, exit status.
 
+#![warn(clippy::disallowed_methods)]
+
 mod args;
 mod commands;
 mod figures;

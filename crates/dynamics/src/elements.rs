@@ -254,7 +254,7 @@ impl<S: Space> Elements<S> {
         let undecided = frame.before(model, pair).is_none_or(|before| {
             let margin = S::Real::splat(margin);
             match pair.counts {
-                Counts::BehindFace(_) => before.lt(margin).any(),
+                Counts::BehindFace(_) | Counts::BehindFaceOfTarget(_) => before.lt(margin).any(),
                 Counts::Everywhere | Counts::BeforeFace(_) => (-margin).lt(before).any(),
             }
         });
@@ -411,10 +411,10 @@ impl<S: Space> PairFrame<S> {
         let apart = self.target - self.contactor;
         let (face, other) = match pair.counts {
             Counts::Everywhere => return None,
-            Counts::BeforeFace(face) => {
+            Counts::BeforeFace(face) | Counts::BehindFace(face) => {
                 (&model.bodies[pair.contactor].faces[face], S::unrotate(self.relative, apart))
             }
-            Counts::BehindFace(face) => {
+            Counts::BehindFaceOfTarget(face) => {
                 (&model.bodies[pair.target].faces[face], S::rotate(self.placed, -apart))
             }
         };

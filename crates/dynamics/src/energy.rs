@@ -266,6 +266,7 @@ mod tests {
         let interface = Interface {
             name: "disc-floor".to_owned(),
             normal: NormalLaw::SpeedGap { stiffness: 1e6, damping: 2e3 },
+            stop: None,
             friction: FrictionLaw::Frictionless,
             basis: Basis::Node,
         };

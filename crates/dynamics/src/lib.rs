@@ -25,6 +25,8 @@
 //! - Slip is that of the contactor relative to the target; on a level floor, positive to the right.
 //! - A friction force is given along the slip; the contactor feels its opposite.
 
+// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![allow(
     clippy::inline_always,
     reason = "bundles of lanes are fast only where their code is inlined into the scope of a vector unit"

@@ -37,8 +37,10 @@ pub enum Counts {
     Everywhere,
     /// While the center of mass of the target lies before this face of the contactor.
     BeforeFace(usize),
-    /// While the center of mass of the contactor does not lie before this face of the target.
+    /// While the center of mass of the target does not lie before this face of the contactor.
     BehindFace(usize),
+    /// While the center of mass of the contactor does not lie before this face of the target.
+    BehindFaceOfTarget(usize),
 }
 
 /// The pairs of two bodies, one after the other in the order of the model.
@@ -174,8 +176,12 @@ impl<S: Space> Model<S> {
             check("interface", p.interface, interfaces.len())?;
             match p.counts {
                 Counts::Everywhere => {}
-                Counts::BeforeFace(face) => check("face", face, bodies[p.contactor].faces.len())?,
-                Counts::BehindFace(face) => check("face", face, bodies[p.target].faces.len())?,
+                Counts::BeforeFace(face) | Counts::BehindFace(face) => {
+                    check("face", face, bodies[p.contactor].faces.len())?;
+                }
+                Counts::BehindFaceOfTarget(face) => {
+                    check("face", face, bodies[p.target].faces.len())?;
+                }
             }
         }
         let mut couples: Vec<Couple> = Vec::new();

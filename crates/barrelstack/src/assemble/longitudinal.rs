@@ -2,17 +2,17 @@
 //!
 //! The model is a slice one barrel wide: a rack that carries several barrels side by side lends each
 //! of them its share of the mass.
-//! A rail is a tube whose upper corners carry the barrel above and whose lower ones lie on the barrel
-//! below, or its lower side on the ground; each touches with one contact element.
+//! A rail is a tube whose upper side carries the barrel above and whose lower side lies on the barrel below
+//! or on the ground: with nodes, as in the paper, or exactly, with one contact element where they touch.
 
 use barrelstack_dynamics::shape::{BarrelProfile, Polygon};
 use barrelstack_dynamics::{BodyId, Shape, Vec2};
 
 use super::builder::{Builder, Draft};
-use super::solid::{Seat, Solid};
+use super::solid::{Seat, Solid, row};
 use super::transverse::TUBE_CORNER;
 use super::{AssembleError, PartKind};
-use crate::scenario::{Rack, RackKind, StackBody, View};
+use crate::scenario::{Rack, RackKind, SeatContact, StackBody, View};
 
 /// Builds all levels; returns the height of the stack and the reach of a rack on its barrels (m).
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
@@ -99,7 +99,13 @@ fn add_rack(
     )?;
     let rail = |(barrel, x): (usize, f64)| {
         let at = Vec2::new(x, 0.5 * rack.clearance);
-        Solid::exact(Shape::Polygon(tube.clone()), at, Seat::Along(barrel))
+        let mut rail = Solid::exact(Shape::Polygon(tube.clone()), at, Seat::Along(barrel));
+        if rack.contact == SeatContact::Nodes {
+            let half = 0.5 * rack.rail_width - corner_of(rack);
+            rail.below = row(rack.node_spacing, x, half, 0.0);
+            rail.above = row(rack.node_spacing, x, half, rack.clearance);
+        }
+        rail
     };
     let rails = places.iter().enumerate().flat_map(|(barrel, place)| {
         [-1.0, 1.0].map(|side| (barrel, place + side * rack.rail_half_spacing))
@@ -150,9 +156,12 @@ fn add_rack(
     Ok(barrels)
 }
 
-/// Radius (m) of the corners of a rail.
+/// Radius (m) of the corners of a rail; nodes stand for sharp ones.
 fn corner_of(rack: &Rack) -> f64 {
-    TUBE_CORNER.min(0.25 * rack.rail_width)
+    match rack.contact {
+        SeatContact::Nodes => 0.0,
+        SeatContact::Element | SeatContact::Rails => TUBE_CORNER.min(0.25 * rack.rail_width),
+    }
 }
 
 /// Height (m) of a barrel's axis above the level of the rails that carry it: staves slope, so a rail

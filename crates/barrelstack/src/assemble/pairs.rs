@@ -5,8 +5,8 @@
 //! Everything else about them, and any other two bodies, meets in impacts only.
 //! A round barrel is tested against the solids of others with the one point that lies deepest; solids
 //! with corners are tested both ways, and every contact belongs to one round piece.
-//! An underside with nodes is tested by its nodes while what it bears on lies before it, and exactly
-//! when that has come beside it: so no contact is counted twice.
+//! A face with nodes is tested by its nodes while what it bears lies before it, and exactly when that has
+//! come beside it: so no contact is counted twice.
 
 use barrelstack_dynamics::{BodyId, ContactPair, Counts, Nodes};
 
@@ -14,10 +14,7 @@ use super::builder::Builder;
 use super::solid::{Seat, Touch};
 use super::{Assembly, PartKind};
 
-// The interfaces of a stack, in the order of their ids and of `StackInterfaces::named`.
-
-/// So many of them are laws of seats.
-pub(super) const SEATS: usize = 3;
+// The interfaces of a stack, in the order of their ids and of `StackInterfaces::named`; seats first.
 
 const RACK_GROUND: usize = 0;
 const BARREL_RACK: usize = 1;
@@ -40,7 +37,7 @@ pub(super) fn pairs(builder: &Builder<'_>) -> Vec<ContactPair> {
                 (PartKind::Rack, PartKind::Barrel) => pairs.rack_and_barrel(a, b),
                 (PartKind::Barrel, PartKind::Rack) => pairs.rack_and_barrel(b, a),
                 (PartKind::Barrel, PartKind::Barrel) => {
-                    pairs.exact((a, 0), (b, 0), BARREL_BARREL, Counts::Everywhere);
+                    pairs.exact((a, 0), (b, 0), BARREL_BARREL, [Counts::Everywhere; 2]);
                 }
                 (PartKind::Ground | PartKind::Body, _) | (_, PartKind::Ground | PartKind::Body) => {
                     unreachable!("a stack is made of barrels and racks on one ground")
@@ -76,22 +73,23 @@ impl Pairs<'_> {
         self.list.push(ContactPair { contactor, nodes, target, surface, interface, counts });
     }
 
-    /// Two solids exactly: the one that is round against the other, or both ways.
+    /// Two solids exactly: the one that is round against the other, or both ways, with where each of
+    /// the ways counts.
     fn exact(
         &mut self,
         (a, solid_a): (BodyId, usize),
         (b, solid_b): (BodyId, usize),
         interface: usize,
-        counts: Counts,
+        counts: [Counts; 2],
     ) {
         let sets = [(a, self.touch(a, solid_a).exact), (b, self.touch(b, solid_b).exact)];
         let rolls = sets
             .map(|(id, set)| matches!(self.builder.bodies[id].nodes[set], Nodes::Rolling { .. }));
         if rolls[0] || !rolls[1] {
-            self.push(sets[0], (b, solid_b), interface, counts);
+            self.push(sets[0], (b, solid_b), interface, counts[0]);
         }
         if !rolls[0] {
-            self.push(sets[1], (a, solid_a), interface, counts);
+            self.push(sets[1], (a, solid_a), interface, counts[1]);
         }
     }
 
@@ -108,10 +106,10 @@ impl Pairs<'_> {
                 (PartKind::Rack, false) => FALLEN_RACK_GROUND,
                 (PartKind::Barrel | PartKind::Ground | PartKind::Body, _) => BARREL_GROUND,
             };
-            match touch.underside.filter(|_| seat) {
-                Some(underside) => {
-                    self.push((body, underside.nodes), ground, interface, Counts::Everywhere);
-                    self.push((body, underside.others), ground, interface, Counts::Everywhere);
+            match touch.below.filter(|_| seat) {
+                Some(face) => {
+                    self.push((body, face.nodes), ground, interface, Counts::Everywhere);
+                    self.push((body, face.others), ground, interface, Counts::Everywhere);
                 }
                 None => self.push((body, touch.exact), ground, interface, Counts::Everywhere),
             }
@@ -135,14 +133,19 @@ impl Pairs<'_> {
                 Seat::None | Seat::Rack => false,
             };
             let interface = if seat { BARREL_RACK } else { FALLEN_BARREL_RACK };
-            match touch.underside.filter(|_| seat) {
-                Some(underside) => {
-                    let before = Counts::BeforeFace(underside.face);
-                    self.push((rack, underside.nodes), (barrel, 0), interface, before);
-                    let behind = Counts::BehindFace(underside.face);
+            let face = if carried.is_some() { touch.above } else { touch.below };
+            match face.filter(|_| seat) {
+                Some(face) => {
+                    let before = Counts::BeforeFace(face.face);
+                    self.push((rack, face.nodes), (barrel, 0), interface, before);
+                    let behind =
+                        [Counts::BehindFaceOfTarget(face.face), Counts::BehindFace(face.face)];
                     self.exact((barrel, 0), (rack, solid), interface, behind);
                 }
-                None => self.exact((barrel, 0), (rack, solid), interface, Counts::Everywhere),
+                None => {
+                    let always = [Counts::Everywhere; 2];
+                    self.exact((barrel, 0), (rack, solid), interface, always);
+                }
             }
         }
     }
@@ -155,7 +158,7 @@ impl Pairs<'_> {
                     && self.touch(lower, below).seat == Seat::Rack
                     && self.touch(upper, above).seat == Seat::OnSupports;
                 let interface = if seat { RACK_RACK } else { FALLEN_RACK_RACK };
-                self.exact((lower, below), (upper, above), interface, Counts::Everywhere);
+                self.exact((lower, below), (upper, above), interface, [Counts::Everywhere; 2]);
             }
         }
     }

@@ -11,7 +11,9 @@ pub(super) struct Solid {
     pub(super) seat: Seat,
     /// Nodes along its flat underside: positions (m) and tributary lengths (m); none where contact is
     /// exact all around.
-    pub(super) nodes: Vec<(Vec2, f64)>,
+    pub(super) below: Vec<(Vec2, f64)>,
+    /// The same along its flat top.
+    pub(super) above: Vec<(Vec2, f64)>,
 }
 
 /// What a solid is there to bear.
@@ -48,13 +50,15 @@ pub(super) struct Touch {
     pub(super) seat: Seat,
     /// The node set of its round pieces, which tests exactly; for a circle, of its rolling node.
     pub(super) exact: usize,
-    /// What there is where its underside carries nodes.
-    pub(super) underside: Option<Underside>,
+    /// Its underside, if that carries nodes.
+    pub(super) below: Option<NodedFace>,
+    /// Its top, if that carries nodes.
+    pub(super) above: Option<NodedFace>,
 }
 
-/// The flat underside of a solid that carries nodes.
+/// A flat face of a solid that carries nodes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Underside {
+pub(super) struct NodedFace {
     /// The node set.
     pub(super) nodes: usize,
     /// The node set of the round pieces that are no ends of it.
@@ -63,13 +67,13 @@ pub(super) struct Underside {
     pub(super) face: usize,
 }
 
-/// How near (m) to the underside a round piece lies that is an end of it.
+/// How near (m) to a face a round piece lies that is an end of it.
 const AT_END: f64 = 1e-9;
 
 impl Solid {
     /// A solid that is tested exactly all around.
     pub(super) fn exact(shape: Shape, offset: Vec2, seat: Seat) -> Self {
-        Self { shape, offset, seat, nodes: Vec::new() }
+        Self { shape, offset, seat, below: Vec::new(), above: Vec::new() }
     }
 
     /// Adds itself to a body whose center of mass is at `center` (m) of the draft, scaled by `length`;
@@ -84,34 +88,47 @@ impl Solid {
         let shape = scaled(self.shape, length);
         let offset = (self.offset - center) * length;
         let exact = add(body, boundary(&shape, offset, tributary * length));
-        let underside = (!self.nodes.is_empty()).then(|| {
-            let nodes: Vec<Node<Planar>> = self
-                .nodes
-                .iter()
-                .map(|(position, tributary)| Node {
-                    position: (*position - center) * length,
-                    tributary_length: tributary * length,
-                })
-                .collect();
-            let point = nodes[0].position;
-            let outward = Vec2::new(0.0, -1.0);
+        let mut face = |nodes: &[(Vec2, f64)], outward: f64| {
+            let at = |(position, tributary): &(Vec2, f64)| Node {
+                position: (*position - center) * length,
+                tributary_length: tributary * length,
+            };
+            let nodes: Vec<Node<Planar>> = nodes.iter().map(at).collect();
+            let point = nodes.first()?.position;
             let at_end = |round: &Round<Planar>| {
-                (round.center.z - round.radius - point.z).abs() < AT_END * length
+                let height = outward * (round.center.z - point.z) + round.radius;
+                height.abs() < AT_END * length
             };
             let others = match &body.nodes[exact] {
                 Nodes::Rounds(rounds) => rounds.iter().copied().filter(|r| !at_end(r)).collect(),
                 Nodes::Fixed(_) | Nodes::Rolling { .. } => Vec::new(),
             };
-            body.faces.push(Face { point, outward });
-            Underside {
+            body.faces.push(Face { point, outward: Vec2::new(0.0, outward) });
+            Some(NodedFace {
                 nodes: add(body, Nodes::Fixed(nodes)),
                 others: add(body, Nodes::Rounds(others)),
                 face: body.faces.len() - 1,
-            }
-        });
+            })
+        };
+        let (below, above) = (face(&self.below, -1.0), face(&self.above, 1.0));
         body.surfaces.push(Placed { surface: shape, offset, rotation: Rotation2::identity() });
-        Touch { seat: self.seat, exact, underside }
+        Touch { seat: self.seat, exact, below, above }
     }
+}
+
+/// A row of nodes along a face at height `z` (m), `half` (m) to either side of `middle` (m), no further
+/// apart than `spacing` (m).
+pub(super) fn row(spacing: f64, middle: f64, half: f64, z: f64) -> Vec<(Vec2, f64)> {
+    let parts = (2.0 * half / spacing - 1e-9).ceil().max(1.0);
+    let step = 2.0 * half / parts;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
+    let last = parts as u32;
+    (0..=last)
+        .map(|i| {
+            let tributary = if i == 0 || i == last { 0.5 * step } else { step };
+            (Vec2::new(middle - half + f64::from(i) * step, z), tributary)
+        })
+        .collect()
 }
 
 /// Adds a node set to a body; returns its number.

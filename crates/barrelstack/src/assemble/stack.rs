@@ -1,11 +1,12 @@
 //! A stack in one of its two views, with its laws of contact.
 
+use barrelstack_dynamics::contact::Stop;
 use barrelstack_dynamics::{Interface, Model, Planar, Vec2};
 
 use super::builder::Builder;
 use super::interfaces::interface;
 use super::{AssembleError, Assembly, Similitude, longitudinal, pairs, straps, transverse};
-use crate::scenario::{StackSpec, View};
+use crate::scenario::{self, StackSpec, View};
 
 /// Builds a stack in its view.
 pub(super) fn assemble(
@@ -43,9 +44,21 @@ fn laws(spec: &StackSpec, scale: Similitude) -> Vec<Interface<Planar>> {
         View::Transverse => spec.rack.contact.behind_each_other(),
         View::Longitudinal => 1.0,
     };
+    let stroke = spec.rack.seat_stroke * scale.length;
+    let impact = |law: &scenario::Interface| interface("stop", law, 1.0, scale).normal;
+    // What a seat meets at the end of its stroke is what the same bodies meet elsewhere.
+    let stops = [
+        &spec.interfaces.fallen_rack_ground,
+        &spec.interfaces.fallen_barrel_rack,
+        &spec.interfaces.fallen_rack_rack,
+    ];
     let named = spec.interfaces.named().into_iter().enumerate();
-    let law = |(id, (name, law))| {
-        interface(name, law, if id < pairs::SEATS { behind } else { 1.0 }, scale)
+    let law = |(id, (name, law))| match stops.get(id) {
+        Some(&stop) => Interface {
+            stop: Some(Stop { depth: stroke, law: impact(stop) }),
+            ..interface(name, law, behind, scale)
+        },
+        None => interface(name, law, 1.0, scale),
     };
     named.map(law).collect()
 }

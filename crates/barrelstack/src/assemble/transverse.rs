@@ -16,7 +16,7 @@ use barrelstack_dynamics::shape::{Circle, Polygon, PolygonError};
 use barrelstack_dynamics::{BodyId, Shape, Vec2, math};
 
 use super::builder::{Builder, Draft};
-use super::solid::{Seat, Solid};
+use super::solid::{Seat, Solid, row};
 use super::{AssembleError, PartKind};
 use crate::scenario::{Cradle, Friction, Posts, Rack, RackKind, SeatContact, StackBody, View};
 
@@ -60,9 +60,10 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
     Ok((height, reach(rack, radius, &spec.interfaces.barrel_rack.friction)))
 }
 
-/// How far a rack may move across the barrels below: past the end of its foot, or of its beam where it
-/// has no feet, it stands on the falling side of the round, where friction holds it up to a slope of
-/// arctan μ.
+/// How far a rack may move across the barrels below before nothing can hold it there without help: with
+/// feet until they stand beside the crowns and the beam has come down on them, without feet until the end
+/// of its beam has passed the crown and stands on the falling side of the round, where friction holds it up
+/// to a slope of arctan μ.
 fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
     if let (RackKind::OnRacks, Some(posts)) = (rack.kind, &rack.posts) {
         // A post stands on a post: half of its width, and it is off.
@@ -73,11 +74,12 @@ fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
         Friction::Coulomb { static_coefficient, .. } => static_coefficient,
         Friction::Regularized { coefficient, .. } => coefficient,
     };
-    let bearing = if rack.foot_height > 0.0 {
-        rack.foot_half_length
-    } else {
-        0.5 * (rack.width - f64::from(rack.barrels - 1) * rack.pitch)
-    };
+    if rack.foot_height > 0.0 {
+        // A foot bears on the falling side until its beam has come down on the round.
+        let height = (radius - rack.foot_height).max(0.0);
+        return rack.foot_half_length + (radius * radius - height * height).sqrt();
+    }
+    let bearing = 0.5 * (rack.width - f64::from(rack.barrels - 1) * rack.pitch);
     let (sin, _) = math::sin_cos(math::atan(coefficient));
     bearing + radius * sin
 }
@@ -175,7 +177,7 @@ fn rack_solids(
         if feet { Seat::None } else { Seat::OnSupports },
     );
     if !feet && stands_on_racks.is_none() && rack.contact == SeatContact::Nodes {
-        beam.nodes = row(rack, 0.0, 0.5 * rack.width - corner);
+        beam.below = row(rack.node_spacing, 0.0, 0.5 * rack.width - corner, 0.0);
     }
     let mut solids = vec![beam];
     if feet {
@@ -190,7 +192,7 @@ fn rack_solids(
                 Seat::OnSupport(column),
             );
             if rack.contact == SeatContact::Nodes {
-                foot.nodes = row(rack, *place, rack.foot_half_length);
+                foot.below = row(rack.node_spacing, *place, rack.foot_half_length, 0.0);
             }
             solids.push(foot);
         }
@@ -203,20 +205,6 @@ fn rack_solids(
         posts_and_cups(&mut solids, rack, &posts, level)?;
     }
     Ok(solids)
-}
-
-/// A row of nodes along the underside, `half` (m) to either side of `middle` (m).
-fn row(rack: &Rack, middle: f64, half: f64) -> Vec<(Vec2, f64)> {
-    let parts = (2.0 * half / rack.node_spacing - 1e-9).ceil().max(1.0);
-    let step = 2.0 * half / parts;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
-    let last = parts as u32;
-    (0..=last)
-        .map(|i| {
-            let tributary = if i == 0 || i == last { 0.5 * step } else { step };
-            (Vec2::new(middle - half + f64::from(i) * step, 0.0), tributary)
-        })
-        .collect()
 }
 
 /// What holds a barrel whose lowest point is `clearance` above the underside: two bars that stand on the

@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use barrelstack_fragility::Interval;
 use barrelstack_motion::STANDARD_GRAVITY;
 
 use super::DecisionError;
-use crate::study::{Collected, Role, StudyTable, Value};
+use crate::study::{Collected, Endings, Role, StudyTable, Value};
+use crate::watch::Ending;
 
 /// An intensity measure and how it is printed.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +55,16 @@ impl Measure {
         self.scale * intensity
     }
 
+    /// An interval with its unit, where the cases bound it.
+    pub fn range(&self, bounds: Interval) -> String {
+        match (bounds.low > 0.0, bounds.high.is_finite()) {
+            (true, true) => format!("{} to {}", self.words(bounds.low), self.words(bounds.high)),
+            (true, false) => format!("{} or more", self.words(bounds.low)),
+            (false, true) => format!("{} or less", self.words(bounds.high)),
+            (false, false) => "anywhere".to_owned(),
+        }
+    }
+
     /// An intensity with its unit, in three digits.
     pub fn words(&self, intensity: f64) -> String {
         let shown = self.shown(intensity);
@@ -75,6 +87,8 @@ pub struct Case {
     pub collapsed: bool,
     /// How it collapsed.
     pub mode: Option<String>,
+    /// Whether it was followed until nothing moved, so that it tells what falls.
+    pub followed: bool,
     /// Barrels in the stack.
     pub barrels: u32,
     /// Drop (m) of each barrel that fell.
@@ -83,7 +97,8 @@ pub struct Case {
     pub drift: Option<f64>,
     /// Intensities (SI), one for each of [`Cases::measures`].
     pub intensities: Vec<Option<f64>>,
-    /// What tells the cases of one hunt or curve from those of others: record and factors.
+    /// What tells the cases of one hunt or curve from those of others: the record, and the factors that are
+    /// not drawn anew for each case.
     pub curve: usize,
 }
 
@@ -114,6 +129,12 @@ pub struct Cases {
     pub leveled: bool,
     /// Whether levels were found by hunting for collapse, so that they depend on what was found.
     pub hunted: bool,
+    /// Whether cases are samples, each with a motion, a level and factors of its own.
+    pub sampled: bool,
+    /// Factors that are drawn anew for each case of a motion.
+    pub drawn: Vec<String>,
+    /// How the cases came to their end.
+    pub endings: Endings,
     /// The cases.
     pub all: Vec<Case>,
     /// Rows without a verdict: broken down, not judged, or could not run.
@@ -145,6 +166,7 @@ impl Cases {
         let outcomes = table.texts("outcome").ok_or(DecisionError::Column("outcome"))?;
         let records = table.texts("record").ok_or(DecisionError::Column("record"))?;
         let barrels = table.integers("barrels").ok_or(DecisionError::Column("barrels"))?;
+        let ended = table.texts("ended").ok_or(DecisionError::Column("ended"))?;
         let modes = table.texts("mode");
         let heights = table.texts("fall_heights");
         let (drift, level) = (numbers(table, "top_drift_ratio"), numbers(table, "level"));
@@ -182,7 +204,8 @@ impl Cases {
                 _ => continue,
             };
             let name = records[row].clone().unwrap_or_default();
-            let factors = table.of_role(Role::Factor).map(|f| told(f.values.get(row)));
+            let fixed = table.of_role(Role::Factor).filter(|f| !made.drawn.contains(&f.spec.name));
+            let factors = fixed.map(|f| told(f.values.get(row)));
             let key = std::iter::once(name.clone()).chain(factors).collect::<Vec<_>>().join("\n");
             let cell = |of: Option<&[Option<String>]>| of.and_then(|of| of[row].clone());
             all.push(Case {
@@ -190,6 +213,7 @@ impl Cases {
                 record: names.of(name),
                 collapsed,
                 mode: cell(modes),
+                followed: ended[row].as_deref() == Some(Ending::Rest.name()),
                 barrels: u32::try_from(barrels[row].unwrap_or(0)).unwrap_or(0),
                 falls: cell(heights).map_or_else(Vec::new, |text| {
                     text.split(';').filter_map(|height| height.trim().parse().ok()).collect()
@@ -213,6 +237,9 @@ impl Cases {
             main,
             leveled,
             hunted: made.design == "ida",
+            sampled: matches!(made.design.as_str(), "latin-hypercube" | "sobol" | "monte-carlo"),
+            drawn: made.drawn.clone(),
+            endings: Endings::of(table),
             left_out: table.rows() - all.len(),
             all,
             seed: made.seed,
@@ -237,14 +264,33 @@ impl Cases {
         self.all.iter().map(|case| case.barrels).max().unwrap_or(0)
     }
 
-    /// Levels of the measure of the study, ascending, each with its cases; bins of neighboring cases where
-    /// nothing was scaled to a level.
-    pub fn levels(&self, measure: usize) -> Vec<(f64, Vec<&Case>)> {
+    /// How many curves there are: motions, each with every combination of what is not drawn anew.
+    pub fn curves(&self) -> usize {
+        self.all.iter().map(|case| case.curve).max().map_or(0, |last| last + 1)
+    }
+
+    /// How many barrels fall is known: no case was ended before nothing moved, or hardly any.
+    pub fn tells_losses(&self) -> bool {
+        self.endings.no_losses().is_none()
+    }
+
+    /// The cases whose falls are known.
+    #[must_use]
+    pub fn with_known_falls(&self) -> Self {
+        self.only(|case| case.followed)
+    }
+
+    /// Groups in which cases are counted, ascending, each with its intensity.
+    ///
+    /// The levels of the study where cases share them.
+    /// Elsewhere bins of equally many neighbors, whose intensity is the geometric mean of their cases':
+    /// a fraction needs a few dozen cases, and an order is best seen over a dozen bins or so.
+    pub fn groups(&self, measure: usize) -> Vec<(f64, Vec<&Case>)> {
         let mut sorted: Vec<(f64, &Case)> =
             self.all.iter().filter_map(|case| Some((case.intensities[measure]?, case))).collect();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.row.cmp(&b.1.row)));
         let mut found: Vec<(f64, Vec<&Case>)> = Vec::new();
-        if self.leveled && !self.hunted && measure == self.main {
+        if self.shares_levels(measure) {
             for (level, case) in sorted {
                 match found.last_mut() {
                     Some((last, cases)) if *last == level => cases.push(case),
@@ -253,19 +299,37 @@ impl Cases {
             }
             return found;
         }
-        // Bins of equally many cases; the intensity of a bin is the geometric mean of its cases'.
-        let bins = (sorted.len() / 12).clamp(1, 10);
+        let bins = (sorted.len() / FEWEST_OF_BIN).clamp(1, MOST_BINS).min(sorted.len());
         for bin in 0..bins {
             let part = &sorted[bin * sorted.len() / bins..(bin + 1) * sorted.len() / bins];
-            if part.is_empty() {
-                continue;
-            }
             let mean = part.iter().map(|(x, _)| libm::log(*x)).sum::<f64>() / part.len() as f64;
             found.push((libm::exp(mean), part.iter().map(|(_, case)| *case).collect()));
         }
         found
     }
+
+    /// Whether several cases stand at each level of a measure.
+    pub fn shares_levels(&self, measure: usize) -> bool {
+        if !self.leveled || self.hunted || measure != self.main {
+            return false;
+        }
+        let mut levels: Vec<f64> =
+            self.all.iter().filter_map(|case| case.intensities[measure]).collect();
+        let cases = levels.len();
+        levels.sort_by(f64::total_cmp);
+        levels.dedup();
+        !self.sampled || cases >= FEWEST_OF_LEVEL * levels.len()
+    }
 }
+
+/// Fewest cases of a bin, unless there are fewer in all.
+const FEWEST_OF_BIN: usize = 24;
+
+/// Most bins.
+const MOST_BINS: usize = 16;
+
+/// Fewest samples that share a level, on average, for it to be counted by itself.
+const FEWEST_OF_LEVEL: usize = 8;
 
 /// A value of a factor as text.
 pub(super) fn told(value: Option<Value>) -> String {

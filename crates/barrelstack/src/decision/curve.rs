@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use barrelstack_fragility::{
     Capacity, Dispersion, Evidence, Fit, FitError, Goodness, Interval, Monotony, Replicates,
-    Returned, Stripe, bootstrap, fit, goodness, monotony, profile_band, profile_median, returns,
-    wilson,
+    Returned, Stripe, bootstrap, fit, goodness, goodness_in_bins, monotony, profile_band,
+    profile_median, returns, wilson,
 };
 use barrelstack_motion::Random;
 
@@ -60,24 +60,22 @@ pub struct LimitCurve {
     pub goodness: Option<Goodness>,
     /// Raw counts against the order that every curve takes for granted.
     pub monotony: Monotony,
-    /// Records that failed and stood at a higher intensity, other things equal.
+    /// Curves of one motion that failed at one intensity and stood at a higher; none of samples, each of
+    /// which has a curve of its own.
     pub returned: Vec<Returned>,
 }
 
 impl LimitCurve {
     /// Counts, fits and tests.
     pub fn of(cases: &Cases, limit: LimitState, measure: usize) -> Self {
+        let known = cases.only(|case| limit.is_known(case));
+        let cases = &known;
         let evidence = evidence(cases, &limit, measure);
-        let levels = cases.levels(measure);
-        let stripe = |(intensity, of): &(f64, Vec<&Case>)| Stripe {
-            intensity: *intensity,
-            cases: u32::try_from(of.len()).unwrap_or(u32::MAX),
-            failures: of.iter().map(|case| u32::from(limit.reached(case))).sum(),
-        };
+        let groups = cases.groups(measure);
         let stripes: Vec<Stripe> = if cases.hunted {
             known_at_levels(&evidence)
         } else {
-            levels.iter().map(stripe).collect()
+            groups.iter().map(|(x, of)| stripe(*x, of, |case| limit.reached(case))).collect()
         };
         let intervals = stripes.iter().map(|s| wilson(s.failures, s.cases, LEVEL)).collect();
         let fit = fit(&evidence, Dispersion::Free);
@@ -93,12 +91,24 @@ impl LimitCurve {
             let median = profile_median(&evidence, Dispersion::Free, LEVEL);
             (band.unwrap_or_default(), median.ok(), BandKind::Likelihood)
         };
-        let goodness = fit.as_ref().ok().map(|fit| goodness(&stripes, fit));
+        let single = |case: &Case| {
+            Some(stripe(case.intensities[measure]?, &[case], |case| limit.reached(case)))
+        };
+        let goodness = fit.as_ref().ok().map(|fit| match cases.hunted {
+            true => goodness(&stripes, fit),
+            false => {
+                let bins: Vec<Vec<Stripe>> = groups
+                    .iter()
+                    .map(|(_, of)| of.iter().filter_map(|case| single(case)).collect())
+                    .collect();
+                goodness_in_bins(&bins, fit)
+            }
+        });
         let monotony = monotony(&stripes, DRAWS, || random.uniform());
-        let told = cases
-            .all
-            .iter()
-            .filter_map(|case| Some((case.curve, case.intensities[measure]?, limit.reached(case))));
+        let told =
+            cases.all.iter().filter(|_| !cases.sampled).filter_map(|case| {
+                Some((case.curve, case.intensities[measure]?, limit.reached(case)))
+            });
         let returned = returns(told);
         Self {
             limit,
@@ -141,6 +151,15 @@ pub(super) fn interpolate(points: &[(f64, f64)], at: f64) -> f64 {
         (Some((x0, y0)), Some((x1, y1))) => {
             y0 + (y1 - y0) * libm::log(at / x0) / libm::log(x1 / x0)
         }
+    }
+}
+
+/// Counts of some cases at an intensity.
+pub(super) fn stripe(intensity: f64, of: &[&Case], failed: impl Fn(&Case) -> bool) -> Stripe {
+    Stripe {
+        intensity,
+        cases: u32::try_from(of.len()).unwrap_or(u32::MAX),
+        failures: of.iter().map(|case| u32::from(failed(case))).sum(),
     }
 }
 

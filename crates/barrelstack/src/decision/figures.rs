@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use barrelstack_fragility::{Ida, Interval, Stripe};
+use barrelstack_fragility::{Ida, Interval, Returned, Stripe};
 use barrelstack_report::{Axis, Figure, FigureKind, Mark, Plot, Series, SeriesStyle};
 
 use super::cases::{Cases, Measure};
 use super::curve::LimitCurve;
 use super::hazard::Site;
 use super::loss::Losses;
+use super::modes::ModeIncidence;
 use super::sensitivity::{Effect, Group};
 
 fn style(index: usize) -> SeriesStyle {
@@ -70,7 +71,7 @@ pub(super) fn fragility(curve: &LimitCurve, measure: &Measure) -> Figure {
     let intervals = at.iter().copied().zip(curve.intervals.iter().copied());
     series.push(bars("95 % interval of each", intervals, style(1)));
     let caption = format!(
-        "Chance of {} against {}. Dots: the share of the cases at each level, with Wilson's interval; they stand for \
+        "Chance of {} against {}. Dots: the share of the cases at each level or in each bin, with Wilson's interval; they stand for \
          themselves and are not smoothed.{}",
         curve.limit.words(),
         measure.label,
@@ -115,18 +116,47 @@ pub(super) fn limits(curves: &[LimitCurve], measure: &Measure) -> Figure {
     )
 }
 
+/// Cumulative incidence of each mode under the curve of collapse.
+pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Measure) -> Figure {
+    let grid = || collapse.grid.iter().map(|x| measure.shown(*x)).collect::<Vec<f64>>();
+    let mut series = Vec::new();
+    for (index, mode) in modes.iter().enumerate() {
+        let name = mode.mode.replace('-', " ");
+        let at: Vec<f64> = mode.stripes.iter().map(|s| measure.shown(s.intensity)).collect();
+        let dots = SeriesStyle { dots: true, ..style(index + 1) };
+        let raw = mode.stripes.iter().map(Stripe::fraction).collect();
+        series.push(Series { style: dots, ..Series::new(format!("{name} (raw)"), at, raw) });
+        if !mode.fitted.is_empty() {
+            let line = Series::new(name, grid(), mode.fitted.clone());
+            series.push(Series { style: style(index + 1), ..line });
+        }
+    }
+    if let Ok(fit) = &collapse.fit {
+        let line = collapse.grid.iter().map(|x| fit.curve.probability(*x)).collect();
+        series.push(Series { style: style(0), ..Series::new("all modes", grid(), line) });
+    }
+    plot(
+        "modes",
+        "Chance of collapse in each mode (cumulative incidence). Modes compete: together they are the chance of collapse, \
+         and one may become rarer where another takes over. Smooth lines divide the curve of collapse among the modes by \
+         probit regression."
+            .to_owned(),
+        Plot { x: axis(measure), y: chance_axis("chance"), series, ..Plot::default() },
+    )
+}
+
 /// Most single curves that a picture of incremental dynamic analysis shows.
 const MOST_CURVES: usize = 60;
 
 /// Curves of incremental dynamic analysis with their fractiles; none where records have too few levels.
-pub(super) fn ida(cases: &Cases) -> Option<Figure> {
-    if !cases.leveled {
+pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
+    if !cases.leveled || cases.sampled {
         return None;
     }
     let measure = cases.measure();
     let mut runs: BTreeMap<usize, Vec<(f64, f64)>> = BTreeMap::new();
     for case in &cases.all {
-        let key = if cases.hunted { case.curve } else { case.record };
+        let key = case.curve;
         let Some(level) = case.intensities[cases.main] else { continue };
         let demand = if case.collapsed { Some(f64::INFINITY) } else { case.drift };
         if let Some(demand) = demand {
@@ -162,12 +192,11 @@ pub(super) fn ida(cases: &Cases) -> Option<Figure> {
         let (y, x) = found.map(|(x, d)| (x, d.map_or(f64::NAN, place))).unzip();
         series.push(Series { style: style(index), ..Series::new(label, x, y) });
     }
-    let back = all.iter().filter(|ida| !ida.resurrections().is_empty()).count();
-    let told = match back {
+    let told = match returned.len() {
         0 => String::new(),
         count => format!(
             " {count} of {} come back: they collapse at one level and stand at a higher one.",
-            all.len()
+            cases.curves()
         ),
     };
     Some(plot(

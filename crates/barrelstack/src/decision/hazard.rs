@@ -89,6 +89,17 @@ pub struct LimitRate {
     pub chance: f64,
 }
 
+/// What one stack is expected to lose a year.
+#[derive(Clone, Debug)]
+pub struct Lost {
+    /// Barrels that fall.
+    pub fallen: Rate,
+    /// Barrels that burst, under few, the central and many.
+    pub burst: [Rate; 3],
+    /// Wine (m³) that is lost, likewise.
+    pub wine: [f64; 3],
+}
+
 /// What a study means at a site.
 #[derive(Clone, Debug)]
 pub struct Site {
@@ -98,12 +109,8 @@ pub struct Site {
     pub years: f64,
     /// One for each limit state.
     pub limits: Vec<LimitRate>,
-    /// Barrels expected to fall a year, from one stack.
-    pub fallen: Rate,
-    /// Barrels expected to burst a year, from one stack, under few, the central and many.
-    pub burst: [Rate; 3],
-    /// Wine (m³) expected to be lost a year, from one stack, likewise.
-    pub wine: [f64; 3],
+    /// What is expected to be lost a year; none where the study does not tell what falls.
+    pub lost: Option<Lost>,
     /// Where the rate of collapse comes from, by intensity.
     pub contributions: Vec<Contribution>,
 }
@@ -115,7 +122,7 @@ impl Site {
         curves: &[LimitCurve],
         hazard: &SiteHazard,
         years: f64,
-        losses: &Losses,
+        losses: Option<&Losses>,
     ) -> Result<Self, DecisionError> {
         if cases.measure().name != hazard.measure {
             return Err(CalibrateError::Unsuited {
@@ -135,15 +142,20 @@ impl Site {
             Ok(fit) => fit.curve.probability(x),
             Err(_) => collapse.raw(x),
         };
-        let most = f64::from(losses.barrels);
-        let burst = [0, 1, 2].map(|i| curve.expected(most, |x| losses.burst(x, i)));
+        let lost = losses.map(|losses| {
+            let most = f64::from(losses.barrels);
+            let burst = [0, 1, 2].map(|i| curve.expected(most, |x| losses.burst(x, i)));
+            Lost {
+                fallen: curve.expected(most, |x| losses.fallen(x)),
+                wine: burst.map(|rate| rate.low * WINE),
+                burst,
+            }
+        });
         Ok(Self {
             hazard: hazard.clone(),
             years,
             limits,
-            fallen: curve.expected(most, |x| losses.fallen(x)),
-            wine: burst.map(|rate| rate.low * WINE),
-            burst,
+            lost,
             contributions: curve.contributions(&edges(curve), chance),
         })
     }

@@ -1,6 +1,6 @@
 //! The numbers of a decision as JSON: SI units, chances from 0 to 1, rates a year.
 
-use barrelstack_fragility::{Interval, Rate};
+use barrelstack_fragility::{Interval, Rate, Stripe};
 use serde_json::{Value, json};
 
 use super::curve::{BandKind, LimitCurve};
@@ -29,9 +29,10 @@ pub(super) fn of(decision: &Decision) -> Value {
             "measure": site.hazard.measure,
             "years": site.years,
             "limit_states": limits,
-            "barrels_fallen_per_year": rate(&site.fallen),
-            "barrels_burst_per_year": site.burst.iter().map(rate).collect::<Vec<_>>(),
-            "wine_lost_m3_per_year": site.wine,
+            "barrels_fallen_per_year": site.lost.as_ref().map(|lost| rate(&lost.fallen)),
+            "barrels_burst_per_year":
+                site.lost.as_ref().map(|lost| lost.burst.iter().map(rate).collect::<Vec<_>>()),
+            "wine_lost_m3_per_year": site.lost.as_ref().map(|lost| lost.wine),
             "contributions": site.contributions.iter().map(|part| json!({
                 "from": part.from, "to": part.to, "rate": part.rate,
             })).collect::<Vec<_>>(),
@@ -62,18 +63,30 @@ pub(super) fn of(decision: &Decision) -> Value {
                 "drift_sufficiency_p": row.drift.and_then(|found| found.sufficiency),
             })
         }).collect::<Vec<_>>(),
-        "losses": {
-            "barrels": decision.losses.barrels,
+        "modes": decision.modes.iter().map(|mode| json!({
+            "mode": mode.mode,
+            "raw": raw(&mode.stripes, &mode.intervals),
+            "cumulative_incidence_at": decision.curves[0].grid.iter().zip(&mode.fitted)
+                .map(|(x, p)| json!({"intensity": x, "chance": p})).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
+        "followed_to_rest": cases.endings.followed,
+        "stopped_after_collapse": cases.endings.stopped,
+        "ended_by_duration": cases.endings.short,
+        "cut_while_the_ground_moved": cases.endings.cut,
+        "still_moving_at_the_end": cases.endings.moving,
+        "no_losses": decision.losses.as_ref().err(),
+        "losses": decision.losses.as_ref().ok().map(|losses| json!({
+            "barrels": losses.barrels,
             "breakage_median_m": Breakage::RANGE.map(|breakage| breakage.median),
             "breakage_dispersion": Breakage::RANGE.map(|breakage| breakage.dispersion),
-            "levels": decision.losses.levels.iter().map(|loss| json!({
+            "levels": losses.levels.iter().map(|loss| json!({
                 "intensity": loss.intensity,
                 "cases": loss.cases,
                 "barrels_fallen": loss.fallen,
                 "barrels_fallen_standard_error": finite(loss.fallen_error),
                 "barrels_burst": loss.burst,
             })).collect::<Vec<_>>(),
-        },
+        })),
         "effects": decision.effects.iter().map(|effect| json!({
             "factor": effect.factor,
             "groups": effect.groups.iter().map(|group| json!({
@@ -101,16 +114,23 @@ fn rate(rate: &Rate) -> Value {
     json!({"low": rate.low, "high": rate.high, "at_first_row": rate.at_first})
 }
 
-fn curve(curve: &LimitCurve) -> Value {
-    let fit = curve.fit.as_ref().ok();
-    json!({
-        "limit_state": curve.limit.name(),
-        "raw": curve.stripes.iter().zip(&curve.intervals).map(|(stripe, interval)| json!({
+fn raw(stripes: &[Stripe], intervals: &[Interval]) -> Value {
+    let each = stripes.iter().zip(intervals).map(|(stripe, interval)| {
+        json!({
             "intensity": stripe.intensity,
             "cases": stripe.cases,
             "failures": stripe.failures,
             "interval": bounds(*interval),
-        })).collect::<Vec<_>>(),
+        })
+    });
+    each.collect()
+}
+
+fn curve(curve: &LimitCurve) -> Value {
+    let fit = curve.fit.as_ref().ok();
+    json!({
+        "limit_state": curve.limit.name(),
+        "raw": raw(&curve.stripes, &curve.intervals),
         "median": fit.map(|fit| fit.curve.median),
         "dispersion": fit.map(|fit| fit.curve.dispersion),
         "ln_median_standard_error": fit.map(|fit| fit.median_error),

@@ -11,17 +11,22 @@ pub enum LimitState {
     SeatLost,
     /// At least so many barrels fall.
     Fallen(u32),
-    /// Collapse in a mode.
-    Mode(String),
 }
 
 impl LimitState {
+    /// Whether it is known of a case.
+    pub(super) fn is_known(&self, case: &Case) -> bool {
+        match self {
+            Self::SeatLost => true,
+            Self::Fallen(_) => case.followed,
+        }
+    }
+
     /// Whether a case is beyond it.
     pub fn reached(&self, case: &Case) -> bool {
         match self {
             Self::SeatLost => case.collapsed,
             Self::Fallen(count) => case.fallen() >= *count,
-            Self::Mode(mode) => case.collapsed && case.mode.as_deref() == Some(mode),
         }
     }
 
@@ -31,7 +36,6 @@ impl LimitState {
             Self::SeatLost => "collapse (first seat lost)".to_owned(),
             Self::Fallen(1) => "a first barrel fallen".to_owned(),
             Self::Fallen(count) => format!("{count} or more barrels fallen"),
-            Self::Mode(mode) => format!("collapse by {}", mode.replace('-', " ")),
         }
     }
 
@@ -40,20 +44,14 @@ impl LimitState {
         match self {
             Self::SeatLost => "collapse".to_owned(),
             Self::Fallen(count) => format!("fallen-{count}"),
-            Self::Mode(mode) => format!("mode-{mode}"),
         }
     }
 
-    /// Collapse, the first fall, a quarter, half and all of the barrels, and every mode that occurs.
+    /// Collapse; where it is known what falls, the first fall, a quarter, half and all of the barrels.
     pub(super) fn worth_telling(cases: &Cases) -> Vec<Self> {
-        let most = cases.most_barrels();
+        let most = if cases.tells_losses() { cases.most_barrels() } else { 0 };
         let counts: BTreeSet<u32> =
             [1, most.div_ceil(4), most.div_ceil(2), most].into_iter().filter(|n| *n > 0).collect();
-        let modes: BTreeSet<&str> =
-            cases.all.iter().filter_map(|case| case.mode.as_deref()).collect();
-        std::iter::once(Self::SeatLost)
-            .chain(counts.into_iter().map(Self::Fallen))
-            .chain(modes.into_iter().map(|mode| Self::Mode(mode.to_owned())))
-            .collect()
+        std::iter::once(Self::SeatLost).chain(counts.into_iter().map(Self::Fallen)).collect()
     }
 }

@@ -64,10 +64,21 @@ pub struct Losses {
 }
 
 impl Losses {
-    /// Means over the cases of each level.
-    pub(super) fn of(cases: &Cases) -> Self {
-        let levels = cases.levels(cases.main).iter().map(|(x, of)| at(*x, of)).collect();
-        Self { levels, barrels: cases.most_barrels() }
+    /// Means over the cases of each level that were followed until nothing moved; or why there are none.
+    pub(super) fn of(cases: &Cases) -> Result<Self, String> {
+        if let Some(reason) = cases.endings.no_losses() {
+            return Err(reason);
+        }
+        if cases.hunted {
+            return Err(
+                "levels were chosen by hunting for collapse, so that means over the cases are \
+                        those of no level of shaking"
+                    .to_owned(),
+            );
+        }
+        let known = cases.with_known_falls();
+        let levels = known.groups(known.main).iter().map(|(x, of)| at(*x, of)).collect();
+        Ok(Self { levels, barrels: cases.most_barrels() })
     }
 
     /// Barrels expected to fall at an intensity.

@@ -3,11 +3,12 @@
 use barrelstack_fragility::clopper_pearson;
 use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, significant};
 
-use super::cases::Measure;
+use super::cases::{Cases, Measure};
 use super::curve::{BandKind, LEVEL, LimitCurve};
 use super::hazard::Site;
-use super::loss::{Breakage, WINE};
+use super::loss::{Breakage, Losses, WINE};
 use super::measures::MeasureRow;
+use super::modes::ModeIncidence;
 use super::words::{self, capital, count, percent};
 use super::{Decision, figures};
 use crate::study::Provenance;
@@ -45,25 +46,38 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
         Block::Figure(figures::fragility(collapse, measure)),
         Block::Table(raw(collapse, measure)),
     ];
-    blocks.extend(judgment(collapse, measure));
-    blocks.push(heading("Modes and numbers of barrels"));
-    blocks.push(Block::Figure(figures::limits(&decision.curves, measure)));
+    blocks.extend(judgment(cases, collapse, measure));
+    if decision.curves.len() > 1 {
+        blocks.push(heading("Numbers of barrels"));
+        blocks.push(Block::Figure(figures::limits(&decision.curves, measure)));
+    }
     blocks.push(Block::Table(limits(&decision.curves, measure)));
-    if let Some(figure) = figures::ida(cases) {
+    if !decision.modes.is_empty() {
+        blocks.push(heading("Modes of collapse"));
+        blocks.push(Block::Figure(figures::modes(&decision.modes, collapse, measure)));
+        blocks.push(Block::Table(modes(&decision.modes, measure)));
+    }
+    if let Some(figure) = figures::ida(cases, &collapse.returned) {
         blocks.push(heading("Motion by motion"));
         blocks.push(Block::Figure(figure));
     }
     blocks.push(heading("What is lost"));
-    blocks.push(Block::Figure(figures::losses(&decision.losses, measure)));
-    blocks.push(Block::Table(losses(decision)));
-    blocks.push(Block::Details {
-        summary: "What is assumed of barrels that burst".into(),
-        blocks: assumptions(),
-    });
+    match &decision.losses {
+        Ok(found) => {
+            blocks.push(Block::Figure(figures::losses(found, measure)));
+            blocks.push(Block::Table(losses(found, measure)));
+            blocks.push(Block::Details {
+                summary: "What is assumed of barrels that burst".into(),
+                blocks: assumptions(),
+            });
+        }
+        Err(reason) => blocks.push(text(format!("Not known: {reason}."))),
+    }
     if let Some(site) = &decision.site {
         blocks.extend(at_site(site, measure));
     }
-    if !decision.effects.is_empty() {
+    // Shares of a hunt are those of where it went.
+    if !decision.effects.is_empty() && !cases.hunted {
         let collapsed = cases.all.iter().filter(|case| case.collapsed).count() as f64;
         let overall = collapsed / cases.all.len() as f64;
         blocks.push(heading("What matters"));
@@ -91,23 +105,23 @@ pub(super) fn raw(curve: &LimitCurve, measure: &Measure) -> Table {
             (measure.label.as_str(), measure.shown_unit),
             ("cases", ""),
             ("failed", ""),
-            ("fraction", ""),
+            ("share", ""),
             ("95 % interval (Wilson)", ""),
             ("95 % interval (exact)", ""),
             ("fitted curve", ""),
         ],
     );
-    let range = |low: f64, high: f64| Cell::text(format!("{low:.2} to {high:.2}"));
+    let range = |low: f64, high: f64| Cell::text(format!("{} to {}", percent(low), percent(high)));
     for (stripe, wilson) in curve.stripes.iter().zip(&curve.intervals) {
         let exact = clopper_pearson(stripe.failures, stripe.cases, LEVEL);
         let fitted = curve.fit.as_ref().map_or(Cell::Missing, |fit| {
-            Cell::text(format!("{:.2}", fit.curve.probability(stripe.intensity)))
+            Cell::text(percent(fit.curve.probability(stripe.intensity)))
         });
         table.rows.push(vec![
             Cell::Number(measure.shown(stripe.intensity), 3),
             count(stripe.cases),
             count(stripe.failures),
-            Cell::text(format!("{:.2}", stripe.fraction())),
+            Cell::text(percent(stripe.fraction())),
             range(wilson.low, wilson.high),
             range(exact.low, exact.high),
             fitted,
@@ -117,8 +131,16 @@ pub(super) fn raw(curve: &LimitCurve, measure: &Measure) -> Table {
 }
 
 /// How the curve was made and whether to believe it.
-fn judgment(curve: &LimitCurve, measure: &Measure) -> Vec<Block> {
+fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> {
     let mut said = Vec::new();
+    if !cases.hunted && !cases.shares_levels(cases.main) {
+        said.push(format!(
+            "The cases share no levels, so they are counted in {} bins of about {} neighbors each, and the intensity of \
+             a bin is the geometric mean of theirs. The curve is fitted to the single cases.",
+            curve.stripes.len(),
+            cases.all.len() / curve.stripes.len().max(1)
+        ));
+    }
     match &curve.fit {
         Err(reason) => {
             said.push(format!("No curve: {}.", words::refusal(reason, |x| measure.words(x))));
@@ -147,9 +169,10 @@ fn judgment(curve: &LimitCurve, measure: &Measure) -> Vec<Block> {
             "There are too few levels to test whether a lognormal curve fits.".to_owned()
         } else {
             format!(
-                "Raw counts against the curve: χ² = {} with {} degrees of freedom, p = {}.",
+                "Raw counts against the curve: χ² = {} with {} degree{} of freedom, p = {}.",
                 significant(test.pearson, 3),
                 test.freedom,
+                if test.freedom == 1 { "" } else { "s" },
                 significant(test.p, 2)
             )
         });
@@ -178,6 +201,7 @@ fn limits(curves: &[LimitCurve], measure: &Measure) -> Table {
             ("95 % interval", measure.shown_unit),
             ("dispersion β", ""),
             ("order violated (p)", ""),
+            ("motions that return", ""),
             ("remark", ""),
         ],
     );
@@ -202,6 +226,7 @@ fn limits(curves: &[LimitCurve], measure: &Measure) -> Table {
             } else {
                 Cell::Number(curve.monotony.p, 2)
             },
+            count(u32::try_from(curve.returned.len()).unwrap_or(u32::MAX)),
             Cell::text(match fit {
                 Ok(_) if curve.violates_order() => "not monotone: use the raw fractions".into(),
                 Ok(_) => String::new(),
@@ -212,8 +237,26 @@ fn limits(curves: &[LimitCurve], measure: &Measure) -> Table {
     table
 }
 
-fn losses(decision: &Decision) -> Table {
-    let measure = decision.cases.measure();
+/// Cases that collapsed in each mode.
+fn modes(modes: &[ModeIncidence], measure: &Measure) -> Table {
+    let mut columns = vec![(measure.label.clone(), measure.shown_unit), ("cases".to_owned(), "")];
+    columns.extend(modes.iter().map(|mode| (mode.mode.replace('-', " "), "")));
+    let named: Vec<(&str, &str)> =
+        columns.iter().map(|(name, unit)| (name.as_str(), *unit)).collect();
+    let mut table = Table::new(
+        "Cases that collapse in each mode. A case that collapses in one can collapse in no other, so that each row adds \
+         up to the collapses of its level.",
+        &named,
+    );
+    for (row, stripe) in modes[0].stripes.iter().enumerate() {
+        let mut cells = vec![Cell::Number(measure.shown(stripe.intensity), 3), count(stripe.cases)];
+        cells.extend(modes.iter().map(|mode| count(mode.stripes[row].failures)));
+        table.rows.push(cells);
+    }
+    table
+}
+
+fn losses(losses: &Losses, measure: &Measure) -> Table {
     let mut table = Table::new(
         "Expected losses of one stack, means over the cases of each level.",
         &[
@@ -226,7 +269,7 @@ fn losses(decision: &Decision) -> Table {
             ("wine lost, central", "L"),
         ],
     );
-    for loss in &decision.losses.levels {
+    for loss in &losses.levels {
         let [few, central, many] = loss.burst;
         table.rows.push(vec![
             Cell::Number(measure.shown(loss.intensity), 3),
@@ -273,8 +316,8 @@ fn assumptions() -> Vec<Block> {
             "A barrel that bursts loses its 225 L; barrels that hold lose nothing here, though bungs leak. What one stack \
              does to its neighbors, and racks and buildings, are not counted."
                 .into(),
-            "Runs end a while after the collapse (`run.stop_after_collapse` of the scenario), so barrels that fall later \
-             are not counted; in a plane model every barrel stands for those beside it along the view."
+            "Every case that counts here was followed until nothing moved; in a plane model every barrel stands for those \
+             beside it along the view."
                 .into(),
         ]),
     ]
@@ -309,19 +352,25 @@ fn at_site(site: &Site, measure: &Measure) -> Vec<Block> {
             Cell::text(percent(limit.chance)),
         ]);
     }
-    let [few, central, many] = site.burst.map(|rate| significant(rate.low, 2));
-    let wine = site.wine.map(|wine| significant(1000.0 * wine, 2));
+    let lost = site.lost.as_ref().map_or_else(
+        || "What a stack is expected to lose in a year is not known, since the study does not tell what falls.".to_owned(),
+        |lost| {
+            let [few, central, many] = lost.burst.map(|rate| significant(rate.low, 2));
+            let wine = lost.wine.map(|wine| significant(1000.0 * wine, 2));
+            format!(
+                "Expected for one stack in an average year: {} barrels fallen, {central} burst ({few} to {many}), {} L of \
+                 wine lost ({} to {} L). Multiply by the number of stacks.",
+                significant(lost.fallen.low, 2),
+                wine[1],
+                wine[0],
+                wine[2]
+            )
+        },
+    );
     vec![
         heading("At your site"),
         Block::Table(table),
-        text(format!(
-            "Expected for one stack in an average year: {} barrels fallen, {central} burst ({few} to {many}), {} L of wine \
-             lost ({} to {} L). Multiply by the number of stacks.",
-            significant(site.fallen.low, 2),
-            wine[1],
-            wine[0],
-            wine[2]
-        )),
+        text(lost),
         Block::Figure(figures::contributions(site, measure)),
         text(
             "The interval is that of the curve alone; the hazard is taken as given. Between the rows of the hazard table \

@@ -1,11 +1,11 @@
 //! What the page says in words: verdict and warnings.
 
-use barrelstack_fragility::FitError;
+use barrelstack_fragility::{FitError, wilson};
 use barrelstack_report::{Cell, significant};
 
 use super::Decision;
 use super::cases::Cases;
-use super::curve::{BandKind, FEWEST, LimitCurve};
+use super::curve::{BandKind, FEWEST, LEVEL, LimitCurve};
 use super::hazard::Site;
 use super::limit::LimitState;
 use super::loss::Losses;
@@ -51,11 +51,14 @@ pub(crate) fn refusal(reason: &FitError, told: impl Fn(f64) -> String) -> String
             "every case failed down to {}, so the median lies below; add cases of lower intensity",
             told(*smallest)
         ),
-        FitError::Separated { above, below } => format!(
-            "a single capacity between {} and {} explains every case; add cases between them",
-            told(*above),
-            told(*below)
-        ),
+        FitError::Separated { above, below } => match (told(*above), told(*below)) {
+            (above, below) if above == below => {
+                format!("a single capacity of {above} explains every case; add cases around it")
+            }
+            (above, below) => format!(
+                "a single capacity between {above} and {below} explains every case; add cases between them"
+            ),
+        },
         other @ (FitError::Empty
         | FitError::Invalid { .. }
         | FitError::BadDispersion(_)
@@ -79,13 +82,31 @@ pub(super) fn headline(decision: &Decision) -> String {
             measure.label
         );
     }
-    match &curve.fit {
-        Ok(fit) => format!(
-            "Half of the stacks collapse at a {} of {}.",
+    let rests_on = format!("{} cases, {} motions", cases.all.len(), cases.records.len());
+    match (&curve.fit, &curve.median) {
+        (Ok(fit), Some(interval)) => format!(
+            "Half of the stacks collapse at a {} of {} ({} with 95 % confidence; {rests_on}).",
+            measure.label,
+            measure.words(fit.curve.median),
+            measure.range(*interval)
+        ),
+        (Ok(fit), None) => format!(
+            "Half of the stacks collapse at a {} of {} ({rests_on}, which give it no interval).",
             measure.label,
             measure.words(fit.curve.median)
         ),
-        Err(_) => format!("{collapsed} of {} cases collapse.", cases.all.len()),
+        // The share of samples is that of what was sampled; of levels, of nothing.
+        (Err(_), _) if cases.sampled => {
+            let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+            let share = wilson(count(collapsed), count(cases.all.len()), LEVEL);
+            format!(
+                "{collapsed} of {} cases collapse: {} to {} with 95 % confidence.",
+                cases.all.len(),
+                percent(share.low),
+                percent(share.high)
+            )
+        }
+        (Err(_), _) => format!("{collapsed} of {} cases collapse.", cases.all.len()),
     }
 }
 
@@ -95,17 +116,16 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
     let curve = &decision.curves[0];
     let measure = cases.measure();
     let mut said = Vec::new();
+    let endings = &cases.endings;
+    if endings.cut > 0 {
+        said.push(format!(
+            "{} of {} cases were cut short while the ground still moved.",
+            endings.cut, endings.judged
+        ));
+    }
     match (&curve.fit, &curve.median) {
         (Ok(fit), Some(interval)) => {
-            let band = if interval.low > 0.0 && interval.high.is_finite() {
-                format!(
-                    "{} to {} with 95 % confidence",
-                    measure.words(interval.low),
-                    measure.words(interval.high)
-                )
-            } else {
-                "which the cases hardly bound".to_owned()
-            };
+            let band = format!("{} with 95 % confidence", measure.range(*interval));
             let source = if curve.violates_order() {
                 "By a fitted curve, which hides that, the"
             } else {
@@ -130,24 +150,31 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
         )),
         (Ok(_), None) => {}
     }
-    if let Some(last) = decision.losses.levels.last() {
+    if let Some((losses, last)) =
+        decision.losses.as_ref().ok().and_then(|losses| Some((losses, losses.levels.last()?)))
+    {
+        let error = Some(1.96 * last.fallen_error).filter(|error| error.is_finite());
         said.push(format!(
-            "At {} a stack of {} barrels loses {} of them on average.",
+            "At {} a stack of {} barrels loses {}{} of them on average.",
             measure.words(last.intensity),
-            decision.losses.barrels,
-            significant(last.fallen, 2)
+            losses.barrels,
+            significant(last.fallen, 2),
+            error.map_or_else(String::new, |error| format!(" ± {}", significant(error, 2)))
         ));
     }
     if let Some(site) = &decision.site {
         let rate = &site.limits[0];
         let annual = rate.fitted.as_ref().unwrap_or(&rate.raw).low;
         said.push(format!(
-            "At the site of {} that is {}, a chance of {} in {} years, and {} barrels on the floor a year.",
+            "At the site of {} that is {}, a chance of {} in {} years{}.",
             site.hazard.file,
             recurrence(annual),
             percent(rate.chance),
             site.years,
-            significant(site.fallen.low, 2)
+            site.lost.as_ref().map_or_else(String::new, |lost| format!(
+                ", and {} barrels on the floor a year",
+                significant(lost.fallen.low, 2)
+            ))
         ));
     }
     said
@@ -157,11 +184,11 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
 pub(super) fn warnings(
     cases: &Cases,
     curves: &[LimitCurve],
-    losses: &Losses,
+    losses: Option<&Losses>,
     site: Option<&Site>,
     made: &Provenance,
 ) -> Vec<String> {
-    let mut said = Vec::new();
+    let mut said = cases.endings.sentences();
     let measure = cases.measure();
     if !made.complete {
         said.push(format!(
@@ -213,13 +240,24 @@ pub(super) fn warnings(
             ));
         }
         let returned = &collapse.returned;
-        if !returned.is_empty() {
-            let first = &returned[0];
+        if let Some(first) = returned.first() {
+            let why = if cases.endings.cut > 0 {
+                "Motions were cut short, which alone can do that".to_owned()
+            } else if cases.drawn.is_empty() {
+                "That is the nature of rocking and sliding stacks; a single run proves little"
+                    .to_owned()
+            } else {
+                format!(
+                    "Rocking and sliding stacks do that, and {} is drawn anew for each case; a single run proves \
+                     little",
+                    cases.drawn.join(", ")
+                )
+            };
             said.push(format!(
-                "{} of {} curves stand at a higher level than one that felled them (the first collapses at {} and \
-                 stands at {}). That is the nature of rocking and sliding stacks; a single run proves little.",
+                "{} of {} motions stand at a higher level than one that felled them (the first collapses at {} and \
+                 stands at {}). {why}.",
                 returned.len(),
-                cases.all.iter().map(|case| case.curve).max().map_or(0, |last| last + 1),
+                cases.curves(),
                 measure.words(first.failed),
                 measure.words(first.stood)
             ));
@@ -235,14 +273,7 @@ pub(super) fn warnings(
 fn islands(cases: &Cases, curve: &LimitCurve) -> Vec<String> {
     let measure = &cases.measures[curve.measure];
     let falls = curve.monotony.significant(0.05);
-    let meaning = match curve.limit {
-        LimitState::Mode(_) => {
-            "Above it stacks stand or collapse in another mode, of which a fitted curve knows nothing"
-        }
-        LimitState::SeatLost | LimitState::Fallen(_) => {
-            "Below the stable window lies an island of it that a fitted curve smooths away"
-        }
-    };
+    let meaning = "Below the stable window lies an island of it that a fitted curve smooths away";
     falls
         .map(|fall| {
             format!(
@@ -261,7 +292,7 @@ fn islands(cases: &Cases, curve: &LimitCurve) -> Vec<String> {
         .collect()
 }
 
-fn of_site(cases: &Cases, losses: &Losses, site: &Site) -> Vec<String> {
+fn of_site(cases: &Cases, losses: Option<&Losses>, site: &Site) -> Vec<String> {
     let mut said = Vec::new();
     let rate = &site.limits[0];
     let of = rate.fitted.as_ref().unwrap_or(&rate.raw);
@@ -280,8 +311,9 @@ fn of_site(cases: &Cases, losses: &Losses, site: &Site) -> Vec<String> {
             percent(of.at_first)
         ));
     }
-    let last = losses.levels.last().map_or(0.0, |loss| loss.intensity);
     let rows = site.hazard.hazard.rows();
+    let Some(losses) = losses else { return said };
+    let last = losses.levels.last().map_or(0.0, |loss| loss.intensity);
     if rows[rows.len() - 1].0 > 1.5 * last {
         said.push(format!(
             "The hazard reaches {}, the study {} only: losses beyond are held at those of its last level.",

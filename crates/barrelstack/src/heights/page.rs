@@ -1,6 +1,6 @@
 //! The page: how high is safe, for someone with a minute.
 
-use barrelstack_fragility::Interval;
+use barrelstack_fragility::{Interval, wilson};
 use barrelstack_report::{
     Axis, Block, Cell, Document, Figure, FigureKind, Plot, Rating, Series, SeriesStyle, Table,
     Tone, Verdict, significant,
@@ -88,7 +88,19 @@ fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
         .last()
 }
 
+/// Fewest motions whose interval can end low enough, were no stack to collapse.
+fn fewest_motions() -> u32 {
+    (1..).find(|n| wilson(0, *n, 0.95).high <= LOW.1).unwrap_or(u32::MAX)
+}
+
 fn headline(all: &Heights) -> String {
+    let motions = u32::try_from(all.motions).unwrap_or(u32::MAX);
+    if motions < fewest_motions() {
+        let more = fewest_motions() - motions;
+        return format!(
+            "Too few motions to call anything low in risk: {motions} shook every stack, and {more} more would do."
+        );
+    }
     let strongest =
         (0..VELOCITIES.len()).rev().find_map(|at| Some((at, highest_low(all, VELOCITIES[at])?)));
     match strongest {
@@ -371,7 +383,7 @@ fn rests_on(all: &Heights) -> Vec<String> {
 
 /// Warnings, the most important first.
 pub(super) fn warnings(all: &Heights) -> Vec<String> {
-    let mut said = Vec::new();
+    let mut said = all.ends.clone();
     if all.left_out > 0 {
         said.push(format!(
             "{} of {} runs have no verdict and are left out; the column `error` of the tables says why.",

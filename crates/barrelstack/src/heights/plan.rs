@@ -72,9 +72,7 @@ pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<Stri
          levels = 4\n\
          columns = {columns}\n\
          barrel = \"bordeaux-225\"\n\
-         rack = {rack}\n\
-         [base.run]\n\
-         stop_after_collapse = \"2 s\"\n\n\
+         rack = {rack}\n\n\
          [[factor]]\n\
          name = \"levels\"\n\
          field = \"stack.levels\"\n\

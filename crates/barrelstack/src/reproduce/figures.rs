@@ -287,7 +287,7 @@ pub(super) fn scale_difference(full: &Run, half: &Run, until: f64) -> f64 {
     for (_, (one, other)) in frames.take_while(|(time, _)| **time <= until) {
         for (p, q) in one.iter().zip(other) {
             let [dx, dz] = [p[0] - q[0] / length, p[1] - q[1] / length];
-            largest = largest.max(dx.hypot(dz));
+            largest = largest.max(libm::hypot(dx, dz));
         }
     }
     largest

@@ -110,6 +110,8 @@ pub struct CatalogRack {
     pub foot_half_length: f64,
     /// How a seat is divided into contact elements.
     pub contact: SeatContact,
+    /// Penetration of a seat (m) beyond which the solids themselves meet.
+    pub seat_stroke: f64,
     /// Distance between contact nodes (m).
     pub node_spacing: f64,
     /// Posts, if any.
@@ -136,6 +138,7 @@ const TWO_BARREL: CatalogRack = CatalogRack {
     foot_half_length: 0.06,
     cradle: Cradle::Supports { angle: 28.0 * PI / 180.0 },
     contact: SeatContact::Rails,
+    seat_stroke: 0.02,
     node_spacing: 0.01,
     posts: None,
     source: "portable steel rack for two barrels on a footprint of 38 in by 58 in, which makes pitch and width (Wines & \
@@ -146,6 +149,21 @@ const TWO_BARREL: CatalogRack = CatalogRack {
 /// The racks.
 pub const RACKS: &[CatalogRack] = &[
     TWO_BARREL,
+    CatalogRack {
+        name: "two-barrel-feet",
+        foot_height: 0.06,
+        source: "`two-barrel` with a foot over each barrel below, as wide as that of the reconstructed `candia-2008`: \
+                 an assumption",
+        ..TWO_BARREL
+    },
+    CatalogRack {
+        name: "single-bar",
+        mass: 35.0,
+        contact: SeatContact::Element,
+        source: "single-bar version of the rack for two barrels (Wines & Vines 2016); the numbers are those of \
+                 `two-barrel`, the mass is an assumption",
+        ..TWO_BARREL
+    },
     CatalogRack {
         name: "four-barrel",
         mass: 80.0,
@@ -165,16 +183,18 @@ pub const RACKS: &[CatalogRack] = &[
     },
     CatalogRack {
         name: "candia-2008",
-        mass: 30.0,
+        mass: 40.0,
         pitch: 0.76,
         width: 1.50,
-        rail_half_spacing: 0.30,
-        clearance: 0.12,
+        rail_half_spacing: 0.24,
+        rail_width: 0.06,
+        clearance: 0.16,
         beam_height: 0.04,
         foot_height: 0.06,
-        foot_half_length: 0.06,
-        cradle: Cradle::Supports { angle: 30.0 * PI / 180.0 },
+        foot_half_length: 0.065,
+        cradle: Cradle::Supports { angle: 31.0 * PI / 180.0 },
         contact: SeatContact::Nodes,
+        seat_stroke: 0.03,
         source: "rack of Candia, de la Llera and Almazán (2008), whose text gives no dimensions: a solid beam on feet, \
                  reconstructed so that one geometry shows the paper's modes, times, drift and stress amplification",
         ..TWO_BARREL

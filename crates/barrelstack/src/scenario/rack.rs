@@ -107,6 +107,8 @@ pub struct Rack {
     pub foot_half_length: f64,
     /// How a seat is divided into contact elements.
     pub contact: SeatContact,
+    /// Penetration of a seat (m) beyond which the solids themselves meet, as in impacts.
+    pub seat_stroke: f64,
     /// Distance between contact nodes on rails and undersides (m).
     pub node_spacing: f64,
     /// Posts; present exactly when `kind` is [`RackKind::OnRacks`].
@@ -116,6 +118,8 @@ pub struct Rack {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Base {
     TwoBarrel,
+    TwoBarrelFeet,
+    SingleBar,
     FourBarrel,
     RackOnRack,
     Candia2008,
@@ -124,6 +128,8 @@ enum Base {
 impl Named for Base {
     const NAMES: &'static [(&'static str, Self)] = &[
         ("two-barrel", Self::TwoBarrel),
+        ("two-barrel-feet", Self::TwoBarrelFeet),
+        ("single-bar", Self::SingleBar),
         ("four-barrel", Self::FourBarrel),
         ("rack-on-rack", Self::RackOnRack),
         ("candia-2008", Self::Candia2008),
@@ -276,6 +282,12 @@ pub static RACK: Section = Section {
              undersides, one element, or one for each of two rails.",
         ),
         Field::new(
+            "seat_stroke",
+            size(1e-4, 1.0),
+            CATALOG,
+            "Penetration of a seat beyond which the solids themselves meet, by the law of impacts.",
+        ),
+        Field::new(
             "node_spacing",
             size(1e-3, 0.5),
             CATALOG,
@@ -285,7 +297,21 @@ pub static RACK: Section = Section {
     variants: Some(Variants {
         tag: "base",
         list: &[
-            Variant { name: "two-barrel", help: "Lies on the barrels below.", fields: &[] },
+            Variant {
+                name: "two-barrel",
+                help: "Lies on the barrels below with straight tubes.",
+                fields: &[],
+            },
+            Variant {
+                name: "two-barrel-feet",
+                help: "Stands on the barrels below with feet.",
+                fields: &[],
+            },
+            Variant {
+                name: "single-bar",
+                help: "Lies on the barrels below with one bar in place of two.",
+                fields: &[],
+            },
             Variant { name: "four-barrel", help: "Two racks end to end.", fields: &[] },
             Variant {
                 name: "rack-on-rack",
@@ -336,7 +362,15 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
             half_spacing: or("post_half_spacing", posts.half_spacing)?,
             spigot: or("post_spigot", posts.spigot)?,
         }),
-        (Base::TwoBarrel | Base::FourBarrel | Base::RackOnRack | Base::Candia2008, _) => None,
+        (
+            Base::TwoBarrel
+            | Base::TwoBarrelFeet
+            | Base::SingleBar
+            | Base::FourBarrel
+            | Base::RackOnRack
+            | Base::Candia2008,
+            _,
+        ) => None,
     };
     let rack = Rack {
         base: known.name.to_owned(),
@@ -354,6 +388,7 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
         foot_height: or("foot_height", known.foot_height)?,
         foot_half_length: or("foot_half_length", known.foot_half_length)?,
         contact: reader.optional_choice("contact")?.unwrap_or(known.contact),
+        seat_stroke: or("seat_stroke", known.seat_stroke)?,
         node_spacing: or("node_spacing", known.node_spacing)?,
         posts,
     };
@@ -415,6 +450,7 @@ pub(super) fn write(rack: &Rack) -> Table {
     writer.quantity("foot_height", rack.foot_height);
     writer.quantity("foot_half_length", rack.foot_half_length);
     writer.choice("contact", rack.contact);
+    writer.quantity("seat_stroke", rack.seat_stroke);
     writer.quantity("node_spacing", rack.node_spacing);
     if let Some(posts) = rack.posts {
         writer.quantity("post_height", posts.height);

@@ -3,6 +3,7 @@
 use super::error::ScenarioError;
 use super::field::{Default, Field, Kind, Named, Section, Variant, Variants, names};
 use super::reader::Reader;
+use super::run::Until;
 use super::tree::Table;
 use super::writer::Writer;
 use super::{Scenario, Scene, free, interface, motion, run, stack};
@@ -22,7 +23,7 @@ impl Named for SceneKind {
 
 /// The top of a scenario file.
 pub static ROOT: Section = Section {
-    name: "root",
+    name: "scenario",
     help: "What stands where, what shakes it, and how it is run.",
     fields: &[
         Field::new(
@@ -113,9 +114,13 @@ pub(super) fn read(reader: Reader<'_>, fallback_title: &str) -> Result<Scenario,
         let message = "`extends` cannot be overridden; write it in the file".to_owned();
         return Err(reader.inconsistent("extends", message));
     }
-    let run = run::read_run(reader.section("run")?)?;
-    let record = run::read_record(reader.section("record")?)?;
     let kind = reader.choice::<SceneKind>("kind")?;
+    let until = match kind {
+        SceneKind::Stack => Until::Rest,
+        SceneKind::Free => Until::Duration,
+    };
+    let run = run::read_run(reader.section("run")?, until)?;
+    let record = run::read_record(reader.section("record")?)?;
     let scene = match kind {
         SceneKind::Stack => {
             let interfaces = stack::read_interfaces(reader.section("interface")?)?;

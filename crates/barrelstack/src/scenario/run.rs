@@ -23,10 +23,29 @@ pub enum Method {
     },
 }
 
+/// What ends a run by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Until {
+    /// The motion is over, and what moves has come to rest.
+    Rest,
+    /// The time is over.
+    Duration,
+}
+
+impl Named for Until {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("rest", Self::Rest), ("duration", Self::Duration)];
+}
+
 /// How a scenario is run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunSpec {
-    /// Length of the run (s); `None` for the duration of the motion and 5 s more.
+    /// What ends the run by itself.
+    pub until: Until,
+    /// Longest time of a run that ends by rest, after the end of its motion (s).
+    pub patience: f64,
+    /// Length of the run (s), of one that ends by rest the longest; `None` for that of the motion, with
+    /// `patience` or 5 s more.
     pub duration: Option<f64>,
     /// Time integration.
     pub method: Method,
@@ -99,10 +118,22 @@ pub static RUN: Section = Section {
     help: "How the scenario is run.",
     fields: &[
         Field::new(
+            "until",
+            Kind::Choice(names::<Until>),
+            Default::Derived("\"rest\" for a stack, \"duration\" for a free scene"),
+            "What ends the run by itself: the ground is still and what moves has come to rest, or the duration is over.",
+        ),
+        Field::new(
+            "patience",
+            Kind::Quantity(&[Dimension::TIME], Range::between(0.0, LONGEST_RUN)),
+            Default::Value("\"30 s\""),
+            "Longest time that a run which ends by rest goes on after the motion.",
+        ),
+        Field::new(
             "duration",
             Kind::Quantity(&[Dimension::TIME], Range::up_to(LONGEST_RUN)),
-            Default::Derived("duration of the motion and 5 s more"),
-            "Simulated time.",
+            Default::Derived("that of the motion, and `patience` or else 5 s more"),
+            "Simulated time; of a run that ends by rest, the longest.",
         ),
         Field::new(
             "method",
@@ -235,7 +266,9 @@ pub static OUTCOME: Section = Section {
 };
 
 /// Reads how it is run.
-pub(super) fn read_run(reader: Reader<'_>) -> Result<RunSpec, ScenarioError> {
+///
+/// `until` ends it where the file does not say what does.
+pub(super) fn read_run(reader: Reader<'_>, until: Until) -> Result<RunSpec, ScenarioError> {
     let method = match reader.choice::<MethodName>("method")? {
         MethodName::SemiImplicitEuler => Method::SemiImplicitEuler,
         MethodName::VelocityVerlet => Method::VelocityVerlet,
@@ -245,6 +278,8 @@ pub(super) fn read_run(reader: Reader<'_>) -> Result<RunSpec, ScenarioError> {
         }
     };
     let run = RunSpec {
+        until: reader.optional_choice("until")?.unwrap_or(until),
+        patience: reader.quantity("patience")?,
         duration: reader.optional_quantity("duration")?,
         method,
         step: reader.word_or_quantity("step")?,
@@ -278,6 +313,8 @@ pub(super) fn write_run(run: &RunSpec) -> Table {
     if let Method::BogackiShampine { tolerance } = run.method {
         writer.number("tolerance", tolerance);
     }
+    writer.choice("until", run.until);
+    writer.quantity("patience", run.patience);
     writer.optional_quantity("duration", run.duration);
     writer.word_or_quantity("step", run.step);
     writer.optional_quantity("stop_after_collapse", run.stop_after_collapse);

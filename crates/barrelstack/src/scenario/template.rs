@@ -87,6 +87,21 @@ impl Opened {
 }
 
 impl Template {
+    /// Forgets fields of a table that come from what the scenario extends and not from its own file.
+    pub(crate) fn forget_inherited(&mut self, table: &str, fields: &[&str]) {
+        let own = |origin: Origin| match origin {
+            Origin::File { file, .. } | Origin::Whole(file) => file == 0,
+            Origin::Override(_) | Origin::Default => true,
+        };
+        if let Some(Entry { node: Node { value: Value::Table(table), .. }, .. }) =
+            self.table.get_mut(table)
+        {
+            table
+                .entries
+                .retain(|entry| own(entry.node.origin) || !fields.contains(&entry.key.as_str()));
+        }
+    }
+
     /// The definition of the field at a path such as `interface.rack-ground.friction.coefficient`.
     pub(crate) fn field(&self, path: &str) -> Option<&'static Field> {
         let keys: Vec<&str> = path.split('.').map(str::trim).collect();

@@ -24,6 +24,9 @@ use super::{Factor, Intensity, Levels, Study, Variation, ensembles};
 /// The quantile that is tried for the low end of a distribution, and from 1 for the high end.
 const LOW: f64 = 1e-6;
 
+/// Fields of `[base.run]` that end a case early, and hold only where the study file itself says so.
+const ENDS: [&str; 3] = ["until", "duration", "stop_after_collapse"];
+
 /// Most cases that a design may have.
 const MOST_CASES: u64 = 10_000_000;
 
@@ -82,7 +85,9 @@ fn read(opened: &Opened) -> Result<Study, StudyError> {
                 .to_owned();
         return Err(top.error_at(motion.origin, Problem::Inconsistent { message }).into());
     }
-    let template = opened.template("base", &title, sets.is_empty())?;
+    let mut template = opened.template("base", &title, sets.is_empty())?;
+    // How long a scenario is run was chosen for its own motion and for a film of it.
+    template.forget_inherited("run", &ENDS);
     let scenario = template.with([])?;
 
     let mut motions = Vec::new();

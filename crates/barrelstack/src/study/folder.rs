@@ -26,7 +26,7 @@ use super::table::StudyTable;
 use super::{Intensity, Study};
 
 /// Version of the layout of a folder.
-const LAYOUT: u32 = 1;
+const LAYOUT: u32 = 2;
 
 /// Largest file (bytes) of a folder that is read.
 const FILE_LIMIT: usize = 1 << 30;
@@ -55,6 +55,8 @@ pub struct Provenance {
     pub measure: Option<String>,
     /// When a Monte Carlo design has enough cases.
     pub stop: Option<StopRule>,
+    /// Factors that are drawn anew for each case of a motion.
+    pub drawn: Vec<String>,
     /// The motions, in order.
     pub motions: Vec<MotionSource>,
     /// The columns of the table.
@@ -360,6 +362,7 @@ impl Study {
             design: self.design.name().to_owned(),
             measure: self.intensity.as_ref().map(|Intensity { measure, .. }| measure.to_string()),
             stop: self.stop_rule(),
+            drawn: self.drawn(),
             motions,
             columns: self.columns(),
             chunks: self.chunk_count(),
@@ -372,6 +375,13 @@ impl Study {
     /// The fingerprint as files have it.
     fn fingerprint(&self) -> String {
         format!("{:016x}", self.hash())
+    }
+
+    /// The factors that a design of stripes draws anew for each case.
+    fn drawn(&self) -> Vec<String> {
+        let drawn = self.factors.iter().filter(|factor| factor.crossed().is_none());
+        let names = drawn.map(|factor| factor.name.clone());
+        if matches!(self.design, Design::Stripes) { names.collect() } else { Vec::new() }
     }
 
     /// When there are enough cases; none where all are run.

@@ -13,7 +13,7 @@ const KEYS: [(&str, ValueKind); 3] =
     [("case", ValueKind::Integer), ("id", ValueKind::Text), ("chunk", ValueKind::Integer)];
 
 /// Columns of every table behind the measures: name, unit, role, kind.
-const RESULTS: [(&str, &str, Role, ValueKind); 18] = [
+const RESULTS: [(&str, &str, Role, ValueKind); 20] = [
     ("outcome", "", Role::Outcome, ValueKind::Text),
     ("mode", "", Role::Outcome, ValueKind::Text),
     ("first_loss", "s", Role::Outcome, ValueKind::Number),
@@ -27,6 +27,8 @@ const RESULTS: [(&str, &str, Role, ValueKind); 18] = [
     ("rack_tilt_peak", "rad", Role::Demand, ValueKind::Number),
     ("rack_walk_peak", "m", Role::Demand, ValueKind::Number),
     ("residual_displacement", "m", Role::Demand, ValueKind::Number),
+    ("ended", "", Role::Run, ValueKind::Text),
+    ("motion_left", "s", Role::Run, ValueKind::Number),
     ("end_time", "s", Role::Run, ValueKind::Number),
     ("steps", "", Role::Run, ValueKind::Integer),
     ("energy_residual_ratio", "", Role::Run, ValueKind::Number),
@@ -89,7 +91,7 @@ impl Study {
 }
 
 /// The values of [`RESULTS`].
-fn results(result: &CaseResult) -> [Option<Value>; 18] {
+fn results(result: &CaseResult) -> [Option<Value>; 20] {
     let (kind, mode, first_loss, error) = match &result.outcome {
         Ok(Outcome::Collapse { mode, time, .. }) => {
             ("collapse", text(mode.name()), number(Some(*time)), None)
@@ -119,6 +121,8 @@ fn results(result: &CaseResult) -> [Option<Value>; 18] {
         number(demands.rack_tilt_peak),
         number(demands.rack_walk_peak),
         number(result.residual_displacement),
+        result.ending.and_then(|ending| text(ending.name())),
+        number(result.cut),
         number(result.end_time),
         result.steps.and_then(|steps| i64::try_from(steps).ok()).map(Value::Integer),
         number(result.energy_residual_ratio),

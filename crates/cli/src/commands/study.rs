@@ -202,6 +202,7 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
 fn plan(args: &PlanArgs) -> anyhow::Result<()> {
     let study = load(&args.which.study)?;
     let at_most = study.is_adaptive();
+    let following = study.following()?;
     if args.json {
         let chunks: Vec<_> = study
             .plan()
@@ -217,6 +218,7 @@ fn plan(args: &PlanArgs) -> anyhow::Result<()> {
             "cases": study.cases(),
             "at_most": at_most,
             "motions": study.motions(),
+            "following": following,
             "chunks": chunks,
         });
         return printer::lines([serde_json::to_string_pretty(&document)?]);
@@ -231,6 +233,7 @@ fn plan(args: &PlanArgs) -> anyhow::Result<()> {
             answer::counted(study.chunk_count() as u64, "chunk"),
             answer::counted(study.motions() as u64, "motion")
         ),
+        format!("  {}", following.words(study.motions())),
         String::new(),
         format!("  {:>8}  {unit:>8}  {:>10}  {:>10}", "chunk", "first", "last"),
     ];

@@ -7,7 +7,7 @@ pub mod restitution;
 use crate::space::Space;
 
 pub use friction::{Friction, FrictionLaw, Stick};
-pub use normal::{Exponent, NormalForce, NormalLaw};
+pub use normal::{Exponent, NormalForce, NormalLaw, Stop};
 
 /// What the stiffness and damping of an interface are stated for.
 ///
@@ -39,6 +39,8 @@ pub struct Interface<S: Space> {
     pub name: String,
     /// Penetration and its rate to compressive force.
     pub normal: NormalLaw<S::Real>,
+    /// What the surfaces meet beyond the stroke of that law; none where it has no end.
+    pub stop: Option<Stop<S::Real>>,
     /// Slip to friction force.
     pub friction: FrictionLaw<S::Real>,
     /// What the constants are stated for.

@@ -66,6 +66,34 @@ pub enum NormalLaw<R = f64> {
     },
 }
 
+/// The end of the stroke of a soft law: beyond a depth (m) a second law acts as well, on what the
+/// penetration is beyond it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop<R = f64> {
+    /// Penetration (m) from which on it acts.
+    pub depth: R,
+    /// The law that is added.
+    pub law: NormalLaw<R>,
+}
+
+impl<R: Real> Stop<R> {
+    /// The force of the soft law, and that of the stop where it is reached.
+    #[inline(always)]
+    pub(crate) fn add(&self, soft: NormalForce<R>, depth: R, rate: R) -> NormalForce<R> {
+        let beyond = depth - self.depth;
+        let reached = R::zero().lt(beyond);
+        if !reached.any() {
+            return soft;
+        }
+        let hard = self.law.force(R::select(reached, beyond, R::zero()), rate);
+        NormalForce {
+            total: soft.total + R::select(reached, hard.total, R::zero()),
+            elastic: soft.elastic + R::select(reached, hard.elastic, R::zero()),
+            energy: soft.energy + R::select(reached, hard.energy, R::zero()),
+        }
+    }
+}
+
 /// How an elastic force grows with penetration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Exponent {

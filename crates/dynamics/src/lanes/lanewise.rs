@@ -1,7 +1,7 @@
 //! From things made of single numbers to the same things made of bundles, lane by lane.
 
 use crate::body::{Body, Face, Node, Nodes, Placed, Round};
-use crate::contact::{FrictionLaw, Interface, NormalLaw, Stick};
+use crate::contact::{FrictionLaw, Interface, NormalLaw, Stick, Stop};
 use crate::forces::Losses;
 use crate::model::Model;
 use crate::real::{Mask, Real};
@@ -310,18 +310,31 @@ impl<R: Real> Lanewise for NormalLaw<R> {
     }
 }
 
+impl<R: Real> Lanewise for Stop<R> {
+    type Single = Stop;
+    fn in_all(single: &Stop) -> Self {
+        Self { depth: R::splat(single.depth), law: Lanewise::in_all(&single.law) }
+    }
+    fn put(&mut self, lane: usize, single: &Stop) {
+        self.depth.put(lane, &single.depth);
+        self.law.put(lane, &single.law);
+    }
+}
+
 impl<R: Real> Lanewise for Interface<Planar<R>> {
     type Single = Interface<Planar>;
     fn in_all(single: &Self::Single) -> Self {
         Self {
             name: single.name.clone(),
             normal: Lanewise::in_all(&single.normal),
+            stop: Lanewise::in_all(&single.stop),
             friction: Lanewise::in_all(&single.friction),
             basis: single.basis,
         }
     }
     fn put(&mut self, lane: usize, single: &Self::Single) {
         self.normal.put(lane, &single.normal);
+        self.stop.put(lane, &single.stop);
         self.friction.put(lane, &single.friction);
     }
 }

@@ -33,6 +33,7 @@ struct BodyKind {
 struct InterfaceKind {
     normal: Discriminant<NormalLaw>,
     exponent: Option<Exponent>,
+    stop: Option<Discriminant<NormalLaw>>,
     friction: Discriminant<FrictionLaw>,
     basis: Basis,
 }
@@ -84,6 +85,7 @@ impl InterfaceKind {
         Self {
             normal: discriminant(&interface.normal),
             exponent,
+            stop: interface.stop.as_ref().map(|stop| discriminant(&stop.law)),
             friction: discriminant(&interface.friction),
             basis: interface.basis,
         }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{BoundaryNode, Gap, Piece, Section, nodes_along};
+use super::{BoundaryNode, Gap, Nearest, Piece, Section, nodes_along};
 use crate::body::Round;
 use crate::lanes::Lanewise;
 use crate::math;
@@ -82,12 +82,12 @@ pub enum PolygonError {
 impl<R: Real> Polygon<R> {
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec2<R>) -> Gap<Planar<R>> {
-        self.nearest(point, R::zero()).0
+        self.nearest(point, R::zero()).gap
     }
 
-    /// The gap, and whether a corner is nearest; sides are longer by `slack` (m) at both ends.
+    /// The gap, and whether a corner or a side is nearest; sides are longer by `slack` (m) at both ends.
     #[inline(always)]
-    pub(super) fn nearest(&self, point: Vec2<R>, slack: R) -> (Gap<Planar<R>>, R::Mask) {
+    pub(super) fn nearest(&self, point: Vec2<R>, slack: R) -> Nearest<Planar<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
         // Inside: the side that is nearest decides. Outside: the nearest point of any side.
         let mut deepest = R::splat(f64::NEG_INFINITY);
@@ -95,6 +95,7 @@ impl<R: Real> Polygon<R> {
         let mut nearest_squared = R::splat(f64::INFINITY);
         let mut nearest = Vec2::new(zero, zero);
         let mut at_corner = R::Mask::default();
+        let (mut to_end, mut toward_end) = (R::splat(f64::INFINITY), Vec2::new(zero, zero));
         for side in &self.sides {
             let offset = point - side.middle;
             let height = offset.dot(side.outward);
@@ -103,13 +104,17 @@ impl<R: Real> Polygon<R> {
             deepest_normal = Vec2::select(higher, side.outward, deepest_normal);
 
             // Beside the side its start is a candidate; its end is the start of the next one.
-            let above = offset.dot(side.along).abs().le(side.half_length + slack);
+            let along = offset.dot(side.along);
+            let above = along.abs().le(side.half_length + slack);
             let apart = Vec2::select(above, side.outward * height, point - side.start);
             let apart_squared = apart.dot(apart);
             let closer = apart_squared.lt(nearest_squared);
             nearest_squared = R::select(closer, apart_squared, nearest_squared);
             nearest = Vec2::select(closer, apart, nearest);
             at_corner = (closer & !above) | (!closer & at_corner);
+            to_end = R::select(closer, side.half_length - along.abs(), to_end);
+            let ahead = Vec2::select(along.lt(zero), -side.along, side.along);
+            toward_end = Vec2::select(closer, ahead, toward_end);
         }
         let distance = nearest_squared.sqrt();
         // A core of two corners has no inside.
@@ -120,7 +125,7 @@ impl<R: Real> Polygon<R> {
             distance: R::select(outside, distance, deepest) - self.corner_radius,
             normal: Vec2::select(outside, nearest * (one / safe), deepest_normal),
         };
-        (gap, outside & at_corner)
+        Nearest { gap, round: outside & at_corner, to_end, toward_end }
     }
 
     #[inline(always)]

@@ -167,11 +167,12 @@ impl Proposal {
         // Silverman's rule for the width of a kernel.
         let rule = math::pow(4.0 / (n + 2.0) / effective(&weights), 1.0 / (n + 4.0));
         let spread = |at: usize| {
-            let of = |power: i32| {
+            let mean = |of: fn(f64) -> f64| {
                 let terms = draws.iter().zip(&weights);
-                terms.map(|(draw, weight)| weight * draw.point[at].powi(power)).sum::<f64>()
+                terms.map(|(draw, weight)| weight * of(draw.point[at])).sum::<f64>()
             };
-            (of(2) - of(1) * of(1)).max(1e-6).sqrt()
+            let middle = mean(|x| x);
+            (mean(|x| x * x) - middle * middle).max(1e-6).sqrt()
         };
         let width = (0..dimensions).map(|at| rule * spread(at)).collect();
         let mut sum = 0.0;

@@ -1,24 +1,24 @@
 //! Units and their products, quotients and powers.
 
-use super::dimension::Dimension;
-use super::quantity::QuantityError;
+use crate::dimension::Dimension;
+use crate::quantity::QuantityError;
 
 /// The size of a unit in SI: `numerator / denominator · 10^ten · π^pi · factor`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Scale {
-    pub(super) numerator: u128,
-    pub(super) denominator: u128,
-    pub(super) ten: i32,
-    pub(super) pi: i32,
+pub(crate) struct Scale {
+    pub(crate) numerator: u128,
+    pub(crate) denominator: u128,
+    pub(crate) ten: i32,
+    pub(crate) pi: i32,
     /// What the exact parts cannot hold: half powers, and products beyond 128 bits.
-    pub(super) factor: f64,
+    pub(crate) factor: f64,
 }
 
 /// A unit expression.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Unit {
-    pub(super) scale: Scale,
-    pub(super) dimension: Dimension,
+pub(crate) struct Unit {
+    pub(crate) scale: Scale,
+    pub(crate) dimension: Dimension,
 }
 
 /// Names, exact sizes (numerator, denominator, power of ten, power of π) and dimensions.
@@ -67,18 +67,18 @@ const UNITS: &[(&str, u128, u128, i32, i32, Dimension)] = &[
 ];
 
 /// Names of all units.
-pub(super) fn names() -> impl Iterator<Item = &'static str> {
+pub fn names() -> impl Iterator<Item = &'static str> {
     UNITS.iter().map(|unit| unit.0)
 }
 
 /// What is wrong with a unit expression, before the whole text is known.
-pub(super) enum UnitError {
+pub(crate) enum UnitError {
     Unknown { unit: String, nearest: Option<String> },
     Malformed(&'static str),
 }
 
 impl UnitError {
-    pub(super) fn within(self, text: &str) -> QuantityError {
+    pub(crate) fn within(self, text: &str) -> QuantityError {
         let text = text.to_owned();
         match self {
             Self::Unknown { unit, nearest } => QuantityError::UnknownUnit { unit, text, nearest },
@@ -88,7 +88,7 @@ impl UnitError {
 }
 
 /// Reads a unit expression.
-pub(super) fn parse(text: &str) -> Result<Unit, UnitError> {
+pub(crate) fn parse(text: &str) -> Result<Unit, UnitError> {
     if text.len() > 200 {
         return Err(UnitError::Malformed("it is too long"));
     }

@@ -1,11 +1,11 @@
 //! Reads the values of one table: quantities, numbers, names, points.
 
-use crate::scenario::dimension::Dimension;
-use crate::scenario::error::{Problem, ScenarioError};
-use crate::scenario::field::{Default, Field, Kind, Named, Range};
-use crate::scenario::motion::FileRef;
-use crate::scenario::quantity::{Quantity, QuantityError, plain, shorten};
-use crate::scenario::tree::{Node, Origin, Value, parse_value};
+use crate::FileRef;
+use crate::dimension::Dimension;
+use crate::error::{InputError, Problem};
+use crate::field::{Default, Field, Kind, Named, Range};
+use crate::quantity::{Quantity, QuantityError, plain, shorten};
+use crate::tree::{Node, Origin, Value, parse_value};
 
 use super::{Reader, Result, nearest, owned};
 
@@ -31,21 +31,18 @@ impl Reader<'_> {
     }
 
     /// A quantity in SI.
-    pub(crate) fn quantity(&self, name: &'static str) -> Result<f64> {
+    pub fn quantity(&self, name: &'static str) -> Result<f64> {
         let value = self.optional_quantity(name)?;
         self.required(name, value)
     }
 
     /// A quantity in SI that may be absent.
-    pub(crate) fn optional_quantity(&self, name: &'static str) -> Result<Option<f64>> {
+    pub fn optional_quantity(&self, name: &'static str) -> Result<Option<f64>> {
         Ok(self.optional_quantity_with_dimension(name)?.map(|quantity| quantity.value))
     }
 
     /// A quantity whose dimension tells what it means.
-    pub(crate) fn optional_quantity_with_dimension(
-        &self,
-        name: &'static str,
-    ) -> Result<Option<Quantity>> {
+    pub fn optional_quantity_with_dimension(&self, name: &'static str) -> Result<Option<Quantity>> {
         self.value(name, |reader, field, node| {
             if let Kind::Quantity(dimensions, range) = field.kind {
                 reader.read_quantity(name, node, dimensions, range)
@@ -58,7 +55,7 @@ impl Reader<'_> {
     }
 
     /// A quantity, or `None` for the word that stands in its place.
-    pub(crate) fn word_or_quantity(&self, name: &'static str) -> Result<Option<f64>> {
+    pub fn word_or_quantity(&self, name: &'static str) -> Result<Option<f64>> {
         let value = self.value(name, |reader, field, node| {
             let Kind::WordOr(word, dimensions, range) = field.kind else {
                 reader.defined_otherwise(name);
@@ -72,13 +69,13 @@ impl Reader<'_> {
     }
 
     /// A plain number.
-    pub(crate) fn number(&self, name: &'static str) -> Result<f64> {
+    pub fn number(&self, name: &'static str) -> Result<f64> {
         let value = self.optional_number(name)?;
         self.required(name, value)
     }
 
     /// A plain number that may be absent.
-    pub(crate) fn optional_number(&self, name: &'static str) -> Result<Option<f64>> {
+    pub fn optional_number(&self, name: &'static str) -> Result<Option<f64>> {
         self.value(name, |reader, field, node| {
             let Kind::Number(range) = field.kind else { reader.defined_otherwise(name) };
             reader.read_number(name, node, range)
@@ -86,7 +83,7 @@ impl Reader<'_> {
     }
 
     /// The value of a node that holds a plain number.
-    pub(crate) fn read_number(&self, name: &str, node: &Node, range: Range) -> Result<f64> {
+    pub fn read_number(&self, name: &str, node: &Node, range: Range) -> Result<f64> {
         let wrong = || self.wrong_type(name, Kind::Number(range), node);
         let value = match &node.value {
             Value::Integer(Some(value)) => *value as f64,
@@ -106,13 +103,13 @@ impl Reader<'_> {
     }
 
     /// An integer in its range.
-    pub(crate) fn integer(&self, name: &'static str) -> Result<u32> {
+    pub fn integer(&self, name: &'static str) -> Result<u32> {
         let value = self.optional_integer(name)?;
         self.required(name, value)
     }
 
     /// An integer that may be absent.
-    pub(crate) fn optional_integer(&self, name: &'static str) -> Result<Option<u32>> {
+    pub fn optional_integer(&self, name: &'static str) -> Result<Option<u32>> {
         self.value(name, |reader, field, node| {
             let value = reader.read_integer(name, node, field.kind)?;
             u32::try_from(value).map_err(|_| reader.integer_out_of_range(name, node, field.kind))
@@ -120,7 +117,7 @@ impl Reader<'_> {
     }
 
     /// The value of a node that holds an integer of a kind.
-    pub(crate) fn read_integer(&self, name: &str, node: &Node, kind: Kind) -> Result<i64> {
+    pub fn read_integer(&self, name: &str, node: &Node, kind: Kind) -> Result<i64> {
         let Kind::Integer(least, greatest) = kind else { self.defined_otherwise(name) };
         let Value::Integer(value) = node.value else {
             return Err(self.wrong_type(name, kind, node));
@@ -130,7 +127,7 @@ impl Reader<'_> {
             .ok_or_else(|| self.integer_out_of_range(name, node, kind))
     }
 
-    fn integer_out_of_range(&self, name: &str, node: &Node, kind: Kind) -> ScenarioError {
+    fn integer_out_of_range(&self, name: &str, node: &Node, kind: Kind) -> InputError {
         let problem = Problem::OutOfRange {
             field: self.path_of(name),
             range: kind.to_string(),
@@ -140,13 +137,13 @@ impl Reader<'_> {
     }
 
     /// `true` or `false`.
-    pub(crate) fn flag(&self, name: &'static str) -> Result<bool> {
+    pub fn flag(&self, name: &'static str) -> Result<bool> {
         let value = self.optional_flag(name)?;
         self.required(name, value)
     }
 
     /// `true` or `false`, or absent.
-    pub(crate) fn optional_flag(&self, name: &'static str) -> Result<Option<bool>> {
+    pub fn optional_flag(&self, name: &'static str) -> Result<Option<bool>> {
         self.value(name, |reader, field, node| {
             let Value::Flag(value) = node.value else {
                 return Err(reader.wrong_type(name, field.kind, node));
@@ -156,13 +153,13 @@ impl Reader<'_> {
     }
 
     /// Text.
-    pub(crate) fn text(&self, name: &'static str) -> Result<String> {
+    pub fn text(&self, name: &'static str) -> Result<String> {
         let value = self.optional_text(name)?;
         self.required(name, value)
     }
 
     /// Text that may be absent; `false` counts as absent where the field allows it.
-    pub(crate) fn optional_text(&self, name: &'static str) -> Result<Option<String>> {
+    pub fn optional_text(&self, name: &'static str) -> Result<Option<String>> {
         let value = self.value(name, |reader, field, node| {
             let text = match (&node.value, field.kind) {
                 (Value::Text(text), _) => text.clone(),
@@ -183,7 +180,7 @@ impl Reader<'_> {
     }
 
     /// A single value as written, for the caller to make sense of.
-    pub(crate) fn node(&self, name: &'static str) -> Result<Option<Node>> {
+    pub fn node(&self, name: &'static str) -> Result<Option<Node>> {
         self.value(name, |reader, field, node| {
             if matches!(node.value, Value::Array(_) | Value::Table(_) | Value::Date) {
                 return Err(reader.wrong_type(name, field.kind, node));
@@ -193,7 +190,7 @@ impl Reader<'_> {
     }
 
     /// A list of single values as written, not empty.
-    pub(crate) fn nodes(&self, name: &'static str) -> Result<Option<Vec<Node>>> {
+    pub fn nodes(&self, name: &'static str) -> Result<Option<Vec<Node>>> {
         self.value(name, |reader, field, node| {
             let Value::Array(items) = &node.value else {
                 return Err(reader.wrong_type(name, field.kind, node));
@@ -214,7 +211,7 @@ impl Reader<'_> {
     }
 
     /// A list of texts; empty where it is absent.
-    pub(crate) fn texts(&self, name: &'static str) -> Result<Vec<String>> {
+    pub fn texts(&self, name: &'static str) -> Result<Vec<String>> {
         let nodes = self.nodes(name)?.unwrap_or_default();
         let text =
             |node| if let Node { value: Value::Text(text), .. } = node { Some(text) } else { None };
@@ -222,7 +219,7 @@ impl Reader<'_> {
     }
 
     /// A file, relative to the file that names it.
-    pub(crate) fn file(&self, name: &'static str) -> Result<Option<FileRef>> {
+    pub fn file(&self, name: &'static str) -> Result<Option<FileRef>> {
         let Some(path) = self.optional_text(name)? else { return Ok(None) };
         let folder = match self.entry(name).map(|node| node.origin) {
             Some(Origin::File { file, .. }) => self.sources.files[file].folder.clone(),
@@ -234,28 +231,28 @@ impl Reader<'_> {
     }
 
     /// A member of a closed set.
-    pub(crate) fn choice<T: Named>(&self, name: &'static str) -> Result<T> {
+    pub fn choice<T: Named>(&self, name: &'static str) -> Result<T> {
         let value = self.optional_choice(name)?;
         self.required(name, value)
     }
 
     /// A member of a closed set that may be absent.
-    pub(crate) fn optional_choice<T: Named>(&self, name: &'static str) -> Result<Option<T>> {
+    pub fn optional_choice<T: Named>(&self, name: &'static str) -> Result<Option<T>> {
         self.value(name, |reader, _, node| {
-            let text = reader.read_name(name, node, &crate::scenario::field::names::<T>())?;
+            let text = reader.read_name(name, node, &crate::field::names::<T>())?;
             let found = T::NAMES.iter().find(|(known, _)| *known == text);
             found.map(|(_, member)| *member).ok_or_else(|| reader.missing(name))
         })
     }
 
     /// A name of a list.
-    pub(crate) fn catalog_name(&self, name: &'static str) -> Result<String> {
+    pub fn catalog_name(&self, name: &'static str) -> Result<String> {
         let value = self.optional_catalog_name(name)?;
         self.required(name, value)
     }
 
     /// A name of a list that may be absent.
-    pub(crate) fn optional_catalog_name(&self, name: &'static str) -> Result<Option<String>> {
+    pub fn optional_catalog_name(&self, name: &'static str) -> Result<Option<String>> {
         self.value(name, |reader, field, node| {
             let Kind::Choice(names) = field.kind else { reader.defined_otherwise(name) };
             reader.read_name(name, node, &names())
@@ -263,7 +260,7 @@ impl Reader<'_> {
     }
 
     /// Two texts.
-    pub(crate) fn pair(&self, name: &'static str) -> Result<[String; 2]> {
+    pub fn pair(&self, name: &'static str) -> Result<[String; 2]> {
         let value = self.value(name, |reader, field, node| {
             if let Value::Array(items) = &node.value
                 && let [a, b] = items.as_slice()
@@ -277,7 +274,7 @@ impl Reader<'_> {
     }
 
     /// Two quantities.
-    pub(crate) fn optional_point(&self, name: &'static str) -> Result<Option<[f64; 2]>> {
+    pub fn optional_point(&self, name: &'static str) -> Result<Option<[f64; 2]>> {
         self.value(name, |reader, field, node| {
             let Kind::Point(dimension) = field.kind else { reader.defined_otherwise(name) };
             reader.read_point(name, node, dimension, field.kind)
@@ -285,13 +282,13 @@ impl Reader<'_> {
     }
 
     /// Two quantities.
-    pub(crate) fn point(&self, name: &'static str) -> Result<[f64; 2]> {
+    pub fn point(&self, name: &'static str) -> Result<[f64; 2]> {
         let value = self.optional_point(name)?;
         self.required(name, value)
     }
 
     /// A list of points.
-    pub(crate) fn points(&self, name: &'static str) -> Result<Vec<[f64; 2]>> {
+    pub fn points(&self, name: &'static str) -> Result<Vec<[f64; 2]>> {
         let value = self.value(name, |reader, field, node| {
             let Kind::Points(dimension) = field.kind else { reader.defined_otherwise(name) };
             let Value::Array(items) = &node.value else {
@@ -306,12 +303,7 @@ impl Reader<'_> {
     }
 
     /// The value of a node that holds one of a list of names.
-    pub(crate) fn read_name(
-        &self,
-        name: &str,
-        node: &Node,
-        valid: &[&'static str],
-    ) -> Result<String> {
+    pub fn read_name(&self, name: &str, node: &Node, valid: &[&'static str]) -> Result<String> {
         let Value::Text(text) = &node.value else {
             return Err(self.wrong_type(name, Kind::Text, node));
         };
@@ -338,7 +330,7 @@ impl Reader<'_> {
     }
 
     /// The value of a node that holds a quantity.
-    pub(crate) fn read_quantity(
+    pub fn read_quantity(
         &self,
         name: &str,
         node: &Node,
@@ -378,7 +370,7 @@ impl Reader<'_> {
     }
 
     /// A number without a unit, with the advice to add the SI unit.
-    fn bare_number(&self, name: &str, node: &Node, number: &str, unit: &str) -> ScenarioError {
+    fn bare_number(&self, name: &str, node: &Node, number: &str, unit: &str) -> InputError {
         let example = format!("`{name} = \"{number} {unit}\"`");
         let found = node.value.describe();
         let problem = Problem::BareNumber { field: self.path_of(name), found, example };
@@ -417,11 +409,12 @@ impl Reader<'_> {
         Err(self.sources.error(node.origin, problem))
     }
 
-    pub(crate) fn wrong_type(&self, name: &str, kind: Kind, node: &Node) -> ScenarioError {
+    /// A value of another type than a kind asks for.
+    pub fn wrong_type(&self, name: &str, kind: Kind, node: &Node) -> InputError {
         self.wrong_type_as(name, &kind.to_string(), node)
     }
 
-    fn wrong_type_as(&self, name: &str, expected: &str, node: &Node) -> ScenarioError {
+    fn wrong_type_as(&self, name: &str, expected: &str, node: &Node) -> InputError {
         let problem = Problem::WrongType {
             field: self.path_of(name),
             expected: expected.to_owned(),

@@ -1,16 +1,16 @@
-//! Lays one scenario over another: `extends` and overrides.
+//! Lays one file over another, and overrides over both.
 //!
 //! Tables are merged key by key and everything else is replaced. A field that excludes another
 //! removes it, and a new variant removes the fields of the old one, so that what is laid over never
 //! has to undo what lies below.
 
-use super::error::{Problem, ScenarioError};
-use super::field::{Default, Field, Kind, Section, Variant};
-use super::reader::item_name;
-use super::tree::{Entry, Node, Origin, Sources, Table, Value, parse_value};
+use crate::error::{InputError, Problem};
+use crate::field::{Default, Field, Kind, Section, Variant};
+use crate::reader::item_name;
+use crate::tree::{Entry, Node, Origin, Sources, Table, Value, parse_value};
 
 /// Lays `over` over `base`.
-pub(crate) fn overlay(base: &mut Table, over: Table, section: Option<&'static Section>) {
+pub fn overlay(base: &mut Table, over: Table, section: Option<&'static Section>) {
     let mut entries = over.entries;
     // The field that chooses a variant goes first, since it decides what the other keys mean.
     if let Some(variants) = section.and_then(|s| s.variants.as_ref()) {
@@ -100,7 +100,7 @@ fn expand_name(node: &mut Node, key: &str) {
 }
 
 /// Turns every name that stands for a table into that table.
-pub(crate) fn expand_names(table: &mut Table, section: &'static Section) {
+pub fn expand_names(table: &mut Table, section: &'static Section) {
     let variant = variant_of(table, section);
     for field in section.fields_of(variant) {
         let Some(entry) = table.get_mut(field.name) else { continue };
@@ -121,12 +121,12 @@ pub(crate) fn expand_names(table: &mut Table, section: &'static Section) {
 }
 
 /// Applies the override of the given index, `path=value`.
-pub(crate) fn apply_override(
+pub fn apply_override(
     table: &mut Table,
     section: &'static Section,
     sources: &Sources,
     index: usize,
-) -> Result<(), ScenarioError> {
+) -> Result<(), InputError> {
     let origin = Origin::Override(index);
     let wrong = |message: String| sources.error(origin, Problem::Inconsistent { message });
     let text = &sources.overrides[index];
@@ -139,7 +139,7 @@ pub(crate) fn apply_override(
     if keys.iter().any(|key| key.is_empty()) || keys.len() > 12 {
         return Err(wrong(format!(
             "`{}` is no path of a field; write keys joined by points, such as `run.step`",
-            super::quantity::shorten(path)
+            crate::quantity::shorten(path)
         )));
     }
     if value.trim().is_empty() {
@@ -150,7 +150,7 @@ pub(crate) fn apply_override(
 
 /// The definition of the field at a path, as the table below chooses among variants; `None` where no field has
 /// it.
-pub(crate) fn field_at(
+pub fn field_at(
     table: Option<&Table>,
     section: &'static Section,
     keys: &[&str],
@@ -180,7 +180,7 @@ pub(crate) fn field_at(
 }
 
 /// Sets the value at a path, making the tables on the way.
-pub(crate) fn set(
+pub fn set(
     table: &mut Table,
     section: Option<&'static Section>,
     keys: &[&str],

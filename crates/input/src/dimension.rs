@@ -62,7 +62,7 @@ dimensions! {
 }
 
 impl Dimension {
-    /// The SI unit, in the notation of scenario files.
+    /// The SI unit, in the notation of input files.
     pub fn si_unit(self) -> String {
         self.known().map_or_else(
             || {
@@ -87,7 +87,7 @@ impl Dimension {
     }
 
     /// The exponents times `halves / 2`; `None` when they leave the range or the halves.
-    pub(super) fn power(self, halves: i8) -> Option<Self> {
+    pub(crate) fn power(self, halves: i8) -> Option<Self> {
         let scale = |exponent: i8| -> Option<i8> {
             let doubled = i16::from(exponent) * i16::from(halves);
             if doubled % 2 == 0 { i8::try_from(doubled / 2).ok() } else { None }

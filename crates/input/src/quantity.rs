@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 use std::fmt;
 
-use super::dimension::Dimension;
-use super::unit::{self, Scale};
+use crate::dimension::Dimension;
+use crate::unit::{self, Scale};
 
 /// A value in SI and what it measures.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,11 +74,11 @@ impl Quantity {
     /// Decimal conversions are exact: the result is the double nearest to the true value.
     ///
     /// ```
-    /// use barrelstack::scenario::quantity::Quantity;
+    /// use barrelstack_input::quantity::Quantity;
     ///
     /// assert_eq!(Quantity::parse("2 in")?.value, 0.0508);
     /// assert_eq!(Quantity::parse("9.8 kN/cm")?.value, 980_000.0);
-    /// # Ok::<(), barrelstack::scenario::quantity::QuantityError>(())
+    /// # Ok::<(), barrelstack_input::quantity::QuantityError>(())
     /// ```
     ///
     /// # Errors
@@ -130,7 +130,7 @@ impl fmt::Display for Quantity {
 
 /// The shortest decimal text that reads back to the same bits; an exponent when the number is very
 /// large or small.
-pub(crate) fn plain(value: f64) -> String {
+pub fn plain(value: f64) -> String {
     let size = value.abs();
     if size != 0.0 && !(1e-5..1e15).contains(&size) {
         format!("{value:e}")
@@ -140,12 +140,12 @@ pub(crate) fn plain(value: f64) -> String {
 }
 
 /// A computed number for an error message: at most five significant digits.
-pub(super) fn rounded(value: f64) -> f64 {
+pub fn rounded(value: f64) -> f64 {
     format!("{value:.4e}").parse().unwrap_or(value)
 }
 
 /// A text cut to a length that fits an error message.
-pub(crate) fn shorten(text: &str) -> String {
+pub fn shorten(text: &str) -> String {
     const LIMIT: usize = 60;
     if text.chars().count() <= LIMIT {
         text.to_owned()

@@ -1,14 +1,12 @@
-//! Every value of a scenario in a flat list, with its meaning and where it comes from.
+//! Every value of an input file in a flat list, with its meaning and where it comes from.
 
-use super::Scenario;
-use super::field::{Default, Field, Section};
-use super::quantity::Quantity;
-use super::reader::item_name;
-use super::root::{self, ROOT};
-use super::tree::{Origin, Table, Value, parse_value};
-use super::writer::inline;
+use crate::field::{Default, Field, Section};
+use crate::quantity::Quantity;
+use crate::reader::item_name;
+use crate::tree::{Origin, Table, Value, parse_value};
+use crate::writer::inline;
 
-/// One value of a scenario.
+/// One value of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Setting {
     /// Its path as in an override, such as `interface.rack-ground.friction.coefficient`.
@@ -24,11 +22,11 @@ pub struct Setting {
 /// Where a value comes from, as far as the value itself tells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// Written in the scenario, or in what it extends.
+    /// Written in the file, or in what it extends.
     Given,
     /// That of an absent field.
     Default,
-    /// Written in the scenario, or what these words say for an absent field.
+    /// Written in the file, or what these words say for an absent field.
     Derived(&'static str),
 }
 
@@ -43,16 +41,13 @@ impl Source {
     }
 }
 
-impl Scenario {
-    /// Every value but the title, in the order of the file with all defaults written out.
-    ///
-    /// Items of lists are known by their name or the pair they join, else by their number from 1, as in overrides.
-    pub fn settings(&self) -> Vec<Setting> {
-        let mut settings = Vec::new();
-        gather(&mut settings, &root::write(self), &ROOT, "");
-        settings.retain(|setting| !["title", "schema"].contains(&setting.path.as_str()));
-        settings
-    }
+/// Every value of a table with all defaults written out, in its order.
+///
+/// Items of lists are known by their name or the pair they join, else by their number from 1, as in overrides.
+pub fn settings(table: &Table, section: &'static Section) -> Vec<Setting> {
+    let mut settings = Vec::new();
+    gather(&mut settings, table, section, "");
+    settings
 }
 
 fn gather(list: &mut Vec<Setting>, table: &Table, section: &'static Section, path: &str) {

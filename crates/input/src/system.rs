@@ -4,7 +4,7 @@ use std::io::{self, Read as _};
 use std::path::Path;
 
 /// What the system says of a file, in words that a person can act on.
-pub(crate) fn words(error: &io::Error) -> String {
+pub fn words(error: &io::Error) -> String {
     let known = [
         (io::ErrorKind::NotFound, "there is no such file"),
         (io::ErrorKind::IsADirectory, "it is a folder, not a file"),
@@ -24,7 +24,7 @@ pub(crate) fn words(error: &io::Error) -> String {
 ///
 /// # Errors
 /// In words, when the file cannot be read or is larger.
-pub(crate) fn read(path: &Path, limit: usize) -> Result<Vec<u8>, String> {
+pub fn read(path: &Path, limit: usize) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(|error| words(&error))?;
     file.take(limit as u64 + 1).read_to_end(&mut bytes).map_err(|error| words(&error))?;

@@ -1,10 +1,10 @@
-//! What can be wrong with a scenario, where, and what to do about it.
+//! What can be wrong with an input file, where, and what to do about it.
 
 use std::fmt;
 
-use super::quantity::QuantityError;
+use crate::quantity::QuantityError;
 
-/// Where a scenario is wrong.
+/// Where an input is wrong.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Place {
     /// In a file.
@@ -36,7 +36,7 @@ pub enum Place {
 
 impl Place {
     /// The place of a byte range of a text.
-    pub(super) fn in_text(file: &str, text: &str, start: usize, end: usize) -> Self {
+    pub(crate) fn in_text(file: &str, text: &str, start: usize, end: usize) -> Self {
         let start = floor_boundary(text, start);
         let end = floor_boundary(text, end).max(start);
         let line_start = text[..start].rfind('\n').map_or(0, |at| at + 1);
@@ -67,7 +67,7 @@ impl fmt::Display for Place {
         match self {
             Self::File { file, line, column, .. } => write!(f, "{file}:{line}:{column}"),
             Self::Override { text } => {
-                write!(f, "override `{}`", super::quantity::shorten(text))
+                write!(f, "override `{}`", crate::quantity::shorten(text))
             }
             Self::Whole { file } => f.write_str(file),
             Self::Unknown => f.write_str("default value"),
@@ -86,24 +86,19 @@ pub enum Problem {
         message: String,
     },
     /// The bytes are not UTF-8 text.
-    #[error("byte {offset} is not UTF-8 text; a scenario is a plain text file, save it as UTF-8")]
+    #[error("byte {offset} is not UTF-8 text; save the file as plain text in UTF-8")]
     NotText {
         /// Offset of the first bad byte.
         offset: usize,
     },
-    /// The file is far larger than a scenario.
-    #[error("the file has {size} bytes, a scenario at most {limit}; is it a record?")]
+    /// The file is far larger than such a file.
+    #[error("the file has {size} bytes, at most {limit} are read; is it a record?")]
     TooLarge {
         /// Size in bytes.
         size: usize,
         /// Limit in bytes.
         limit: usize,
     },
-    /// The file holds nothing.
-    #[error(
-        "the scenario is empty; start from a built-in one with `extends = \"candia-8-barrels\"`"
-    )]
-    Empty,
     /// The file cannot be read.
     #[error("cannot read the file: {reason}; correct the path")]
     Unreadable {
@@ -242,7 +237,7 @@ impl Problem {
         }
         let Self::Quantity { reason, .. } = self else { return None };
         if let QuantityError::UnknownUnit { .. } = reason {
-            let units: Vec<&str> = super::unit::names().filter(|unit| *unit != "1").collect();
+            let units: Vec<&str> = crate::unit::names().filter(|unit| *unit != "1").collect();
             return Some(format!(
                 "units: {}, and their products, quotients and powers",
                 units.join(" ")
@@ -258,15 +253,16 @@ impl Problem {
     }
 }
 
-/// Why a scenario cannot be used: one problem at one place.
+/// Why an input cannot be used: one problem at one place.
 ///
 /// `Display` writes the sentence, the place, the line with a caret under what is wrong, and the
-/// valid names when there are any. [`ScenarioError::sentence`] is the same on one line.
+/// valid names when there are any. [`InputError::sentence`] is the same on one line.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ScenarioError(Box<(Problem, Place)>);
+pub struct InputError(Box<(Problem, Place)>);
 
-impl ScenarioError {
-    pub(crate) fn new(problem: Problem, place: Place) -> Self {
+impl InputError {
+    /// A problem at a place.
+    pub fn new(problem: Problem, place: Place) -> Self {
         Self(Box::new((problem, place)))
     }
 
@@ -286,9 +282,9 @@ impl ScenarioError {
     }
 }
 
-impl std::error::Error for ScenarioError {}
+impl std::error::Error for InputError {}
 
-impl fmt::Display for ScenarioError {
+impl fmt::Display for InputError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&printable(&self.problem().to_string()))?;
         let margin = match self.place() {

@@ -1,14 +1,14 @@
-//! Writes one table of a scenario field by field, as its definition says.
+//! Writes one table of a file field by field, as its definition says.
 
 use std::fmt::Write as _;
 
-use super::dimension::Dimension;
-use super::field::{Field, Kind, Named, Section, Variant};
-use super::quantity::{Quantity, plain};
-use super::tree::{Entry, Node, Origin, Table, Value};
+use crate::dimension::Dimension;
+use crate::field::{Field, Kind, Named, Section, Variant};
+use crate::quantity::{Quantity, plain};
+use crate::tree::{Entry, Node, Origin, Table, Value};
 
 /// One table being written; the twin of the reader.
-pub(super) struct Writer {
+pub struct Writer {
     section: &'static Section,
     variant: Option<&'static Variant>,
     table: Table,
@@ -17,13 +17,13 @@ pub(super) struct Writer {
 
 impl Writer {
     /// Starts a table without variants.
-    pub(super) fn new(section: &'static Section) -> Self {
+    pub fn new(section: &'static Section) -> Self {
         debug_assert!(section.variants.is_none(), "the variant must be named");
         Self { section, variant: None, table: Table::default(), seen: Vec::new() }
     }
 
     /// Starts a table of a variant and writes the field that chooses it.
-    pub(super) fn variant<T: Named>(section: &'static Section, tag: T) -> Self {
+    pub fn variant<T: Named>(section: &'static Section, tag: T) -> Self {
         let name = tag.name();
         let variants = section.variants.as_ref();
         let variant = variants.and_then(|v| v.list.iter().find(|v| v.name == name));
@@ -37,7 +37,7 @@ impl Writer {
 
     /// Ends the table: in builds with assertions, every defined field must have been written or
     /// left out.
-    pub(super) fn finish(self) -> Table {
+    pub fn finish(self) -> Table {
         for field in self.section.fields_of(self.variant) {
             debug_assert!(self.seen.contains(&field.name), "`{}` was forgotten", field.name);
         }
@@ -57,12 +57,12 @@ impl Writer {
     }
 
     /// Leaves a field out, because it is absent or another takes its place.
-    pub(super) fn omit(&mut self, names: &[&'static str]) {
+    pub fn omit(&mut self, names: &[&'static str]) {
         self.seen.extend(names);
     }
 
     /// A quantity in the SI unit of the field's only dimension.
-    pub(super) fn quantity(&mut self, name: &'static str, value: f64) {
+    pub fn quantity(&mut self, name: &'static str, value: f64) {
         let kind = self.field(name).kind;
         let dimension = if let Kind::Quantity(dimensions, _) | Kind::WordOr(_, dimensions, _) = kind
         {
@@ -76,12 +76,12 @@ impl Writer {
     }
 
     /// A quantity of one of several dimensions.
-    pub(super) fn quantity_in(&mut self, name: &'static str, value: f64, dimension: Dimension) {
+    pub fn quantity_in(&mut self, name: &'static str, value: f64, dimension: Dimension) {
         self.put(name, Value::Text(Quantity { value, dimension }.to_string()));
     }
 
     /// A quantity, or nothing.
-    pub(super) fn optional_quantity(&mut self, name: &'static str, value: Option<f64>) {
+    pub fn optional_quantity(&mut self, name: &'static str, value: Option<f64>) {
         match value {
             Some(value) => self.quantity(name, value),
             None => self.omit(&[name]),
@@ -89,7 +89,7 @@ impl Writer {
     }
 
     /// A quantity, or the word in its place.
-    pub(super) fn word_or_quantity(&mut self, name: &'static str, value: Option<f64>) {
+    pub fn word_or_quantity(&mut self, name: &'static str, value: Option<f64>) {
         match (value, self.field(name).kind) {
             (Some(value), _) => self.quantity(name, value),
             (None, Kind::WordOr(word, ..)) => self.text(name, word),
@@ -98,27 +98,27 @@ impl Writer {
     }
 
     /// A plain number.
-    pub(super) fn number(&mut self, name: &'static str, value: f64) {
+    pub fn number(&mut self, name: &'static str, value: f64) {
         self.put(name, Value::Float(value));
     }
 
     /// An integer.
-    pub(super) fn integer(&mut self, name: &'static str, value: u32) {
+    pub fn integer(&mut self, name: &'static str, value: u32) {
         self.put(name, Value::Integer(Some(i64::from(value))));
     }
 
     /// `true` or `false`.
-    pub(super) fn flag(&mut self, name: &'static str, value: bool) {
+    pub fn flag(&mut self, name: &'static str, value: bool) {
         self.put(name, Value::Flag(value));
     }
 
     /// Text.
-    pub(super) fn text(&mut self, name: &'static str, value: &str) {
+    pub fn text(&mut self, name: &'static str, value: &str) {
         self.put(name, Value::Text(value.to_owned()));
     }
 
     /// Text, or nothing.
-    pub(super) fn optional_text(&mut self, name: &'static str, value: Option<&str>) {
+    pub fn optional_text(&mut self, name: &'static str, value: Option<&str>) {
         match value {
             Some(value) => self.text(name, value),
             None => self.omit(&[name]),
@@ -126,17 +126,17 @@ impl Writer {
     }
 
     /// A member of a closed set.
-    pub(super) fn choice<T: Named>(&mut self, name: &'static str, value: T) {
+    pub fn choice<T: Named>(&mut self, name: &'static str, value: T) {
         self.text(name, value.name());
     }
 
     /// Two texts.
-    pub(super) fn pair(&mut self, name: &'static str, value: &[String; 2]) {
+    pub fn pair(&mut self, name: &'static str, value: &[String; 2]) {
         self.put(name, Value::Array(value.iter().map(|v| node(Value::Text(v.clone()))).collect()));
     }
 
     /// Two quantities.
-    pub(super) fn point(&mut self, name: &'static str, value: [f64; 2]) {
+    pub fn point(&mut self, name: &'static str, value: [f64; 2]) {
         let Kind::Point(dimension) = self.field(name).kind else {
             panic!("field `{name}` is no point")
         };
@@ -144,7 +144,7 @@ impl Writer {
     }
 
     /// A list of points.
-    pub(super) fn points(&mut self, name: &'static str, values: &[[f64; 2]]) {
+    pub fn points(&mut self, name: &'static str, values: &[[f64; 2]]) {
         let Kind::Points(dimension) = self.field(name).kind else {
             panic!("field `{name}` is no list of points")
         };
@@ -152,12 +152,12 @@ impl Writer {
     }
 
     /// A table.
-    pub(super) fn table(&mut self, name: &'static str, table: Table) {
+    pub fn table(&mut self, name: &'static str, table: Table) {
         self.put(name, Value::Table(table));
     }
 
     /// A list of tables; nothing when empty.
-    pub(super) fn tables(&mut self, name: &'static str, tables: Vec<Table>) {
+    pub fn tables(&mut self, name: &'static str, tables: Vec<Table>) {
         if tables.is_empty() {
             self.omit(&[name]);
         } else {
@@ -179,7 +179,7 @@ fn point(value: [f64; 2], dimension: Dimension) -> Value {
 }
 
 /// The table as TOML: values first, then tables, each in order.
-pub(super) fn to_toml(table: &Table) -> String {
+pub fn to_toml(table: &Table) -> String {
     let mut text = String::new();
     write_table(&mut text, table, "");
     text
@@ -222,7 +222,8 @@ fn write_table(text: &mut String, table: &Table, path: &str) {
     }
 }
 
-pub(super) fn inline(value: &Value) -> String {
+/// A value as TOML on one line.
+pub fn inline(value: &Value) -> String {
     match value {
         Value::Text(text) => quote(text),
         Value::Integer(value) => value.unwrap_or_default().to_string(),
@@ -267,7 +268,7 @@ fn quote(text: &str) -> String {
 }
 
 /// The table as JSON.
-pub(super) fn to_json(table: &Table) -> serde_json::Value {
+pub fn to_json(table: &Table) -> serde_json::Value {
     let entries = table.entries.iter().map(|entry| (entry.key.clone(), json(&entry.node.value)));
     serde_json::Value::Object(entries.collect())
 }

@@ -1,19 +1,18 @@
-//! Reads one table of a scenario field by field, as its definition says.
+//! Reads one table of a file field by field, as its definition says.
 
 use std::cell::RefCell;
 
-use super::error::{Problem, ScenarioError};
-use super::field::{Default, Field, Kind, Section, Variant};
-use super::quantity::shorten;
-use super::root::ROOT;
-use super::tree::{Node, Origin, Sources, Table, Value};
+use crate::error::{InputError, Problem};
+use crate::field::{Default, Field, Kind, Section, Variant};
+use crate::quantity::shorten;
+use crate::tree::{Node, Origin, Sources, Table, Value};
 
 mod values;
 
-type Result<T> = std::result::Result<T, ScenarioError>;
+type Result<T> = std::result::Result<T, InputError>;
 
-/// One table of a scenario, checked for unknown and conflicting keys.
-pub(crate) struct Reader<'a> {
+/// One table of a file, checked for unknown and conflicting keys.
+pub struct Reader<'a> {
     sources: &'a Sources,
     section: &'static Section,
     variant: Option<&'static Variant>,
@@ -26,7 +25,7 @@ pub(crate) struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     /// Opens a table, or the place where it would be.
-    pub(crate) fn open(
+    pub fn open(
         sources: &'a Sources,
         section: &'static Section,
         path: String,
@@ -99,7 +98,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Ends the reading: in builds with assertions, every defined field must have been read.
-    pub(crate) fn finish(self) {
+    pub fn finish(self) {
         let seen = self.seen.borrow();
         for field in self.section.fields_of(self.variant) {
             debug_assert!(
@@ -112,49 +111,47 @@ impl<'a> Reader<'a> {
     }
 
     /// Whether a field is given.
-    pub(crate) fn has(&self, name: &str) -> bool {
+    pub fn has(&self, name: &str) -> bool {
         self.entry(name).is_some()
     }
 
     /// The section as users know it.
-    pub(crate) fn label(&self) -> String {
+    pub fn label(&self) -> String {
         if !self.path.is_empty() {
             format!("[{}]", self.path)
-        } else if self.section.name == ROOT.name {
-            "the scenario".to_owned()
         } else {
             format!("the {}", self.section.name)
         }
     }
 
     /// The full path of a field.
-    pub(crate) fn path_of(&self, name: &str) -> String {
+    pub fn path_of(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
     /// An error about a field, placed at its value when it has one.
-    pub(crate) fn error(&self, name: &str, problem: Problem) -> ScenarioError {
+    pub fn error(&self, name: &str, problem: Problem) -> InputError {
         let origin = self.entry(name).map_or(self.origin, |node| node.origin);
         self.sources.error(origin, problem)
     }
 
     /// An error about a value that is given.
-    pub(crate) fn error_at(&self, origin: Origin, problem: Problem) -> ScenarioError {
+    pub fn error_at(&self, origin: Origin, problem: Problem) -> InputError {
         self.sources.error(origin, problem)
     }
 
     /// Values that are fine alone and wrong together.
-    pub(crate) fn inconsistent(&self, name: &str, message: String) -> ScenarioError {
+    pub fn inconsistent(&self, name: &str, message: String) -> InputError {
         self.error(name, Problem::Inconsistent { message })
     }
 
     /// An error about the table as a whole.
-    pub(crate) fn section_error(&self, problem: Problem) -> ScenarioError {
+    pub fn section_error(&self, problem: Problem) -> InputError {
         self.sources.error(self.origin, problem)
     }
 
     /// None of several fields is given.
-    pub(crate) fn one_of(&self, names: &[&str]) -> ScenarioError {
+    pub fn one_of(&self, names: &[&str]) -> InputError {
         let choices: Vec<String> = names
             .iter()
             .map(|name| self.section.any_field(name).map_or_else(String::new, Field::example))
@@ -164,7 +161,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A field that another value makes necessary is missing.
-    pub(crate) fn missing(&self, name: &str) -> ScenarioError {
+    pub fn missing(&self, name: &str) -> InputError {
         let example = self.section.any_field(name).map_or_else(String::new, Field::example);
         let problem = Problem::Missing { field: name.to_owned(), section: self.label(), example };
         self.sources.error(self.origin, problem)
@@ -183,7 +180,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A table inside this one; one that is absent has only defaults.
-    pub(crate) fn section(&self, name: &'static str) -> Result<Self> {
+    pub fn section(&self, name: &'static str) -> Result<Self> {
         let field = self.field(name);
         let (Kind::Table(section) | Kind::ChoiceOrTable(_, _, section)) = field.kind else {
             self.defined_otherwise(name);
@@ -202,12 +199,12 @@ impl<'a> Reader<'a> {
     }
 
     /// Leaves a field to another reader.
-    pub(crate) fn skip(&self, name: &'static str) {
+    pub fn skip(&self, name: &'static str) {
         self.field(name);
     }
 
     /// A table inside this one as written, for another reader.
-    pub(crate) fn table(&self, name: &'static str) -> Result<&'a Table> {
+    pub fn table(&self, name: &'static str) -> Result<&'a Table> {
         let field = self.field(name);
         let Some(node) = self.entry(name) else { return Err(self.missing(name)) };
         let Value::Table(table) = &node.value else {
@@ -217,12 +214,12 @@ impl<'a> Reader<'a> {
     }
 
     /// Where a field was written; where the table was, for one that is not given.
-    pub(crate) fn origin_of(&self, name: &str) -> Origin {
+    pub fn origin_of(&self, name: &str) -> Origin {
         self.entry(name).map_or(self.origin, |node| node.origin)
     }
 
     /// A table inside this one that may be absent.
-    pub(crate) fn optional_section(&self, name: &'static str) -> Result<Option<Self>> {
+    pub fn optional_section(&self, name: &'static str) -> Result<Option<Self>> {
         if self.has(name) {
             self.section(name).map(Some)
         } else {
@@ -232,7 +229,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A list of tables.
-    pub(crate) fn sections(&self, name: &'static str) -> Result<Vec<Self>> {
+    pub fn sections(&self, name: &'static str) -> Result<Vec<Self>> {
         let field = self.field(name);
         let Kind::Tables(section) = field.kind else { self.defined_otherwise(name) };
         let Some(node) = self.entry(name) else { return Ok(Vec::new()) };
@@ -257,7 +254,7 @@ impl<'a> Reader<'a> {
 }
 
 /// How an item of a list is called in paths: its name, the pair it joins, or its number from 1.
-pub(crate) fn item_name(item: &Node, index: usize) -> String {
+pub fn item_name(item: &Node, index: usize) -> String {
     let number = (index + 1).to_string();
     let Value::Table(table) = &item.value else { return number };
     if let Some(Value::Text(name)) = table.get("name").map(|entry| &entry.node.value) {
@@ -295,7 +292,7 @@ const HABITS: &[(&str, &str)] = &[
 ];
 
 /// The name that looks most like a word, if any comes close.
-pub(crate) fn nearest(word: &str, valid: &[&str]) -> Option<String> {
+pub fn nearest(word: &str, valid: &[&str]) -> Option<String> {
     if word.len() > 60 {
         return None;
     }

@@ -5,13 +5,20 @@ use std::path::PathBuf;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::error::{Place, Problem, ScenarioError};
+use crate::error::{InputError, Place, Problem};
 
 /// Where a key or value was written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Origin {
+pub enum Origin {
     /// In a file, by its index in [`Sources`], from byte to byte.
-    File { file: usize, start: usize, end: usize },
+    File {
+        /// Which file.
+        file: usize,
+        /// The first byte.
+        start: usize,
+        /// The byte after the last.
+        end: usize,
+    },
     /// A file as a whole.
     Whole(usize),
     /// In an override, by its index.
@@ -22,32 +29,40 @@ pub(crate) enum Origin {
 
 /// A value with its origin.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Node {
-    pub(crate) origin: Origin,
-    pub(crate) value: Value,
+pub struct Node {
+    /// Where it was written.
+    pub origin: Origin,
+    /// What it is.
+    pub value: Value,
 }
 
 /// A TOML value.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Value {
+pub enum Value {
+    /// A text.
     Text(String),
     /// An integer; `None` when it leaves 64 bits.
     Integer(Option<i64>),
+    /// A number with a point or an exponent.
     Float(f64),
+    /// `true` or `false`.
     Flag(bool),
+    /// A date or a time, which no field holds.
     Date,
+    /// A list.
     Array(Vec<Node>),
+    /// A table.
     Table(Table),
 }
 
 impl Value {
     /// The kind of value, with its article.
-    pub(crate) fn describe(&self) -> String {
+    pub fn describe(&self) -> String {
         match self {
-            Self::Text(text) => format!("the text \"{}\"", super::quantity::shorten(text)),
+            Self::Text(text) => format!("the text \"{}\"", crate::quantity::shorten(text)),
             Self::Integer(Some(value)) => format!("the number {value}"),
             Self::Integer(None) => "a number beyond 64 bits".to_owned(),
-            Self::Float(value) => format!("the number {}", super::quantity::plain(*value)),
+            Self::Float(value) => format!("the number {}", crate::quantity::plain(*value)),
             Self::Flag(value) => value.to_string(),
             Self::Date => "a date".to_owned(),
             Self::Array(_) => "a list".to_owned(),
@@ -58,64 +73,75 @@ impl Value {
 
 /// One key of a table.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Entry {
-    pub(crate) key: String,
-    pub(crate) origin: Origin,
-    pub(crate) node: Node,
+pub struct Entry {
+    /// The key.
+    pub key: String,
+    /// Where the key was written.
+    pub origin: Origin,
+    /// Its value.
+    pub node: Node,
 }
 
 /// A table in the order of writing.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Table {
-    pub(crate) entries: Vec<Entry>,
+pub struct Table {
+    /// The keys with their values.
+    pub entries: Vec<Entry>,
 }
 
 impl Table {
-    pub(crate) fn get(&self, key: &str) -> Option<&Entry> {
+    /// The entry of a key.
+    pub fn get(&self, key: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.key == key)
     }
 
-    pub(crate) fn get_mut(&mut self, key: &str) -> Option<&mut Entry> {
+    /// The entry of a key, to be changed.
+    pub fn get_mut(&mut self, key: &str) -> Option<&mut Entry> {
         self.entries.iter_mut().find(|entry| entry.key == key)
     }
 
     /// Replaces the entry of the same key, or appends.
-    pub(crate) fn set(&mut self, entry: Entry) {
+    pub fn set(&mut self, entry: Entry) {
         match self.get_mut(&entry.key) {
             Some(old) => *old = entry,
             None => self.entries.push(entry),
         }
     }
 
-    pub(crate) fn remove(&mut self, key: &str) {
+    /// Removes the entry of a key, if there is one.
+    pub fn remove(&mut self, key: &str) {
         self.entries.retain(|entry| entry.key != key);
     }
 }
 
-/// A file that takes part in a scenario.
+/// A file that takes part.
 #[derive(Debug, Clone)]
-pub(crate) struct SourceFile {
-    pub(crate) name: String,
-    pub(crate) text: String,
+pub struct SourceFile {
+    /// What errors call it.
+    pub name: String,
+    /// What it holds.
+    pub text: String,
     /// Folder against which its relative paths are resolved.
-    pub(crate) folder: PathBuf,
+    pub folder: PathBuf,
 }
 
-/// All texts of a scenario, for the errors.
+/// All texts that take part, for the errors.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Sources {
-    pub(crate) files: Vec<SourceFile>,
+pub struct Sources {
+    /// The files, known by their index.
+    pub files: Vec<SourceFile>,
     /// Overrides as given, `path=value`.
-    pub(crate) overrides: Vec<String>,
+    pub overrides: Vec<String>,
 }
 
 impl Sources {
     /// An error at a place.
-    pub(crate) fn error(&self, origin: Origin, problem: Problem) -> ScenarioError {
-        ScenarioError::new(problem, self.place(origin))
+    pub fn error(&self, origin: Origin, problem: Problem) -> InputError {
+        InputError::new(problem, self.place(origin))
     }
 
-    fn place(&self, origin: Origin) -> Place {
+    /// The place of an origin.
+    pub fn place(&self, origin: Origin) -> Place {
         match origin {
             Origin::File { file, start, end } => {
                 let source = &self.files[file];
@@ -128,7 +154,7 @@ impl Sources {
     }
 
     /// Parses the file with the given index.
-    pub(crate) fn parse(&self, file: usize) -> Result<Table, ScenarioError> {
+    pub fn parse(&self, file: usize) -> Result<Table, InputError> {
         let text = &self.files[file].text;
         let document = DeTable::parse(text).map_err(|error| {
             let origin = error.span().map_or(Origin::Whole(file), |span| Origin::File {
@@ -143,7 +169,7 @@ impl Sources {
 }
 
 /// Reads the value of an override or a default: TOML when it is, text when it is not.
-pub(crate) fn parse_value(text: &str, origin: Origin) -> Node {
+pub fn parse_value(text: &str, origin: Origin) -> Node {
     let trimmed = text.trim();
     DeValue::parse(trimmed).map_or_else(
         |_| Node { origin, value: Value::Text(trimmed.to_owned()) },

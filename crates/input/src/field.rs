@@ -1,14 +1,14 @@
-//! The one definition of every field of a scenario: name, kind, default and help.
+//! The one definition of every field of an input file: name, kind, default and help.
 //!
 //! The reader, the writer, the reference and the JSON Schema all look here, so that they cannot
 //! disagree.
 
 use std::fmt;
 
-use super::dimension::Dimension;
-use super::quantity::plain;
+use crate::dimension::Dimension;
+use crate::quantity::plain;
 
-/// A table of a scenario file.
+/// A table of an input file.
 #[derive(Debug)]
 pub struct Section {
     /// Name in the reference and the schema, unique.
@@ -166,7 +166,7 @@ impl Range {
 }
 
 /// A closed set whose members have names in files.
-pub(crate) trait Named: Copy + PartialEq + 'static {
+pub trait Named: Copy + PartialEq + 'static {
     /// All names and members.
     const NAMES: &'static [(&'static str, Self)];
 
@@ -178,17 +178,13 @@ pub(crate) trait Named: Copy + PartialEq + 'static {
 }
 
 /// The names of a closed set.
-pub(crate) fn names<T: Named>() -> Vec<&'static str> {
+pub fn names<T: Named>() -> Vec<&'static str> {
     T::NAMES.iter().map(|(name, _)| *name).collect()
 }
 
 impl Field {
-    pub(crate) const fn new(
-        name: &'static str,
-        kind: Kind,
-        default: Default,
-        help: &'static str,
-    ) -> Self {
+    /// A field of a name and a kind, with what its absence means and what it is for.
+    pub const fn new(name: &'static str, kind: Kind, default: Default, help: &'static str) -> Self {
         Self { name, kind, default, help }
     }
 
@@ -301,7 +297,7 @@ impl fmt::Display for Kind {
 
 impl Section {
     /// All fields for a variant, or for all variants when there is none chosen.
-    pub(crate) fn fields_of(
+    pub fn fields_of(
         &'static self,
         variant: Option<&'static Variant>,
     ) -> impl Iterator<Item = &'static Field> {
@@ -309,18 +305,18 @@ impl Section {
     }
 
     /// The field of a name in the section or any of its variants.
-    pub(super) fn any_field(&'static self, name: &str) -> Option<&'static Field> {
+    pub fn any_field(&'static self, name: &str) -> Option<&'static Field> {
         self.all_fields().find(|field| field.name == name)
     }
 
     /// The fields of the section and of all its variants.
-    pub(super) fn all_fields(&'static self) -> impl Iterator<Item = &'static Field> {
+    pub fn all_fields(&'static self) -> impl Iterator<Item = &'static Field> {
         let variants = self.variants.iter().flat_map(|v| v.list).flat_map(|v| v.fields);
         self.fields.iter().chain(variants)
     }
 
     /// The other members of the groups of exclusive fields that a field belongs to.
-    pub(super) fn rivals(&'static self, name: &str) -> impl Iterator<Item = &'static str> {
+    pub fn rivals(&'static self, name: &str) -> impl Iterator<Item = &'static str> {
         let groups = self.exclusive.iter().filter(move |group| group.contains(&name));
         groups.flat_map(|group| group.iter().copied()).filter(move |rival| *rival != name)
     }
