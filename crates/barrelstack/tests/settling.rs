@@ -10,8 +10,9 @@ use barrelstack::assemble::{Assembly, assemble};
 use barrelstack::step::default_step;
 use barrelstack_dynamics::forces::contact_force;
 use barrelstack_dynamics::{
-    Body, EnergyLedger, FrictionLaw, Method, Model, Motion, Observer, Planar, Pose, Scratch,
-    SettleError, Settled, Simulation, State, Still, Vec2, settle, simulate,
+    Body, Contact, EnergyLedger, FrictionLaw, Method, Model, Motion, NormalLaw, Observer, Planar,
+    Pose, Scratch, SettleError, Settled, Simulation, State, Still, Vec2, evaluate, settle,
+    simulate,
 };
 
 /// Numbers between 0 and 1, the same on every machine (`SplitMix64`).
@@ -190,13 +191,15 @@ fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push
             twist.linear.x = push;
         }
     }
+    // Where seats are so soft that the solids bear, their law for impacts damps too much for the usual
+    // step: what it damps grows with the load.
     let mut scratch = Scratch::new(&model);
+    evaluate(&model, &state, &mut scratch);
+    let law = |c: &Contact<Planar>| model.interfaces()[model.pairs()[c.pair].interface].normal;
+    let solid = scratch.contacts.iter().any(|c| matches!(law(c), NormalLaw::Rebound { .. }));
+    let time_step = default_step(assembly, 1.0) * if solid { 0.05 } else { 1.0 };
+    let simulation = Simulation { method: Method::VelocityVerlet, time_step, end_time: time };
     scratch.keeps_contacts = false;
-    let simulation = Simulation {
-        method: Method::VelocityVerlet,
-        time_step: default_step(assembly, 1.0),
-        end_time: time,
-    };
     let start = state.poses.clone();
     let mut gone = Gone(start.clone());
     simulate(&model, &Still, &mut state, &mut scratch, &simulation, &mut gone).unwrap();
@@ -298,72 +301,6 @@ fn dampers_do_not_decide_whether_a_stack_comes_to_rest_nor_where() {
         for (a, b) in usual.state.poses.iter().zip(&other.state.poses) {
             // Damping gives the stick its damper, and that is all that differs: to the last bit.
             assert_eq!(a, b, "{}", of("barrel-rack", barrels[0]));
-        }
-    }
-}
-
-#[test]
-#[ignore = "look"]
-fn look() {
-    for seed in [2, 27] {
-        let tried = tried("demo-napa", &random_stack(seed));
-        println!("{:?} {:?}", random_stack(seed), tried.result);
-        let model = &tried.assembly.model;
-        if let Ok(_) = tried.result {
-            let pairs = tried
-                .scratch
-                .contacts
-                .iter()
-                .map(|c| (c.pair, c.penetration, c.normal_force, c.friction_force));
-            for (pair, depth, force, friction) in pairs {
-                let p = &model.pairs()[pair];
-                println!(
-                    "  {}/{} {}: {depth:.4} {force:.0} {friction:.0}",
-                    model.bodies()[p.contactor].name,
-                    model.bodies()[p.target].name,
-                    model.interfaces()[p.interface].name
-                );
-            }
-        }
-        let start = if tried.result.is_ok() { tried.state.clone() } else { State::initial(model) };
-        for (time, rate, push) in [
-            (0.01, 0.0, 0.0),
-            (0.05, 0.0, 0.0),
-            (0.2, 0.0, 0.0),
-            (1.0, 0.0, 0.0),
-            (10.0, 5.0, 0.0),
-            (20.0, 5.0, 0.0),
-        ] {
-            println!(
-                "{seed}: {time} s at {rate} push {push:e}: {:.3e}",
-                motion(&tried.assembly, &start, time, rate, push)
-            );
-        }
-        let mut state = start.clone();
-        let mut scratch = Scratch::new(model);
-        simulate(
-            model,
-            &Still,
-            &mut state,
-            &mut scratch,
-            &Simulation {
-                method: Method::VelocityVerlet,
-                time_step: default_step(&tried.assembly, 1.0),
-                end_time: 0.2,
-            },
-            &mut Gone(start.poses.clone()),
-        )
-        .unwrap();
-        for (i, b) in model.bodies().iter().enumerate() {
-            let w = state.poses[i].position - start.poses[i].position;
-            println!(
-                "   {} {:.5} {:.5} {:.5} sunk {:.4}",
-                b.name,
-                w.x,
-                w.z,
-                state.poses[i].orientation - start.poses[i].orientation,
-                b.pose.position.z - start.poses[i].position.z
-            );
         }
     }
 }

@@ -228,3 +228,44 @@ fn evaluation_changes_nothing_but_scratch() {
     evaluate(&scene.model, &scene.state, &mut scene.scratch);
     assert_eq!(scene.state, before);
 }
+
+#[test]
+fn dampers_change_not_one_bit_of_where_bodies_come_to_rest() {
+    let resting = |damping: f64, tangential: f64| {
+        let law = NormalLaw::SpeedGap { stiffness: STIFFNESS, damping };
+        let friction = coulomb(0.5, STIFFNESS, tangential);
+        let bodies = (0..3).map(|i| {
+            brick(&format!("{i}"), (0.5, 0.2), 0.03 * f64::from(i), 0.1 + 0.2 * f64::from(i))
+        });
+        let bodies = std::iter::once(floor()).chain(bodies).collect();
+        Scene::new(bodies, interface(law, friction), DOWN).settled(1e-9).bits()
+    };
+    let free = resting(0.0, 0.0);
+    assert_eq!(free, resting(2e4, 1e4));
+    // A restitution of 1e-9 or so.
+    assert_eq!(free, resting(1e7, 1e7));
+}
+
+#[test]
+fn regularized_friction_rests_on_a_level_floor_and_creeps_on_a_slope() {
+    let creeping = FrictionLaw::Regularized { coefficient: 0.5, velocity: 1e-3 };
+    let scene = |gravity| {
+        let body = brick("sledge", (0.5, 0.2), 0.0, 0.1);
+        Scene::new(vec![floor(), body], interface(firm(), creeping), gravity)
+    };
+    let locked = scene(DOWN).settle(1e-9).unwrap().locked;
+    assert_eq!((locked.holding, locked.friction), (0, 0.0));
+    let SettleError { lack, .. } = scene(common::gravity_on_slope(0.1)).settle(1e-9).unwrap_err();
+    assert_eq!(lack, Lack::Stick { on: "ground".into(), interface: "test".into() });
+    assert!(lack.to_string().starts_with("it creeps on \"ground\""), "{lack}");
+}
+
+#[test]
+fn what_is_too_soft_for_its_load_is_said_to_sink() {
+    let soft = NormalLaw::SpeedGap { stiffness: 1e3, damping: 10.0 };
+    let body = brick("brick", (0.5, 0.2), 0.0, 0.1);
+    let mut scene = Scene::new(vec![floor(), body], interface(soft, rough()), DOWN);
+    // 40 kg on two springs of 1 kN/m: 0.196 m, of a reach of 0.27 m.
+    let SettleError { lack, .. } = scene.settle(1e-9).unwrap_err();
+    assert!(matches!(lack, Lack::Stiffness { depth, .. } if depth > 0.02), "{lack}");
+}

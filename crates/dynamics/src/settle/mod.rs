@@ -44,6 +44,9 @@ pub struct Locked {
 /// Steps after which forces that do not balance never will.
 const MOST_STEPS: u64 = 40_000;
 
+/// Steps without momentum of the second try, for what its momentum has carried away in the first.
+const CALM: u64 = 4000;
+
 /// Steps between two looks for bodies that have left.
 const LOOK: u64 = 20;
 
@@ -57,6 +60,7 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// as the stack sinks remain, as they would after stacking; [`Settled::locked`] says how much that is.
 /// The way there is relaxation with momentum: every step carries on a growing share of the way of the
 /// step before, and all bodies are stopped whenever the forces have come to work against their ways.
+/// What does not come to rest so is tried once more, at first without momentum, before it is refused.
 /// The mass of a body is what the stiffness of its contacts allows in a step, and velocities are so small
 /// that dampers feel nothing ([`relax`]), so neither masses nor any damping constant nor a time step
 /// decides where bodies come to rest or how many steps that takes.
@@ -75,7 +79,14 @@ pub fn settle<S: Space>(
     let start_time = state.time;
     stop(model, state);
     Integrator::start(model, &Still, state, scratch);
-    let result = sink(model, state, scratch, tolerance);
+    let start = state.clone();
+    let mut result = sink(model, state, scratch, tolerance, 0);
+    if result.as_ref().is_err_and(|error| error.lack != Lack::Support) {
+        // With momentum bodies sink somewhat deeper than they lie, which is too deep for some.
+        state.clone_from(&start);
+        evaluate(model, state, scratch);
+        result = sink(model, state, scratch, tolerance, CALM);
+    }
     state.time = start_time;
     stop(model, state);
     evaluate(model, state, scratch);
@@ -87,15 +98,16 @@ pub fn settle<S: Space>(
     settled
 }
 
-/// Steps until every lane rests; how many, and what is left unbalanced.
+/// Steps until every lane rests, the first of them without momentum; how many, and what is left unbalanced.
 fn sink<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,
     scratch: &mut Scratch<S>,
     tolerance: f64,
+    calm: u64,
 ) -> Result<(u64, f64), SettleError> {
     let gravity = gravity(model).largest_lane();
-    let mut relaxation = Relaxation::new(model);
+    let mut relaxation = Relaxation::new(model, calm);
     let mut departure = Departure::new(model, state.poses.clone());
     let mut steps = 0;
     loop {

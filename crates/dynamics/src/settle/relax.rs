@@ -63,13 +63,15 @@ pub(super) struct Relaxation<S: Space> {
     touches: Vec<Touch<S>>,
     /// Whether every element of the list touched.
     touched: Vec<<S::Real as Real>::Mask>,
+    /// Steps that are still to be made without momentum.
+    calm: u64,
     /// Steps since the last stop.
     since: S::Real,
 }
 
 impl<S: Space> Relaxation<S> {
-    /// At the start: nothing moves, and no body has been held.
-    pub(super) fn new(model: &Model<S>) -> Self {
+    /// At the start: nothing moves, and no body has been held. The first steps may go without momentum.
+    pub(super) fn new(model: &Model<S>, calm: u64) -> Self {
         Self {
             resting: Default::default(),
             met: vec![false; model.bodies.len()],
@@ -77,6 +79,7 @@ impl<S: Space> Relaxation<S> {
             held: vec![Held { way: S::Real::zero(), turn: S::Real::zero() }; model.bodies.len()],
             touches: Vec::new(),
             touched: Vec::new(),
+            calm,
             since: S::Real::zero(),
         }
     }
@@ -199,7 +202,9 @@ impl<S: Space> Relaxation<S> {
         let against = power.lt(zero);
         self.since = S::Real::select(against, zero, self.since) + one;
         let carried = self.since / (self.since + S::Real::splat(3.0));
-        let carried = S::Real::select(against | self.resting, zero, carried);
+        let calm = S::Real::splat(if self.calm > 0 { 0.0 } else { 1.0 });
+        self.calm = self.calm.saturating_sub(1);
+        let carried = S::Real::select(against | self.resting, zero, carried * calm);
         let given = S::Real::select(self.resting, zero, S::Real::splat(1.0 / MARGIN));
         let gravity = gravity(model);
         for (i, forces) in each(model, scratch).enumerate() {
