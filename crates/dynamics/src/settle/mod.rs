@@ -62,8 +62,8 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// step before, and all bodies are stopped whenever the forces have come to work against their ways.
 /// What does not come to rest so is tried once more, at first without momentum, before it is refused.
 /// The mass of a body is what the stiffness of its contacts allows in a step, and velocities are so small
-/// that dampers feel nothing ([`relax`]), so neither masses nor any damping constant nor a time step
-/// decides where bodies come to rest or how many steps that takes.
+/// that dampers feel nothing, so no damping constant and no time step decides where bodies come to rest or
+/// how many steps that takes.
 ///
 /// `state` is left at rest at its time; prescribed bodies stay where they are.
 ///

@@ -125,8 +125,7 @@ impl<S: Space> Relaxation<S> {
             let zero = S::Real::zero();
             let weight = state.elements.weights[contact.element];
             let weight = S::Real::select(contact.touching, weight, zero);
-            let normal = interface.normal.tangent_stiffness(contact.penetration);
-            let stiffness = normal.max(interface.friction.stick_stiffness()) * weight;
+            let stiffness = interface.stiffness(contact.penetration) * weight;
             hold(bodies[0], stiffness, arms[0]);
             hold(bodies[1], stiffness, arms[1]);
             let (element, touching, normal) = (contact.element, contact.touching, contact.normal);
