@@ -13,27 +13,23 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod assemble;
-pub mod calibrate;
 pub mod check;
 pub mod compare;
-pub mod decision;
+pub mod demand;
 pub mod ensemble;
 pub mod export;
 pub mod ground;
-pub mod heights;
 pub mod outcome;
 pub mod overlap;
 pub mod period;
-mod pool;
+pub mod pool;
 pub mod render;
 pub mod report;
-pub mod reproduce;
 mod rest;
 pub mod run;
 pub mod scenario;
 pub mod step;
 mod stick;
-pub mod study;
 pub mod summary;
 pub mod verify;
 pub mod watch;

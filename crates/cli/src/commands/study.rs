@@ -2,6 +2,7 @@
 
 mod answer;
 mod emit;
+mod export;
 mod live;
 mod report;
 
@@ -10,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use barrelstack::study::{Collected, RunOptions, Study, StudyError};
+use barrelstack_campaign::study::{Collected, RunOptions, Study, StudyError};
 use clap::Subcommand;
 use serde_json::json;
 
@@ -24,7 +25,8 @@ Start with:
   barrelstack study mine.toml --out mine          run it; run it again to go on after a stop
   barrelstack study fields                        all that a study file can hold
 
-Results are in the folder: table.csv, table.parquet and provenance.json, and one Parquet file a chunk in shards.";
+Results are in the folder: table.csv and table.parquet, whose columns columns.csv explains, provenance.json, and
+one Parquet file a chunk in shards.";
 
 /// Arguments of `study`.
 #[derive(Debug, clap::Args)]
@@ -114,6 +116,8 @@ enum Action {
     Collect(FolderArgs),
     /// Write the page: fragility, losses, what matters, and with a hazard curve annual rates.
     Report(report::ReportArgs),
+    /// Write fragility and loss for OpenQuake and Pelicun.
+    Export(export::ExportArgs),
     /// Write job files with which another engine runs all chunks.
     Emit(emit::EmitArgs),
     /// Print a built-in study, with its comments, as a starting point.
@@ -140,11 +144,14 @@ pub(crate) fn study(args: &StudyArgs) -> anyhow::Result<ExitCode> {
         Some(Action::Status(args)) => status(args)?,
         Some(Action::Collect(args)) => collect(args)?,
         Some(Action::Report(args)) => report::report(args)?,
+        Some(Action::Export(args)) => export::export(args)?,
         Some(Action::Emit(args)) => emit::emit(args)?,
         Some(Action::Example { name, list }) => example(name.as_deref(), *list)?,
-        Some(Action::Fields) => printer::text(&barrelstack::study::reference())?,
+        Some(Action::Fields) => printer::text(&barrelstack_campaign::study::reference())?,
         Some(Action::Schema) => {
-            printer::lines([serde_json::to_string_pretty(&barrelstack::study::json_schema())?])?;
+            printer::lines([serde_json::to_string_pretty(
+                &barrelstack_campaign::study::json_schema(),
+            )?])?;
         }
     }
     Ok(ExitCode::SUCCESS)
@@ -285,13 +292,15 @@ fn collect(args: &FolderArgs) -> anyhow::Result<()> {
 
 fn example(name: Option<&str>, list: bool) -> anyhow::Result<()> {
     if list {
-        return printer::lines(barrelstack::study::builtin_names());
+        return printer::lines(barrelstack_campaign::study::builtin_names());
     }
     let name = match name {
         Some(name) => name,
-        None => barrelstack::study::builtin_names().next().context("there is no built-in study")?,
+        None => barrelstack_campaign::study::builtin_names()
+            .next()
+            .context("there is no built-in study")?,
     };
-    if let Some(text) = barrelstack::study::builtin(name) {
+    if let Some(text) = barrelstack_campaign::study::builtin(name) {
         return printer::text(text);
     }
     // The error of the library names those there are.

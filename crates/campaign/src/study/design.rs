@@ -1,0 +1,351 @@
+//! Which cases a study has: the designs, each a deterministic list.
+
+use barrelstack_motion::Random;
+
+use crate::scenario::fnv1a;
+
+use super::column::Value;
+use super::setting::Setting;
+use super::sobol::Axis;
+use super::{Factor, Levels, Study, Variation};
+
+/// The cases of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Design {
+    /// Every combination of all values, levels and motions.
+    FullFactorial,
+    /// The base, and every other value of one factor at a time, for every level and motion.
+    OneAtATime {
+        /// Quantiles that stand for a distribution.
+        quantiles: Vec<f64>,
+    },
+    /// Samples with one in each of `count` equal shares of every factor.
+    LatinHypercube {
+        /// How many.
+        count: u32,
+    },
+    /// Points of Sobol', shifted at random.
+    Sobol {
+        /// How many.
+        count: u32,
+    },
+    /// Blocks of points of Sobol' for first and total sensitivity indices (Saltelli et al. 2010): two samples
+    /// and, for every varied quantity, the first with that quantity of the second.
+    Saltelli {
+        /// How many blocks.
+        count: u32,
+    },
+    /// Random samples until the probability of collapse is known well enough.
+    MonteCarlo {
+        /// Half of the width of the 95 % interval (Wilson) of the collapse probability at which to stop.
+        half_width: Option<f64>,
+        /// Number of cases before the interval is looked at.
+        least: u32,
+        /// Number of cases at which to stop in any case.
+        most: u32,
+    },
+    /// Every motion at every level; factors crossed where they have values, drawn where they have a distribution.
+    Stripes,
+    /// Incremental dynamic analysis by hunt and fill.
+    Ida(super::ida::Hunt),
+}
+
+impl Design {
+    /// The word used in files.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::FullFactorial => "full-factorial",
+            Self::OneAtATime { .. } => "one-at-a-time",
+            Self::LatinHypercube { .. } => "latin-hypercube",
+            Self::Sobol { .. } => "sobol",
+            Self::Saltelli { .. } => "saltelli",
+            Self::MonteCarlo { .. } => "monte-carlo",
+            Self::Stripes => "stripes",
+            Self::Ida(_) => "ida",
+        }
+    }
+}
+
+/// One case before it is built.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Case {
+    /// Its place in the table; of an adaptive design with gaps.
+    pub(super) number: u64,
+    /// What tells it from every other case, however many there are; also the seed of what is drawn for it.
+    pub(super) id: u64,
+    /// The motion, by its place in the study.
+    pub(super) motion: usize,
+    /// The intensity (SI) that it is scaled to.
+    pub(super) level: Option<f64>,
+    /// A value for each factor; none where it keeps that of the base.
+    pub(super) settings: Vec<Option<Setting>>,
+}
+
+/// What the cases of a design are made from: crossed lists, or samples.
+#[derive(Clone, Debug)]
+pub(super) enum Cases {
+    /// Every combination: the motion slowest, then the factors in order, the level fastest.
+    Crossed,
+    /// The base and one change at a time: the motion slowest, then the level, then the changes.
+    OneAtATime {
+        /// Factor and value of each change.
+        changes: Vec<(usize, Setting)>,
+    },
+    /// Points of the unit cube whose axes are motion, level and factors.
+    Sampled(Sampling),
+}
+
+/// How points of the unit cube are found.
+#[derive(Clone, Debug)]
+pub(super) enum Sampling {
+    /// From the seed of each case.
+    Random,
+    /// A permutation of the strata for each axis.
+    LatinHypercube(Vec<Vec<u32>>),
+    /// A sequence for each axis.
+    Sobol(Vec<Axis>),
+    /// Two sequences for each axis, and the axes that are exchanged.
+    Saltelli { axes: Vec<[Axis; 2]>, exchanged: Vec<usize> },
+}
+
+/// A seed made of a seed and words.
+pub(super) fn seed_of(seed: u64, words: &str) -> u64 {
+    // The generator's seeding spreads what is left alike in the hash.
+    Random::new(fnv1a(format!("{seed}|{words}").as_bytes())).bits()
+}
+
+fn uniform(seed: u64, words: &str) -> f64 {
+    Random::new(seed_of(seed, words)).uniform()
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a count")]
+fn pick(u: f64, count: usize) -> usize {
+    ((u * count as f64) as usize).min(count - 1)
+}
+
+/// A whole number below `count`, each as likely (Lemire's multiplication, bias below 2⁻³²).
+#[expect(clippy::cast_possible_truncation, reason = "below the count")]
+fn below(random: &mut Random, count: usize) -> usize {
+    ((u128::from(random.bits()) * count as u128) >> 64) as usize
+}
+
+impl Cases {
+    pub(super) fn new(study: &Study) -> Self {
+        let axes = study.axes();
+        match &study.design {
+            Design::FullFactorial | Design::Stripes | Design::Ida(_) => Self::Crossed,
+            Design::OneAtATime { quantiles } => {
+                Self::OneAtATime { changes: changes(&study.factors, quantiles) }
+            }
+            Design::MonteCarlo { .. } => Self::Sampled(Sampling::Random),
+            Design::LatinHypercube { count } => {
+                let permutation = |axis: &String| {
+                    let mut order: Vec<u32> = (0..*count).collect();
+                    let mut random = Random::new(seed_of(study.seed, &format!("strata of {axis}")));
+                    for last in (1..order.len()).rev() {
+                        order.swap(last, below(&mut random, last + 1));
+                    }
+                    order
+                };
+                Self::Sampled(Sampling::LatinHypercube(axes.iter().map(permutation).collect()))
+            }
+            Design::Saltelli { .. } => {
+                let axis = |(at, name): (usize, &String)| {
+                    [(at, ""), (at + axes.len(), " exchanged")].map(|(dimension, which)| {
+                        let shift = seed_of(study.seed, &format!("shift of {name}{which}")) >> 32;
+                        Axis::new(dimension, u32::try_from(shift).unwrap_or_default())
+                    })
+                };
+                let exchanged = study.varied().into_iter().map(|(at, _)| at).collect();
+                let axes = axes.iter().enumerate().map(axis).collect();
+                Self::Sampled(Sampling::Saltelli { axes, exchanged })
+            }
+            Design::Sobol { .. } => {
+                let axis = |(dimension, axis): (usize, &String)| {
+                    let shift = seed_of(study.seed, &format!("shift of {axis}")) >> 32;
+                    Axis::new(dimension, u32::try_from(shift).unwrap_or_default())
+                };
+                Self::Sampled(Sampling::Sobol(axes.iter().enumerate().map(axis).collect()))
+            }
+        }
+    }
+
+    /// How many cases there are; of an incremental dynamic analysis, hunts; of Monte Carlo, at most.
+    pub(super) fn count(&self, study: &Study) -> u64 {
+        let motions = study.motions.len() as u64;
+        let levels = study.crossed_levels().len() as u64;
+        match (self, &study.design) {
+            (Self::Sampled(_), Design::LatinHypercube { count } | Design::Sobol { count }) => {
+                u64::from(*count)
+            }
+            (Self::Sampled(Sampling::Saltelli { exchanged, .. }), Design::Saltelli { count }) => {
+                u64::from(*count) * (exchanged.len() as u64 + 2)
+            }
+            (Self::Sampled(_), Design::MonteCarlo { most, .. }) => u64::from(*most),
+            (Self::OneAtATime { changes }, _) => motions * levels * (1 + changes.len() as u64),
+            (Self::Crossed | Self::Sampled(_), _) => {
+                let lists =
+                    study.factors.iter().map(|factor| factor.crossed().map_or(1, <[_]>::len));
+                lists.fold(motions * levels, |count, length| count.saturating_mul(length as u64))
+            }
+        }
+    }
+
+    /// A case by its number; of an incremental dynamic analysis a hunt, without its level.
+    pub(super) fn case(&self, study: &Study, number: u64) -> Case {
+        match self {
+            Self::Crossed => crossed(study, number),
+            Self::OneAtATime { changes } => one_at_a_time(study, changes, number),
+            Self::Sampled(sampling) => sampled(study, sampling, number),
+        }
+    }
+}
+
+/// The last digit of a number in a base, taken off.
+#[expect(clippy::cast_possible_truncation, reason = "below the length of a list")]
+fn digit(rest: &mut u64, base: usize) -> usize {
+    let digit = *rest % base as u64;
+    *rest /= base as u64;
+    digit as usize
+}
+
+fn crossed(study: &Study, number: u64) -> Case {
+    let mut rest = number;
+    let levels = study.crossed_levels();
+    let level = levels[digit(&mut rest, levels.len())];
+    let mut settings: Vec<Option<Setting>> = vec![None; study.factors.len()];
+    for (factor, setting) in study.factors.iter().zip(&mut settings).rev() {
+        if let Some(values) = factor.crossed() {
+            *setting = Some(values[digit(&mut rest, values.len())].clone());
+        }
+    }
+    let motion = digit(&mut rest, study.motions.len());
+    let id = study.identity(motion, level, &settings);
+    for (factor, setting) in study.factors.iter().zip(&mut settings) {
+        if let Variation::Distribution(distribution) = &factor.variation
+            && setting.is_none()
+        {
+            *setting = Some(distribution.quantile(uniform(id, &factor.name)));
+        }
+    }
+    Case { number, id, motion, level, settings }
+}
+
+fn one_at_a_time(study: &Study, changes: &[(usize, Setting)], number: u64) -> Case {
+    let mut rest = number;
+    let change = digit(&mut rest, 1 + changes.len());
+    let levels = study.crossed_levels();
+    let level = levels[digit(&mut rest, levels.len())];
+    let motion = digit(&mut rest, study.motions.len());
+    let mut settings = vec![None; study.factors.len()];
+    if let Some((factor, setting)) = change.checked_sub(1).and_then(|change| changes.get(change)) {
+        settings[*factor] = Some(setting.clone());
+    }
+    Case { number, id: study.identity(motion, level, &settings), motion, level, settings }
+}
+
+/// Every value of every factor that is not that of the base.
+fn changes(factors: &[Factor], quantiles: &[f64]) -> Vec<(usize, Setting)> {
+    let mut changes = Vec::new();
+    for (index, factor) in factors.iter().enumerate() {
+        let values: Vec<Setting> = match &factor.variation {
+            Variation::Values(values) => values.clone(),
+            Variation::Distribution(distribution) => match distribution.settings() {
+                Some(settings) => settings.cloned().collect(),
+                None => quantiles.iter().map(|u| distribution.quantile(*u)).collect(),
+            },
+        };
+        let others = values.into_iter().filter(|value| Some(&value.value) != factor.base.as_ref());
+        changes.extend(others.map(|value| (index, value)));
+    }
+    changes
+}
+
+fn sampled(study: &Study, sampling: &Sampling, number: u64) -> Case {
+    let id = seed_of(study.seed, &format!("sample {number}"));
+    // Numbers of sampled designs are below the 32 bits of their count.
+    let point = u32::try_from(number).unwrap_or(u32::MAX);
+    let axes = study.axes();
+    let coordinate = |axis: usize| {
+        let name = axes[axis].as_str();
+        match sampling {
+            Sampling::Random => uniform(id, name),
+            Sampling::LatinHypercube(strata) => {
+                let stratum = strata[axis][point as usize];
+                (f64::from(stratum) + uniform(id, name)) / strata[axis].len() as f64
+            }
+            Sampling::Sobol(sequences) => sequences[axis].at(point),
+            Sampling::Saltelli { axes, exchanged } => {
+                let size = u32::try_from(exchanged.len() + 2).unwrap_or(u32::MAX);
+                let from_second = match point % size {
+                    0 => false,
+                    1 => true,
+                    k => exchanged[k as usize - 2] == axis,
+                };
+                axes[axis][usize::from(from_second)].at(point / size)
+            }
+        }
+    };
+    let motion = pick(coordinate(0), study.motions.len());
+    let level = study.intensity.as_ref().and_then(|intensity| match &intensity.levels {
+        Levels::List(levels) => Some(levels[pick(coordinate(1), levels.len())]),
+        Levels::Distribution(distribution) => Some(distribution.quantile(coordinate(1)).number()),
+        Levels::Hunted => None,
+    });
+    let setting = |(index, factor): (usize, &Factor)| {
+        let u = coordinate(2 + index);
+        Some(match &factor.variation {
+            Variation::Values(values) => values[pick(u, values.len())].clone(),
+            Variation::Distribution(distribution) => distribution.quantile(u),
+        })
+    };
+    let settings = study.factors.iter().enumerate().map(setting).collect();
+    Case { number, id, motion, level, settings }
+}
+
+impl Study {
+    /// The axes of the unit cube from which samples are taken.
+    pub(super) fn axes(&self) -> Vec<String> {
+        let factors = self.factors.iter().map(|factor| format!("factor {}", factor.name));
+        ["motion".to_owned(), "level".to_owned()].into_iter().chain(factors).collect()
+    }
+
+    /// The axes that take more than one value, with their names for people.
+    pub(super) fn varied(&self) -> Vec<(usize, String)> {
+        let level = self.intensity.as_ref().is_some_and(|intensity| match &intensity.levels {
+            Levels::List(levels) => levels.len() > 1,
+            Levels::Distribution(_) => true,
+            Levels::Hunted => false,
+        });
+        let always = [(self.motions.len() > 1, "motion"), (level, "level")];
+        let of =
+            |(at, (varies, name)): (usize, (bool, &str))| varies.then(|| (at, name.to_owned()));
+        let factors = self.factors.iter().enumerate().map(|(at, f)| (2 + at, f.name.clone()));
+        always.into_iter().enumerate().filter_map(of).chain(factors).collect()
+    }
+
+    /// The levels that are crossed with the rest; one without a level where there are none.
+    pub(super) fn crossed_levels(&self) -> &[Option<f64>] {
+        &self.levels
+    }
+
+    /// The identity of a case of a crossed design: what it is, not where it stands.
+    fn identity(&self, motion: usize, level: Option<f64>, settings: &[Option<Setting>]) -> u64 {
+        let mut words = vec![format!("case of {}", self.motions[motion].name)];
+        words.extend(
+            level.map(|level| format!("level {}", crate::scenario::quantity::plain(level))),
+        );
+        words.extend(self.factors.iter().zip(settings).filter_map(|(factor, setting)| {
+            setting.as_ref().map(|setting| format!("{} = {}", factor.name, setting.word()))
+        }));
+        seed_of(self.seed, &words.join("|"))
+    }
+
+    /// The value of a factor in a case, as the table has it.
+    pub(super) fn told(&self, case: &Case, factor: usize) -> Option<Value> {
+        match &case.settings[factor] {
+            Some(setting) => Some(setting.value.clone()),
+            None => self.factors[factor].base.clone(),
+        }
+    }
+}
