@@ -149,7 +149,7 @@ impl Stage {
         let step = default_step(&assembly, 1.0);
         let mut state = State::initial(&assembly.model);
         let mut scratch = Scratch::new(&assembly.model);
-        settle(&assembly.model, &mut state, &mut scratch, step, 1e-10)?;
+        settle(&assembly.model, &mut state, &mut scratch, 1e-10)?;
         Ok(Self { scenario: scenario.clone(), assembly, ground, state, scratch, step })
     }
 

@@ -95,7 +95,9 @@ fn stiffness_rate(
     body: &Body<Planar>,
     depth: f64,
 ) -> f64 {
-    let stiffness = model.interfaces()[pair.interface].normal.tangent_stiffness(depth);
+    let interface = &model.interfaces()[pair.interface];
+    let normal = interface.normal.tangent_stiffness(depth);
+    let stiffness = normal.max(interface.friction.stick_stiffness());
     facing(model, pair, 0.25) * stiffness / body.mass
 }
 

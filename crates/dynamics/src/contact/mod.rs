@@ -4,6 +4,7 @@ mod friction;
 mod normal;
 pub mod restitution;
 
+use crate::real::Real as _;
 use crate::space::Space;
 
 pub use friction::{Friction, FrictionLaw, Stick};
@@ -57,4 +58,19 @@ pub struct Interface<S: Space> {
     pub friction: FrictionLaw<S::Real>,
     /// What the constants are stated for.
     pub basis: Basis,
+}
+
+impl<S: Space> Interface<S> {
+    /// The stiffness (N/m) at a penetration (m), along the normal or of the stick, whichever is more.
+    #[inline(always)]
+    pub fn stiffness(&self, depth: S::Real) -> S::Real {
+        let mut normal = self.normal.tangent_stiffness(depth);
+        if let Some(stop) = self.stop {
+            let beyond = depth - stop.depth;
+            let reached = S::Real::zero().lt(beyond);
+            let hard = stop.law.tangent_stiffness(beyond);
+            normal += S::Real::select(reached, hard, S::Real::zero());
+        }
+        normal.max(self.friction.stick_stiffness())
+    }
 }

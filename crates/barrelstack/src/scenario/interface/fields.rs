@@ -246,7 +246,7 @@ pub static FRICTION: Section = Section {
                         "tangential_stiffness_ratio",
                         Kind::Number(Range::up_to(100.0)),
                         Default::Value("1.0"),
-                        "Tangential stiffness of the stick over the normal stiffness.",
+                        "Tangential stiffness of the stick over the normal stiffness; a stiffer one turns friction round sooner, at a smaller step.",
                     ),
                     Field::new(
                         "tangential_damping_ratio",
