@@ -11,7 +11,7 @@ use crate::assemble::Assembly;
 ///
 /// With it the six- and eight-barrel cases of the paper close their energy books to better than
 /// 5e-5, and halving the step moves no fall by more than 3 ms.
-const SHARE: f64 = 0.08;
+const SHARE: f64 = 0.1;
 
 /// Share of the time 1/γ in which dampers stop a body: beyond the whole of it, velocities predicted
 /// from the last step overshoot.
@@ -22,7 +22,7 @@ const REFERENCE: f64 = 0.01;
 
 /// Share of the critical time step of impacts that is taken: they are over within a few milliseconds, and
 /// may not force the step of what stands.
-const IMPACT_SHARE: f64 = 0.6;
+const IMPACT_SHARE: f64 = 0.4;
 
 /// The time step (s): a share of the critical one, rounded down to a number that is easily said at full
 /// scale; `time_scale` is that of similitude.
