@@ -45,7 +45,7 @@ pub(crate) enum Command {
     /// Run every case of the paper behind the model and set its numbers beside ours.
     Reproduce(ReproduceArgs),
     /// Read, look at, change and make ground motions.
-    Motion(crate::commands::motion::MotionArgs),
+    Motion(Box<crate::commands::motion::MotionArgs>),
     /// Find contact parameters, with their uncertainty, from your own tests.
     Calibrate(crate::commands::calibrate::CalibrateArgs),
     /// Run a scenario and write its figures, the report as PDF, animations and a ParaView series.

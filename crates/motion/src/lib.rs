@@ -34,8 +34,11 @@
 //! - Reading: [`read`], [`FORMATS`], [`ReadError`]; parts and components: [`Record::join`],
 //!   [`Record::gather`].
 //! - Choosing and processing: [`Component`], [`Record::ground_motion`], [`Processing`].
+//! - Corners from the noise: [`Record::noise_corners`]; across and along a fault:
+//!   [`Record::fault_axes`].
 //! - Measuring: [`IntensityMeasure`], [`Horizontals`], [`ResponseSpectrum`], [`rotated_spectrum`],
-//!   [`dominant_pulse`].
+//!   [`dominant_pulse`], [`classify_component`], [`classify_pair`].
+//! - Many records: [`group_files`], [`measure`], [`Flatfile`]; a set for a target: [`select`].
 //! - Scaling and matching: [`GroundMotion::scale_to`], [`GroundMotion::froude`],
 //!   [`GroundMotion::match_spectrum`], [`TargetSpectrum`].
 //! - Making: [`Pulse`], [`CloughPenzien`], [`BooreSource`], [`NearFault`], all from stated seeds of
@@ -50,8 +53,12 @@
 
 mod align;
 mod bundled;
+mod collection;
+mod corners;
 mod direction;
 mod error;
+mod fault_axes;
+mod fiv3;
 mod format;
 mod fourier;
 mod ground_motion;
@@ -65,6 +72,7 @@ mod matching;
 mod math;
 mod process;
 mod pulse;
+mod pulse_class;
 mod pulse_fit;
 mod random;
 mod record;
@@ -72,6 +80,7 @@ mod response;
 mod rotd;
 mod sampled;
 mod select;
+mod selection;
 mod site;
 mod synthesis;
 mod target;
@@ -82,8 +91,14 @@ mod wavelets;
 pub mod write;
 
 pub use bundled::{BUNDLED, bundled};
+pub use collection::{
+    FlatRow, Flatfile, Measured, MeasuredComponent, MeasuredPair, RecordFiles, group_files,
+    measure, record_sequence_number,
+};
+pub use corners::{Corners, NoiseCriterion, noise_corners};
 pub use direction::{Direction, Orientation};
 pub use error::{MotionError, ReadError, ReadFailure, Refusal};
+pub use fault_axes::Turned;
 pub use format::{FORMATS, Format, ReadOptions, read, slammer_step};
 pub use fourier::FourierSpectrum;
 pub use ground_motion::GroundMotion;
@@ -96,6 +111,7 @@ pub use matching::{MatchMethod, Matching};
 pub use math::STANDARD_GRAVITY;
 pub use process::{MeanRemoval, Pads, Processed, Processing, Residuals};
 pub use pulse::Pulse;
+pub use pulse_class::{ClassifiedPulse, classify_component, classify_pair};
 pub use pulse_fit::{PulseFit, dominant_pulse};
 pub use random::Random;
 pub use record::{Channel, Quantity, Record, Stage, StatedPeak, Warning};
@@ -105,6 +121,10 @@ pub use response::{
 pub use rotd::{RotatedPeak, rotated_peak, rotated_spectrum};
 pub use sampled::{Kinematics, Sampled};
 pub use select::Component;
+pub use selection::{
+    Candidate, Choosing, Chosen, Condition, Selection, SelectionTarget, select,
+    spectral_correlation,
+};
 pub use site::Site;
 pub use synthesis::{BooreSource, CloughPenzien, Envelope, NearFault, Path, SiteAmplification};
 pub use target::{ChileanZone, NCh2745Soil, SiteClass, TargetSpectrum};

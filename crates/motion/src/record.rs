@@ -146,7 +146,7 @@ impl Channel {
         Some(format!("channel {} has {what}", self.name))
     }
 
-    fn velocity(&self) -> Vec<f64> {
+    pub(crate) fn velocity(&self) -> Vec<f64> {
         crate::sampled::integrate(self.time_step, &self.acceleration, self.initial_velocity).0
     }
 

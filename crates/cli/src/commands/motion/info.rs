@@ -1,10 +1,15 @@
 //! `barrelstack motion info`: what a file holds, so that a wrong unit or step is seen.
 
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::bail;
 use barrelstack_motion::{
-    Channel, FORMATS, Orientation, Quantity, Record, STANDARD_GRAVITY, Stage,
+    Channel, FORMATS, NoiseCriterion, Orientation, Quantity, Record, STANDARD_GRAVITY, Stage,
 };
 use serde_json::{Value, json};
 
+use super::folder::{self, Batch, FolderArgs, Worked};
 use super::input::Input;
 use super::measures::{self, FURTHER, Shown, USUAL};
 use super::table::{Table, number};
@@ -24,10 +29,22 @@ pub(super) struct InfoArgs {
     /// Print one JSON document, in SI units.
     #[arg(long)]
     json: bool,
+    /// Where the table of folders goes.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    folder: FolderArgs,
 }
 
 /// Prints header, channels, stated peaks and measures of every record.
-pub(super) fn info(args: &InfoArgs) -> anyhow::Result<()> {
+pub(super) fn info(args: &InfoArgs) -> anyhow::Result<ExitCode> {
+    match &args.out {
+        Some(out) => return table(args, out),
+        None if args.input.has_folder() => {
+            bail!("a folder is measured as a table: say where it goes, with --out DIR")
+        }
+        None => {}
+    }
     let records = args.input.read_each()?;
     let records =
         if args.input.join { vec![args.input.unite(&records)?] } else { together(&records)? };
@@ -53,7 +70,25 @@ pub(super) fn info(args: &InfoArgs) -> anyhow::Result<()> {
     for record in &records {
         warn(record);
     }
-    Ok(())
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Measures whole folders.
+fn table(args: &InfoArgs, out: &Path) -> anyhow::Result<ExitCode> {
+    if args.json || args.all_measures || args.input.join {
+        bail!(
+            "--json, --all-measures and --join are for files; the table of a folder has its own columns"
+        );
+    }
+    let batch = Batch {
+        input: &args.input,
+        out,
+        folder: &args.folder,
+        settings: "info".to_owned(),
+        periods: None,
+        ending: None,
+    };
+    folder::run(&batch, &|_, record| Ok(Worked::as_read(record.clone())))?.tell()
 }
 
 /// Neighboring files of one event, station and step are one record.
@@ -160,6 +195,13 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
         lines.push(String::new());
         lines.extend(measures::pulses(record).into_iter().map(|line| format!("  {line}")));
     }
+    if record.stage == Stage::Raw {
+        lines.extend([
+            String::new(),
+            "  corners that the noise before the shaking suggests".to_owned(),
+        ]);
+        lines.extend(corners(record).into_iter().map(|line| format!("    {line}")));
+    }
     if !record.notes.is_empty() {
         lines.extend([String::new(), "  what was done".to_owned()]);
         lines.extend(
@@ -188,6 +230,18 @@ pub(super) fn direction(channel: &Channel) -> String {
         (None, Some(Orientation::Horizontal)) => "horizontal".to_owned(),
         (None, None) => "unknown".to_owned(),
     }
+}
+
+/// Corners of every channel, one sentence each; process takes them with `--corners auto`.
+fn corners(record: &Record) -> Vec<String> {
+    let criterion = NoiseCriterion::default();
+    let found = record.channels.iter().zip(record.noise_corners(&criterion));
+    found
+        .map(|(channel, corners)| match corners {
+            Ok(corners) => format!("{}: {}", channel.name, corners.sentence(&criterion)),
+            Err(error) => format!("none: {error}"),
+        })
+        .collect()
 }
 
 /// What a channel has in one column.
@@ -249,7 +303,8 @@ fn stated(record: &Record) -> Table {
 
 fn document(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Value> {
     let mut channels = Vec::new();
-    for channel in &record.channels {
+    let corners = record.noise_corners(&NoiseCriterion::default());
+    for (channel, corners) in record.channels.iter().zip(corners) {
         let motion = measures::sampled(channel)?;
         let mut values = serde_json::Map::new();
         for Shown { measure, .. } in shown {
@@ -292,6 +347,12 @@ fn document(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Valu
             "duration": channel.duration(),
             "initial_velocity": channel.initial_velocity,
             "stated_peaks": peaks,
+            "noise_corners": corners.ok().map(|c| json!({
+                "high_pass": c.high_pass,
+                "low_pass": c.low_pass,
+                "arrival": c.arrival,
+                "least_ratio": c.least_ratio,
+            })),
             "measures": values,
             "velocity_pulse": pulse,
         }));

@@ -20,7 +20,8 @@ const LIMIT: u64 = 256 << 20;
 #[derive(Debug, clap::Args)]
 pub(super) struct Input {
     /// Motion files of any known format, or napa-college-2014, which comes with the program; several
-    /// are taken as components of one record (info shows files that cannot be apart).
+    /// are taken as components of one record (info shows files that cannot be apart). Info, plot,
+    /// process and convert take folders too, and all records in them.
     #[arg(required = true, value_name = "FILE")]
     pub(super) files: Vec<String>,
     /// Take several files as parts of one long record and join them where they overlap.
@@ -40,7 +41,7 @@ pub(super) struct Input {
     /// for each.
     #[arg(long, value_name = "[CHANNEL=]NUMBER")]
     sensitivity: Vec<String>,
-    /// StationXML with the sensitivity and the direction of each channel; without it files that end
+    /// `StationXML` with the sensitivity and the direction of each channel; without it files that end
     /// with .xml beside a file of counts are looked into.
     #[arg(long, value_name = "FILE")]
     station_xml: Option<PathBuf>,
@@ -110,7 +111,37 @@ impl Input {
     }
 
     fn read_as_they_are(&self) -> anyhow::Result<Vec<Record>> {
-        let options = ReadOptions {
+        let options = self.options()?;
+        self.files.iter().map(|file| self.read_one(file, &options)).collect()
+    }
+
+    /// The record of one file.
+    pub(super) fn read_alone(&self, file: &str) -> anyhow::Result<Record> {
+        let mut record = self.read_one(file, &self.options()?)?;
+        record.mixed = self.allow_mixed;
+        Ok(record)
+    }
+
+    /// Whether a folder is among the files.
+    pub(super) fn has_folder(&self) -> bool {
+        self.files.iter().any(|file| Path::new(file).is_dir())
+    }
+
+    /// What was told of the files, as words.
+    pub(super) fn told(&self) -> String {
+        format!(
+            "unit {:?}, step {:?}, sensitivity {:?} of {:?}, as {:?}, mixed {}",
+            self.unit,
+            self.time_step,
+            self.sensitivity,
+            self.station_xml,
+            self.recorded,
+            self.allow_mixed
+        )
+    }
+
+    fn options(&self) -> anyhow::Result<ReadOptions> {
+        Ok(ReadOptions {
             unit: self
                 .unit
                 .as_deref()
@@ -128,11 +159,10 @@ impl Input {
                 Recorded::Displacement => motion::Quantity::Displacement,
             }),
             ..self.sensitivities()?
-        };
-        self.files.iter().map(|file| self.read_one(file, &options)).collect()
+        })
     }
 
-    /// The sensitivities that were typed, and those of the StationXML that was named.
+    /// The sensitivities that were typed, and those of the `StationXML` that was named.
     fn sensitivities(&self) -> anyhow::Result<ReadOptions> {
         let mut options = ReadOptions::default();
         for text in &self.sensitivity {
@@ -158,7 +188,7 @@ impl Input {
         Ok(options)
     }
 
-    /// Reads one file; counts without a sensitivity are looked up in the StationXML beside it.
+    /// Reads one file; counts without a sensitivity are looked up in the `StationXML` beside it.
     fn read_one(&self, file: &str, options: &ReadOptions) -> anyhow::Result<Record> {
         let first = read_file(file, options);
         let lacking = first.as_ref().is_err_and(|error| {
@@ -268,7 +298,7 @@ pub(super) fn processed(record: &Record, chain: &Processing) -> Result<Record, M
 }
 
 /// Channels of one record end together; the longer ones lose their last samples.
-fn cut_to_shortest(record: &mut Record) {
+pub(super) fn cut_to_shortest(record: &mut Record) {
     let shortest = record.channels.iter().map(|c| c.acceleration.len()).min().unwrap_or(0);
     for channel in &mut record.channels {
         let extra = channel.acceleration.len() - shortest;
@@ -354,7 +384,7 @@ fn with_option(error: anyhow::Error) -> anyhow::Error {
     anyhow!("{error}: {option}")
 }
 
-/// The channels of a StationXML file.
+/// The channels of a `StationXML` file.
 fn instruments(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     let text = bytes(path)?;
     let found =
@@ -365,7 +395,7 @@ fn instruments(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     Ok(found)
 }
 
-/// Files beside one whose ending is that of StationXML, in the order of their names.
+/// Files beside one whose ending is that of `StationXML`, in the order of their names.
 fn beside(file: &Path) -> Vec<PathBuf> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
     let Ok(entries) = std::fs::read_dir(folder.unwrap_or(Path::new("."))) else {

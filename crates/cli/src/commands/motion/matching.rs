@@ -1,5 +1,6 @@
 //! `barrelstack motion match`: a motion whose response spectrum follows a target.
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{anyhow, bail};
@@ -13,6 +14,7 @@ use clap::ValueEnum;
 use super::input::{self, Chain, Choice, Input, quantity};
 use super::measures::{self, sampled};
 use super::output::Output;
+use super::panels;
 use super::process::share;
 use super::table::{Table, number, percent};
 use super::target;
@@ -51,6 +53,9 @@ pub(super) struct MatchArgs {
     accept_misfit: bool,
     #[command(flatten)]
     output: Output,
+    /// Draw target, before and after as panels, as .png, .svg or .pdf.
+    #[arg(long, value_name = "FILE")]
+    figure: Option<PathBuf>,
 }
 
 /// Exit status of a match that was written although it misses its target.
@@ -68,6 +73,9 @@ enum Method {
 /// Matches and writes.
 pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
     let target = args.output.prepare()?;
+    if let Some(figure) = &args.figure {
+        panels::vacant_picture(figure, args.output.overwrite)?;
+    }
     let spectrum = target::target(&args.to)?;
     let settings = Matching {
         method: match args.method {
@@ -86,6 +94,12 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
     lines.push(String::new());
     lines.extend(comparison(args, &before, &after, &spectrum, &settings)?.lines());
     super::change::finish(&target, &read, &after, lines)?;
+    if let Some(figure) = &args.figure {
+        let place = place(args, &before)?;
+        let one = |record| panels::only(record, place);
+        panels::write(figure, &panels::compared(&one(&before)?, &one(&after)?, Some(&spectrum))?)?;
+        printer::lines([format!("written: {}", figure.display())])?;
+    }
     match missed {
         None => Ok(ExitCode::SUCCESS),
         Some(words) => {

@@ -41,6 +41,7 @@ pub(super) const FURTHER: &[Shown] = &[
     shown("ASI, 5 %", IntensityMeasure::Asi),
     shown("VSI, 5 %", IntensityMeasure::Vsi),
     shown("Fajfar index", IntensityMeasure::Fajfar),
+    shown("FIV3(1.0 s)", IntensityMeasure::Fiv3 { period: 1.0 }),
     shown("Sa(0.2 s), 5 %", IntensityMeasure::Sa { period: 0.2, damping: 0.05 }),
     shown("Sa(0.5 s), 5 %", IntensityMeasure::Sa { period: 0.5, damping: 0.05 }),
     shown("Sa(1.0 s), 5 %", IntensityMeasure::Sa { period: 1.0, damping: 0.05 }),
@@ -52,7 +53,7 @@ pub(super) fn reading(measure: &IntensityMeasure) -> (&'static str, f64) {
         IntensityMeasure::Pga | IntensityMeasure::Rms | IntensityMeasure::Sa { .. } => {
             ("g", 1.0 / STANDARD_GRAVITY)
         }
-        IntensityMeasure::Pgv => ("cm/s", 100.0),
+        IntensityMeasure::Pgv | IntensityMeasure::Fiv3 { .. } => ("cm/s", 100.0),
         IntensityMeasure::Pgd | IntensityMeasure::Housner { .. } | IntensityMeasure::Vsi => {
             ("cm", 100.0)
         }
