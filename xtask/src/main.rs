@@ -6,6 +6,7 @@
 )]
 
 mod browser;
+mod extra;
 mod steps;
 mod tally;
 
@@ -18,6 +19,7 @@ usage: cargo xtask TASK
 tasks:
   test       formatting, lints, documentation, and all tests in both profiles; stops at the first failure
   golden     keeps how all report pages look now, for the next test; look at what it keeps before you commit it
+  golden bits  keeps what results are now, to the last bit, once their version is raised
   validate   every problem with an exact answer, in full, with a report; `--out DIR`, `--only TEXT`, `--fast`
   bench      how fast stacks are computed, beside a game engine on the same scene
   fuzz       damaged files through every reader of records; `--executions N`, `--reader NAME`, `--first K`";
@@ -37,6 +39,7 @@ fn main() -> ExitCode {
             eprintln!("xtask: {error:#}");
             ExitCode::FAILURE
         }),
+        ["golden", "bits"] => release(&["--package", "barrelstack", "--example", "golden"], &[]),
         ["validate", rest @ ..] => release(&["--package", "barrelstack-validation"], rest),
         ["bench", rest @ ..] => release(&["--manifest-path", "benchmarks/Cargo.toml"], rest),
         ["fuzz", rest @ ..] => {

@@ -46,7 +46,7 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
     lines.push(format!("  bodies        {}", counts.join(", ")));
     let mut scratch = Scratch::new(&assembly.model);
     let mut state = State::initial(&assembly.model);
-    check_overlap(&assembly, &state, &mut scratch, scenario.run.similitude)?;
+    check_overlap(&assembly, &state, scenario.run.similitude)?;
     let step = time_step(scenario, &assembly)?;
     lines.push(format!("  time step     {:.3} ms", 1e3 * step));
     if scenario.run.settle {

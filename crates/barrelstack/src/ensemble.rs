@@ -16,12 +16,13 @@ use barrelstack_dynamics::lanes::{Topology, Width};
 
 use crate::run::{RunFailure, Standing, check_length, end_time, method, stand};
 use crate::scenario::Scenario;
+use crate::watch::End;
 
 pub use case::{CaseResult, Prepared};
 
 /// Version of what an ensemble computes: raised whenever the same case may give other bits, so that
 /// results of two versions are never put together.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// Fewer cases than this of one topology go one after the other: a bundle costs as much as some three
 /// single runs, however few of its lanes are used.
@@ -97,10 +98,9 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// How long (s) it goes on after a collapse; for ever where the scenario does not say.
-    fn after_collapse(&self) -> f64 {
-        let run = &self.case.scenario.run;
-        run.stop_after_collapse.map_or(f64::INFINITY, |after| after * run.similitude.sqrt())
+    /// What ends it before its time is over.
+    fn end(&self, standing: &Standing) -> End {
+        End::new(&self.case.scenario, &standing.assembly, &self.case.ground)
     }
 }
 

@@ -24,6 +24,13 @@ pub struct Ground {
     pub warnings: Vec<String>,
 }
 
+impl Ground {
+    /// When (s) it is still: the end of its motion.
+    pub fn end(&self) -> f64 {
+        self.motion.as_ref().map_or(0.0, |motion| motion.duration)
+    }
+}
+
 impl Drive<Planar> for Ground {
     fn at(&self, time: f64) -> (Vec2, Vec2) {
         let Some(motion) = &self.motion else { return Default::default() };
@@ -53,7 +60,7 @@ pub enum GroundError {
     #[error(transparent)]
     Motion(#[from] MotionError),
     /// The record has no vertical component of the name that the scenario asks for.
-    #[error("{error}; for a record without one: --set motion.vertical=false")]
+    #[error("{error}; for a record without one say `motion.vertical = false`")]
     Vertical {
         /// What is missing, and what there is.
         error: MotionError,
@@ -78,7 +85,7 @@ pub enum GroundError {
 }
 
 /// Largest record (bytes) that is read; the longest strong-motion files have a tenth of it.
-pub(crate) const RECORD_LIMIT: usize = 256 << 20;
+pub const RECORD_LIMIT: usize = 256 << 20;
 
 /// Reads or makes the motion of a scenario, scaled as it says.
 ///
@@ -92,7 +99,7 @@ pub fn ground(scenario: &Scenario) -> Result<Ground, GroundError> {
 ///
 /// # Errors
 /// As [`ground`].
-pub(crate) fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
+pub fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
     let mut ground = match &spec.source {
         MotionSource::None => return Ok(Ground::default()),
         MotionSource::Record(record) => recorded(record, spec.scale)?,
@@ -106,7 +113,10 @@ pub(crate) fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, Grou
 }
 
 /// A motion scaled and stretched as a scenario says, for a stack of a length scale.
-pub(crate) fn scaled(
+///
+/// # Errors
+/// When it cannot be scaled so.
+pub fn scaled(
     mut motion: GroundMotion,
     spec: &MotionSpec,
     run_scale: f64,
@@ -154,10 +164,10 @@ fn recorded(spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
             })?
         }
         RecordSource::File(file) => {
-            let obtain = spec.obtain.as_ref().map_or_else(
-                || "; correct the path, or name another file with --record FILE".to_owned(),
-                |how| format!("; {how}, then name your file with --record FILE"),
-            );
+            let obtain = spec
+                .obtain
+                .as_ref()
+                .map_or_else(|| "; correct the path".to_owned(), |how| format!("; {how}"));
             read_file(&file.resolve(), &options, &obtain)?
         }
     };

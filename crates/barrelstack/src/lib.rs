@@ -9,30 +9,30 @@
 //!                     Summary (JSON) · files · report (HTML, Markdown)
 //! ```
 
+// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 pub mod assemble;
-pub mod calibrate;
 pub mod check;
 pub mod compare;
-pub mod decision;
+pub mod demand;
 pub mod ensemble;
 pub mod export;
 pub mod ground;
-pub mod heights;
 pub mod outcome;
-mod overlap;
+pub mod overlap;
 pub mod period;
 pub mod pool;
 pub mod render;
 pub mod report;
-pub mod reproduce;
 pub mod run;
 pub mod scenario;
 pub mod step;
-pub mod study;
 pub mod summary;
-mod system;
 pub mod verify;
 pub mod watch;
+
+use barrelstack_input::system;
 
 pub use check::check;
 pub use run::{Progress, Run, RunFailure, run};

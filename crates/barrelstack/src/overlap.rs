@@ -1,16 +1,16 @@
-//! Bodies that stand in each other before anything has moved.
+//! How deep bodies stand in each other, by their drawn boundaries: a measure that knows nothing of
+//! contact elements and laws.
 
-use barrelstack_dynamics::shape::Surface as _;
 use barrelstack_dynamics::space::Rotation2;
-use barrelstack_dynamics::{Body, Nodes, Planar, Pose, Scratch, State, Vec2};
+use barrelstack_dynamics::{BodyId, Linear as _, Model, Planar, Pose, Shape, State, Vec2};
 
 use crate::assemble::{AssembleError, Assembly};
 
 /// Deepest overlap (m) of two bodies at the start that sinking under weight can explain.
 const ALLOWED: f64 = 2e-3;
 
-/// Share of the way to the center of mass by which a node is drawn into its own body.
-const DRAWN: f64 = 0.05;
+/// Corners (1) of the polygon that stands for a circle; it lies at most `r (1 − cos π/n)` inside.
+const AROUND: usize = 256;
 
 /// Refuses bodies that stand in each other before anything has moved.
 ///
@@ -19,54 +19,156 @@ const DRAWN: f64 = 0.05;
 pub(crate) fn check_overlap(
     assembly: &Assembly,
     state: &State<Planar>,
-    scratch: &mut Scratch<Planar>,
     length_scale: f64,
 ) -> Result<(), AssembleError> {
-    let model = &assembly.model;
-    barrelstack_dynamics::evaluate(model, state, scratch);
-    let contacts = scratch.contacts.iter().map(|contact| (contact.pair, contact.penetration));
-    let hidden = model.pairs().iter().enumerate().map(|(index, pair)| {
-        let (a, b) = (&model.bodies()[pair.contactor], &model.bodies()[pair.target]);
-        (index, hidden(a, &state.poses[pair.contactor], b, &state.poses[pair.target]))
-    });
-    let deepest = contacts.chain(hidden).max_by(|a, b| a.1.total_cmp(&b.1));
-    match deepest {
-        Some((pair, depth)) if depth > ALLOWED * length_scale => {
-            let pair = &model.pairs()[pair];
-            Err(AssembleError::Overlap {
-                first: model.bodies()[pair.contactor].name.clone(),
-                second: model.bodies()[pair.target].name.clone(),
-                depth,
-            })
+    match Boundaries::new(&assembly.model).deepest(&state.poses) {
+        Some(Overlap { bodies: [first, second], depth }) if depth > ALLOWED * length_scale => {
+            let name = |body: BodyId| assembly.parts[body].name.clone();
+            Err(AssembleError::Overlap { first: name(first), second: name(second), depth })
         }
         _ => Ok(()),
     }
 }
 
-/// How deep (m) a point is in two bodies whose nodes may all lie on the edges of the other, as those of
-/// two blocks of one height do.
-///
-/// The points are the nodes of one body, drawn a little towards its center of mass; only those count
-/// that are inside of their own body then, which not all are where a body is not convex.
-fn hidden(a: &Body<Planar>, at: &Pose<Planar>, b: &Body<Planar>, there: &Pose<Planar>) -> f64 {
-    let nodes = a.nodes.iter().filter_map(|set| match set {
-        Nodes::Fixed(nodes) => Some(nodes),
-        // A disk whose nodes roll meets everything where it is deepest.
-        Nodes::Rolling { .. } => None,
-    });
-    nodes.flatten().fold(0.0, |most: f64, node| {
-        let drawn = node.position * (1.0 - DRAWN);
-        let point = at.position + Rotation2::new(at.orientation).apply(drawn);
-        most.max(depth(a, at, point).min(depth(b, there, point)))
-    })
+/// Two bodies that stand in each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Overlap {
+    /// The bodies, the lower id first.
+    pub bodies: [BodyId; 2],
+    /// The shortest way (m) that parts the two deepest of their convex parts.
+    pub depth: f64,
 }
 
-/// How deep (m) a point is in a body; zero outside.
-fn depth(body: &Body<Planar>, pose: &Pose<Planar>, point: Vec2) -> f64 {
-    let local = Rotation2::new(pose.orientation).unapply(point - pose.position);
-    let depths = body
-        .surfaces
-        .iter()
-        .map(|placed| -placed.surface.gap(placed.rotation.unapply(local - placed.offset)).distance);
-    depths.fold(0.0, f64::max)
+/// The convex outlines of all bodies of a model, in their frames.
+pub struct Boundaries {
+    bodies: Vec<Vec<Outline>>,
+}
+
+/// A convex part.
+enum Outline {
+    /// Corners (m), counterclockwise.
+    Polygon(Vec<Vec2>),
+    /// Everything below a line through a point (m) with a unit normal.
+    Below(Vec2, Vec2),
+}
+
+impl Boundaries {
+    /// The boundaries of a model as they are drawn.
+    pub fn new(model: &Model<Planar>) -> Self {
+        let outline = |placed: &barrelstack_dynamics::Placed<Planar>| {
+            let place = |point: Vec2| placed.offset + placed.rotation.apply(point);
+            match &placed.surface {
+                Shape::HalfPlane(_) => {
+                    Some(Outline::Below(placed.offset, placed.rotation.apply(Vec2::new(0.0, 1.0))))
+                }
+                Shape::Circle(circle) => Some(Outline::Polygon(
+                    (0..AROUND)
+                        .map(|i| {
+                            let angle = std::f64::consts::TAU * i as f64 / AROUND as f64;
+                            let rotation = Rotation2::new(angle);
+                            place(rotation.apply(Vec2::new(circle.radius, 0.0)))
+                        })
+                        .collect(),
+                )),
+                // A trough is no solid: nothing is inside of it.
+                Shape::Cradle(_) => None,
+                shape @ (Shape::Polygon(_) | Shape::BarrelProfile(_)) => {
+                    Some(Outline::Polygon(shape.outline().0.into_iter().map(place).collect()))
+                }
+            }
+        };
+        let bodies = model.bodies().iter();
+        Self { bodies: bodies.map(|b| b.surfaces.iter().filter_map(outline).collect()).collect() }
+    }
+
+    /// The deepest overlap of any two bodies at these poses; none where no two overlap.
+    pub fn deepest(&self, poses: &[Pose<Planar>]) -> Option<Overlap> {
+        self.overlaps(poses).into_iter().max_by(|a, b| a.depth.total_cmp(&b.depth))
+    }
+
+    /// All bodies that overlap at these poses.
+    pub fn overlaps(&self, poses: &[Pose<Planar>]) -> Vec<Overlap> {
+        let placed: Vec<Vec<(Outline, [f64; 4])>> = self
+            .bodies
+            .iter()
+            .zip(poses)
+            .map(|(outlines, pose)| outlines.iter().map(|o| o.at(pose)).collect())
+            .collect();
+        let mut overlaps = Vec::new();
+        for first in 0..placed.len() {
+            for second in first + 1..placed.len() {
+                let mut depth = 0.0_f64;
+                for (a, box_a) in &placed[first] {
+                    for (b, box_b) in &placed[second] {
+                        let apart =
+                            (0..2).any(|k| box_a[k] > box_b[k + 2] || box_b[k] > box_a[k + 2]);
+                        if !apart {
+                            depth = depth.max(parting(a, b));
+                        }
+                    }
+                }
+                if depth > 0.0 {
+                    overlaps.push(Overlap { bodies: [first, second], depth });
+                }
+            }
+        }
+        overlaps
+    }
+}
+
+impl Outline {
+    /// The outline at a pose, and the box that holds it: least `x`, `z`, greatest `x`, `z` (m).
+    fn at(&self, pose: &Pose<Planar>) -> (Self, [f64; 4]) {
+        let rotation = Rotation2::new(pose.orientation);
+        let place = |point: &Vec2| pose.position + rotation.apply(*point);
+        match self {
+            Self::Polygon(corners) => {
+                let corners: Vec<Vec2> = corners.iter().map(place).collect();
+                let mut around =
+                    [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+                for corner in &corners {
+                    around[0] = around[0].min(corner.x);
+                    around[1] = around[1].min(corner.z);
+                    around[2] = around[2].max(corner.x);
+                    around[3] = around[3].max(corner.z);
+                }
+                (Self::Polygon(corners), around)
+            }
+            Self::Below(point, normal) => {
+                let everywhere =
+                    [f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY];
+                (Self::Below(place(point), rotation.apply(*normal)), everywhere)
+            }
+        }
+    }
+}
+
+/// The shortest way (m) that parts two convex outlines; zero or less where they are apart.
+///
+/// Of all ways to part two convex polygons the shortest is along a normal of a side of one of them.
+fn parting(a: &Outline, b: &Outline) -> f64 {
+    match (a, b) {
+        (Outline::Polygon(a), Outline::Polygon(b)) => least_along(a, b).min(least_along(b, a)),
+        (Outline::Below(point, normal), Outline::Polygon(corners))
+        | (Outline::Polygon(corners), Outline::Below(point, normal)) => {
+            corners.iter().map(|c| (*point - *c).dot(*normal)).fold(f64::NEG_INFINITY, f64::max)
+        }
+        (Outline::Below(..), Outline::Below(..)) => 0.0,
+    }
+}
+
+/// The least depth (m) of one polygon below the sides of another.
+fn least_along(sides: &[Vec2], corners: &[Vec2]) -> f64 {
+    let mut least = f64::INFINITY;
+    for (i, from) in sides.iter().enumerate() {
+        let along = sides[(i + 1) % sides.len()] - *from;
+        let outward = -along.quarter_turn() * (1.0 / along.length());
+        let lowest =
+            corners.iter().map(|c| (*c - *from).dot(outward)).fold(f64::INFINITY, f64::min);
+        least = least.min(-lowest);
+        if least <= 0.0 {
+            break;
+        }
+    }
+    least
 }

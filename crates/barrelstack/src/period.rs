@@ -43,10 +43,10 @@ impl RigidBlock {
         let (x, z) = (center(|p| p.x), center(|p| p.z) - low);
         // It rocks about the nearer edge first.
         let edge = if x - left < right - x { left } else { right };
-        let (half, radius) = ((x - edge).abs(), (x - edge).hypot(z));
+        let (half, radius) = ((x - edge).abs(), libm::hypot(x - edge, z));
         let inertia: f64 = bodies()
             .map(|(_, body)| {
-                let arm = (body.pose.position.x - edge).hypot(body.pose.position.z - low);
+                let arm = libm::hypot(body.pose.position.x - edge, body.pose.position.z - low);
                 body.inertia + body.mass * arm * arm
             })
             .sum();

@@ -5,17 +5,17 @@ use std::ops::ControlFlow;
 use barrelstack_dynamics::contact::Basis;
 use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::{
-    EnergySummary, Finish, Method, Motion, Planar, RunError, Scratch, SettleError, Settled,
-    Simulation, State, settle, simulate,
+    EnergySummary, Method, Motion, Planar, RunError, Scratch, SettleError, Settled, Simulation,
+    State, settle, simulate,
 };
 
 use crate::assemble::{AssembleError, Assembly, assemble};
 use crate::ground::{Ground, GroundError, ground};
 use crate::outcome::{Outcome, judge};
 use crate::overlap::check_overlap;
-use crate::scenario::{self, Scenario, Scene};
+use crate::scenario::{self, Scenario, Scene, Until};
 use crate::step::{critical_time_step, default_step};
-use crate::watch::{Fates, Recording, StrapFate, Stresses, Thresholds, Watch};
+use crate::watch::{End, Ending, Fates, Recording, StrapFate, Stresses, Thresholds, Watch};
 
 /// Everything that was seen of a run.
 #[derive(Clone, Debug)]
@@ -46,6 +46,8 @@ pub struct Run {
     pub work: Work,
     /// Time (s) that the run reached.
     pub end_time: f64,
+    /// Why it ended.
+    pub ending: Ending,
     /// Whether the caller stopped it early.
     pub interrupted: bool,
     /// What the reader of the result should know, one sentence each.
@@ -68,7 +70,7 @@ pub struct Work {
 pub struct Progress {
     /// Simulated time (s) that it has reached.
     pub time: f64,
-    /// Simulated time (s) at which it ends, unless a collapse ends it earlier.
+    /// Simulated time (s) at which it ends, unless rest or a collapse ends it earlier.
     pub end_time: f64,
 }
 
@@ -106,6 +108,9 @@ const SETTLE_TOLERANCE: f64 = 1e-10;
 ///
 /// A hundred times what leads to a warning, and a thousand times what a sound step leaves open.
 const BOOKS_BROKEN: f64 = 0.1;
+
+/// Time (s) of a motion that is left at the end of a run which counts as cut short.
+pub const CUT: f64 = 0.01;
 
 /// Most steps of a run; a stack takes some 10⁵ steps a second.
 const MOST_STEPS: f64 = 1e9;
@@ -145,21 +150,16 @@ pub fn run(
         &scratch,
         thresholds,
         rates,
-        scenario.run.stop_after_collapse.map(|after| after * time_scale),
+        End::new(scenario, &assembly, &ground),
         &mut told,
     );
     let result = simulate(model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
-    let Watch { recording, stresses, fates, straps, interrupted, .. } = watch;
-    let stopped = interrupted && matches!(&result, Ok(totals) if totals.finish == Finish::Stopped);
+    let Watch { recording, stresses, fates, straps, ending, .. } = watch;
+    let ending = ending.unwrap_or(Ending::of_time(scenario));
     let ended = result.map(|totals| Ended::of(&totals));
-    let Verdict { outcome, energy, steps, mut warnings } =
-        conclude(&assembly, &ground, &fates, ended, state.time, interrupted);
-    if stopped {
-        warnings.push(format!(
-            "the run was stopped at {:.3} s of {end_time:.3} s; the results hold until then",
-            state.time
-        ));
-    }
+    let Verdict { outcome, energy, steps, warnings, ending } =
+        conclude(&assembly, &ground, &fates, ended, state.time, ending);
+    let interrupted = ending == Ending::Interrupted;
     let work = Work {
         steps,
         evaluations: scratch.evaluations - evaluations,
@@ -178,6 +178,7 @@ pub fn run(
         simulation,
         work,
         end_time,
+        ending,
         interrupted,
         warnings,
         ground,
@@ -204,7 +205,7 @@ pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunF
     let mut assembly = assemble(scenario)?;
     let mut state = State::initial(&assembly.model);
     let mut scratch = Scratch::new(&assembly.model);
-    check_overlap(&assembly, &state, &mut scratch, scenario.run.similitude)?;
+    check_overlap(&assembly, &state, scenario.run.similitude)?;
     let step = time_step(scenario, &assembly)?;
     check_length(end_time, step)?;
     let settled = if scenario.run.settle {
@@ -243,19 +244,20 @@ pub(crate) struct Verdict {
     pub(crate) energy: Option<EnergySummary>,
     pub(crate) steps: u64,
     pub(crate) warnings: Vec<String>,
+    pub(crate) ending: Ending,
 }
 
-/// Judges a run that ended at a time (s), by itself or because it was interrupted.
+/// Judges a run that ended at a time (s), and says what its end leaves open.
 pub(crate) fn conclude(
     assembly: &Assembly,
     ground: &Ground,
     fates: &Fates,
     ended: Result<Ended, RunError>,
     time: f64,
-    interrupted: bool,
+    ending: Ending,
 ) -> Verdict {
     let mut warnings = ground.warnings.clone();
-    let (outcome, energy, steps) = match ended {
+    let (outcome, energy, steps, ending) = match ended {
         Ok(Ended { energy, steps }) => {
             let broken = energy.residual_ratio() > BOOKS_BROKEN;
             warnings.extend(energy_warning(&energy).filter(|_| !broken));
@@ -264,16 +266,16 @@ pub(crate) fn conclude(
             } else {
                 judge(assembly, fates)
             };
-            warnings.extend(short_warning(&outcome, ground, time).filter(|_| !interrupted));
-            (outcome, Some(energy), steps)
+            warnings.extend(ending_warning(ending, &outcome, ground, time));
+            (outcome, Some(energy), steps, ending)
         }
         Err(error) => {
             let RunError::NotFinite { steps, .. } = error;
-            (Outcome::Invalid { reason: error.to_string() }, None, steps)
+            (Outcome::Invalid { reason: error.to_string() }, None, steps, Ending::Broken)
         }
     };
     warnings.extend(creep_warning(assembly));
-    Verdict { outcome, energy, steps, warnings }
+    Verdict { outcome, energy, steps, warnings, ending }
 }
 
 /// The step (s) that a scenario asks for, or the one its stiffest contact suggests.
@@ -283,7 +285,7 @@ pub(crate) fn conclude(
 /// # Errors
 /// When the step asked for is above the critical one, with which no explicit method of a fixed step
 /// says anything.
-pub(crate) fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFailure> {
+pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFailure> {
     let scale = scenario.run.similitude.sqrt();
     let Some(step) = scenario.run.step.map(|step| step * scale) else {
         return Ok(default_step(assembly, scale));
@@ -356,12 +358,14 @@ pub(crate) fn end_time(
     ground: &Ground,
     time_scale: f64,
 ) -> Result<f64, RunFailure> {
-    if let Some(duration) = scenario.run.duration {
+    let run = &scenario.run;
+    if let Some(duration) = run.duration {
         return Ok(duration * time_scale);
     }
-    match &ground.motion {
-        Some(motion) => Ok(motion.duration + 5.0 * time_scale),
-        None => Err(RunFailure::Duration(
+    match (run.until, &ground.motion) {
+        (Until::Rest, _) => Ok(ground.end() + run.patience * time_scale),
+        (Until::Duration, Some(motion)) => Ok(motion.duration + 5.0 * time_scale),
+        (Until::Duration, None) => Err(RunFailure::Duration(
             "the scenario has no motion, so the run has no natural end: set run.duration, such as \
              \"10 s\""
                 .into(),
@@ -402,17 +406,25 @@ fn energy_warning(energy: &EnergySummary) -> Option<String> {
     })
 }
 
-/// A stack that stands in the middle of a motion has not stood it.
-fn short_warning(outcome: &Outcome, ground: &Ground, end_time: f64) -> Option<String> {
-    let motion = ground.motion.as_ref()?;
-    let short = *outcome == Outcome::Stable && end_time < motion.duration - 0.01;
-    short.then(|| {
-        format!(
-            "the run ends at {end_time:.1} s, the motion at {:.1} s: what the rest of it does is not \
+/// What the end of a run leaves open.
+fn ending_warning(ending: Ending, outcome: &Outcome, ground: &Ground, time: f64) -> Option<String> {
+    let left = ground.end() - time;
+    match ending {
+        Ending::Interrupted => {
+            Some(format!("the run was stopped at {time:.3} s; the results hold until then"))
+        }
+        // A stack that stands in the middle of a motion has not stood it.
+        Ending::Duration if *outcome == Outcome::Stable && left > CUT => Some(format!(
+            "the run ends at {time:.1} s, the motion at {:.1} s: what the rest of it does is not \
              known; leave out run.duration to see all of it",
-            motion.duration
-        )
-    })
+            ground.end()
+        )),
+        Ending::Patience => Some(format!(
+            "something still moved at {time:.1} s, when the run ended; a longer run.patience shows \
+             more"
+        )),
+        Ending::Duration | Ending::AfterCollapse | Ending::Rest | Ending::Broken => None,
+    }
 }
 
 /// Laws that cannot hold a body at rest say how fast it creeps.

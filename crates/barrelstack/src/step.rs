@@ -2,7 +2,7 @@
 
 use barrelstack_dynamics::body::Motion;
 use barrelstack_dynamics::{
-    Basis, Body, ContactPair, Linear as _, Model, Nodes, Planar, Shape, Strap,
+    Basis, Body, ContactPair, Linear as _, Model, Nodes, NormalLaw, Planar, Shape, Strap, math,
 };
 
 use crate::assemble::Assembly;
@@ -20,12 +20,20 @@ const DAMPING_SHARE: f64 = 0.7;
 /// Penetration (m) at which laws that stiffen with penetration are measured.
 const REFERENCE: f64 = 0.01;
 
+/// Share of the critical time step of impacts that is taken: they are over within a few milliseconds, and
+/// may not force the step of what stands.
+const IMPACT_SHARE: f64 = 0.6;
+
 /// The time step (s): a share of the critical one, rounded down to a number that is easily said at full
 /// scale; `time_scale` is that of similitude.
 pub fn default_step(assembly: &Assembly, time_scale: f64) -> f64 {
     let damping =
         fastest(&assembly.model, damping_rate) + of_straps(assembly, |strap| strap.damping);
-    let step = (SHARE * critical_time_step(assembly)).min(DAMPING_SHARE / damping) / time_scale;
+    let seats = critical(assembly, |law| !matches!(law, NormalLaw::Rebound { .. }));
+    let step = (SHARE * seats)
+        .min(IMPACT_SHARE * critical_time_step(assembly))
+        .min(DAMPING_SHARE / damping)
+        / time_scale;
     let full_scale = if step.is_finite() { round_down(step) } else { 1e-3 };
     full_scale * time_scale
 }
@@ -35,7 +43,15 @@ pub fn default_step(assembly: &Assembly, time_scale: f64) -> f64 {
 /// For an explicit method it is 2/ω, with ω² = Σk/m for the stiffest body: the springs of all nodes of
 /// one of its boundaries that face one target, over its mass, and those of its straps.
 pub fn critical_time_step(assembly: &Assembly) -> f64 {
-    let contacts = fastest(&assembly.model, stiffness_rate);
+    critical(assembly, |_| true)
+}
+
+/// The same for the contacts of some laws.
+fn critical(assembly: &Assembly, of: fn(&NormalLaw) -> bool) -> f64 {
+    let contacts = fastest(&assembly.model, |model, pair, body| {
+        let law = &model.interfaces()[pair.interface].normal;
+        if of(law) { stiffness_rate(model, pair, body) } else { 0.0 }
+    });
     2.0 / (contacts + of_straps(assembly, |strap| strap.stiffness)).sqrt()
 }
 
@@ -56,7 +72,7 @@ fn of_straps(assembly: &Assembly, constant: fn(&Strap<Planar>) -> f64) -> f64 {
 /// counts twice.
 fn fastest(
     model: &Model<Planar>,
-    rate: fn(&Model<Planar>, &ContactPair, &Body<Planar>) -> f64,
+    rate: impl Fn(&Model<Planar>, &ContactPair, &Body<Planar>) -> f64,
 ) -> f64 {
     let mut most = 0.0_f64;
     for pair in model.pairs() {
@@ -104,6 +120,10 @@ fn facing(model: &Model<Planar>, pair: &ContactPair, share: f64) -> f64 {
             let two: f64 = nodes.iter().take(2).map(|n| weight(n.tributary_length)).sum();
             (share * total).max(two)
         }
+        // Two round pieces of a convex boundary at most bear at a time.
+        Nodes::Rounds(rounds) => {
+            rounds.iter().take(2).map(|round| weight(round.tributary_length)).sum()
+        }
         Nodes::Rolling { tributary_length, .. } => weight(*tributary_length),
     }
 }
@@ -113,17 +133,24 @@ fn facing(model: &Model<Planar>, pair: &ContactPair, share: f64) -> f64 {
 fn mean_square_arm(nodes: &Nodes<Planar>) -> f64 {
     match nodes {
         Nodes::Fixed(nodes) if !nodes.is_empty() => {
-            let sum: f64 = nodes.iter().map(|n| n.position.length().powi(2)).sum();
-            sum / nodes.len() as f64
+            mean_square(nodes.iter().map(|node| node.position.length()))
         }
-        Nodes::Fixed(_) | Nodes::Rolling { .. } => 0.0,
+        Nodes::Rounds(rounds) if !rounds.is_empty() => {
+            mean_square(rounds.iter().map(|round| round.center.length()))
+        }
+        Nodes::Fixed(_) | Nodes::Rounds(_) | Nodes::Rolling { .. } => 0.0,
     }
+}
+
+fn mean_square(arms: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = arms.len() as f64;
+    arms.map(|arm| arm * arm).sum::<f64>() / count
 }
 
 /// The largest of these digits times a power of ten that is not above a number.
 fn round_down(value: f64) -> f64 {
     const DIGITS: [f64; 8] = [1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
-    let power = 10.0_f64.powf(value.log10().floor());
+    let power = math::pow(10.0, math::log10(value).floor());
     let digit = value / power;
     power * DIGITS.into_iter().rev().find(|kept| digit >= *kept).unwrap_or(1.0)
 }

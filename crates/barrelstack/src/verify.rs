@@ -239,7 +239,7 @@ fn noise(state: &mut u64) -> f64 {
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     z ^= z >> 31;
     // The upper 53 bits as a whole number below 2⁵³.
-    (z >> 11) as f64 / 2.0_f64.powi(52) - 1.0
+    (z >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
 /// One repeat against the run.
@@ -296,7 +296,7 @@ fn apart_at(base: &Run, other: &Run) -> Option<f64> {
                 a + (b - a) * share - mine.values[at]
             });
             // A number that is not finite is apart too.
-            let distance = x.hypot(z);
+            let distance = libm::hypot(x, z);
             if distance > limit || distance.is_nan() {
                 return Some(*time);
             }

@@ -2,18 +2,22 @@
 
 mod fate;
 mod recording;
+mod rest;
 mod straps;
 mod stress;
 
 use std::ops::ControlFlow;
 
+use barrelstack_dynamics::real::Real;
 use barrelstack_dynamics::{EnergyLedger, Model, Observer, Planar, Scratch, State};
 
 use crate::assemble::Assembly;
 use crate::ground::Ground;
+use crate::scenario::Scenario;
 
 pub use fate::{Fate, Fates, Loss, Thresholds};
 pub use recording::{Channel, Frames, JointForces, Recording};
+pub use rest::{Ending, Rest};
 pub use straps::{StrapFate, StrapFates};
 pub use stress::{BoundaryPoint, StressEnvelope, Stresses};
 
@@ -29,13 +33,68 @@ pub struct Watch<'a> {
     pub straps: StrapFates,
     ground: &'a Ground,
     assembly: &'a Assembly,
-    /// How long (s) to go on after a collapse; none to go on to the end.
-    after_collapse: Option<f64>,
+    end: End,
     progress: &'a mut dyn FnMut(f64) -> ControlFlow<()>,
     /// When progress is told next (s).
     next_progress: f64,
-    /// Whether the caller asked to stop.
-    pub interrupted: bool,
+    /// Why the run is over; none while it goes on, or to the end of its time.
+    pub ending: Option<Ending>,
+}
+
+/// What ends a run before its time is over.
+#[derive(Clone, Debug)]
+pub struct End<R: Real = f64> {
+    rest: Rest<R>,
+    /// How long (s) it goes on after a collapse; infinite to go on.
+    after_collapse: R,
+}
+
+impl End {
+    /// As a scenario says.
+    pub(crate) fn new(scenario: &Scenario, assembly: &Assembly, ground: &Ground) -> Self {
+        let run = &scenario.run;
+        let after = run.stop_after_collapse.map(|after| after * run.similitude.sqrt());
+        Self {
+            rest: Rest::new(scenario, assembly, ground),
+            after_collapse: after.unwrap_or(f64::INFINITY),
+        }
+    }
+}
+
+impl<R: Real> End<R> {
+    /// Where a run is over at an accepted state: because of its collapse, and by rest.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    pub(crate) fn observe(
+        &mut self,
+        state: &State<Planar<R>>,
+        fates: &Fates<R>,
+    ) -> (R::Mask, R::Mask) {
+        let rest = self.rest.observe(state);
+        ((fates.collapse() + self.after_collapse).le(state.time), rest)
+    }
+
+    /// All lanes as one case begins.
+    pub(crate) fn in_all(single: &End) -> Self {
+        Self { rest: Rest::in_all(&single.rest), after_collapse: R::splat(single.after_collapse) }
+    }
+
+    /// Puts a case into one lane.
+    pub(crate) fn put(&mut self, lane: usize, single: &End) {
+        self.rest.put(lane, &single.rest);
+        self.after_collapse = self.after_collapse.with_lane(lane, single.after_collapse);
+    }
+}
+
+impl End {
+    /// Why a run is over at an accepted state; rest goes first, since nothing is left to see then.
+    pub(crate) fn why(&mut self, state: &State<Planar>, fates: &Fates) -> Option<Ending> {
+        match self.observe(state, fates) {
+            (_, true) => Some(Ending::Rest),
+            (true, false) => Some(Ending::AfterCollapse),
+            (false, false) => None,
+        }
+    }
 }
 
 impl<'a> Watch<'a> {
@@ -48,7 +107,7 @@ impl<'a> Watch<'a> {
         scratch: &Scratch<Planar>,
         thresholds: Thresholds,
         rates: (f64, f64),
-        after_collapse: Option<f64>,
+        end: End,
         progress: &'a mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Self {
         Self {
@@ -58,19 +117,11 @@ impl<'a> Watch<'a> {
             straps: StrapFates::default(),
             ground,
             assembly,
-            after_collapse,
+            end,
             progress,
             next_progress: 0.0,
-            interrupted: false,
+            ending: None,
         }
-    }
-}
-
-/// Whether a run is over at a time (s), because the time after its collapse is.
-fn done(time: f64, after_collapse: Option<f64>, collapse: Option<f64>) -> ControlFlow<()> {
-    match (after_collapse, collapse) {
-        (Some(after), Some(collapse)) if time >= collapse + after => ControlFlow::Break(()),
-        _ => ControlFlow::Continue(()),
     }
 }
 
@@ -96,10 +147,11 @@ impl Observer<Planar> for Watch<'_> {
         if state.time >= self.next_progress {
             self.next_progress = state.time + PROGRESS;
             if (self.progress)(state.time).is_break() {
-                self.interrupted = true;
+                self.ending = Some(Ending::Interrupted);
                 return ControlFlow::Break(());
             }
         }
-        done(state.time, self.after_collapse, self.fates.collapse_time())
+        self.ending = self.end.why(state, &self.fates);
+        if self.ending.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }

@@ -1,11 +1,14 @@
 //! The `barrelstack` command: arguments, progress, printing, exit status.
 
+#![warn(clippy::disallowed_methods)]
+
 mod args;
 mod commands;
 mod figures;
 mod interrupt;
 mod printer;
 mod progress;
+mod remedy;
 mod rows;
 
 use std::process::ExitCode;

@@ -136,7 +136,11 @@ fn three_digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
-    #[expect(clippy::cast_possible_truncation, reason = "a small exponent")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::disallowed_methods,
+        reason = "a small exponent, of a number for the eye"
+    )]
     let exponent = value.abs().log10().floor() as i32;
     let decimals = usize::try_from((2 - exponent).max(0)).unwrap_or(0);
     if (-3..6).contains(&exponent) { format!("{value:.decimals$}") } else { format!("{value:.2e}") }

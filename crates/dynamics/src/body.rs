@@ -36,11 +36,56 @@ pub struct Node<S: Space> {
     pub tributary_length: S::Real,
 }
 
-/// The nodes of one piece of boundary.
+/// A round piece of a convex boundary: a corner, sharp or rounded, or an arc.
+///
+/// It touches a target with the one point of it that lies deepest, in the direction of the nearest
+/// point of the target, so contact is exact wherever it happens. A convex boundary is a chain of
+/// straight sides and round pieces, and two of them touch where a round piece of one meets a side or
+/// a round piece of the other: every contact belongs to one round piece, and is counted once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Round<S: Space> {
+    /// Center (m) in the body frame, from the center of mass.
+    pub center: S::Vector,
+    /// Radius (m); zero for a sharp corner.
+    pub radius: S::Real,
+    /// Unit vectors in the body frame that bound its outward normals: those `d` with `d · limit ≤ 0`
+    /// for both. Zero vectors bound nothing.
+    pub limits: [S::Vector; 2],
+    /// The same limits where the boundary goes on with an arc, none where it goes on straight.
+    /// Past a straight end a corner still bears against a side: two corners of a block carry it on a
+    /// floor, whichever is deeper.
+    pub arc_limits: [Option<S::Vector>; 2],
+    /// Whether normals on the very limit of an arc belong to this piece and not to its neighbor.
+    pub takes_limit: bool,
+    /// The straight sides beyond the ends of an arc, as unit normal and distance (m) from the center of
+    /// mass: a corner that is nearer to them is theirs to bear.
+    pub sides: [Option<(S::Vector, S::Real)>; 2],
+    /// Penetration (m) from which on the nearest point lies behind the body and no contact is meant:
+    /// an arc's center may lie far beyond the body whose boundary it is.
+    pub greatest_depth: S::Real,
+    /// Length of boundary (m) that a contact of it stands for.
+    pub tributary_length: S::Real,
+}
+
+/// A flat piece of boundary that carries nodes, as a plane in the body frame.
+///
+/// Where nodes and the exact test would both see a contact, the plane decides: against a round body
+/// whose center lies before it the nodes count, against one behind it the exact test.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Face<S: Space> {
+    /// A point of it (m), from the center of mass.
+    pub point: S::Vector,
+    /// Unit normal out of the body.
+    pub outward: S::Vector,
+}
+
+/// What of a boundary touches others.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Nodes<S: Space> {
-    /// Nodes fixed to the body.
+    /// Nodes fixed to the body, as in the paper.
     Fixed(Vec<Node<S>>),
+    /// The round pieces of a convex boundary.
+    Rounds(Vec<Round<S>>),
     /// The one node of a round boundary that lies deepest in the target: it travels along the
     /// boundary as the body rolls, so rolling is smooth.
     Rolling {
@@ -74,15 +119,24 @@ pub struct Body<S: Space> {
     pub surfaces: Vec<Placed<S>>,
     /// What touches.
     pub nodes: Vec<Nodes<S>>,
+    /// Flat pieces that carry nodes where others are tested exactly.
+    pub faces: Vec<Face<S>>,
 }
 
 impl<S: Space> Body<S> {
+    /// Whether it carries a surface that has no end.
+    pub fn is_unbounded(&self) -> bool {
+        self.surfaces.iter().any(|placed| placed.surface.reach().is_infinite())
+    }
+
     /// Radius (m) of a ball about the center of mass that holds all nodes and bounded surfaces.
     pub fn reach(&self) -> f64 {
         use crate::space::Linear;
         let length = |v: S::Vector| v.dot(v).sqrt().largest_lane();
         let nodes = self.nodes.iter().flat_map(|nodes| match nodes {
             Nodes::Fixed(nodes) => nodes.iter().map(|n| length(n.position)).collect::<Vec<_>>(),
+            // An arc may reach far past the body; the body's surface is what bounds it.
+            Nodes::Rounds(_) => Vec::new(),
             Nodes::Rolling { center, radius, .. } => {
                 vec![length(*center) + radius.largest_lane()]
             }

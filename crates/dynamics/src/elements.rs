@@ -9,7 +9,7 @@
 use crate::body::{Body, Motion, Nodes};
 use crate::contact::{Basis, Stick};
 use crate::lanes::Lanewise;
-use crate::model::{ContactPair, Model};
+use crate::model::{ContactPair, Counts, Model};
 use crate::real::{Mask, Real};
 use crate::shape::Surface;
 use crate::space::{Linear, Planar, Pose, Space, Twist};
@@ -169,7 +169,9 @@ impl<S: Space> Elements<S> {
         );
         let mut remembered = Remembered { old: &old, group: 0 };
         let mut origins = Vec::new();
-        for (index, pair) in model.pairs.iter().enumerate() {
+        let couples = self.couples_in_reach(model, poses);
+        for index in couples.into_iter().flat_map(|couple| model.couples[couple].pairs.clone()) {
+            let pair = &model.pairs[index];
             let first = self.nodes.len();
             S::Real::scope(
                 #[inline(always)]
@@ -189,6 +191,43 @@ impl<S: Space> Elements<S> {
             }
         }
         origins
+    }
+
+    /// The couples of bodies whose extents along the first axis come within their margins, in the order
+    /// of the model: found by a sweep, so that a row of bodies costs by its length and not by its square.
+    fn couples_in_reach(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<usize> {
+        if self.exhaustive {
+            return (0..model.couples.len()).collect();
+        }
+        // Lanes may be carried by different grounds: extents are those relative to each one's own.
+        let ground = model.bodies.iter().position(|body| body.motion == Motion::Prescribed);
+        let carried = ground.map_or_else(S::Vector::default, |ground| poses[ground].position);
+        let mut extents: Vec<(f64, f64, usize)> = model
+            .bodies
+            .iter()
+            .enumerate()
+            .map(|(i, body)| {
+                let reach = if body.is_unbounded() { f64::INFINITY } else { model.reach[i] };
+                let half = S::Real::splat(reach + self.allowances[i]);
+                let place = S::first_coordinate(poses[i].position - carried);
+                let least = -(half - place).largest_lane();
+                (least, (place + half).largest_lane(), i)
+            })
+            .collect();
+        extents.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
+        let mut couples = Vec::new();
+        let mut open: Vec<(f64, usize)> = Vec::new();
+        for (from, to, body) in extents {
+            open.retain(|(end, _)| from <= *end);
+            for (_, other) in &open {
+                let bodies = [body.min(*other), body.max(*other)];
+                let found = model.couples.binary_search_by_key(&bodies, |couple| couple.bodies);
+                couples.extend(found.ok());
+            }
+            open.push((to, body));
+        }
+        couples.sort_unstable();
+        couples
     }
 
     /// Whether a ball (m) about a point comes within a margin (m) of a surface in any lane.
@@ -212,6 +251,16 @@ impl<S: Space> Elements<S> {
         if !self.exhaustive && !(!far).any() {
             return;
         }
+        let undecided = frame.before(model, pair).is_none_or(|before| {
+            let margin = S::Real::splat(margin);
+            match pair.counts {
+                Counts::BehindFace(_) | Counts::BehindFaceOfTarget(_) => before.lt(margin).any(),
+                Counts::Everywhere | Counts::BeforeFace(_) => (-margin).lt(before).any(),
+            }
+        });
+        if !self.exhaustive && !undecided {
+            return;
+        }
         let basis = model.interfaces[pair.interface].basis;
         let weight = |tributary_length| match basis {
             Basis::Node => S::Real::splat(1.0),
@@ -229,6 +278,15 @@ impl<S: Space> Elements<S> {
                         self.nodes.push(u32::try_from(index).unwrap_or(u32::MAX));
                         self.positions.push(node.position);
                         self.weights.push(weight(node.tributary_length));
+                    }
+                }
+            }
+            Nodes::Rounds(rounds) => {
+                for (index, round) in rounds.iter().enumerate() {
+                    if self.near(surface, frame.to_surface(round.center), round.radius, margin) {
+                        self.nodes.push(u32::try_from(index).unwrap_or(u32::MAX));
+                        self.positions.push(round.center);
+                        self.weights.push(weight(round.tributary_length));
                     }
                 }
             }
@@ -320,6 +378,8 @@ pub(crate) struct PairFrame<S: Space> {
     pub(crate) contactor: S::Vector,
     /// Center of mass of the target (m) in the surface's frame.
     pub(crate) target: S::Vector,
+    /// From the frame of the target's body to that of its surface.
+    placed: S::Rotation,
 }
 
 impl<S: Space> PairFrame<S> {
@@ -340,7 +400,31 @@ impl<S: Space> PairFrame<S> {
             relative: S::relative(rotation, rotations[pair.contactor]),
             contactor: S::unrotate(rotation, apart),
             target: -S::unrotate(placed.rotation, placed.offset),
+            placed: placed.rotation,
         }
+    }
+
+    /// How far (m) the center of mass of the other body lies before the face that decides where the
+    /// contacts of a pair count; none where they count everywhere.
+    #[inline(always)]
+    pub(crate) fn before(&self, model: &Model<S>, pair: &ContactPair) -> Option<S::Real> {
+        let apart = self.target - self.contactor;
+        let (face, other) = match pair.counts {
+            Counts::Everywhere => return None,
+            Counts::BeforeFace(face) | Counts::BehindFace(face) => {
+                (&model.bodies[pair.contactor].faces[face], S::unrotate(self.relative, apart))
+            }
+            Counts::BehindFaceOfTarget(face) => {
+                (&model.bodies[pair.target].faces[face], S::rotate(self.placed, -apart))
+            }
+        };
+        Some((other - face.point).dot(face.outward))
+    }
+
+    /// A direction of the surface's frame, in the contactor's body frame.
+    #[inline(always)]
+    pub(crate) fn to_contactor(&self, direction: S::Vector) -> S::Vector {
+        S::unrotate(self.relative, direction)
     }
 
     /// A point of the contactor's body frame, in the surface's frame.

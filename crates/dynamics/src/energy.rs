@@ -233,7 +233,7 @@ mod tests {
     use crate::body::{Body, Nodes, Placed};
     use crate::contact::{Basis, FrictionLaw, Interface, NormalLaw};
     use crate::integrate::{Integrator, Method, Still};
-    use crate::model::ContactPair;
+    use crate::model::{ContactPair, Counts};
     use crate::shape::{HalfPlane, Shape};
     use crate::space::{Planar, Rotation2, Twist, Vec2};
 
@@ -250,6 +250,7 @@ mod tests {
             twist: Twist::<Planar>::default(),
             surfaces,
             nodes,
+            faces: Vec::new(),
         };
         let floor = Placed {
             surface: Shape::HalfPlane(HalfPlane),
@@ -265,10 +266,19 @@ mod tests {
         let interface = Interface {
             name: "disc-floor".to_owned(),
             normal: NormalLaw::SpeedGap { stiffness: 1e6, damping: 2e3 },
+            stop: None,
+            rolling: None,
             friction: FrictionLaw::Frictionless,
             basis: Basis::Node,
         };
-        let pair = ContactPair { contactor: 1, nodes: 0, target: 0, surface: 0, interface: 0 };
+        let pair = ContactPair {
+            contactor: 1,
+            nodes: 0,
+            target: 0,
+            surface: 0,
+            interface: 0,
+            counts: Counts::Everywhere,
+        };
         let gravity = Vec2::new(0.0, -9.81);
         let model = Model::new(bodies, vec![interface], vec![pair], gravity).unwrap();
         let mut state = State::initial(&model);

@@ -25,6 +25,8 @@
 //! - Slip is that of the contactor relative to the target; on a level floor, positive to the right.
 //! - A friction force is given along the slip; the contactor feels its opposite.
 
+// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![allow(
     clippy::inline_always,
     reason = "bundles of lanes are fast only where their code is inlined into the scope of a vector unit"
@@ -47,12 +49,12 @@ pub mod space;
 pub mod state;
 pub mod strap;
 
-pub use body::{Body, BodyId, Motion, Node, Nodes, Placed};
+pub use body::{Body, BodyId, Face, Motion, Node, Nodes, Placed, Round};
 pub use contact::{Basis, FrictionLaw, Interface, NormalLaw};
 pub use energy::{EnergyLedger, EnergySummary};
 pub use forces::{Contact, Scratch, evaluate};
 pub use integrate::{Drive, Method, Still};
-pub use model::{ContactPair, InterfaceId, Model, ModelError};
+pub use model::{ContactPair, Counts, InterfaceId, Model, ModelError};
 pub use settle::{SettleError, Settled, settle};
 pub use shape::Shape;
 pub use simulate::{Finish, Observer, RunError, Simulation, simulate};

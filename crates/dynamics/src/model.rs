@@ -1,9 +1,10 @@
 //! What does not change during a run: bodies, interfaces, and which boundaries may meet.
 
+use std::ops::Range;
+
 use crate::body::{Body, BodyId, Motion, Nodes};
 use crate::contact::Interface;
 use crate::real::Real;
-use crate::shape::Surface;
 use crate::space::Space;
 use crate::strap::Strap;
 
@@ -23,6 +24,32 @@ pub struct ContactPair {
     pub surface: usize,
     /// The law between them.
     pub interface: InterfaceId,
+    /// Where its contacts count.
+    pub counts: Counts,
+}
+
+/// Where the contacts of a pair count: so that none is counted twice where a face carries nodes for one
+/// round body and is tested exactly by another pair.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Counts {
+    /// Everywhere.
+    #[default]
+    Everywhere,
+    /// While the center of mass of the target lies before this face of the contactor.
+    BeforeFace(usize),
+    /// While the center of mass of the target does not lie before this face of the contactor.
+    BehindFace(usize),
+    /// While the center of mass of the contactor does not lie before this face of the target.
+    BehindFaceOfTarget(usize),
+}
+
+/// The pairs of two bodies, one after the other in the order of the model.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Couple {
+    /// The two bodies, the lower id first.
+    pub(crate) bodies: [BodyId; 2],
+    /// Their pairs.
+    pub(crate) pairs: Range<usize>,
 }
 
 /// Bodies, interfaces and pairs; constant during a run and shared between threads.
@@ -31,6 +58,8 @@ pub struct Model<S: Space> {
     pub(crate) bodies: Vec<Body<S>>,
     pub(crate) interfaces: Vec<Interface<S>>,
     pub(crate) pairs: Vec<ContactPair>,
+    /// The pairs, two bodies at a time.
+    pub(crate) couples: Vec<Couple>,
     pub(crate) straps: Vec<Strap<S>>,
     pub(crate) gravity: S::Vector,
     pub(crate) reach: Vec<f64>,
@@ -92,6 +121,11 @@ pub enum ModelError {
     },
 }
 
+/// The two bodies of a pair, the lower id first.
+fn between(pair: &ContactPair) -> [BodyId; 2] {
+    [pair.contactor.min(pair.target), pair.contactor.max(pair.target)]
+}
+
 impl<S: Space> Model<S> {
     /// Checks bodies, interfaces and pairs, and puts the pairs in their lasting order.
     ///
@@ -121,11 +155,11 @@ impl<S: Space> Model<S> {
                     return Err(ModelError::Inertia { name: body.name.clone(), inertia });
                 }
             }
-            if body.surfaces.iter().any(|placed| placed.surface.reach().is_infinite()) {
+            if body.is_unbounded() {
                 return Err(ModelError::Unbounded { name: body.name.clone() });
             }
         }
-        pairs.sort_unstable();
+        pairs.sort_unstable_by_key(|pair| (between(pair), *pair));
         pairs.dedup();
         for (pair, p) in pairs.iter().enumerate() {
             let check = |what, index, count| {
@@ -140,9 +174,25 @@ impl<S: Space> Model<S> {
             check("node set", p.nodes, bodies[p.contactor].nodes.len())?;
             check("surface", p.surface, bodies[p.target].surfaces.len())?;
             check("interface", p.interface, interfaces.len())?;
+            match p.counts {
+                Counts::Everywhere => {}
+                Counts::BeforeFace(face) | Counts::BehindFace(face) => {
+                    check("face", face, bodies[p.contactor].faces.len())?;
+                }
+                Counts::BehindFaceOfTarget(face) => {
+                    check("face", face, bodies[p.target].faces.len())?;
+                }
+            }
+        }
+        let mut couples: Vec<Couple> = Vec::new();
+        for (index, pair) in pairs.iter().enumerate() {
+            match couples.last_mut() {
+                Some(couple) if couple.bodies == between(pair) => couple.pairs.end = index + 1,
+                _ => couples.push(Couple { bodies: between(pair), pairs: index..index + 1 }),
+            }
         }
         let reach = bodies.iter().map(Body::reach).collect();
-        Ok(Self { bodies, interfaces, pairs, straps: Vec::new(), gravity, reach })
+        Ok(Self { bodies, interfaces, pairs, couples, straps: Vec::new(), gravity, reach })
     }
 
     /// Puts straps between the bodies, in place of those before, in the order in which their forces

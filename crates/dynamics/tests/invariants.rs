@@ -358,6 +358,7 @@ fn four_times(body: &Body<Planar>) -> Body<Planar> {
                     node.tributary_length *= 4.0;
                 }
             }
+            Nodes::Rounds(_) => unreachable!("not in these scenes"),
             Nodes::Rolling { center, radius, tributary_length } => {
                 *center = *center * 4.0;
                 *radius *= 4.0;
@@ -385,6 +386,10 @@ fn stiffer(interface: &Interface<Planar>) -> Interface<Planar> {
             *dissipation *= 0.5;
         }
         NormalLaw::Hertz { stiffness } => *stiffness *= 8.0,
+        NormalLaw::Rebound { stiffness, speed, .. } => {
+            *stiffness *= 8.0;
+            *speed *= 2.0;
+        }
     }
     match &mut larger.friction {
         FrictionLaw::Frictionless => {}

@@ -43,17 +43,25 @@ pub(crate) fn deviance(stripes: &[Stripe], chance: impl Fn(usize) -> f64) -> f64
 /// Cases must be independent: counts in which the same records return at every level scatter less
 /// than binomially, and the test is then too lenient.
 pub fn goodness(stripes: &[Stripe], found: &Fit) -> Goodness {
-    let chance = |s: &Stripe| found.curve.probability(s.intensity);
     let mut sorted = stripes.to_vec();
     sorted.sort_by(|a, b| a.intensity.total_cmp(&b.intensity));
+    goodness_in_bins(&sorted.iter().map(|stripe| vec![*stripe]).collect::<Vec<_>>(), found)
+}
+
+/// The same over bins of cases of different intensities, in ascending order: what a bin expects is the sum
+/// over its cases, since a curve bends within it.
+pub fn goodness_in_bins(bins: &[Vec<Stripe>], found: &Fit) -> Goodness {
+    let chance = |s: &Stripe| found.curve.probability(s.intensity);
     // Cases, failures, expected failures, variance.
     let mut groups: Vec<[f64; 4]> = vec![];
     let expects_both = |g: &[f64; 4]| g[2] >= 1.0 && g[0] - g[2] >= 1.0;
     let mut open = [0.0; 4];
-    for stripe in &sorted {
-        let (n, p) = (f64::from(stripe.cases), chance(stripe));
-        let part = [n, f64::from(stripe.failures), n * p, n * p * (1.0 - p)];
-        open.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+    for bin in bins {
+        for stripe in bin {
+            let (n, p) = (f64::from(stripe.cases), chance(stripe));
+            let part = [n, f64::from(stripe.failures), n * p, n * p * (1.0 - p)];
+            open.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+        }
         if expects_both(&open) {
             groups.push(open);
             open = [0.0; 4];
@@ -67,8 +75,9 @@ pub fn goodness(stripes: &[Stripe], found: &Fit) -> Goodness {
     }
     let pearson = groups.iter().map(|g| (g[1] - g[2]) * (g[1] - g[2]) / g[3]).sum();
     let freedom = groups.len().saturating_sub(found.parameters);
+    let all: Vec<Stripe> = bins.iter().flatten().copied().collect();
     Goodness {
-        deviance: deviance(&sorted, |i| chance(&sorted[i])),
+        deviance: deviance(&all, |i| chance(&all[i])),
         pearson,
         groups: groups.len(),
         freedom,

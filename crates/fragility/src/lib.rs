@@ -41,6 +41,9 @@
 //! Resampling takes its uniform numbers from the caller (`FnMut() -> f64`), so that the generator,
 //! the seed and the bits are the caller's.
 
+// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod bootstrap;
 mod curve;
 mod evidence;
@@ -51,6 +54,7 @@ mod ida;
 mod likelihood;
 mod math;
 mod measures;
+mod modes;
 mod monotone;
 mod profile;
 mod proportion;
@@ -59,13 +63,16 @@ pub use bootstrap::{Replicates, bootstrap, simulate};
 pub use curve::Lognormal;
 pub use evidence::{Capacity, Evidence, Stripe, evidence, stripes};
 pub use fit::{Dispersion, Fit, FitError, fit, moments};
-pub use goodness::{Goodness, Normality, goodness, goodness_by_simulation, normality};
+pub use goodness::{
+    Goodness, Normality, goodness, goodness_by_simulation, goodness_in_bins, normality,
+};
 pub use hazard::{Contribution, Hazard, HazardError, Rate, chance_within};
 pub use ida::{Ida, Resurrection};
 pub use math::{
     chi_square_above, normal, normal_density, normal_quantile, student_beyond, student_quantile,
 };
 pub use measures::{Demanded, Measured, demand_against, failure_against};
+pub use modes::Shares;
 pub use monotone::{Fall, Monotony, Returned, monotony, returns};
 pub use profile::{profile_band, profile_median};
 pub use proportion::{Interval, clopper_pearson, wilson};

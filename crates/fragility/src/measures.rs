@@ -123,7 +123,7 @@ pub fn demand_against(cases: &[(f64, f64)], second: Option<&[f64]>) -> Option<De
         let other = second.iter().all(|x| sound(*x)).then(|| second.iter().map(|x| ln(*x)));
         let other = residuals(&x, &other?.collect::<Vec<_>>())?;
         let line = Line::through(&other, &rest)?;
-        let left: f64 = other.iter().zip(&rest).map(|(v, r)| (r - line.at(*v)).powi(2)).sum();
+        let left: f64 = other.iter().zip(&rest).map(|(v, r)| r - line.at(*v)).map(|d| d * d).sum();
         let freedom = cases.len().checked_sub(3).filter(|freedom| *freedom > 0)?;
         let error = (left / freedom as f64 / other.len() as f64).sqrt();
         Some(if error > 0.0 { student_beyond(line.slope / error, freedom) } else { 0.0 })

@@ -44,6 +44,8 @@
 //! - Making: [`Pulse`], [`CloughPenzien`], [`BooreSource`], [`NearFault`], all from stated seeds of
 //!   [`Random`].
 
+// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![allow(
     clippy::neg_cmp_op_on_partial_ord,
     reason = "`!(x > 0.0)` refuses NaN with everything else that is not above zero"

@@ -6,9 +6,9 @@ use barrelstack_dynamics::shape::{BoundaryNode, Circle, HalfPlane, Polygon};
 use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::space::Rotation2;
 use barrelstack_dynamics::{
-    Basis, Body, ContactPair, Drive, EnergyLedger, FrictionLaw, Interface, Method, Model, Motion,
-    Node, Nodes, NormalLaw, Observer, Placed, Planar, Pose, Scratch, Shape, Simulation, State,
-    Twist, Vec2, math, settle, simulate,
+    Basis, Body, ContactPair, Counts, Drive, EnergyLedger, FrictionLaw, Interface, Method, Model,
+    Motion, Node, Nodes, NormalLaw, Observer, Placed, Planar, Pose, Scratch, Shape, Simulation,
+    State, Twist, Vec2, math, settle, simulate,
 };
 
 use crate::{Failure, GRAVITY};
@@ -39,6 +39,7 @@ pub fn ground_of(surfaces: Vec<Placed<Planar>>) -> Body<Planar> {
         twist: Twist::default(),
         surfaces,
         nodes: vec![],
+        faces: Vec::new(),
     }
 }
 
@@ -70,6 +71,7 @@ pub fn disc(
         twist: Twist::default(),
         surfaces: vec![centered(Shape::Circle(Circle { radius }))],
         nodes: vec![Nodes::Rolling { center: Vec2::default(), radius, tributary_length: 1.0 }],
+        faces: Vec::new(),
     }
 }
 
@@ -101,6 +103,7 @@ pub fn block(
         pose,
         twist: Twist::default(),
         nodes: vec![fixed(&rectangle.corner_nodes())],
+        faces: Vec::new(),
         surfaces: vec![centered(Shape::Polygon(rectangle))],
     }
 }
@@ -119,7 +122,14 @@ pub fn points(points: &[Vec2]) -> Nodes<Planar> {
 
 /// An interface with constants per node.
 pub fn interface(normal: NormalLaw, friction: FrictionLaw) -> Interface<Planar> {
-    Interface { name: "contact".into(), normal, friction, basis: Basis::Node }
+    Interface {
+        name: "contact".into(),
+        normal,
+        stop: None,
+        rolling: None,
+        friction,
+        basis: Basis::Node,
+    }
 }
 
 /// Coulomb friction with one coefficient.
@@ -148,7 +158,14 @@ pub fn all_pairs(bodies: &[Body<Planar>]) -> Vec<ContactPair> {
                 && !bodies[target].surfaces.is_empty()
                 && !meets_twice
             {
-                pairs.push(ContactPair { contactor, nodes: 0, target, surface: 0, interface: 0 });
+                pairs.push(ContactPair {
+                    contactor,
+                    nodes: 0,
+                    target,
+                    surface: 0,
+                    interface: 0,
+                    counts: Counts::Everywhere,
+                });
             }
         }
     }

@@ -3,7 +3,8 @@
 use barrelstack_dynamics::shape::{BarrelProfile, Circle, Cradle, HalfPlane, Polygon};
 use barrelstack_dynamics::space::{Rotation2, Space};
 use barrelstack_dynamics::{
-    Body, BodyId, ContactPair, Model, Motion, Node, Nodes, Placed, Planar, Pose, Shape, Twist, Vec2,
+    Body, BodyId, ContactPair, Counts, Model, Motion, Node, Nodes, Placed, Planar, Pose, Shape,
+    Twist, Vec2,
 };
 
 use super::interfaces::interface;
@@ -43,7 +44,7 @@ pub(super) fn assemble(
         }
         join(&bodies, &kinds, [contactor_kind.as_str(), target_kind.as_str()], index, &mut pairs);
         let name = format!("{contactor_kind}-{target_kind}");
-        interfaces.push(interface(&name, &law.law, scale));
+        interfaces.push(interface(&name, &law.law, 1.0, scale));
     }
     let model = Model::new(bodies, interfaces, pairs, Vec2::new(0.0, -gravity))?;
     Ok(Assembly {
@@ -81,7 +82,14 @@ fn join(
             }
             for nodes in 0..bodies[contactor].nodes.len() {
                 for surface in 0..bodies[target].surfaces.len() {
-                    pairs.push(ContactPair { contactor, nodes, target, surface, interface });
+                    pairs.push(ContactPair {
+                        contactor,
+                        nodes,
+                        target,
+                        surface,
+                        interface,
+                        counts: Counts::Everywhere,
+                    });
                 }
             }
         }
@@ -103,6 +111,7 @@ fn ground(scene: &FreeScene) -> Body<Planar> {
             rotation: Rotation2::identity(),
         }],
         nodes: Vec::new(),
+        faces: Vec::new(),
     }
 }
 
@@ -150,6 +159,7 @@ fn free_body(body: &FreeBody, scale: Similitude) -> Result<(Body<Planar>, Part),
         },
         surfaces: vec![Placed { surface: shape, offset: -center, rotation: Rotation2::identity() }],
         nodes: vec![nodes],
+        faces: Vec::new(),
     };
     Ok((body, part))
 }

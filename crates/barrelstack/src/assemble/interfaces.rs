@@ -9,19 +9,45 @@ use crate::scenario;
 /// Penetration (m) at which the laws that stiffen with penetration lend their stiffness to the stick.
 const STICK_REFERENCE: f64 = 1e-3;
 
+/// The stick of a rebound is damped as this share of the critical damping of a mass (kg) on it.
+const STICK_DAMPING_RATIO: f64 = 0.1;
+const STICK_MASS: f64 = 50.0;
+
 /// An interface of the model.
+///
+/// `elements` is how many contact elements stand one behind the other where the plane shows one.
 pub(super) fn interface(
     name: &str,
     law: &scenario::Interface,
+    elements: f64,
     scale: Similitude,
 ) -> Interface<Planar> {
     let basis = match law.basis {
         scenario::Basis::Node => Basis::Node,
         scenario::Basis::Length => Basis::Length,
     };
-    let normal = normal(&law.normal, basis, scale);
-    let friction = friction(&law.friction, &normal, scale);
-    Interface { name: name.to_owned(), normal, friction, basis }
+    let normal = together(normal(&law.normal, basis, scale), elements);
+    let friction = friction(&law.friction, &normal, basis == Basis::Length, scale);
+    Interface { name: name.to_owned(), normal, stop: None, rolling: None, friction, basis }
+}
+
+/// The law of several elements that share one penetration.
+fn together(law: NormalLaw, elements: f64) -> NormalLaw {
+    match law {
+        NormalLaw::SpeedGap { stiffness, damping } => {
+            NormalLaw::SpeedGap { stiffness: elements * stiffness, damping: elements * damping }
+        }
+        NormalLaw::KelvinVoigt { stiffness, damping } => {
+            NormalLaw::KelvinVoigt { stiffness: elements * stiffness, damping: elements * damping }
+        }
+        NormalLaw::HuntCrossley { stiffness, dissipation, exponent } => {
+            NormalLaw::HuntCrossley { stiffness: elements * stiffness, dissipation, exponent }
+        }
+        NormalLaw::Rebound { stiffness, restitution, speed } => {
+            NormalLaw::Rebound { stiffness: elements * stiffness, restitution, speed }
+        }
+        NormalLaw::Hertz { stiffness } => NormalLaw::Hertz { stiffness: elements * stiffness },
+    }
 }
 
 fn normal(law: &scenario::NormalLaw, basis: Basis, scale: Similitude) -> NormalLaw {
@@ -54,13 +80,23 @@ fn normal(law: &scenario::NormalLaw, basis: Basis, scale: Similitude) -> NormalL
                 exponent: if *exponent == 1.0 { Exponent::Linear } else { Exponent::Hertzian },
             }
         }
+        scenario::NormalLaw::Rebound { stiffness, restitution, speed } => NormalLaw::Rebound {
+            stiffness: stiff(*stiffness, 1.5),
+            restitution: *restitution,
+            speed: speed * scale.time(),
+        },
         scenario::NormalLaw::Hertz { stiffness } => {
             NormalLaw::Hertz { stiffness: stiff(*stiffness, 1.5) }
         }
     }
 }
 
-fn friction(law: &scenario::Friction, normal: &NormalLaw, scale: Similitude) -> FrictionLaw {
+fn friction(
+    law: &scenario::Friction,
+    normal: &NormalLaw,
+    per_length: bool,
+    scale: Similitude,
+) -> FrictionLaw {
     match *law {
         scenario::Friction::None => FrictionLaw::Frictionless,
         scenario::Friction::Coulomb {
@@ -70,12 +106,24 @@ fn friction(law: &scenario::Friction, normal: &NormalLaw, scale: Similitude) -> 
             tangential_damping_ratio,
         } => {
             let reference = STICK_REFERENCE * scale.length;
+            let stiffness = normal.tangent_stiffness(reference);
+            let damping = match normal {
+                // Its damping is not one of a rate alone.
+                NormalLaw::Rebound { .. } => {
+                    let mass =
+                        STICK_MASS * scale.mass() / if per_length { scale.length } else { 1.0 };
+                    restitution::damping(stiffness, STICK_DAMPING_RATIO, mass)
+                }
+                NormalLaw::SpeedGap { .. }
+                | NormalLaw::KelvinVoigt { .. }
+                | NormalLaw::HuntCrossley { .. }
+                | NormalLaw::Hertz { .. } => normal.tangent_damping(reference),
+            };
             FrictionLaw::Coulomb {
                 static_coefficient,
                 kinetic_coefficient: coefficient,
-                tangential_stiffness: tangential_stiffness_ratio
-                    * normal.tangent_stiffness(reference),
-                tangential_damping: tangential_damping_ratio * normal.tangent_damping(reference),
+                tangential_stiffness: tangential_stiffness_ratio * stiffness,
+                tangential_damping: tangential_damping_ratio * damping,
             }
         }
         scenario::Friction::Regularized { coefficient, velocity } => {

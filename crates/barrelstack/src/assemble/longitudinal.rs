@@ -2,15 +2,20 @@
 //!
 //! The model is a slice one barrel wide: a rack that carries several barrels side by side lends each
 //! of them its share of the mass.
-//! A rail is a square tube; the nodes of its upper side carry the barrel above, those of its lower
-//! side lie on the barrel below or on the ground.
+//! A rail is a tube whose upper side carries the barrel above and whose lower side lies on the barrel below
+//! or on the ground: with nodes, as in the paper, or exactly, with one contact element where they touch.
 
 use barrelstack_dynamics::shape::{BarrelProfile, Polygon};
 use barrelstack_dynamics::{BodyId, Shape, Vec2};
 
-use super::builder::{Builder, Draft, DraftNodes};
-use super::{AssembleError, PartKind, outline_of};
-use crate::scenario::{Rack, RackKind, StackBody, View};
+use super::builder::{Builder, Draft};
+use super::solid::{Seat, Solid, row};
+use super::transverse::TUBE_CORNER;
+use super::{AssembleError, PartKind};
+use crate::scenario::{Rack, RackKind, SeatContact, StackBody, View};
+
+/// Radius (m) of the round of a barrel's chime: an assumption.
+const CHIME_RADIUS: f64 = 0.01;
 
 /// Builds all levels; returns the height of the stack and the reach of a rack on its barrels (m).
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
@@ -24,6 +29,7 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
         ));
     }
     let profile = BarrelProfile::new(barrel.length, barrel.head_diameter, barrel.bilge_diameter)
+        .and_then(|sharp| sharp.rounded(CHIME_RADIUS))
         .ok_or_else(|| {
             AssembleError::Stack(format!(
                 "a barrel in longitudinal section needs 0 < head_diameter < bilge_diameter, found \
@@ -38,8 +44,7 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
             rack.rail_half_spacing, barrel.length
         )));
     }
-    // Rails are level, staves are not: a rail touches with its inner edge, where the barrel is thickest.
-    let seat = profile.radius_at(rack.rail_half_spacing - 0.5 * rack.rail_width);
+    let seat = seat_height(&profile, rack);
     let level_pitch = rack.clearance + 2.0 * seat;
     let pitch = barrel.length + spec.gap;
     let racks = spec.racks_per_level();
@@ -88,27 +93,26 @@ fn add_rack(
     }
     let mass = mass / f64::from(rack.barrels);
     let half_width = places.last().copied().unwrap_or(0.0) + rack.rail_half_spacing;
-    let half_height = 0.5 * rack.clearance;
     let name = if spec.racks_per_level() == 1 {
         format!("R{level}")
     } else {
         format!("R{level}.{column}")
     };
-    let tube = Polygon::rectangle(rack.rail_width, rack.clearance, 0.0).map_err(|problem| {
-        AssembleError::Shape { body: name.clone(), problem: problem.to_string() }
-    })?;
-    let rails: Vec<f64> = places
-        .iter()
-        .flat_map(|place| [place - rack.rail_half_spacing, place + rack.rail_half_spacing])
-        .collect();
-    let surfaces: Vec<(Shape, Vec2)> =
-        rails.iter().map(|x| (Shape::Polygon(tube.clone()), Vec2::new(*x, 0.0))).collect();
-    let mut outlines: Vec<super::Outline> =
-        surfaces.iter().map(|(shape, at)| outline_of(shape, *at)).collect();
-    // The bar that joins the rails, for the eye.
-    outlines.push(super::Outline {
-        points: vec![Vec2::new(-half_width, 0.0), Vec2::new(half_width, 0.0)],
-        closed: false,
+    let tube = Polygon::rectangle(rack.rail_width, rack.clearance, corner_of(rack)).map_err(
+        |problem| AssembleError::Shape { body: name.clone(), problem: problem.to_string() },
+    )?;
+    let rail = |(barrel, x): (usize, f64)| {
+        let at = Vec2::new(x, 0.5 * rack.clearance);
+        let mut rail = Solid::exact(Shape::Polygon(tube.clone()), at, Seat::Along(barrel));
+        if rack.contact == SeatContact::Nodes {
+            let half = 0.5 * rack.rail_width - corner_of(rack);
+            rail.below = row(rack.node_spacing, x, half, 0.0);
+            rail.above = row(rack.node_spacing, x, half, rack.clearance);
+        }
+        rail
+    };
+    let rails = places.iter().enumerate().flat_map(|(barrel, place)| {
+        [-1.0, 1.0].map(|side| (barrel, place + side * rack.rail_half_spacing))
     });
     let rack_id = builder.add(Draft {
         name,
@@ -116,14 +120,11 @@ fn add_rack(
         level,
         column,
         mass,
-        // The rails carry the mass, as two lines of it, each a rectangle of tube.
-        inertia: mass
-            * (half_width.powi(2) + (rack.rail_width.powi(2) + rack.clearance.powi(2)) / 12.0),
-        position: Vec2::new(underside.x + offset, underside.z + half_height),
+        inertia: None,
+        position: Vec2::new(underside.x + offset, underside.z),
         size: half_width,
-        surfaces,
-        nodes: vec![DraftNodes::Fixed(rail_nodes(rack, &rails, half_height))],
-        outlines,
+        solids: rails.map(rail).collect(),
+        tributary: rack.node_spacing,
         carrier: None,
         supports,
     });
@@ -138,26 +139,20 @@ fn add_rack(
             offset_x += change.offset_x;
         }
         let shape = Shape::BarrelProfile(*profile);
-        let nodes = shape
-            .nodes(rack.node_spacing.max(0.02))
-            .into_iter()
-            .map(|node| (node.position, node.tributary_length))
-            .collect();
         barrels.push(builder.add(Draft {
             name: format!("B{level}.{barrel_column}"),
             kind: PartKind::Barrel,
             level,
             column: barrel_column,
             mass: barrel.mass,
-            inertia: barrel.inertia(View::Longitudinal),
+            inertia: Some(barrel.inertia(View::Longitudinal)),
             position: Vec2::new(
                 underside.x + offset + place + offset_x,
                 underside.z + rack.clearance + seat,
             ),
             size: profile.bilge_radius,
-            outlines: vec![outline_of(&shape, Vec2::default())],
-            surfaces: vec![(shape, Vec2::default())],
-            nodes: vec![DraftNodes::Fixed(nodes)],
+            solids: vec![Solid::exact(shape, Vec2::default(), Seat::None)],
+            tributary: rack.node_spacing,
             carrier: Some(rack_id),
             supports: Vec::new(),
         }));
@@ -165,25 +160,21 @@ fn add_rack(
     Ok(barrels)
 }
 
-/// Nodes along the upper and the lower side of every rail, from the rack's center of mass.
-fn rail_nodes(rack: &Rack, rails: &[f64], half_height: f64) -> Vec<(Vec2, f64)> {
-    let parts = (rack.rail_width / rack.node_spacing - 1e-9).ceil().max(1.0);
-    let step = rack.rail_width / parts;
-    let mut nodes = Vec::new();
-    for rail in rails {
-        for side in [-1.0, 1.0] {
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "a small count"
-            )]
-            for i in 0..=parts as u32 {
-                let edge = i == 0 || f64::from(i) >= parts;
-                let x = rail - 0.5 * rack.rail_width + f64::from(i) * step;
-                nodes
-                    .push((Vec2::new(x, side * half_height), if edge { 0.5 * step } else { step }));
-            }
-        }
+/// Radius (m) of the corners of a rail; nodes stand for sharp ones.
+fn corner_of(rack: &Rack) -> f64 {
+    match rack.contact {
+        SeatContact::Nodes => 0.0,
+        SeatContact::Element | SeatContact::Rails => TUBE_CORNER.min(0.25 * rack.rail_width),
     }
-    nodes
+}
+
+/// Height (m) of a barrel's axis above the level of the rails that carry it: staves slope, so a rail
+/// touches with the round of its inner corner.
+fn seat_height(profile: &BarrelProfile, rack: &Rack) -> f64 {
+    let corner = corner_of(rack);
+    let across = rack.rail_half_spacing - 0.5 * rack.rail_width + corner;
+    let apart = profile.stave_radius + corner;
+    (apart * apart - across * across).sqrt()
+        - corner
+        - (profile.stave_radius - profile.bilge_radius)
 }

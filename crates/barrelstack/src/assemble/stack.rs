@@ -1,11 +1,16 @@
 //! A stack in one of its two views, with its laws of contact.
 
+use barrelstack_dynamics::contact::Stop;
 use barrelstack_dynamics::{Interface, Model, Planar, Vec2};
 
-use super::builder::{BARREL_BARREL, BARREL_GROUND, BARREL_RACK, Builder, RACK_GROUND, RACK_RACK};
+use super::builder::Builder;
 use super::interfaces::interface;
-use super::{AssembleError, Assembly, Similitude, longitudinal, straps, transverse};
-use crate::scenario::{StackInterfaces, StackSpec, View};
+use super::{AssembleError, Assembly, Similitude, longitudinal, pairs, straps, transverse};
+use crate::scenario::{self, StackSpec, View};
+
+/// Lever (m) of the resistance of barrels on hoops against rolling on floors, racks and each other: an
+/// assumption.
+const ROLLING_LEVER: f64 = 0.01;
 
 /// Builds a stack in its view.
 pub(super) fn assemble(
@@ -22,8 +27,8 @@ pub(super) fn assemble(
         builder.mirror();
     }
     let loose = straps::straps(spec, scale, &builder.parts, &builder.bodies)?;
-    let pairs = builder.pairs();
-    let interfaces = laws(&spec.interfaces, scale);
+    let pairs = pairs::pairs(&builder);
+    let interfaces = laws(spec, scale);
     let model = Model::new(builder.bodies, interfaces, pairs, Vec2::new(0.0, -gravity))?;
     Ok(Assembly {
         model,
@@ -36,15 +41,32 @@ pub(super) fn assemble(
     })
 }
 
-/// The laws of contact, each at the place of its id.
-fn laws(laws: &StackInterfaces, scale: Similitude) -> Vec<Interface<Planar>> {
-    let mut named = [
-        (RACK_GROUND, "rack-ground", &laws.rack_ground),
-        (BARREL_RACK, "barrel-rack", &laws.barrel_rack),
-        (BARREL_BARREL, "barrel-barrel", &laws.barrel_barrel),
-        (BARREL_GROUND, "barrel-ground", &laws.barrel_ground),
-        (RACK_RACK, "rack-rack", &laws.rack_rack),
+/// The laws of contact, each at the place of its id. Across the barrels a seat may stand for several
+/// elements one behind the other.
+fn laws(spec: &StackSpec, scale: Similitude) -> Vec<Interface<Planar>> {
+    let behind = match spec.view {
+        View::Transverse => spec.rack.contact.behind_each_other(),
+        View::Longitudinal => 1.0,
+    };
+    let stroke = spec.rack.seat_stroke * scale.length;
+    let impact = |law: &scenario::Interface| interface("stop", law, 1.0, scale).normal;
+    // What a seat meets at the end of its stroke is what the same bodies meet elsewhere.
+    let stops = [
+        &spec.interfaces.fallen_rack_ground,
+        &spec.interfaces.fallen_barrel_rack,
+        &spec.interfaces.fallen_rack_rack,
     ];
-    named.sort_by_key(|(id, _, _)| *id);
-    named.into_iter().map(|(_, name, law)| interface(name, law, scale)).collect()
+    let named = spec.interfaces.named().into_iter().enumerate();
+    let law = |(id, (name, law))| match stops.get(id) {
+        Some(&stop) => Interface {
+            stop: Some(Stop { depth: stroke, law: impact(stop) }),
+            ..interface(name, law, behind, scale)
+        },
+        // What has fallen does not roll for ever.
+        None => Interface {
+            rolling: Some(ROLLING_LEVER * scale.length),
+            ..interface(name, law, 1.0, scale)
+        },
+    };
+    named.map(law).collect()
 }

@@ -2,28 +2,35 @@
 //!
 //! ```text
 //!      ( B2.1 )   ( B2.2 )
-//!      __\_/________\_/__      cradle supports at ± the support angle, rack beam
-//!          =          =        flat underside bearing around each crown
+//!      __|_|________|_|__      two bars to a cradle, their round ends at ± the support angle; a beam
+//!         [_]        [_]       feet, where the rack has them, over each crown
 //!      ( B1.1 )   ( B1.2 )
-//!      __\_/________\_/__
-//!          =          =
+//!      __|_|________|_|__
+//!         [_]        [_]
 //!     ////////////////////     ground
 //! ```
 //!
-//! A rack touches barrels with nodes: one at each cradle support (or along a cradle arc), and a row
-//! along the bearing around each crown below.
-//! The corners of its beam are nodes too, for what falls on it and where it falls.
-//! The beam is a polygon for the nodes of other racks.
+//! Every part of a rack is a convex solid that meets everything: beam, feet, bars and posts.
 
-use barrelstack_dynamics::shape::{self, Circle, Polygon};
+use barrelstack_dynamics::shape::{Circle, Polygon, PolygonError};
 use barrelstack_dynamics::{BodyId, Shape, Vec2, math};
 
-use super::builder::{Builder, Draft, DraftNodes};
-use super::{AssembleError, PartKind, outline_of};
-use crate::scenario::{Cradle, Friction, Posts, Rack, RackKind, StackBody, View};
+use super::builder::{Builder, Draft};
+use super::solid::{Seat, Solid, row};
+use super::{AssembleError, PartKind};
+use crate::scenario::{Cradle, Friction, Posts, Rack, RackKind, SeatContact, StackBody, View};
 
-/// Play (m) between the cup of a foot and the post in it.
+/// Play (m) between the cup of a foot and the post in it: an assumption.
 const SPIGOT_PLAY: f64 = 0.005;
+
+/// Half the thickness (m) of the bars of a cradle, whose ends are round: an assumption.
+const BAR_RADIUS: f64 = 0.015;
+
+/// Half the thickness (m) of the lips of a cup: an assumption.
+const LIP_RADIUS: f64 = 0.004;
+
+/// Radius (m) of the corners of tubes: an assumption.
+pub(super) const TUBE_CORNER: f64 = 0.005;
 
 /// Builds all levels; returns the height of the stack and the reach of a rack on its barrels (m).
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
@@ -53,8 +60,10 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
     Ok((height, reach(rack, radius, &spec.interfaces.barrel_rack.friction)))
 }
 
-/// How far a rack may move across the barrels below: past the end of its flat bearing it stands on the
-/// falling side of the round, where friction holds it up to a slope of arctan μ.
+/// How far a rack may move across the barrels below before nothing can hold it there without help: with
+/// feet until they stand beside the crowns and the beam has come down on them, without feet until the end
+/// of its beam has passed the crown and stands on the falling side of the round, where friction holds it up
+/// to a slope of arctan μ.
 fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
     if let (RackKind::OnRacks, Some(posts)) = (rack.kind, &rack.posts) {
         // A post stands on a post: half of its width, and it is off.
@@ -65,8 +74,14 @@ fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
         Friction::Coulomb { static_coefficient, .. } => static_coefficient,
         Friction::Regularized { coefficient, .. } => coefficient,
     };
+    if rack.foot_height > 0.0 {
+        // A foot bears on the falling side until its beam has come down on the round.
+        let height = (radius - rack.foot_height).max(0.0);
+        return rack.foot_half_length + (radius * radius - height * height).sqrt();
+    }
+    let bearing = 0.5 * (rack.width - f64::from(rack.barrels - 1) * rack.pitch);
     let (sin, _) = math::sin_cos(math::atan(coefficient));
-    rack.bearing_half_length + radius * sin
+    bearing + radius * sin
 }
 
 /// One rack with its barrels; returns their ids.
@@ -96,24 +111,23 @@ fn add_rack(
     } else {
         format!("R{level}.{column}")
     };
-    let center = Vec2::new(middle + offset, underside + 0.5 * rack.beam_height);
-    let mut draft = Draft {
+    let solids = rack_solids(rack, &places, radius, level).map_err(|problem| {
+        AssembleError::Shape { body: name.clone(), problem: problem.to_string() }
+    })?;
+    let rack_id = builder.add(Draft {
         name,
         kind: PartKind::Rack,
         level,
         column,
         mass,
-        inertia: mass * (rack.width.powi(2) + rack.beam_height.powi(2)) / 12.0,
-        position: center,
+        inertia: None,
+        position: Vec2::new(middle + offset, underside),
         size: 0.5 * rack.width,
-        surfaces: Vec::new(),
-        nodes: vec![DraftNodes::Fixed(rack_nodes(rack, &places, radius, level))],
-        outlines: Vec::new(),
+        solids,
+        tributary: rack.node_spacing,
         carrier: None,
         supports,
-    };
-    draw_rack(&mut draft, rack, &places, radius)?;
-    let rack_id = builder.add(draft);
+    });
 
     let mut barrels = Vec::new();
     for (i, place) in places.iter().enumerate() {
@@ -131,15 +145,14 @@ fn add_rack(
             level,
             column: barrel_column,
             mass: barrel.mass,
-            inertia: barrel.inertia(View::Transverse),
+            inertia: Some(barrel.inertia(View::Transverse)),
             position: Vec2::new(
                 middle + offset + place + offset_x,
                 underside + rack.clearance + radius,
             ),
             size: radius,
-            outlines: vec![outline_of(&shape, Vec2::default())],
-            surfaces: vec![(shape, Vec2::default())],
-            nodes: vec![DraftNodes::Rolling(radius, rack.node_spacing)],
+            solids: vec![Solid::exact(shape, Vec2::default(), Seat::None)],
+            tributary: rack.node_spacing,
             carrier: Some(rack_id),
             supports: Vec::new(),
         }));
@@ -147,119 +160,144 @@ fn add_rack(
     Ok((rack_id, barrels))
 }
 
-/// The nodes of a rack from its center of mass, with their tributary lengths.
-fn rack_nodes(rack: &Rack, places: &[f64], radius: f64, level: u32) -> Vec<(Vec2, f64)> {
-    let mut nodes = match (rack.kind, &rack.posts) {
-        (RackKind::OnRacks, Some(posts)) => feet(rack, posts, level),
-        _ => places.iter().flat_map(|x| row(rack, *x, rack.bearing_half_length)).collect(),
-    };
-    nodes.extend(places.iter().flat_map(|x| cradle_nodes(rack, *x, radius)));
-    // The corners of the beam, for what falls on it and where it falls.
-    let (half_width, half_height) = (0.5 * rack.width, 0.5 * rack.beam_height);
-    for (x, z) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
-        nodes.push((Vec2::new(x * half_width, z * half_height), rack.node_spacing));
-    }
-    nodes
-}
-
-/// A row of nodes along the underside, `half` (m) to either side of `middle` (m).
-fn row(rack: &Rack, middle: f64, half: f64) -> Vec<(Vec2, f64)> {
-    let z = -0.5 * rack.beam_height;
-    let parts = (2.0 * half / rack.node_spacing - 1e-9).ceil().max(1.0);
-    let step = 2.0 * half / parts;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
-    let last = parts as u32;
-    (0..=last)
-        .map(|i| {
-            let tributary = if i == 0 || i == last { 0.5 * step } else { step };
-            (Vec2::new(middle - half + f64::from(i) * step, z), tributary)
-        })
-        .collect()
-}
-
-/// The feet of a rack that stands on posts.
-///
-/// Above the first level a foot is a cup over the post: nodes beside it hold the rack in place until it
-/// is lifted off. On the floor there is nothing to hold.
-fn feet(rack: &Rack, posts: &Posts, level: u32) -> Vec<(Vec2, f64)> {
-    let half = 0.5 * rack.rail_width;
-    let mut nodes = Vec::new();
-    for side in [-1.0, 1.0] {
-        let foot = side * posts.half_spacing;
-        nodes.extend(row(rack, foot, half));
-        if level > 1 && posts.spigot > 0.0 {
-            for beside in [-1.0, 1.0] {
-                let x = foot + beside * (half + SPIGOT_PLAY);
-                for share in [0.5, 1.0] {
-                    let z = -0.5 * rack.beam_height - share * posts.spigot;
-                    nodes.push((Vec2::new(x, z), 0.5 * posts.spigot));
-                }
-            }
-        }
-    }
-    nodes
-}
-
-/// The nodes of one cradle, seen from the center of its barrel.
-fn cradle_nodes(rack: &Rack, place: f64, radius: f64) -> Vec<(Vec2, f64)> {
-    let center = Vec2::new(place, rack.clearance + radius - 0.5 * rack.beam_height);
-    match rack.cradle {
-        Cradle::Supports { angle } => {
-            let (sin, cos) = math::sin_cos(angle);
-            [-1.0, 1.0]
-                .map(|side| (center + Vec2::new(side * sin, -cos) * radius, rack.node_spacing))
-                .to_vec()
-        }
-        Cradle::Arc { radius: arc_radius, half_angle } => {
-            let center = center + Vec2::new(0.0, arc_radius - radius);
-            Shape::Cradle(shape::Cradle::new(arc_radius, half_angle))
-                .nodes(rack.node_spacing)
-                .into_iter()
-                .map(|node| (center + node.position, node.tributary_length))
-                .collect()
-        }
-    }
-}
-
-/// The beam and posts as surfaces, and the lines that show a rack.
-fn draw_rack(
-    draft: &mut Draft,
+/// The solids of a rack, from the middle of its underside.
+fn rack_solids(
     rack: &Rack,
     places: &[f64],
     radius: f64,
-) -> Result<(), AssembleError> {
-    let half_height = 0.5 * rack.beam_height;
-    let rectangle = |width: f64, height: f64| {
-        Polygon::rectangle(width, height, 0.0).map(Shape::Polygon).map_err(|problem| {
-            AssembleError::Shape { body: draft.name.clone(), problem: problem.to_string() }
-        })
-    };
-    let mut surfaces = vec![(rectangle(rack.width, rack.beam_height)?, Vec2::default())];
-    if let (RackKind::OnRacks, Some(posts)) = (rack.kind, &rack.posts) {
-        let post = posts.height - rack.beam_height;
-        for side in [-1.0, 1.0] {
-            let place = Vec2::new(side * posts.half_spacing, half_height + 0.5 * post);
-            surfaces.push((rectangle(rack.rail_width, post)?, place));
+    level: u32,
+) -> Result<Vec<Solid>, PolygonError> {
+    let stands_on_racks = rack.posts.filter(|_| rack.kind == RackKind::OnRacks);
+    let feet = rack.foot_height > 0.0 && stands_on_racks.is_none();
+    let lift = if feet { rack.foot_height } else { 0.0 };
+    let corner = TUBE_CORNER.min(0.25 * rack.beam_height);
+    let mut beam = Solid::exact(
+        Shape::Polygon(Polygon::rectangle(rack.width, rack.beam_height, corner)?),
+        Vec2::new(0.0, lift + 0.5 * rack.beam_height),
+        if feet { Seat::None } else { Seat::OnSupports },
+    );
+    if !feet && stands_on_racks.is_none() && rack.contact == SeatContact::Nodes {
+        beam.below = row(rack.node_spacing, 0.0, 0.5 * rack.width - corner, 0.0);
+    }
+    let mut solids = vec![beam];
+    if feet {
+        for (column, place) in places.iter().enumerate() {
+            let mut foot = Solid::exact(
+                Shape::Polygon(Polygon::rectangle(
+                    2.0 * rack.foot_half_length,
+                    rack.foot_height,
+                    0.0,
+                )?),
+                Vec2::new(*place, 0.5 * rack.foot_height),
+                Seat::OnSupport(column),
+            );
+            if rack.contact == SeatContact::Nodes {
+                foot.below = row(rack.node_spacing, *place, rack.foot_half_length, 0.0);
+            }
+            solids.push(foot);
         }
     }
-    draft.outlines = surfaces.iter().map(|(shape, offset)| outline_of(shape, *offset)).collect();
-    // Saddles, for the eye: from the beam up to each support.
-    let (angle, saddle_radius) = match rack.cradle {
-        Cradle::Supports { angle } => (angle, radius),
-        Cradle::Arc { radius, half_angle } => (half_angle, radius),
+    let top = lift + rack.beam_height;
+    for (column, place) in places.iter().enumerate() {
+        cradle(&mut solids, rack, *place, radius, top, Seat::Barrel(column))?;
+    }
+    if let Some(posts) = stands_on_racks {
+        posts_and_cups(&mut solids, rack, &posts, level)?;
+    }
+    Ok(solids)
+}
+
+/// What holds a barrel whose lowest point is `clearance` above the underside: two bars that stand on the
+/// beam, or a trough of bars end to end.
+fn cradle(
+    solids: &mut Vec<Solid>,
+    rack: &Rack,
+    place: f64,
+    radius: f64,
+    top: f64,
+    seat: Seat,
+) -> Result<(), PolygonError> {
+    let mut bar = |from: Vec2, to: Vec2| -> Result<(), PolygonError> {
+        // A support that lies on the beam is all end and no bar.
+        let shape = if (to - from).z.abs() + (to - from).x.abs() < 1e-3 {
+            Shape::Circle(Circle { radius: BAR_RADIUS })
+        } else {
+            let middle = (from + to) * 0.5;
+            Shape::Polygon(Polygon::bar(from - middle, to - middle, BAR_RADIUS)?)
+        };
+        let offset = if matches!(shape, Shape::Circle(_)) { from } else { (from + to) * 0.5 };
+        solids.push(Solid::exact(shape, offset, seat));
+        Ok(())
     };
-    for place in places {
-        let center = Vec2::new(*place, rack.clearance + saddle_radius - half_height);
-        for side in [-1.0, 1.0] {
+    match rack.cradle {
+        Cradle::Supports { angle } => {
+            let center = Vec2::new(place, rack.clearance + radius);
             let (sin, cos) = math::sin_cos(angle);
-            let tip = center + Vec2::new(side * sin, -cos) * saddle_radius;
-            let foot = |dx: f64| Vec2::new(tip.x + dx, half_height);
-            draft.outlines.push(super::Outline {
-                points: vec![foot(-0.025), foot(0.025), tip],
-                closed: true,
-            });
+            for side in [-1.0, 1.0] {
+                let end = center + Vec2::new(side * sin, -cos) * (radius + BAR_RADIUS);
+                bar(end, Vec2::new(end.x, end.z.min(top)))?;
+            }
+        }
+        Cradle::Arc { radius: trough, half_angle } => {
+            let center = Vec2::new(place, rack.clearance + trough);
+            // Each bar touches the trough with its middle.
+            let length = 2.0 * half_angle * trough;
+            let count = (length / TROUGH_BAR).ceil().max(2.0);
+            let turn = 2.0 * half_angle / count;
+            let (_, cos) = math::sin_cos(0.5 * turn);
+            let at = |angle: f64| {
+                let (sin, cosine) = math::sin_cos(angle);
+                center + Vec2::new(sin, -cosine) * ((trough + BAR_RADIUS) / cos)
+            };
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a small count"
+            )]
+            for i in 0..count as u32 {
+                let from = -half_angle + f64::from(i) * turn;
+                bar(at(from), at(from + turn))?;
+            }
         }
     }
-    draft.surfaces = surfaces;
+    Ok(())
+}
+
+/// Length (m) of the straight bars of which a trough is made.
+const TROUGH_BAR: f64 = 0.04;
+
+/// The posts on which the next rack stands, and above the first level the cups over the posts below:
+/// lips beside them hold the rack in place until it is lifted off. On the floor there is nothing to hold.
+fn posts_and_cups(
+    solids: &mut Vec<Solid>,
+    rack: &Rack,
+    posts: &Posts,
+    level: u32,
+) -> Result<(), PolygonError> {
+    let height = posts.height - rack.beam_height;
+    let half = 0.5 * rack.rail_width;
+    for side in [-1.0, 1.0] {
+        let post = side * posts.half_spacing;
+        solids.push(Solid::exact(
+            Shape::Polygon(Polygon::rectangle(rack.rail_width, height, TUBE_CORNER.min(half))?),
+            Vec2::new(post, rack.beam_height + 0.5 * height),
+            Seat::Rack,
+        ));
+        if level > 1 && posts.spigot > 0.0 {
+            for beside in [-1.0, 1.0] {
+                let x = post + beside * (half + SPIGOT_PLAY + LIP_RADIUS);
+                let hang = (posts.spigot - LIP_RADIUS).max(LIP_RADIUS);
+                solids.push(Solid::exact(
+                    Shape::Polygon(Polygon::bar(
+                        Vec2::new(0.0, 0.5 * hang),
+                        Vec2::new(0.0, -0.5 * hang),
+                        LIP_RADIUS,
+                    )?),
+                    Vec2::new(x, -0.5 * hang),
+                    Seat::None,
+                ));
+            }
+        }
+    }
     Ok(())
 }

@@ -8,7 +8,7 @@ use barrelstack_dynamics::{
 
 use super::{Audience, CaseResult, Run, Stack};
 use crate::run::{Ended, conclude, method, thresholds};
-use crate::watch::Fates;
+use crate::watch::{End, Ending, Fates};
 
 /// Runs a group; none when asked to stop.
 pub(super) fn run(
@@ -28,20 +28,21 @@ pub(super) fn run(
         };
         let mut watch = Watch {
             fates: Fates::new(&standing.assembly, &state, thresholds(scenario)),
-            after_collapse: run.after_collapse(),
+            end: run.end(standing),
             stop: audience.stop,
             next_ask: 0.0,
-            interrupted: false,
+            ending: None,
         };
         let ground = &*run.case.ground;
         let model = &standing.assembly.model;
         let ended = simulate(model, ground, &mut state, &mut scratch, &simulation, &mut watch);
-        if watch.interrupted {
+        if watch.ending == Some(Ending::Interrupted) {
             return None;
         }
+        let ending = watch.ending.unwrap_or(Ending::of_time(scenario));
         let ended = ended.map(|totals| Ended::of(&totals));
-        let verdict = conclude(&standing.assembly, ground, &watch.fates, ended, state.time, false);
-        let result = CaseResult::of(&standing.assembly, &watch.fates, verdict, state.time);
+        let verdict = conclude(&standing.assembly, ground, &watch.fates, ended, state.time, ending);
+        let result = CaseResult::of(&standing.assembly, ground, &watch.fates, verdict, state.time);
         (audience.tell)(&result);
         results.push((run.index, result));
     }
@@ -51,12 +52,11 @@ pub(super) fn run(
 /// Watches what becomes of every body, and nothing else.
 struct Watch<'a> {
     fates: Fates,
-    /// How long (s) to go on after a collapse.
-    after_collapse: f64,
+    end: End,
     stop: &'a dyn Fn() -> bool,
     /// When to ask next whether to stop (s).
     next_ask: f64,
-    interrupted: bool,
+    ending: Option<Ending>,
 }
 
 impl Observer<Planar> for Watch<'_> {
@@ -70,11 +70,12 @@ impl Observer<Planar> for Watch<'_> {
         self.fates.observe(state, scratch);
         if state.time >= self.next_ask {
             self.next_ask = state.time + 0.05;
-            self.interrupted = (self.stop)();
+            if (self.stop)() {
+                self.ending = Some(Ending::Interrupted);
+                return ControlFlow::Break(());
+            }
         }
-        if self.interrupted || self.fates.collapse() + self.after_collapse <= state.time {
-            return ControlFlow::Break(());
-        }
-        ControlFlow::Continue(())
+        self.ending = self.end.why(state, &self.fates);
+        if self.ending.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use crate::assemble::{Assembly, PartKind};
+use crate::demand::Demands;
 use crate::ground::Ground;
 use crate::outcome::Outcome;
-use crate::run::Verdict;
+use crate::run::{CUT, Verdict};
 use crate::scenario::Scenario;
-use crate::summary::{Demands, demands};
-use crate::watch::Fates;
+use crate::watch::{Ending, Fates};
 
 /// A case that is ready to run.
 #[derive(Clone, Debug)]
@@ -36,6 +36,10 @@ pub struct CaseResult {
     pub demands: Demands,
     /// Largest displacement (m) of a barrel along x against the ground, left at the end.
     pub residual_displacement: Option<f64>,
+    /// Why the run ended.
+    pub ending: Option<Ending>,
+    /// Time (s) of the motion that was left when it ended; zero where it saw all of it.
+    pub cut: Option<f64>,
     /// Time (s) that the run reached.
     pub end_time: Option<f64>,
     /// Accepted steps.
@@ -48,7 +52,13 @@ pub struct CaseResult {
 
 impl CaseResult {
     /// What a verdict and the fates of the bodies say of a case that ran until a time (s).
-    pub(super) fn of(assembly: &Assembly, fates: &Fates, verdict: Verdict, time: f64) -> Self {
+    pub(super) fn of(
+        assembly: &Assembly,
+        ground: &Ground,
+        fates: &Fates,
+        verdict: Verdict,
+        time: f64,
+    ) -> Self {
         let sound = !matches!(verdict.outcome, Outcome::Invalid { .. });
         let barrels: Vec<usize> = assembly.of_kind(PartKind::Barrel).collect();
         let all = || barrels.iter().map(|body| fates.fate(*body));
@@ -61,9 +71,11 @@ impl CaseResult {
             barrels: barrels.len(),
             falls: if sound { barrels.iter().map(fall).collect() } else { Vec::new() },
             fall_heights: if sound { heights().collect() } else { Vec::new() },
-            demands: if sound { demands(assembly, fates, None) } else { Demands::default() },
+            demands: if sound { Demands::of(assembly, fates, None) } else { Demands::default() },
             residual_displacement: (sound && !barrels.is_empty())
                 .then(|| residual.fold(0.0, largest)),
+            ending: Some(verdict.ending),
+            cut: Some(ground.end() - time).map(|left| if left > CUT { left } else { 0.0 }),
             end_time: Some(time),
             steps: Some(verdict.steps),
             energy_residual_ratio: verdict.energy.map(|energy| energy.residual_ratio()),
@@ -82,6 +94,8 @@ impl CaseResult {
             fall_heights: Vec::new(),
             demands: Demands::default(),
             residual_displacement: None,
+            ending: None,
+            cut: None,
             end_time: None,
             steps: None,
             energy_residual_ratio: None,

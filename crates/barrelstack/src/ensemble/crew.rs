@@ -1,13 +1,13 @@
 //! Runs in lanes: who loads them, watches them, and writes down what became of them.
 
 use barrelstack_dynamics::lanes::{self, Case, End, Task, Width, march};
-use barrelstack_dynamics::real::Real;
-use barrelstack_dynamics::{Method, Planar, Scratch, State};
+use barrelstack_dynamics::real::{Mask, Real};
+use barrelstack_dynamics::{Finish, Method, Planar, Scratch, State};
 
 use super::{Audience, CaseResult, Run, Stack};
 use crate::ground::Ground;
 use crate::run::{Ended, Standing, conclude, thresholds};
-use crate::watch::Fates;
+use crate::watch::{self, Ending, Fates};
 
 /// Steps between two questions whether to stop.
 const PATIENCE: u32 = 1024;
@@ -43,7 +43,8 @@ impl Task for Marching<'_, '_> {
             next: 0,
             runs: vec![0; R::LANES],
             fates: None,
-            after_collapse: R::splat(f64::INFINITY),
+            end: None,
+            rested: R::Mask::default(),
             steps: 0,
             interrupted: false,
             results: Vec::with_capacity(group.len()),
@@ -63,8 +64,10 @@ struct Crew<'a, 'b, R: Real> {
     runs: Vec<usize>,
     /// What becomes of the bodies of every lane; none before the first run is loaded.
     fates: Option<Fates<R>>,
-    /// How long (s) every lane goes on after its collapse.
-    after_collapse: R,
+    /// What ends every lane before its time is over; none before the first run is loaded.
+    end: Option<watch::End<R>>,
+    /// The lanes that had come to rest in the last step.
+    rested: R::Mask,
     /// Steps since the audience was asked.
     steps: u32,
     interrupted: bool,
@@ -97,12 +100,12 @@ impl<'a, R: Real> lanes::Crew<'a, R> for Crew<'a, '_, R> {
 
     fn start(&mut self, lane: usize, state: &State<Planar>, scratch: &Scratch<Planar>) {
         let Some((run, standing)) = self.standing(lane) else { return };
-        let after = run.after_collapse();
+        let end = run.end(standing);
         let rest = &standing.state;
         let mut fates = Fates::new(&standing.assembly, rest, thresholds(&run.case.scenario));
         fates.observe(state, scratch);
         self.fates.get_or_insert_with(|| Fates::in_all(&fates)).put(lane, &fates);
-        self.after_collapse = self.after_collapse.with_lane(lane, after);
+        self.end.get_or_insert_with(|| watch::End::in_all(&end)).put(lane, &end);
     }
 
     #[inline(always)]
@@ -116,19 +119,29 @@ impl<'a, R: Real> lanes::Crew<'a, R> for Crew<'a, '_, R> {
                 return !R::Mask::default();
             }
         }
-        let Some(fates) = &mut self.fates else { return R::Mask::default() };
+        let (Some(fates), Some(end)) = (&mut self.fates, &mut self.end) else {
+            return R::Mask::default();
+        };
         fates.observe(state, scratch);
-        (fates.collapse() + self.after_collapse).le(state.time)
+        let (collapsed, rested) = end.observe(state, fates);
+        self.rested = rested;
+        collapsed | rested
     }
 
     fn end(&mut self, lane: usize, end: End) {
         let Some(fates) = self.fates.as_ref().filter(|_| !self.interrupted) else { return };
         let fates = fates.of_lane(lane);
         let Some((run, standing)) = self.standing(lane) else { return };
+        let ending = match &end.finish {
+            Ok(Finish::Stopped) if self.rested.lane(lane) => Ending::Rest,
+            Ok(Finish::Stopped) => Ending::AfterCollapse,
+            Ok(Finish::EndTime) => Ending::of_time(&run.case.scenario),
+            Err(_) => Ending::Broken,
+        };
         let ended = end.finish.map(|_| Ended { energy: end.energy, steps: end.steps });
-        let assembly = &standing.assembly;
-        let verdict = conclude(assembly, &run.case.ground, &fates, ended, end.time, false);
-        let result = CaseResult::of(assembly, &fates, verdict, end.time);
+        let (assembly, ground) = (&standing.assembly, &*run.case.ground);
+        let verdict = conclude(assembly, ground, &fates, ended, end.time, ending);
+        let result = CaseResult::of(assembly, ground, &fates, verdict, end.time);
         let index = run.index;
         (self.audience.tell)(&result);
         self.results.push((index, result));

@@ -94,9 +94,9 @@ impl Barrel {
         let outer = |x: f64| 0.5 * self.diameter_at(x);
         let inner = |x: f64| (outer(x) - thickness).max(0.0);
         let staves = Solid::between(half_length, outer, inner);
-        let head = inner(half_room).powi(2) * PI * thickness;
+        let head_square = square(inner(half_room));
+        let head = head_square * PI * thickness;
         let head_place = half_room + 0.5 * thickness;
-        let head_square = inner(half_room).powi(2);
         let wood = Solid {
             volume: staves.volume + 2.0 * head,
             axial: staves.axial + head * head_square,
@@ -186,7 +186,7 @@ impl Solid {
             };
             // Both halves are alike.
             let slice = 2.0 * weight * step / 3.0;
-            let (square_out, square_in) = (outer(x).powi(2), inner(x).powi(2));
+            let (square_out, square_in) = (square(outer(x)), square(inner(x)));
             let area = PI * (square_out - square_in);
             let second = PI * (square_out * square_out - square_in * square_in);
             solid.volume += slice * area;
@@ -197,14 +197,18 @@ impl Solid {
     }
 }
 
+fn square(x: f64) -> f64 {
+    x * x
+}
+
 /// Moment of volume (m⁵) of half a Stokes layer of wine on the wall at 1 Hz.
 fn stokes_layer(half: f64, radius: impl Fn(f64) -> f64) -> f64 {
     /// Kinematic viscosity of wine (m²/s).
     const VISCOSITY: f64 = 1.6e-6;
     let thickness = (2.0 * VISCOSITY / (2.0 * PI)).sqrt();
-    let wall = |x: f64| 2.0 * PI * radius(x).powi(3);
+    let wall = |x: f64| 2.0 * PI * (radius(x) * square(radius(x)));
     let staves = half / 3.0 * (wall(half) + 4.0 * wall(0.5 * half) + wall(0.0));
-    let heads = PI * radius(half).powi(4);
+    let heads = PI * square(square(radius(half)));
     0.5 * thickness * (staves + heads)
 }
 

@@ -5,7 +5,7 @@
 use std::f64::consts::PI;
 
 use super::interface::PairDefaults;
-use super::rack::{Cradle, Posts, RackKind};
+use super::rack::{Cradle, Posts, RackKind, SeatContact};
 
 /// Density of wine (kg/m³).
 pub const WINE_DENSITY: f64 = 990.0;
@@ -102,10 +102,16 @@ pub struct CatalogRack {
     pub clearance: f64,
     /// Height of the beams (m).
     pub beam_height: f64,
+    /// Height of the feet under the beams (m); zero for a rack without.
+    pub foot_height: f64,
     /// How the rack holds a barrel.
     pub cradle: Cradle,
-    /// Half of the length of underside that bears on each barrel crown (m).
-    pub bearing_half_length: f64,
+    /// Half of the length of a foot (m).
+    pub foot_half_length: f64,
+    /// How a seat is divided into contact elements.
+    pub contact: SeatContact,
+    /// Penetration of a seat (m) beyond which the solids themselves meet.
+    pub seat_stroke: f64,
     /// Distance between contact nodes (m).
     pub node_spacing: f64,
     /// Posts, if any.
@@ -128,18 +134,36 @@ const TWO_BARREL: CatalogRack = CatalogRack {
     rail_width: 0.05,
     clearance: 0.20,
     beam_height: 0.05,
+    foot_height: 0.0,
+    foot_half_length: 0.06,
     cradle: Cradle::Supports { angle: 28.0 * PI / 180.0 },
-    bearing_half_length: 0.06,
+    contact: SeatContact::Rails,
+    seat_stroke: 0.02,
     node_spacing: 0.01,
     posts: None,
     source: "portable steel rack for two barrels on a footprint of 38 in by 58 in, which makes pitch and width (Wines & \
              Vines 2016); clearance for the 7 in between the bilges of neighboring levels that make six levels 18 ft \
-             high (UC Berkeley 2000); mass, rails, cradle and bearing are assumptions",
+             high (UC Berkeley 2000); straight tubes without feet; mass, rails, tubes and cradle are assumptions",
 };
 
 /// The racks.
 pub const RACKS: &[CatalogRack] = &[
     TWO_BARREL,
+    CatalogRack {
+        name: "two-barrel-feet",
+        foot_height: 0.06,
+        source: "`two-barrel` with a foot over each barrel below, as wide as that of the reconstructed `candia-2008`: \
+                 an assumption",
+        ..TWO_BARREL
+    },
+    CatalogRack {
+        name: "single-bar",
+        mass: 35.0,
+        contact: SeatContact::Element,
+        source: "single-bar version of the rack for two barrels (Wines & Vines 2016); the numbers are those of \
+                 `two-barrel`, the mass is an assumption",
+        ..TWO_BARREL
+    },
     CatalogRack {
         name: "four-barrel",
         mass: 80.0,
@@ -152,21 +176,28 @@ pub const RACKS: &[CatalogRack] = &[
         name: "rack-on-rack",
         kind: RackKind::OnRacks,
         mass: 60.0,
-        posts: Some(Posts { height: 0.89, half_spacing: 0.70, spigot: 0.03 }),
+        width: 1.60,
+        posts: Some(Posts { height: 0.89, half_spacing: 0.77, spigot: 0.03 }),
         source: "racks that carry load on posts (Wines & Vines 2014, 2016); every number is an assumption, the post \
-                 height makes the usual level pitch",
+                 height makes the usual level pitch, and the posts stand clear of the barrels",
         ..TWO_BARREL
     },
     CatalogRack {
         name: "candia-2008",
-        mass: 30.0,
+        mass: 40.0,
         pitch: 0.76,
         width: 1.50,
-        rail_half_spacing: 0.30,
-        clearance: 0.06,
+        rail_half_spacing: 0.24,
+        rail_width: 0.06,
+        clearance: 0.16,
         beam_height: 0.04,
-        source: "rack of Candia, de la Llera and Almazán (2008), whose text gives no dimensions: a reconstruction with \
-                 which one geometry shows the paper's modes, times, drift and stress amplification",
+        foot_height: 0.06,
+        foot_half_length: 0.065,
+        cradle: Cradle::Supports { angle: 31.0 * PI / 180.0 },
+        contact: SeatContact::Nodes,
+        seat_stroke: 0.03,
+        source: "rack of Candia, de la Llera and Almazán (2008), whose text gives no dimensions: a solid beam on feet, \
+                 reconstructed so that one geometry shows the paper's modes, times, drift and stress amplification",
         ..TWO_BARREL
     },
 ];
@@ -178,6 +209,11 @@ const STIFFNESS: f64 = 980_000.0;
 /// Damping of one contact node in a stack (N·s/m), calibrated by Candia, de la Llera and Almazán
 /// (2008).
 const DAMPING: f64 = 2200.0;
+
+/// Stiffness of an impact (N/m^1.5): a full barrel of 270 kg that falls from the top of six levels
+/// (9.3 m/s) is stopped within 15 mm. An assumption: nobody has measured it; cellars saw barrels bounce
+/// clearly, burst and lose their bungs.
+const IMPACT_STIFFNESS: f64 = 1.2e9;
 
 /// A pair of bodies in a stack with the friction it takes when a scenario leaves it out.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -191,7 +227,7 @@ pub struct CatalogPair {
 }
 
 /// The pairs.
-pub const PAIRS: [CatalogPair; 5] = [
+pub const PAIRS: [CatalogPair; 8] = [
     CatalogPair {
         name: "rack-ground",
         coefficient: 0.4,
@@ -202,14 +238,39 @@ pub const PAIRS: [CatalogPair; 5] = [
         coefficient: 0.22,
         source: "calibrated by Candia, de la Llera and Almazán (2008)",
     },
+    CatalogPair { name: "rack-rack", coefficient: 0.3, source: "steel on steel, assumption" },
     CatalogPair { name: "barrel-barrel", coefficient: 0.4, source: "wood on wood, assumption" },
     CatalogPair { name: "barrel-ground", coefficient: 0.4, source: "wood on concrete, assumption" },
-    CatalogPair { name: "rack-rack", coefficient: 0.3, source: "steel on steel, assumption" },
+    CatalogPair {
+        name: "fallen-barrel-rack",
+        coefficient: 0.22,
+        source: "as barrel on rack, calibrated by Candia, de la Llera and Almazán (2008)",
+    },
+    CatalogPair {
+        name: "fallen-rack-ground",
+        coefficient: 0.4,
+        source: "as rack on ground in the six-barrel example of Candia, de la Llera and Almazán (2008)",
+    },
+    CatalogPair {
+        name: "fallen-rack-rack",
+        coefficient: 0.3,
+        source: "steel on steel, assumption",
+    },
 ];
+
+/// The pair of a name.
+pub(super) fn pair(name: &str) -> Option<&'static CatalogPair> {
+    PAIRS.iter().find(|pair| pair.name == name)
+}
 
 impl CatalogPair {
     pub(super) fn defaults(&self) -> PairDefaults {
-        PairDefaults { stiffness: STIFFNESS, damping: DAMPING, coefficient: self.coefficient }
+        PairDefaults {
+            stiffness: STIFFNESS,
+            damping: DAMPING,
+            rebound_stiffness: IMPACT_STIFFNESS,
+            coefficient: self.coefficient,
+        }
     }
 }
 
@@ -227,7 +288,8 @@ pub(super) fn rack_names() -> Vec<&'static str> {
     RACKS.iter().map(|rack| rack.name).collect()
 }
 
-pub(crate) fn record_names() -> Vec<&'static str> {
+/// Names of the records shipped with the program.
+pub fn record_names() -> Vec<&'static str> {
     RECORDS.iter().map(|(name, _)| *name).collect()
 }
 

@@ -171,7 +171,9 @@ fn chain(sources: &mut Sources, access: Access) -> Result<Table, ScenarioError> 
 fn parsed(sources: &Sources, file: usize) -> Result<Table, ScenarioError> {
     let table = sources.parse(file)?;
     if table.entries.is_empty() {
-        return Err(sources.error(Origin::Whole(file), Problem::Empty));
+        let message = "the scenario is empty; start from a built-in one with `extends = \"candia-8-barrels\"`";
+        let problem = Problem::Inconsistent { message: message.to_owned() };
+        return Err(sources.error(Origin::Whole(file), problem));
     }
     Ok(table)
 }
@@ -209,7 +211,7 @@ pub(super) fn extend(
                     }
                     let path = sources.files[file].folder.join(target);
                     let name = path.display().to_string();
-                    let place = problem(Problem::Empty).place().clone();
+                    let place = sources.place(node.origin);
                     let bytes = read_file(&path, place)?;
                     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
                     (name, bytes, folder)

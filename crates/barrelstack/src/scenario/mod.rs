@@ -37,18 +37,11 @@
 pub mod barrel;
 pub mod builtin;
 pub mod catalog;
-pub mod dimension;
-pub mod error;
-pub mod field;
 pub mod free;
 pub mod interface;
-mod listing;
 mod load;
-mod merge;
 pub mod motion;
-pub mod quantity;
 pub mod rack;
-pub(crate) mod reader;
 pub mod reference;
 mod root;
 pub mod run;
@@ -56,28 +49,34 @@ pub mod schema;
 pub mod shape;
 pub mod stack;
 pub mod strap;
-pub(crate) mod template;
-pub(crate) mod tree;
-mod unit;
-mod writer;
+pub mod template;
+
+pub use barrelstack_input::{
+    Dimension, FileRef, Place, Problem, Quantity, QuantityError, Setting, Source, dimension, field,
+    quantity,
+};
+pub use barrelstack_input::{fnv1a, reader, tree};
+use barrelstack_input::{merge, writer};
 
 pub use barrel::{Barrel, Fill};
-pub use dimension::Dimension;
-pub use error::{Place, Problem, ScenarioError};
+pub use error::ScenarioError;
 pub use free::{FreeBody, FreeInterface, FreeScene, Ground, Nodes, Viscous};
 pub use interface::{Basis, Damping, Friction, Interface, NormalLaw};
-pub use listing::{Setting, Source};
 pub use motion::{
-    Amplitude, Direction, FileRef, MeasuredOn, MotionSource, MotionSpec, Processing, Pulse,
-    PulseKind, RecordMotion, RecordSource, Scale, Sine, Vertical,
+    Amplitude, Direction, MeasuredOn, MotionSource, MotionSpec, Processing, Pulse, PulseKind,
+    RecordMotion, RecordSource, Scale, Sine, Vertical,
 };
-pub use quantity::{Quantity, QuantityError};
-pub use rack::{Cradle, Posts, Rack, RackKind};
+pub use rack::{Cradle, Posts, Rack, RackKind, SeatContact};
 pub use root::ROOT;
-pub use run::{Method, OutcomeSpec, RecordSpec, RunSpec};
+pub use run::{Method, OutcomeSpec, RecordSpec, RunSpec, Until};
 pub use shape::{Shape, Uniform};
 pub use stack::{BodyOverride, StackBody, StackInterfaces, StackSpec, View};
 pub use strap::{Straps, Ties};
+
+/// What can be wrong with a scenario, where, and what to do about it.
+pub mod error {
+    pub use barrelstack_input::{InputError as ScenarioError, Place, Problem};
+}
 
 /// A checked scenario in SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -136,22 +135,13 @@ impl Scenario {
         let untitled = Self { title: "-".to_owned(), ..self.clone() };
         fnv1a(untitled.to_resolved_toml().as_bytes())
     }
-}
 
-/// FNV-1a, 64 bits (Fowler, Noll and Vo).
-pub fn fnv1a(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn the_fingerprint_is_the_published_fnv_1a() {
-        // Test vectors of Noll's page on FNV.
-        assert_eq!(super::fnv1a(b""), 0xcbf2_9ce4_8422_2325);
-        assert_eq!(super::fnv1a(b"a"), 0xaf63_dc4c_8601_ec8c);
-        assert_eq!(super::fnv1a(b"foobar"), 0x8594_4171_f739_67e8);
+    /// Every value but the title, in the order of the file with all defaults written out.
+    ///
+    /// Items of lists are known by their name or the pair they join, else by their number from 1, as in overrides.
+    pub fn settings(&self) -> Vec<Setting> {
+        let mut settings = barrelstack_input::listing::settings(&root::write(self), &ROOT);
+        settings.retain(|setting| !["title", "schema"].contains(&setting.path.as_str()));
+        settings
     }
 }

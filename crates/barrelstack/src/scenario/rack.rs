@@ -34,6 +34,33 @@ pub enum Cradle {
     },
 }
 
+/// How a seat is divided into contact elements, each with the stiffness and damping that the scenario
+/// states per node: tests measure a whole seat, so the division is part of the physics.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SeatContact {
+    /// Nodes along flat undersides, one at each support of a cradle, as in the paper.
+    Nodes,
+    /// One element where two bodies touch.
+    Element,
+    /// One element for each of the two rails that a rack has across the barrels.
+    Rails,
+}
+
+impl SeatContact {
+    /// How many elements stand side by side, one behind the other, where a transverse section shows one.
+    pub fn behind_each_other(self) -> f64 {
+        match self {
+            Self::Nodes | Self::Element => 1.0,
+            Self::Rails => 2.0,
+        }
+    }
+}
+
+impl Named for SeatContact {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("nodes", Self::Nodes), ("element", Self::Element), ("rails", Self::Rails)];
+}
+
 /// The posts of a rack that stands on the rack below.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Posts {
@@ -69,12 +96,19 @@ pub struct Rack {
     pub rail_width: f64,
     /// Height of the lowest point of a carried barrel above the underside of the rack (m).
     pub clearance: f64,
-    /// Height of the beams, from the underside up (m).
+    /// Height of the beams (m), above the feet where there are any.
     pub beam_height: f64,
+    /// Height of the feet under the beams, one over each barrel below (m); zero for straight tubes
+    /// without feet.
+    pub foot_height: f64,
     /// How the rack holds a barrel.
     pub cradle: Cradle,
-    /// Half of the length of flat underside that bears on each barrel crown below (m).
-    pub bearing_half_length: f64,
+    /// Half of the length of a foot (m).
+    pub foot_half_length: f64,
+    /// How a seat is divided into contact elements.
+    pub contact: SeatContact,
+    /// Penetration of a seat (m) beyond which the solids themselves meet, as in impacts.
+    pub seat_stroke: f64,
     /// Distance between contact nodes on rails and undersides (m).
     pub node_spacing: f64,
     /// Posts; present exactly when `kind` is [`RackKind::OnRacks`].
@@ -84,6 +118,8 @@ pub struct Rack {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Base {
     TwoBarrel,
+    TwoBarrelFeet,
+    SingleBar,
     FourBarrel,
     RackOnRack,
     Candia2008,
@@ -92,6 +128,8 @@ enum Base {
 impl Named for Base {
     const NAMES: &'static [(&'static str, Self)] = &[
         ("two-barrel", Self::TwoBarrel),
+        ("two-barrel-feet", Self::TwoBarrelFeet),
+        ("single-bar", Self::SingleBar),
         ("four-barrel", Self::FourBarrel),
         ("rack-on-rack", Self::RackOnRack),
         ("candia-2008", Self::Candia2008),
@@ -221,7 +259,13 @@ pub static RACK: Section = Section {
             "beam_height",
             size(1e-3, 10.0),
             CATALOG,
-            "Height of the beams from the underside up.",
+            "Height of the beams, above the feet where there are any.",
+        ),
+        Field::new(
+            "foot_height",
+            Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)),
+            CATALOG,
+            "Height of the feet under the beams, one over each barrel below; 0 for straight tubes without feet.",
         ),
         Field::new(
             "cradle",
@@ -229,23 +273,45 @@ pub static RACK: Section = Section {
             CATALOG,
             "How the rack holds a barrel.",
         ),
+        Field::new("foot_half_length", size(1e-3, 10.0), CATALOG, "Half of the length of a foot."),
         Field::new(
-            "bearing_half_length",
-            size(1e-3, 10.0),
+            "contact",
+            Kind::Choice(names::<SeatContact>),
             CATALOG,
-            "Half of the length of flat underside that bears on each barrel crown below.",
+            "How a seat is divided into contact elements, each with the constants per node: nodes along flat \
+             undersides, one element, or one for each of two rails.",
+        ),
+        Field::new(
+            "seat_stroke",
+            size(1e-4, 1.0),
+            CATALOG,
+            "Penetration of a seat beyond which the solids themselves meet, by the law of impacts.",
         ),
         Field::new(
             "node_spacing",
             size(1e-3, 0.5),
             CATALOG,
-            "Distance between contact nodes on rails and undersides.",
+            "Distance between contact nodes on flat undersides.",
         ),
     ],
     variants: Some(Variants {
         tag: "base",
         list: &[
-            Variant { name: "two-barrel", help: "Lies on the barrels below.", fields: &[] },
+            Variant {
+                name: "two-barrel",
+                help: "Lies on the barrels below with straight tubes.",
+                fields: &[],
+            },
+            Variant {
+                name: "two-barrel-feet",
+                help: "Stands on the barrels below with feet.",
+                fields: &[],
+            },
+            Variant {
+                name: "single-bar",
+                help: "Lies on the barrels below with one bar in place of two.",
+                fields: &[],
+            },
             Variant { name: "four-barrel", help: "Two racks end to end.", fields: &[] },
             Variant {
                 name: "rack-on-rack",
@@ -296,7 +362,15 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
             half_spacing: or("post_half_spacing", posts.half_spacing)?,
             spigot: or("post_spigot", posts.spigot)?,
         }),
-        (Base::TwoBarrel | Base::FourBarrel | Base::RackOnRack | Base::Candia2008, _) => None,
+        (
+            Base::TwoBarrel
+            | Base::TwoBarrelFeet
+            | Base::SingleBar
+            | Base::FourBarrel
+            | Base::RackOnRack
+            | Base::Candia2008,
+            _,
+        ) => None,
     };
     let rack = Rack {
         base: known.name.to_owned(),
@@ -311,7 +385,10 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
         clearance: or("clearance", known.clearance)?,
         beam_height: or("beam_height", known.beam_height)?,
         cradle,
-        bearing_half_length: or("bearing_half_length", known.bearing_half_length)?,
+        foot_height: or("foot_height", known.foot_height)?,
+        foot_half_length: or("foot_half_length", known.foot_half_length)?,
+        contact: reader.optional_choice("contact")?.unwrap_or(known.contact),
+        seat_stroke: or("seat_stroke", known.seat_stroke)?,
         node_spacing: or("node_spacing", known.node_spacing)?,
         posts,
     };
@@ -323,6 +400,16 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
             rack.width
         );
         return Err(reader.inconsistent("width", message));
+    }
+    if rack.foot_height + rack.beam_height > rack.clearance {
+        let message = format!(
+            "`{}` is {} m, but feet of {} m and a beam of {} m leave no room under the barrels",
+            reader.path_of("clearance"),
+            rack.clearance,
+            rack.foot_height,
+            rack.beam_height
+        );
+        return Err(reader.inconsistent("clearance", message));
     }
     reader.finish();
     Ok(rack)
@@ -360,7 +447,10 @@ pub(super) fn write(rack: &Rack) -> Table {
     writer.quantity("clearance", rack.clearance);
     writer.quantity("beam_height", rack.beam_height);
     writer.table("cradle", write_cradle(&rack.cradle));
-    writer.quantity("bearing_half_length", rack.bearing_half_length);
+    writer.quantity("foot_height", rack.foot_height);
+    writer.quantity("foot_half_length", rack.foot_half_length);
+    writer.choice("contact", rack.contact);
+    writer.quantity("seat_stroke", rack.seat_stroke);
     writer.quantity("node_spacing", rack.node_spacing);
     if let Some(posts) = rack.posts {
         writer.quantity("post_height", posts.height);

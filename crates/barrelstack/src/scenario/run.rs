@@ -1,5 +1,7 @@
 //! How a scenario is run, what is kept, and when a stack counts as collapsed.
 
+use barrelstack_input::section;
+
 use super::dimension::Dimension;
 use super::error::ScenarioError;
 use super::field::{Default, Field, Kind, Named, Range, Section, Variant, Variants, names};
@@ -23,10 +25,29 @@ pub enum Method {
     },
 }
 
+/// What ends a run by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Until {
+    /// The motion is over, and what moves has come to rest.
+    Rest,
+    /// The time is over.
+    Duration,
+}
+
+impl Named for Until {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("rest", Self::Rest), ("duration", Self::Duration)];
+}
+
 /// How a scenario is run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunSpec {
-    /// Length of the run (s); `None` for the duration of the motion and 5 s more.
+    /// What ends the run by itself.
+    pub until: Until,
+    /// Longest time of a run that ends by rest, after the end of its motion (s).
+    pub patience: f64,
+    /// Length of the run (s), of one that ends by rest the longest; `None` for that of the motion, with
+    /// `patience` or 5 s more.
     pub duration: Option<f64>,
     /// Time integration.
     pub method: Method,
@@ -42,32 +63,6 @@ pub struct RunSpec {
     pub similitude: f64,
     /// Whether the bodies are brought to rest under gravity before the motion starts.
     pub settle: bool,
-}
-
-/// What is kept of a run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RecordSpec {
-    /// Frames of all poses per second of simulated time (Hz).
-    pub frame_rate: f64,
-    /// Samples of time histories per second of simulated time (Hz).
-    pub history_rate: f64,
-}
-
-/// Thresholds that tell a collapse.
-#[derive(Debug, Clone, PartialEq)]
-pub struct OutcomeSpec {
-    /// A barrel has lost its seat when its center is this many barrel radii away from its place in
-    /// the rack.
-    pub seat_loss_ratio: f64,
-    /// A body has fallen when its center is this far below its place at rest (m).
-    pub fall_drop: f64,
-    /// A rack has left the barrels below when it has moved this part of its reach on them: across the barrels until
-    /// friction cannot hold it on the round, along them until its rail passes the end.
-    pub rack_slide_ratio: f64,
-    /// A level has rocked over when its rack is inclined more than this (rad).
-    pub rocking_angle: f64,
-    /// The stack has overturned when its bottom rack is inclined more than this (rad).
-    pub overturning_angle: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,10 +94,22 @@ pub static RUN: Section = Section {
     help: "How the scenario is run.",
     fields: &[
         Field::new(
+            "until",
+            Kind::Choice(names::<Until>),
+            Default::Derived("\"rest\" for a stack, \"duration\" for a free scene"),
+            "What ends the run by itself: the ground is still and what moves has come to rest, or the duration is over.",
+        ),
+        Field::new(
+            "patience",
+            Kind::Quantity(&[Dimension::TIME], Range::between(0.0, LONGEST_RUN)),
+            Default::Value("\"30 s\""),
+            "Longest time that a run which ends by rest goes on after the motion.",
+        ),
+        Field::new(
             "duration",
             Kind::Quantity(&[Dimension::TIME], Range::up_to(LONGEST_RUN)),
-            Default::Derived("duration of the motion and 5 s more"),
-            "Simulated time.",
+            Default::Derived("that of the motion, and `patience` or else 5 s more"),
+            "Simulated time; of a run that ends by rest, the longest.",
         ),
         Field::new(
             "method",
@@ -166,76 +173,45 @@ pub static RUN: Section = Section {
     exclusive: &[],
 };
 
-/// What is kept.
-pub static RECORD: Section = Section {
-    name: "record",
-    help: "What is kept of the run.",
-    fields: &[
-        Field::new(
-            "frame_rate",
-            Kind::Quantity(
-                &[Dimension::FREQUENCY],
-                Range { least: 0.01, above: false, greatest: 1e4 },
-            ),
-            Default::Value("\"60 Hz\""),
-            "Frames of all poses per second of simulated time.",
-        ),
-        Field::new(
-            "history_rate",
-            Kind::Quantity(
-                &[Dimension::FREQUENCY],
-                Range { least: 0.01, above: false, greatest: 1e5 },
-            ),
-            Default::Value("\"200 Hz\""),
-            "Samples of time histories per second of simulated time.",
-        ),
-    ],
-    variants: None,
-    exclusive: &[],
-};
+section! {
+    /// What is kept of a run.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct RecordSpec;
+    /// What is kept of the run.
+    pub static RECORD = "record";
+    /// Frames of all poses per second of simulated time.
+    frame_rate: f64 =
+        Kind::Quantity(&[Dimension::FREQUENCY], Range::between(0.01, 1e4)), Default::Value("\"60 Hz\"");
+    /// Samples of time histories per second of simulated time.
+    history_rate: f64 =
+        Kind::Quantity(&[Dimension::FREQUENCY], Range::between(0.01, 1e5)), Default::Value("\"200 Hz\"");
+}
 
-/// Thresholds that tell a collapse.
-pub static OUTCOME: Section = Section {
-    name: "outcome",
-    help: "Thresholds that tell a collapse; every default is an assumption to be varied.",
-    fields: &[
-        Field::new(
-            "seat_loss_ratio",
-            Kind::Number(Range::up_to(10.0)),
-            Default::Value("0.5"),
-            "A barrel has lost its seat when its center is this many barrel radii away from its place in the rack.",
-        ),
-        Field::new(
-            "fall_drop",
-            Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE),
-            Default::Value("\"0.2 m\""),
-            "A body has fallen when its center is this far below its place at rest.",
-        ),
-        Field::new(
-            "rack_slide_ratio",
-            Kind::Number(Range::up_to(10.0)),
-            Default::Value("1.0"),
-            "A rack has left the barrels below when it has moved this part of its reach on them: across the barrels until friction cannot hold it on the round, along them until its rail passes the end.",
-        ),
-        Field::new(
-            "rocking_angle",
-            Kind::Quantity(&[Dimension::ANGLE], Range::up_to(3.2)),
-            Default::Value("\"20 deg\""),
-            "A level has rocked over when its rack is inclined more than this.",
-        ),
-        Field::new(
-            "overturning_angle",
-            Kind::Quantity(&[Dimension::ANGLE], Range::up_to(3.2)),
-            Default::Value("\"30 deg\""),
-            "The stack has overturned when its bottom rack is inclined more than this.",
-        ),
-    ],
-    variants: None,
-    exclusive: &[],
-};
+section! {
+    /// Thresholds that tell a collapse.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct OutcomeSpec;
+    /// Thresholds that tell a collapse; every default is an assumption to be varied.
+    pub static OUTCOME = "outcome";
+    /// A barrel has lost its seat when its center is this many barrel radii away from its place in the rack.
+    seat_loss_ratio: f64 = Kind::Number(Range::up_to(10.0)), Default::Value("0.5");
+    /// A body has fallen when its center is this far below its place at rest.
+    fall_drop: f64 =
+        Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE), Default::Value("\"0.2 m\"");
+    /// A rack has left the barrels below when it has moved this part of its reach on them: across the barrels until friction cannot hold it on the round, along them until its rail passes the end.
+    rack_slide_ratio: f64 = Kind::Number(Range::up_to(10.0)), Default::Value("1.0");
+    /// A level has rocked over when its rack is inclined more than this.
+    rocking_angle: f64 =
+        Kind::Quantity(&[Dimension::ANGLE], Range::up_to(3.2)), Default::Value("\"20 deg\"");
+    /// The stack has overturned when its bottom rack is inclined more than this.
+    overturning_angle: f64 =
+        Kind::Quantity(&[Dimension::ANGLE], Range::up_to(3.2)), Default::Value("\"30 deg\"");
+}
 
 /// Reads how it is run.
-pub(super) fn read_run(reader: Reader<'_>) -> Result<RunSpec, ScenarioError> {
+///
+/// `until` ends it where the file does not say what does.
+pub(super) fn read_run(reader: Reader<'_>, until: Until) -> Result<RunSpec, ScenarioError> {
     let method = match reader.choice::<MethodName>("method")? {
         MethodName::SemiImplicitEuler => Method::SemiImplicitEuler,
         MethodName::VelocityVerlet => Method::VelocityVerlet,
@@ -245,6 +221,8 @@ pub(super) fn read_run(reader: Reader<'_>) -> Result<RunSpec, ScenarioError> {
         }
     };
     let run = RunSpec {
+        until: reader.optional_choice("until")?.unwrap_or(until),
+        patience: reader.quantity("patience")?,
         duration: reader.optional_quantity("duration")?,
         method,
         step: reader.word_or_quantity("step")?,
@@ -278,53 +256,13 @@ pub(super) fn write_run(run: &RunSpec) -> Table {
     if let Method::BogackiShampine { tolerance } = run.method {
         writer.number("tolerance", tolerance);
     }
+    writer.choice("until", run.until);
+    writer.quantity("patience", run.patience);
     writer.optional_quantity("duration", run.duration);
     writer.word_or_quantity("step", run.step);
     writer.optional_quantity("stop_after_collapse", run.stop_after_collapse);
     writer.quantity("gravity", run.gravity);
     writer.number("similitude", run.similitude);
     writer.flag("settle", run.settle);
-    writer.finish()
-}
-
-/// Reads what is kept.
-pub(super) fn read_record(reader: Reader<'_>) -> Result<RecordSpec, ScenarioError> {
-    let record = RecordSpec {
-        frame_rate: reader.quantity("frame_rate")?,
-        history_rate: reader.quantity("history_rate")?,
-    };
-    reader.finish();
-    Ok(record)
-}
-
-/// Writes what is kept.
-pub(super) fn write_record(record: &RecordSpec) -> Table {
-    let mut writer = Writer::new(&RECORD);
-    writer.quantity("frame_rate", record.frame_rate);
-    writer.quantity("history_rate", record.history_rate);
-    writer.finish()
-}
-
-/// Reads the thresholds.
-pub(super) fn read_outcome(reader: Reader<'_>) -> Result<OutcomeSpec, ScenarioError> {
-    let outcome = OutcomeSpec {
-        seat_loss_ratio: reader.number("seat_loss_ratio")?,
-        fall_drop: reader.quantity("fall_drop")?,
-        rack_slide_ratio: reader.number("rack_slide_ratio")?,
-        rocking_angle: reader.quantity("rocking_angle")?,
-        overturning_angle: reader.quantity("overturning_angle")?,
-    };
-    reader.finish();
-    Ok(outcome)
-}
-
-/// Writes the thresholds.
-pub(super) fn write_outcome(outcome: &OutcomeSpec) -> Table {
-    let mut writer = Writer::new(&OUTCOME);
-    writer.number("seat_loss_ratio", outcome.seat_loss_ratio);
-    writer.quantity("fall_drop", outcome.fall_drop);
-    writer.number("rack_slide_ratio", outcome.rack_slide_ratio);
-    writer.quantity("rocking_angle", outcome.rocking_angle);
-    writer.quantity("overturning_angle", outcome.overturning_angle);
     writer.finish()
 }

@@ -89,7 +89,8 @@ impl Shape {
             }
             Self::Circle { radius } => 2.0 * PI * radius,
             Self::Polygon { vertices } => sides(vertices)
-                .map(|(a, b)| ((b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2)).sqrt())
+                .map(|(a, b)| (b[0] - a[0], b[1] - a[1]))
+                .map(|(x, z)| (x * x + z * z).sqrt())
                 .sum(),
             Self::Cradle { radius, half_angle } => 2.0 * half_angle * radius,
             Self::BarrelProfile { length, bilge_diameter, .. } => 2.0 * (length + bilge_diameter),
@@ -145,7 +146,7 @@ fn barrel_profile(length: f64, bilge: f64, head: f64) -> (f64, f64) {
     let (b, s, half) = (0.5 * bilge, 0.5 * (bilge - head), 0.5 * length);
     let mean = b - s / 3.0;
     let mean_with_square = b / 3.0 - s / 5.0;
-    let mean_cube = b.powi(3) - b * b * s + 0.6 * b * s * s - s.powi(3) / 7.0;
+    let mean_cube = b * b * b - b * b * s + 0.6 * b * s * s - s * s * s / 7.0;
     let area = 4.0 * half * mean;
     let moment = 4.0 * half * (half * half * mean_with_square + mean_cube / 3.0);
     (area, moment)

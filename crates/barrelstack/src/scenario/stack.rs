@@ -1,11 +1,13 @@
 //! A stack of barrels on racks.
 
+use barrelstack_input::declared::Declared as _;
+
 use super::barrel::{self, BARREL, Barrel, Fill};
 use super::catalog;
 use super::dimension::Dimension;
 use super::error::ScenarioError;
 use super::field::{Default, Field, Kind, Named, Range, Section, names};
-use super::interface::{self, INTERFACE, Interface};
+use super::interface::{self, IMPACT, INTERFACE, Interface};
 use super::quantity::rounded;
 use super::rack::{self, RACK, Rack};
 use super::reader::Reader;
@@ -96,12 +98,34 @@ pub struct StackInterfaces {
     pub rack_ground: Interface,
     /// Barrel in its cradle, and the rack above on the barrel.
     pub barrel_rack: Interface,
+    /// Rack that stands on the rack below.
+    pub rack_rack: Interface,
     /// Barrel against barrel.
     pub barrel_barrel: Interface,
-    /// Fallen barrel on the ground.
+    /// Barrel on the ground.
     pub barrel_ground: Interface,
-    /// Rack against rack.
-    pub rack_rack: Interface,
+    /// Barrel against a rack on which it has no seat, or beside its seat.
+    pub fallen_barrel_rack: Interface,
+    /// Rack on the ground that has its seat elsewhere.
+    pub fallen_rack_ground: Interface,
+    /// Rack against a rack on which it does not stand.
+    pub fallen_rack_rack: Interface,
+}
+
+impl StackInterfaces {
+    /// Every law with its name in files, in the order of [`INTERFACES`].
+    pub fn named(&self) -> [(&'static str, &Interface); 8] {
+        [
+            ("rack-ground", &self.rack_ground),
+            ("barrel-rack", &self.barrel_rack),
+            ("rack-rack", &self.rack_rack),
+            ("barrel-barrel", &self.barrel_barrel),
+            ("barrel-ground", &self.barrel_ground),
+            ("fallen-barrel-rack", &self.fallen_barrel_rack),
+            ("fallen-rack-ground", &self.fallen_rack_ground),
+            ("fallen-rack-rack", &self.fallen_rack_rack),
+        ]
+    }
 }
 
 impl Named for View {
@@ -213,8 +237,12 @@ pub static OVERRIDE: Section = Section {
     exclusive: &[],
 };
 
-const fn pair(name: &'static str, help: &'static str) -> Field {
+const fn seat(name: &'static str, help: &'static str) -> Field {
     Field::new(name, Kind::Table(&INTERFACE), Default::Nothing, help)
+}
+
+const fn impact(name: &'static str, help: &'static str) -> Field {
+    Field::new(name, Kind::Table(&IMPACT), Default::Nothing, help)
 }
 
 /// The laws of contact of a stack.
@@ -222,11 +250,17 @@ pub static INTERFACES: Section = Section {
     name: "interfaces",
     help: "Laws of contact in a stack, by pair.",
     fields: &[
-        pair("rack-ground", "Bottom rack on the ground."),
-        pair("barrel-rack", "Barrel in its cradle, and the rack above on the barrel."),
-        pair("barrel-barrel", "Barrel against barrel."),
-        pair("barrel-ground", "Fallen barrel on the ground."),
-        pair("rack-rack", "Rack against rack."),
+        seat("rack-ground", "Bottom rack on the ground."),
+        seat("barrel-rack", "Barrel in its cradle, and the rack above on the barrel."),
+        seat("rack-rack", "Rack that stands on the rack below."),
+        impact("barrel-barrel", "Barrel against barrel."),
+        impact("barrel-ground", "Barrel on the ground."),
+        impact(
+            "fallen-barrel-rack",
+            "Barrel against a rack on which it has no seat, or beside its seat.",
+        ),
+        impact("fallen-rack-ground", "Rack on the ground that has its seat elsewhere."),
+        impact("fallen-rack-rack", "Rack against a rack on which it does not stand."),
     ],
     variants: None,
     exclusive: &[],
@@ -342,16 +376,18 @@ fn read_override(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride, 
 
 /// Reads the laws of contact.
 pub(super) fn read_interfaces(reader: Reader<'_>) -> Result<StackInterfaces, ScenarioError> {
-    let [rack_ground, barrel_rack, barrel_barrel, barrel_ground, rack_rack] = catalog::PAIRS;
-    let read = |pair: catalog::CatalogPair| {
-        interface::read(reader.section(pair.name)?, Some(pair.defaults()))
+    let read = |name: &'static str| {
+        interface::read(reader.section(name)?, catalog::pair(name).map(|pair| pair.defaults()))
     };
     let interfaces = StackInterfaces {
-        rack_ground: read(rack_ground)?,
-        barrel_rack: read(barrel_rack)?,
-        barrel_barrel: read(barrel_barrel)?,
-        barrel_ground: read(barrel_ground)?,
-        rack_rack: read(rack_rack)?,
+        rack_ground: read("rack-ground")?,
+        barrel_rack: read("barrel-rack")?,
+        rack_rack: read("rack-rack")?,
+        barrel_barrel: read("barrel-barrel")?,
+        barrel_ground: read("barrel-ground")?,
+        fallen_barrel_rack: read("fallen-barrel-rack")?,
+        fallen_rack_ground: read("fallen-rack-ground")?,
+        fallen_rack_rack: read("fallen-rack-rack")?,
     };
     reader.finish();
     Ok(interfaces)
@@ -367,7 +403,7 @@ pub(super) fn write(stack: &StackSpec) -> Table {
     writer.quantity("gap", stack.gap);
     writer.table("barrel", barrel::write(&stack.barrel));
     writer.table("rack", rack::write(&stack.rack));
-    writer.table("strap", strap::write(&stack.straps));
+    writer.table("strap", stack.straps.write());
     writer.tables("override", stack.overrides.iter().map(write_override).collect());
     writer.finish()
 }
@@ -389,10 +425,9 @@ fn write_override(body: &BodyOverride) -> Table {
 /// Writes the laws of contact.
 pub(super) fn write_interfaces(interfaces: &StackInterfaces) -> Table {
     let mut writer = Writer::new(&INTERFACES);
-    writer.table("rack-ground", interface::write(&interfaces.rack_ground));
-    writer.table("barrel-rack", interface::write(&interfaces.barrel_rack));
-    writer.table("barrel-barrel", interface::write(&interfaces.barrel_barrel));
-    writer.table("barrel-ground", interface::write(&interfaces.barrel_ground));
-    writer.table("rack-rack", interface::write(&interfaces.rack_rack));
+    for (name, law) in interfaces.named() {
+        let seat = ["rack-ground", "barrel-rack", "rack-rack"].contains(&name);
+        writer.table(name, interface::write(if seat { &INTERFACE } else { &IMPACT }, law));
+    }
     writer.finish()
 }

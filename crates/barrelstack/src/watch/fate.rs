@@ -54,6 +54,11 @@ pub struct Fate {
     pub left_seat: Option<(f64, Loss)>,
     /// When (s) it had fallen by the threshold.
     pub fell_at: Option<f64>,
+    /// When (s) it landed: the first time after it had fallen that it went down less than half as fast as
+    /// it had on the way.
+    pub landed_at: Option<f64>,
+    /// Its largest speed downward (m/s) from when it had fallen until it landed.
+    pub landing_speed: Option<f64>,
     /// Largest drop (m) below its place at rest.
     pub drop: f64,
     /// Largest displacement (m) along `x` relative to the ground, before the collapse.
@@ -108,6 +113,10 @@ struct Followed<R: Real> {
     loss: Vec<Loss>,
     /// When (s) it had fallen; infinite while it has not.
     fell_at: R,
+    /// When (s) it landed; infinite while it has not.
+    landed_at: R,
+    /// Largest speed downward (m/s) between the two.
+    landing_speed: R,
     drop: R,
     peak_displacement: R,
     residual_displacement: R,
@@ -143,6 +152,8 @@ impl Fates {
                 left_seat: f64::INFINITY,
                 loss: vec![Loss::Dropped],
                 fell_at: f64::INFINITY,
+                landed_at: f64::INFINITY,
+                landing_speed: 0.0,
                 drop: 0.0,
                 peak_displacement: 0.0,
                 residual_displacement: 0.0,
@@ -173,6 +184,8 @@ impl Fates {
         Fate {
             left_seat: known(followed.left_seat).map(|time| (time, followed.loss[0])),
             fell_at: known(followed.fell_at),
+            landed_at: known(followed.landed_at),
+            landing_speed: known(followed.landed_at).map(|_| followed.landing_speed),
             drop: followed.drop,
             peak_displacement: followed.peak_displacement,
             residual_displacement: followed.residual_displacement,
@@ -245,6 +258,16 @@ impl<R: Real> Fates<R> {
                     let first = first & !self.first_fall.lt(R::splat(f64::INFINITY));
                     self.first_fall = R::select(first, state.time, self.first_fall);
                 }
+            }
+            let never = R::splat(f64::INFINITY);
+            let body = &mut self.bodies[i];
+            let falling = body.fell_at.lt(never) & !body.landed_at.lt(never);
+            if falling.any() {
+                let ground = state.twists[Assembly::GROUND].linear.z;
+                let down = ground - state.twists[i].linear.z;
+                raise(&mut body.landing_speed, seen(falling, down));
+                let landed = falling & down.lt(R::splat(0.5) * body.landing_speed);
+                body.landed_at = R::select(landed, state.time, body.landed_at);
             }
             self.seat(state, i, slip);
         }
@@ -368,7 +391,7 @@ fn seen<R: Real>(standing: R::Mask, value: R) -> R {
 
 impl<R: Real> Followed<R> {
     /// The numbers of a body, with those of a body of a single run.
-    fn numbers<'a>(&'a mut self, single: &Followed<f64>) -> [(&'a mut R, f64); 14] {
+    fn numbers<'a>(&'a mut self, single: &Followed<f64>) -> [(&'a mut R, f64); 16] {
         [
             (&mut self.rest.x, single.rest.x),
             (&mut self.rest.z, single.rest.z),
@@ -376,6 +399,8 @@ impl<R: Real> Followed<R> {
             (&mut self.most_tilt, single.most_tilt),
             (&mut self.left_seat, single.left_seat),
             (&mut self.fell_at, single.fell_at),
+            (&mut self.landed_at, single.landed_at),
+            (&mut self.landing_speed, single.landing_speed),
             (&mut self.drop, single.drop),
             (&mut self.peak_displacement, single.peak_displacement),
             (&mut self.residual_displacement, single.residual_displacement),
@@ -400,6 +425,8 @@ impl<R: Real> Followed<R> {
             left_seat: zero,
             loss: vec![Loss::Dropped; R::LANES],
             fell_at: zero,
+            landed_at: zero,
+            landing_speed: zero,
             drop: zero,
             peak_displacement: zero,
             residual_displacement: zero,
@@ -430,6 +457,8 @@ impl<R: Real> Followed<R> {
             left_seat: self.left_seat.lane(lane),
             loss: vec![self.loss[lane]],
             fell_at: self.fell_at.lane(lane),
+            landed_at: self.landed_at.lane(lane),
+            landing_speed: self.landing_speed.lane(lane),
             drop: self.drop.lane(lane),
             peak_displacement: self.peak_displacement.lane(lane),
             residual_displacement: self.residual_displacement.lane(lane),

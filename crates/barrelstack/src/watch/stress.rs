@@ -3,7 +3,8 @@
 //!
 //! In a planar model stress is force per length of boundary (N/m): the force of a node over the
 //! length that the node stands for.
-//! A rack's stress sits at its nodes. On a barrel it sits wherever a node presses, so the barrel's
+//! A rack's stress sits at its nodes, and where it is touched exactly, at the places where something
+//! presses at rest. On a barrel it sits wherever a node presses, so the barrel's
 //! boundary is divided into cells, and a node presses on all the cells of its own length.
 
 use std::f64::consts::{PI, TAU};
@@ -53,7 +54,7 @@ enum Cells {
     Around(f64),
     /// By `x` along the upper and then the lower half of a profile of this half length (m).
     Along(f64),
-    /// One for every node of the body's first node set.
+    /// One for every node, and every place that is pressed at rest.
     Nodes,
 }
 
@@ -104,6 +105,8 @@ struct Press {
     place: Place,
     /// The cells of the target; past the last one they go on with the first.
     cells: Range<usize>,
+    /// The place on a rack: its envelope, and which of its points.
+    on_rack: Option<(usize, usize)>,
     /// No force (N) up to this one raises an envelope.
     floor: f64,
 }
@@ -147,7 +150,7 @@ impl Stresses {
             let body = &model.bodies()[i];
             let made = match part.kind {
                 PartKind::Barrel => body.surfaces.first().and_then(|s| on_surface(i, &s.surface)),
-                PartKind::Rack => on_nodes(i, &body.nodes),
+                PartKind::Rack => Some(on_nodes(i, &body.nodes)),
                 PartKind::Ground | PartKind::Body => None,
             };
             if let Some(envelope) = made {
@@ -158,16 +161,51 @@ impl Stresses {
         let (mut presses, mut first_press) = (Vec::new(), Vec::new());
         for pair in model.pairs() {
             first_press.push(presses.len());
-            let nodes = match &model.bodies()[pair.contactor].nodes[pair.nodes] {
+            let sets = &model.bodies()[pair.contactor].nodes;
+            let count = |set: &Nodes<Planar>| match set {
                 Nodes::Fixed(nodes) => nodes.len(),
+                Nodes::Rounds(rounds) => rounds.len(),
                 Nodes::Rolling { .. } => 1,
             };
-            presses.extend((0..nodes).map(|node| Press {
+            // The points of a rack are those of its fixed nodes, set after set.
+            let fixed = |set: &Nodes<Planar>| matches!(set, Nodes::Fixed(_));
+            let before =
+                sets[..pair.nodes].iter().filter(|set| fixed(set)).map(count).sum::<usize>();
+            let rack = of_body[pair.contactor]
+                .filter(|at: &usize| fixed(&sets[pair.nodes]) && envelopes[*at].is_on_nodes());
+            presses.extend((0..count(&sets[pair.nodes])).map(|node| Press {
                 length: tributary_length(model, pair, node),
                 place: Place::Nowhere,
                 cells: 0..0,
+                on_rack: rack.map(|at| (at, before + node)),
                 floor: 0.0,
             }));
+        }
+        for contact in &scratch.contacts {
+            let pair = &model.pairs()[contact.pair];
+            let press = &mut presses[first_press[contact.pair] + contact.node as usize];
+            let placed = &model.bodies()[pair.target].surfaces[pair.surface];
+            let place = placed.offset + placed.rotation.apply(contact.point);
+            let normal = placed.rotation.apply(contact.normal);
+            let rack = |body: BodyId| of_body[body].filter(|at| envelopes[*at].is_on_nodes());
+            let found = match (rack(pair.target), rack(pair.contactor), press.on_rack) {
+                (_, _, Some(_)) | (None, None, None) => None,
+                (Some(at), _, None) => Some((at, place, normal)),
+                (None, Some(at), None) => {
+                    // The target stands still at rest, and so the place is that on the rack.
+                    let [rack, target] =
+                        [pair.contactor, pair.target].map(|id| model.bodies()[id].pose.position);
+                    Some((at, target + place - rack, -normal))
+                }
+            };
+            if let Some((at, position, normal)) = found {
+                let envelope = &mut envelopes[at];
+                press.on_rack = Some((at, envelope.points.len()));
+                envelope.points.push(BoundaryPoint { position, normal, coordinate: position.x });
+                envelope.lengths.push(press.length);
+                envelope.at_rest.push(0.0);
+                envelope.peak.push(0.0);
+            }
         }
         let mut stresses = Self { envelopes, of_body, presses, first_press };
         stresses.observe(model, scratch);
@@ -207,10 +245,8 @@ impl Stresses {
             } else {
                 press.place = Place::Everywhere;
             }
-            if let Some(at) = self.of_body[pair.contactor]
-                && matches!(self.envelopes[at].cells, Cells::Nodes)
-            {
-                let peak = &mut self.envelopes[at].peak[contact.node as usize];
+            if let Some((at, point)) = press.on_rack {
+                let peak = &mut self.envelopes[at].peak[point];
                 *peak = peak.max(stress);
                 lowest = lowest.min(*peak);
             }
@@ -335,16 +371,21 @@ fn on_surface(body: BodyId, shape: &Shape) -> Option<StressEnvelope> {
 }
 
 /// One place for every node of a rack.
-fn on_nodes(body: BodyId, nodes: &[Nodes<Planar>]) -> Option<StressEnvelope> {
-    let Some(Nodes::Fixed(nodes)) = nodes.first() else { return None };
-    let points = nodes
-        .iter()
+fn on_nodes(body: BodyId, sets: &[Nodes<Planar>]) -> StressEnvelope {
+    let nodes = || {
+        sets.iter().filter_map(|set| match set {
+            Nodes::Fixed(nodes) => Some(nodes),
+            Nodes::Rounds(_) | Nodes::Rolling { .. } => None,
+        })
+    };
+    let points = nodes()
+        .flatten()
         .map(|node| BoundaryPoint {
             position: node.position,
             normal: Vec2::new(0.0, if node.position.z > 0.0 { 1.0 } else { -1.0 }),
             coordinate: node.position.x,
         })
         .collect();
-    let lengths = nodes.iter().map(|node| node.tributary_length).collect();
-    Some(StressEnvelope { lengths, ..empty(body, points, false, Cells::Nodes) })
+    let lengths = nodes().flatten().map(|node| node.tributary_length).collect();
+    StressEnvelope { lengths, ..empty(body, points, false, Cells::Nodes) }
 }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use barrelstack::study::{Collected, RunOptions, Study, StudyError};
+use barrelstack_campaign::study::{Collected, RunOptions, Study, StudyError};
 use clap::Subcommand;
 use serde_json::json;
 
@@ -142,9 +142,11 @@ pub(crate) fn study(args: &StudyArgs) -> anyhow::Result<ExitCode> {
         Some(Action::Report(args)) => report::report(args)?,
         Some(Action::Emit(args)) => emit::emit(args)?,
         Some(Action::Example { name, list }) => example(name.as_deref(), *list)?,
-        Some(Action::Fields) => printer::text(&barrelstack::study::reference())?,
+        Some(Action::Fields) => printer::text(&barrelstack_campaign::study::reference())?,
         Some(Action::Schema) => {
-            printer::lines([serde_json::to_string_pretty(&barrelstack::study::json_schema())?])?;
+            printer::lines([serde_json::to_string_pretty(
+                &barrelstack_campaign::study::json_schema(),
+            )?])?;
         }
     }
     Ok(ExitCode::SUCCESS)
@@ -202,6 +204,7 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
 fn plan(args: &PlanArgs) -> anyhow::Result<()> {
     let study = load(&args.which.study)?;
     let at_most = study.is_adaptive();
+    let following = study.following()?;
     if args.json {
         let chunks: Vec<_> = study
             .plan()
@@ -217,6 +220,7 @@ fn plan(args: &PlanArgs) -> anyhow::Result<()> {
             "cases": study.cases(),
             "at_most": at_most,
             "motions": study.motions(),
+            "following": following,
             "chunks": chunks,
         });
         return printer::lines([serde_json::to_string_pretty(&document)?]);
@@ -231,6 +235,7 @@ fn plan(args: &PlanArgs) -> anyhow::Result<()> {
             answer::counted(study.chunk_count() as u64, "chunk"),
             answer::counted(study.motions() as u64, "motion")
         ),
+        format!("  {}", following.words(study.motions())),
         String::new(),
         format!("  {:>8}  {unit:>8}  {:>10}  {:>10}", "chunk", "first", "last"),
     ];
@@ -282,13 +287,15 @@ fn collect(args: &FolderArgs) -> anyhow::Result<()> {
 
 fn example(name: Option<&str>, list: bool) -> anyhow::Result<()> {
     if list {
-        return printer::lines(barrelstack::study::builtin_names());
+        return printer::lines(barrelstack_campaign::study::builtin_names());
     }
     let name = match name {
         Some(name) => name,
-        None => barrelstack::study::builtin_names().next().context("there is no built-in study")?,
+        None => barrelstack_campaign::study::builtin_names()
+            .next()
+            .context("there is no built-in study")?,
     };
-    if let Some(text) = barrelstack::study::builtin(name) {
+    if let Some(text) = barrelstack_campaign::study::builtin(name) {
         return printer::text(text);
     }
     // The error of the library names those there are.

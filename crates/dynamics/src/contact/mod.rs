@@ -7,7 +7,7 @@ pub mod restitution;
 use crate::space::Space;
 
 pub use friction::{Friction, FrictionLaw, Stick};
-pub use normal::{Exponent, NormalForce, NormalLaw};
+pub use normal::{Exponent, NormalForce, NormalLaw, Stop};
 
 /// What the stiffness and damping of an interface are stated for.
 ///
@@ -32,6 +32,10 @@ impl Basis {
     }
 }
 
+/// Spin (rad/s) of one body relative to the other at which 71 % of the resistance to rolling is reached:
+/// the moment is the normal force times its lever times `ω / √(ω² + ω₀²)`.
+pub const ROLLING_SPIN: f64 = 0.1;
+
 /// How two kinds of surfaces push on each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interface<S: Space> {
@@ -39,6 +43,10 @@ pub struct Interface<S: Space> {
     pub name: String,
     /// Penetration and its rate to compressive force.
     pub normal: NormalLaw<S::Real>,
+    /// What the surfaces meet beyond the stroke of that law; none where it has no end.
+    pub stop: Option<Stop<S::Real>>,
+    /// Lever (m) at which the normal force resists rolling (see [`ROLLING_SPIN`]); none where it does not.
+    pub rolling: Option<S::Real>,
     /// Slip to friction force.
     pub friction: FrictionLaw<S::Real>,
     /// What the constants are stated for.

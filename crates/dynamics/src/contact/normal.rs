@@ -40,11 +40,58 @@ pub enum NormalLaw<R = f64> {
         /// `n`.
         exponent: Exponent,
     },
+    /// An impact that gives back a stated share of its speed, whatever mass meets and however fast:
+    ///
+    /// ```text
+    /// fₙ = k δ^(3/2) (1 + e² + (1 − e²) s) / 2      s = δ̇ / √(δ̇² + v²)
+    /// ```
+    ///
+    /// On approach it is the spring, on separation e² of it, so e² of the energy comes back: the loading
+    /// and unloading branches of Walton and Braun (1986), joined without memory over speeds of some `v`.
+    /// Slower than that the force is a damper besides the spring, and what it bears comes to rest.
+    /// The spring stiffens as that between round bodies does (Hertz), so that a light body rests softly
+    /// and a heavy one is stopped within millimeters.
+    Rebound {
+        /// `k` (N/m^1.5).
+        stiffness: R,
+        /// `e`, speed after over speed before.
+        restitution: R,
+        /// `v` (m/s).
+        speed: R,
+    },
     /// `fₙ = k δ^(3/2)`, elastic (Hertz 1882; for spheres `k = 4/3 E* √r`).
     Hertz {
         /// `k` (N/m^1.5).
         stiffness: R,
     },
+}
+
+/// The end of the stroke of a soft law: beyond a depth (m) a second law acts as well, on what the
+/// penetration is beyond it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop<R = f64> {
+    /// Penetration (m) from which on it acts.
+    pub depth: R,
+    /// The law that is added.
+    pub law: NormalLaw<R>,
+}
+
+impl<R: Real> Stop<R> {
+    /// The force of the soft law, and that of the stop where it is reached.
+    #[inline(always)]
+    pub(crate) fn add(&self, soft: NormalForce<R>, depth: R, rate: R) -> NormalForce<R> {
+        let beyond = depth - self.depth;
+        let reached = R::zero().lt(beyond);
+        if !reached.any() {
+            return soft;
+        }
+        let hard = self.law.force(R::select(reached, beyond, R::zero()), rate);
+        NormalForce {
+            total: soft.total + R::select(reached, hard.total, R::zero()),
+            elastic: soft.elastic + R::select(reached, hard.elastic, R::zero()),
+            energy: soft.energy + R::select(reached, hard.energy, R::zero()),
+        }
+    }
 }
 
 /// How an elastic force grows with penetration.
@@ -133,6 +180,19 @@ impl<R: Real> NormalLaw<R> {
                     energy: R::splat(share) * elastic * depth,
                 }
             }
+            Self::Rebound { stiffness, restitution, speed } => {
+                let half = R::splat(0.5);
+                let spring = stiffness * depth * depth.sqrt();
+                let back = restitution * restitution;
+                let sense = rate / (rate * rate + speed * speed).sqrt();
+                let share = half * (R::splat(1.0) + back + (R::splat(1.0) - back) * sense);
+                let elastic = back * spring;
+                NormalForce {
+                    total: spring * share,
+                    elastic,
+                    energy: R::splat(0.4) * elastic * depth,
+                }
+            }
             Self::Hertz { stiffness } => {
                 let elastic = stiffness * depth * depth.sqrt();
                 NormalForce { total: elastic, elastic, energy: R::splat(0.4) * elastic * depth }
@@ -146,7 +206,9 @@ impl<R: Real> NormalLaw<R> {
             Self::SpeedGap { stiffness, .. }
             | Self::KelvinVoigt { stiffness, .. }
             | Self::HuntCrossley { stiffness, exponent: Exponent::Linear, .. } => stiffness,
-            Self::HuntCrossley { stiffness, .. } | Self::Hertz { stiffness } => {
+            Self::HuntCrossley { stiffness, .. }
+            | Self::Hertz { stiffness }
+            | Self::Rebound { stiffness, .. } => {
                 R::splat(1.5) * stiffness * depth.max(R::zero()).sqrt()
             }
         }
@@ -164,7 +226,8 @@ impl<R: Real> NormalLaw<R> {
                 };
                 elastic * dissipation
             }
-            Self::Hertz { .. } => R::zero(),
+            // What it damps grows with the load, not with the penetration: see `Rebound`.
+            Self::Hertz { .. } | Self::Rebound { .. } => R::zero(),
         }
     }
 }

@@ -123,6 +123,8 @@ struct Pressed<S: Space> {
     touching: <S::Real as Real>::Mask,
     /// Compressive force (N).
     normal_force: S::Real,
+    /// What the constants of its laws are multiplied by.
+    weight: S::Real,
 }
 
 impl<S: Space> Scratch<S> {
@@ -281,7 +283,7 @@ pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: 
 
 #[inline(always)]
 fn commit_all<S: Space>(model: &Model<S>, elements: &mut Elements<S>, scratch: &Scratch<S>) {
-    let Elements { sticks, weights, .. } = elements;
+    let Elements { sticks, .. } = elements;
     let mut next = 0;
     for pressed in scratch.pressed.chunk_by(|a, b| a.pair == b.pair) {
         let interface = &model.interfaces[model.pairs[pressed[0].pair].interface];
@@ -299,10 +301,10 @@ fn commit_all<S: Space>(model: &Model<S>, elements: &mut Elements<S>, scratch: &
                     tangential_stiffness,
                     tangential_damping,
                 };
-                commit_pair(law, pressed, &scratch.slip_rates, sticks, weights, &mut next);
+                commit_pair(law, pressed, &scratch.slip_rates, sticks, &mut next);
             }
             law @ (FrictionLaw::Frictionless | FrictionLaw::Regularized { .. }) => {
-                commit_pair(law, pressed, &scratch.slip_rates, sticks, weights, &mut next);
+                commit_pair(law, pressed, &scratch.slip_rates, sticks, &mut next);
             }
         }
     }
@@ -317,7 +319,6 @@ fn commit_pair<S: Space>(
     pressed: &[Pressed<S>],
     slip_rates: &[S::Tangent],
     sticks: &mut [Stick<S>],
-    weights: &[S::Real],
     next: &mut usize,
 ) {
     for contact in pressed {
@@ -329,7 +330,7 @@ fn commit_pair<S: Space>(
         *next = element + 1;
 
         let stick = &mut sticks[element];
-        *stick = stick.commit(&law, slip_rates[element], contact.normal_force, weights[element]);
+        *stick = stick.commit(&law, slip_rates[element], contact.normal_force, contact.weight);
         let counted = S::Real::select(contact.touching, S::Real::splat(1.0), S::Real::zero());
         stick.displacement = stick.displacement * counted;
         stick.slipping = stick.slipping & contact.touching;
@@ -340,6 +341,7 @@ fn commit_pair<S: Space>(
 pub fn tributary_length<S: Space>(model: &Model<S>, pair: &ContactPair, node: usize) -> S::Real {
     match model.pair_nodes(pair) {
         Nodes::Fixed(nodes) => nodes[node].tributary_length,
+        Nodes::Rounds(rounds) => rounds[node].tributary_length,
         Nodes::Rolling { tributary_length, .. } => *tributary_length,
     }
 }

@@ -1,11 +1,11 @@
 //! The contacts of one pair: from gaps to forces on both bodies.
 
-use crate::body::Nodes;
-use crate::contact::{FrictionLaw, NormalLaw};
+use crate::body::{Nodes, Round};
+use crate::contact::{FrictionLaw, NormalLaw, ROLLING_SPIN, Stop};
 use crate::elements::{Elements, Group, PairFrame};
-use crate::model::Model;
+use crate::model::{Counts, Model};
 use crate::real::{Mask, Real};
-use crate::shape::{Gap, Surface};
+use crate::shape::{Gap, Nearest, Surface};
 use crate::space::{Linear, Space, Twist, Wrench};
 use crate::state::State;
 
@@ -60,7 +60,22 @@ fn touch_by<S: Space>(
     let pair = &model.pairs[group.pair];
     let frame = PairFrame::new(model, pair, &state.poses, &scratch.rotations);
     let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
+    let counted = match (pair.counts, frame.before(model, pair)) {
+        (_, None) => None,
+        (Counts::BehindFace(_) | Counts::BehindFaceOfTarget(_), Some(before)) => {
+            Some(before.le(S::Real::zero()))
+        }
+        (Counts::Everywhere | Counts::BeforeFace(_), Some(before)) => {
+            Some(S::Real::zero().lt(before))
+        }
+    };
+    if counted.is_some_and(|counted| !counted.any()) {
+        return;
+    }
     let mut press = Press {
+        rolling: model.interfaces[pair.interface].rolling,
+        stop: model.interfaces[pair.interface].stop,
+        counted,
         normal,
         friction,
         step,
@@ -75,6 +90,7 @@ fn touch_by<S: Space>(
         pressed: &mut scratch.pressed,
         contacts: scratch.keeps_contacts.then_some(&mut scratch.contacts),
     };
+    let one = S::Real::splat(1.0);
     match model.pair_nodes(pair) {
         Nodes::Fixed(_) => {
             let nodes = &state.elements.positions[group.first..group.end];
@@ -83,15 +99,16 @@ fn touch_by<S: Space>(
                 #[inline(always)]
                 |index| frame.to_surface(nodes[index]),
                 #[inline(always)]
-                |index, node, gap| press.node(group.first + index, node, gap),
+                |index, node, gap| press.node(group.first + index, node, gap, one),
             );
         }
+        Nodes::Rounds(rounds) => press.rounds(model, rounds, group, surface),
         Nodes::Rolling { center, radius, .. } => {
             let center = frame.to_surface(*center);
             let mut gap = surface.gap(center);
             gap.distance -= *radius;
             if gap.distance.lt(S::Real::zero()).any() {
-                press.node(group.first, center - gap.normal * *radius, gap);
+                press.node(group.first, center - gap.normal * *radius, gap, one);
             }
         }
     }
@@ -113,6 +130,11 @@ fn touch_by<S: Space>(
 
 /// Nodes of a pair that press into a surface, one after the other.
 struct Press<'a, S: Space> {
+    /// Lever (m) at which normal forces resist rolling, if they do.
+    rolling: Option<S::Real>,
+    stop: Option<Stop<S::Real>>,
+    /// Where the contacts of the pair count; none if everywhere.
+    counted: Option<<S::Real as Real>::Mask>,
     normal: NormalLaw<S::Real>,
     friction: FrictionLaw<S::Real>,
     /// The step (s) that the forces stand for.
@@ -131,20 +153,118 @@ struct Press<'a, S: Space> {
     contacts: Option<&'a mut Vec<Contact<S>>>,
 }
 
+/// How much longer (m) a side is for a corner of the first of two bodies than for one of the second:
+/// where two corners lie one above the other, one contact is counted and not two or none.
+const SLACK: f64 = 1e-9;
+
+/// How far apart (m) two corners that meet face on face are two contacts in full.
+const COMPANION: f64 = 0.01;
+
+/// Cosines of the angle between two faces up to which, and from which on, they count as face on face.
+const PARALLEL: (f64, f64) = (0.95, 0.99);
+
+/// How far past the limits of a round piece a normal may point, on the way to another round piece.
+const LIMIT: f64 = 2e-7;
+
 impl<S: Space> Press<'_, S> {
+    /// The round pieces of a convex boundary, each with its deepest point.
+    ///
+    /// A round piece against a straight side is a contact of this pair wherever it is deepest, or ends
+    /// straight; against a round piece it is one if each lies in the limits of the other, and then it
+    /// belongs to the pair whose contactor is the first of the two bodies.
+    #[inline(always)]
+    fn rounds(
+        &mut self,
+        model: &Model<S>,
+        rounds: &[Round<S>],
+        group: &Group,
+        surface: &S::Surface,
+    ) {
+        let zero = S::Real::zero();
+        let pair = &model.pairs[self.pair];
+        let first = pair.contactor < pair.target;
+        let slack = S::Real::splat(if first { SLACK } else { -SLACK });
+        for element in group.first..group.end {
+            let round = &rounds[self.elements.nodes[element] as usize];
+            let center = self.frame.to_surface(round.center);
+            let nearest = surface.nearest(center, slack);
+            let (mut gap, against_round) = (nearest.gap, nearest.round);
+            gap.distance = gap.distance - round.radius;
+            if !gap.distance.lt(zero).any() {
+                continue;
+            }
+            let toward = self.frame.to_contactor(-gap.normal);
+            let mut deepest = !<S::Real as Real>::Mask::default();
+            for limit in round.arc_limits.iter().flatten() {
+                let past = toward.dot(*limit);
+                deepest = deepest & if round.takes_limit { past.le(zero) } else { past.lt(zero) };
+            }
+            let mut counts = !against_round & deepest;
+            if first {
+                let [a, b] = round.limits;
+                let limit = S::Real::splat(LIMIT);
+                let within = toward.dot(a).le(limit) & toward.dot(b).le(limit);
+                counts = counts | (against_round & within);
+            }
+            let mut counts = counts & (-round.greatest_depth).lt(gap.distance);
+            for (outward, distance) in round.sides.iter().flatten() {
+                let point = round.center + toward * (round.radius + gap.distance);
+                let nearer = gap.distance.lt(point.dot(*outward) - *distance);
+                counts = counts & !(against_round & nearer);
+            }
+            if (counts & gap.distance.lt(zero)).any() {
+                gap.distance = S::Real::select(counts, gap.distance, S::Real::splat(1.0));
+                let share =
+                    if first { S::Real::splat(1.0) } else { self.companion(round, &nearest) };
+                // Both bodies feel the force midway between their boundaries, whichever of them tests.
+                let inset = round.radius - gap.distance * S::Real::splat(0.5);
+                self.node(element, center - gap.normal * inset, gap, share);
+            }
+        }
+    }
+
+    /// The share with which a corner counts on a side near whose end the corner of the other body may bear
+    /// on a side of its own.
+    ///
+    /// Where two boxes just overlap, face on face, both corners lie at one place and are one contact; they
+    /// become two, at both ends of where the faces overlap, as these ends part.
+    #[inline(always)]
+    fn companion(&self, round: &Round<S>, nearest: &Nearest<S>) -> S::Real {
+        let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
+        let parted = (nearest.to_end * S::Real::splat(1.0 / COMPANION)).max(zero).min(one);
+        if one.le(parted).all() {
+            return one;
+        }
+        // Whether a side of this corner runs along the other side toward its end, and not away from it.
+        let end = self.frame.to_contactor(nearest.toward_end);
+        let along = round.limits[0].dot(end).max(round.limits[1].dot(end));
+        let (from, to) = PARALLEL;
+        let together =
+            ((along - S::Real::splat(from)) * S::Real::splat(1.0 / (to - from))).max(zero);
+        one - (one - parted) * together.min(one)
+    }
+
     /// The forces of a node at `node` (m), which penetrates in at least one lane; in the frame of the
     /// target's surface.
     #[inline(always)]
-    fn node(&mut self, element: usize, node: S::Vector, gap: Gap<S>) {
+    fn node(&mut self, element: usize, node: S::Vector, mut gap: Gap<S>, share: S::Real) {
+        if let Some(counted) = self.counted {
+            gap.distance = S::Real::select(counted, gap.distance, S::Real::splat(1.0));
+        }
         if self.meeting.is_none() {
             self.meeting = Some(Meeting::new(self.frame, self.twists.0, self.twists.1));
         }
         let Some(meeting) = &self.meeting else { return };
         let contact = meeting.contact(self.pair, self.elements, element, node, gap);
         let touching = contact.touching;
-        let weight = S::Real::select(touching, self.elements.weights[element], S::Real::zero());
+        let whole = self.elements.weights[element] * share;
+        let weight = S::Real::select(touching, whole, S::Real::zero());
         let (depth, rate) = (contact.penetration, contact.penetration_rate);
-        let normal = self.normal.force(depth, rate).within_step(depth, rate, self.step);
+        let mut normal = self.normal.force(depth, rate);
+        if let Some(stop) = self.stop {
+            normal = stop.add(normal, depth, rate);
+        }
+        let normal = normal.within_step(depth, rate, self.step);
         let normal_force = normal.total * weight;
         let stick = self.elements.sticks[element];
         let friction = self.friction.force::<S>(stick, contact.slip_rate, normal_force, weight);
@@ -159,9 +279,21 @@ impl<S: Space> Press<'_, S> {
         sum.damped += Wrench { force: contact.normal * damped, moment: lever * damped };
         let sliding = -S::along(friction.force, contact.normal);
         sum.friction += Wrench { force: sliding, moment: S::moment(arm, sliding) };
+        if let Some(lever) = self.rolling {
+            let spin = meeting.spin;
+            let slow = S::Real::splat(ROLLING_SPIN * ROLLING_SPIN);
+            let resisted = normal_force * lever / (spin.dot(spin) + slow).sqrt();
+            sum.friction += Wrench { force: S::Vector::default(), moment: -(spin * resisted) };
+        }
 
         self.slip_rates[element] = contact.slip_rate;
-        self.pressed.push(Pressed { element, pair: self.pair, touching, normal_force });
+        self.pressed.push(Pressed {
+            element,
+            pair: self.pair,
+            touching,
+            normal_force,
+            weight: whole,
+        });
         if let Some(contacts) = &mut self.contacts {
             contacts.push(Contact { normal_force, friction_force: friction.force, ..contact });
         }

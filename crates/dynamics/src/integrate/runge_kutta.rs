@@ -3,6 +3,7 @@
 use super::{Drive, accept, free, place_prescribed};
 use crate::contact::Stick;
 use crate::forces::{Scratch, evaluate};
+use crate::math::cbrt;
 use crate::model::Model;
 use crate::real::Real;
 use crate::space::{Linear, Pose, Space, Twist};
@@ -102,14 +103,14 @@ impl<S: Space> Stages<S> {
             let smallest = 1e-9;
             if error <= 1.0 || dt <= smallest {
                 accept(model, state, scratch);
-                let growth = 0.9 / error.max(1e-6).cbrt();
+                let growth = 0.9 / cbrt(error.max(1e-6));
                 return S::Real::splat(dt * growth.clamp(0.2, 4.0));
             }
             if !error.is_finite() {
                 accept(model, state, scratch);
                 return S::Real::splat(dt);
             }
-            let shorter = (dt * (0.9 / error.cbrt()).clamp(0.1, 0.9)).max(smallest);
+            let shorter = (dt * (0.9 / cbrt(error)).clamp(0.1, 0.9)).max(smallest);
             until = start + S::Real::splat(shorter);
             self.restore(state, start);
         }

@@ -1,7 +1,7 @@
 //! From things made of single numbers to the same things made of bundles, lane by lane.
 
-use crate::body::{Body, Node, Nodes, Placed};
-use crate::contact::{FrictionLaw, Interface, NormalLaw, Stick};
+use crate::body::{Body, Face, Node, Nodes, Placed, Round};
+use crate::contact::{FrictionLaw, Interface, NormalLaw, Stick, Stop};
 use crate::forces::Losses;
 use crate::model::Model;
 use crate::real::{Mask, Real};
@@ -60,6 +60,17 @@ impl<T: Lanewise> Lanewise for Option<T> {
             (None, None) => {}
             (Some(_), None) | (None, Some(_)) => unreachable!("{ALIKE}"),
         }
+    }
+}
+
+impl<A: Lanewise, B: Lanewise> Lanewise for (A, B) {
+    type Single = (A::Single, B::Single);
+    fn in_all(single: &Self::Single) -> Self {
+        (A::in_all(&single.0), B::in_all(&single.1))
+    }
+    fn put(&mut self, lane: usize, single: &Self::Single) {
+        self.0.put(lane, &single.0);
+        self.1.put(lane, &single.1);
     }
 }
 
@@ -133,14 +144,40 @@ fields!(Twist<Planar<R>>, Twist<Planar>, Twist { linear, angular });
 fields!(Wrench<Planar<R>>, Wrench<Planar>, Wrench { force, moment });
 fields!(Losses<Planar<R>>, Losses<Planar>, Losses { damped, friction, viscous });
 fields!(Node<Planar<R>>, Node<Planar>, Node { position, tributary_length });
+fields!(Face<Planar<R>>, Face<Planar>, Face { point, outward });
 fields!(Placed<Planar<R>>, Placed<Planar>, Placed { surface, offset, rotation });
 fields!(Circle<R>, Circle, Circle { radius });
 fields!(Cradle<R>, Cradle, Cradle { radius, sin, cos });
 fields!(
     BarrelProfile<R>,
     BarrelProfile,
-    BarrelProfile { half_length, head_radius, bilge_radius, stave_radius }
+    BarrelProfile { half_length, head_radius, bilge_radius, stave_radius, rounding, corner_height }
 );
+
+impl<R: Real> Lanewise for Round<Planar<R>> {
+    type Single = Round<Planar>;
+    fn in_all(single: &Self::Single) -> Self {
+        Self {
+            center: Lanewise::in_all(&single.center),
+            radius: R::splat(single.radius),
+            limits: Lanewise::in_all(&single.limits),
+            arc_limits: Lanewise::in_all(&single.arc_limits),
+            sides: Lanewise::in_all(&single.sides),
+            takes_limit: single.takes_limit,
+            greatest_depth: R::splat(single.greatest_depth),
+            tributary_length: R::splat(single.tributary_length),
+        }
+    }
+    fn put(&mut self, lane: usize, single: &Self::Single) {
+        self.center.put(lane, &single.center);
+        self.radius.put(lane, &single.radius);
+        self.limits.put(lane, &single.limits);
+        self.arc_limits.put(lane, &single.arc_limits);
+        self.sides.put(lane, &single.sides);
+        self.greatest_depth.put(lane, &single.greatest_depth);
+        self.tributary_length.put(lane, &single.tributary_length);
+    }
+}
 
 impl<R: Real> Lanewise for Stick<Planar<R>> {
     type Single = Stick<Planar>;
@@ -191,6 +228,7 @@ impl<R: Real> Lanewise for Nodes<Planar<R>> {
     fn in_all(single: &Self::Single) -> Self {
         match single {
             Nodes::Fixed(nodes) => Self::Fixed(Lanewise::in_all(nodes)),
+            Nodes::Rounds(rounds) => Self::Rounds(Lanewise::in_all(rounds)),
             Nodes::Rolling { center, radius, tributary_length } => Self::Rolling {
                 center: Lanewise::in_all(center),
                 radius: Lanewise::in_all(radius),
@@ -201,6 +239,7 @@ impl<R: Real> Lanewise for Nodes<Planar<R>> {
     fn put(&mut self, lane: usize, single: &Self::Single) {
         match (self, single) {
             (Self::Fixed(bundle), Nodes::Fixed(single)) => bundle.put(lane, single),
+            (Self::Rounds(bundle), Nodes::Rounds(single)) => bundle.put(lane, single),
             (
                 Self::Rolling { center, radius, tributary_length },
                 Nodes::Rolling { center: c, radius: r, tributary_length: t },
@@ -209,7 +248,7 @@ impl<R: Real> Lanewise for Nodes<Planar<R>> {
                 radius.put(lane, r);
                 tributary_length.put(lane, t);
             }
-            (Self::Fixed(_) | Self::Rolling { .. }, _) => unreachable!("{ALIKE}"),
+            (Self::Fixed(_) | Self::Rounds(_) | Self::Rolling { .. }, _) => unreachable!("{ALIKE}"),
         }
     }
 }
@@ -237,6 +276,11 @@ impl<R: Real> Lanewise for NormalLaw<R> {
                 exponent,
             },
             NormalLaw::Hertz { stiffness } => Self::Hertz { stiffness: splat(stiffness) },
+            NormalLaw::Rebound { stiffness, restitution, speed } => Self::Rebound {
+                stiffness: splat(stiffness),
+                restitution: splat(restitution),
+                speed: splat(speed),
+            },
         }
     }
     fn put(&mut self, lane: usize, single: &NormalLaw) {
@@ -260,13 +304,33 @@ impl<R: Real> Lanewise for NormalLaw<R> {
                 stiffness.put(lane, k);
             }
             (
+                Self::Rebound { stiffness, restitution, speed },
+                NormalLaw::Rebound { stiffness: k, restitution: e, speed: v },
+            ) => {
+                stiffness.put(lane, k);
+                restitution.put(lane, e);
+                speed.put(lane, v);
+            }
+            (
                 Self::SpeedGap { .. }
                 | Self::KelvinVoigt { .. }
                 | Self::HuntCrossley { .. }
-                | Self::Hertz { .. },
+                | Self::Hertz { .. }
+                | Self::Rebound { .. },
                 _,
             ) => unreachable!("{ALIKE}"),
         }
+    }
+}
+
+impl<R: Real> Lanewise for Stop<R> {
+    type Single = Stop;
+    fn in_all(single: &Stop) -> Self {
+        Self { depth: R::splat(single.depth), law: Lanewise::in_all(&single.law) }
+    }
+    fn put(&mut self, lane: usize, single: &Stop) {
+        self.depth.put(lane, &single.depth);
+        self.law.put(lane, &single.law);
     }
 }
 
@@ -276,12 +340,16 @@ impl<R: Real> Lanewise for Interface<Planar<R>> {
         Self {
             name: single.name.clone(),
             normal: Lanewise::in_all(&single.normal),
+            stop: Lanewise::in_all(&single.stop),
+            rolling: Lanewise::in_all(&single.rolling),
             friction: Lanewise::in_all(&single.friction),
             basis: single.basis,
         }
     }
     fn put(&mut self, lane: usize, single: &Self::Single) {
         self.normal.put(lane, &single.normal);
+        self.stop.put(lane, &single.stop);
+        self.rolling.put(lane, &single.rolling);
         self.friction.put(lane, &single.friction);
     }
 }
@@ -299,6 +367,7 @@ impl<R: Real> Lanewise for Body<Planar<R>> {
             twist: Lanewise::in_all(&single.twist),
             surfaces: Lanewise::in_all(&single.surfaces),
             nodes: Lanewise::in_all(&single.nodes),
+            faces: Lanewise::in_all(&single.faces),
         }
     }
     fn put(&mut self, lane: usize, single: &Self::Single) {
@@ -309,6 +378,7 @@ impl<R: Real> Lanewise for Body<Planar<R>> {
         self.twist.put(lane, &single.twist);
         self.surfaces.put(lane, &single.surfaces);
         self.nodes.put(lane, &single.nodes);
+        self.faces.put(lane, &single.faces);
     }
 }
 
@@ -341,6 +411,7 @@ impl<R: Real> Lanewise for Model<Planar<R>> {
             bodies: Lanewise::in_all(&single.bodies),
             interfaces: Lanewise::in_all(&single.interfaces),
             pairs: single.pairs.clone(),
+            couples: single.couples.clone(),
             straps: Lanewise::in_all(&single.straps),
             gravity: Lanewise::in_all(&single.gravity),
             reach: single.reach.clone(),

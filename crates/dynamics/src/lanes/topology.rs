@@ -33,6 +33,8 @@ struct BodyKind {
 struct InterfaceKind {
     normal: Discriminant<NormalLaw>,
     exponent: Option<Exponent>,
+    stop: Option<Discriminant<NormalLaw>>,
+    rolling: bool,
     friction: Discriminant<FrictionLaw>,
     basis: Basis,
 }
@@ -59,6 +61,7 @@ impl BodyKind {
         };
         let count = |nodes: &Nodes<Planar>| match nodes {
             Nodes::Fixed(nodes) => nodes.len(),
+            Nodes::Rounds(rounds) => rounds.len(),
             Nodes::Rolling { .. } => 1,
         };
         let surfaces = body.surfaces.iter().map(|placed| &placed.surface);
@@ -77,11 +80,14 @@ impl InterfaceKind {
             NormalLaw::HuntCrossley { exponent, .. } => Some(exponent),
             NormalLaw::SpeedGap { .. }
             | NormalLaw::KelvinVoigt { .. }
-            | NormalLaw::Hertz { .. } => None,
+            | NormalLaw::Hertz { .. }
+            | NormalLaw::Rebound { .. } => None,
         };
         Self {
             normal: discriminant(&interface.normal),
             exponent,
+            stop: interface.stop.as_ref().map(|stop| discriminant(&stop.law)),
+            rolling: interface.rolling.is_some(),
             friction: discriminant(&interface.friction),
             basis: interface.basis,
         }

@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::{BoundaryNode, Gap, Section, parts_of};
+use crate::body::Round;
 use crate::math;
 use crate::real::Real;
 use crate::space::{Linear, Planar, Vec2};
@@ -44,6 +45,20 @@ impl<R: Real> Circle<R> {
 }
 
 impl Circle {
+    /// The whole circle.
+    pub(super) fn rounds(self, tributary_length: f64) -> Vec<Round<Planar>> {
+        vec![Round {
+            center: Vec2::default(),
+            radius: self.radius,
+            limits: [Vec2::default(); 2],
+            arc_limits: [None; 2],
+            sides: [None; 2],
+            takes_limit: true,
+            greatest_depth: f64::INFINITY,
+            tributary_length,
+        }]
+    }
+
     pub(super) fn nodes(self, spacing: f64) -> Vec<BoundaryNode> {
         let count = parts_of(TAU * self.radius, spacing).max(3);
         let tributary_length = TAU * self.radius / count as f64;

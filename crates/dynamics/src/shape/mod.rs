@@ -11,6 +11,7 @@ mod half_plane;
 mod polygon;
 mod profile;
 
+use crate::body::Round;
 use crate::real::{Mask, Real};
 use crate::space::{Linear, Planar, Space, Vec2};
 
@@ -29,10 +30,38 @@ pub struct Gap<S: Space> {
     pub normal: S::Vector,
 }
 
+/// How far a point is from a surface, and what piece of it is nearest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest<S: Space> {
+    /// Distance and normal.
+    pub gap: Gap<S>,
+    /// Whether the piece is round: a corner or an arc.
+    pub round: <S::Real as Real>::Mask,
+    /// Distance (m) from the companion point to the nearer end of a straight piece; infinite elsewhere.
+    pub to_end: S::Real,
+    /// Unit vector along that piece toward that end.
+    pub toward_end: S::Vector,
+}
+
+impl<S: Space> Nearest<S> {
+    /// On a piece that is round or not, far from any end.
+    #[inline(always)]
+    fn endless(gap: Gap<S>, round: <S::Real as Real>::Mask) -> Self {
+        let to_end = S::Real::splat(f64::INFINITY);
+        Self { gap, round, to_end, toward_end: S::Vector::default() }
+    }
+}
+
 /// A surface that nodes can touch; all points are in its own frame.
 pub trait Surface<S: Space>: Clone + std::fmt::Debug + Send + Sync + 'static {
     /// Signed distance and outward normal at a point (m).
     fn gap(&self, point: S::Vector) -> Gap<S>;
+
+    /// The same, and what piece of the boundary is nearest.
+    ///
+    /// A straight side counts as longer at both ends by `slack` (m): of two corners one above the other
+    /// one has a side before it and the other has not, whatever the last digit says.
+    fn nearest(&self, point: S::Vector, slack: S::Real) -> Nearest<S>;
 
     /// A cheap test that holds wherever `gap(point).distance < 0`, and may hold elsewhere.
     #[inline(always)]
@@ -108,6 +137,22 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
             Self::Polygon(shape) => shape.gap(point),
             Self::Cradle(shape) => shape.gap(point),
             Self::BarrelProfile(shape) => shape.gap(point),
+        }
+    }
+
+    #[inline(always)]
+    fn nearest(&self, point: Vec2<R>, slack: R) -> Nearest<Planar<R>> {
+        let none = R::Mask::default();
+        match self {
+            Self::Circle(shape) => Nearest::endless(shape.gap(point), !none),
+            Self::HalfPlane(shape) => Nearest::endless(shape.gap(point), none),
+            Self::Polygon(shape) => shape.nearest(point, slack),
+            // A cradle is concave and is touched by nodes only.
+            Self::Cradle(shape) => Nearest::endless(shape.gap(point), none),
+            Self::BarrelProfile(shape) => {
+                let (gap, round) = shape.nearest(point);
+                Nearest::endless(gap, round)
+            }
         }
     }
 
@@ -197,6 +242,17 @@ impl Shape {
             Self::Polygon(shape) => shape.nodes(spacing),
             Self::Cradle(shape) => shape.nodes(spacing),
             Self::BarrelProfile(shape) => shape.nodes(spacing),
+        }
+    }
+
+    /// The round pieces of the boundary, each contact of which stands for `tributary_length` (m); none
+    /// for a half-plane, which has none, and for a cradle, which is not convex.
+    pub fn rounds(&self, tributary_length: f64) -> Vec<Round<Planar>> {
+        match self {
+            Self::Circle(shape) => shape.rounds(tributary_length),
+            Self::HalfPlane(_) | Self::Cradle(_) => Vec::new(),
+            Self::Polygon(shape) => shape.rounds(tributary_length),
+            Self::BarrelProfile(shape) => shape.rounds(tributary_length),
         }
     }
 

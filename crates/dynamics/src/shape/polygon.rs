@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::{BoundaryNode, Gap, Piece, Section, nodes_along};
+use super::{BoundaryNode, Gap, Nearest, Piece, Section, nodes_along};
+use crate::body::Round;
 use crate::lanes::Lanewise;
 use crate::math;
 use crate::real::Real;
@@ -81,12 +82,20 @@ pub enum PolygonError {
 impl<R: Real> Polygon<R> {
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec2<R>) -> Gap<Planar<R>> {
+        self.nearest(point, R::zero()).gap
+    }
+
+    /// The gap, and whether a corner or a side is nearest; sides are longer by `slack` (m) at both ends.
+    #[inline(always)]
+    pub(super) fn nearest(&self, point: Vec2<R>, slack: R) -> Nearest<Planar<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
         // Inside: the side that is nearest decides. Outside: the nearest point of any side.
         let mut deepest = R::splat(f64::NEG_INFINITY);
         let mut deepest_normal = Vec2::new(zero, one);
         let mut nearest_squared = R::splat(f64::INFINITY);
         let mut nearest = Vec2::new(zero, zero);
+        let mut at_corner = R::Mask::default();
+        let (mut to_end, mut toward_end) = (R::splat(f64::INFINITY), Vec2::new(zero, zero));
         for side in &self.sides {
             let offset = point - side.middle;
             let height = offset.dot(side.outward);
@@ -95,20 +104,28 @@ impl<R: Real> Polygon<R> {
             deepest_normal = Vec2::select(higher, side.outward, deepest_normal);
 
             // Beside the side its start is a candidate; its end is the start of the next one.
-            let above = offset.dot(side.along).abs().le(side.half_length);
+            let along = offset.dot(side.along);
+            let above = along.abs().le(side.half_length + slack);
             let apart = Vec2::select(above, side.outward * height, point - side.start);
             let apart_squared = apart.dot(apart);
             let closer = apart_squared.lt(nearest_squared);
             nearest_squared = R::select(closer, apart_squared, nearest_squared);
             nearest = Vec2::select(closer, apart, nearest);
+            at_corner = (closer & !above) | (!closer & at_corner);
+            to_end = R::select(closer, side.half_length - along.abs(), to_end);
+            let ahead = Vec2::select(along.lt(zero), -side.along, side.along);
+            toward_end = Vec2::select(closer, ahead, toward_end);
         }
         let distance = nearest_squared.sqrt();
-        let outside = zero.lt(deepest) & zero.lt(distance);
+        // A core of two corners has no inside.
+        let outside = zero.lt(distance)
+            & if self.sides.len() == 2 { !R::Mask::default() } else { zero.lt(deepest) };
         let safe = R::select(outside, distance, one);
-        Gap {
+        let gap = Gap {
             distance: R::select(outside, distance, deepest) - self.corner_radius,
             normal: Vec2::select(outside, nearest * (one / safe), deepest_normal),
-        }
+        };
+        Nearest { gap, round: outside & at_corner, to_end, toward_end }
     }
 
     #[inline(always)]
@@ -212,6 +229,39 @@ impl Polygon {
             return Err(PolygonError::RadiusTooLarge { radius: corner_radius });
         }
         Ok(Self::grown(&core, corner_radius))
+    }
+
+    /// All points no farther than a radius (m) from the line between two points (m): a bar seen from
+    /// the side, its ends round.
+    ///
+    /// # Errors
+    /// When the points coincide or the radius is not positive.
+    pub fn bar(from: Vec2, to: Vec2, radius: f64) -> Result<Self, PolygonError> {
+        let length = (to - from).length();
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(PolygonError::TooFew { found: 1 });
+        }
+        if !(radius > 0.0 && radius.is_finite()) {
+            return Err(PolygonError::RadiusTooLarge { radius });
+        }
+        Ok(Self::grown(&[from, to], radius))
+    }
+
+    /// Its corners as round pieces.
+    pub(super) fn rounds(&self, tributary_length: f64) -> Vec<Round<Planar>> {
+        let count = self.sides.len();
+        (0..count)
+            .map(|i| Round {
+                center: self.sides[i].start,
+                radius: self.corner_radius,
+                limits: [-self.sides[(i + count - 1) % count].along, self.sides[i].along],
+                arc_limits: [None; 2],
+                sides: [None; 2],
+                takes_limit: true,
+                greatest_depth: f64::INFINITY,
+                tributary_length,
+            })
+            .collect()
     }
 
     fn grown(core: &[Vec2], corner_radius: f64) -> Self {

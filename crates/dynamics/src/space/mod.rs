@@ -73,6 +73,8 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// A bound that no vector of these components is longer than, and few are much shorter: cheaper
     /// than the length.
     fn at_most(vector: Self::Vector) -> Self::Real;
+    /// The first coordinate of a vector, along which bodies are swept for neighbors.
+    fn first_coordinate(vector: Self::Vector) -> Self::Real;
     /// The magnitude of a spin.
     fn spin_magnitude(spin: Self::Spin) -> Self::Real;
     /// Moment of a force that acts at `arm`.

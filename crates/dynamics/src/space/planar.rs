@@ -192,6 +192,10 @@ impl<R: Real> Space for Planar<R> {
         x.max(z) + x.min(z) * R::splat(std::f64::consts::SQRT_2 - 1.0)
     }
     #[inline(always)]
+    fn first_coordinate(vector: Vec2<R>) -> R {
+        vector.x
+    }
+    #[inline(always)]
     fn spin_magnitude(spin: R) -> R {
         spin.abs()
     }

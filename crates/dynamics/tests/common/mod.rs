@@ -15,9 +15,9 @@ use barrelstack_dynamics::shape::{BoundaryNode, Circle, HalfPlane, Polygon};
 use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::space::Rotation2;
 use barrelstack_dynamics::{
-    Basis, Body, BodyId, ContactPair, Drive, EnergyLedger, FrictionLaw, Interface, Method, Model,
-    Motion, Node, Nodes, NormalLaw, Observer, Placed, Planar, Pose, RunError, Scratch, Settled,
-    Shape, Simulation, State, Twist, Vec2, settle, simulate,
+    Basis, Body, BodyId, ContactPair, Counts, Drive, EnergyLedger, FrictionLaw, Interface, Method,
+    Model, Motion, Node, Nodes, NormalLaw, Observer, Placed, Planar, Pose, RunError, Scratch,
+    Settled, Shape, Simulation, State, Twist, Vec2, settle, simulate,
 };
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};
 
@@ -61,6 +61,7 @@ pub fn ground_of(surfaces: Vec<Placed<Planar>>) -> Body<Planar> {
         twist: Twist::default(),
         surfaces,
         nodes: vec![],
+        faces: Vec::new(),
     }
 }
 
@@ -92,6 +93,7 @@ pub fn disc(
         twist: Twist::default(),
         surfaces: vec![centered(Shape::Circle(Circle { radius }))],
         nodes: vec![Nodes::Rolling { center: Vec2::default(), radius, tributary_length: 1.0 }],
+        faces: Vec::new(),
     }
 }
 
@@ -119,6 +121,7 @@ pub fn block(
         twist: Twist::default(),
         surfaces: vec![centered(Shape::Polygon(rectangle))],
         nodes: vec![fixed(&nodes)],
+        faces: Vec::new(),
     }
 }
 
@@ -134,7 +137,14 @@ pub fn fixed(nodes: &[BoundaryNode]) -> Nodes<Planar> {
 
 /// An interface with constants per node.
 pub fn interface(normal: NormalLaw, friction: FrictionLaw) -> Interface<Planar> {
-    Interface { name: "test".into(), normal, friction, basis: Basis::Node }
+    Interface {
+        name: "test".into(),
+        normal,
+        stop: None,
+        rolling: None,
+        friction,
+        basis: Basis::Node,
+    }
 }
 
 /// Coulomb friction with one coefficient.
@@ -153,7 +163,14 @@ pub fn coulomb(
 
 /// The first node set of one body against the first surface of another, with interface 0.
 pub fn pair(contactor: BodyId, target: BodyId) -> ContactPair {
-    ContactPair { contactor, nodes: 0, target, surface: 0, interface: 0 }
+    ContactPair {
+        contactor,
+        nodes: 0,
+        target,
+        surface: 0,
+        interface: 0,
+        counts: Counts::Everywhere,
+    }
 }
 
 /// Every body with nodes against every other body's first surface; two discs meet once.

@@ -14,7 +14,7 @@ use std::ops::ControlFlow;
 use barrelstack::Scenario;
 use barrelstack_dynamics::math::{cos, sin};
 use barrelstack_dynamics::{
-    Body, ContactPair, Model, ModelError, Motion, NormalLaw, Planar, Shape, Twist, Vec2,
+    Body, ContactPair, Counts, Model, ModelError, Motion, NormalLaw, Planar, Shape, Twist, Vec2,
 };
 
 use crate::drive::Shake;
@@ -124,6 +124,7 @@ fn rack(level: usize, underside: f64, angle: f64) -> Body<Planar> {
         twist: Twist::default(),
         surfaces: vec![centered(Shape::Polygon(beam))],
         nodes: vec![points(&supports), points(&[foot(-0.5), foot(0.5)])],
+        faces: Vec::new(),
     }
 }
 
@@ -150,6 +151,7 @@ pub fn eight_barrels(degrees: f64) -> Result<Model<Planar>, ModelError> {
         target,
         surface: 0,
         interface,
+        counts: Counts::Everywhere,
     };
     let mut pairs = vec![];
     for i in 1..bodies.len() {

@@ -183,6 +183,8 @@ fn four_times(body: &Body<Planar>) -> Body<Planar> {
                     node.position = node.position * 4.0;
                 }
             }
+            // Heaps are made of blocks with nodes and of discs.
+            Nodes::Rounds(_) => {}
             Nodes::Rolling { radius, .. } => *radius *= 4.0,
         }
     }

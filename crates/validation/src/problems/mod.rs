@@ -13,6 +13,7 @@ mod regimes;
 mod restitution;
 mod rolling;
 mod sliding;
+mod solids;
 mod stacks;
 mod statistics;
 
@@ -26,6 +27,7 @@ pub fn all() -> Vec<Problem> {
         regimes::problems(),
         sliding::problems(),
         rolling::problems(),
+        solids::problems(),
         restitution::problems(),
         measured::problems(),
         gravity::problems(),

@@ -13,6 +13,7 @@ pub(super) enum Law {
     KelvinVoigt,
     HuntCrossley,
     Hertz,
+    Rebound,
 }
 
 impl Named for Law {
@@ -21,6 +22,7 @@ impl Named for Law {
         ("kelvin-voigt", Self::KelvinVoigt),
         ("hunt-crossley", Self::HuntCrossley),
         ("hertz", Self::Hertz),
+        ("rebound", Self::Rebound),
     ];
 }
 
@@ -48,6 +50,13 @@ const LAW: Field = Field::new(
     "Normal force as a function of penetration and its rate.",
 );
 
+const IMPACT_LAW: Field = Field::new(
+    "law",
+    Kind::Choice(names::<Law>),
+    Default::Value("\"rebound\""),
+    "Normal force as a function of penetration and its rate.",
+);
+
 const BASIS: Field = Field::new(
     "basis",
     Kind::Choice(names::<Basis>),
@@ -66,7 +75,10 @@ const STIFFNESS: Field = Field::new(
         ],
         Range::POSITIVE,
     ),
-    Default::Derived("9.8 kN/cm in a stack, for a linear law per node; must be given otherwise"),
+    Default::Derived(
+        "in a stack 9.8 kN/cm for a linear law per node, 1.2e9 N/m^1.5 for a rebound per node; must \
+         be given otherwise",
+    ),
     "Stiffness k: N/m per node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent 1.5.",
 );
 
@@ -132,6 +144,25 @@ const LAWS: Variants = Variants {
             ],
         },
         Variant {
+            name: "rebound",
+            help: "Spring with the power 1.5 of the penetration that gives back a stated share of the speed, \
+                   whatever mass meets.",
+            fields: &[
+                Field::new(
+                    "restitution",
+                    Kind::Number(Range::up_to(1.0)),
+                    Default::Value("0.3"),
+                    "Ratio of normal speeds after and before an impact.",
+                ),
+                Field::new(
+                    "speed",
+                    Kind::Quantity(&[Dimension::VELOCITY], Range::POSITIVE),
+                    Default::Value("\"0.1 m/s\""),
+                    "Speed below which the contact damps as well, so that what it bears comes to rest.",
+                ),
+            ],
+        },
+        Variant {
             name: "hertz",
             help: "Elastic spring with the power 1.5 of the penetration.",
             fields: &[],
@@ -144,6 +175,15 @@ pub static INTERFACE: Section = Section {
     name: "interface",
     help: "The law of contact of one pair of bodies.",
     fields: &[LAW, BASIS, STIFFNESS, FRICTION_FIELD],
+    variants: Some(LAWS),
+    exclusive: &[&["damping", "restitution"], &["damping", "reference_mass"]],
+};
+
+/// The law of contact of one pair that meets in impacts: of what has fallen, or of neighbors.
+pub static IMPACT: Section = Section {
+    name: "impact",
+    help: "The law of contact of one pair of bodies that meets in impacts.",
+    fields: &[IMPACT_LAW, BASIS, STIFFNESS, FRICTION_FIELD],
     variants: Some(LAWS),
     exclusive: &[&["damping", "restitution"], &["damping", "reference_mass"]],
 };

@@ -3,7 +3,7 @@
 mod fields;
 mod text;
 
-pub use fields::{FREE_INTERFACE, FRICTION, INTERFACE};
+pub use fields::{FREE_INTERFACE, FRICTION, IMPACT, INTERFACE};
 pub(super) use text::{PairDefaults, read, write, write_free};
 
 /// To what a contact constant belongs.
@@ -55,6 +55,15 @@ pub enum NormalLaw {
         exponent: f64,
         /// `d` (s/m).
         damping: f64,
+    },
+    /// `k δ^1.5` on approach and `e²` of it on separation, joined over some `v` of speed.
+    Rebound {
+        /// `k` (N/m^1.5 per node, or N/m^2.5 on the basis of length).
+        stiffness: f64,
+        /// `e`, ratio of normal speeds after and before an impact, in `(0, 1]`.
+        restitution: f64,
+        /// `v` (m/s): slower than this, what is borne comes to rest.
+        speed: f64,
     },
     /// `k δ^1.5`, without dissipation.
     Hertz {

@@ -2,12 +2,13 @@
 
 use crate::scenario::dimension::Dimension;
 use crate::scenario::error::{Problem, ScenarioError};
+use crate::scenario::field::Section;
 use crate::scenario::quantity::QuantityError;
 use crate::scenario::reader::Reader;
 use crate::scenario::tree::Table;
 use crate::scenario::writer::Writer;
 
-use super::fields::{FREE_INTERFACE, FRICTION, FrictionKind, INTERFACE, Law};
+use super::fields::{FREE_INTERFACE, FRICTION, FrictionKind, Law};
 use super::{Basis, Damping, Friction, Interface, NormalLaw};
 
 /// What a stack takes for constants that its scenario leaves out.
@@ -15,6 +16,7 @@ use super::{Basis, Damping, Friction, Interface, NormalLaw};
 pub(in crate::scenario) struct PairDefaults {
     pub(in crate::scenario) stiffness: f64,
     pub(in crate::scenario) damping: f64,
+    pub(in crate::scenario) rebound_stiffness: f64,
     pub(in crate::scenario) coefficient: f64,
 }
 
@@ -36,17 +38,21 @@ pub(in crate::scenario) fn read(
             }
             exponent
         }
-        Law::Hertz => 1.5,
+        Law::Hertz | Law::Rebound => 1.5,
     };
-    // Constants of the catalog hold together and for one law only.
+    // Constants of the catalog hold together and for their laws only.
     let linear = matches!(law, Law::SpeedGap | Law::KelvinVoigt) && basis == Basis::Node;
     let constants = defaults.filter(|_| linear && !reader.has("stiffness"));
     let stiffness_dimension = stiffness_dimension(exponent, basis);
     let stiffness = match quantity_in(&reader, "stiffness", stiffness_dimension)? {
         Some(stiffness) => stiffness,
-        None => match constants {
-            Some(constants) => constants.stiffness,
-            None => return Err(missing_quantity(&reader, "stiffness", stiffness_dimension)),
+        None => match (constants, defaults.filter(|_| law == Law::Rebound && basis == Basis::Node))
+        {
+            (Some(constants), _) => constants.stiffness,
+            (None, Some(constants)) => constants.rebound_stiffness,
+            (None, None) => {
+                return Err(missing_quantity(&reader, "stiffness", stiffness_dimension));
+            }
         },
     };
     let normal = match law {
@@ -62,6 +68,11 @@ pub(in crate::scenario) fn read(
             NormalLaw::HuntCrossley { stiffness, exponent, damping: reader.quantity("damping")? }
         }
         Law::Hertz => NormalLaw::Hertz { stiffness },
+        Law::Rebound => NormalLaw::Rebound {
+            stiffness,
+            restitution: reader.number("restitution")?,
+            speed: reader.quantity("speed")?,
+        },
     };
     if defaults.is_none() && !reader.has("friction") {
         return Err(reader.missing("friction"));
@@ -177,9 +188,9 @@ fn missing_problem(reader: &Reader<'_>, name: &str, dimension: Dimension) -> Pro
     Problem::Missing { field: name.to_owned(), section: reader.label(), example }
 }
 
-/// Writes a law of contact of a stack.
-pub(in crate::scenario) fn write(interface: &Interface) -> Table {
-    let mut writer = Writer::variant(&INTERFACE, law_of(&interface.normal));
+/// Writes a law of contact of a stack in its section.
+pub(in crate::scenario) fn write(section: &'static Section, interface: &Interface) -> Table {
+    let mut writer = Writer::variant(section, law_of(&interface.normal));
     write_fields(&mut writer, interface);
     writer.finish()
 }
@@ -198,6 +209,7 @@ fn law_of(normal: &NormalLaw) -> Law {
         NormalLaw::KelvinVoigt { .. } => Law::KelvinVoigt,
         NormalLaw::HuntCrossley { .. } => Law::HuntCrossley,
         NormalLaw::Hertz { .. } => Law::Hertz,
+        NormalLaw::Rebound { .. } => Law::Rebound,
     }
 }
 
@@ -232,6 +244,11 @@ fn write_fields(writer: &mut Writer, interface: &Interface) {
         }
         NormalLaw::Hertz { stiffness } => {
             writer.quantity_in("stiffness", stiffness, stiffness_dimension(1.5, basis));
+        }
+        NormalLaw::Rebound { stiffness, restitution, speed } => {
+            writer.quantity_in("stiffness", stiffness, stiffness_dimension(1.5, basis));
+            writer.number("restitution", restitution);
+            writer.quantity("speed", speed);
         }
     }
     writer.table("friction", write_friction(&interface.friction));

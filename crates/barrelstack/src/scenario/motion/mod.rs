@@ -1,7 +1,6 @@
 //! The ground motion: where it comes from and how it is scaled.
 
-use std::path::PathBuf;
-
+use barrelstack_input::FileRef;
 use barrelstack_motion::IntensityMeasure;
 
 mod fields;
@@ -10,30 +9,6 @@ mod text;
 pub use fields::{MOTION, PULSE, SCALE, SINE};
 pub(crate) use text::read;
 pub(super) use text::{rest, write};
-
-/// A file named by a scenario.
-#[derive(Debug, Clone)]
-pub struct FileRef {
-    /// The path as written.
-    pub path: String,
-    /// Folder of the file that wrote it; empty for the current folder.
-    pub folder: PathBuf,
-}
-
-impl FileRef {
-    /// The path to open.
-    pub fn resolve(&self) -> PathBuf {
-        self.folder.join(&self.path)
-    }
-}
-
-/// Two references are equal when they were written alike, so that a scenario keeps its identity
-/// when its folder moves.
-impl PartialEq for FileRef {
-    fn eq(&self, other: &Self) -> bool {
-        self.path == other.path
-    }
-}
 
 /// Where the samples of a record are.
 #[derive(Debug, Clone, PartialEq)]
@@ -252,8 +227,8 @@ impl RecordMotion {
             if !path.is_file() {
                 let obtain = self.obtain.as_ref().map_or_else(String::new, |o| format!("; {o}"));
                 return Err(format!(
-                    "there is no record `{}`{obtain}; put the file there, or name another with \
-                     `--set {field}=PATH`",
+                    "there is no record `{}`{obtain}; put the file there, or name another as \
+                     `{field}`",
                     path.display()
                 ));
             }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use barrelstack::study::{Collected, Status, StudyTable, Tally};
+use barrelstack_campaign::study::{Collected, Endings, Status, StudyTable, Tally};
 use serde_json::{Value, json};
 
 /// A number of things, such as "1 case" and "2 cases".
@@ -12,7 +12,9 @@ pub(super) fn counted(count: u64, thing: &str) -> String {
 
 /// A probability with its interval, in percent.
 fn percent((p, [low, high]): (f64, [f64; 2])) -> String {
-    format!("{:.1} % ({:.1} to {:.1} %)", 100.0 * p, 100.0 * low, 100.0 * high)
+    // Rounding may leave a bound a hair below nothing.
+    let shown = |share: f64| 100.0 * share.max(0.0);
+    format!("{:.1} % ({:.1} to {:.1} %)", shown(p), shown(low), shown(high))
 }
 
 /// How many rows have each text of a column, the most frequent first.
@@ -55,6 +57,7 @@ fn levels(table: &StudyTable) -> Vec<(f64, Tally)> {
 pub(super) fn lines(collected: &Collected, folder: &Path) -> Vec<String> {
     let Collected { table, provenance } = collected;
     let tally = Tally::of(table);
+    let hunted = provenance.design == "ida";
     let mut lines = vec![provenance.title.clone()];
     let state = if provenance.complete {
         String::new()
@@ -66,13 +69,11 @@ pub(super) fn lines(collected: &Collected, folder: &Path) -> Vec<String> {
     };
     lines.push(format!("  {}{state}", counted(tally.cases, "case")));
     if let Some(collapse) = tally.collapse() {
-        lines.push(format!(
-            "  {} of {} collapse: {}",
-            tally.collapsed,
-            tally.judged,
-            percent(collapse)
-        ));
+        // A hunt goes where collapses are: its share of them says nothing.
+        let share = if hunted { String::new() } else { format!(": {}", percent(collapse)) };
+        lines.push(format!("  {} of {} collapse{share}", tally.collapsed, tally.judged));
     }
+    lines.extend(Endings::of(table).sentences().into_iter().map(|said| format!("  {said}")));
     let modes: Vec<String> =
         counts(table, "mode").into_iter().map(|(mode, count)| format!("{mode} {count}")).collect();
     if !modes.is_empty() {
@@ -130,9 +131,10 @@ pub(super) fn status(status: &Status) -> Vec<String> {
             if provenance.complete { "; nothing is left to run" } else { "" }
         ),
     ];
-    lines.extend(
-        status.tally.collapse().map(|collapse| format!("  collapse so far: {}", percent(collapse))),
-    );
+    if provenance.design != "ida" {
+        let collapse = status.tally.collapse();
+        lines.extend(collapse.map(|share| format!("  collapse so far: {}", percent(share))));
+    }
     if !status.missing.is_empty() {
         let mut shown: Vec<String> = status.missing.iter().take(20).map(usize::to_string).collect();
         if status.missing.len() > shown.len() {
@@ -161,6 +163,7 @@ pub(super) fn json(collected: &Collected) -> anyhow::Result<String> {
     let document = json!({
         "provenance": collected.provenance,
         "tally": tally(&Tally::of(&collected.table)),
+        "notes": Endings::of(&collected.table).sentences(),
         "levels": levels,
     });
     Ok(serde_json::to_string_pretty(&document)?)

@@ -1,6 +1,6 @@
 //! The columns of the table of records: what the header, the flatfile and the measures say.
 
-use barrelstack::study::{Column, ColumnSpec, Role, Value, ValueKind, Values};
+use barrelstack_campaign::study::{Column, ColumnSpec, Role, Value, ValueKind, Values};
 use barrelstack_motion::{ClassifiedPulse, FlatRow, Measured, MeasuredComponent};
 
 use super::{Source, Worked, stage_of};

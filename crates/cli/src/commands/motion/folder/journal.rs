@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::Mutex;
 
 use anyhow::{Context as _, bail};
-use barrelstack::study::{ColumnSpec, Value, ValueKind};
+use barrelstack_campaign::study::{ColumnSpec, Value, ValueKind};
 use serde_json::json;
 
 use crate::commands::motion::input;

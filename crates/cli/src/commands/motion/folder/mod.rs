@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use anyhow::{Context as _, bail};
 use barrelstack::pool;
 use barrelstack::scenario::{Dimension, fnv1a};
-use barrelstack::study::{Column, StudyTable};
+use barrelstack_campaign::study::{Column, StudyTable};
 use barrelstack_motion::{Flatfile, Processing, Record, Stage, measure, record_sequence_number};
 use indicatif::ProgressBar;
 

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use barrelstack::study::StudyTable;
+use barrelstack_campaign::study::StudyTable;
 
 use super::Pulses;
 

@@ -8,7 +8,7 @@ mod target;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use barrelstack::study::StudyTable;
+use barrelstack_campaign::study::StudyTable;
 use barrelstack_motion::{Candidate, Choosing, select as choose};
 use clap::ValueEnum;
 

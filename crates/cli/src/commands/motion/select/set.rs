@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use barrelstack::study::StudyTable;
+use barrelstack_campaign::study::StudyTable;
 use barrelstack_motion::{Chosen, Selection, SelectionTarget};
 
 use super::SelectArgs;

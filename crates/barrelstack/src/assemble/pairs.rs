@@ -1,0 +1,165 @@
+//! Which boundaries may meet, and by which law: any two bodies, anywhere.
+//!
+//! Two bodies that the stack joins meet at a seat: the supports of a cradle under its barrel, the
+//! underside of a rack on what it stands on.
+//! Everything else about them, and any other two bodies, meets in impacts only.
+//! A round barrel is tested against the solids of others with the one point that lies deepest; solids
+//! with corners are tested both ways, and every contact belongs to one round piece.
+//! A face with nodes is tested by its nodes while what it bears lies before it, and exactly when that has
+//! come beside it: so no contact is counted twice.
+
+use barrelstack_dynamics::{BodyId, ContactPair, Counts, Nodes};
+
+use super::builder::Builder;
+use super::solid::{Seat, Touch};
+use super::{Assembly, PartKind};
+
+// The interfaces of a stack, in the order of their ids and of `StackInterfaces::named`; seats first.
+
+const RACK_GROUND: usize = 0;
+const BARREL_RACK: usize = 1;
+const RACK_RACK: usize = 2;
+const BARREL_BARREL: usize = 3;
+const BARREL_GROUND: usize = 4;
+const FALLEN_BARREL_RACK: usize = 5;
+const FALLEN_RACK_GROUND: usize = 6;
+const FALLEN_RACK_RACK: usize = 7;
+
+/// All boundaries that can ever meet, each with its interface.
+pub(super) fn pairs(builder: &Builder<'_>) -> Vec<ContactPair> {
+    let mut pairs = Pairs { builder, list: Vec::new() };
+    let count = builder.bodies.len();
+    for a in 1..count {
+        pairs.with_ground(a);
+        for b in a + 1..count {
+            match (builder.parts[a].kind, builder.parts[b].kind) {
+                (PartKind::Rack, PartKind::Rack) => pairs.racks(a, b),
+                (PartKind::Rack, PartKind::Barrel) => pairs.rack_and_barrel(a, b),
+                (PartKind::Barrel, PartKind::Rack) => pairs.rack_and_barrel(b, a),
+                (PartKind::Barrel, PartKind::Barrel) => {
+                    pairs.exact((a, 0), (b, 0), BARREL_BARREL, [Counts::Everywhere; 2]);
+                }
+                (PartKind::Ground | PartKind::Body, _) | (_, PartKind::Ground | PartKind::Body) => {
+                    unreachable!("a stack is made of barrels and racks on one ground")
+                }
+            }
+        }
+    }
+    pairs.list
+}
+
+struct Pairs<'a> {
+    builder: &'a Builder<'a>,
+    list: Vec<ContactPair>,
+}
+
+impl Pairs<'_> {
+    fn touch(&self, body: BodyId, solid: usize) -> Touch {
+        self.builder.touches[body][solid]
+    }
+
+    fn solids(&self, body: BodyId) -> std::ops::Range<usize> {
+        0..self.builder.touches[body].len()
+    }
+
+    /// A node set of one body against a surface of another.
+    fn push(
+        &mut self,
+        (contactor, nodes): (BodyId, usize),
+        (target, surface): (BodyId, usize),
+        interface: usize,
+        counts: Counts,
+    ) {
+        self.list.push(ContactPair { contactor, nodes, target, surface, interface, counts });
+    }
+
+    /// Two solids exactly: the one that is round against the other, or both ways, with where each of
+    /// the ways counts.
+    fn exact(
+        &mut self,
+        (a, solid_a): (BodyId, usize),
+        (b, solid_b): (BodyId, usize),
+        interface: usize,
+        counts: [Counts; 2],
+    ) {
+        let sets = [(a, self.touch(a, solid_a).exact), (b, self.touch(b, solid_b).exact)];
+        let rolls = sets
+            .map(|(id, set)| matches!(self.builder.bodies[id].nodes[set], Nodes::Rolling { .. }));
+        if rolls[0] || !rolls[1] {
+            self.push(sets[0], (b, solid_b), interface, counts[0]);
+        }
+        if !rolls[0] {
+            self.push(sets[1], (a, solid_a), interface, counts[1]);
+        }
+    }
+
+    fn with_ground(&mut self, body: BodyId) {
+        let part = &self.builder.parts[body];
+        let stands = part.kind == PartKind::Rack && part.supports.is_empty();
+        let kind = part.kind;
+        for solid in self.solids(body) {
+            let touch = self.touch(body, solid);
+            let ground = (Assembly::GROUND, 0);
+            let seat = stands && touch.seat.stands();
+            let interface = match (kind, seat) {
+                (PartKind::Rack, true) => RACK_GROUND,
+                (PartKind::Rack, false) => FALLEN_RACK_GROUND,
+                (PartKind::Barrel | PartKind::Ground | PartKind::Body, _) => BARREL_GROUND,
+            };
+            match touch.below.filter(|_| seat) {
+                Some(face) => {
+                    self.push((body, face.nodes), ground, interface, Counts::Everywhere);
+                    self.push((body, face.others), ground, interface, Counts::Everywhere);
+                }
+                None => self.push((body, touch.exact), ground, interface, Counts::Everywhere),
+            }
+        }
+    }
+
+    fn rack_and_barrel(&mut self, rack: BodyId, barrel: BodyId) {
+        let parts = &self.builder.parts;
+        let carried = (parts[barrel].carrier == Some(rack)).then(|| {
+            let first = parts.iter().position(|part| part.carrier == Some(rack));
+            barrel - first.unwrap_or(barrel)
+        });
+        let support = parts[rack].supports.iter().position(|support| *support == barrel);
+        for solid in self.solids(rack) {
+            let touch = self.touch(rack, solid);
+            let seat = match touch.seat {
+                Seat::Barrel(column) => carried == Some(column),
+                Seat::OnSupport(column) => support == Some(column),
+                Seat::OnSupports => support.is_some(),
+                Seat::Along(column) => carried == Some(column) || support == Some(column),
+                Seat::None | Seat::Rack => false,
+            };
+            let interface = if seat { BARREL_RACK } else { FALLEN_BARREL_RACK };
+            let face = if carried.is_some() { touch.above } else { touch.below };
+            match face.filter(|_| seat) {
+                Some(face) => {
+                    let before = Counts::BeforeFace(face.face);
+                    self.push((rack, face.nodes), (barrel, 0), interface, before);
+                    let behind =
+                        [Counts::BehindFaceOfTarget(face.face), Counts::BehindFace(face.face)];
+                    self.exact((barrel, 0), (rack, solid), interface, behind);
+                }
+                None => {
+                    let always = [Counts::Everywhere; 2];
+                    self.exact((barrel, 0), (rack, solid), interface, always);
+                }
+            }
+        }
+    }
+
+    fn racks(&mut self, lower: BodyId, upper: BodyId) {
+        let stands = self.builder.parts[upper].supports.contains(&lower);
+        for below in self.solids(lower) {
+            for above in self.solids(upper) {
+                let seat = stands
+                    && self.touch(lower, below).seat == Seat::Rack
+                    && self.touch(upper, above).seat == Seat::OnSupports;
+                let interface = if seat { RACK_RACK } else { FALLEN_RACK_RACK };
+                self.exact((lower, below), (upper, above), interface, [Counts::Everywhere; 2]);
+            }
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! The convex solids that a body is made of: what is drawn, what collides, what weighs.
+
+use barrelstack_dynamics::space::Rotation2;
+use barrelstack_dynamics::{
+    Body, Face, Linear as _, Node, Nodes, Placed, Planar, Round, Shape, Vec2,
+};
+
+/// A convex part of a body, full-scale, in the frame of its draft.
+pub(super) struct Solid {
+    pub(super) shape: Shape,
+    /// Where the frame of the shape is (m).
+    pub(super) offset: Vec2,
+    pub(super) seat: Seat,
+    /// Nodes along its flat underside: positions (m) and tributary lengths (m); none where contact is
+    /// exact all around.
+    pub(super) below: Vec<(Vec2, f64)>,
+    /// The same along its flat top.
+    pub(super) above: Vec<(Vec2, f64)>,
+}
+
+/// What a solid is there to bear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Seat {
+    /// Nothing: it meets only what has come loose.
+    None,
+    /// The rack stands with it on the ground, or on one of its supports.
+    OnSupport(usize),
+    /// The rack stands with it on the ground, or on any of its supports.
+    OnSupports,
+    /// It carries one of the rack's barrels.
+    Barrel(usize),
+    /// Along the barrels: it carries one of the rack's barrels, and stands on the ground or on the
+    /// support below that barrel.
+    Along(usize),
+    /// The next rack stands on it.
+    Rack,
+}
+
+impl Seat {
+    /// Whether the rack stands with it on what is below.
+    pub(super) fn stands(self) -> bool {
+        match self {
+            Self::OnSupport(_) | Self::OnSupports | Self::Along(_) => true,
+            Self::None | Self::Barrel(_) | Self::Rack => false,
+        }
+    }
+}
+
+/// How a solid of a body is touched; its surface has the same number.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    pub(super) seat: Seat,
+    /// The node set of its round pieces, which tests exactly; for a circle, of its rolling node.
+    pub(super) exact: usize,
+    /// Its underside, if that carries nodes.
+    pub(super) below: Option<NodedFace>,
+    /// Its top, if that carries nodes.
+    pub(super) above: Option<NodedFace>,
+}
+
+/// A flat face of a solid that carries nodes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NodedFace {
+    /// The node set.
+    pub(super) nodes: usize,
+    /// The node set of the round pieces that are no ends of it.
+    pub(super) others: usize,
+    /// The face.
+    pub(super) face: usize,
+}
+
+/// How near (m) to a face a round piece lies that is an end of it.
+const AT_END: f64 = 1e-9;
+
+impl Solid {
+    /// A solid that is tested exactly all around.
+    pub(super) fn exact(shape: Shape, offset: Vec2, seat: Seat) -> Self {
+        Self { shape, offset, seat, below: Vec::new(), above: Vec::new() }
+    }
+
+    /// Adds itself to a body whose center of mass is at `center` (m) of the draft, scaled by `length`;
+    /// its contacts stand for `tributary` (m) of boundary.
+    pub(super) fn add_to(
+        self,
+        body: &mut Body<Planar>,
+        center: Vec2,
+        length: f64,
+        tributary: f64,
+    ) -> Touch {
+        let shape = scaled(self.shape, length);
+        let offset = (self.offset - center) * length;
+        let exact = add(body, boundary(&shape, offset, tributary * length));
+        let mut face = |nodes: &[(Vec2, f64)], outward: f64| {
+            let at = |(position, tributary): &(Vec2, f64)| Node {
+                position: (*position - center) * length,
+                tributary_length: tributary * length,
+            };
+            let nodes: Vec<Node<Planar>> = nodes.iter().map(at).collect();
+            let point = nodes.first()?.position;
+            let at_end = |round: &Round<Planar>| {
+                let height = outward * (round.center.z - point.z) + round.radius;
+                height.abs() < AT_END * length
+            };
+            let others = match &body.nodes[exact] {
+                Nodes::Rounds(rounds) => rounds.iter().copied().filter(|r| !at_end(r)).collect(),
+                Nodes::Fixed(_) | Nodes::Rolling { .. } => Vec::new(),
+            };
+            body.faces.push(Face { point, outward: Vec2::new(0.0, outward) });
+            Some(NodedFace {
+                nodes: add(body, Nodes::Fixed(nodes)),
+                others: add(body, Nodes::Rounds(others)),
+                face: body.faces.len() - 1,
+            })
+        };
+        let (below, above) = (face(&self.below, -1.0), face(&self.above, 1.0));
+        body.surfaces.push(Placed { surface: shape, offset, rotation: Rotation2::identity() });
+        Touch { seat: self.seat, exact, below, above }
+    }
+}
+
+/// A row of nodes along a face at height `z` (m), `half` (m) to either side of `middle` (m), no further
+/// apart than `spacing` (m).
+pub(super) fn row(spacing: f64, middle: f64, half: f64, z: f64) -> Vec<(Vec2, f64)> {
+    let parts = (2.0 * half / spacing - 1e-9).ceil().max(1.0);
+    let step = 2.0 * half / parts;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
+    let last = parts as u32;
+    (0..=last)
+        .map(|i| {
+            let tributary = if i == 0 || i == last { 0.5 * step } else { step };
+            (Vec2::new(middle - half + f64::from(i) * step, z), tributary)
+        })
+        .collect()
+}
+
+/// Adds a node set to a body; returns its number.
+fn add(body: &mut Body<Planar>, nodes: Nodes<Planar>) -> usize {
+    body.nodes.push(nodes);
+    body.nodes.len() - 1
+}
+
+/// What tests the boundary of a shape exactly.
+pub(super) fn boundary(shape: &Shape, offset: Vec2, tributary_length: f64) -> Nodes<Planar> {
+    match shape {
+        Shape::Circle(circle) => {
+            Nodes::Rolling { center: offset, radius: circle.radius, tributary_length }
+        }
+        Shape::HalfPlane(_) | Shape::Polygon(_) | Shape::Cradle(_) | Shape::BarrelProfile(_) => {
+            let mut rounds = shape.rounds(tributary_length);
+            for round in &mut rounds {
+                round.center += offset;
+                for (outward, distance) in round.sides.iter_mut().flatten() {
+                    *distance += outward.dot(offset);
+                }
+            }
+            Nodes::Rounds(rounds)
+        }
+    }
+}
+
+/// Center of mass (m) and moment of inertia about it over the mass (m²) of solids of one density.
+pub(super) fn uniform(solids: &[Solid]) -> (Vec2, f64) {
+    let sections = || {
+        solids.iter().filter_map(|solid| {
+            solid.shape.section().map(|section| (section.centroid + solid.offset, section))
+        })
+    };
+    let area: f64 = sections().map(|(_, section)| section.measure).sum();
+    let mut center = Vec2::default();
+    for (place, section) in sections() {
+        center += place * (section.measure / area);
+    }
+    let about = |(place, section): (Vec2, barrelstack_dynamics::shape::Section)| {
+        let apart = place - center;
+        section.measure / area * (section.gyration_squared + apart.x * apart.x + apart.z * apart.z)
+    };
+    (center, sections().map(about).sum())
+}
+
+/// A shape at another size.
+fn scaled(shape: Shape, length: f64) -> Shape {
+    if length == 1.0 {
+        return shape;
+    }
+    match shape {
+        Shape::Circle(mut circle) => {
+            circle.radius *= length;
+            Shape::Circle(circle)
+        }
+        Shape::HalfPlane(plane) => Shape::HalfPlane(plane),
+        Shape::Polygon(polygon) => Shape::Polygon(polygon.scaled(length)),
+        Shape::Cradle(mut cradle) => {
+            cradle.radius *= length;
+            Shape::Cradle(cradle)
+        }
+        Shape::BarrelProfile(mut profile) => {
+            profile.half_length *= length;
+            profile.head_radius *= length;
+            profile.bilge_radius *= length;
+            profile.stave_radius *= length;
+            profile.rounding *= length;
+            profile.corner_height *= length;
+            Shape::BarrelProfile(profile)
+        }
+    }
+}

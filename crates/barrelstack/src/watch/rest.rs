@@ -1,0 +1,195 @@
+//! Rest: the ground is still, and nothing moves fast enough to change what became of the stack.
+
+use barrelstack_dynamics::real::{Mask, Real};
+use barrelstack_dynamics::{BodyId, Linear, Motion, Planar, State};
+
+use crate::assemble::{Assembly, PartKind};
+use crate::ground::Ground;
+use crate::scenario::{Scenario, Until};
+
+/// Height (m) to which its kinetic energy may lift a body at rest, of full size.
+///
+/// A tenth of what lifts a barrel out of the shallowest cradle of the catalog: 0.31 m/s.
+/// Stacks sway on their round barrels for minutes with less, since nothing here resists rolling.
+const CLIMB: f64 = 0.005;
+
+/// How long (s) every body stays so, at full size: longer than half a swing of the tallest stack, so
+/// that no turning point passes for rest.
+const HOLD: f64 = 3.0;
+
+/// Height of the center over the radius up to which a barrel is on the floor.
+const ON_FLOOR: f64 = 1.05;
+
+/// Why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// The ground was still, and what moved had come to rest.
+    Rest,
+    /// The time that the scenario gives to a collapse was over.
+    AfterCollapse,
+    /// The length that the scenario asks for was reached.
+    Duration,
+    /// The longest time after the motion was over, and something still moved.
+    Patience,
+    /// The caller stopped it.
+    Interrupted,
+    /// The numbers broke down.
+    Broken,
+}
+
+impl Ending {
+    /// The word used in files and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rest => "rest",
+            Self::AfterCollapse => "after-collapse",
+            Self::Duration => "duration",
+            Self::Patience => "patience",
+            Self::Interrupted => "interrupted",
+            Self::Broken => "broken",
+        }
+    }
+
+    /// Why a run of a scenario ended that was not at rest.
+    pub(crate) fn of_time(scenario: &Scenario) -> Self {
+        match scenario.run.until {
+            Until::Rest if scenario.run.duration.is_none() => Self::Patience,
+            Until::Rest | Until::Duration => Self::Duration,
+        }
+    }
+}
+
+/// Follows all bodies until they rest, in a run or in as many as there are lanes.
+///
+/// A body rests when its kinetic energy could not lift it by half a centimeter.
+/// So does a barrel that rolls away on the floor, from everything or behind what is faster: nothing
+/// stops it, and it reaches nothing any more.
+#[derive(Clone, Debug)]
+pub struct Rest<R: Real = f64> {
+    /// When (s) the ground is still; infinite where the run does not end by rest.
+    still_from: R,
+    /// Largest kinetic energy of a body at rest over its mass (m²/s²).
+    slow: R,
+    /// How long (s) all have to be slow.
+    hold: R,
+    bodies: Vec<Mover<R>>,
+    /// When (s) something moved last.
+    moved: R,
+}
+
+/// A body that forces move.
+#[derive(Clone, Debug)]
+struct Mover<R: Real> {
+    body: BodyId,
+    /// Moment of inertia over mass (m²).
+    inertia: R,
+    /// Height (m) of its center over the ground below which it is a barrel on the floor.
+    floor: R,
+}
+
+impl Rest {
+    /// What a scenario asks for, on its ground; nothing rests before it has been observed.
+    pub(crate) fn new(scenario: &Scenario, assembly: &Assembly, ground: &Ground) -> Self {
+        let scale = scenario.run.similitude;
+        let mover = |(body, part): (BodyId, &crate::assemble::Part)| {
+            let of = &assembly.model.bodies()[body];
+            (of.motion == Motion::Free).then(|| Mover {
+                body,
+                inertia: of.inertia / of.mass,
+                floor: match part.kind {
+                    PartKind::Barrel => ON_FLOOR * part.size,
+                    PartKind::Ground | PartKind::Rack | PartKind::Body => f64::NEG_INFINITY,
+                },
+            })
+        };
+        Self {
+            still_from: match scenario.run.until {
+                Until::Rest => ground.end(),
+                Until::Duration => f64::INFINITY,
+            },
+            slow: scenario.run.gravity * CLIMB * scale,
+            hold: HOLD * scale.sqrt(),
+            bodies: assembly.parts.iter().enumerate().filter_map(mover).collect(),
+            moved: 0.0,
+        }
+    }
+}
+
+impl<R: Real> Rest<R> {
+    /// Looks at an accepted state; whether all have come to rest.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    pub fn observe(&mut self, state: &State<Planar<R>>) -> R::Mask {
+        let mut moves = state.time.lt(self.still_from);
+        let ground = state.twists[Assembly::GROUND].linear;
+        for at in 0..self.bodies.len() {
+            // Where the ground moves or something else does, the others need no look.
+            if moves.all() {
+                break;
+            }
+            let body = &self.bodies[at];
+            let twist = state.twists[body.body];
+            let velocity = twist.linear - ground;
+            let turning = body.inertia * twist.angular * twist.angular;
+            let fast = self.slow.lt(R::splat(0.5) * (velocity.dot(velocity) + turning));
+            if (fast & !moves).any() {
+                moves = moves | (fast & !self.rolls_away(state, at));
+            }
+        }
+        self.moved = R::select(moves, state.time, self.moved);
+        (self.moved + self.hold).le(state.time)
+    }
+
+    /// Where a body is a barrel on the floor that reaches nothing any more.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    fn rolls_away(&self, state: &State<Planar<R>>, at: usize) -> R::Mask {
+        let ground = state.poses[Assembly::GROUND].position;
+        let own = &self.bodies[at];
+        let (here, velocity) = (state.poses[own.body].position, state.twists[own.body].linear);
+        let rise = velocity.z - state.twists[Assembly::GROUND].linear.z;
+        let level = (R::splat(0.5) * rise * rise).le(self.slow);
+        let mut away = (here.z - ground.z).le(own.floor) & level;
+        for other in self.bodies.iter().filter(|other| other.body != own.body) {
+            if !away.any() {
+                break;
+            }
+            let apart = state.poses[other.body].position.x - here.x;
+            let parting = state.twists[other.body].linear.x - velocity.x;
+            away = away & R::zero().le(apart * parting);
+        }
+        away
+    }
+
+    /// All lanes as one case begins.
+    pub(crate) fn in_all(single: &Rest) -> Self {
+        let mover = |mover: &Mover<f64>| Mover {
+            body: mover.body,
+            inertia: R::splat(mover.inertia),
+            floor: R::splat(mover.floor),
+        };
+        Self {
+            still_from: R::splat(single.still_from),
+            slow: R::splat(single.slow),
+            hold: R::splat(single.hold),
+            bodies: single.bodies.iter().map(mover).collect(),
+            moved: R::splat(single.moved),
+        }
+    }
+
+    /// Puts a case into one lane.
+    pub(crate) fn put(&mut self, lane: usize, single: &Rest) {
+        for (bundle, number) in [
+            (&mut self.still_from, single.still_from),
+            (&mut self.slow, single.slow),
+            (&mut self.hold, single.hold),
+            (&mut self.moved, single.moved),
+        ] {
+            *bundle = bundle.with_lane(lane, number);
+        }
+        for (body, single) in self.bodies.iter_mut().zip(&single.bodies) {
+            body.inertia = body.inertia.with_lane(lane, single.inertia);
+            body.floor = body.floor.with_lane(lane, single.floor);
+        }
+    }
+}

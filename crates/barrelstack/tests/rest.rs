@@ -1,0 +1,106 @@
+//! A run goes on until what moves has come to rest, and no further.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
+#![expect(clippy::print_stdout, reason = "how long cases ran, and how many barrels fell")]
+
+use std::sync::Arc;
+
+use barrelstack::Scenario;
+use barrelstack::ensemble::{Audience, CaseResult, Prepared, simulate_in};
+use barrelstack::ground::ground;
+use barrelstack::watch::Ending;
+use barrelstack_dynamics::lanes::Width;
+
+fn prepared(name: &str, changes: &[&str]) -> Prepared {
+    let changes: Vec<String> = changes.iter().map(|change| (*change).to_owned()).collect();
+    let scenario = Scenario::builtin(name, &changes).unwrap();
+    let ground = Arc::new(ground(&scenario).unwrap());
+    Prepared { scenario: Arc::new(scenario), ground }
+}
+
+fn results(width: Width, cases: &[Prepared]) -> Vec<CaseResult> {
+    let mut audience = Audience { tell: &mut |_| {}, stop: &|| false };
+    simulate_in(width, cases, &mut audience).unwrap()
+}
+
+/// Stacks from unharmed to ruined: under the record of Napa, which fades away, and under sines that
+/// break off at their strongest; `seconds` at the most.
+fn shaken(seconds: u32, more: &[&str]) -> Vec<Prepared> {
+    let mut cases = Vec::new();
+    let duration = format!("run.duration=\"{seconds} s\"");
+    let mut add = |name: &str, changes: &[&str]| {
+        let own = ["stack.levels=4", "run.stop_after_collapse=600 s", &duration];
+        cases.push(prepared(name, &[changes, &own, more].concat()));
+    };
+    for factor in [0.5, 0.8, 1.1, 1.4, 1.7, 2.4] {
+        add("demo-napa", &[&format!("motion.scale.factor={factor}")]);
+    }
+    for amplitude in [2, 4, 5, 6, 7, 8, 9, 10, 12, 14] {
+        let sine = ["motion.sine.cycles=4", "motion.sine.ramp_cycles=0"];
+        let strong = format!("motion.sine.amplitude=\"{amplitude} cm\"");
+        add("candia-8-barrels", &[&sine[..], &[&strong]].concat());
+    }
+    cases
+}
+
+#[test]
+fn what_rests_has_said_all_that_it_says_in_two_minutes() {
+    let by_rest = results(Width::widest(), &shaken(60, &[]));
+    let whole = results(Width::widest(), &shaken(120, &["run.until=duration"]));
+    let mut rested = 0;
+    for (case, long) in by_rest.iter().zip(&whole) {
+        println!(
+            "{:?} after {:.1} s: {} of {} barrels fell; after 120 s: {}",
+            case.ending.unwrap(),
+            case.end_time.unwrap(),
+            case.fall_heights.len(),
+            case.barrels,
+            long.fall_heights.len()
+        );
+        assert_eq!(case.outcome, long.outcome);
+        assert_eq!(long.ending, Some(Ending::Duration));
+        if case.ending == Some(Ending::Rest) {
+            rested += 1;
+            assert_eq!(case.falls, long.falls);
+        }
+        assert_eq!(case.cut, Some(0.0));
+    }
+    // Measured: all of them, 16 s after the end of the shaking at the latest.
+    assert!(rested >= 14, "{rested} of {}", by_rest.len());
+}
+
+#[test]
+fn rest_is_the_same_in_every_lane() {
+    let cases = shaken(9, &[]);
+    let alone: Vec<String> = cases
+        .iter()
+        .map(|case| format!("{:?}", results(Width::Scalar, std::slice::from_ref(case))[0]))
+        .collect();
+    for width in Width::ALL.into_iter().filter(|width| width.is_here()) {
+        let together = results(width, &cases);
+        for (index, (one, many)) in alone.iter().zip(&together).enumerate() {
+            assert_eq!(*one, format!("{many:?}"), "case {index} in {} lanes", width.name());
+        }
+    }
+}
+
+#[test]
+fn a_stack_at_rest_under_a_still_ground_is_finished() {
+    let still =
+        prepared("demo-napa", &["stack.levels=2", "motion.scale.factor=1e-6", "run.until=rest"]);
+    let result = &results(Width::Scalar, std::slice::from_ref(&still))[0];
+    let end = still.ground.end();
+    assert_eq!(result.ending, Some(Ending::Rest));
+    // From the last step of the shaking: 2.9997 s.
+    let after = result.end_time.unwrap() - end;
+    assert!((after - 3.0).abs() < 0.001, "{after}");
+}
+
+#[test]
+fn a_run_that_is_cut_says_by_how_much() {
+    let cut = prepared("demo-napa", &["stack.levels=2", "run.duration=\"4 s\""]);
+    let result = &results(Width::Scalar, std::slice::from_ref(&cut))[0];
+    assert_eq!(result.ending, Some(Ending::Duration));
+    assert_eq!(result.cut, Some(cut.ground.end() - 4.0));
+    let warned = result.warnings.iter().any(|warning| warning.contains("run ends at 4.0 s"));
+    assert!(warned, "{:?}", result.warnings);
+}

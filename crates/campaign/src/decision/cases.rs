@@ -1,0 +1,342 @@
+//! The cases of a study that have a verdict, with what shook them.
+
+use std::collections::BTreeMap;
+
+use barrelstack_fragility::Interval;
+use barrelstack_motion::STANDARD_GRAVITY;
+
+use super::DecisionError;
+use crate::study::{Collected, Endings, Role, StudyTable, Value};
+use crate::watch::Ending;
+
+/// An intensity measure and how it is printed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measure {
+    /// Name of its column, or of the measure of the study.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+    /// Name for people.
+    pub label: String,
+    /// Unit for people.
+    pub shown_unit: &'static str,
+    /// How many of these units one SI unit is.
+    pub scale: f64,
+}
+
+impl Measure {
+    fn new(name: &str, unit: &str) -> Self {
+        let (shown_unit, scale) = match unit {
+            "m/s2" | "m/s^2" | "m/s²" => ("g", 1.0 / STANDARD_GRAVITY),
+            "m/s" if name == "pgv" => ("cm/s", 100.0),
+            "m" => ("cm", 100.0),
+            "m/s" => ("m/s", 1.0),
+            "s" => ("s", 1.0),
+            _ => ("", 1.0),
+        };
+        let label = match name {
+            "pga" => "PGA".to_owned(),
+            "pgv" => "PGV".to_owned(),
+            "pgd" => "PGD".to_owned(),
+            "pgv_over_pga" => "PGV/PGA".to_owned(),
+            "arias" => "Arias intensity".to_owned(),
+            "cav" => "CAV".to_owned(),
+            "d5_95" => "duration D5–95".to_owned(),
+            other => match other.strip_prefix("sa_") {
+                Some(period) => format!("Sa({period} s)"),
+                None => other.to_owned(),
+            },
+        };
+        Self { name: name.to_owned(), unit: unit.to_owned(), label, shown_unit, scale }
+    }
+
+    /// An intensity as printed.
+    pub fn shown(&self, intensity: f64) -> f64 {
+        self.scale * intensity
+    }
+
+    /// An interval with its unit, where the cases bound it.
+    pub fn range(&self, bounds: Interval) -> String {
+        match (bounds.low > 0.0, bounds.high.is_finite()) {
+            (true, true) => format!("{} to {}", self.words(bounds.low), self.words(bounds.high)),
+            (true, false) => format!("{} or more", self.words(bounds.low)),
+            (false, true) => format!("{} or less", self.words(bounds.high)),
+            (false, false) => "anywhere".to_owned(),
+        }
+    }
+
+    /// An intensity with its unit, in three digits.
+    pub fn words(&self, intensity: f64) -> String {
+        let shown = self.shown(intensity);
+        // A level as it was asked for: 50 and not 50.0, though 100 × 0.36 is not quite 36.
+        let whole = shown >= 10.0 && (shown - shown.round()).abs() < 1e-9 * shown;
+        let number =
+            if whole { format!("{shown:.0}") } else { barrelstack_report::significant(shown, 3) };
+        if self.shown_unit.is_empty() { number } else { format!("{number} {}", self.shown_unit) }
+    }
+}
+
+/// A case with a verdict.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// Its row in the table.
+    pub row: usize,
+    /// Number of its record among [`Cases::records`].
+    pub record: usize,
+    /// Whether a barrel or rack lost its seat.
+    pub collapsed: bool,
+    /// How it collapsed.
+    pub mode: Option<String>,
+    /// Whether it was followed until nothing moved, so that it tells what falls.
+    pub followed: bool,
+    /// Barrels in the stack.
+    pub barrels: u32,
+    /// Drop (m) of each barrel that fell.
+    pub falls: Vec<f64>,
+    /// Peak drift of the top over its height, while the stack stood.
+    pub drift: Option<f64>,
+    /// Intensities (SI), one for each of [`Cases::measures`].
+    pub intensities: Vec<Option<f64>>,
+    /// What tells the cases of one hunt or curve from those of others: the record, and the factors that are
+    /// not drawn anew for each case.
+    pub curve: usize,
+}
+
+impl Case {
+    /// Barrels that fell.
+    pub fn fallen(&self) -> u32 {
+        u32::try_from(self.falls.len()).unwrap_or(u32::MAX)
+    }
+
+    /// Share of its barrels that fell; 0 without barrels.
+    pub fn fallen_share(&self) -> f64 {
+        f64::from(self.fallen()) / f64::from(self.barrels.max(1))
+    }
+}
+
+/// The cases of a study that have a verdict.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cases {
+    /// Title of the study.
+    pub title: String,
+    /// Names of the motions.
+    pub records: Vec<String>,
+    /// The measures.
+    pub measures: Vec<Measure>,
+    /// The measure of the study, an index of `measures`.
+    pub main: usize,
+    /// Whether every case was scaled to a level of it, so that raw fractions exist at each.
+    pub leveled: bool,
+    /// Whether levels were found by hunting for collapse, so that they depend on what was found.
+    pub hunted: bool,
+    /// Whether cases are samples, each with a motion, a level and factors of its own.
+    pub sampled: bool,
+    /// Factors that are drawn anew for each case of a motion.
+    pub drawn: Vec<String>,
+    /// How the cases came to their end.
+    pub endings: Endings,
+    /// The cases.
+    pub all: Vec<Case>,
+    /// Rows without a verdict: broken down, not judged, or could not run.
+    pub left_out: usize,
+    /// Seed of what is resampled.
+    pub seed: u64,
+}
+
+/// A column of numbers, all `None` where there is none.
+fn numbers(table: &StudyTable, name: &str) -> Vec<Option<f64>> {
+    table.numbers(name).map_or_else(|| vec![None; table.rows()], <[_]>::to_vec)
+}
+
+/// Numbers things in the order in which they come.
+#[derive(Default)]
+struct Numbering(BTreeMap<String, usize>);
+
+impl Numbering {
+    fn of(&mut self, name: String) -> usize {
+        let next = self.0.len();
+        *self.0.entry(name).or_insert(next)
+    }
+}
+
+impl Cases {
+    /// The cases of a table.
+    pub(crate) fn read(collected: &Collected) -> Result<Self, DecisionError> {
+        let (table, made) = (&collected.table, &collected.provenance);
+        let outcomes = table.texts("outcome").ok_or(DecisionError::Column("outcome"))?;
+        let records = table.texts("record").ok_or(DecisionError::Column("record"))?;
+        let barrels = table.integers("barrels").ok_or(DecisionError::Column("barrels"))?;
+        let ended = table.texts("ended").ok_or(DecisionError::Column("ended"))?;
+        let modes = table.texts("mode");
+        let heights = table.texts("fall_heights");
+        let (drift, level) = (numbers(table, "top_drift_ratio"), numbers(table, "level"));
+        let mut measures = Vec::new();
+        let mut columns: Vec<Vec<Option<f64>>> = Vec::new();
+        for column in table.of_role(Role::Intensity) {
+            measures.push(Measure::new(&column.spec.name, &column.spec.unit));
+            columns.push(numbers(table, &column.spec.name));
+        }
+        // `sa(0.5)` is the column `sa_0.5`.
+        let asked = made.measure.as_deref().map(|name| name.replace('(', "_").replace(')', ""));
+        let leveled = level.iter().any(Option::is_some);
+        let known = |name: &str| measures.iter().position(|measure| measure.name == name);
+        let main = match &asked {
+            Some(name) if leveled => known(name).unwrap_or_else(|| {
+                let unit = table.column("level").map_or("", |column| column.spec.unit.as_str());
+                measures.push(Measure::new(name, unit));
+                columns.push(vec![None; table.rows()]);
+                measures.len() - 1
+            }),
+            _ => known("pgv").ok_or(DecisionError::Column("pgv"))?,
+        };
+        if leveled {
+            // The level as asked for: the same number in every case of a stripe.
+            for (place, level) in columns[main].iter_mut().zip(&level) {
+                *place = level.or(*place);
+            }
+        }
+        let (mut names, mut curves) = (Numbering::default(), Numbering::default());
+        let mut all = Vec::new();
+        for row in 0..table.rows() {
+            let collapsed = match outcomes[row].as_deref() {
+                Some("collapse") => true,
+                Some("stable") => false,
+                _ => continue,
+            };
+            let name = records[row].clone().unwrap_or_default();
+            let fixed = table.of_role(Role::Factor).filter(|f| !made.drawn.contains(&f.spec.name));
+            let factors = fixed.map(|f| told(f.values.get(row)));
+            let key = std::iter::once(name.clone()).chain(factors).collect::<Vec<_>>().join("\n");
+            let cell = |of: Option<&[Option<String>]>| of.and_then(|of| of[row].clone());
+            all.push(Case {
+                row,
+                record: names.of(name),
+                collapsed,
+                mode: cell(modes),
+                followed: ended[row].as_deref() == Some(Ending::Rest.name()),
+                barrels: u32::try_from(barrels[row].unwrap_or(0)).unwrap_or(0),
+                falls: cell(heights).map_or_else(Vec::new, |text| {
+                    text.split(';').filter_map(|height| height.trim().parse().ok()).collect()
+                }),
+                drift: drift[row],
+                intensities: columns.iter().map(|column| column[row]).collect(),
+                curve: curves.of(key),
+            });
+        }
+        if all.is_empty() {
+            return Err(DecisionError::NoCases { rows: table.rows() });
+        }
+        let mut records = vec![String::new(); names.0.len()];
+        for (name, number) in names.0 {
+            records[number] = name;
+        }
+        Ok(Self {
+            title: made.title.clone(),
+            records,
+            measures,
+            main,
+            leveled,
+            hunted: made.design == "ida",
+            sampled: matches!(made.design.as_str(), "latin-hypercube" | "sobol" | "monte-carlo"),
+            drawn: made.drawn.clone(),
+            endings: Endings::of(table),
+            left_out: table.rows() - all.len(),
+            all,
+            seed: made.seed,
+        })
+    }
+
+    /// The same with some of the cases alone.
+    #[must_use]
+    pub fn only(&self, keep: impl Fn(&Case) -> bool) -> Self {
+        let mut fewer = self.clone();
+        fewer.all.retain(keep);
+        fewer
+    }
+
+    /// The measure of the study.
+    pub fn measure(&self) -> &Measure {
+        &self.measures[self.main]
+    }
+
+    /// Most barrels that a stack of the study has.
+    pub fn most_barrels(&self) -> u32 {
+        self.all.iter().map(|case| case.barrels).max().unwrap_or(0)
+    }
+
+    /// How many curves there are: motions, each with every combination of what is not drawn anew.
+    pub fn curves(&self) -> usize {
+        self.all.iter().map(|case| case.curve).max().map_or(0, |last| last + 1)
+    }
+
+    /// How many barrels fall is known: no case was ended before nothing moved, or hardly any.
+    pub fn tells_losses(&self) -> bool {
+        self.endings.no_losses().is_none()
+    }
+
+    /// The cases whose falls are known.
+    #[must_use]
+    pub fn with_known_falls(&self) -> Self {
+        self.only(|case| case.followed)
+    }
+
+    /// Groups in which cases are counted, ascending, each with its intensity.
+    ///
+    /// The levels of the study where cases share them.
+    /// Elsewhere bins of equally many neighbors, whose intensity is the geometric mean of their cases':
+    /// a fraction needs a few dozen cases, and an order is best seen over a dozen bins or so.
+    pub fn groups(&self, measure: usize) -> Vec<(f64, Vec<&Case>)> {
+        let mut sorted: Vec<(f64, &Case)> =
+            self.all.iter().filter_map(|case| Some((case.intensities[measure]?, case))).collect();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.row.cmp(&b.1.row)));
+        let mut found: Vec<(f64, Vec<&Case>)> = Vec::new();
+        if self.shares_levels(measure) {
+            for (level, case) in sorted {
+                match found.last_mut() {
+                    Some((last, cases)) if *last == level => cases.push(case),
+                    _ => found.push((level, vec![case])),
+                }
+            }
+            return found;
+        }
+        let bins = (sorted.len() / FEWEST_OF_BIN).clamp(1, MOST_BINS).min(sorted.len());
+        for bin in 0..bins {
+            let part = &sorted[bin * sorted.len() / bins..(bin + 1) * sorted.len() / bins];
+            let mean = part.iter().map(|(x, _)| libm::log(*x)).sum::<f64>() / part.len() as f64;
+            found.push((libm::exp(mean), part.iter().map(|(_, case)| *case).collect()));
+        }
+        found
+    }
+
+    /// Whether several cases stand at each level of a measure.
+    pub fn shares_levels(&self, measure: usize) -> bool {
+        if !self.leveled || self.hunted || measure != self.main {
+            return false;
+        }
+        let mut levels: Vec<f64> =
+            self.all.iter().filter_map(|case| case.intensities[measure]).collect();
+        let cases = levels.len();
+        levels.sort_by(f64::total_cmp);
+        levels.dedup();
+        !self.sampled || cases >= FEWEST_OF_LEVEL * levels.len()
+    }
+}
+
+/// Fewest cases of a bin, unless there are fewer in all.
+const FEWEST_OF_BIN: usize = 24;
+
+/// Most bins.
+const MOST_BINS: usize = 16;
+
+/// Fewest samples that share a level, on average, for it to be counted by itself.
+const FEWEST_OF_LEVEL: usize = 8;
+
+/// A value of a factor as text.
+pub(super) fn told(value: Option<Value>) -> String {
+    match value {
+        Some(Value::Integer(number)) => number.to_string(),
+        Some(Value::Number(number)) => crate::scenario::quantity::plain(number),
+        Some(Value::Text(text)) => text,
+        None => String::new(),
+    }
+}

@@ -1,0 +1,226 @@
+//! One limit state against one measure: raw fractions, the fitted curve, its bands, and what speaks against it.
+
+use std::collections::BTreeMap;
+
+use barrelstack_fragility::{
+    Capacity, Dispersion, Evidence, Fit, FitError, Goodness, Interval, Monotony, Replicates,
+    Returned, Stripe, bootstrap, fit, goodness, goodness_in_bins, monotony, profile_band,
+    profile_median, returns, wilson,
+};
+use barrelstack_motion::Random;
+
+use super::cases::{Case, Cases};
+use super::limit::LimitState;
+
+/// Confidence level of all bands.
+pub(super) const LEVEL: f64 = 0.95;
+
+/// Resampled data sets for a band.
+const REPLICATES: usize = 600;
+
+/// Draws for the test of order.
+const DRAWS: usize = 500;
+
+/// Fewest records that can be resampled with sense.
+pub(super) const FEWEST: usize = 8;
+
+/// Where a band comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BandKind {
+    /// Whole records resampled: cases of one record may depend on each other.
+    Records,
+    /// The likelihood of independent cases, for want of records or of resampled data sets with a curve.
+    Likelihood,
+}
+
+/// One limit state against one measure.
+#[derive(Clone, Debug)]
+pub struct LimitCurve {
+    /// What counts as failure.
+    pub limit: LimitState,
+    /// Index of the measure.
+    pub measure: usize,
+    /// Raw counts, at levels or in bins.
+    pub stripes: Vec<Stripe>,
+    /// Wilson's interval of each raw fraction.
+    pub intervals: Vec<Interval>,
+    /// The curve, or why there is none.
+    pub fit: Result<Fit, FitError>,
+    /// Intensities at which the band is given.
+    pub grid: Vec<f64>,
+    /// The 95 % band; empty without a curve or where resampling found none.
+    pub band: Vec<Interval>,
+    /// The 95 % interval of the median.
+    pub median: Option<Interval>,
+    /// Where the band comes from.
+    pub band_kind: BandKind,
+    /// The resampled curves, for what else is computed from them.
+    pub replicates: Option<Replicates>,
+    /// Raw counts against the curve.
+    pub goodness: Option<Goodness>,
+    /// Raw counts against the order that every curve takes for granted.
+    pub monotony: Monotony,
+    /// Curves of one motion that failed at one intensity and stood at a higher; none of samples, each of
+    /// which has a curve of its own.
+    pub returned: Vec<Returned>,
+}
+
+impl LimitCurve {
+    /// Counts, fits and tests.
+    pub fn of(cases: &Cases, limit: LimitState, measure: usize) -> Self {
+        let known = cases.only(|case| limit.is_known(case));
+        let cases = &known;
+        let evidence = evidence(cases, &limit, measure);
+        let groups = cases.groups(measure);
+        let stripes: Vec<Stripe> = if cases.hunted {
+            known_at_levels(&evidence)
+        } else {
+            groups.iter().map(|(x, of)| stripe(*x, of, |case| limit.reached(case))).collect()
+        };
+        let intervals = stripes.iter().map(|s| wilson(s.failures, s.cases, LEVEL)).collect();
+        let fit = fit(&evidence, Dispersion::Free);
+        let grid = grid(&stripes);
+        let mut random = Random::new(cases.seed);
+        let replicates = (cases.records.len() >= FEWEST && fit.is_ok())
+            .then(|| bootstrap(&evidence, Dispersion::Free, REPLICATES, || random.uniform()).ok())
+            .flatten();
+        let (band, median, band_kind) = if let Some(found) = &replicates {
+            (found.band(LEVEL, &grid), Some(found.median(LEVEL)), BandKind::Records)
+        } else {
+            let band = profile_band(&evidence, Dispersion::Free, LEVEL, &grid);
+            let median = profile_median(&evidence, Dispersion::Free, LEVEL);
+            (band.unwrap_or_default(), median.ok(), BandKind::Likelihood)
+        };
+        let single = |case: &Case| {
+            Some(stripe(case.intensities[measure]?, &[case], |case| limit.reached(case)))
+        };
+        let goodness = fit.as_ref().ok().map(|fit| match cases.hunted {
+            true => goodness(&stripes, fit),
+            false => {
+                let bins: Vec<Vec<Stripe>> = groups
+                    .iter()
+                    .map(|(_, of)| of.iter().filter_map(|case| single(case)).collect())
+                    .collect();
+                goodness_in_bins(&bins, fit)
+            }
+        });
+        let monotony = monotony(&stripes, DRAWS, || random.uniform());
+        let told =
+            cases.all.iter().filter(|_| !cases.sampled).filter_map(|case| {
+                Some((case.curve, case.intensities[measure]?, limit.reached(case)))
+            });
+        let returned = returns(told);
+        Self {
+            limit,
+            measure,
+            stripes,
+            intervals,
+            fit,
+            grid,
+            band,
+            median,
+            band_kind,
+            replicates,
+            goodness,
+            monotony,
+            returned,
+        }
+    }
+
+    /// Whether failure clearly becomes less likely somewhere, against what every curve takes for granted.
+    pub fn violates_order(&self) -> bool {
+        self.monotony.p < 0.05
+    }
+
+    /// Chance of failure as the raw fractions say: between levels linear in the logarithm of the intensity, held
+    /// above the highest, linear to nothing at rest below the lowest.
+    pub fn raw(&self, intensity: f64) -> f64 {
+        let points: Vec<(f64, f64)> =
+            self.stripes.iter().map(|s| (s.intensity, s.fraction())).collect();
+        interpolate(&points, intensity)
+    }
+}
+
+/// Between points linear in the logarithm of the abscissa, held above the last, linear to zero at zero below the
+/// first.
+pub(super) fn interpolate(points: &[(f64, f64)], at: f64) -> f64 {
+    let after = points.partition_point(|(x, _)| *x < at);
+    match (after.checked_sub(1).map(|i| points[i]), points.get(after)) {
+        (_, None) => points.last().map_or(0.0, |(_, y)| *y),
+        (None, Some((x, y))) => y * (at / x).clamp(0.0, 1.0),
+        (Some((x0, y0)), Some((x1, y1))) => {
+            y0 + (y1 - y0) * libm::log(at / x0) / libm::log(x1 / x0)
+        }
+    }
+}
+
+/// Counts of some cases at an intensity.
+pub(super) fn stripe(intensity: f64, of: &[&Case], failed: impl Fn(&Case) -> bool) -> Stripe {
+    Stripe {
+        intensity,
+        cases: u32::try_from(of.len()).unwrap_or(u32::MAX),
+        failures: of.iter().map(|case| u32::from(failed(case))).sum(),
+    }
+}
+
+/// What the cases say of the capacity.
+///
+/// Levels that were hunted depend on what was found below, so that counts at them would be biased: there each hunt
+/// says between which levels it first failed. Everywhere else each case says whether it failed.
+fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> {
+    let seen = cases.all.iter().filter_map(|case| Some((case, case.intensities[measure]?)));
+    if !cases.hunted {
+        return seen.map(|(case, x)| Evidence::case(x, limit.reached(case), case.record)).collect();
+    }
+    let mut hunts: BTreeMap<usize, (usize, Vec<(f64, bool)>)> = BTreeMap::new();
+    for (case, x) in seen {
+        let hunt = hunts.entry(case.curve).or_insert_with(|| (case.record, Vec::new()));
+        hunt.1.push((x, limit.reached(case)));
+    }
+    hunts
+        .into_values()
+        .filter_map(|(record, mut runs)| {
+            runs.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let failed = runs.iter().position(|(_, failed)| *failed);
+            let capacity = match failed {
+                None => Capacity::Above(runs.last()?.0),
+                Some(0) => Capacity::Below(runs[0].0),
+                Some(at) => Capacity::Between(runs[at - 1].0, runs[at].0),
+            };
+            Some(Evidence::capacity(capacity, record))
+        })
+        .collect()
+}
+
+/// Counts of hunts at eight levels: those that had failed there, of those of which it is known.
+fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
+    let bounds: Vec<(f64, f64)> = evidence.iter().map(|item| item.capacity.bounds()).collect();
+    let ends = || bounds.iter().flat_map(|(low, high)| [*low, *high]);
+    let sound = || ends().filter(|x| *x > 0.0 && x.is_finite());
+    let (first, last) = (sound().fold(f64::INFINITY, f64::min), sound().fold(0.0, f64::max));
+    if first >= last {
+        return Vec::new();
+    }
+    let step = libm::log(last / first) / 7.0;
+    (0..8)
+        // The last exactly: rounded down it would miss what failed there.
+        .map(|i| if i == 7 { last } else { first * libm::exp(step * f64::from(i)) })
+        .map(|intensity| {
+            let failures = bounds.iter().map(|(_, high)| u32::from(*high <= intensity)).sum();
+            let stood: u32 = bounds
+                .iter()
+                .map(|(low, high)| u32::from(*low >= intensity && *high > intensity))
+                .sum();
+            Stripe { intensity, cases: failures + stood, failures }
+        })
+        .filter(|stripe| stripe.cases > 0)
+        .collect()
+}
+
+/// Intensities from below the lowest stripe to above the highest, evenly in the logarithm.
+fn grid(stripes: &[Stripe]) -> Vec<f64> {
+    let (Some(first), Some(last)) = (stripes.first(), stripes.last()) else { return Vec::new() };
+    let (low, high) = (0.6 * first.intensity, 1.4 * last.intensity);
+    let step = libm::log(high / low) / 48.0;
+    (0..=48).map(|i| low * libm::exp(step * f64::from(i))).collect()
+}

@@ -1,0 +1,318 @@
+//! The pictures of the page.
+
+use std::collections::BTreeMap;
+
+use barrelstack_fragility::{Ida, Interval, Returned, Stripe};
+use barrelstack_report::{Axis, Figure, FigureKind, Mark, Plot, Series, SeriesStyle};
+
+use super::cases::{Cases, Measure};
+use super::curve::LimitCurve;
+use super::hazard::Site;
+use super::loss::Losses;
+use super::modes::ModeIncidence;
+use super::sensitivity::{Effect, Group};
+
+fn style(index: usize) -> SeriesStyle {
+    SeriesStyle { index: Some(index), ..SeriesStyle::default() }
+}
+
+fn muted() -> SeriesStyle {
+    SeriesStyle { muted: true, ..SeriesStyle::default() }
+}
+
+/// Upright bars from one bound to the other, as one series with gaps.
+pub(crate) fn bars(
+    label: &str,
+    places: impl IntoIterator<Item = (f64, Interval)>,
+    style: SeriesStyle,
+) -> Series {
+    let (mut x, mut y) = (Vec::new(), Vec::new());
+    for (at, bounds) in places {
+        x.extend([at, at, f64::NAN]);
+        y.extend([bounds.low, bounds.high, f64::NAN]);
+    }
+    Series { label: label.to_owned(), x, y, style }
+}
+
+fn axis(measure: &Measure) -> Axis {
+    Axis::new(&measure.label, measure.shown_unit)
+}
+
+fn plot(id: &str, caption: String, plot: Plot) -> Figure {
+    Figure { id: id.to_owned(), caption, kind: FigureKind::Plot(plot) }
+}
+
+/// A chance from 0 to 1 on the vertical axis.
+pub(crate) fn chance_axis(label: &str) -> Axis {
+    Axis { range: Some([0.0, 1.0]), ..Axis::new(label, "") }
+}
+
+/// Raw fractions with their intervals, the fitted curve and its band.
+pub(super) fn fragility(curve: &LimitCurve, measure: &Measure) -> Figure {
+    let shown = |x: &f64| measure.shown(*x);
+    let grid: Vec<f64> = curve.grid.iter().map(shown).collect();
+    let at: Vec<f64> = curve.stripes.iter().map(|s| measure.shown(s.intensity)).collect();
+    let mut series = Vec::new();
+    if let Ok(fit) = &curve.fit {
+        let line = curve.grid.iter().map(|x| fit.curve.probability(*x)).collect();
+        series.push(Series { style: style(0), ..Series::new("fitted curve", grid.clone(), line) });
+        if !curve.band.is_empty() {
+            let bound = |label: &str, of: fn(&Interval) -> f64| Series {
+                style: muted(),
+                ..Series::new(label, grid.clone(), curve.band.iter().map(of).collect())
+            };
+            series.push(bound("95 % band of the curve", |band| band.low));
+            series.push(bound("", |band| band.high));
+        }
+    }
+    let fractions = curve.stripes.iter().map(Stripe::fraction).collect();
+    let dots = SeriesStyle { dots: true, ..style(1) };
+    series.push(Series { style: dots, ..Series::new("raw fractions", at.clone(), fractions) });
+    let intervals = at.iter().copied().zip(curve.intervals.iter().copied());
+    series.push(bars("95 % interval of each", intervals, style(1)));
+    let caption = format!(
+        "Chance of {} against {}. Dots: the share of the cases at each level or in each bin, with Wilson's interval; they stand for \
+         themselves and are not smoothed.{}",
+        curve.limit.words(),
+        measure.label,
+        if curve.fit.is_ok() {
+            " Line: the lognormal curve of greatest likelihood, thin lines its 95 % band."
+        } else {
+            ""
+        }
+    );
+    plot(
+        "fragility",
+        caption,
+        Plot { x: axis(measure), y: chance_axis("chance of failure"), series, ..Plot::default() },
+    )
+}
+
+/// One line a limit state.
+pub(super) fn limits(curves: &[LimitCurve], measure: &Measure) -> Figure {
+    let series = curves
+        .iter()
+        .enumerate()
+        .map(|(index, curve)| {
+            if let Ok(fit) = &curve.fit {
+                let x = curve.grid.iter().map(|x| measure.shown(*x)).collect();
+                let y = curve.grid.iter().map(|x| fit.curve.probability(*x)).collect();
+                Series { style: style(index), ..Series::new(curve.limit.words(), x, y) }
+            } else {
+                let x = curve.stripes.iter().map(|s| measure.shown(s.intensity)).collect();
+                let y = curve.stripes.iter().map(Stripe::fraction).collect();
+                let dots = SeriesStyle { dots: true, ..style(index) };
+                let label = format!("{} (raw)", curve.limit.words());
+                Series { style: dots, ..Series::new(label, x, y) }
+            }
+        })
+        .collect();
+    plot(
+        "limit-states",
+        "Chance of each limit state. Smooth lines are fitted curves; where the cases determine none, the raw fractions \
+         are joined instead."
+            .to_owned(),
+        Plot { x: axis(measure), y: chance_axis("chance"), series, ..Plot::default() },
+    )
+}
+
+/// Cumulative incidence of each mode under the curve of collapse.
+pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Measure) -> Figure {
+    let grid = || collapse.grid.iter().map(|x| measure.shown(*x)).collect::<Vec<f64>>();
+    let mut series = Vec::new();
+    for (index, mode) in modes.iter().enumerate() {
+        let name = mode.mode.replace('-', " ");
+        let at: Vec<f64> = mode.stripes.iter().map(|s| measure.shown(s.intensity)).collect();
+        let dots = SeriesStyle { dots: true, ..style(index + 1) };
+        let raw = mode.stripes.iter().map(Stripe::fraction).collect();
+        series.push(Series { style: dots, ..Series::new(format!("{name} (raw)"), at, raw) });
+        if !mode.fitted.is_empty() {
+            let line = Series::new(name, grid(), mode.fitted.clone());
+            series.push(Series { style: style(index + 1), ..line });
+        }
+    }
+    if let Ok(fit) = &collapse.fit {
+        let line = collapse.grid.iter().map(|x| fit.curve.probability(*x)).collect();
+        series.push(Series { style: style(0), ..Series::new("all modes", grid(), line) });
+    }
+    plot(
+        "modes",
+        "Chance of collapse in each mode (cumulative incidence). Modes compete: together they are the chance of collapse, \
+         and one may become rarer where another takes over. Smooth lines divide the curve of collapse among the modes by \
+         probit regression."
+            .to_owned(),
+        Plot { x: axis(measure), y: chance_axis("chance"), series, ..Plot::default() },
+    )
+}
+
+/// Most single curves that a picture of incremental dynamic analysis shows.
+const MOST_CURVES: usize = 60;
+
+/// Curves of incremental dynamic analysis with their fractiles; none where records have too few levels.
+pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
+    if !cases.leveled || cases.sampled {
+        return None;
+    }
+    let measure = cases.measure();
+    let mut runs: BTreeMap<usize, Vec<(f64, f64)>> = BTreeMap::new();
+    for case in &cases.all {
+        let key = case.curve;
+        let Some(level) = case.intensities[cases.main] else { continue };
+        let demand = if case.collapsed { Some(f64::INFINITY) } else { case.drift };
+        if let Some(demand) = demand {
+            runs.entry(key).or_default().push((level, demand));
+        }
+    }
+    let all: Vec<Ida> = runs.into_values().map(Ida::new).collect();
+    if all.is_empty() || all.iter().any(|ida| ida.points().len() < 3) {
+        return None;
+    }
+    let percent = |drift: f64| 100.0 * drift;
+    let standing = all.iter().flat_map(Ida::points).map(|(_, d)| *d).filter(|d| d.is_finite());
+    let edge = 1.15 * percent(standing.fold(0.0, f64::max)).max(1e-3);
+    let top = all.iter().flat_map(Ida::points).map(|(x, _)| *x).fold(0.0, f64::max);
+    // Each return from collapse is a jump back from the edge.
+    let place = |demand: f64| percent(demand).min(edge);
+    let mut series: Vec<Series> = all
+        .iter()
+        .take(MOST_CURVES)
+        .enumerate()
+        .map(|(index, ida)| {
+            let points = std::iter::once((0.0, 0.0)).chain(ida.points().iter().copied());
+            let (y, x) = points.map(|(x, d)| (measure.shown(x), place(d))).unzip();
+            let label = if index == 0 { "single motions" } else { "" };
+            Series { style: muted(), ..Series::new(label, x, y) }
+        })
+        .collect();
+    let grid: Vec<f64> = (1..=60).map(|i| top * f64::from(i) / 60.0).collect();
+    for (index, (share, label)) in
+        [(0.16, "16 % of the motions"), (0.5, "median"), (0.84, "84 %")].into_iter().enumerate()
+    {
+        let found = grid.iter().map(|x| (measure.shown(*x), Ida::fractile(&all, *x, share)));
+        let (y, x) = found.map(|(x, d)| (x, d.map_or(f64::NAN, place))).unzip();
+        series.push(Series { style: style(index), ..Series::new(label, x, y) });
+    }
+    let told = match returned.len() {
+        0 => String::new(),
+        count => format!(
+            " {count} of {} come back: they collapse at one level and stand at a higher one.",
+            cases.curves()
+        ),
+    };
+    Some(plot(
+        "ida",
+        format!(
+            "Incremental dynamic analysis: peak drift of the top while the stack stands against {}. A line that reaches \
+             the right edge has collapsed.{told}",
+            measure.label
+        ),
+        Plot {
+            x: Axis { range: Some([0.0, edge]), ..Axis::new("drift of the top", "%") },
+            y: axis(measure),
+            series,
+            ..Plot::default()
+        },
+    ))
+}
+
+/// What factors change.
+pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
+    let count = effects.len();
+    let mut series = Vec::new();
+    let (mut x, mut y) = (Vec::new(), Vec::new());
+    for (row, effect) in effects.iter().enumerate() {
+        let at = (count - row) as f64;
+        let shares = || effect.groups.iter().map(Group::share);
+        let (low, high) = (shares().fold(1.0, f64::min), shares().fold(0.0, f64::max));
+        x.extend([low, high, f64::NAN]);
+        y.extend([at, at, f64::NAN]);
+    }
+    let dots = SeriesStyle { dots: true, ..style(0) };
+    series
+        .push(Series { style: dots, ..Series::new("lowest and highest share of collapse", x, y) });
+    let levels = effects.iter().enumerate().map(|(row, effect)| Mark {
+        at: (count - row) as f64 - 0.45,
+        label: effect.factor.clone(),
+    });
+    plot(
+        "tornado",
+        "What the varied quantities change: the share of collapse at the least and the most favorable of their values, \
+         or thirds of their values, over all motions and levels. The upright line is the share of all cases."
+            .to_owned(),
+        Plot {
+            x: Axis { range: Some([0.0, 1.0]), ..Axis::new("share of collapse", "") },
+            y: Axis {
+                range: Some([0.4, count as f64 + 0.65]),
+                ..Axis::new("row of the table from below", "")
+            },
+            series,
+            marks: vec![Mark { at: overall, label: "all cases".into() }],
+            levels: levels.collect(),
+            ..Plot::default()
+        },
+    )
+}
+
+/// Barrels fallen and burst against the measure.
+pub(super) fn losses(losses: &Losses, measure: &Measure) -> Figure {
+    let x: Vec<f64> = losses.levels.iter().map(|loss| measure.shown(loss.intensity)).collect();
+    let dots = |index| SeriesStyle { dots: true, ..style(index) };
+    let fallen = losses.levels.iter().map(|loss| loss.fallen).collect();
+    let intervals = losses.levels.iter().zip(&x).map(|(loss, x)| {
+        let half = 1.96 * if loss.fallen_error.is_finite() { loss.fallen_error } else { 0.0 };
+        (*x, Interval { low: (loss.fallen - half).max(0.0), high: loss.fallen + half })
+    });
+    let burst = |i: usize| losses.levels.iter().map(|loss| loss.burst[i]).collect::<Vec<f64>>();
+    let places = x.iter().copied().zip(burst(0).into_iter().zip(burst(2)));
+    let series = vec![
+        Series { style: dots(0), ..Series::new("barrels that fall", x.clone(), fallen) },
+        bars("95 % interval of the mean", intervals, style(0)),
+        Series {
+            style: dots(1),
+            ..Series::new("barrels that burst (assumed)", x.clone(), burst(1))
+        },
+        bars(
+            "range of the assumption",
+            places.map(|(x, (low, high))| (x, Interval { low, high })),
+            style(1),
+        ),
+    ];
+    plot(
+        "losses",
+        format!(
+            "Mean number of barrels, of {}, that fall and that burst. That a barrel bursts is an assumption over the \
+             height of its fall, with a range: see below.",
+            losses.barrels
+        ),
+        Plot {
+            x: axis(measure),
+            y: Axis { range: Some([0.0, f64::from(losses.barrels)]), ..Axis::new("barrels", "") },
+            series,
+            ..Plot::default()
+        },
+    )
+}
+
+/// Where the rate of collapse comes from.
+pub(super) fn contributions(site: &Site, measure: &Measure) -> Figure {
+    let total: f64 = site.contributions.iter().map(|part| part.rate).sum();
+    let (mut x, mut y) = (Vec::new(), Vec::new());
+    for part in &site.contributions {
+        let share = if total > 0.0 { part.rate / total } else { 0.0 };
+        x.extend([measure.shown(part.from), measure.shown(part.to)]);
+        y.extend([share, share]);
+    }
+    let area = SeriesStyle { area: true, ..style(0) };
+    plot(
+        "contributions",
+        "Where the annual rate of collapse comes from: the share of each stretch of intensity. Weak shaking is frequent, \
+         strong shaking fells more."
+            .to_owned(),
+        Plot {
+            x: axis(measure).log(),
+            y: Axis::new("share of the rate", ""),
+            series: vec![Series { style: area, ..Series::new("", x, y) }],
+            ..Plot::default()
+        },
+    )
+}

@@ -1,0 +1,57 @@
+//! Limit states: what counts as failure.
+
+use std::collections::BTreeSet;
+
+use super::cases::{Case, Cases};
+
+/// What counts as failure of a stack.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LimitState {
+    /// A barrel or rack loses its seat: collapse.
+    SeatLost,
+    /// At least so many barrels fall.
+    Fallen(u32),
+}
+
+impl LimitState {
+    /// Whether it is known of a case.
+    pub(super) fn is_known(&self, case: &Case) -> bool {
+        match self {
+            Self::SeatLost => true,
+            Self::Fallen(_) => case.followed,
+        }
+    }
+
+    /// Whether a case is beyond it.
+    pub fn reached(&self, case: &Case) -> bool {
+        match self {
+            Self::SeatLost => case.collapsed,
+            Self::Fallen(count) => case.fallen() >= *count,
+        }
+    }
+
+    /// In words that follow "chance of".
+    pub fn words(&self) -> String {
+        match self {
+            Self::SeatLost => "collapse (first seat lost)".to_owned(),
+            Self::Fallen(1) => "a first barrel fallen".to_owned(),
+            Self::Fallen(count) => format!("{count} or more barrels fallen"),
+        }
+    }
+
+    /// A short name for programs.
+    pub fn name(&self) -> String {
+        match self {
+            Self::SeatLost => "collapse".to_owned(),
+            Self::Fallen(count) => format!("fallen-{count}"),
+        }
+    }
+
+    /// Collapse; where it is known what falls, the first fall, a quarter, half and all of the barrels.
+    pub(super) fn worth_telling(cases: &Cases) -> Vec<Self> {
+        let most = if cases.tells_losses() { cases.most_barrels() } else { 0 };
+        let counts: BTreeSet<u32> =
+            [1, most.div_ceil(4), most.div_ceil(2), most].into_iter().filter(|n| *n > 0).collect();
+        std::iter::once(Self::SeatLost).chain(counts.into_iter().map(Self::Fallen)).collect()
+    }
+}

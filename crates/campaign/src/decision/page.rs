@@ -1,0 +1,492 @@
+//! The page of a study: the answer first, then what it rests on.
+
+use barrelstack_fragility::clopper_pearson;
+use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, significant};
+
+use super::cases::{Cases, Measure};
+use super::curve::{BandKind, LEVEL, LimitCurve};
+use super::hazard::Site;
+use super::loss::{Breakage, Losses, WINE};
+use super::measures::MeasureRow;
+use super::modes::ModeIncidence;
+use super::words::{self, capital, count, percent};
+use super::{Decision, figures};
+use crate::study::Provenance;
+
+/// The whole page.
+pub(super) fn document(decision: &Decision, made: &Provenance) -> Document {
+    Document {
+        title: decision.cases.title.clone(),
+        verdict: Verdict {
+            headline: words::headline(decision),
+            sentences: words::sentences(decision),
+            tone: Tone::Neutral,
+        },
+        blocks: blocks(decision, made),
+        provenance: provenance(made),
+        warnings: decision.warnings.clone(),
+    }
+}
+
+/// What opens a section.
+pub(crate) fn heading(text: &str) -> Block {
+    Block::Heading { level: 2, text: text.to_owned() }
+}
+
+pub(crate) fn text(text: impl Into<String>) -> Block {
+    Block::Paragraph(text.into())
+}
+
+fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
+    let cases = &decision.cases;
+    let measure = cases.measure();
+    let collapse = &decision.curves[0];
+    let mut blocks = vec![
+        heading("How likely is collapse"),
+        Block::Figure(figures::fragility(collapse, measure)),
+        Block::Table(raw(collapse, measure)),
+    ];
+    blocks.extend(judgment(cases, collapse, measure));
+    if decision.curves.len() > 1 {
+        blocks.push(heading("Numbers of barrels"));
+        blocks.push(Block::Figure(figures::limits(&decision.curves, measure)));
+    }
+    blocks.push(Block::Table(limits(&decision.curves, measure)));
+    if !decision.modes.is_empty() {
+        blocks.push(heading("Modes of collapse"));
+        blocks.push(Block::Figure(figures::modes(&decision.modes, collapse, measure)));
+        blocks.push(Block::Table(modes(&decision.modes, measure)));
+    }
+    if let Some(figure) = figures::ida(cases, &collapse.returned) {
+        blocks.push(heading("Motion by motion"));
+        blocks.push(Block::Figure(figure));
+    }
+    blocks.push(heading("What is lost"));
+    match &decision.losses {
+        Ok(found) => {
+            blocks.push(Block::Figure(figures::losses(found, measure)));
+            blocks.push(Block::Table(losses(found, measure)));
+            blocks.push(Block::Details {
+                summary: "What is assumed of barrels that burst".into(),
+                blocks: assumptions(),
+            });
+        }
+        Err(reason) => blocks.push(text(format!("Not known: {reason}."))),
+    }
+    if let Some(site) = &decision.site {
+        blocks.extend(at_site(site, measure));
+    }
+    // Shares of a hunt are those of where it went.
+    if !decision.effects.is_empty() && !cases.hunted {
+        let collapsed = cases.all.iter().filter(|case| case.collapsed).count() as f64;
+        let overall = collapsed / cases.all.len() as f64;
+        blocks.push(heading("What matters"));
+        blocks.push(Block::Figure(figures::tornado(&decision.effects, overall)));
+        blocks.push(Block::Table(effects(decision)));
+    }
+    blocks.push(heading("Which measure of shaking tells most"));
+    blocks.push(Block::Table(measures(decision)));
+    blocks.push(text(
+        "Dispersion is what a measure leaves unexplained: the smaller, the fewer records are needed. Concordance is the \
+         chance that of two cases, one collapsed and one standing, the collapsed one had the stronger shaking by this \
+         measure (0.5 tells nothing). A small p in the last columns says that the other measure still knows something: \
+         this one is then not sufficient.",
+    ));
+    blocks.push(heading("What was run"));
+    blocks.push(Block::Table(motions(decision, made)));
+    blocks
+}
+
+/// Raw counts beside the curve.
+pub(super) fn raw(curve: &LimitCurve, measure: &Measure) -> Table {
+    let mut table = Table::new(
+        format!("Raw counts of {}, and the curve beside them.", curve.limit.words()),
+        &[
+            (measure.label.as_str(), measure.shown_unit),
+            ("cases", ""),
+            ("failed", ""),
+            ("share", ""),
+            ("95 % interval (Wilson)", ""),
+            ("95 % interval (exact)", ""),
+            ("fitted curve", ""),
+        ],
+    );
+    let range = |low: f64, high: f64| Cell::text(format!("{} to {}", percent(low), percent(high)));
+    for (stripe, wilson) in curve.stripes.iter().zip(&curve.intervals) {
+        let exact = clopper_pearson(stripe.failures, stripe.cases, LEVEL);
+        let fitted = curve.fit.as_ref().map_or(Cell::Missing, |fit| {
+            Cell::text(percent(fit.curve.probability(stripe.intensity)))
+        });
+        table.rows.push(vec![
+            Cell::Number(measure.shown(stripe.intensity), 3),
+            count(stripe.cases),
+            count(stripe.failures),
+            Cell::text(percent(stripe.fraction())),
+            range(wilson.low, wilson.high),
+            range(exact.low, exact.high),
+            fitted,
+        ]);
+    }
+    table
+}
+
+/// How the curve was made and whether to believe it.
+fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> {
+    let mut said = Vec::new();
+    if !cases.hunted && !cases.shares_levels(cases.main) {
+        said.push(format!(
+            "The cases share no levels, so they are counted in {} bins of about {} neighbors each, and the intensity of \
+             a bin is the geometric mean of theirs. The curve is fitted to the single cases.",
+            curve.stripes.len(),
+            cases.all.len() / curve.stripes.len().max(1)
+        ));
+    }
+    match &curve.fit {
+        Err(reason) => {
+            said.push(format!("No curve: {}.", words::refusal(reason, |x| measure.words(x))));
+        }
+        Ok(fit) => {
+            said.push(format!(
+                "The curve has the greatest likelihood of all lognormal ones (Baker 2015); standard errors: {} of ln θ, \
+                 {} of ln β.",
+                significant(fit.median_error, 2),
+                significant(fit.dispersion_error, 2)
+            ));
+            said.push(match curve.band_kind {
+                BandKind::Records => {
+                    "The band comes from resampling whole records, so that cases of one record may \
+                                      depend on each other; it is corrected for bias."
+                        .to_owned()
+                }
+                BandKind::Likelihood => {
+                    "The band is that of the profile likelihood of independent cases.".to_owned()
+                }
+            });
+        }
+    }
+    if let Some(test) = curve.goodness {
+        said.push(if test.freedom == 0 {
+            "There are too few levels to test whether a lognormal curve fits.".to_owned()
+        } else {
+            format!(
+                "Raw counts against the curve: χ² = {} with {} degree{} of freedom, p = {}.",
+                significant(test.pearson, 3),
+                test.freedom,
+                if test.freedom == 1 { "" } else { "s" },
+                significant(test.p, 2)
+            )
+        });
+    }
+    said.push(format!(
+        "Raw counts against any order: the fractions {}.",
+        if curve.monotony.deviance == 0.0 {
+            "never fall with intensity".to_owned()
+        } else {
+            format!(
+                "fall somewhere, with p = {} if failure never becomes less likely",
+                significant(curve.monotony.p, 2)
+            )
+        }
+    ));
+    vec![Block::List(said)]
+}
+
+fn limits(curves: &[LimitCurve], measure: &Measure) -> Table {
+    let mut table = Table::new(
+        "Fragility of every limit state.",
+        &[
+            ("limit state", ""),
+            ("failed", ""),
+            ("median θ", measure.shown_unit),
+            ("95 % interval", measure.shown_unit),
+            ("dispersion β", ""),
+            ("order violated (p)", ""),
+            ("motions that return", ""),
+            ("remark", ""),
+        ],
+    );
+    for curve in curves {
+        let failed: u32 = curve.stripes.iter().map(|s| s.failures).sum();
+        let of: u32 = curve.stripes.iter().map(|s| s.cases).sum();
+        let shown = |x: f64| {
+            if x.is_finite() { significant(measure.shown(x), 3) } else { "∞".to_owned() }
+        };
+        let interval = curve.median.filter(|_| curve.fit.is_ok()).map_or(Cell::Missing, |bounds| {
+            Cell::text(format!("{} to {}", shown(bounds.low), shown(bounds.high)))
+        });
+        let fit = curve.fit.as_ref();
+        table.rows.push(vec![
+            Cell::text(capital(&curve.limit.words())),
+            Cell::text(format!("{failed} of {of}")),
+            fit.map_or(Cell::Missing, |fit| Cell::Number(measure.shown(fit.curve.median), 3)),
+            interval,
+            fit.map_or(Cell::Missing, |fit| Cell::Number(fit.curve.dispersion, 2)),
+            if curve.monotony.deviance == 0.0 {
+                Cell::Missing
+            } else {
+                Cell::Number(curve.monotony.p, 2)
+            },
+            count(u32::try_from(curve.returned.len()).unwrap_or(u32::MAX)),
+            Cell::text(match fit {
+                Ok(_) if curve.violates_order() => "not monotone: use the raw fractions".into(),
+                Ok(_) => String::new(),
+                Err(reason) => words::refusal(reason, |x| measure.words(x)),
+            }),
+        ]);
+    }
+    table
+}
+
+/// Cases that collapsed in each mode.
+fn modes(modes: &[ModeIncidence], measure: &Measure) -> Table {
+    let mut columns = vec![(measure.label.clone(), measure.shown_unit), ("cases".to_owned(), "")];
+    columns.extend(modes.iter().map(|mode| (mode.mode.replace('-', " "), "")));
+    let named: Vec<(&str, &str)> =
+        columns.iter().map(|(name, unit)| (name.as_str(), *unit)).collect();
+    let mut table = Table::new(
+        "Cases that collapse in each mode. A case that collapses in one can collapse in no other, so that each row adds \
+         up to the collapses of its level.",
+        &named,
+    );
+    for (row, stripe) in modes[0].stripes.iter().enumerate() {
+        let mut cells = vec![Cell::Number(measure.shown(stripe.intensity), 3), count(stripe.cases)];
+        cells.extend(modes.iter().map(|mode| count(mode.stripes[row].failures)));
+        table.rows.push(cells);
+    }
+    table
+}
+
+fn losses(losses: &Losses, measure: &Measure) -> Table {
+    let mut table = Table::new(
+        "Expected losses of one stack, means over the cases of each level.",
+        &[
+            (measure.label.as_str(), measure.shown_unit),
+            ("cases", ""),
+            ("barrels fallen", ""),
+            ("± (95 %)", ""),
+            ("burst, central", ""),
+            ("burst, range", ""),
+            ("wine lost, central", "L"),
+        ],
+    );
+    for loss in &losses.levels {
+        let [few, central, many] = loss.burst;
+        table.rows.push(vec![
+            Cell::Number(measure.shown(loss.intensity), 3),
+            count(loss.cases as f64),
+            Cell::Number(loss.fallen, 2),
+            if loss.fallen_error.is_finite() {
+                Cell::Number(1.96 * loss.fallen_error, 2)
+            } else {
+                Cell::Missing
+            },
+            Cell::Number(central, 2),
+            Cell::text(format!("{} to {}", significant(few, 2), significant(many, 2))),
+            Cell::Number(1000.0 * WINE * central, 2),
+        ]);
+    }
+    table
+}
+
+fn assumptions() -> Vec<Block> {
+    let mut table = Table::new(
+        "Chance that a full barrel bursts, by the height of its fall: an assumption.",
+        &[
+            ("assumption", ""),
+            ("0.9 m", ""),
+            ("1.8 m", ""),
+            ("2.7 m", ""),
+            ("3.6 m", ""),
+            ("4.5 m", ""),
+        ],
+    );
+    for (name, breakage) in ["few burst", "central", "many burst"].iter().zip(Breakage::RANGE) {
+        let mut row = vec![Cell::text(*name)];
+        row.extend([0.9, 1.8, 2.7, 3.6, 4.5].map(|h| Cell::text(percent(breakage.probability(h)))));
+        table.rows.push(row);
+    }
+    vec![
+        Block::Table(table),
+        Block::List(vec![
+            "No published test of dropped barrels with numbers was found. The central curve (lognormal, median fall 5 m, \
+             dispersion 0.6) was chosen so that of the barrels above the lowest level of stacks of four to six levels \
+             that come down whole 7 to 18 % burst, since about one in ten of the barrels that toppled at Napa in 2014 was \
+             lost (Wines & Vines 2016); from how high these fell is not known."
+                .into(),
+            "A barrel that bursts loses its 225 L; barrels that hold lose nothing here, though bungs leak. What one stack \
+             does to its neighbors, and racks and buildings, are not counted."
+                .into(),
+            "Every case that counts here was followed until nothing moved; in a plane model every barrel stands for those \
+             beside it along the view."
+                .into(),
+        ]),
+    ]
+}
+
+fn at_site(site: &Site, measure: &Measure) -> Vec<Block> {
+    let mut table = Table::new(
+        format!("What it means at the site of {}, for one stack.", site.hazard.file),
+        &[
+            ("limit state", ""),
+            ("annual rate (fitted)", "1/year"),
+            ("95 % interval", "1/year"),
+            ("annual rate (raw fractions)", "1/year"),
+            ("once in", "years"),
+            (&format!("chance in {} years", site.years), ""),
+        ],
+    );
+    for limit in &site.limits {
+        let used = limit.fitted.as_ref().unwrap_or(&limit.raw).low;
+        table.rows.push(vec![
+            Cell::text(capital(&limit.limit.words())),
+            limit.fitted.as_ref().map_or(Cell::Missing, |rate| Cell::Number(rate.low, 2)),
+            limit.interval.map_or(Cell::Missing, |bounds| {
+                Cell::text(format!(
+                    "{} to {}",
+                    significant(bounds.low, 2),
+                    significant(bounds.high, 2)
+                ))
+            }),
+            Cell::Number(limit.raw.low, 2),
+            if used > 0.0 { Cell::Number(1.0 / used, 2) } else { Cell::Missing },
+            Cell::text(percent(limit.chance)),
+        ]);
+    }
+    let lost = site.lost.as_ref().map_or_else(
+        || "What a stack is expected to lose in a year is not known, since the study does not tell what falls.".to_owned(),
+        |lost| {
+            let [few, central, many] = lost.burst.map(|rate| significant(rate.low, 2));
+            let wine = lost.wine.map(|wine| significant(1000.0 * wine, 2));
+            format!(
+                "Expected for one stack in an average year: {} barrels fallen, {central} burst ({few} to {many}), {} L of \
+                 wine lost ({} to {} L). Multiply by the number of stacks.",
+                significant(lost.fallen.low, 2),
+                wine[1],
+                wine[0],
+                wine[2]
+            )
+        },
+    );
+    vec![
+        heading("At your site"),
+        Block::Table(table),
+        text(lost),
+        Block::Figure(figures::contributions(site, measure)),
+        text(
+            "The interval is that of the curve alone; the hazard is taken as given. Between the rows of the hazard table \
+             the rate is read on logarithmic scales; weaker shaking than its first row is taken to do nothing, stronger \
+             than its last to do no more than that.",
+        ),
+    ]
+}
+
+fn effects(decision: &Decision) -> Table {
+    let mut table = Table::new(
+        "Share of collapse at the values of every varied quantity, over all motions and levels.",
+        &[
+            ("row", ""),
+            ("quantity", ""),
+            ("value", ""),
+            ("cases", ""),
+            ("collapsed", ""),
+            ("95 % interval", ""),
+        ],
+    );
+    let rows = decision.effects.len();
+    for (row, effect) in decision.effects.iter().enumerate() {
+        for (at, group) in effect.groups.iter().enumerate() {
+            let first = |text: String| Cell::text(if at == 0 { text } else { String::new() });
+            table.rows.push(vec![
+                first((rows - row).to_string()),
+                first(effect.factor.clone()),
+                Cell::text(&group.label),
+                count(group.cases),
+                Cell::text(percent(group.share())),
+                Cell::text(format!(
+                    "{} to {}",
+                    percent(group.interval.low),
+                    percent(group.interval.high)
+                )),
+            ]);
+        }
+    }
+    table
+}
+
+fn measures(decision: &Decision) -> Table {
+    let cases = &decision.cases;
+    let mut table = Table::new(
+        "Intensity measures against collapse and against the drift of stacks that stood, the one under which the \
+         outcomes are likeliest on top.",
+        &[
+            ("measure", ""),
+            ("median of collapse", ""),
+            ("dispersion β", ""),
+            ("concordance", ""),
+            ("ln likelihood", ""),
+            ("drift: dispersion", ""),
+            ("drift: dispersion/slope", ""),
+            ("beside", ""),
+            ("p (collapse)", ""),
+            ("p (drift)", ""),
+        ],
+    );
+    for row in &decision.measures {
+        table.rows.push(measure_row(row, &cases.measures));
+    }
+    table
+}
+
+fn measure_row(row: &MeasureRow, all: &[Measure]) -> Vec<Cell> {
+    let measure = &all[row.measure];
+    let number = |value: Option<f64>| value.map_or(Cell::Missing, |v| Cell::Number(v, 2));
+    let collapse = row.collapse.as_ref().ok();
+    vec![
+        Cell::text(&measure.label),
+        match &row.collapse {
+            Ok(found) => Cell::text(measure.words(found.fit.curve.median)),
+            Err(_) => Cell::text("no curve"),
+        },
+        number(collapse.map(|found| found.fit.curve.dispersion)),
+        number(collapse.map(|found| found.concordance)),
+        collapse.map_or(Cell::Missing, |found| Cell::Number(found.fit.ln_likelihood, 4)),
+        number(row.drift.map(|found| found.dispersion)),
+        number(row.drift.map(|found| found.proficiency).filter(|value| *value > 0.0)),
+        row.beside.map_or(Cell::Missing, |at| Cell::text(&all[at].label)),
+        number(collapse.and_then(|found| found.sufficiency)),
+        number(row.drift.and_then(|found| found.sufficiency)),
+    ]
+}
+
+fn motions(decision: &Decision, made: &Provenance) -> Table {
+    let mut table = Table::new(
+        "The motions, with the cases of each.",
+        &[("motion", ""), ("source", ""), ("cases", ""), ("collapsed", "")],
+    );
+    for (number, name) in decision.cases.records.iter().enumerate() {
+        let of = || decision.cases.all.iter().filter(|case| case.record == number);
+        let source = made.motions.iter().find(|motion| motion.name == *name);
+        table.rows.push(vec![
+            Cell::text(name),
+            source.map_or(Cell::Missing, |motion| Cell::text(&motion.source)),
+            count(of().count() as f64),
+            count(of().filter(|case| case.collapsed).count() as f64),
+        ]);
+    }
+    table
+}
+
+fn provenance(made: &Provenance) -> Vec<(String, String)> {
+    let done = format!("{} of {} chunks", made.chunks_done, made.chunks);
+    [
+        ("study", made.title.clone()),
+        ("design", made.design.clone()),
+        ("measure of the levels", made.measure.clone().unwrap_or_else(|| "none".into())),
+        ("seed", made.seed.to_string()),
+        ("fingerprint of the study", made.study_hash.clone()),
+        ("done", done),
+        ("program", format!("{} {}", made.program, made.version)),
+    ]
+    .map(|(name, value)| (name.to_owned(), value))
+    .into()
+}

@@ -1,0 +1,351 @@
+//! What the page says in words: verdict and warnings.
+
+use barrelstack_fragility::{FitError, wilson};
+use barrelstack_report::{Cell, significant};
+
+use super::Decision;
+use super::cases::Cases;
+use super::curve::{BandKind, FEWEST, LEVEL, LimitCurve};
+use super::hazard::Site;
+use super::limit::LimitState;
+use super::loss::Losses;
+use crate::study::Provenance;
+
+/// A share as a percentage in words.
+pub(crate) fn percent(share: f64) -> String {
+    let value = 100.0 * share;
+    match value {
+        v if v <= 0.0 => "0 %".to_owned(),
+        v if v < 0.1 => "less than 0.1 %".to_owned(),
+        v if v > 99.9 && v < 100.0 => "more than 99.9 %".to_owned(),
+        v if v < 10.0 => format!("{} %", significant(v, 2)),
+        // Not all, so not 100 %.
+        v if v > 99.0 && v < 100.0 => format!("{} %", significant(v, 3)),
+        v => format!("{v:.0} %"),
+    }
+}
+
+/// A count as a cell: all of its digits and no others.
+pub(super) fn count(count: impl Into<f64>) -> Cell {
+    let count: f64 = count.into();
+    let digits = format!("{count:.0}").len();
+    Cell::Number(count, digits)
+}
+
+/// A collapse once in how many years.
+fn recurrence(rate: f64) -> String {
+    if rate <= 0.0 {
+        return "no collapse".to_owned();
+    }
+    format!("a collapse once in {} years", significant(1.0 / rate, 2))
+}
+
+/// Why there is no curve, with intensities as `told` says them.
+pub(crate) fn refusal(reason: &FitError, told: impl Fn(f64) -> String) -> String {
+    match reason {
+        FitError::NothingFailed { largest } => format!(
+            "no case failed up to {}, so the median lies above; add cases of higher intensity",
+            told(*largest)
+        ),
+        FitError::EverythingFailed { smallest } => format!(
+            "every case failed down to {}, so the median lies below; add cases of lower intensity",
+            told(*smallest)
+        ),
+        FitError::Separated { above, below } => match (told(*above), told(*below)) {
+            (above, below) if above == below => {
+                format!("a single capacity of {above} explains every case; add cases around it")
+            }
+            (above, below) => format!(
+                "a single capacity between {above} and {below} explains every case; add cases between them"
+            ),
+        },
+        other @ (FitError::Empty
+        | FitError::Invalid { .. }
+        | FitError::BadDispersion(_)
+        | FitError::BadLevel(_)
+        | FitError::NotIncreasing
+        | FitError::NotConverged
+        | FitError::Unstable { .. }) => other.to_string(),
+    }
+}
+
+/// The largest words of the page.
+pub(super) fn headline(decision: &Decision) -> String {
+    let cases = &decision.cases;
+    let curve = &decision.curves[0];
+    let measure = cases.measure();
+    let collapsed = cases.all.iter().filter(|case| case.collapsed).count();
+    if curve.violates_order() {
+        return format!(
+            "{collapsed} of {} cases collapse, and collapse does not simply grow with {}: read the raw fractions.",
+            cases.all.len(),
+            measure.label
+        );
+    }
+    let rests_on = format!("{} cases, {} motions", cases.all.len(), cases.records.len());
+    match (&curve.fit, &curve.median) {
+        (Ok(fit), Some(interval)) => format!(
+            "Half of the stacks collapse at a {} of {} ({} with 95 % confidence; {rests_on}).",
+            measure.label,
+            measure.words(fit.curve.median),
+            measure.range(*interval)
+        ),
+        (Ok(fit), None) => format!(
+            "Half of the stacks collapse at a {} of {} ({rests_on}, which give it no interval).",
+            measure.label,
+            measure.words(fit.curve.median)
+        ),
+        // The share of samples is that of what was sampled; of levels, of nothing.
+        (Err(_), _) if cases.sampled => {
+            let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+            let share = wilson(count(collapsed), count(cases.all.len()), LEVEL);
+            format!(
+                "{collapsed} of {} cases collapse: {} to {} with 95 % confidence.",
+                cases.all.len(),
+                percent(share.low),
+                percent(share.high)
+            )
+        }
+        (Err(_), _) => format!("{collapsed} of {} cases collapse.", cases.all.len()),
+    }
+}
+
+/// The sentences under it.
+pub(super) fn sentences(decision: &Decision) -> Vec<String> {
+    let cases = &decision.cases;
+    let curve = &decision.curves[0];
+    let measure = cases.measure();
+    let mut said = Vec::new();
+    let endings = &cases.endings;
+    if endings.cut > 0 {
+        said.push(format!(
+            "{} of {} cases were cut short while the ground still moved.",
+            endings.cut, endings.judged
+        ));
+    }
+    match (&curve.fit, &curve.median) {
+        (Ok(fit), Some(interval)) => {
+            let band = format!("{} with 95 % confidence", measure.range(*interval));
+            let source = if curve.violates_order() {
+                "By a fitted curve, which hides that, the"
+            } else {
+                "The"
+            };
+            said.push(format!(
+                "{source} median {} of collapse is {} ({band}), its dispersion {}.",
+                measure.label,
+                measure.words(fit.curve.median),
+                significant(fit.curve.dispersion, 2)
+            ));
+            said.push(format!(
+                "One stack in ten collapses at {}, nine in ten at {}{}.",
+                measure.words(fit.curve.intensity(0.1)),
+                measure.words(fit.curve.intensity(0.9)),
+                if curve.violates_order() { " by that curve" } else { "" }
+            ));
+        }
+        (Err(reason), _) => said.push(format!(
+            "No fragility curve is fitted: {}.",
+            refusal(reason, |x| measure.words(x))
+        )),
+        (Ok(_), None) => {}
+    }
+    if let Some((losses, last)) =
+        decision.losses.as_ref().ok().and_then(|losses| Some((losses, losses.levels.last()?)))
+    {
+        let error = Some(1.96 * last.fallen_error).filter(|error| error.is_finite());
+        said.push(format!(
+            "At {} a stack of {} barrels loses {}{} of them on average.",
+            measure.words(last.intensity),
+            losses.barrels,
+            significant(last.fallen, 2),
+            error.map_or_else(String::new, |error| format!(" ± {}", significant(error, 2)))
+        ));
+    }
+    if let Some(site) = &decision.site {
+        let rate = &site.limits[0];
+        let annual = rate.fitted.as_ref().unwrap_or(&rate.raw).low;
+        said.push(format!(
+            "At the site of {} that is {}, a chance of {} in {} years{}.",
+            site.hazard.file,
+            recurrence(annual),
+            percent(rate.chance),
+            site.years,
+            site.lost.as_ref().map_or_else(String::new, |lost| format!(
+                ", and {} barrels on the floor a year",
+                significant(lost.fallen.low, 2)
+            ))
+        ));
+    }
+    said
+}
+
+/// Warnings, the most important first.
+pub(super) fn warnings(
+    cases: &Cases,
+    curves: &[LimitCurve],
+    losses: Option<&Losses>,
+    site: Option<&Site>,
+    made: &Provenance,
+) -> Vec<String> {
+    let mut said = cases.endings.sentences();
+    let measure = cases.measure();
+    if !made.complete {
+        said.push(format!(
+            "The study is not finished: {} of {} chunks are done. Run it again to go on.",
+            made.chunks_done, made.chunks
+        ));
+    }
+    if cases.left_out > 0 {
+        said.push(format!(
+            "{} of {} cases have no verdict and are left out; the column `error` of the table says why.",
+            cases.left_out,
+            cases.left_out + cases.all.len()
+        ));
+    }
+    for curve in curves {
+        said.extend(islands(cases, curve));
+    }
+    if cases.hunted {
+        said.push(
+            "Levels were chosen by hunting for collapse, so that shares and means over all cases (losses, what matters) \
+             hold for the levels that were run and not for shaking of any given strength."
+                .to_owned(),
+        );
+    }
+    let collapse = &curves[0];
+    if collapse.limit == LimitState::SeatLost {
+        if let Some(test) = collapse.goodness.filter(|test| test.freedom > 0 && test.p < 0.05) {
+            said.push(format!(
+                "The lognormal curve of collapse does not describe the raw fractions (p = {}): use these, or another \
+                 measure.",
+                significant(test.p, 2)
+            ));
+        }
+        if collapse.fit.is_ok() && collapse.band_kind == BandKind::Likelihood {
+            let reason = if cases.records.len() < FEWEST {
+                format!("{} records are too few to be resampled", cases.records.len())
+            } else {
+                "most resampled data sets determine no curve".to_owned()
+            };
+            said.push(format!(
+                "The band takes all cases as independent, since {reason}; with the same records at every level it is \
+                 too narrow."
+            ));
+        }
+        if let Some(found) = collapse.replicates.as_ref().filter(|r| r.refused_share() > 0.025) {
+            said.push(format!(
+                "{} of the resampled data sets determine no curve and are left out, so the band is too narrow.",
+                percent(found.refused_share())
+            ));
+        }
+        let returned = &collapse.returned;
+        if let Some(first) = returned.first() {
+            let why = if cases.endings.cut > 0 {
+                "Motions were cut short, which alone can do that".to_owned()
+            } else if cases.drawn.is_empty() {
+                "That is the nature of rocking and sliding stacks; a single run proves little"
+                    .to_owned()
+            } else {
+                format!(
+                    "Rocking and sliding stacks do that, and {} is drawn anew for each case; a single run proves \
+                     little",
+                    cases.drawn.join(", ")
+                )
+            };
+            said.push(format!(
+                "{} of {} motions stand at a higher level than one that felled them (the first collapses at {} and \
+                 stands at {}). {why}.",
+                returned.len(),
+                cases.curves(),
+                measure.words(first.failed),
+                measure.words(first.stood)
+            ));
+        }
+    }
+    if let Some(site) = site {
+        said.extend(of_site(cases, losses, site));
+    }
+    said
+}
+
+/// Where collapse becomes less likely with intensity.
+fn islands(cases: &Cases, curve: &LimitCurve) -> Vec<String> {
+    let measure = &cases.measures[curve.measure];
+    let falls = curve.monotony.significant(0.05);
+    let meaning = "Below the stable window lies an island of it that a fitted curve smooths away";
+    falls
+        .map(|fall| {
+            format!(
+                "{} is not monotone: {} of {} cases at {}, but only {} of {} at {} (p = {}). {meaning}; use the \
+                 raw fractions.",
+                capital(&curve.limit.words()),
+                fall.from.failures,
+                fall.from.cases,
+                measure.words(fall.from.intensity),
+                fall.to.failures,
+                fall.to.cases,
+                measure.words(fall.to.intensity),
+                significant(fall.p, 2)
+            )
+        })
+        .collect()
+}
+
+fn of_site(cases: &Cases, losses: Option<&Losses>, site: &Site) -> Vec<String> {
+    let mut said = Vec::new();
+    let rate = &site.limits[0];
+    let of = rate.fitted.as_ref().unwrap_or(&rate.raw);
+    if of.high > 1.1 * of.low {
+        said.push(format!(
+            "The hazard table ends too early: shaking beyond its last row leaves the rate of collapse between {} and \
+             {} a year. Add stronger shaking.",
+            significant(of.low, 2),
+            significant(of.high, 2)
+        ));
+    }
+    if of.at_first > 0.01 {
+        said.push(format!(
+            "The hazard table begins too late: its first row already fells {} of the stacks, and weaker shaking is not \
+             counted. Add weaker shaking.",
+            percent(of.at_first)
+        ));
+    }
+    let rows = site.hazard.hazard.rows();
+    let Some(losses) = losses else { return said };
+    let last = losses.levels.last().map_or(0.0, |loss| loss.intensity);
+    if rows[rows.len() - 1].0 > 1.5 * last {
+        said.push(format!(
+            "The hazard reaches {}, the study {} only: losses beyond are held at those of its last level.",
+            cases.measure().words(rows[rows.len() - 1].0),
+            cases.measure().words(last)
+        ));
+    }
+    said
+}
+
+pub(super) fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_share_reads_as_none_or_all_only_when_it_is() {
+        let shares = [0.0, 5e-4, 0.044, 0.5, 0.708, 299.0 / 300.0, 0.9995, 1.0];
+        let told = [
+            "0 %",
+            "less than 0.1 %",
+            "4.4 %",
+            "50 %",
+            "71 %",
+            "99.7 %",
+            "more than 99.9 %",
+            "100 %",
+        ];
+        assert_eq!(shares.map(percent), told);
+    }
+}

@@ -1,0 +1,270 @@
+//! How high is safe: collapse of stacks of two to six levels, in both directions, against the strength of shaking.
+//!
+//! Stacks on one kind of rack are shaken by the bundled record of South Napa, by synthetic motions and by the
+//! user's own records, all scaled to the same levels of peak ground velocity; friction is drawn anew for each run.
+
+mod field;
+mod json;
+mod page;
+mod plan;
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use barrelstack_fragility::{Interval, Stripe};
+use barrelstack_report::Document;
+
+use crate::decision::{Case, Cases, DecisionError, LimitCurve, LimitState};
+use crate::study::{Collected, Progress, RunOptions, Study, StudyError, Value};
+
+pub use plan::{HEIGHTS, VELOCITIES, View};
+
+/// What is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// Name of a rack of the catalog.
+    pub rack: String,
+    /// Files of further motions.
+    pub records: Vec<PathBuf>,
+    /// How many synthetic motions; the bundled record comes in addition.
+    pub synthetic: u32,
+    /// Seed of everything that is drawn.
+    pub seed: u32,
+}
+
+impl Default for Request {
+    fn default() -> Self {
+        Self { rack: "two-barrel".to_owned(), records: Vec::new(), synthetic: 22, seed: 1 }
+    }
+}
+
+/// Stacks of one height in one direction.
+#[derive(Clone, Debug)]
+pub struct Height {
+    /// Levels of the stack.
+    pub levels: u32,
+    /// Direction of the shaking.
+    pub view: View,
+    /// Collapse against PGV.
+    pub by_velocity: LimitCurve,
+    /// Collapse against PGA.
+    pub by_acceleration: LimitCurve,
+    /// Share of the barrels that fall, one for each stripe of `by_velocity`.
+    pub fallen: Vec<f64>,
+}
+
+/// What becomes of stacks of one height in one direction at one level of PGV.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtLevel {
+    /// Counts of collapse.
+    pub stripe: Stripe,
+    /// Wilson's 95 % interval of the chance of collapse.
+    pub interval: Interval,
+    /// Mean share of the barrels that fall.
+    pub fallen: f64,
+}
+
+impl Height {
+    /// What becomes of them at a level of PGV (m/s), such as one of [`VELOCITIES`]; none where no run of that level
+    /// has a verdict.
+    pub fn at(&self, velocity: f64) -> Option<AtLevel> {
+        let curve = &self.by_velocity;
+        // Levels went through text in cm/s and back.
+        let same = |stripe: &Stripe| (stripe.intensity / velocity - 1.0).abs() < 1e-9;
+        let at = curve.stripes.iter().position(same)?;
+        Some(AtLevel {
+            stripe: curve.stripes[at],
+            interval: curve.intervals[at],
+            fallen: *self.fallen.get(at)?,
+        })
+    }
+}
+
+/// One run under the bundled record as it was recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AsRecorded {
+    /// Levels of the stack.
+    pub levels: u32,
+    /// Direction of the shaking.
+    pub view: View,
+    /// The component.
+    pub motion: String,
+    /// Whether it collapsed.
+    pub collapsed: bool,
+    /// Share of its barrels that fell.
+    pub fallen: f64,
+    /// PGV (m/s).
+    pub velocity: f64,
+    /// PGA (m/s²).
+    pub acceleration: f64,
+}
+
+/// How high is safe.
+#[derive(Clone, Debug)]
+pub struct Heights {
+    /// What was asked for.
+    pub request: Request,
+    /// Every height in every direction.
+    pub heights: Vec<Height>,
+    /// The bundled record, unscaled.
+    pub recorded: Vec<AsRecorded>,
+    /// Motions that shook every stack.
+    pub motions: usize,
+    /// Runs in all.
+    pub runs: usize,
+    /// Runs without a verdict.
+    pub left_out: usize,
+    /// What is to be known of runs that were not followed until nothing moved.
+    pub ends: Vec<String>,
+    /// What the reader must know.
+    pub warnings: Vec<String>,
+    /// The page.
+    pub document: Document,
+}
+
+impl Heights {
+    /// The stacks of a height in a direction.
+    pub fn of(&self, levels: u32, view: View) -> Option<&Height> {
+        self.heights.iter().find(|height| height.levels == levels && height.view == view)
+    }
+
+    /// The page as one file that asks the network for nothing.
+    pub fn html(&self) -> String {
+        barrelstack_report::html(&self.document)
+    }
+
+    /// The page as text, with its figures and tables as files for a folder named `figure_dir`.
+    pub fn markdown(&self, figure_dir: &str) -> barrelstack_report::MarkdownBundle {
+        barrelstack_report::markdown(&self.document, figure_dir)
+    }
+
+    /// The numbers as JSON, in SI units.
+    pub fn json(&self) -> serde_json::Value {
+        json::of(self)
+    }
+}
+
+/// Why there is no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum HeightsError {
+    /// The rack is not in the catalog.
+    #[error("there is no rack `{0}`; those are {1}")]
+    Rack(String, String),
+    /// A study cannot be run.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// Its cases decide nothing.
+    #[error(transparent)]
+    Decision(#[from] DecisionError),
+}
+
+/// Runs every height in both directions, in folders of their own below `folder`, and goes on where an earlier run
+/// stopped.
+///
+/// `tell` hears of every run that is done, of how many in all, and may stop.
+///
+/// # Errors
+/// When the rack is unknown, a record cannot be read, or a folder cannot be written.
+pub fn heights(
+    request: &Request,
+    folder: &Path,
+    options: &RunOptions,
+    tell: &(dyn Fn(u64, u64) -> ControlFlow<()> + Sync),
+) -> Result<Heights, HeightsError> {
+    let mut studies: Vec<(View, bool, Study)> = Vec::new();
+    for view in View::ALL {
+        for recorded in [false, true] {
+            let name = plan::name(view, recorded);
+            let study =
+                Study::parse(&format!("{name}.toml"), &plan::text(request, view, recorded)?)?;
+            studies.push((view, recorded, study));
+        }
+    }
+    let all: u64 = studies.iter().map(|(.., study)| study.cases()).sum();
+    let mut before = 0;
+    let mut found = Vec::new();
+    for (view, recorded, study) in &studies {
+        let report = |progress: &Progress| tell(before + progress.tally.cases, all);
+        let place = folder.join(plan::name(*view, *recorded));
+        found.push((*view, *recorded, study.run(&place, options, &report)?));
+        before += study.cases();
+    }
+    gather(request, &found)
+}
+
+/// What the tables say.
+fn gather(request: &Request, found: &[(View, bool, Collected)]) -> Result<Heights, HeightsError> {
+    let (mut heights, mut recorded) = (Vec::new(), Vec::new());
+    let (mut runs, mut left_out, mut motions) = (0, 0, 0);
+    let mut ends = Vec::new();
+    for (view, as_recorded, collected) in found {
+        let cases = Cases::read(collected)?;
+        runs += collected.table.rows();
+        left_out += cases.left_out;
+        ends.extend(cases.endings.sentences());
+        if *as_recorded {
+            recorded.extend(recorded_runs(&cases, collected, *view));
+            continue;
+        }
+        motions = cases.records.len();
+        for levels in HEIGHTS {
+            let of = cases.only(|case| levels_of(collected, case.row) == Some(levels));
+            heights.push(height(&of, levels, *view));
+        }
+    }
+    let mut all = Heights {
+        request: request.clone(),
+        heights,
+        recorded,
+        motions,
+        runs,
+        left_out,
+        ends,
+        warnings: Vec::new(),
+        document: Document::default(),
+    };
+    all.warnings = page::warnings(&all);
+    all.document = page::document(&all);
+    Ok(all)
+}
+
+fn height(cases: &Cases, levels: u32, view: View) -> Height {
+    let pga = cases.measures.iter().position(|measure| measure.name == "pga");
+    let levels_of_shaking = cases.groups(cases.main);
+    let fallen = levels_of_shaking
+        .iter()
+        .map(|(_, of)| of.iter().map(|case| case.fallen_share()).sum::<f64>() / of.len() as f64);
+    Height {
+        levels,
+        view,
+        fallen: fallen.collect(),
+        by_velocity: LimitCurve::of(cases, LimitState::SeatLost, cases.main),
+        by_acceleration: LimitCurve::of(cases, LimitState::SeatLost, pga.unwrap_or(cases.main)),
+    }
+}
+
+fn levels_of(collected: &Collected, row: usize) -> Option<u32> {
+    match collected.table.column("levels")?.values.get(row)? {
+        Value::Integer(levels) => u32::try_from(levels).ok(),
+        Value::Number(_) | Value::Text(_) => None,
+    }
+}
+
+fn recorded_runs(cases: &Cases, collected: &Collected, view: View) -> Vec<AsRecorded> {
+    let intensity = |name: &str, case: &Case| {
+        let at = cases.measures.iter().position(|measure| measure.name == name)?;
+        case.intensities[at]
+    };
+    let run = |case: &Case| {
+        Some(AsRecorded {
+            levels: levels_of(collected, case.row)?,
+            view,
+            motion: cases.records[case.record].clone(),
+            collapsed: case.collapsed,
+            fallen: case.fallen_share(),
+            velocity: intensity("pgv", case)?,
+            acceleration: intensity("pga", case)?,
+        })
+    };
+    cases.all.iter().filter_map(run).collect()
+}

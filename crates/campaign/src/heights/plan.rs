@@ -1,0 +1,156 @@
+//! The studies behind the page: what stands, what shakes it, what is drawn.
+
+use std::fmt::Write as _;
+
+use super::{HeightsError, Request};
+use crate::scenario::catalog;
+
+/// Levels of the stacks.
+pub const HEIGHTS: [u32; 5] = [2, 3, 4, 5, 6];
+
+/// Levels of peak ground velocity (m/s) to which every motion is scaled.
+pub const VELOCITIES: [f64; 6] = [0.12, 0.24, 0.36, 0.50, 0.70, 1.00];
+
+/// Direction of the shaking.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// Across the barrels.
+    Transverse,
+    /// Along them.
+    Longitudinal,
+}
+
+impl View {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Transverse, Self::Longitudinal];
+
+    /// As scenarios name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Transverse => "transverse",
+            Self::Longitudinal => "longitudinal",
+        }
+    }
+
+    /// For people.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Transverse => "across the barrels",
+            Self::Longitudinal => "along the barrels",
+        }
+    }
+}
+
+/// Name of a study and of its folder.
+pub(super) fn name(view: View, recorded: bool) -> String {
+    format!("{}{}", view.name(), if recorded { "-as-recorded" } else { "" })
+}
+
+/// The text of a study: every height under every motion at every level, or under the bundled record as it is.
+pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<String, HeightsError> {
+    let rack = catalog::rack(&request.rack).ok_or_else(|| {
+        let known: Vec<&str> = catalog::RACKS.iter().map(|rack| rack.name).collect();
+        HeightsError::Rack(request.rack.clone(), known.join(", "))
+    })?;
+    // Along the barrels one rack is one column, and a rail that touches a bulged stave at its inner edge only needs
+    // closer nodes.
+    let (columns, rack) = match view {
+        View::Transverse => (rack.barrels, format!("\"{}\"", rack.name)),
+        View::Longitudinal => {
+            (1, format!("{{ base = \"{}\", node_spacing = \"5 mm\" }}", rack.name))
+        }
+    };
+    let levels: Vec<String> = HEIGHTS.iter().map(u32::to_string).collect();
+    let mut text = format!(
+        "schema = 1\n\
+         title = \"How high: {} racks shaken {}\"\n\
+         seed = {}\n\n\
+         [base]\n\
+         schema = 1\n\
+         [base.stack]\n\
+         view = \"{}\"\n\
+         levels = 4\n\
+         columns = {columns}\n\
+         barrel = \"bordeaux-225\"\n\
+         rack = {rack}\n\n\
+         [[factor]]\n\
+         name = \"levels\"\n\
+         field = \"stack.levels\"\n\
+         values = [{}]\n\n",
+        request.rack,
+        view.words(),
+        request.seed,
+        view.name(),
+        levels.join(", ")
+    );
+    if !recorded {
+        // Medians and scatter: assumptions, since floors are washed daily and racks differ.
+        for (pair, median, dispersion) in [("rack-ground", 0.5, 0.2), ("barrel-rack", 0.3, 0.25)] {
+            // Writing to a String cannot fail.
+            let _ = write!(
+                text,
+                "[[factor]]\n\
+                 name = \"friction {pair}\"\n\
+                 field = \"interface.{pair}.friction.coefficient\"\n\
+                 distribution = {{ kind = \"lognormal\", median = {median}, dispersion = {dispersion} }}\n\n"
+            );
+        }
+    }
+    text.push_str(
+        "[[motion]]\n\
+         bundled = \"napa-college-2014\"\n\
+         components = [\"horizontal-1\", \"horizontal-2\"]\n\
+         each = { vertical = \"UP\" }\n\n",
+    );
+    if recorded {
+        text.push_str("[design]\nkind = \"full-factorial\"\n");
+        return Ok(text);
+    }
+    for record in &request.records {
+        let _ = write!(text, "[[motion]]\nrecords = [{}]\n\n", quoted(record));
+    }
+    text.push_str(&synthetic(request.synthetic));
+    let velocities: Vec<String> =
+        VELOCITIES.iter().map(|v| format!("\"{} cm/s\"", (100.0 * v).round())).collect();
+    let _ = write!(
+        text,
+        "[intensity]\nmeasure = \"pgv\"\nlevels = [{}]\n\n[design]\nkind = \"stripes\"\nchunk = 32\n",
+        velocities.join(", ")
+    );
+    Ok(text)
+}
+
+/// A path as a string of TOML, absolute so that it does not hang on where the study lies.
+fn quoted(path: &std::path::Path) -> String {
+    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let text = whole.display().to_string().replace('\\', "\\\\").replace('"', "\\\"");
+    format!("\"{text}\"")
+}
+
+/// Synthetic motions: half of a moderate earthquake nearby, a quarter of a large one further off, a quarter with a
+/// velocity pulse of near faults.
+fn synthetic(count: u32) -> String {
+    let large = count / 4;
+    let pulses = count / 4;
+    let near = count - large - pulses;
+    let mut text = String::new();
+    let mut set = |count: u32, name: &str, body: &str| {
+        if count > 0 {
+            let _ = write!(
+                text,
+                "[[motion]]\nname = \"{name}\"\nsynthetic = {{ count = {count}, {body} }}\n\n"
+            );
+        }
+    };
+    set(near, "M 6 at 8 km", "kind = \"boore\", magnitude = 6.0, distance = \"8 km\"");
+    set(large, "M 7 at 20 km", "kind = \"boore\", magnitude = 7.0, distance = \"20 km\"");
+    let pulse = |period: &str| {
+        format!(
+            "kind = \"near-fault\", magnitude = 6.0, distance = \"8 km\", pulse_velocity = \"40 cm/s\", \
+             pulse_period = \"{period}\""
+        )
+    };
+    set(pulses.div_ceil(2), "pulse of 1 s", &pulse("1 s"));
+    set(pulses / 2, "pulse of 2 s", &pulse("2 s"));
+    text
+}

@@ -1,0 +1,192 @@
+//! Which cases were followed until nothing moved, and what ended the others.
+
+use std::collections::BTreeSet;
+
+use serde::Serialize;
+
+use super::Study;
+use super::error::StudyError;
+use super::motions::Shelf;
+use super::table::StudyTable;
+use crate::scenario::Until;
+use crate::watch::Ending;
+
+/// How the cases with a verdict came to their end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Endings {
+    /// All of them.
+    pub judged: u64,
+    /// Those that were followed until the ground was still and nothing moved.
+    pub followed: u64,
+    /// Those that were stopped a while after their collapse, because the study says so.
+    pub stopped: u64,
+    /// Those that were ended by the length that the study gives them.
+    pub short: u64,
+    /// Those of them under which the ground still moved.
+    pub cut: u64,
+    /// Those of these that stood until then.
+    pub open: u64,
+    /// The longest time (s) of a motion that was cut off.
+    pub longest_cut: f64,
+    /// Those in which something still moved when the patience of the study was over.
+    pub moving: u64,
+}
+
+impl Endings {
+    /// The endings of a table.
+    pub fn of(table: &StudyTable) -> Self {
+        let mut found = Self::default();
+        let (Some(outcomes), Some(ended), Some(left)) =
+            (table.texts("outcome"), table.texts("ended"), table.numbers("motion_left"))
+        else {
+            return found;
+        };
+        for ((outcome, ended), left) in outcomes.iter().zip(ended).zip(left) {
+            let outcome = outcome.as_deref().unwrap_or("");
+            if !matches!(outcome, "stable" | "collapse") {
+                continue;
+            }
+            let is = |ending: Ending| u64::from(ended.as_deref() == Some(ending.name()));
+            let left = left.unwrap_or(0.0);
+            found.judged += 1;
+            found.followed += is(Ending::Rest);
+            found.stopped += is(Ending::AfterCollapse);
+            found.short += is(Ending::Duration);
+            found.moving += is(Ending::Patience);
+            if left > 0.0 && is(Ending::Duration) > 0 {
+                found.cut += 1;
+                found.open += u64::from(outcome == "stable");
+                found.longest_cut = found.longest_cut.max(left);
+            }
+        }
+        found
+    }
+
+    /// Largest share of cases in which something still moves when their time is over with which means over
+    /// the others are given.
+    const MOST_MOVING: f64 = 0.02;
+
+    /// Why these cases do not tell what falls; none where they do.
+    pub fn no_losses(&self) -> Option<String> {
+        let Self { judged, stopped, short, moving, .. } = *self;
+        if stopped > 0 {
+            return Some(format!(
+                "{stopped} of {judged} cases were stopped a while after their collapse \
+                 (run.stop_after_collapse), before all had fallen that falls; leave that out, and \
+                 each is followed until nothing moves"
+            ));
+        }
+        if short > 0 {
+            return Some(format!(
+                "{short} of {judged} cases were ended by run.duration before what moved had come to \
+                 rest; leave that out, and each is followed until nothing moves"
+            ));
+        }
+        (moving as f64 > Self::MOST_MOVING * judged as f64).then(|| {
+            format!(
+                "in {moving} of {judged} cases something still moved when their time was over; a \
+                 longer run.patience follows them to their end"
+            )
+        })
+    }
+
+    /// What the reader of any result must know; nothing where every case was followed to its end.
+    pub fn sentences(&self) -> Vec<String> {
+        let mut said = Vec::new();
+        if self.cut > 0 {
+            said.push(format!(
+                "{} of {} cases were cut short by run.duration while the ground still moved, by up to {:.1} s; \
+                 {} of them stood until then, and what the rest of their motions does to them is not \
+                 known. Leave run.duration out to see all of every motion.",
+                self.cut, self.judged, self.longest_cut, self.open
+            ));
+        }
+        if let Some(reason) = self.no_losses() {
+            said.push(format!("No losses are given: {reason}."));
+        } else if self.moving > 0 {
+            said.push(format!(
+                "In {} of {} cases something still moved when their time was over; losses are those of the \
+                 others.",
+                self.moving, self.judged
+            ));
+        }
+        said
+    }
+}
+
+/// How long the cases of a study are followed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Following {
+    /// Whether a case goes on until nothing moves.
+    pub to_rest: bool,
+    /// Longest time (s) after the end of the motion, where nothing else ends a case.
+    pub patience: f64,
+    /// The length (s) that the study gives its cases; none where the motion does.
+    pub duration: Option<f64>,
+    /// Time (s) after a collapse at which the study stops its cases; none where it does not.
+    pub after_collapse: Option<f64>,
+    /// Motions that are longer than that length.
+    pub cut: Vec<String>,
+    /// The longest time (s) that is cut off.
+    pub longest_cut: f64,
+}
+
+impl Study {
+    /// How long the cases are followed, and which motions are cut short.
+    ///
+    /// # Errors
+    /// When a motion cannot be read.
+    pub fn following(&self) -> Result<Following, StudyError> {
+        let base = self.template.with([])?;
+        let (run, shelf) = (&base.run, Shelf::default());
+        let mut found = Following {
+            to_rest: run.until == Until::Rest,
+            patience: run.patience,
+            duration: run.duration,
+            after_collapse: run.stop_after_collapse,
+            cut: Vec::new(),
+            longest_cut: 0.0,
+        };
+        if let Some(duration) = run.duration {
+            let mut seen = BTreeSet::new();
+            for motion in &self.motions {
+                let shaken = shelf.unscaled(motion, &base.motion, run.similitude)?;
+                let left = shaken.ground.end() / run.similitude.sqrt() - duration;
+                if left > crate::run::CUT && seen.insert(&motion.name) {
+                    found.cut.push(motion.name.clone());
+                    found.longest_cut = found.longest_cut.max(left);
+                }
+            }
+        }
+        Ok(found)
+    }
+}
+
+impl Following {
+    /// In a sentence for people, `motions` being all there are.
+    pub fn words(&self, motions: usize) -> String {
+        let mut said = match self.duration {
+            None if self.to_rest => format!(
+                "every case is followed through its motion and until nothing moves, at most {} s longer",
+                self.patience
+            ),
+            None => "every case is followed through its motion and 5 s more".to_owned(),
+            Some(duration) if self.cut.is_empty() => {
+                format!("no case is followed longer than {duration} s (run.duration)")
+            }
+            Some(duration) => format!(
+                "every case ends at {duration} s (run.duration), while the ground still moves under {} of \
+                 {motions} motions, for up to {:.1} s more",
+                self.cut.len(),
+                self.longest_cut
+            ),
+        };
+        if let Some(after) = self.after_collapse {
+            said += &format!(
+                "; a case that collapses is stopped {after} s later (run.stop_after_collapse), so that losses \
+                 are not known"
+            );
+        }
+        said
+    }
+}

@@ -1,0 +1,146 @@
+//! From what became of a case to its row.
+
+use crate::outcome::Outcome;
+
+use super::Study;
+use super::column::{ColumnSpec, Role, Value, ValueKind};
+use super::design::Case;
+use super::motions::{MEASURES, Shaken};
+use crate::ensemble::CaseResult;
+
+/// Columns of every table before those of the factors.
+const KEYS: [(&str, ValueKind); 3] =
+    [("case", ValueKind::Integer), ("id", ValueKind::Text), ("chunk", ValueKind::Integer)];
+
+/// Columns of every table behind the measures: name, unit, role, kind.
+const RESULTS: [(&str, &str, Role, ValueKind); 20] = [
+    ("outcome", "", Role::Outcome, ValueKind::Text),
+    ("mode", "", Role::Outcome, ValueKind::Text),
+    ("first_loss", "s", Role::Outcome, ValueKind::Number),
+    ("first_fall", "s", Role::Outcome, ValueKind::Number),
+    ("barrels", "", Role::Outcome, ValueKind::Integer),
+    ("barrels_fallen", "", Role::Outcome, ValueKind::Integer),
+    ("fall_heights", "m", Role::Outcome, ValueKind::Text),
+    ("top_drift_ratio", "", Role::Demand, ValueKind::Number),
+    ("base_slip_peak", "m", Role::Demand, ValueKind::Number),
+    ("base_slip_residual", "m", Role::Demand, ValueKind::Number),
+    ("rack_tilt_peak", "rad", Role::Demand, ValueKind::Number),
+    ("rack_walk_peak", "m", Role::Demand, ValueKind::Number),
+    ("residual_displacement", "m", Role::Demand, ValueKind::Number),
+    ("ended", "", Role::Run, ValueKind::Text),
+    ("motion_left", "s", Role::Run, ValueKind::Number),
+    ("end_time", "s", Role::Run, ValueKind::Number),
+    ("steps", "", Role::Run, ValueKind::Integer),
+    ("energy_residual_ratio", "", Role::Run, ValueKind::Number),
+    ("warnings", "", Role::Run, ValueKind::Integer),
+    ("error", "", Role::Run, ValueKind::Text),
+];
+
+/// Columns that tell the motion.
+const MOTION: [&str; 3] = ["record", "level", "scale_factor"];
+
+/// The names of the columns that every table has.
+pub(super) fn fixed_columns() -> impl Iterator<Item = &'static str> {
+    let keys = KEYS.iter().map(|(name, _)| *name);
+    let measures = MEASURES.iter().map(|(name, _)| *name);
+    keys.chain(MOTION).chain(measures).chain(RESULTS.iter().map(|(name, ..)| *name))
+}
+
+impl Study {
+    /// The columns of the table, in order.
+    pub(super) fn columns(&self) -> Vec<ColumnSpec> {
+        let unit = self.intensity.as_ref().map_or("", |intensity| intensity.measure.unit());
+        let key = |(name, kind): &(&str, ValueKind)| ColumnSpec::new(name, "", Role::Key, *kind);
+        let motion = [("", ValueKind::Text), (unit, ValueKind::Number), ("", ValueKind::Number)];
+        let motion = MOTION
+            .iter()
+            .zip(motion)
+            .map(|(name, (unit, kind))| ColumnSpec::new(name, unit, Role::Motion, kind));
+        let measures = MEASURES.iter().map(|(name, measure)| {
+            ColumnSpec::new(name, measure.unit(), Role::Intensity, ValueKind::Number)
+        });
+        let results = RESULTS
+            .iter()
+            .map(|(name, unit, role, kind)| ColumnSpec::new(name, unit, *role, *kind));
+        let factors = self.factors.iter().map(|factor| factor.column.clone());
+        KEYS.iter().map(key).chain(factors).chain(motion).chain(measures).chain(results).collect()
+    }
+
+    /// The row of a case; `shaken` is none where the motion could not be had.
+    pub(super) fn row(
+        &self,
+        case: &Case,
+        chunk: usize,
+        shaken: Option<&Shaken>,
+        result: &CaseResult,
+    ) -> Vec<Option<Value>> {
+        let mut row = vec![
+            Some(Value::Integer(i64::try_from(case.number).unwrap_or(i64::MAX))),
+            text(&format!("{:016x}", case.id)),
+            count(chunk),
+        ];
+        row.extend((0..self.factors.len()).map(|factor| self.told(case, factor)));
+        row.push(text(&self.motions[case.motion].name));
+        row.push(case.level.map(Value::Number));
+        row.push(shaken.map(|shaken| Value::Number(shaken.factor)));
+        let measures = shaken.and_then(|shaken| shaken.measures);
+        row.extend((0..MEASURES.len()).map(|at| number(measures.map(|measures| measures[at]))));
+        row.extend(results(result));
+        row
+    }
+}
+
+/// The values of [`RESULTS`].
+fn results(result: &CaseResult) -> [Option<Value>; 20] {
+    let (kind, mode, first_loss, error) = match &result.outcome {
+        Ok(Outcome::Collapse { mode, time, .. }) => {
+            ("collapse", text(mode.name()), number(Some(*time)), None)
+        }
+        Ok(Outcome::Invalid { reason }) => ("invalid", None, None, text(reason)),
+        Ok(outcome @ (Outcome::Stable | Outcome::NotJudged)) => (outcome.kind(), None, None, None),
+        Err(reason) => ("error", None, None, text(reason)),
+    };
+    let judged = matches!(&result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }));
+    let heights: Vec<String> = result
+        .fall_heights
+        .iter()
+        .map(|height| crate::scenario::quantity::plain(*height))
+        .collect();
+    let demands = &result.demands;
+    [
+        text(kind),
+        mode,
+        first_loss,
+        number(result.first_fall),
+        count(result.barrels).filter(|_| result.outcome.is_ok()),
+        count(heights.len()).filter(|_| judged),
+        text(&heights.join(";")),
+        number(demands.top_drift_ratio),
+        number(demands.base_slip_peak),
+        number(demands.base_slip_residual),
+        number(demands.rack_tilt_peak),
+        number(demands.rack_walk_peak),
+        number(result.residual_displacement),
+        result.ending.and_then(|ending| text(ending.name())),
+        number(result.cut),
+        number(result.end_time),
+        result.steps.and_then(|steps| i64::try_from(steps).ok()).map(Value::Integer),
+        number(result.energy_residual_ratio),
+        count(result.warnings.len()),
+        error,
+    ]
+}
+
+/// A text; none when it is empty.
+fn text(text: &str) -> Option<Value> {
+    (!text.is_empty()).then(|| Value::Text(text.to_owned()))
+}
+
+/// A number, unless it is none: a NaN in a table looks like a value and is none.
+fn number(value: Option<f64>) -> Option<Value> {
+    value.filter(|value| !value.is_nan()).map(Value::Number)
+}
+
+fn count(count: usize) -> Option<Value> {
+    i64::try_from(count).ok().map(Value::Integer)
+}

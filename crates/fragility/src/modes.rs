@@ -1,0 +1,109 @@
+//! Competing modes of failure: who fails in one mode can fail in no other.
+
+use crate::likelihood::{Known, Likelihood, Score};
+use crate::math::{ln, normal};
+
+/// How failures divide among modes, over the intensity.
+///
+/// ```text
+/// s₁(x) = Φ(a₁ + b₁ ln x)                      of all failures
+/// s₂(x) = (1 − s₁(x)) Φ(a₂ + b₂ ln x)          of those that are left, and so on
+/// ```
+///
+/// The last mode takes the rest, so that shares add up to one; times the chance of failure they are the
+/// cumulative incidence of each mode (Kalbfleisch and Prentice 2002, chapter 8), which may fall where
+/// another mode takes over, and never adds up to more than failure itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shares {
+    /// `a` and `b` of every mode but the last.
+    splits: Vec<[f64; 2]>,
+}
+
+impl Shares {
+    /// The likeliest shares of failures, each `(intensity, mode)`, of modes numbered from 0; `None` where
+    /// they do not determine any, such as where an intensity divides two modes without overlap.
+    pub fn fit(failures: &[(f64, usize)], modes: usize) -> Option<Self> {
+        let mut splits = Vec::new();
+        for mode in 0..modes.checked_sub(1)? {
+            let left = || failures.iter().filter(|(_, of)| *of >= mode);
+            let span = |own: bool| {
+                let of = left().filter(|(_, of)| (*of == mode) == own).map(|(x, _)| *x);
+                of.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)))
+            };
+            let ((low, high), (others_low, others_high)) = (span(true), span(false));
+            if high <= others_low || others_high <= low {
+                return None;
+            }
+            let terms: Vec<(Known<2>, f64)> = left()
+                .map(|(x, of)| {
+                    let score = Score { offset: 0.0, row: [1.0, ln(*x)] };
+                    (if *of == mode { Known::Below(score) } else { Known::Above(score) }, 1.0)
+                })
+                .collect();
+            splits.push(Likelihood { terms, slope: None }.top([0.0, 0.0])?.parameters);
+        }
+        Some(Self { splits })
+    }
+
+    /// The share of every mode at an intensity.
+    pub fn at(&self, intensity: f64) -> Vec<f64> {
+        let mut left = 1.0;
+        let mut shares: Vec<f64> = self
+            .splits
+            .iter()
+            .map(|[a, b]| {
+                let share = left * normal(a + b * ln(intensity));
+                left -= share;
+                share
+            })
+            .collect();
+        shares.push(left);
+        shares
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Failures at quantiles of a known division into three modes.
+    fn divided(truth: &Shares) -> Vec<(f64, usize)> {
+        let mut failures = vec![];
+        for i in 0..40 {
+            let x = 0.1 * crate::math::exp(0.06 * f64::from(i));
+            let shares = truth.at(x);
+            for j in 0..200 {
+                let u = (f64::from(j) + 0.5) / 200.0;
+                let mode = if u < shares[0] {
+                    0
+                } else if u < shares[0] + shares[1] {
+                    1
+                } else {
+                    2
+                };
+                failures.push((x, mode));
+            }
+        }
+        failures
+    }
+
+    #[test]
+    fn shares_that_are_known_are_found_and_add_up_to_one() {
+        let truth = Shares { splits: vec![[-1.2, -0.9], [0.4, 0.8]] };
+        let found = Shares::fit(&divided(&truth), 3).unwrap();
+        for x in [0.12, 0.3, 0.8] {
+            let (mine, exact) = (found.at(x), truth.at(x));
+            assert!((mine.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+            for (a, b) in mine.iter().zip(&exact) {
+                assert!((a - b).abs() < 2e-3, "{mine:?} {exact:?}"); // measured 4e-4
+            }
+        }
+    }
+
+    #[test]
+    fn one_mode_has_all_and_modes_that_do_not_overlap_determine_no_shares() {
+        assert_eq!(Shares::fit(&[(0.3, 0), (0.4, 0)], 1).unwrap().at(0.5), [1.0]);
+        assert!(Shares::fit(&[(0.3, 0), (0.4, 0), (0.6, 1), (0.7, 1)], 2).is_none());
+        assert!(Shares::fit(&[], 0).is_none());
+    }
+}

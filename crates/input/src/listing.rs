@@ -1,0 +1,107 @@
+//! Every value of an input file in a flat list, with its meaning and where it comes from.
+
+use crate::field::{Default, Field, Section};
+use crate::quantity::Quantity;
+use crate::reader::item_name;
+use crate::tree::{Origin, Table, Value, parse_value};
+use crate::writer::inline;
+
+/// One value of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Setting {
+    /// Its path as in an override, such as `interface.rack-ground.friction.coefficient`.
+    pub path: String,
+    /// The value, quantities in SI with their unit.
+    pub value: String,
+    /// What the field means.
+    pub help: &'static str,
+    /// Where the value comes from.
+    pub source: Source,
+}
+
+/// Where a value comes from, as far as the value itself tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// Written in the file, or in what it extends.
+    Given,
+    /// That of an absent field.
+    Default,
+    /// Written in the file, or what these words say for an absent field.
+    Derived(&'static str),
+}
+
+impl Source {
+    /// The source in words.
+    pub fn words(self) -> String {
+        match self {
+            Self::Given => "given".into(),
+            Self::Default => "default".into(),
+            Self::Derived(words) => format!("given, or {}", words.replace('`', "")),
+        }
+    }
+}
+
+/// Every value of a table with all defaults written out, in its order.
+///
+/// Items of lists are known by their name or the pair they join, else by their number from 1, as in overrides.
+pub fn settings(table: &Table, section: &'static Section) -> Vec<Setting> {
+    let mut settings = Vec::new();
+    gather(&mut settings, table, section, "");
+    settings
+}
+
+fn gather(list: &mut Vec<Setting>, table: &Table, section: &'static Section, path: &str) {
+    for entry in &table.entries {
+        let Some(field) = section.any_field(&entry.key) else { continue };
+        let path =
+            if path.is_empty() { entry.key.clone() } else { format!("{path}.{}", entry.key) };
+        let inner = field.kind.section();
+        match (&entry.node.value, inner) {
+            (Value::Table(table), Some(inner)) => gather(list, table, inner, &path),
+            (Value::Array(items), Some(inner)) => {
+                for (at, item) in items.iter().enumerate() {
+                    let Value::Table(table) = &item.value else { continue };
+                    gather(list, table, inner, &format!("{path}.{}", item_name(item, at)));
+                }
+            }
+            (value, _) => list.push(Setting {
+                path,
+                value: shown(value),
+                help: field.help,
+                source: source(field, value),
+            }),
+        }
+    }
+}
+
+/// The value without the quotes that a file needs.
+fn shown(value: &Value) -> String {
+    if let Value::Text(text) = value { text.clone() } else { inline(value) }
+}
+
+fn source(field: &Field, value: &Value) -> Source {
+    match field.default {
+        Default::Value(default) if same(&parse_value(default, Origin::Default).value, value) => {
+            Source::Default
+        }
+        Default::Derived(words) => Source::Derived(words),
+        Default::Value(_) | Default::Required | Default::Nothing => Source::Given,
+    }
+}
+
+/// Whether two values mean the same: quantities by their size, numbers whatever their kind.
+fn same(a: &Value, b: &Value) -> bool {
+    let number = |value: &Value| match value {
+        Value::Integer(Some(value)) => Some(*value as f64),
+        Value::Float(value) => Some(*value),
+        Value::Text(text) => Quantity::parse(text).ok().map(|quantity| quantity.value),
+        Value::Integer(None) | Value::Flag(_) | Value::Date | Value::Array(_) | Value::Table(_) => {
+            None
+        }
+    };
+    match (number(a), number(b)) {
+        // A default in other units differs in the last digit.
+        (Some(a), Some(b)) => (a - b).abs() <= 1e-12 * a.abs().max(b.abs()),
+        _ => shown(a) == shown(b),
+    }
+}

@@ -1,0 +1,237 @@
+//! Lays one file over another, and overrides over both.
+//!
+//! Tables are merged key by key and everything else is replaced. A field that excludes another
+//! removes it, and a new variant removes the fields of the old one, so that what is laid over never
+//! has to undo what lies below.
+
+use crate::error::{InputError, Problem};
+use crate::field::{Default, Field, Kind, Section, Variant};
+use crate::reader::item_name;
+use crate::tree::{Entry, Node, Origin, Sources, Table, Value, parse_value};
+
+/// Lays `over` over `base`.
+pub fn overlay(base: &mut Table, over: Table, section: Option<&'static Section>) {
+    let mut entries = over.entries;
+    // The field that chooses a variant goes first, since it decides what the other keys mean.
+    if let Some(variants) = section.and_then(|s| s.variants.as_ref()) {
+        entries.sort_by_key(|entry| entry.key != variants.tag);
+    }
+    let keys: Vec<String> = entries.iter().map(|entry| entry.key.clone()).collect();
+    for entry in entries {
+        let inner = place_for(base, section, &entry.key, &entry.node.value, &keys);
+        match (base.get_mut(&entry.key), entry.node.value) {
+            (
+                Some(Entry { node: Node { value: Value::Table(below), .. }, .. }),
+                Value::Table(above),
+            ) => overlay(below, above, inner),
+            (_, value) => base.set(Entry {
+                key: entry.key,
+                origin: entry.origin,
+                node: Node { origin: entry.node.origin, value },
+            }),
+        }
+    }
+}
+
+/// Makes room for a key: removes its rivals and the fields of an abandoned variant, and turns a
+/// name into the table it stands for when a table is laid over it. Returns the section inside the
+/// key.
+fn place_for(
+    base: &mut Table,
+    section: Option<&'static Section>,
+    key: &str,
+    value: &Value,
+    together: &[String],
+) -> Option<&'static Section> {
+    let section = section?;
+    for rival in section.rivals(key) {
+        // Rivals laid over together are the user's contradiction, to be told and not resolved.
+        if !together.iter().any(|key| key == rival) {
+            base.remove(rival);
+        }
+    }
+    if let (Some(variants), Value::Text(new)) = (&section.variants, value)
+        && variants.tag == key
+        && let Some(old) = variant_of(base, section)
+        && old.name != new
+    {
+        for field in old.fields {
+            base.remove(field.name);
+        }
+    }
+    let field = field_of(base, section, key)?;
+    if let Kind::ChoiceOrTable(_, name_key, _) = field.kind
+        && matches!(value, Value::Table(_))
+        && let Some(entry) = base.get_mut(key)
+    {
+        expand_name(&mut entry.node, name_key);
+    }
+    field.kind.section()
+}
+
+fn variant_of(table: &Table, section: &'static Section) -> Option<&'static Variant> {
+    let variants = section.variants.as_ref()?;
+    let name = match table.get(variants.tag).map(|entry| &entry.node.value) {
+        Some(Value::Text(name)) => name.clone(),
+        Some(_) => return None,
+        None => {
+            let tag = section.fields.iter().find(|field| field.name == variants.tag)?;
+            let Default::Value(text) = tag.default else { return None };
+            let Value::Text(name) = parse_value(text, Origin::Default).value else { return None };
+            name
+        }
+    };
+    variants.list.iter().find(|variant| variant.name == name)
+}
+
+fn field_of(table: &Table, section: &'static Section, key: &str) -> Option<&'static Field> {
+    let variant = variant_of(table, section);
+    section.fields_of(variant).find(|field| field.name == key).or_else(|| section.any_field(key))
+}
+
+/// A name becomes a table with the name under its key.
+fn expand_name(node: &mut Node, key: &str) {
+    if let Value::Text(name) = &node.value {
+        let origin = node.origin;
+        let inner = Node { origin, value: Value::Text(name.clone()) };
+        let entry = Entry { key: key.to_owned(), origin, node: inner };
+        node.value = Value::Table(Table { entries: vec![entry] });
+    }
+}
+
+/// Turns every name that stands for a table into that table.
+pub fn expand_names(table: &mut Table, section: &'static Section) {
+    let variant = variant_of(table, section);
+    for field in section.fields_of(variant) {
+        let Some(entry) = table.get_mut(field.name) else { continue };
+        if let Kind::ChoiceOrTable(_, key, _) = field.kind {
+            expand_name(&mut entry.node, key);
+        }
+        let Some(inner) = field.kind.section() else { continue };
+        if let Value::Table(table) = &mut entry.node.value {
+            expand_names(table, inner);
+        } else if let Value::Array(items) = &mut entry.node.value {
+            for item in items {
+                if let Value::Table(table) = &mut item.value {
+                    expand_names(table, inner);
+                }
+            }
+        }
+    }
+}
+
+/// Applies the override of the given index, `path=value`.
+pub fn apply_override(
+    table: &mut Table,
+    section: &'static Section,
+    sources: &Sources,
+    index: usize,
+) -> Result<(), InputError> {
+    let origin = Origin::Override(index);
+    let wrong = |message: String| sources.error(origin, Problem::Inconsistent { message });
+    let text = &sources.overrides[index];
+    let Some((path, value)) = text.split_once('=') else {
+        return Err(wrong(
+            "an override is written path=value, such as `stack.levels=5`".to_owned(),
+        ));
+    };
+    let keys: Vec<&str> = path.split('.').map(str::trim).collect();
+    if keys.iter().any(|key| key.is_empty()) || keys.len() > 12 {
+        return Err(wrong(format!(
+            "`{}` is no path of a field; write keys joined by points, such as `run.step`",
+            crate::quantity::shorten(path)
+        )));
+    }
+    if value.trim().is_empty() {
+        return Err(wrong(format!("`{}` is given no value; write path=value", path.trim())));
+    }
+    set(table, Some(section), &keys, parse_value(value, origin)).map_err(wrong)
+}
+
+/// The definition of the field at a path, as the table below chooses among variants; `None` where no field has
+/// it.
+pub fn field_at(
+    table: Option<&Table>,
+    section: &'static Section,
+    keys: &[&str],
+) -> Option<&'static Field> {
+    let (key, rest) = keys.split_first()?;
+    let field = match table {
+        Some(table) => field_of(table, section, key),
+        None => section.any_field(key),
+    }?;
+    if rest.is_empty() {
+        return Some(field);
+    }
+    let inner = field.kind.section()?;
+    let node = table.and_then(|table| table.get(key)).map(|entry| &entry.node.value);
+    if let Kind::Tables(_) = field.kind {
+        // The next key is the name or the number of an item.
+        let Some(Value::Array(items)) = node else { return None };
+        let named = |(index, item): &(usize, &Node)| {
+            item_name(item, *index) == rest[0] || rest[0] == (index + 1).to_string()
+        };
+        let (_, item) = items.iter().enumerate().find(named)?;
+        let Value::Table(item) = &item.value else { return None };
+        return field_at(Some(item), inner, &rest[1..]);
+    }
+    let below = if let Some(Value::Table(below)) = node { Some(below) } else { None };
+    field_at(below, inner, rest)
+}
+
+/// Sets the value at a path, making the tables on the way.
+pub fn set(
+    table: &mut Table,
+    section: Option<&'static Section>,
+    keys: &[&str],
+    value: Node,
+) -> Result<(), String> {
+    let Some((key, rest)) = keys.split_first() else { return Ok(()) };
+    let origin = value.origin;
+    if rest.is_empty() {
+        let entry = Entry { key: (*key).to_owned(), origin, node: value };
+        overlay(table, Table { entries: vec![entry] }, section);
+        return Ok(());
+    }
+    let empty = || Value::Table(Table::default());
+    let inner = place_for(table, section, key, &empty(), &[]);
+    if table.get(key).is_none() {
+        let node = Node { origin, value: empty() };
+        table.set(Entry { key: (*key).to_owned(), origin, node });
+    }
+    let Some(entry) = table.get_mut(key) else { return Ok(()) };
+    match &mut entry.node.value {
+        Value::Table(below) => set(below, inner, rest, value),
+        Value::Array(items) => set_in_item(items, inner, key, rest, value),
+        other @ (Value::Text(_)
+        | Value::Integer(_)
+        | Value::Float(_)
+        | Value::Flag(_)
+        | Value::Date) => {
+            Err(format!("`{key}` is {} and has no field `{}`", other.describe(), rest[0]))
+        }
+    }
+}
+
+/// Sets the value at a path that starts with the name or the number of an item of the list `key`.
+fn set_in_item(
+    items: &mut [Node],
+    section: Option<&'static Section>,
+    key: &str,
+    keys: &[&str],
+    value: Node,
+) -> Result<(), String> {
+    let Some((wanted, rest)) = keys.split_first() else { return Ok(()) };
+    let names: Vec<String> = items.iter().enumerate().map(|(i, item)| item_name(item, i)).collect();
+    let number = || wanted.parse::<usize>().ok().filter(|n| (1..=items.len()).contains(n));
+    let found = names.iter().position(|name| name == wanted).or_else(|| number().map(|n| n - 1));
+    let Some(at) = found else {
+        return Err(format!("`{key}` has no item `{wanted}`; it has {}", names.join(", ")));
+    };
+    if let Value::Table(below) = &mut items[at].value
+        && !rest.is_empty()
+    {
+        return set(below, section, rest, value);
+    }
+    Err(format!("name a field of `{key}.{wanted}` after a point"))
+}

@@ -1,0 +1,255 @@
+//! Quantities written with their unit, such as `9.8 kN/cm`, to SI.
+
+use std::f64::consts::PI;
+use std::fmt;
+
+use crate::dimension::Dimension;
+use crate::unit::{self, Scale};
+
+/// A value in SI and what it measures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quantity {
+    /// Value in SI units.
+    pub value: f64,
+    /// What it measures.
+    pub dimension: Dimension,
+}
+
+/// Why a text is not a quantity.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum QuantityError {
+    /// The text does not start with a decimal number.
+    #[error("`{text}` does not start with a decimal number")]
+    NoNumber {
+        /// The text.
+        text: String,
+    },
+    /// The number is beyond the range of double precision.
+    #[error("`{text}` is too large to compute with")]
+    Overflow {
+        /// The text.
+        text: String,
+    },
+    /// A number alone.
+    #[error("`{text}` has no unit")]
+    NoUnit {
+        /// The text.
+        text: String,
+    },
+    /// A word that is no unit.
+    #[error("unknown unit `{unit}` in `{text}`")]
+    UnknownUnit {
+        /// The word.
+        unit: String,
+        /// The text.
+        text: String,
+        /// The unit that looks most like it.
+        nearest: Option<String>,
+    },
+    /// A unit expression that cannot be read.
+    #[error("cannot read the unit of `{text}`: {reason}")]
+    Malformed {
+        /// The text.
+        text: String,
+        /// What is wrong.
+        reason: &'static str,
+    },
+    /// A quantity of another kind.
+    #[error("`{text}` is {found}, expected {expected}")]
+    WrongDimension {
+        /// The text.
+        text: String,
+        /// What the text measures.
+        found: String,
+        /// What was wanted.
+        expected: String,
+    },
+}
+
+impl Quantity {
+    /// Reads a quantity of any dimension.
+    ///
+    /// A quantity is a decimal number and a unit. Units may be multiplied (space, `*` or `·`),
+    /// divided (`/`), raised to a power (`m^2`, `m²`, `m^1.5`) and grouped with parentheses.
+    /// Decimal conversions are exact: the result is the double nearest to the true value.
+    ///
+    /// ```
+    /// use barrelstack_input::quantity::Quantity;
+    ///
+    /// assert_eq!(Quantity::parse("2 in")?.value, 0.0508);
+    /// assert_eq!(Quantity::parse("9.8 kN/cm")?.value, 980_000.0);
+    /// # Ok::<(), barrelstack_input::quantity::QuantityError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// When the number is missing, too large or not finite, or when the unit is missing, unknown or
+    /// malformed.
+    pub fn parse(text: &str) -> Result<Self, QuantityError> {
+        let trimmed = text.trim();
+        let shown = || shorten(trimmed);
+        let (number, rest) =
+            Decimal::take(trimmed).ok_or_else(|| QuantityError::NoNumber { text: shown() })?;
+        let unit_text = rest.trim();
+        if unit_text.is_empty() {
+            return Err(QuantityError::NoUnit { text: shown() });
+        }
+        let unit = unit::parse(unit_text).map_err(|e| e.within(&shown()))?;
+        let value = number.times(&unit.scale);
+        if !value.is_finite() {
+            return Err(QuantityError::Overflow { text: shown() });
+        }
+        Ok(Self { value, dimension: unit.dimension })
+    }
+
+    /// Reads a quantity that must measure one of `wanted`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Quantity::parse`], and when the dimension is none of `wanted`.
+    pub fn parse_as(text: &str, wanted: &[Dimension]) -> Result<Self, QuantityError> {
+        let quantity = Self::parse(text)?;
+        if wanted.contains(&quantity.dimension) {
+            return Ok(quantity);
+        }
+        let names: Vec<String> = wanted.iter().map(ToString::to_string).collect();
+        Err(QuantityError::WrongDimension {
+            text: shorten(text.trim()),
+            found: quantity.dimension.to_string(),
+            expected: names.join(" or "),
+        })
+    }
+}
+
+/// The shortest text in SI units that reads back to the same bits.
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", plain(self.value), self.dimension.si_unit())
+    }
+}
+
+/// The shortest decimal text that reads back to the same bits; an exponent when the number is very
+/// large or small.
+pub fn plain(value: f64) -> String {
+    let size = value.abs();
+    if size != 0.0 && !(1e-5..1e15).contains(&size) {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
+    }
+}
+
+/// A computed number for an error message: at most five significant digits.
+pub fn rounded(value: f64) -> f64 {
+    format!("{value:.4e}").parse().unwrap_or(value)
+}
+
+/// A text cut to a length that fits an error message.
+pub fn shorten(text: &str) -> String {
+    const LIMIT: usize = 60;
+    if text.chars().count() <= LIMIT {
+        text.to_owned()
+    } else {
+        text.chars().take(LIMIT).chain("…".chars()).collect()
+    }
+}
+
+/// A decimal number kept as digits and a power of ten, so that scaling by a decimal unit loses
+/// nothing.
+struct Decimal<'a> {
+    negative: bool,
+    /// All digits in order, without the point; empty for zero.
+    digits: String,
+    /// Power of ten of the last digit.
+    exponent: i64,
+    text: &'a str,
+}
+
+impl<'a> Decimal<'a> {
+    /// Splits a leading decimal number from the text.
+    fn take(text: &'a str) -> Option<(Self, &'a str)> {
+        let bytes = text.as_bytes();
+        let digit = |i: usize| bytes.get(i).is_some_and(u8::is_ascii_digit);
+        let mut at = 0;
+        let negative = bytes.first() == Some(&b'-');
+        if matches!(bytes.first(), Some(b'-' | b'+')) {
+            at += 1;
+        }
+        let mut digits = String::new();
+        let mut exponent = 0_i64;
+        let mut seen = false;
+        let mut fraction = false;
+        loop {
+            if digit(at) {
+                seen = true;
+                digits.push(char::from(bytes[at]));
+                exponent -= i64::from(fraction);
+            } else if bytes.get(at) == Some(&b'.') && !fraction {
+                fraction = true;
+            } else {
+                break;
+            }
+            at += 1;
+        }
+        if !seen {
+            return None;
+        }
+        if matches!(bytes.get(at), Some(b'e' | b'E')) {
+            let sign = usize::from(matches!(bytes.get(at + 1), Some(b'-' | b'+')));
+            if digit(at + 1 + sign) {
+                let start = at + 1;
+                at = start + sign;
+                while digit(at) {
+                    at += 1;
+                }
+                // An exponent too long for i64 stays far beyond the range of f64 after the clamp.
+                let negative_exponent = bytes[start] == b'-';
+                let size = text[start + sign..at].parse::<i64>().unwrap_or(i64::MAX).min(1_000_000);
+                exponent += if negative_exponent { -size } else { size };
+            }
+        }
+        let digits = digits.trim_start_matches('0').to_owned();
+        Some((Self { negative, digits, exponent, text: &text[..at] }, &text[at..]))
+    }
+
+    /// The number in SI: exact up to one rounding for decimal units, up to a few for the others.
+    fn times(&self, scale: &Scale) -> f64 {
+        let sign = if self.negative { -1.0 } else { 1.0 };
+        if self.digits.is_empty() {
+            return 0.0 * sign;
+        }
+        let exponent = self.exponent + i64::from(scale.ten);
+        let exact = self
+            .digits
+            .parse::<u128>()
+            .ok()
+            .and_then(|digits| digits.checked_mul(scale.numerator))
+            .map(|product| {
+                // A denominator that divides leaves one correctly rounded conversion from text.
+                let (product, divisor) = if product.is_multiple_of(scale.denominator) {
+                    (product / scale.denominator, 1.0)
+                } else {
+                    (product, to_f64(scale.denominator))
+                };
+                decimal_to_f64(&format!("{product}e{exponent}")) / divisor
+            });
+        let magnitude = exact.unwrap_or_else(|| {
+            let number = decimal_to_f64(self.text.trim_start_matches(['-', '+']));
+            let ten = decimal_to_f64(&format!("1e{}", scale.ten));
+            number * ten * to_f64(scale.numerator) / to_f64(scale.denominator)
+        });
+        let angle = if scale.pi >= 0 { PI } else { 1.0 / PI };
+        let angle = (0..scale.pi.unsigned_abs()).fold(1.0, |product, _| product * angle);
+        sign * magnitude * angle * scale.factor
+    }
+}
+
+/// Decimal text to the nearest double; the text is well formed by construction, and infinity is
+/// caught by the caller.
+fn decimal_to_f64(text: &str) -> f64 {
+    text.parse().unwrap_or(f64::NAN)
+}
+
+fn to_f64(integer: u128) -> f64 {
+    integer as f64
+}

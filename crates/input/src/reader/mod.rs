@@ -1,0 +1,321 @@
+//! Reads one table of a file field by field, as its definition says.
+
+use std::cell::RefCell;
+
+use crate::error::{InputError, Problem};
+use crate::field::{Default, Field, Kind, Section, Variant};
+use crate::quantity::shorten;
+use crate::tree::{Node, Origin, Sources, Table, Value};
+
+mod values;
+
+type Result<T> = std::result::Result<T, InputError>;
+
+/// One table of a file, checked for unknown and conflicting keys.
+pub struct Reader<'a> {
+    sources: &'a Sources,
+    section: &'static Section,
+    variant: Option<&'static Variant>,
+    /// Dotted path from the root; empty at the root.
+    path: String,
+    table: Option<&'a Table>,
+    origin: Origin,
+    seen: RefCell<Vec<&'static str>>,
+}
+
+impl<'a> Reader<'a> {
+    /// Opens a table, or the place where it would be.
+    pub fn open(
+        sources: &'a Sources,
+        section: &'static Section,
+        path: String,
+        table: Option<&'a Table>,
+        origin: Origin,
+    ) -> Result<Self> {
+        let seen = RefCell::new(Vec::new());
+        let mut reader = Self { sources, section, variant: None, path, table, origin, seen };
+        if let Some(variants) = &section.variants {
+            let name = reader.catalog_name(variants.tag)?;
+            reader.variant = variants.list.iter().find(|variant| variant.name == name);
+        }
+        reader.check_keys()?;
+        reader.check_exclusive()?;
+        Ok(reader)
+    }
+
+    fn check_keys(&self) -> Result<()> {
+        let Some(table) = self.table else { return Ok(()) };
+        for entry in &table.entries {
+            let key = entry.key.as_str();
+            if self.section.fields_of(self.variant).any(|field| field.name == key) {
+                continue;
+            }
+            let valid: Vec<&str> =
+                self.section.fields_of(self.variant).map(|field| field.name).collect();
+            let problem = match (&self.section.variants, self.variant) {
+                (Some(variants), Some(variant)) if self.section.any_field(key).is_some() => {
+                    let owners: Vec<String> = variants
+                        .list
+                        .iter()
+                        .filter(|v| v.fields.iter().any(|field| field.name == key))
+                        .map(|v| format!("\"{}\"", v.name))
+                        .collect();
+                    Problem::ForeignKey {
+                        key: key.to_owned(),
+                        section: self.label(),
+                        tag: variants.tag.to_owned(),
+                        variant: variant.name.to_owned(),
+                        owners: owners.join(" and "),
+                        valid: owned(&valid),
+                    }
+                }
+                _ => Problem::UnknownKey {
+                    key: shorten(key),
+                    section: self.label(),
+                    nearest: nearest(key, &valid),
+                    valid: owned(&valid),
+                },
+            };
+            return Err(self.sources.error(entry.origin, problem));
+        }
+        Ok(())
+    }
+
+    fn check_exclusive(&self) -> Result<()> {
+        let Some(table) = self.table else { return Ok(()) };
+        for group in self.section.exclusive {
+            let mut given = table.entries.iter().filter(|e| group.contains(&e.key.as_str()));
+            if let (Some(first), Some(second)) = (given.next(), given.next()) {
+                let problem = Problem::Exclusive {
+                    section: self.label(),
+                    first: first.key.clone(),
+                    second: second.key.clone(),
+                };
+                return Err(self.sources.error(second.origin, problem));
+            }
+        }
+        Ok(())
+    }
+
+    /// Ends the reading: in builds with assertions, every defined field must have been read.
+    pub fn finish(self) {
+        let seen = self.seen.borrow();
+        for field in self.section.fields_of(self.variant) {
+            debug_assert!(
+                seen.contains(&field.name),
+                "field `{}` of {} is defined but never read",
+                field.name,
+                self.label()
+            );
+        }
+    }
+
+    /// Whether a field is given.
+    pub fn has(&self, name: &str) -> bool {
+        self.entry(name).is_some()
+    }
+
+    /// The section as users know it.
+    pub fn label(&self) -> String {
+        if self.path.is_empty() {
+            format!("the {}", self.section.name)
+        } else {
+            format!("[{}]", self.path)
+        }
+    }
+
+    /// The full path of a field.
+    pub fn path_of(&self, name: &str) -> String {
+        if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
+    }
+
+    /// An error about a field, placed at its value when it has one.
+    pub fn error(&self, name: &str, problem: Problem) -> InputError {
+        let origin = self.entry(name).map_or(self.origin, |node| node.origin);
+        self.sources.error(origin, problem)
+    }
+
+    /// An error about a value that is given.
+    pub fn error_at(&self, origin: Origin, problem: Problem) -> InputError {
+        self.sources.error(origin, problem)
+    }
+
+    /// Values that are fine alone and wrong together.
+    pub fn inconsistent(&self, name: &str, message: String) -> InputError {
+        self.error(name, Problem::Inconsistent { message })
+    }
+
+    /// An error about the table as a whole.
+    pub fn section_error(&self, problem: Problem) -> InputError {
+        self.sources.error(self.origin, problem)
+    }
+
+    /// None of several fields is given.
+    pub fn one_of(&self, names: &[&str]) -> InputError {
+        let choices: Vec<String> = names
+            .iter()
+            .map(|name| self.section.any_field(name).map_or_else(String::new, Field::example))
+            .collect();
+        let problem = Problem::OneOf { section: self.label(), choices: choices.join(", ") };
+        self.sources.error(self.origin, problem)
+    }
+
+    /// A field that another value makes necessary is missing.
+    pub fn missing(&self, name: &str) -> InputError {
+        let example = self.section.any_field(name).map_or_else(String::new, Field::example);
+        let problem = Problem::Missing { field: name.to_owned(), section: self.label(), example };
+        self.sources.error(self.origin, problem)
+    }
+
+    /// What a field holds.
+    pub fn kind_of(&self, name: &'static str) -> Kind {
+        self.field(name).kind
+    }
+
+    fn entry(&self, name: &str) -> Option<&'a Node> {
+        self.table.and_then(|table| table.get(name)).map(|entry| &entry.node)
+    }
+
+    /// The definition of a field; a name without one is a bug in this library.
+    fn field(&self, name: &'static str) -> &'static Field {
+        self.seen.borrow_mut().push(name);
+        let found = self.section.fields_of(self.variant).find(|field| field.name == name);
+        found
+            .unwrap_or_else(|| panic!("field `{name}` of {} is read but not defined", self.label()))
+    }
+
+    /// A table inside this one; one that is absent has only defaults.
+    pub fn section(&self, name: &'static str) -> Result<Self> {
+        let field = self.field(name);
+        let (Kind::Table(section) | Kind::ChoiceOrTable(_, _, section)) = field.kind else {
+            self.defined_otherwise(name);
+        };
+        let path = self.path_of(name);
+        match self.entry(name) {
+            Some(node) => {
+                let Value::Table(table) = &node.value else {
+                    return Err(self.wrong_type(name, field.kind, node));
+                };
+                Self::open(self.sources, section, path, Some(table), node.origin)
+            }
+            None if matches!(field.default, Default::Required) => Err(self.missing(name)),
+            None => Self::open(self.sources, section, path, None, self.origin),
+        }
+    }
+
+    /// Leaves a field to another reader.
+    pub fn skip(&self, name: &'static str) {
+        self.field(name);
+    }
+
+    /// A table inside this one as written, for another reader.
+    pub fn table(&self, name: &'static str) -> Result<&'a Table> {
+        let field = self.field(name);
+        let Some(node) = self.entry(name) else { return Err(self.missing(name)) };
+        let Value::Table(table) = &node.value else {
+            return Err(self.wrong_type(name, field.kind, node));
+        };
+        Ok(table)
+    }
+
+    /// Where a field was written; where the table was, for one that is not given.
+    pub fn origin_of(&self, name: &str) -> Origin {
+        self.entry(name).map_or(self.origin, |node| node.origin)
+    }
+
+    /// A table inside this one that may be absent.
+    pub fn optional_section(&self, name: &'static str) -> Result<Option<Self>> {
+        if self.has(name) {
+            self.section(name).map(Some)
+        } else {
+            self.field(name);
+            Ok(None)
+        }
+    }
+
+    /// A list of tables.
+    pub fn sections(&self, name: &'static str) -> Result<Vec<Self>> {
+        let field = self.field(name);
+        let Kind::Tables(section) = field.kind else { self.defined_otherwise(name) };
+        let Some(node) = self.entry(name) else { return Ok(Vec::new()) };
+        let Value::Array(items) = &node.value else {
+            return Err(self.wrong_type(name, field.kind, node));
+        };
+        let mut readers = Vec::new();
+        for (index, item) in items.iter().enumerate() {
+            let path = self.path_of(&format!("{name}.{}", item_name(item, index)));
+            let Value::Table(table) = &item.value else {
+                return Err(self.wrong_type(name, field.kind, item));
+            };
+            readers.push(Self::open(self.sources, section, path, Some(table), item.origin)?);
+        }
+        Ok(readers)
+    }
+
+    /// A field read as another kind than its definition says is a bug in this library.
+    fn defined_otherwise(&self, name: &str) -> ! {
+        panic!("field `{name}` of {} is defined as another kind than it is read", self.label())
+    }
+}
+
+/// How an item of a list is called in paths: its name, the pair it joins, or its number from 1.
+pub fn item_name(item: &Node, index: usize) -> String {
+    let number = (index + 1).to_string();
+    let Value::Table(table) = &item.value else { return number };
+    if let Some(Value::Text(name)) = table.get("name").map(|entry| &entry.node.value) {
+        return name.clone();
+    }
+    if let Some(Value::Array(pair)) = table.get("between").map(|entry| &entry.node.value)
+        && let [Node { value: Value::Text(a), .. }, Node { value: Value::Text(b), .. }] =
+            pair.as_slice()
+    {
+        return format!("{a}-{b}");
+    }
+    number
+}
+
+fn owned(names: &[&str]) -> Vec<String> {
+    names.iter().map(|name| (*name).to_owned()).collect()
+}
+
+/// What users of other programs write, and what it is called here.
+const HABITS: &[(&str, &str)] = &[
+    ("mu", "coefficient"),
+    ("mu", "friction"),
+    ("mu_s", "static_coefficient"),
+    ("k", "stiffness"),
+    ("kn", "stiffness"),
+    ("c", "damping"),
+    ("e", "restitution"),
+    ("cor", "restitution"),
+    ("dt", "step"),
+    ("integrator", "method"),
+    ("tol", "tolerance"),
+    ("file", "record"),
+    ("diameter", "bilge_diameter"),
+    ("material", "kind"),
+];
+
+/// The name that looks most like a word, if any comes close.
+pub fn nearest(word: &str, valid: &[&str]) -> Option<String> {
+    if word.len() > 60 {
+        return None;
+    }
+    let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
+    let word = plain(word);
+    let habit = HABITS.iter().find(|(habit, name)| *habit == word && valid.contains(name));
+    if let Some((_, name)) = habit {
+        return Some((*name).to_owned());
+    }
+    valid
+        .iter()
+        .map(|name| (strsim::damerau_levenshtein(&word, &plain(name)), *name))
+        .filter(|(distance, name)| *distance <= 1 + name.len().max(word.len()) / 4)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, name)| name.to_owned())
+        .or_else(|| {
+            // A key that is part of the right one: `coefficient` for `static_coefficient`.
+            let part = |name: &&&str| plain(name).contains(&word) || word.contains(&plain(name));
+            valid.iter().filter(|_| word.len() >= 3).find(part).map(|name| (*name).to_owned())
+        })
+}

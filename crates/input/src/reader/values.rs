@@ -1,0 +1,436 @@
+//! Reads the values of one table: quantities, numbers, names, points.
+
+use crate::FileRef;
+use crate::dimension::Dimension;
+use crate::error::{InputError, Problem};
+use crate::field::{Default, Field, Kind, Named, Range};
+use crate::quantity::{Quantity, QuantityError, plain, shorten};
+use crate::tree::{Node, Origin, Value, parse_value};
+
+use super::{Reader, Result, nearest, owned};
+
+impl Reader<'_> {
+    fn value<T>(
+        &self,
+        name: &'static str,
+        read: impl Fn(&Self, &Field, &Node) -> Result<T>,
+    ) -> Result<Option<T>> {
+        let field = self.field(name);
+        match (self.entry(name), field.default) {
+            (Some(node), _) => read(self, field, node).map(Some),
+            (None, Default::Value(text)) => {
+                read(self, field, &parse_value(text, Origin::Default)).map(Some)
+            }
+            (None, Default::Required) => Err(self.missing(name)),
+            (None, Default::Nothing | Default::Derived(_)) => Ok(None),
+        }
+    }
+
+    fn required<T>(&self, name: &'static str, value: Option<T>) -> Result<T> {
+        value.ok_or_else(|| self.missing(name))
+    }
+
+    /// A quantity in SI.
+    pub fn quantity(&self, name: &'static str) -> Result<f64> {
+        let value = self.optional_quantity(name)?;
+        self.required(name, value)
+    }
+
+    /// A quantity in SI that may be absent.
+    pub fn optional_quantity(&self, name: &'static str) -> Result<Option<f64>> {
+        Ok(self.optional_quantity_with_dimension(name)?.map(|quantity| quantity.value))
+    }
+
+    /// A quantity whose dimension tells what it means.
+    pub fn optional_quantity_with_dimension(&self, name: &'static str) -> Result<Option<Quantity>> {
+        self.value(name, |reader, field, node| {
+            if let Kind::Quantity(dimensions, range) = field.kind {
+                reader.read_quantity(name, node, dimensions, range)
+            } else if let Kind::Unit(dimension) = field.kind {
+                reader.read_unit(name, node, dimension)
+            } else {
+                reader.defined_otherwise(name)
+            }
+        })
+    }
+
+    /// A quantity, or `None` for the word that stands in its place.
+    pub fn word_or_quantity(&self, name: &'static str) -> Result<Option<f64>> {
+        let value = self.value(name, |reader, field, node| {
+            let Kind::WordOr(word, dimensions, range) = field.kind else {
+                reader.defined_otherwise(name);
+            };
+            if node.value == Value::Text(word.to_owned()) {
+                return Ok(None);
+            }
+            reader.read_quantity(name, node, dimensions, range).map(|q| Some(q.value))
+        })?;
+        Ok(value.flatten())
+    }
+
+    /// A plain number.
+    pub fn number(&self, name: &'static str) -> Result<f64> {
+        let value = self.optional_number(name)?;
+        self.required(name, value)
+    }
+
+    /// A plain number that may be absent.
+    pub fn optional_number(&self, name: &'static str) -> Result<Option<f64>> {
+        self.value(name, |reader, field, node| {
+            let Kind::Number(range) = field.kind else { reader.defined_otherwise(name) };
+            reader.read_number(name, node, range)
+        })
+    }
+
+    /// The value of a node that holds a plain number.
+    pub fn read_number(&self, name: &str, node: &Node, range: Range) -> Result<f64> {
+        let wrong = || self.wrong_type(name, Kind::Number(range), node);
+        let value = match &node.value {
+            Value::Integer(Some(value)) => *value as f64,
+            Value::Float(value) => *value,
+            Value::Text(text) => match Quantity::parse_as(text, &[Dimension::NONE]) {
+                Ok(quantity) => quantity.value,
+                Err(_) => return Err(wrong()),
+            },
+            Value::Integer(None)
+            | Value::Flag(_)
+            | Value::Date
+            | Value::Array(_)
+            | Value::Table(_) => return Err(wrong()),
+        };
+        self.in_range(name, node, range, value, "", &node.value.describe())?;
+        Ok(value)
+    }
+
+    /// An integer in its range.
+    pub fn integer(&self, name: &'static str) -> Result<u32> {
+        let value = self.optional_integer(name)?;
+        self.required(name, value)
+    }
+
+    /// An integer that may be absent.
+    pub fn optional_integer(&self, name: &'static str) -> Result<Option<u32>> {
+        self.value(name, |reader, field, node| {
+            let value = reader.read_integer(name, node, field.kind)?;
+            u32::try_from(value).map_err(|_| reader.integer_out_of_range(name, node, field.kind))
+        })
+    }
+
+    /// The value of a node that holds an integer of a kind.
+    pub fn read_integer(&self, name: &str, node: &Node, kind: Kind) -> Result<i64> {
+        let Kind::Integer(least, greatest) = kind else { self.defined_otherwise(name) };
+        let Value::Integer(value) = node.value else {
+            return Err(self.wrong_type(name, kind, node));
+        };
+        value
+            .filter(|value| (least..=greatest).contains(value))
+            .ok_or_else(|| self.integer_out_of_range(name, node, kind))
+    }
+
+    fn integer_out_of_range(&self, name: &str, node: &Node, kind: Kind) -> InputError {
+        let problem = Problem::OutOfRange {
+            field: self.path_of(name),
+            range: kind.to_string(),
+            found: node.value.describe(),
+        };
+        self.sources.error(node.origin, problem)
+    }
+
+    /// `true` or `false`.
+    pub fn flag(&self, name: &'static str) -> Result<bool> {
+        let value = self.optional_flag(name)?;
+        self.required(name, value)
+    }
+
+    /// `true` or `false`, or absent.
+    pub fn optional_flag(&self, name: &'static str) -> Result<Option<bool>> {
+        self.value(name, |reader, field, node| {
+            let Value::Flag(value) = node.value else {
+                return Err(reader.wrong_type(name, field.kind, node));
+            };
+            Ok(value)
+        })
+    }
+
+    /// Text.
+    pub fn text(&self, name: &'static str) -> Result<String> {
+        let value = self.optional_text(name)?;
+        self.required(name, value)
+    }
+
+    /// Text that may be absent; `false` counts as absent where the field allows it.
+    pub fn optional_text(&self, name: &'static str) -> Result<Option<String>> {
+        let value = self.value(name, |reader, field, node| {
+            let text = match (&node.value, field.kind) {
+                (Value::Text(text), _) => text.clone(),
+                (Value::Integer(Some(value)), Kind::Label) => value.to_string(),
+                (Value::Flag(false), Kind::TextOrFalse) => return Ok(None),
+                _ => return Err(reader.wrong_type(name, field.kind, node)),
+            };
+            if text.trim().is_empty() {
+                let message = format!(
+                    "`{}` is empty; give a text or leave the field out",
+                    reader.path_of(name)
+                );
+                return Err(reader.sources.error(node.origin, Problem::Inconsistent { message }));
+            }
+            Ok(Some(text))
+        })?;
+        Ok(value.flatten())
+    }
+
+    /// A single value as written, for the caller to make sense of.
+    pub fn node(&self, name: &'static str) -> Result<Option<Node>> {
+        self.value(name, |reader, field, node| {
+            if matches!(node.value, Value::Array(_) | Value::Table(_) | Value::Date) {
+                return Err(reader.wrong_type(name, field.kind, node));
+            }
+            Ok(node.clone())
+        })
+    }
+
+    /// A list of single values as written, not empty.
+    pub fn nodes(&self, name: &'static str) -> Result<Option<Vec<Node>>> {
+        self.value(name, |reader, field, node| {
+            let Value::Array(items) = &node.value else {
+                return Err(reader.wrong_type(name, field.kind, node));
+            };
+            let texts = matches!(field.kind, Kind::Texts);
+            for item in items {
+                let single = !matches!(item.value, Value::Array(_) | Value::Table(_) | Value::Date);
+                if !single || texts && !matches!(item.value, Value::Text(_)) {
+                    return Err(reader.wrong_type(name, field.kind, item));
+                }
+            }
+            if items.is_empty() {
+                let message = format!("`{}` is an empty list", reader.path_of(name));
+                return Err(reader.sources.error(node.origin, Problem::Inconsistent { message }));
+            }
+            Ok(items.clone())
+        })
+    }
+
+    /// A list of texts; empty where it is absent.
+    pub fn texts(&self, name: &'static str) -> Result<Vec<String>> {
+        let nodes = self.nodes(name)?.unwrap_or_default();
+        let text =
+            |node| if let Node { value: Value::Text(text), .. } = node { Some(text) } else { None };
+        Ok(nodes.into_iter().filter_map(text).collect())
+    }
+
+    /// A file, relative to the file that names it.
+    pub fn file(&self, name: &'static str) -> Result<Option<FileRef>> {
+        let Some(path) = self.optional_text(name)? else { return Ok(None) };
+        let folder = match self.entry(name).map(|node| node.origin) {
+            Some(Origin::File { file, .. }) => self.sources.files[file].folder.clone(),
+            Some(Origin::Override(_) | Origin::Whole(_) | Origin::Default) | None => {
+                std::path::PathBuf::new()
+            }
+        };
+        Ok(Some(FileRef { path, folder }))
+    }
+
+    /// A member of a closed set.
+    pub fn choice<T: Named>(&self, name: &'static str) -> Result<T> {
+        let value = self.optional_choice(name)?;
+        self.required(name, value)
+    }
+
+    /// A member of a closed set that may be absent.
+    pub fn optional_choice<T: Named>(&self, name: &'static str) -> Result<Option<T>> {
+        self.value(name, |reader, _, node| {
+            let text = reader.read_name(name, node, &crate::field::names::<T>())?;
+            let found = T::NAMES.iter().find(|(known, _)| *known == text);
+            found.map(|(_, member)| *member).ok_or_else(|| reader.missing(name))
+        })
+    }
+
+    /// A name of a list.
+    pub fn catalog_name(&self, name: &'static str) -> Result<String> {
+        let value = self.optional_catalog_name(name)?;
+        self.required(name, value)
+    }
+
+    /// A name of a list that may be absent.
+    pub fn optional_catalog_name(&self, name: &'static str) -> Result<Option<String>> {
+        self.value(name, |reader, field, node| {
+            let Kind::Choice(names) = field.kind else { reader.defined_otherwise(name) };
+            reader.read_name(name, node, &names())
+        })
+    }
+
+    /// Two texts.
+    pub fn pair(&self, name: &'static str) -> Result<[String; 2]> {
+        let value = self.value(name, |reader, field, node| {
+            if let Value::Array(items) = &node.value
+                && let [a, b] = items.as_slice()
+                && let (Value::Text(a), Value::Text(b)) = (&a.value, &b.value)
+            {
+                return Ok([a.clone(), b.clone()]);
+            }
+            Err(reader.wrong_type(name, field.kind, node))
+        })?;
+        self.required(name, value)
+    }
+
+    /// Two quantities.
+    pub fn optional_point(&self, name: &'static str) -> Result<Option<[f64; 2]>> {
+        self.value(name, |reader, field, node| {
+            let Kind::Point(dimension) = field.kind else { reader.defined_otherwise(name) };
+            reader.read_point(name, node, dimension, field.kind)
+        })
+    }
+
+    /// Two quantities.
+    pub fn point(&self, name: &'static str) -> Result<[f64; 2]> {
+        let value = self.optional_point(name)?;
+        self.required(name, value)
+    }
+
+    /// A list of points.
+    pub fn points(&self, name: &'static str) -> Result<Vec<[f64; 2]>> {
+        let value = self.value(name, |reader, field, node| {
+            let Kind::Points(dimension) = field.kind else { reader.defined_otherwise(name) };
+            let Value::Array(items) = &node.value else {
+                return Err(reader.wrong_type(name, field.kind, node));
+            };
+            items
+                .iter()
+                .map(|item| reader.read_point(name, item, dimension, Kind::Point(dimension)))
+                .collect()
+        })?;
+        self.required(name, value)
+    }
+
+    /// The value of a node that holds one of a list of names.
+    pub fn read_name(&self, name: &str, node: &Node, valid: &[&'static str]) -> Result<String> {
+        let Value::Text(text) = &node.value else {
+            return Err(self.wrong_type(name, Kind::Text, node));
+        };
+        if valid.contains(&text.as_str()) {
+            return Ok(text.clone());
+        }
+        let problem = Problem::UnknownName {
+            field: self.path_of(name),
+            found: shorten(text),
+            nearest: nearest(text, valid),
+            valid: owned(valid),
+        };
+        Err(self.sources.error(node.origin, problem))
+    }
+
+    fn read_point(&self, name: &str, node: &Node, d: Dimension, kind: Kind) -> Result<[f64; 2]> {
+        if let Value::Array(items) = &node.value
+            && let [x, z] = items.as_slice()
+        {
+            let read = |node| self.read_quantity(name, node, &[d], Range::ANY).map(|q| q.value);
+            return Ok([read(x)?, read(z)?]);
+        }
+        Err(self.wrong_type(name, kind, node))
+    }
+
+    /// The value of a node that holds a quantity.
+    pub fn read_quantity(
+        &self,
+        name: &str,
+        node: &Node,
+        dimensions: &[Dimension],
+        range: Range,
+    ) -> Result<Quantity> {
+        let example = dimensions[0].example();
+        // A bare number is most often meant in SI.
+        let unit = dimensions[0].si_unit();
+        let kind = "a quantity with its unit";
+        match &node.value {
+            Value::Text(text) => {
+                let quantity = Quantity::parse_as(text, dimensions).map_err(|reason| {
+                    let repaired = repaired(text, &reason, &unit);
+                    let example = repaired.unwrap_or_else(|| format!("\"{example}\""));
+                    let field = self.path_of(name);
+                    self.sources.error(node.origin, Problem::Quantity { field, reason, example })
+                })?;
+                let unit = quantity.dimension.si_unit();
+                let found = format!("\"{}\"", shorten(text));
+                self.in_range(name, node, range, quantity.value, &unit, &found)?;
+                Ok(quantity)
+            }
+            Value::Integer(Some(number)) => {
+                Err(self.bare_number(name, node, &number.to_string(), &unit))
+            }
+            Value::Float(number) if number.is_finite() => {
+                Err(self.bare_number(name, node, &plain(*number), &unit))
+            }
+            Value::Float(_)
+            | Value::Integer(None)
+            | Value::Flag(_)
+            | Value::Date
+            | Value::Array(_)
+            | Value::Table(_) => Err(self.wrong_type_as(name, kind, node)),
+        }
+    }
+
+    /// A number without a unit, with the advice to add the SI unit.
+    fn bare_number(&self, name: &str, node: &Node, number: &str, unit: &str) -> InputError {
+        let example = format!("`{name} = \"{number} {unit}\"`");
+        let found = node.value.describe();
+        let problem = Problem::BareNumber { field: self.path_of(name), found, example };
+        self.sources.error(node.origin, problem)
+    }
+
+    /// A unit alone counts as one of it.
+    fn read_unit(&self, name: &str, node: &Node, dimension: Dimension) -> Result<Quantity> {
+        if let Value::Text(text) = &node.value
+            && !text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+        {
+            let one =
+                Node { origin: node.origin, value: Value::Text(format!("1 {}", text.trim())) };
+            return self.read_quantity(name, &one, &[dimension], Range::POSITIVE);
+        }
+        self.read_quantity(name, node, &[dimension], Range::POSITIVE)
+    }
+
+    fn in_range(
+        &self,
+        name: &str,
+        node: &Node,
+        range: Range,
+        value: f64,
+        unit: &str,
+        found: &str,
+    ) -> Result<()> {
+        if range.contains(value) {
+            return Ok(());
+        }
+        let problem = Problem::OutOfRange {
+            field: self.path_of(name),
+            range: range.describe(unit),
+            found: found.to_owned(),
+        };
+        Err(self.sources.error(node.origin, problem))
+    }
+
+    /// A value of another type than a kind asks for.
+    pub fn wrong_type(&self, name: &str, kind: Kind, node: &Node) -> InputError {
+        self.wrong_type_as(name, &kind.to_string(), node)
+    }
+
+    fn wrong_type_as(&self, name: &str, expected: &str, node: &Node) -> InputError {
+        let problem = Problem::WrongType {
+            field: self.path_of(name),
+            expected: expected.to_owned(),
+            found: node.value.describe(),
+        };
+        self.sources.error(node.origin, problem)
+    }
+}
+
+/// The text with the unit it lacks, or with the unit that was probably meant.
+fn repaired(text: &str, reason: &QuantityError, unit: &str) -> Option<String> {
+    if let QuantityError::NoUnit { .. } = reason {
+        return Some(format!("\"{} {unit}\"", text.trim()));
+    }
+    if let QuantityError::UnknownUnit { nearest: Some(nearest), unit, .. } = reason {
+        return Some(format!("\"{}\"", shorten(&text.trim().replace(unit.as_str(), nearest))));
+    }
+    None
+}

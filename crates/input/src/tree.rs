@@ -1,0 +1,235 @@
+//! Parsed TOML in which every key and value remembers where it was written.
+
+use std::path::PathBuf;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::error::{InputError, Place, Problem};
+
+/// Where a key or value was written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// In a file, by its index in [`Sources`], from byte to byte.
+    File {
+        /// Which file.
+        file: usize,
+        /// The first byte.
+        start: usize,
+        /// The byte after the last.
+        end: usize,
+    },
+    /// A file as a whole.
+    Whole(usize),
+    /// In an override, by its index.
+    Override(usize),
+    /// Nowhere: a default.
+    Default,
+}
+
+/// A value with its origin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Node {
+    /// Where it was written.
+    pub origin: Origin,
+    /// What it is.
+    pub value: Value,
+}
+
+/// A TOML value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// A text.
+    Text(String),
+    /// An integer; `None` when it leaves 64 bits.
+    Integer(Option<i64>),
+    /// A number with a point or an exponent.
+    Float(f64),
+    /// `true` or `false`.
+    Flag(bool),
+    /// A date or a time, which no field holds.
+    Date,
+    /// A list.
+    Array(Vec<Node>),
+    /// A table.
+    Table(Table),
+}
+
+impl Value {
+    /// The kind of value, with its article.
+    pub fn describe(&self) -> String {
+        match self {
+            Self::Text(text) => format!("the text \"{}\"", crate::quantity::shorten(text)),
+            Self::Integer(Some(value)) => format!("the number {value}"),
+            Self::Integer(None) => "a number beyond 64 bits".to_owned(),
+            Self::Float(value) => format!("the number {}", crate::quantity::plain(*value)),
+            Self::Flag(value) => value.to_string(),
+            Self::Date => "a date".to_owned(),
+            Self::Array(_) => "a list".to_owned(),
+            Self::Table(_) => "a table".to_owned(),
+        }
+    }
+}
+
+/// One key of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    /// The key.
+    pub key: String,
+    /// Where the key was written.
+    pub origin: Origin,
+    /// Its value.
+    pub node: Node,
+}
+
+/// A table in the order of writing.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Table {
+    /// The keys with their values.
+    pub entries: Vec<Entry>,
+}
+
+impl Table {
+    /// The entry of a key.
+    pub fn get(&self, key: &str) -> Option<&Entry> {
+        self.entries.iter().find(|entry| entry.key == key)
+    }
+
+    /// The entry of a key, to be changed.
+    pub fn get_mut(&mut self, key: &str) -> Option<&mut Entry> {
+        self.entries.iter_mut().find(|entry| entry.key == key)
+    }
+
+    /// Replaces the entry of the same key, or appends.
+    pub fn set(&mut self, entry: Entry) {
+        match self.get_mut(&entry.key) {
+            Some(old) => *old = entry,
+            None => self.entries.push(entry),
+        }
+    }
+
+    /// Removes the entry of a key, if there is one.
+    pub fn remove(&mut self, key: &str) {
+        self.entries.retain(|entry| entry.key != key);
+    }
+}
+
+/// A file that takes part.
+#[derive(Debug, Clone)]
+pub struct SourceFile {
+    /// What errors call it.
+    pub name: String,
+    /// What it holds.
+    pub text: String,
+    /// Folder against which its relative paths are resolved.
+    pub folder: PathBuf,
+}
+
+/// All texts that take part, for the errors.
+#[derive(Debug, Clone, Default)]
+pub struct Sources {
+    /// The files, known by their index.
+    pub files: Vec<SourceFile>,
+    /// Overrides as given, `path=value`.
+    pub overrides: Vec<String>,
+}
+
+impl Sources {
+    /// An error at a place.
+    pub fn error(&self, origin: Origin, problem: Problem) -> InputError {
+        InputError::new(problem, self.place(origin))
+    }
+
+    /// The place of an origin.
+    pub fn place(&self, origin: Origin) -> Place {
+        match origin {
+            Origin::File { file, start, end } => {
+                let source = &self.files[file];
+                Place::in_text(&source.name, &source.text, start, end)
+            }
+            Origin::Whole(file) => Place::Whole { file: self.files[file].name.clone() },
+            Origin::Override(index) => Place::Override { text: self.overrides[index].clone() },
+            Origin::Default => Place::Unknown,
+        }
+    }
+
+    /// Parses the file with the given index.
+    pub fn parse(&self, file: usize) -> Result<Table, InputError> {
+        let text = &self.files[file].text;
+        let document = DeTable::parse(text).map_err(|error| {
+            let origin = error.span().map_or(Origin::Whole(file), |span| Origin::File {
+                file,
+                start: span.start,
+                end: span.end,
+            });
+            self.error(origin, Problem::Syntax { message: error.message().replace('\n', ", ") })
+        })?;
+        Ok(convert_table(document.get_ref(), file))
+    }
+}
+
+/// Reads the value of an override or a default: TOML when it is, text when it is not.
+pub fn parse_value(text: &str, origin: Origin) -> Node {
+    let trimmed = text.trim();
+    DeValue::parse(trimmed).map_or_else(
+        |_| Node { origin, value: Value::Text(trimmed.to_owned()) },
+        |value| {
+            let mut node = convert(&value, 0);
+            set_origin(&mut node, origin);
+            node
+        },
+    )
+}
+
+fn set_origin(node: &mut Node, origin: Origin) {
+    node.origin = origin;
+    match &mut node.value {
+        Value::Array(items) => items.iter_mut().for_each(|item| set_origin(item, origin)),
+        Value::Table(table) => {
+            for entry in &mut table.entries {
+                entry.origin = origin;
+                set_origin(&mut entry.node, origin);
+            }
+        }
+        Value::Text(_) | Value::Integer(_) | Value::Float(_) | Value::Flag(_) | Value::Date => {}
+    }
+}
+
+fn convert(value: &Spanned<DeValue<'_>>, file: usize) -> Node {
+    let span = value.span();
+    let origin = Origin::File { file, start: span.start, end: span.end };
+    let value = match value.get_ref() {
+        DeValue::String(text) => Value::Text(text.to_string()),
+        DeValue::Integer(integer) => {
+            Value::Integer(i64::from_str_radix(integer.as_str(), integer.radix()).ok())
+        }
+        // The parser has checked the form; what cannot be read is refused later as not finite.
+        DeValue::Float(float) => Value::Float(float.as_str().parse().unwrap_or(f64::NAN)),
+        DeValue::Boolean(flag) => Value::Flag(*flag),
+        DeValue::Datetime(_) => Value::Date,
+        DeValue::Array(items) => {
+            Value::Array(items.iter().map(|item| convert(item, file)).collect())
+        }
+        DeValue::Table(table) => Value::Table(convert_table(table, file)),
+    };
+    Node { origin, value }
+}
+
+fn convert_table(table: &DeTable<'_>, file: usize) -> Table {
+    let mut entries: Vec<Entry> = table
+        .iter()
+        .map(|(key, value)| {
+            let span = key.span();
+            Entry {
+                key: key.get_ref().to_string(),
+                origin: Origin::File { file, start: span.start, end: span.end },
+                node: convert(value, file),
+            }
+        })
+        .collect();
+    entries.sort_by_key(|entry| match entry.origin {
+        Origin::File { start, .. } => start,
+        Origin::Whole(_) | Origin::Override(_) | Origin::Default => 0,
+    });
+    Table { entries }
+}

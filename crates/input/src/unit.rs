@@ -1,0 +1,350 @@
+//! Units and their products, quotients and powers.
+
+use crate::dimension::Dimension;
+use crate::quantity::QuantityError;
+
+/// The size of a unit in SI: `numerator / denominator · 10^ten · π^pi · factor`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Scale {
+    pub(crate) numerator: u128,
+    pub(crate) denominator: u128,
+    pub(crate) ten: i32,
+    pub(crate) pi: i32,
+    /// What the exact parts cannot hold: half powers, and products beyond 128 bits.
+    pub(crate) factor: f64,
+}
+
+/// A unit expression.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Unit {
+    pub(crate) scale: Scale,
+    pub(crate) dimension: Dimension,
+}
+
+/// Names, exact sizes (numerator, denominator, power of ten, power of π) and dimensions.
+///
+/// Inch, foot, pound and standard gravity are exact by definition; the pound-force is their
+/// product.
+const UNITS: &[(&str, u128, u128, i32, i32, Dimension)] = &[
+    ("1", 1, 1, 0, 0, Dimension::NONE),
+    ("%", 1, 1, -2, 0, Dimension::NONE),
+    ("m", 1, 1, 0, 0, Dimension::LENGTH),
+    ("km", 1, 1, 3, 0, Dimension::LENGTH),
+    ("dm", 1, 1, -1, 0, Dimension::LENGTH),
+    ("cm", 1, 1, -2, 0, Dimension::LENGTH),
+    ("mm", 1, 1, -3, 0, Dimension::LENGTH),
+    ("um", 1, 1, -6, 0, Dimension::LENGTH),
+    ("µm", 1, 1, -6, 0, Dimension::LENGTH),
+    ("in", 254, 1, -4, 0, Dimension::LENGTH),
+    ("ft", 3048, 1, -4, 0, Dimension::LENGTH),
+    ("L", 1, 1, -3, 0, Dimension::VOLUME),
+    ("kg", 1, 1, 0, 0, Dimension::MASS),
+    ("gram", 1, 1, -3, 0, Dimension::MASS),
+    ("t", 1, 1, 3, 0, Dimension::MASS),
+    ("lb", 45_359_237, 1, -8, 0, Dimension::MASS),
+    ("s", 1, 1, 0, 0, Dimension::TIME),
+    ("ms", 1, 1, -3, 0, Dimension::TIME),
+    ("us", 1, 1, -6, 0, Dimension::TIME),
+    ("µs", 1, 1, -6, 0, Dimension::TIME),
+    ("min", 60, 1, 0, 0, Dimension::TIME),
+    ("rad", 1, 1, 0, 0, Dimension::ANGLE),
+    ("mrad", 1, 1, -3, 0, Dimension::ANGLE),
+    ("deg", 1, 180, 0, 1, Dimension::ANGLE),
+    ("Hz", 1, 1, 0, 0, Dimension::FREQUENCY),
+    ("kHz", 1, 1, 3, 0, Dimension::FREQUENCY),
+    ("g", 980_665, 1, -5, 0, Dimension::ACCELERATION),
+    ("Gal", 1, 1, -2, 0, Dimension::ACCELERATION),
+    ("N", 1, 1, 0, 0, Dimension::FORCE),
+    ("kN", 1, 1, 3, 0, Dimension::FORCE),
+    ("MN", 1, 1, 6, 0, Dimension::FORCE),
+    ("lbf", 44_482_216_152_605, 1, -13, 0, Dimension::FORCE),
+    ("kip", 44_482_216_152_605, 1, -10, 0, Dimension::FORCE),
+    ("Pa", 1, 1, 0, 0, Dimension::STIFFNESS_PER_LENGTH),
+    ("kPa", 1, 1, 3, 0, Dimension::STIFFNESS_PER_LENGTH),
+    ("MPa", 1, 1, 6, 0, Dimension::STIFFNESS_PER_LENGTH),
+    // lbf/in² = 4.4482216152605 N / (0.0254 m)².
+    ("psi", 44_482_216_152_605, 64_516, -5, 0, Dimension::STIFFNESS_PER_LENGTH),
+];
+
+/// Names of all units.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    UNITS.iter().map(|unit| unit.0)
+}
+
+/// What is wrong with a unit expression, before the whole text is known.
+pub(crate) enum UnitError {
+    Unknown { unit: String, nearest: Option<String> },
+    Malformed(&'static str),
+}
+
+impl UnitError {
+    pub(crate) fn within(self, text: &str) -> QuantityError {
+        let text = text.to_owned();
+        match self {
+            Self::Unknown { unit, nearest } => QuantityError::UnknownUnit { unit, text, nearest },
+            Self::Malformed(reason) => QuantityError::Malformed { text, reason },
+        }
+    }
+}
+
+/// Reads a unit expression.
+pub(crate) fn parse(text: &str) -> Result<Unit, UnitError> {
+    if text.len() > 200 {
+        return Err(UnitError::Malformed("it is too long"));
+    }
+    let tokens = tokenize(text)?;
+    let mut at = 0;
+    let unit = product(&tokens, &mut at, 0)?;
+    if at < tokens.len() {
+        return Err(UnitError::Malformed("a closing parenthesis has no opening one"));
+    }
+    Ok(unit)
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Token {
+    Name(String),
+    Times,
+    Over,
+    Power(String),
+    Open,
+    Close,
+}
+
+fn tokenize(text: &str) -> Result<Vec<Token>, UnitError> {
+    let mut tokens = Vec::new();
+    let mut chars = text.chars().peekable();
+    while let Some(c) = chars.next() {
+        match c {
+            ' ' | '\t' => {}
+            '*' | '·' | '⋅' => tokens.push(Token::Times),
+            '/' => tokens.push(Token::Over),
+            '(' => tokens.push(Token::Open),
+            ')' => tokens.push(Token::Close),
+            '²' => tokens.push(Token::Power("2".to_owned())),
+            '³' => tokens.push(Token::Power("3".to_owned())),
+            '^' => {
+                let mut power = String::new();
+                while let Some(&next) = chars.peek() {
+                    let leading_sign = power.is_empty() && (next == '-' || next == '+');
+                    if !(next.is_ascii_digit() || next == '.' || leading_sign) {
+                        break;
+                    }
+                    power.push(next);
+                    chars.next();
+                }
+                tokens.push(Token::Power(power));
+            }
+            _ if c.is_alphabetic() || c == '%' || c == '1' || c == '"' || c == '\'' || c == '_' => {
+                // The two micro signs look alike and mean the same.
+                let mut name = String::from(if c == 'μ' { 'µ' } else { c });
+                while let Some(&next) = chars.peek() {
+                    if !(next.is_alphabetic() || next == '_') || c == '1' {
+                        break;
+                    }
+                    name.push(if next == 'μ' { 'µ' } else { next });
+                    chars.next();
+                }
+                tokens.push(Token::Name(name));
+            }
+            ',' => return Err(UnitError::Malformed("write the decimal mark as a point")),
+            _ if c.is_ascii_digit() || c == '.' || c == '-' || c == '+' => {
+                return Err(UnitError::Malformed(
+                    "a second number stands where a unit was expected; powers are written `m^2`",
+                ));
+            }
+            _ => {
+                return Err(UnitError::Malformed(
+                    "a unit holds names, `*`, `/`, `^` and parentheses only",
+                ));
+            }
+        }
+    }
+    Ok(tokens)
+}
+
+/// Deepest nesting of parentheses.
+const DEPTH: u32 = 8;
+
+fn product(tokens: &[Token], at: &mut usize, depth: u32) -> Result<Unit, UnitError> {
+    if depth > DEPTH {
+        return Err(UnitError::Malformed("its parentheses are nested too deeply"));
+    }
+    let mut total = factor(tokens, at, depth)?;
+    let mut divided = false;
+    while let Some(token) = tokens.get(*at) {
+        match token {
+            Token::Close => break,
+            Token::Over => {
+                *at += 1;
+                total = total.times(factor(tokens, at, depth)?.power(-2)?);
+                divided = true;
+            }
+            Token::Times | Token::Name(_) | Token::Open => {
+                // `N/m s` is read as N/(m·s) by some and as (N/m)·s by others.
+                if divided {
+                    return Err(UnitError::Malformed(
+                        "a product after a quotient is ambiguous; write `N s/m` or `N/(m s)`",
+                    ));
+                }
+                if *token == Token::Times {
+                    *at += 1;
+                }
+                total = total.times(factor(tokens, at, depth)?);
+            }
+            Token::Power(_) => return Err(UnitError::Malformed("a power follows a power")),
+        }
+    }
+    Ok(total)
+}
+
+fn factor(tokens: &[Token], at: &mut usize, depth: u32) -> Result<Unit, UnitError> {
+    let unit = match tokens.get(*at) {
+        Some(Token::Name(name)) => {
+            *at += 1;
+            named(name)?
+        }
+        Some(Token::Open) => {
+            *at += 1;
+            let inner = product(tokens, at, depth + 1)?;
+            if tokens.get(*at) != Some(&Token::Close) {
+                return Err(UnitError::Malformed("a parenthesis is not closed"));
+            }
+            *at += 1;
+            inner
+        }
+        Some(Token::Times | Token::Over | Token::Power(_) | Token::Close) | None => {
+            return Err(UnitError::Malformed("a unit is missing"));
+        }
+    };
+    if let Some(Token::Power(power)) = tokens.get(*at) {
+        *at += 1;
+        return unit.power(halves(power)?);
+    }
+    Ok(unit)
+}
+
+/// A power in halves: `2` is 4, `1.5` is 3.
+fn halves(power: &str) -> Result<i8, UnitError> {
+    let value: f64 =
+        power.parse().map_err(|_| UnitError::Malformed("`^` must be followed by a power"))?;
+    let halves = value * 2.0;
+    if halves.fract() != 0.0 || halves == 0.0 || halves.abs() > 12.0 {
+        return Err(UnitError::Malformed("a power must be a multiple of 0.5 between -6 and 6"));
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "a whole number of at most 12 in size")]
+    Ok(halves as i8)
+}
+
+/// Words that users write for units.
+const SYNONYMS: &[(&str, &str)] = &[
+    ("grams", "gram"),
+    ("sec", "s"),
+    ("secs", "s"),
+    ("second", "s"),
+    ("seconds", "s"),
+    ("msec", "ms"),
+    ("meter", "m"),
+    ("meters", "m"),
+    ("metre", "m"),
+    ("metres", "m"),
+    ("inch", "in"),
+    ("inches", "in"),
+    ("\"", "in"),
+    ("feet", "ft"),
+    ("'", "ft"),
+    ("lbs", "lb"),
+    ("pound", "lb"),
+    ("pounds", "lb"),
+    ("degree", "deg"),
+    ("degrees", "deg"),
+    ("newton", "N"),
+    ("kgf", "kg"),
+    ("tonne", "t"),
+    ("ton", "t"),
+    ("l", "L"),
+    ("liter", "L"),
+    ("litre", "L"),
+    ("liters", "L"),
+    ("gal", "Gal"),
+    ("hz", "Hz"),
+];
+
+fn named(name: &str) -> Result<Unit, UnitError> {
+    if let Some(&(_, numerator, denominator, ten, pi, dimension)) =
+        UNITS.iter().find(|unit| unit.0 == name)
+    {
+        let scale = Scale { numerator, denominator, ten, pi, factor: 1.0 };
+        return Ok(Unit { scale, dimension });
+    }
+    let nearest = SYNONYMS
+        .iter()
+        .find(|(word, _)| word.eq_ignore_ascii_case(name))
+        .map(|(_, unit)| (*unit).to_owned())
+        .or_else(|| names().find(|unit| unit.eq_ignore_ascii_case(name)).map(str::to_owned));
+    Err(UnitError::Unknown { unit: name.chars().take(30).collect(), nearest })
+}
+
+impl Unit {
+    fn times(self, other: Self) -> Self {
+        Self { scale: self.scale.times(other.scale), dimension: self.dimension + other.dimension }
+    }
+
+    /// The unit to the power `halves / 2`.
+    fn power(self, halves: i8) -> Result<Self, UnitError> {
+        let dimension =
+            self.dimension.power(halves).ok_or(UnitError::Malformed("its powers are too large"))?;
+        Ok(Self { scale: self.scale.power(halves), dimension })
+    }
+}
+
+impl Scale {
+    const ONE: Self = Self { numerator: 1, denominator: 1, ten: 0, pi: 0, factor: 1.0 };
+
+    fn times(self, other: Self) -> Self {
+        let factor = self.factor * other.factor;
+        let (ten, pi) = (self.ten + other.ten, self.pi + other.pi);
+        // Common factors go first, so that lbf/lb or deg/deg stay exact.
+        let (a, d) = reduce(self.numerator, other.denominator);
+        let (c, b) = reduce(other.numerator, self.denominator);
+        if let (Some(numerator), Some(denominator)) = (a.checked_mul(c), b.checked_mul(d)) {
+            return Self { numerator, denominator, ten, pi, factor };
+        }
+        let ratio = (a as f64) * (c as f64) / ((b as f64) * (d as f64));
+        Self { numerator: 1, denominator: 1, ten, pi, factor: factor * ratio }
+    }
+
+    fn power(self, halves: i8) -> Self {
+        let whole = halves / 2;
+        let base = if whole < 0 {
+            Self {
+                numerator: self.denominator,
+                denominator: self.numerator,
+                ten: -self.ten,
+                pi: -self.pi,
+                factor: 1.0 / self.factor,
+            }
+        } else {
+            self
+        };
+        let mut total = (0..whole.unsigned_abs()).fold(Self::ONE, |t, _| t.times(base));
+        if halves % 2 != 0 {
+            let ten: f64 = format!("1e{}", self.ten).parse().unwrap_or(f64::NAN);
+            let angle = (0..self.pi.unsigned_abs()).fold(1.0, |p, _| p * std::f64::consts::PI);
+            let angle = if self.pi < 0 { 1.0 / angle } else { angle };
+            let size =
+                (self.numerator as f64) / (self.denominator as f64) * ten * angle * self.factor;
+            let root = size.sqrt();
+            total.factor *= if halves > 0 { root } else { 1.0 / root };
+        }
+        total
+    }
+}
+
+fn reduce(a: u128, b: u128) -> (u128, u128) {
+    let (mut x, mut y) = (a, b);
+    while y != 0 {
+        (x, y) = (y, x % y);
+    }
+    (a / x, b / x)
+}

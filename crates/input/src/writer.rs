@@ -1,0 +1,291 @@
+//! Writes one table of a file field by field, as its definition says.
+
+use std::fmt::Write as _;
+
+use crate::dimension::Dimension;
+use crate::field::{Field, Kind, Named, Section, Variant};
+use crate::quantity::{Quantity, plain};
+use crate::tree::{Entry, Node, Origin, Table, Value};
+
+/// One table being written; the twin of the reader.
+pub struct Writer {
+    section: &'static Section,
+    variant: Option<&'static Variant>,
+    table: Table,
+    seen: Vec<&'static str>,
+}
+
+impl Writer {
+    /// Starts a table without variants.
+    pub fn new(section: &'static Section) -> Self {
+        debug_assert!(section.variants.is_none(), "the variant must be named");
+        Self { section, variant: None, table: Table::default(), seen: Vec::new() }
+    }
+
+    /// Starts a table of a variant and writes the field that chooses it.
+    pub fn variant<T: Named>(section: &'static Section, tag: T) -> Self {
+        let name = tag.name();
+        let variants = section.variants.as_ref();
+        let variant = variants.and_then(|v| v.list.iter().find(|v| v.name == name));
+        debug_assert!(variant.is_some(), "the section has no variant \"{name}\"");
+        let mut writer = Self { section, variant, table: Table::default(), seen: Vec::new() };
+        if let Some(variants) = variants {
+            writer.put(variants.tag, Value::Text(name.to_owned()));
+        }
+        writer
+    }
+
+    /// Ends the table: in builds with assertions, every defined field must have been written or
+    /// left out.
+    pub fn finish(self) -> Table {
+        for field in self.section.fields_of(self.variant) {
+            debug_assert!(self.seen.contains(&field.name), "`{}` was forgotten", field.name);
+        }
+        self.table
+    }
+
+    fn field(&mut self, name: &'static str) -> &'static Field {
+        self.seen.push(name);
+        let found = self.section.fields_of(self.variant).find(|field| field.name == name);
+        found.unwrap_or_else(|| panic!("field `{name}` is written but not defined"))
+    }
+
+    /// What a field holds.
+    pub fn kind_of(&mut self, name: &'static str) -> Kind {
+        self.field(name).kind
+    }
+
+    fn put(&mut self, name: &'static str, value: Value) {
+        self.field(name);
+        let node = Node { origin: Origin::Default, value };
+        self.table.entries.push(Entry { key: name.to_owned(), origin: Origin::Default, node });
+    }
+
+    /// Leaves a field out, because it is absent or another takes its place.
+    pub fn omit(&mut self, names: &[&'static str]) {
+        self.seen.extend(names);
+    }
+
+    /// A quantity in the SI unit of the field's only dimension.
+    pub fn quantity(&mut self, name: &'static str, value: f64) {
+        let kind = self.field(name).kind;
+        let dimension = if let Kind::Quantity(dimensions, _) | Kind::WordOr(_, dimensions, _) = kind
+        {
+            dimensions[0]
+        } else if let Kind::Unit(dimension) = kind {
+            dimension
+        } else {
+            panic!("field `{name}` is no quantity")
+        };
+        self.quantity_in(name, value, dimension);
+    }
+
+    /// A quantity of one of several dimensions.
+    pub fn quantity_in(&mut self, name: &'static str, value: f64, dimension: Dimension) {
+        self.put(name, Value::Text(Quantity { value, dimension }.to_string()));
+    }
+
+    /// A quantity, or nothing.
+    pub fn optional_quantity(&mut self, name: &'static str, value: Option<f64>) {
+        match value {
+            Some(value) => self.quantity(name, value),
+            None => self.omit(&[name]),
+        }
+    }
+
+    /// A quantity, or the word in its place.
+    pub fn word_or_quantity(&mut self, name: &'static str, value: Option<f64>) {
+        match (value, self.field(name).kind) {
+            (Some(value), _) => self.quantity(name, value),
+            (None, Kind::WordOr(word, ..)) => self.text(name, word),
+            (None, _) => panic!("field `{name}` has no word"),
+        }
+    }
+
+    /// A plain number.
+    pub fn number(&mut self, name: &'static str, value: f64) {
+        self.put(name, Value::Float(value));
+    }
+
+    /// An integer.
+    pub fn integer(&mut self, name: &'static str, value: u32) {
+        self.put(name, Value::Integer(Some(i64::from(value))));
+    }
+
+    /// `true` or `false`.
+    pub fn flag(&mut self, name: &'static str, value: bool) {
+        self.put(name, Value::Flag(value));
+    }
+
+    /// Text.
+    pub fn text(&mut self, name: &'static str, value: &str) {
+        self.put(name, Value::Text(value.to_owned()));
+    }
+
+    /// Text, or nothing.
+    pub fn optional_text(&mut self, name: &'static str, value: Option<&str>) {
+        match value {
+            Some(value) => self.text(name, value),
+            None => self.omit(&[name]),
+        }
+    }
+
+    /// A member of a closed set.
+    pub fn choice<T: Named>(&mut self, name: &'static str, value: T) {
+        self.text(name, value.name());
+    }
+
+    /// Two texts.
+    pub fn pair(&mut self, name: &'static str, value: &[String; 2]) {
+        self.put(name, Value::Array(value.iter().map(|v| node(Value::Text(v.clone()))).collect()));
+    }
+
+    /// Two quantities.
+    pub fn point(&mut self, name: &'static str, value: [f64; 2]) {
+        let Kind::Point(dimension) = self.field(name).kind else {
+            panic!("field `{name}` is no point")
+        };
+        self.put(name, point(value, dimension));
+    }
+
+    /// A list of points.
+    pub fn points(&mut self, name: &'static str, values: &[[f64; 2]]) {
+        let Kind::Points(dimension) = self.field(name).kind else {
+            panic!("field `{name}` is no list of points")
+        };
+        self.put(name, Value::Array(values.iter().map(|v| node(point(*v, dimension))).collect()));
+    }
+
+    /// A table.
+    pub fn table(&mut self, name: &'static str, table: Table) {
+        self.put(name, Value::Table(table));
+    }
+
+    /// A list of tables; nothing when empty.
+    pub fn tables(&mut self, name: &'static str, tables: Vec<Table>) {
+        if tables.is_empty() {
+            self.omit(&[name]);
+        } else {
+            self.put(
+                name,
+                Value::Array(tables.into_iter().map(|t| node(Value::Table(t))).collect()),
+            );
+        }
+    }
+}
+
+fn node(value: Value) -> Node {
+    Node { origin: Origin::Default, value }
+}
+
+fn point(value: [f64; 2], dimension: Dimension) -> Value {
+    let text = |value| node(Value::Text(Quantity { value, dimension }.to_string()));
+    Value::Array(value.map(text).into())
+}
+
+/// The table as TOML: values first, then tables, each in order.
+pub fn to_toml(table: &Table) -> String {
+    let mut text = String::new();
+    write_table(&mut text, table, "");
+    text
+}
+
+fn is_table(value: &Value) -> bool {
+    matches!(value, Value::Table(_)) || tables_of(value).is_some()
+}
+
+/// The items of a list of tables.
+fn tables_of(value: &Value) -> Option<Vec<&Table>> {
+    let Value::Array(items) = value else { return None };
+    items
+        .iter()
+        .map(|item| if let Value::Table(table) = &item.value { Some(table) } else { None })
+        .collect()
+}
+
+/// Writing to a `String` cannot fail, so results of `writeln!` are dropped here.
+fn write_table(text: &mut String, table: &Table, path: &str) {
+    for entry in table.entries.iter().filter(|entry| !is_table(&entry.node.value)) {
+        let _ = writeln!(text, "{} = {}", entry.key, inline(&entry.node.value));
+    }
+    for entry in &table.entries {
+        let path =
+            if path.is_empty() { entry.key.clone() } else { format!("{path}.{}", entry.key) };
+        if let Value::Table(table) = &entry.node.value {
+            // A table of tables needs no header of its own.
+            let bare = !table.entries.is_empty()
+                && table.entries.iter().all(|entry| is_table(&entry.node.value));
+            if !bare {
+                let _ = writeln!(text, "\n[{path}]");
+            }
+            write_table(text, table, &path);
+        }
+        for table in tables_of(&entry.node.value).into_iter().flatten() {
+            let _ = writeln!(text, "\n[[{path}]]");
+            write_table(text, table, &path);
+        }
+    }
+}
+
+/// A value as TOML on one line.
+pub fn inline(value: &Value) -> String {
+    match value {
+        Value::Text(text) => quote(text),
+        Value::Integer(value) => value.unwrap_or_default().to_string(),
+        Value::Float(value) => {
+            let text = plain(*value);
+            // TOML tells a float from an integer by the point or the exponent.
+            if text.contains(['.', 'e']) { text } else { format!("{text}.0") }
+        }
+        Value::Flag(value) => value.to_string(),
+        Value::Date => String::new(),
+        Value::Array(items) => {
+            let items: Vec<String> = items.iter().map(|item| inline(&item.value)).collect();
+            format!("[{}]", items.join(", "))
+        }
+        Value::Table(table) => {
+            let entries: Vec<String> = table
+                .entries
+                .iter()
+                .map(|entry| format!("{} = {}", entry.key, inline(&entry.node.value)))
+                .collect();
+            format!("{{ {} }}", entries.join(", "))
+        }
+    }
+}
+
+fn quote(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' => quoted.push_str("\\\""),
+            '\\' => quoted.push_str("\\\\"),
+            '\n' => quoted.push_str("\\n"),
+            '\t' => quoted.push_str("\\t"),
+            c if c.is_control() => {
+                let _ = write!(quoted, "\\u{:04X}", u32::from(c));
+            }
+            c => quoted.push(c),
+        }
+    }
+    quoted.push('"');
+    quoted
+}
+
+/// The table as JSON.
+pub fn to_json(table: &Table) -> serde_json::Value {
+    let entries = table.entries.iter().map(|entry| (entry.key.clone(), json(&entry.node.value)));
+    serde_json::Value::Object(entries.collect())
+}
+
+fn json(value: &Value) -> serde_json::Value {
+    match value {
+        Value::Text(text) => text.clone().into(),
+        Value::Integer(value) => (*value).into(),
+        Value::Float(value) => (*value).into(),
+        Value::Flag(value) => (*value).into(),
+        Value::Date => serde_json::Value::Null,
+        Value::Array(items) => items.iter().map(|item| json(&item.value)).collect(),
+        Value::Table(table) => to_json(table),
+    }
+}
