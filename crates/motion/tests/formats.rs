@@ -137,6 +137,13 @@ const SAMPLES: &[Expected] = &[
         1e-6,
     ),
     (
+        "npz/example.npz",
+        Stage::Corrected,
+        0.01,
+        &[("E", 0, 103), ("N", 1, 103), ("Up", 2, 103)],
+        1e-12,
+    ),
+    (
         "barrelstack/example.txt",
         Stage::Corrected,
         0.01,

@@ -1,7 +1,7 @@
 //! NumPy's archive of arrays.
 
 use std::collections::BTreeSet;
-use std::io::{self, Write as _};
+use std::io;
 
 use crate::error::MotionError;
 use crate::record::Record;
@@ -68,15 +68,63 @@ pub fn archive(arrays: &[(String, &[f64])]) -> io::Result<Vec<u8>> {
 }
 
 fn zipped(arrays: &[(String, Vec<u8>)]) -> io::Result<Vec<u8>> {
-    let mut archive = zip::ZipWriter::new(io::Cursor::new(Vec::new()));
-    // The default date of the archive is a constant, so equal runs give equal bytes.
-    let options =
-        zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
-    for (name, bytes) in arrays {
-        archive.start_file(format!("{name}.npy"), options)?;
-        archive.write_all(bytes)?;
+    let refuse = |reason: String| Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
+    let (mut archive, mut directory) = (Vec::new(), Vec::new());
+    for (at, (name, bytes)) in arrays.iter().enumerate() {
+        if arrays[..at].iter().any(|(earlier, _)| earlier == name) {
+            return refuse(format!("two of them are called {name}"));
+        }
+        let file = format!("{name}.npy");
+        let (Ok(start), Ok(size), Ok(length)) =
+            (u32::try_from(archive.len()), u32::try_from(bytes.len()), u16::try_from(file.len()))
+        else {
+            return refuse(format!("{name} ends beyond 4 GB, or its name beyond 64 kB"));
+        };
+        let entry = entry(crc32fast::hash(bytes), size, length);
+        archive.extend(b"PK\x03\x04");
+        archive.extend(entry);
+        archive.extend(file.as_bytes());
+        archive.extend(bytes);
+        directory.extend(b"PK\x01\x02");
+        directory.extend(VERSION.to_le_bytes());
+        directory.extend(entry);
+        // No comment, the first disk, no attributes.
+        directory.extend([0; 10]);
+        directory.extend(start.to_le_bytes());
+        directory.extend(file.as_bytes());
     }
-    Ok(archive.finish()?.into_inner())
+    let (Ok(count), Ok(start), Ok(size)) =
+        (u16::try_from(arrays.len()), u32::try_from(archive.len()), u32::try_from(directory.len()))
+    else {
+        return refuse(format!("{} of them are too many or too large", arrays.len()));
+    };
+    archive.extend(directory);
+    archive.extend(b"PK\x05\x06");
+    // One disk, which is this one.
+    archive.extend([0; 4]);
+    archive.extend([count; 2].map(u16::to_le_bytes).concat());
+    archive.extend(size.to_le_bytes());
+    archive.extend(start.to_le_bytes());
+    archive.extend([0; 2]);
+    Ok(archive)
+}
+
+/// Version of the zip format that a reader needs for stored files (PKWARE, APPNOTE 4.4.3: 1.0).
+const VERSION: u16 = 10;
+
+/// What the header of a stored file and the directory say of it alike (PKWARE, APPNOTE 4.3.7 and 4.3.12).
+fn entry(sum: u32, size: u32, name_length: u16) -> [u8; 26] {
+    /// The first day of the format's calendar, 1 January 1980, so that equal runs give equal bytes.
+    const DATE: u16 = 0x21;
+    let mut entry = [0; 26];
+    entry[..2].copy_from_slice(&VERSION.to_le_bytes());
+    // No flags, no compression, midnight.
+    entry[8..10].copy_from_slice(&DATE.to_le_bytes());
+    entry[10..14].copy_from_slice(&sum.to_le_bytes());
+    entry[14..18].copy_from_slice(&size.to_le_bytes());
+    entry[18..22].copy_from_slice(&size.to_le_bytes());
+    entry[22..24].copy_from_slice(&name_length.to_le_bytes());
+    entry
 }
 
 /// An array of numbers.
@@ -110,4 +158,16 @@ fn npy_head(kind: &str, count: usize) -> Vec<u8> {
     bytes.extend(u16::try_from(description.len()).unwrap_or(u16::MAX).to_le_bytes());
     bytes.extend(description.as_bytes());
     bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::archive;
+
+    #[test]
+    fn a_name_that_occurs_twice_is_refused() {
+        let twice = [("a".to_owned(), &[1.0][..]), ("a".to_owned(), &[2.0][..])];
+        assert!(archive(&twice).is_err_and(|error| error.to_string().contains("called a")));
+        assert!(archive(&twice[1..]).is_ok());
+    }
 }
