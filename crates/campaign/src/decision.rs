@@ -11,8 +11,10 @@
 
 mod cases;
 mod curve;
+mod export;
 mod figures;
 mod hazard;
+mod indices;
 mod json;
 mod limit;
 mod loss;
@@ -34,7 +36,9 @@ pub(crate) use words::{percent, refusal};
 
 pub use cases::{Case, Cases, Measure};
 pub use curve::{BandKind, LimitCurve};
+pub use export::{ExportError, Exported, export};
 pub use hazard::{Lost, Site, SiteHazard};
+pub use indices::Sensitivity;
 pub use limit::LimitState;
 pub use loss::{Breakage, Losses};
 pub use measures::MeasureRow;
@@ -63,6 +67,9 @@ pub struct Decision {
     pub measures: Vec<MeasureRow>,
     /// Barrels and wine lost at each level, or why they are not known.
     pub losses: Result<Losses, String>,
+    /// What varied quantities do to the variance of collapse and of the demands; empty but for a design made
+    /// for it.
+    pub sensitivities: Vec<Sensitivity>,
     /// What varied factors change, the largest effect first.
     pub effects: Vec<Effect>,
     /// What it means at the site.
@@ -127,6 +134,7 @@ pub fn decide(collected: &Collected, request: &Request) -> Result<Decision, Deci
     let modes = modes::of(&cases, &curves[0]);
     let losses = Losses::of(&cases);
     let measures = measures::compare(&cases);
+    let sensitivities = indices::of(collected);
     let effects = sensitivity::effects(collected, &cases);
     let site = match &request.hazard {
         Some(hazard) => {
@@ -148,6 +156,7 @@ pub fn decide(collected: &Collected, request: &Request) -> Result<Decision, Deci
         modes,
         measures,
         losses,
+        sensitivities,
         effects,
         site,
         warnings,

@@ -176,6 +176,7 @@ impl Study {
             | Design::OneAtATime { .. }
             | Design::LatinHypercube { .. }
             | Design::Sobol { .. }
+            | Design::Saltelli { .. }
             | Design::Stripes => false,
         }
     }

@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
-use barrelstack_campaign::decision::{DecisionError, LimitState, Request, SiteHazard, decide};
+use barrelstack_campaign::decision::{
+    DecisionError, LimitState, Request, SiteHazard, decide, export,
+};
 use barrelstack_campaign::study::{
     Collected, Column, ColumnSpec, MotionSource, Provenance, Role, StudyTable, ValueKind, Values,
 };
@@ -74,6 +76,7 @@ fn study(falls: impl Fn(usize, f64) -> usize) -> Collected {
         measure: Some("pgv".into()),
         stop: None,
         drawn: vec!["friction".into()],
+        varied: Vec::new(),
         motions,
         columns: table.specs().cloned().collect(),
         chunks: 1,
@@ -235,4 +238,51 @@ fn hunted_levels_count_by_first_collapse_and_not_by_where_the_hunt_went() {
     let failed = (0..12).filter(|record| capacity(*record) <= 0.9).count();
     assert_eq!((last.intensity, last.cases, last.failures as usize), (0.9, 12, failed));
     assert!(found.warnings.iter().any(|w| w.starts_with("Levels were chosen by hunting")));
+}
+
+#[test]
+fn what_is_exported_is_the_same_curve_to_four_digits() {
+    let collected = ordinary();
+    let decision = decide(&collected, &Request::default()).unwrap();
+    let found = export(&decision, &collected.provenance, "stack <A>").unwrap();
+    let text =
+        |name: &str| &found.files.iter().find(|(known, _)| *known == name).expect("a file").1;
+    // OpenQuake states a lognormal capacity by its mean and standard deviation, over PGV in cm/s.
+    let parsed = roxmltree::Document::parse(text("openquake-fragility.xml")).unwrap();
+    let node = |name: &str| parsed.descendants().find(|n| n.has_tag_name(name)).expect("a node");
+    assert_eq!(node("imls").attribute("imt"), Some("PGV"));
+    assert_eq!(node("fragilityFunction").attribute("id"), Some("stack <A>"));
+    assert!(node("description").text().unwrap().contains("seed 7"));
+    let names: Vec<&str> = node("limitStates").text().unwrap().split_whitespace().collect();
+    let params: Vec<_> = parsed.descendants().filter(|n| n.has_tag_name("params")).collect();
+    assert_eq!(params.iter().map(|n| n.attribute("ls").unwrap()).collect::<Vec<_>>(), names);
+    let fitted: Vec<_> =
+        decision.curves.iter().filter_map(|curve| curve.fit.as_ref().ok()).collect();
+    assert_eq!(fitted.len(), names.len());
+    let row: Vec<&str> = text("pelicun-fragility.csv").lines().nth(1).unwrap().split(',').collect();
+    for (at, (node, fit)) in params.iter().zip(&fitted).enumerate() {
+        let number = |name| node.attribute(name).unwrap().parse::<f64>().unwrap();
+        let (mean, deviation) = (number("mean"), number("stddev"));
+        let variance = (1.0 + (deviation / mean).powi(2)).ln();
+        let median = mean / (0.5 * variance).exp();
+        let theirs = barrelstack_fragility::Lognormal { median, dispersion: variance.sqrt() };
+        let column = |k: usize| row[6 + 4 * at + k].parse::<f64>().unwrap();
+        let pelicun = barrelstack_fragility::Lognormal { median: column(1), dispersion: column(2) };
+        for x in [0.3, 0.5, 0.8] {
+            let ours = fit.curve.probability(x);
+            // Measured: 1e-15.
+            assert!((theirs.probability(100.0 * x) - ours).abs() < 1e-4);
+            assert!((pelicun.probability(100.0 * x) - ours).abs() < 1e-4);
+        }
+    }
+    let parsed = roxmltree::Document::parse(text("openquake-vulnerability.xml")).unwrap();
+    let node = |name: &str| parsed.descendants().find(|n| n.has_tag_name(name)).expect("a node");
+    let numbers = |name: &str| -> Vec<f64> {
+        node(name).text().unwrap().split_whitespace().map(|n| n.parse().unwrap()).collect()
+    };
+    let losses = decision.losses.as_ref().unwrap();
+    for (mean, loss) in numbers("meanLRs").iter().zip(&losses.levels) {
+        assert!((mean - loss.fallen / 6.0).abs() < 1e-12);
+    }
+    assert_eq!(numbers("imls").len(), numbers("covLRs").len());
 }

@@ -38,7 +38,7 @@ fn found(design: &str) -> Decision {
 fn curve(name: &str, found: &Decision) -> (Lognormal, [Interval; 2]) {
     let limit = &found.curves[0];
     let fitted = limit.fit.as_ref().unwrap().curve;
-    let intervals = [limit.median.unwrap(), limit.replicates.as_ref().unwrap().dispersion(0.95)];
+    let intervals = [limit.median.unwrap(), limit.left_out.as_ref().unwrap().dispersion(0.95)];
     println!("{name}: {} cases, {fitted:.4?}, {intervals:.4?}", found.cases.all.len());
     println!("  motions that it stands above a level that felled it: {}", limit.returned.len());
     for stripe in &limit.stripes {

@@ -51,6 +51,7 @@ mod fit;
 mod goodness;
 mod hazard;
 mod ida;
+mod indices;
 mod likelihood;
 mod math;
 mod measures;
@@ -58,8 +59,9 @@ mod modes;
 mod monotone;
 mod profile;
 mod proportion;
+mod records;
 
-pub use bootstrap::{Replicates, bootstrap, simulate};
+pub use bootstrap::{Replicates, simulate};
 pub use curve::Lognormal;
 pub use evidence::{Capacity, Evidence, Stripe, evidence, stripes};
 pub use fit::{Dispersion, Fit, FitError, fit, moments};
@@ -68,6 +70,7 @@ pub use goodness::{
 };
 pub use hazard::{Contribution, Hazard, HazardError, Rate, chance_within};
 pub use ida::{Ida, Resurrection};
+pub use indices::{Index, sobol_indices};
 pub use math::{
     chi_square_above, normal, normal_density, normal_quantile, student_beyond, student_quantile,
 };
@@ -76,3 +79,4 @@ pub use modes::Shares;
 pub use monotone::{Fall, Monotony, Returned, monotony, returns};
 pub use profile::{profile_band, profile_median};
 pub use proportion::{Interval, clopper_pearson, wilson};
+pub use records::{LeaveOneOut, grouped_mean, leave_one_out};

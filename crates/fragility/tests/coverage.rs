@@ -3,7 +3,7 @@
 mod drawing;
 
 use barrelstack_fragility::{
-    Dispersion, Evidence, Lognormal, bootstrap, evidence, profile_band, simulate,
+    Dispersion, Evidence, Lognormal, evidence, grouped_mean, leave_one_out, profile_band, simulate,
 };
 use barrelstack_motion::Random;
 use drawing::draw;
@@ -60,19 +60,85 @@ fn parametric_bootstrap_bands_of_stripes_hold_the_truth_at_their_level() {
     assert_nominal(shares, 0.93..=0.97, "parametric bootstrap, stripes");
 }
 
+/// Cases of some records at ten levels, whose capacities in one record are correlated.
+fn campaign(records: usize, correlation: f64, random: &mut Random) -> Vec<Evidence> {
+    let mut all = Vec::new();
+    for group in 0..records {
+        let common = random.normal();
+        for level in 1..=10 {
+            let x = 0.1 * f64::from(level);
+            let own = random.normal();
+            let z = correlation.sqrt() * common + (1.0 - correlation).sqrt() * own;
+            let capacity = TRUTH.median * (TRUTH.dispersion * z).exp();
+            all.push(Evidence::case(x, capacity <= x, group));
+        }
+    }
+    all
+}
+
 #[test]
-#[cfg_attr(debug_assertions, ignore = "a thousand campaigns take a minute; run in release")]
-fn bands_resampled_over_records_hold_the_truth_when_cases_of_a_record_agree() {
-    let shares = coverage(|random| {
-        let data: Vec<Evidence> = (0..40)
-            .flat_map(|group| {
-                let capacity = TRUTH.median * (TRUTH.dispersion * random.normal()).exp();
-                plan().into_iter().map(move |(x, _)| Evidence::case(x, capacity <= x, group))
-            })
-            .collect();
-        bootstrap(&data, Dispersion::Free, 400, || random.uniform()).unwrap().band(0.95, &AT)
-    });
-    // Measured: mean 0.943, from 0.925 two dispersions above the median to 0.964: with 40 records
-    // the upper tail of the curve is still held a little too seldom.
-    assert_nominal(shares, 0.92..=0.97, "bootstrap over records");
+#[cfg_attr(debug_assertions, ignore = "sixteen thousand campaigns take a while; run in release")]
+#[expect(clippy::print_stdout, reason = "the measured coverage, shown with --nocapture")]
+fn bands_over_records_hold_the_truth_however_the_cases_of_a_record_depend_on_each_other() {
+    let chances = [0.1, 0.5, 0.9];
+    let at = chances.map(|p| TRUTH.intensity(p));
+    println!("records correlation  p = 0.1   0.5   0.9  median  without");
+    for records in [6, 8, 16, 24, 40] {
+        for correlation in [0.0, 0.5, 1.0] {
+            let mut random = Random::new(2026);
+            let (mut held, mut median, mut without) = ([0_u32; 3], 0_u32, 0_u32);
+            for _ in 0..CAMPAIGNS {
+                let data = campaign(records, correlation, &mut random);
+                let Ok(found) = leave_one_out(&data, Dispersion::Free) else {
+                    without += 1;
+                    continue;
+                };
+                let band = found.band(0.95, &at);
+                for (held, (band, p)) in held.iter_mut().zip(band.iter().zip(chances)) {
+                    *held += u32::from(band.holds(p));
+                }
+                median += u32::from(found.median(0.95).holds(TRUTH.median));
+            }
+            let of = (CAMPAIGNS - without as usize) as f64;
+            let share = |count: u32| f64::from(count) / of;
+            let shares = held.map(share);
+            println!(
+                "{records:7} {correlation:11.1}  {:7.3} {:.3} {:.3}   {:.3}  {without:7}",
+                shares[0],
+                shares[1],
+                shares[2],
+                share(median)
+            );
+            // Measured from 8 records on: 0.927 to 0.977, 0.956 on average; the scatter of a thousand
+            // campaigns is 0.007.
+            let most = if records < 8 { 1.0 } else { 0.985 };
+            assert!(shares.iter().all(|share| (0.915..=most).contains(share)), "{shares:?}");
+            assert!((0.915..=most).contains(&share(median)), "{}", share(median));
+        }
+    }
+}
+
+#[test]
+#[cfg_attr(debug_assertions, ignore = "twelve thousand campaigns; run in release")]
+#[expect(clippy::print_stdout, reason = "the measured coverage, shown with --nocapture")]
+fn intervals_of_a_mean_loss_hold_it_where_nine_in_ten_collapse() {
+    for records in [6, 8, 16, 24, 40] {
+        for chance in [0.1, 0.5, 0.9] {
+            let mut random = Random::new(7);
+            let mut held = 0_u32;
+            for _ in 0..CAMPAIGNS {
+                // A collapse loses a half, three quarters or all of the barrels.
+                let lost = |random: &mut Random| {
+                    let part = 0.5 + 0.25 * (3.0 * random.uniform()).floor().min(2.0);
+                    if random.uniform() < chance { part } else { 0.0 }
+                };
+                let groups: Vec<(f64, f64)> =
+                    (0..records).map(|_| (lost(&mut random), 1.0)).collect();
+                held += u32::from(grouped_mean(&groups, 0.95).holds(0.75 * chance));
+            }
+            let share = f64::from(held) / CAMPAIGNS as f64;
+            println!("{records} records, chance {chance}: {share:.3}");
+            assert!((0.90..=1.0).contains(&share), "{records} records, chance {chance}: {share}");
+        }
+    }
 }

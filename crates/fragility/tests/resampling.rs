@@ -4,8 +4,8 @@ mod common;
 mod drawing;
 
 use barrelstack_fragility::{
-    Capacity, Dispersion, Evidence, FitError, Lognormal, Returned, Stripe, bootstrap,
-    demand_against, evidence, failure_against, fit, goodness, goodness_by_simulation, monotony,
+    Capacity, Dispersion, Evidence, FitError, Lognormal, Returned, Stripe, demand_against,
+    evidence, failure_against, fit, goodness, goodness_by_simulation, leave_one_out, monotony,
     normality, returns, simulate, stripes,
 };
 use barrelstack_motion::Random;
@@ -53,29 +53,29 @@ fn dependent(random: &mut Random) -> Vec<Evidence> {
 }
 
 #[test]
-fn resampling_whole_records_sees_the_dependence_that_counts_hide() {
+fn leaving_whole_records_out_sees_the_dependence_that_counts_hide() {
     let mut random = Random::new(5);
     let all = dependent(&mut random);
     let naive = fit(&all, Dispersion::Free).unwrap();
-    let whole = bootstrap(&all, Dispersion::Free, 500, || random.uniform()).unwrap();
+    let whole = leave_one_out(&all, Dispersion::Free).unwrap();
+    assert_eq!(whole.groups(), 20);
     let interval = whole.median(0.95);
-    let half = 0.5 * (interval.high / interval.low).ln() / 1.96;
+    let half = 0.5 * (interval.high / interval.low).ln() / 2.093;
     // The true error is that of 20 capacities, β/√20 = 0.089; 120 independent cases claim less.
     assert!(half > 1.3 * naive.median_error, "{half} against {}", naive.median_error); // ratio 1.9
     assert!((0.06..0.13).contains(&half), "{half}");
 }
 
 #[test]
-fn data_whose_resamples_mostly_have_no_curve_are_refused() {
-    // One overlap in five records: it is drawn out of most resamples.
+fn a_curve_that_hangs_on_one_record_gets_no_interval() {
+    // One overlap in five records: without one of the two there is no curve.
     let all: Vec<Evidence> = [(0.3, false), (0.4, false), (0.5, true), (0.45, false), (0.44, true)]
         .iter()
         .enumerate()
         .map(|(group, (x, failed))| Evidence::case(*x, *failed, group))
         .collect();
-    let mut random = Random::new(2);
-    let found = bootstrap(&all, Dispersion::Free, 200, || random.uniform()).unwrap_err();
-    assert!(matches!(found, FitError::Unstable { replicates: 200, .. }), "{found}");
+    let found = leave_one_out(&all, Dispersion::Free).unwrap_err();
+    assert!(matches!(found, FitError::Unstable { usable: 3, replicates: 5 }), "{found}");
 }
 
 #[test]

@@ -84,8 +84,7 @@ fn six(results: &Results) -> Vec<Comparison> {
     let shown =
         |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| significant(value, 3));
     let centimeters = |value: Option<f64>| {
-        value
-            .map_or_else(|| "–".to_owned(), |v| barrelstack_report::significant(100.0 * v.abs(), 2))
+        value.map_or_else(|| "–".to_owned(), |v| significant(100.0 * v.abs(), 2))
     };
     let body = |name: &str| {
         let body = summary.bodies.iter().find(|b| b.name == name);

@@ -197,7 +197,16 @@ impl Cases {
         }
         let (mut names, mut curves) = (Numbering::default(), Numbering::default());
         let mut all = Vec::new();
-        for row in 0..table.rows() {
+        // The first two cases of a block are samples of their own, the others differ from these in one thing.
+        let block = i64::try_from(made.varied.len() + 2).unwrap_or(i64::MAX);
+        let exchanged = |row: usize| match table.integers("case") {
+            Some(numbers) if !made.varied.is_empty() => {
+                numbers[row].is_some_and(|number| number % block > 1)
+            }
+            _ => false,
+        };
+        let own = (0..table.rows()).filter(|row| !exchanged(*row)).count();
+        for row in (0..table.rows()).filter(|row| !exchanged(*row)) {
             let collapsed = match outcomes[row].as_deref() {
                 Some("collapse") => true,
                 Some("stable") => false,
@@ -237,10 +246,13 @@ impl Cases {
             main,
             leveled,
             hunted: made.design == "ida",
-            sampled: matches!(made.design.as_str(), "latin-hypercube" | "sobol" | "monte-carlo"),
+            sampled: matches!(
+                made.design.as_str(),
+                "latin-hypercube" | "sobol" | "saltelli" | "monte-carlo"
+            ),
             drawn: made.drawn.clone(),
             endings: Endings::of(table),
-            left_out: table.rows() - all.len(),
+            left_out: own - all.len(),
             all,
             seed: made.seed,
         })

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use barrelstack_fragility::{
-    Capacity, Dispersion, Evidence, Fit, FitError, Goodness, Interval, Monotony, Replicates,
-    Returned, Stripe, bootstrap, fit, goodness, goodness_in_bins, monotony, profile_band,
+    Capacity, Dispersion, Evidence, Fit, FitError, Goodness, Interval, LeaveOneOut, Monotony,
+    Returned, Stripe, fit, goodness, goodness_in_bins, leave_one_out, monotony, profile_band,
     profile_median, returns, wilson,
 };
 use barrelstack_motion::Random;
@@ -15,22 +15,18 @@ use super::limit::LimitState;
 /// Confidence level of all bands.
 pub(super) const LEVEL: f64 = 0.95;
 
-/// Resampled data sets for a band.
-const REPLICATES: usize = 600;
-
 /// Draws for the test of order.
 const DRAWS: usize = 500;
-
-/// Fewest records that can be resampled with sense.
-pub(super) const FEWEST: usize = 8;
 
 /// Where a band comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BandKind {
-    /// Whole records resampled: cases of one record may depend on each other.
+    /// One record left out at a time: cases of one record may depend on each other.
     Records,
-    /// The likelihood of independent cases, for want of records or of resampled data sets with a curve.
+    /// The likelihood of independent cases, where all are of one record.
     Likelihood,
+    /// There is none, since without one of the records there is no curve.
+    None,
 }
 
 /// One limit state against one measure.
@@ -48,14 +44,14 @@ pub struct LimitCurve {
     pub fit: Result<Fit, FitError>,
     /// Intensities at which the band is given.
     pub grid: Vec<f64>,
-    /// The 95 % band; empty without a curve or where resampling found none.
+    /// The 95 % band; empty without a curve or where one record decides whether there is one.
     pub band: Vec<Interval>,
     /// The 95 % interval of the median.
     pub median: Option<Interval>,
     /// Where the band comes from.
     pub band_kind: BandKind,
-    /// The resampled curves, for what else is computed from them.
-    pub replicates: Option<Replicates>,
+    /// The curves with one record left out, for what else is computed from them.
+    pub left_out: Option<LeaveOneOut>,
     /// Raw counts against the curve.
     pub goodness: Option<Goodness>,
     /// Raw counts against the order that every curve takes for granted.
@@ -81,15 +77,15 @@ impl LimitCurve {
         let fit = fit(&evidence, Dispersion::Free);
         let grid = grid(&stripes);
         let mut random = Random::new(cases.seed);
-        let replicates = (cases.records.len() >= FEWEST && fit.is_ok())
-            .then(|| bootstrap(&evidence, Dispersion::Free, REPLICATES, || random.uniform()).ok())
-            .flatten();
-        let (band, median, band_kind) = if let Some(found) = &replicates {
+        let left_out = leave_one_out(&evidence, Dispersion::Free).ok();
+        let (band, median, band_kind) = if let Some(found) = &left_out {
             (found.band(LEVEL, &grid), Some(found.median(LEVEL)), BandKind::Records)
-        } else {
+        } else if cases.records.len() == 1 {
             let band = profile_band(&evidence, Dispersion::Free, LEVEL, &grid);
             let median = profile_median(&evidence, Dispersion::Free, LEVEL);
             (band.unwrap_or_default(), median.ok(), BandKind::Likelihood)
+        } else {
+            (Vec::new(), None, BandKind::None)
         };
         let single = |case: &Case| {
             Some(stripe(case.intensities[measure]?, &[case], |case| limit.reached(case)))
@@ -120,7 +116,7 @@ impl LimitCurve {
             band,
             median,
             band_kind,
-            replicates,
+            left_out,
             goodness,
             monotony,
             returned,

@@ -258,10 +258,7 @@ pub(super) fn losses(losses: &Losses, measure: &Measure) -> Figure {
     let x: Vec<f64> = losses.levels.iter().map(|loss| measure.shown(loss.intensity)).collect();
     let dots = |index| SeriesStyle { dots: true, ..style(index) };
     let fallen = losses.levels.iter().map(|loss| loss.fallen).collect();
-    let intervals = losses.levels.iter().zip(&x).map(|(loss, x)| {
-        let half = 1.96 * if loss.fallen_error.is_finite() { loss.fallen_error } else { 0.0 };
-        (*x, Interval { low: (loss.fallen - half).max(0.0), high: loss.fallen + half })
-    });
+    let intervals = losses.levels.iter().zip(&x).map(|(loss, x)| (*x, loss.interval));
     let burst = |i: usize| losses.levels.iter().map(|loss| loss.burst[i]).collect::<Vec<f64>>();
     let places = x.iter().copied().zip(burst(0).into_iter().zip(burst(2)));
     let series = vec![

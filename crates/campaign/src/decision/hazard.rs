@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use barrelstack_fragility::{Contribution, Hazard, Interval, Rate, chance_within};
+use barrelstack_fragility::{Contribution, Hazard, Interval, Lognormal, Rate, chance_within};
 
 use super::DecisionError;
 use super::cases::Cases;
@@ -163,10 +163,10 @@ impl Site {
 
 fn rate(hazard: &Hazard, years: f64, curve: &LimitCurve) -> LimitRate {
     let fitted = curve.fit.as_ref().ok().map(|fit| hazard.rate_of(|x| fit.curve.probability(x)));
-    // A coarse sum would do for an interval; two hundred of the resampled curves keep the page quick.
-    let interval = curve.replicates.as_ref().map(|found| {
-        let thinned = found.thinned(200);
-        thinned.interval(LEVEL, |curve| hazard.rate_of(|x| curve.probability(x)).low)
+    let interval = curve.left_out.as_ref().map(|found| {
+        let ln_rate = |curve: &Lognormal| libm::log(hazard.rate_of(|x| curve.probability(x)).low);
+        let bounds = found.interval(LEVEL, ln_rate);
+        Interval { low: libm::exp(bounds.low), high: libm::exp(bounds.high) }
     });
     let raw = hazard.rate_of(|x| curve.raw(x));
     let chance = chance_within(years, fitted.as_ref().unwrap_or(&raw).low);

@@ -83,10 +83,22 @@ pub(super) fn of(decision: &Decision) -> Value {
                 "intensity": loss.intensity,
                 "cases": loss.cases,
                 "barrels_fallen": loss.fallen,
-                "barrels_fallen_standard_error": finite(loss.fallen_error),
+                "barrels_fallen_interval": bounds(loss.interval),
                 "barrels_burst": loss.burst,
             })).collect::<Vec<_>>(),
         })),
+        "sobol_indices": decision.sensitivities.iter().map(|of| json!({
+            "result": of.result,
+            "blocks": of.blocks,
+            "blocks_left_out": of.left_out,
+            "inputs": of.inputs.iter().map(|(name, index)| json!({
+                "input": name,
+                "first": index.first,
+                "first_interval": bounds(index.first_interval),
+                "total": index.total,
+                "total_interval": bounds(index.total_interval),
+            })).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
         "effects": decision.effects.iter().map(|effect| json!({
             "factor": effect.factor,
             "groups": effect.groups.iter().map(|group| json!({
@@ -138,8 +150,9 @@ fn curve(curve: &LimitCurve) -> Value {
         "median_interval": curve.median.filter(|_| fit.is_some()).map(bounds),
         "no_curve": curve.fit.as_ref().err().map(ToString::to_string),
         "band": match curve.band_kind {
-            BandKind::Records => "bootstrap over records",
+            BandKind::Records => "jackknife over records",
             BandKind::Likelihood => "profile likelihood",
+            BandKind::None => "none",
         },
         "band_at": curve.grid.iter().zip(&curve.band).map(|(x, band)| json!({
             "intensity": x, "interval": bounds(*band),

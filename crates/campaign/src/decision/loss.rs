@@ -1,9 +1,9 @@
 //! What is lost: barrels that fall, and the wine of those that burst.
 
-use barrelstack_fragility::Lognormal;
+use barrelstack_fragility::{Interval, Lognormal, grouped_mean};
 
 use super::cases::{Case, Cases};
-use super::curve::interpolate;
+use super::curve::{LEVEL, interpolate};
 
 /// The chance that a full barrel bursts when it falls, by the height of its fall. An assumption.
 ///
@@ -48,8 +48,8 @@ pub struct Loss {
     pub cases: usize,
     /// Mean of the barrels that fall.
     pub fallen: f64,
-    /// Standard error of that mean over the records.
-    pub fallen_error: f64,
+    /// The 95 % interval of that mean, for which the cases of one record go together.
+    pub interval: Interval,
     /// Barrels expected to burst, under the three assumptions of [`Breakage::RANGE`].
     pub burst: [f64; 3],
 }
@@ -104,19 +104,13 @@ fn at(intensity: f64, of: &[&Case]) -> Loss {
         let falls = of.iter().flat_map(|case| &case.falls);
         falls.map(|fall| breakage.probability(*fall)).sum::<f64>() / count
     });
-    Loss { intensity, cases: of.len(), fallen, fallen_error: error_of_mean(of, fallen), burst }
-}
-
-/// Standard error of the mean of the barrels fallen, where the cases of one record go together.
-fn error_of_mean(of: &[&Case], mean: f64) -> f64 {
-    let mut records = std::collections::BTreeMap::<usize, f64>::new();
+    let mut records = std::collections::BTreeMap::<usize, (f64, f64)>::new();
     for case in of {
-        *records.entry(case.record).or_default() += f64::from(case.fallen()) - mean;
+        let record = records.entry(case.record).or_default();
+        *record = (record.0 + case.fallen_share(), record.1 + 1.0);
     }
-    let groups = records.len() as f64;
-    if groups < 2.0 {
-        return f64::NAN;
-    }
-    let squares: f64 = records.values().map(|sum| sum * sum).sum();
-    (squares * groups / (groups - 1.0)).sqrt() / of.len() as f64
+    let most = of.iter().map(|case| case.barrels).max().map_or(0.0, f64::from);
+    let share = grouped_mean(&records.into_values().collect::<Vec<_>>(), LEVEL);
+    let interval = Interval { low: most * share.low, high: most * share.high };
+    Loss { intensity, cases: of.len(), fallen, interval, burst }
 }

@@ -1,11 +1,12 @@
 //! The page of a study: the answer first, then what it rests on.
 
-use barrelstack_fragility::clopper_pearson;
+use barrelstack_fragility::{Interval, clopper_pearson};
 use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, significant};
 
 use super::cases::{Cases, Measure};
 use super::curve::{BandKind, LEVEL, LimitCurve};
 use super::hazard::Site;
+use super::indices::Sensitivity;
 use super::loss::{Breakage, Losses, WINE};
 use super::measures::MeasureRow;
 use super::modes::ModeIncidence;
@@ -77,7 +78,15 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
         blocks.extend(at_site(site, measure));
     }
     // Shares of a hunt are those of where it went.
-    if !decision.effects.is_empty() && !cases.hunted {
+    if !decision.sensitivities.is_empty() {
+        blocks.push(heading("What matters"));
+        blocks.push(Block::Table(indices(&decision.sensitivities)));
+        blocks.push(text(
+            "The first index is the share of the variance that would go if the quantity were known, the total index the \
+             share that would stay if everything else were; what the total has more than the first it does together with \
+             others. Demands are those up to the collapse. Indices near zero may come out below it.",
+        ));
+    } else if !decision.effects.is_empty() && !cases.hunted {
         let collapsed = cases.all.iter().filter(|case| case.collapsed).count() as f64;
         let overall = collapsed / cases.all.len() as f64;
         blocks.push(heading("What matters"));
@@ -154,8 +163,13 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
             ));
             said.push(match curve.band_kind {
                 BandKind::Records => {
-                    "The band comes from resampling whole records, so that cases of one record may \
-                                      depend on each other; it is corrected for bias."
+                    "The band comes from leaving out one record at a time, so that cases of one \
+                     record may depend on each other, with Student's t for their number."
+                        .to_owned()
+                }
+                BandKind::None => {
+                    "There is no band: without one of the records there is no curve, so that the \
+                     curve hangs on that record."
                         .to_owned()
                 }
                 BandKind::Likelihood => {
@@ -263,7 +277,7 @@ fn losses(losses: &Losses, measure: &Measure) -> Table {
             (measure.label.as_str(), measure.shown_unit),
             ("cases", ""),
             ("barrels fallen", ""),
-            ("± (95 %)", ""),
+            ("95 % interval", ""),
             ("burst, central", ""),
             ("burst, range", ""),
             ("wine lost, central", "L"),
@@ -275,11 +289,11 @@ fn losses(losses: &Losses, measure: &Measure) -> Table {
             Cell::Number(measure.shown(loss.intensity), 3),
             count(loss.cases as f64),
             Cell::Number(loss.fallen, 2),
-            if loss.fallen_error.is_finite() {
-                Cell::Number(1.96 * loss.fallen_error, 2)
-            } else {
-                Cell::Missing
-            },
+            Cell::text(format!(
+                "{} to {}",
+                significant(loss.interval.low, 2),
+                significant(loss.interval.high, 2)
+            )),
             Cell::Number(central, 2),
             Cell::text(format!("{} to {}", significant(few, 2), significant(many, 2))),
             Cell::Number(1000.0 * WINE * central, 2),
@@ -411,6 +425,44 @@ fn effects(decision: &Decision) -> Table {
         }
     }
     table
+}
+
+/// First and total indices of everything that varies, on every result.
+fn indices(all: &[Sensitivity]) -> Table {
+    let mut table = Table::new(
+        "Sobol' indices with 95 % intervals by resampling of blocks.",
+        &[
+            ("result", ""),
+            ("quantity", ""),
+            ("first", ""),
+            ("95 % interval (first)", ""),
+            ("total", ""),
+            ("95 % interval (total)", ""),
+            ("blocks", ""),
+        ],
+    );
+    let range = |of: Interval| Cell::text(format!("{} to {}", share(of.low), share(of.high)));
+    for of in all {
+        for (at, (name, index)) in of.inputs.iter().enumerate() {
+            let result = if at == 0 { of.result.replace('_', " ") } else { String::new() };
+            table.rows.push(vec![
+                Cell::text(result),
+                Cell::text(name),
+                Cell::text(share(index.first)),
+                range(index.first_interval),
+                Cell::text(share(index.total)),
+                range(index.total_interval),
+                count(u32::try_from(of.blocks).unwrap_or(u32::MAX)),
+            ]);
+        }
+    }
+    table
+}
+
+/// A share of two digits behind the point, that may come out a hair below zero.
+fn share(value: f64) -> String {
+    let rounded = (100.0 * value).round() / 100.0 + 0.0;
+    format!("{rounded:.2}").replace('-', "−")
 }
 
 fn measures(decision: &Decision) -> Table {

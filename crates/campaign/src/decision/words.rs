@@ -5,7 +5,7 @@ use barrelstack_report::{Cell, significant};
 
 use super::Decision;
 use super::cases::Cases;
-use super::curve::{BandKind, FEWEST, LEVEL, LimitCurve};
+use super::curve::{BandKind, LEVEL, LimitCurve};
 use super::hazard::Site;
 use super::limit::LimitState;
 use super::loss::Losses;
@@ -153,13 +153,13 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
     if let Some((losses, last)) =
         decision.losses.as_ref().ok().and_then(|losses| Some((losses, losses.levels.last()?)))
     {
-        let error = Some(1.96 * last.fallen_error).filter(|error| error.is_finite());
         said.push(format!(
-            "At {} a stack of {} barrels loses {}{} of them on average.",
+            "At {} a stack of {} barrels loses {} of them on average ({} to {} with 95 % confidence).",
             measure.words(last.intensity),
             losses.barrels,
             significant(last.fallen, 2),
-            error.map_or_else(String::new, |error| format!(" ± {}", significant(error, 2)))
+            significant(last.interval.low, 2),
+            significant(last.interval.high, 2)
         ));
     }
     if let Some(site) = &decision.site {
@@ -223,20 +223,17 @@ pub(super) fn warnings(
             ));
         }
         if collapse.fit.is_ok() && collapse.band_kind == BandKind::Likelihood {
-            let reason = if cases.records.len() < FEWEST {
-                format!("{} records are too few to be resampled", cases.records.len())
-            } else {
-                "most resampled data sets determine no curve".to_owned()
-            };
-            said.push(format!(
-                "The band takes all cases as independent, since {reason}; with the same records at every level it is \
-                 too narrow."
-            ));
+            said.push(
+                "All cases are of one record, and the band takes them as independent: it says nothing of other \
+                 records."
+                    .to_owned(),
+            );
         }
-        if let Some(found) = collapse.replicates.as_ref().filter(|r| r.refused_share() > 0.025) {
+        if collapse.fit.is_ok() && collapse.band_kind == BandKind::None {
             said.push(format!(
-                "{} of the resampled data sets determine no curve and are left out, so the band is too narrow.",
-                percent(found.refused_share())
+                "The curve hangs on a single one of the {} records, without which there is none, so that no interval \
+                 is given: add records.",
+                cases.records.len()
             ));
         }
         let returned = &collapse.returned;

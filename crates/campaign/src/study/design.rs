@@ -29,6 +29,12 @@ pub enum Design {
         /// How many.
         count: u32,
     },
+    /// Blocks of points of Sobol' for first and total sensitivity indices (Saltelli et al. 2010): two samples
+    /// and, for every varied quantity, the first with that quantity of the second.
+    Saltelli {
+        /// How many blocks.
+        count: u32,
+    },
     /// Random samples until the probability of collapse is known well enough.
     MonteCarlo {
         /// Half of the width of the 95 % interval (Wilson) of the collapse probability at which to stop.
@@ -52,6 +58,7 @@ impl Design {
             Self::OneAtATime { .. } => "one-at-a-time",
             Self::LatinHypercube { .. } => "latin-hypercube",
             Self::Sobol { .. } => "sobol",
+            Self::Saltelli { .. } => "saltelli",
             Self::MonteCarlo { .. } => "monte-carlo",
             Self::Stripes => "stripes",
             Self::Ida(_) => "ida",
@@ -97,6 +104,8 @@ pub(super) enum Sampling {
     LatinHypercube(Vec<Vec<u32>>),
     /// A sequence for each axis.
     Sobol(Vec<Axis>),
+    /// Two sequences for each axis, and the axes that are exchanged.
+    Saltelli { axes: Vec<[Axis; 2]>, exchanged: Vec<usize> },
 }
 
 /// A seed made of a seed and words.
@@ -140,6 +149,17 @@ impl Cases {
                 };
                 Self::Sampled(Sampling::LatinHypercube(axes.iter().map(permutation).collect()))
             }
+            Design::Saltelli { .. } => {
+                let axis = |(at, name): (usize, &String)| {
+                    [(at, ""), (at + axes.len(), " exchanged")].map(|(dimension, which)| {
+                        let shift = seed_of(study.seed, &format!("shift of {name}{which}")) >> 32;
+                        Axis::new(dimension, u32::try_from(shift).unwrap_or_default())
+                    })
+                };
+                let exchanged = study.varied().into_iter().map(|(at, _)| at).collect();
+                let axes = axes.iter().enumerate().map(axis).collect();
+                Self::Sampled(Sampling::Saltelli { axes, exchanged })
+            }
             Design::Sobol { .. } => {
                 let axis = |(dimension, axis): (usize, &String)| {
                     let shift = seed_of(study.seed, &format!("shift of {axis}")) >> 32;
@@ -157,6 +177,9 @@ impl Cases {
         match (self, &study.design) {
             (Self::Sampled(_), Design::LatinHypercube { count } | Design::Sobol { count }) => {
                 u64::from(*count)
+            }
+            (Self::Sampled(Sampling::Saltelli { exchanged, .. }), Design::Saltelli { count }) => {
+                u64::from(*count) * (exchanged.len() as u64 + 2)
             }
             (Self::Sampled(_), Design::MonteCarlo { most, .. }) => u64::from(*most),
             (Self::OneAtATime { changes }, _) => motions * levels * (1 + changes.len() as u64),
@@ -252,6 +275,15 @@ fn sampled(study: &Study, sampling: &Sampling, number: u64) -> Case {
                 (f64::from(stratum) + uniform(id, name)) / strata[axis].len() as f64
             }
             Sampling::Sobol(sequences) => sequences[axis].at(point),
+            Sampling::Saltelli { axes, exchanged } => {
+                let size = u32::try_from(exchanged.len() + 2).unwrap_or(u32::MAX);
+                let from_second = match point % size {
+                    0 => false,
+                    1 => true,
+                    k => exchanged[k as usize - 2] == axis,
+                };
+                axes[axis][usize::from(from_second)].at(point / size)
+            }
         }
     };
     let motion = pick(coordinate(0), study.motions.len());
@@ -276,6 +308,20 @@ impl Study {
     pub(super) fn axes(&self) -> Vec<String> {
         let factors = self.factors.iter().map(|factor| format!("factor {}", factor.name));
         ["motion".to_owned(), "level".to_owned()].into_iter().chain(factors).collect()
+    }
+
+    /// The axes that take more than one value, with their names for people.
+    pub(super) fn varied(&self) -> Vec<(usize, String)> {
+        let level = self.intensity.as_ref().is_some_and(|intensity| match &intensity.levels {
+            Levels::List(levels) => levels.len() > 1,
+            Levels::Distribution(_) => true,
+            Levels::Hunted => false,
+        });
+        let always = [(self.motions.len() > 1, "motion"), (level, "level")];
+        let of =
+            |(at, (varies, name)): (usize, (bool, &str))| varies.then(|| (at, name.to_owned()));
+        let factors = self.factors.iter().enumerate().map(|(at, f)| (2 + at, f.name.clone()));
+        always.into_iter().enumerate().filter_map(of).chain(factors).collect()
     }
 
     /// The levels that are crossed with the rest; one without a level where there are none.

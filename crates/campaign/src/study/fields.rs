@@ -56,6 +56,7 @@ pub(super) enum DesignKind {
     OneAtATime,
     LatinHypercube,
     Sobol,
+    Saltelli,
     MonteCarlo,
     Stripes,
     Ida,
@@ -67,6 +68,7 @@ impl Named for DesignKind {
         ("one-at-a-time", Self::OneAtATime),
         ("latin-hypercube", Self::LatinHypercube),
         ("sobol", Self::Sobol),
+        ("saltelli", Self::Saltelli),
         ("monte-carlo", Self::MonteCarlo),
         ("stripes", Self::Stripes),
         ("ida", Self::Ida),
@@ -268,6 +270,16 @@ static DESIGN: Section = Section {
                 name: "sobol",
                 help: "Points of Sobol', shifted at random; more of them leave the earlier ones as they are.",
                 fields: &[COUNT],
+            },
+            Variant {
+                name: "saltelli",
+                help: "Blocks of points of Sobol' for variance-based sensitivity: two samples and, for every varied quantity, one with it exchanged.",
+                fields: &[Field::new(
+                    "count",
+                    Kind::Integer(2, MOST),
+                    Default::Required,
+                    "Number of blocks, each of two cases more than there are varied quantities; best a power of two.",
+                )],
             },
             Variant {
                 name: "monte-carlo",

@@ -141,6 +141,11 @@ fn read(opened: &Opened) -> Result<Study, StudyError> {
         hash: 0,
     };
     study.cases = Cases::new(&study);
+    if matches!(study.design, Design::Saltelli { .. }) && study.varied().is_empty() {
+        let message = "nothing varies: a design for sensitivity needs a [[factor]], several motions or levels";
+        let problem = Problem::Inconsistent { message: message.to_owned() };
+        return Err(opened.sources.error(Origin::Whole(0), problem).into());
+    }
     let cases = study.cases();
     if cases > MOST_CASES {
         let message = format!(
@@ -434,6 +439,17 @@ fn read_design(
                 ));
             }
             Design::Sobol { count: reader.integer("count")? }
+        }
+        DesignKind::Saltelli => {
+            let most = super::sobol::DIMENSIONS / 2 - 2;
+            if factors.len() > most {
+                return refuse(&format!(
+                    "the blocks of Saltelli here have at most {most} factors, this study has {}; leave out those that \
+                     matter least",
+                    factors.len()
+                ));
+            }
+            Design::Saltelli { count: reader.integer("count")? }
         }
         DesignKind::MonteCarlo => {
             let (least, most) = (reader.integer("least")?, reader.integer("most")?);

@@ -4,7 +4,8 @@
 //! study.json                        what the shards belong to
 //! study.toml                        the study file, as it was
 //! shards/000012-<fingerprint>.parquet   one chunk; its name holds the fingerprint of its bytes
-//! table.csv, table.parquet, provenance.json   all rows, written when the study is collected
+//! table.csv, table.parquet, columns.csv, provenance.json   all rows, what their columns are, and what they
+//!                                   come from, written when the study is collected
 //! ```
 
 use std::collections::BTreeMap;
@@ -57,6 +58,8 @@ pub struct Provenance {
     pub stop: Option<StopRule>,
     /// Factors that are drawn anew for each case of a motion.
     pub drawn: Vec<String>,
+    /// What a design for sensitivity exchanges, in the order of the cases of a block; empty for others.
+    pub varied: Vec<String>,
     /// The motions, in order.
     pub motions: Vec<MotionSource>,
     /// The columns of the table.
@@ -180,7 +183,12 @@ impl Folder {
         let provenance = serde_json::to_string_pretty(&collected.provenance)
             .map_err(|error| StudyError::Table(error.to_string()))?;
         write_whole(&self.path.join("table.csv"), collected.table.to_csv().as_bytes())?;
-        write_whole(&self.path.join("table.parquet"), &collected.table.to_parquet()?)?;
+        // The table travels alone: what it comes from goes with it.
+        let study = fs::read_to_string(self.path.join("study.toml")).unwrap_or_default();
+        let about = [("study", study), ("provenance", provenance.clone())];
+        let bytes = super::shard::to_bytes(&collected.table, &about).map_err(StudyError::Table)?;
+        write_whole(&self.path.join("table.parquet"), &bytes)?;
+        write_whole(&self.path.join("columns.csv"), collected.table.dictionary().as_bytes())?;
         write_whole(&self.path.join("provenance.json"), format!("{provenance}\n").as_bytes())
     }
 }
@@ -361,6 +369,18 @@ impl Study {
             measure: self.intensity.as_ref().map(|Intensity { measure, .. }| measure.to_string()),
             stop: self.stop_rule(),
             drawn: self.drawn(),
+            varied: match self.design {
+                Design::Saltelli { .. } => {
+                    self.varied().into_iter().map(|(_, name)| name).collect()
+                }
+                Design::FullFactorial
+                | Design::OneAtATime { .. }
+                | Design::LatinHypercube { .. }
+                | Design::Sobol { .. }
+                | Design::MonteCarlo { .. }
+                | Design::Stripes
+                | Design::Ida(_) => Vec::new(),
+            },
             motions,
             columns: self.columns(),
             chunks: self.chunk_count(),

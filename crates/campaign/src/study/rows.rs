@@ -39,6 +39,45 @@ const RESULTS: [(&str, &str, Role, ValueKind); 20] = [
 /// Columns that tell the motion.
 const MOTION: [&str; 3] = ["record", "level", "scale_factor"];
 
+/// What a column tells.
+pub(super) fn meaning(spec: &ColumnSpec) -> &'static str {
+    match (spec.role, spec.name.as_str()) {
+        (Role::Key, "case") => "number of the case in its study",
+        (Role::Key, "id") => "what tells the case from every other, however many there are",
+        (Role::Key, _) => "chunk that ran the case",
+        (Role::Factor, _) => "value of a varied field",
+        (Role::Motion, "record") => "name of the motion",
+        (Role::Motion, "level") => "intensity to which the motion was scaled",
+        (Role::Motion, _) => "factor by which it was scaled",
+        (Role::Intensity, _) => "intensity measure of the motion as shaken",
+        (_, "outcome") => "stable, collapse, not-judged, invalid or error",
+        (_, "mode") => "how it collapsed",
+        (_, "first_loss") => "when the first body left its seat",
+        (_, "first_fall") => "when the first barrel had fallen",
+        (_, "barrels") => "barrels of the stack",
+        (_, "barrels_fallen") => "barrels that had fallen when the case ended",
+        (_, "fall_heights") => "largest drop of each barrel that fell (m), divided by semicolons",
+        (_, "top_drift_ratio") => {
+            "peak displacement of the top over its height, before the collapse"
+        }
+        (_, "base_slip_peak") => "largest slip of the bottom rack, before the collapse",
+        (_, "base_slip_residual") => "slip of the bottom rack at the end",
+        (_, "rack_tilt_peak") => "largest tilt of a rack, before the collapse",
+        (_, "rack_walk_peak") => "largest way of a rack on what it stands on, before the collapse",
+        (_, "residual_displacement") => "largest displacement of a barrel at the end",
+        (_, "ended") => "why the case ended: rest, after-collapse, duration, patience or broken",
+        (_, "motion_left") => "time of the motion that was left when it ended",
+        (_, "end_time") => "simulated time that it reached",
+        (_, "steps") => "accepted time steps",
+        (_, "energy_residual_ratio") => {
+            "energy missing from the books over the energy that went through"
+        }
+        (_, "warnings") => "number of warnings",
+        (_, "error") => "why there is no verdict",
+        (Role::Outcome | Role::Demand | Role::Run, _) => "",
+    }
+}
+
 /// The names of the columns that every table has.
 pub(super) fn fixed_columns() -> impl Iterator<Item = &'static str> {
     let keys = KEYS.iter().map(|(name, _)| *name);

@@ -18,9 +18,34 @@ use super::table::StudyTable;
 /// Under this key of a file's metadata stand the columns: name, unit and role.
 const COLUMNS_KEY: &str = "barrelstack.columns";
 
-/// A table as the bytes of a Parquet file; the same table gives the same bytes.
-pub(super) fn to_bytes(table: &StudyTable) -> Result<Vec<u8>, String> {
-    write(table).map_err(|error| error.to_string())
+/// A table as the bytes of a Parquet file, with what it comes from as pairs of key and text; the same table
+/// and pairs give the same bytes.
+pub(super) fn to_bytes(table: &StudyTable, about: &[(&str, String)]) -> Result<Vec<u8>, String> {
+    write(table, about).map_err(|error| error.to_string())
+}
+
+/// The names of columns as files of columns have them: letters, digits and underscores, as SQL takes them
+/// without quotes.
+pub(super) fn plain_names<'a>(specs: impl Iterator<Item = &'a ColumnSpec>) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for spec in specs {
+        let mut name: String = spec
+            .name
+            .chars()
+            .map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' })
+            .collect();
+        if !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
+            name.insert_str(0, "c_");
+        }
+        let first = name.clone();
+        let mut again = 2;
+        while names.contains(&name) {
+            name = format!("{first}_{again}");
+            again += 1;
+        }
+        names.push(name);
+    }
+    names
 }
 
 /// A table from the bytes of a Parquet file written by [`to_bytes`].
@@ -28,14 +53,17 @@ pub(super) fn from_bytes(bytes: Vec<u8>) -> Result<StudyTable, String> {
     read(bytes).map_err(|error| error.to_string())
 }
 
-fn write(table: &StudyTable) -> Result<Vec<u8>, ParquetError> {
+fn write(table: &StudyTable, about: &[(&str, String)]) -> Result<Vec<u8>, ParquetError> {
     let specs: Vec<&ColumnSpec> = table.specs().collect();
     let described =
         serde_json::to_string(&specs).map_err(|error| ParquetError::General(error.to_string()))?;
-    let metadata = KeyValue::new(COLUMNS_KEY.to_owned(), described);
+    let mut metadata = vec![KeyValue::new(COLUMNS_KEY.to_owned(), described)];
+    metadata.extend(
+        about.iter().map(|(key, text)| KeyValue::new(format!("barrelstack.{key}"), text.clone())),
+    );
     let properties = WriterProperties::builder()
         .set_created_by(format!("barrelstack {}", env!("CARGO_PKG_VERSION")))
-        .set_key_value_metadata(Some(vec![metadata]))
+        .set_key_value_metadata(Some(metadata))
         .set_statistics_enabled(EnabledStatistics::Chunk)
         .build();
     let mut bytes = Vec::new();
@@ -50,19 +78,20 @@ fn write(table: &StudyTable) -> Result<Vec<u8>, ParquetError> {
 }
 
 fn schema(table: &StudyTable) -> Result<TypePtr, ParquetError> {
-    let field = |column: &Column| {
+    let field = |(column, name): (&Column, String)| {
         let (physical, logical) = match column.spec.kind {
             ValueKind::Integer => (Physical::INT64, None),
             ValueKind::Number => (Physical::DOUBLE, None),
             ValueKind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
         };
-        Type::primitive_type_builder(&column.spec.heading(), physical)
+        Type::primitive_type_builder(&name, physical)
             .with_repetition(Repetition::OPTIONAL)
             .with_logical_type(logical)
             .build()
             .map(Arc::new)
     };
-    let fields = table.columns().iter().map(field).collect::<Result<Vec<_>, _>>()?;
+    let names = plain_names(table.specs());
+    let fields = table.columns().iter().zip(names).map(field).collect::<Result<Vec<_>, _>>()?;
     Ok(Arc::new(Type::group_type_builder("case").with_fields(fields).build()?))
 }
 

@@ -169,7 +169,26 @@ impl StudyTable {
     /// # Errors
     /// When it cannot be encoded.
     pub fn to_parquet(&self) -> Result<Vec<u8>, StudyError> {
-        shard::to_bytes(self).map_err(StudyError::Table)
+        shard::to_bytes(self, &[]).map_err(StudyError::Table)
+    }
+
+    /// What every column is, as CSV: its name in CSV and in Parquet files, unit, role, kind, and meaning.
+    pub fn dictionary(&self) -> String {
+        let mut text = "csv,parquet,unit,role,kind,meaning\n".to_owned();
+        let names = shard::plain_names(self.specs());
+        for (spec, name) in self.specs().zip(names) {
+            let word = |of: serde_json::Value| of.as_str().unwrap_or_default().to_owned();
+            let cells = [
+                spec.heading(),
+                name,
+                spec.unit.clone(),
+                serde_json::to_value(spec.role).map_or_else(|_| String::new(), word),
+                serde_json::to_value(spec.kind).map_or_else(|_| String::new(), word),
+                super::rows::meaning(spec).to_owned(),
+            ];
+            let _ = writeln!(text, "{}", cells.map(|cell| field(&cell)).join(","));
+        }
+        text
     }
 
     /// A table from the bytes of a Parquet file that [`StudyTable::to_parquet`] gave.

@@ -2,6 +2,7 @@
 
 mod answer;
 mod emit;
+mod export;
 mod live;
 mod report;
 
@@ -24,7 +25,8 @@ Start with:
   barrelstack study mine.toml --out mine          run it; run it again to go on after a stop
   barrelstack study fields                        all that a study file can hold
 
-Results are in the folder: table.csv, table.parquet and provenance.json, and one Parquet file a chunk in shards.";
+Results are in the folder: table.csv and table.parquet, whose columns columns.csv explains, provenance.json, and
+one Parquet file a chunk in shards.";
 
 /// Arguments of `study`.
 #[derive(Debug, clap::Args)]
@@ -114,6 +116,8 @@ enum Action {
     Collect(FolderArgs),
     /// Write the page: fragility, losses, what matters, and with a hazard curve annual rates.
     Report(report::ReportArgs),
+    /// Write fragility and loss for OpenQuake and Pelicun.
+    Export(export::ExportArgs),
     /// Write job files with which another engine runs all chunks.
     Emit(emit::EmitArgs),
     /// Print a built-in study, with its comments, as a starting point.
@@ -140,6 +144,7 @@ pub(crate) fn study(args: &StudyArgs) -> anyhow::Result<ExitCode> {
         Some(Action::Status(args)) => status(args)?,
         Some(Action::Collect(args)) => collect(args)?,
         Some(Action::Report(args)) => report::report(args)?,
+        Some(Action::Export(args)) => export::export(args)?,
         Some(Action::Emit(args)) => emit::emit(args)?,
         Some(Action::Example { name, list }) => example(name.as_deref(), *list)?,
         Some(Action::Fields) => printer::text(&barrelstack_campaign::study::reference())?,

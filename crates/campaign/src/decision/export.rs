@@ -1,0 +1,268 @@
+//! Fragility and loss for other programs: `OpenQuake` (`nrml` 0.5) and Pelicun, with the provenance of the study.
+
+use std::fmt::Write as _;
+
+use barrelstack_fragility::Lognormal;
+use barrelstack_motion::STANDARD_GRAVITY;
+
+use super::cases::Case;
+use super::{Breakage, Decision};
+use crate::scenario::quantity::plain;
+use crate::study::Provenance;
+
+/// Files for other programs, and what could not go into them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Exported {
+    /// Name and text of each file.
+    pub files: Vec<(&'static str, String)>,
+    /// What is missing, and why.
+    pub notes: Vec<String>,
+}
+
+/// Why nothing can be exported.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ExportError {
+    /// Others have no name for the measure.
+    #[error(
+        "neither OpenQuake nor Pelicun knows the intensity measure {0} of this study; run it over pga, pgv, \
+         pgd or sa(T)"
+    )]
+    Measure(String),
+    /// No limit state has a curve.
+    #[error("no limit state of this study has a fitted curve ({0}), so there is nothing to export")]
+    NoCurve(String),
+}
+
+/// A measure in the words and the unit of other programs.
+struct Foreign {
+    /// `OpenQuake`'s name.
+    imt: String,
+    /// Pelicun's demand type.
+    demand: String,
+    /// Pelicun's unit.
+    unit: &'static str,
+    /// Their units in one SI unit: g, cm/s, cm.
+    scale: f64,
+}
+
+fn foreign(name: &str) -> Option<Foreign> {
+    let of = |imt: &str, demand: &str, unit, scale| {
+        Some(Foreign { imt: imt.to_owned(), demand: demand.to_owned(), unit, scale })
+    };
+    let g = 1.0 / STANDARD_GRAVITY;
+    match name {
+        "pga" => of("PGA", "Peak Ground Acceleration", "g", g),
+        "pgv" => of("PGV", "Peak Ground Velocity", "cmps", 100.0),
+        "pgd" => of("PGD", "Peak Ground Displacement", "cm", 100.0),
+        other => {
+            let period = other.strip_prefix("sa_")?;
+            of(&format!("SA({period})"), &format!("Spectral Acceleration|{period}"), "g", g)
+        }
+    }
+}
+
+/// The curves of a decision for other programs; `asset` is what they call one stack.
+///
+/// # Errors
+/// When the measure has no name there, or no limit state has a curve.
+pub fn export(
+    decision: &Decision,
+    made: &Provenance,
+    asset: &str,
+) -> Result<Exported, ExportError> {
+    let measure = decision.cases.measure();
+    let foreign =
+        foreign(&measure.name).ok_or_else(|| ExportError::Measure(measure.label.clone()))?;
+    let mut found = Exported::default();
+    let mut limits: Vec<(String, Lognormal)> = Vec::new();
+    for curve in &decision.curves {
+        let name = curve.limit.name().replace('-', "_");
+        match &curve.fit {
+            Ok(fit) => {
+                let median = foreign.scale * fit.curve.median;
+                limits.push((name, Lognormal { median, ..fit.curve }));
+                if curve.violates_order() {
+                    found.notes.push(format!(
+                        "{}: the raw fractions are not monotone, and the exported curve hides that",
+                        curve.limit.words()
+                    ));
+                }
+            }
+            Err(reason) => {
+                found.notes.push(format!("{} is left out: {reason}", curve.limit.words()));
+            }
+        }
+    }
+    if limits.is_empty() {
+        return Err(ExportError::NoCurve(found.notes.join("; ")));
+    }
+    let imls: Vec<f64> = decision.curves[0].grid.iter().map(|x| foreign.scale * x).collect();
+    found.notes.extend(crossings(&limits, &imls));
+    let about = provenance(decision, made);
+    let fragility = fragility(&limits, &imls, &foreign, asset, &about);
+    found.files.push(("openquake-fragility.xml", fragility));
+    found.files.push(("pelicun-fragility.csv", pelicun(&limits, &foreign, asset)));
+    match &decision.losses {
+        Ok(_) => {
+            let text = vulnerability(decision, &foreign, asset, &about);
+            found.files.push(("openquake-vulnerability.xml", text));
+        }
+        Err(reason) => found.notes.push(format!("losses are left out: {reason}")),
+    }
+    found.files.push(("README.txt", readme(&found.notes, &about)));
+    Ok(found)
+}
+
+/// Where a limit state that is to be the worse one is likelier than the one before it.
+fn crossings(limits: &[(String, Lognormal)], imls: &[f64]) -> Vec<String> {
+    let crosses = |pair: &[(String, Lognormal)]| {
+        let above = |x: &&f64| pair[1].1.probability(**x) > pair[0].1.probability(**x) + 1e-6;
+        let at = imls.iter().find(above)?;
+        Some(format!(
+            "the curve of {} lies above that of {} at {}: programs that take limit states as nested refuse that",
+            pair[1].0,
+            pair[0].0,
+            plain(*at)
+        ))
+    };
+    limits.windows(2).filter_map(crosses).collect()
+}
+
+fn provenance(decision: &Decision, made: &Provenance) -> String {
+    format!(
+        "{} {}: \"{}\", study {}, seed {}, {} cases under {} motions, intensity {}",
+        made.program,
+        made.version,
+        made.title,
+        made.study_hash,
+        made.seed,
+        decision.cases.all.len(),
+        decision.cases.records.len(),
+        decision.cases.measure().label
+    )
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+fn numbers(values: impl IntoIterator<Item = f64>) -> String {
+    values.into_iter().map(plain).collect::<Vec<_>>().join(" ")
+}
+
+const HEAD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<nrml xmlns=\"http://openquake.org/xmlns/nrml/0.5\">\n";
+
+/// Mean and standard deviation of a lognormal capacity, by which `OpenQuake` states a curve.
+fn moments(curve: &Lognormal) -> (f64, f64) {
+    let variance = curve.dispersion * curve.dispersion;
+    let mean = curve.median * libm::exp(0.5 * variance);
+    (mean, mean * libm::expm1(variance).sqrt())
+}
+
+fn fragility(
+    limits: &[(String, Lognormal)],
+    imls: &[f64],
+    foreign: &Foreign,
+    asset: &str,
+    about: &str,
+) -> String {
+    let names: Vec<&str> = limits.iter().map(|(name, _)| name.as_str()).collect();
+    let (first, last) = (imls[0], imls[imls.len() - 1]);
+    let mut text = format!(
+        "{HEAD}  <fragilityModel id=\"barrelstack\" assetCategory=\"contents\" lossCategory=\"contents\">\n    \
+         <description>{}</description>\n    <limitStates>{}</limitStates>\n    \
+         <fragilityFunction id=\"{}\" format=\"continuous\" shape=\"logncdf\">\n      \
+         <imls imt=\"{}\" noDamageLimit=\"0\" minIML=\"{}\" maxIML=\"{}\"/>\n",
+        escaped(about),
+        names.join(" "),
+        escaped(asset),
+        foreign.imt,
+        plain(first),
+        plain(last)
+    );
+    for (name, curve) in limits {
+        let (mean, deviation) = moments(curve);
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "      <params ls=\"{name}\" mean=\"{}\" stddev=\"{}\"/>",
+            plain(mean),
+            plain(deviation)
+        );
+    }
+    text.push_str("    </fragilityFunction>\n  </fragilityModel>\n</nrml>\n");
+    text
+}
+
+/// Share of the barrels of a stack that burst, by the central assumption.
+fn burst(case: &Case) -> f64 {
+    let chance = |fall: &f64| Breakage::RANGE[1].probability(*fall);
+    case.falls.iter().map(chance).sum::<f64>() / f64::from(case.barrels.max(1))
+}
+
+/// Of what may scatter between 0 and 1 about a mean, no more than this share does: a beta distribution has
+/// no less.
+const MOST_SCATTER: f64 = 0.999;
+
+fn vulnerability(decision: &Decision, foreign: &Foreign, asset: &str, about: &str) -> String {
+    let known = decision.cases.with_known_falls();
+    let groups = known.groups(known.main);
+    let mut text = format!(
+        "{HEAD}  <vulnerabilityModel id=\"barrelstack\" assetCategory=\"contents\" lossCategory=\"contents\">\n    \
+         <description>{}; loss ratios: barrels on the floor, and wine lost (central assumption of breakage)\
+         </description>\n",
+        escaped(about)
+    );
+    let share_fallen: fn(&Case) -> f64 = Case::fallen_share;
+    for (name, of) in [("barrels", share_fallen), ("wine", burst)] {
+        let (mut means, mut scatter) = (Vec::new(), Vec::new());
+        for (_, cases) in &groups {
+            let n = cases.len() as f64;
+            let mean = cases.iter().map(|case| of(case)).sum::<f64>() / n;
+            let square = cases.iter().map(|case| (of(case) - mean).powi(2)).sum::<f64>();
+            let variance = (square / (n - 1.0).max(1.0)).min(MOST_SCATTER * mean * (1.0 - mean));
+            means.push(mean);
+            scatter.push(if mean > 0.0 { variance.max(0.0).sqrt() / mean } else { 0.0 });
+        }
+        // Writing to a String cannot fail.
+        let _ = write!(
+            text,
+            "    <vulnerabilityFunction id=\"{}-{name}\" dist=\"BT\">\n      <imls imt=\"{}\">{}</imls>\n      \
+             <meanLRs>{}</meanLRs>\n      <covLRs>{}</covLRs>\n    </vulnerabilityFunction>\n",
+            escaped(asset),
+            foreign.imt,
+            numbers(groups.iter().map(|(x, _)| foreign.scale * x)),
+            numbers(means),
+            numbers(scatter)
+        );
+    }
+    text.push_str("  </vulnerabilityModel>\n</nrml>\n");
+    text
+}
+
+/// A fragility database of one component, a limit state a damage state.
+fn pelicun(limits: &[(String, Lognormal)], foreign: &Foreign, asset: &str) -> String {
+    let mut head =
+        "ID,Incomplete,Demand-Type,Demand-Unit,Demand-Offset,Demand-Directional".to_owned();
+    let quoted = asset.replace('"', "\"\"");
+    let mut row = format!("\"{quoted}\",0,{},{},0,0", foreign.demand, foreign.unit);
+    for (number, (_, curve)) in (1..).zip(limits) {
+        // Writing to a String cannot fail.
+        let _ = write!(
+            head,
+            ",LS{number}-Family,LS{number}-Theta_0,LS{number}-Theta_1,LS{number}-DamageStateWeights"
+        );
+        let _ = write!(row, ",lognormal,{},{},", plain(curve.median), plain(curve.dispersion));
+    }
+    format!("{head}\n{row}\n")
+}
+
+fn readme(notes: &[String], about: &str) -> String {
+    let mut text = format!("{about}\n");
+    for note in notes {
+        text.push_str("- ");
+        text.push_str(note);
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,39 @@
+//! `barrelstack study export`: fragility and loss for other programs.
+
+use std::path::PathBuf;
+
+use anyhow::Context as _;
+use barrelstack_campaign::decision::{Request, decide, export as exported};
+use barrelstack_campaign::study::Collected;
+
+use crate::printer;
+
+/// Arguments of `study export`.
+#[derive(Debug, clap::Args)]
+pub(super) struct ExportArgs {
+    /// A folder that `barrelstack study` wrote.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Folder for the files.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// What the other program calls a stack (its taxonomy, or the identity of its component).
+    #[arg(long, value_name = "NAME", default_value = "wine-barrel-stack")]
+    asset: String,
+}
+
+/// Writes the files, and says what is not in them.
+pub(super) fn export(args: &ExportArgs) -> anyhow::Result<()> {
+    let collected = Collected::read(&args.folder)?;
+    let decision = decide(&collected, &Request::default())?;
+    let found = exported(&decision, &collected.provenance, &args.asset)?;
+    std::fs::create_dir_all(&args.out)
+        .with_context(|| format!("cannot make {}", args.out.display()))?;
+    for (name, text) in &found.files {
+        let path = args.out.join(name);
+        std::fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))?;
+        printer::lines([path.display().to_string()])?;
+    }
+    found.notes.iter().for_each(|note| printer::warning(note));
+    Ok(())
+}
