@@ -6,10 +6,12 @@ use crate::random::Random;
 
 use super::target::SelectionTarget;
 
-/// Sets of simulated spectra from which the best one is taken.
+/// Sets of simulated spectra, from each of which a set of records is made; the best is taken.
 const TRIALS: usize = 20;
-/// Weights of the errors of mean and standard deviation.
-const WEIGHTS: (f64, f64) = (1.0, 2.0);
+/// Weight of the error of the standard deviation beside that of the mean, which has 1.
+const SPREAD_WEIGHT: f64 = 2.0;
+/// The same for a target without spread, which nearness to its mean alone can not bring about.
+const NO_SPREAD_WEIGHT: f64 = 0.1;
 /// Most rounds of exchanges; they end when no exchange helps.
 const ROUNDS: usize = 20;
 
@@ -80,6 +82,16 @@ impl Selection {
     }
 }
 
+impl Selection {
+    /// What sets are compared by: an error of the median counts as one of the standard deviation twice
+    /// as large.
+    fn worst(&self, target: &SelectionTarget) -> f64 {
+        let spread = target.deviation().iter().any(|s| *s > 0.0);
+        let deviation = if spread { 0.5 * self.deviation_error(target) } else { 0.0 };
+        self.median_error(target).max(deviation)
+    }
+}
+
 /// Standard deviation of ln Sa below which an error relative to it says nothing.
 const SMALLEST: f64 = 0.01;
 
@@ -100,26 +112,25 @@ pub fn select(
 ) -> Result<Selection, MotionError> {
     check(target, candidates, choosing)?;
     let pool = Pool::of(target, candidates, choosing);
-    let mut set = Set::new(target);
-    for spectrum in &simulated(target, choosing) {
-        let level = pool.level(spectrum);
-        let nearest = pool
-            .nearest(spectrum, level, &set)
-            .ok_or_else(|| too_few(&pool, candidates.len(), set.members.len(), choosing))?;
-        set.add(&pool, nearest, level);
+    let mut random = Random::new(choosing.seed);
+    let mut best: Option<Selection> = None;
+    for _ in 0..TRIALS {
+        let mut set = Set::new(target);
+        for spectrum in &target.draw(choosing.count, &mut random) {
+            let level = pool.level(spectrum);
+            let nearest = pool
+                .nearest(spectrum, level, &set)
+                .ok_or_else(|| too_few(&pool, candidates.len(), set.members.len(), choosing))?;
+            set.add(&pool, nearest, level);
+        }
+        let rounds = set.improve(&pool);
+        let found = set.selection(&pool, rounds);
+        if best.as_ref().is_none_or(|best| found.worst(target) < best.worst(target)) {
+            best = Some(found);
+        }
     }
-    let rounds = set.improve(&pool);
-    let mut chosen: Vec<Chosen> = set
-        .members
-        .iter()
-        .map(|&(row, level)| {
-            let row = &pool.rows[row];
-            Chosen { candidate: row.candidate, scale: math::exp(level - row.level) }
-        })
-        .collect();
-    chosen.sort_by_key(|chosen| chosen.candidate);
-    let (mean, deviation) = set.moments();
-    Ok(Selection { chosen, mean, deviation, eligible: pool.eligible(target), rounds })
+    // There is one trial or more, and each gives a set.
+    best.ok_or_else(|| too_few(&pool, candidates.len(), 0, choosing))
 }
 
 fn too_few(pool: &Pool, given: usize, found: usize, choosing: &Choosing) -> MotionError {
@@ -161,25 +172,6 @@ fn check(
         }
     }
     Ok(())
-}
-
-/// Spectra with nearly the moments of the target: the best of some sets drawn at random.
-fn simulated(target: &SelectionTarget, choosing: &Choosing) -> Vec<Vec<f64>> {
-    let mut random = Random::new(choosing.seed);
-    let mut best = (f64::INFINITY, Vec::new());
-    for _ in 0..TRIALS {
-        let spectra = target.draw(choosing.count, &mut random);
-        let mut set = Set::new(target);
-        for spectrum in &spectra {
-            set.count(spectrum, 0.0, 1.0);
-            set.size += 1;
-        }
-        let error = set.error();
-        if error < best.0 {
-            best = (error, spectra);
-        }
-    }
-    best.1
 }
 
 /// A candidate before scaling.
@@ -266,12 +258,17 @@ struct Set<'a> {
     /// Sums of ln Sa less the target's mean, which keeps their digits.
     sums: Vec<f64>,
     squares: Vec<f64>,
+    /// Weight of the error of the standard deviation.
+    weight: f64,
 }
 
 impl<'a> Set<'a> {
     fn new(target: &'a SelectionTarget) -> Self {
         let n = target.periods().len();
-        Self { target, members: Vec::new(), size: 0, sums: vec![0.0; n], squares: vec![0.0; n] }
+        let spread = target.deviation().iter().any(|s| *s > 0.0);
+        let weight = if spread { SPREAD_WEIGHT } else { NO_SPREAD_WEIGHT };
+        let (sums, squares) = (vec![0.0; n], vec![0.0; n]);
+        Self { target, members: Vec::new(), size: 0, sums, squares, weight }
     }
 
     fn add(&mut self, pool: &Pool, row: usize, level: f64) {
@@ -314,7 +311,7 @@ impl<'a> Set<'a> {
         let mean = sum / n;
         let deviation = ((squares - n * mean * mean) / (n - 1.0)).max(0.0).sqrt();
         let apart = deviation - self.target.deviation()[k];
-        WEIGHTS.0 * mean * mean + WEIGHTS.1 * apart * apart
+        mean * mean + self.weight * apart * apart
     }
 
     /// Exchanges each member for the candidate that lowers the error most; gives the rounds made.
@@ -358,6 +355,17 @@ impl<'a> Set<'a> {
             }
         }
         error
+    }
+
+    fn selection(&self, pool: &Pool, rounds: usize) -> Selection {
+        let one = |&(row, level): &(usize, f64)| {
+            let row = &pool.rows[row];
+            Chosen { candidate: row.candidate, scale: math::exp(level - row.level) }
+        };
+        let mut chosen: Vec<Chosen> = self.members.iter().map(one).collect();
+        chosen.sort_by_key(|chosen| chosen.candidate);
+        let (mean, deviation) = self.moments();
+        Selection { chosen, mean, deviation, eligible: pool.eligible(self.target), rounds }
     }
 
     fn moments(&self) -> (Vec<f64>, Vec<f64>) {

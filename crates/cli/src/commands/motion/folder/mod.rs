@@ -152,7 +152,7 @@ pub(super) fn run(
         let made = |ending: &str| source.beside(batch.out, ending).exists();
         let known = journal.known(&source.record.name, hash);
         if let Some(entry) = known.filter(|e| e.row.is_none() || batch.ending.is_none_or(made)) {
-            before.fetch_add(1, Ordering::Relaxed);
+            before.fetch_add(usize::from(entry.row.is_some()), Ordering::Relaxed);
             return Ok(Some(entry));
         }
         let (entry, sure) = entry(batch.input, source, hash, &periods, flatfile.as_ref(), work);

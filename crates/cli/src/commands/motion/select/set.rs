@@ -119,8 +119,8 @@ impl Set<'_> {
         let selection = self.selection;
         let spread = target.deviation().iter().any(|s| *s > 0.0);
         format!(
-            "{} of {} within the factors chosen: median within {:.1} % of the target, {} after {} rounds \
-             of exchanges",
+            "{} chosen of {} that reach the target within the factors: median within {:.1} % of the \
+             target, {}, after {} rounds of exchanges",
             selection.chosen.len(),
             selection.eligible,
             100.0 * selection.median_error(target),
