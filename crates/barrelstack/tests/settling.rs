@@ -201,7 +201,7 @@ fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push
             || interface.stop.is_some_and(|stop| c.penetration > stop.depth)
     };
     let solid = scratch.contacts.iter().any(meets_solid);
-    let time_step = default_step(assembly, 1.0) * if solid { 0.05 } else { 1.0 };
+    let time_step = default_step(assembly, 1.0) * if solid { 0.2 } else { 1.0 };
     let simulation = Simulation { method: Method::VelocityVerlet, time_step, end_time: time };
     scratch.keeps_contacts = false;
     let start = state.poses.clone();
