@@ -195,9 +195,13 @@ fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push
     // step: what it damps grows with the load.
     let mut scratch = Scratch::new(&model);
     evaluate(&model, &state, &mut scratch);
-    let law = |c: &Contact<Planar>| model.interfaces()[model.pairs()[c.pair].interface].normal;
-    let solid = scratch.contacts.iter().any(|c| matches!(law(c), NormalLaw::Rebound { .. }));
-    let time_step = default_step(assembly, 1.0) * if solid { 0.05 } else { 1.0 };
+    let meets_solid = |c: &Contact<Planar>| {
+        let interface = &model.interfaces()[model.pairs()[c.pair].interface];
+        matches!(interface.normal, NormalLaw::Rebound { .. })
+            || interface.stop.is_some_and(|stop| c.penetration > stop.depth)
+    };
+    let solid = scratch.contacts.iter().any(meets_solid);
+    let time_step = default_step(assembly, 1.0) * if solid { 0.2 } else { 1.0 };
     let simulation = Simulation { method: Method::VelocityVerlet, time_step, end_time: time };
     scratch.keeps_contacts = false;
     let start = state.poses.clone();
