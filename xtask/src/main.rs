@@ -6,6 +6,7 @@
 )]
 
 mod browser;
+mod extra;
 mod steps;
 mod tally;
 

@@ -9,6 +9,7 @@ use std::time::Instant;
 use anyhow::{Context as _, bail};
 
 use crate::browser;
+use crate::extra;
 use crate::tally::Tally;
 
 /// One command and what to do when it fails.
@@ -55,8 +56,8 @@ pub(crate) fn test() -> anyhow::Result<()> {
     let root = root();
     let start = Instant::now();
     let mut total = Tally::default();
-    let browser = browser::find(&root);
-    let count = STEPS.len() + usize::from(browser.is_some());
+    let extras = extra::all(&root);
+    let count = STEPS.len() + extras.len();
     let mut closing = Vec::new();
     for (index, step) in STEPS.iter().enumerate() {
         let name = format!("cargo {}", step.arguments.join(" "));
@@ -75,26 +76,28 @@ pub(crate) fn test() -> anyhow::Result<()> {
             bail!("{heading} failed: {}", step.remedy);
         }
     }
-    if let Some(check) = browser {
-        let heading = format!("step {count} of {count}: {}", browser::NAME);
+    for (index, extra) in extras.into_iter().enumerate() {
+        let heading = format!("step {} of {count}: {}", STEPS.len() + index + 1, extra.name);
         println!("\n== {heading}");
-        match check.command() {
+        let mut command = match extra.command {
+            Ok(command) => command,
             Err(reason) => {
                 println!("skipped: {reason}");
                 total.skipped += 1;
-                closing.push(format!("{}: skipped, {reason}", browser::NAME));
+                closing.push(format!("{}: skipped, {reason}", extra.name));
+                continue;
             }
-            Ok(mut command) => {
-                check.build()?;
-                let (passed, tally) =
-                    watched(&mut command).with_context(|| format!("{heading} failed"))?;
-                total.add(tally);
-                closing.push(format!("{}: {tally}", browser::NAME));
-                if !passed {
-                    close(&closing, total, start);
-                    bail!("{heading} failed: see above");
-                }
-            }
+        };
+        if let Some(pages) = extra.pages {
+            pages.build()?;
+        }
+        let (passed, tally) =
+            watched(command.current_dir(&root)).with_context(|| format!("{heading} failed"))?;
+        total.add(tally);
+        closing.push(format!("{}: {tally}", extra.name));
+        if !passed {
+            close(&closing, total, start);
+            bail!("{heading} failed: {}", extra.remedy);
         }
     }
     close(&closing, total, start);

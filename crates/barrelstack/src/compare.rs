@@ -24,10 +24,7 @@ pub struct Side {
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 pub enum CompareError {
     /// One run has nothing to stand beside.
-    #[error(
-        "a comparison needs at least two runs, found {0}: name another scenario, or add \
-             --against PATH=VALUE"
-    )]
+    #[error("a comparison needs at least two runs, found {0}")]
     TooFew(usize),
     /// More runs than a page can show.
     #[error("a comparison shows at most {most} runs side by side, found {found}: leave some out")]

@@ -27,11 +27,7 @@ const FILES: [&str; 8] = [
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// Something is there already.
-    #[error(
-        "{folder} is not empty (it holds {file}): name another folder, or add --overwrite to replace \
-         what an earlier run wrote there",
-        folder = folder.display()
-    )]
+    #[error("{folder} is not empty (it holds {file})", folder = folder.display())]
     Occupied {
         /// The folder.
         folder: PathBuf,

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
-    AccelerationUnit, Component, GroundMotion, History, Horizontals, IntensityMeasure, MotionError,
-    Processing, Pulse as MotionPulse, ReadError, ReadFailure, ReadOptions, Record, Refusal,
+    AccelerationUnit, Channel, Component, GroundMotion, History, Horizontals, IntensityMeasure,
+    MotionError, Processing, Pulse as MotionPulse, ReadError, ReadFailure, ReadOptions, Record,
+    Refusal,
 };
 
 use crate::scenario::{
@@ -59,7 +60,7 @@ pub enum GroundError {
     #[error(transparent)]
     Motion(#[from] MotionError),
     /// The record has no vertical component of the name that the scenario asks for.
-    #[error("{error}; for a record without one: --set motion.vertical=false")]
+    #[error("{error}; for a record without one say `motion.vertical = false`")]
     Vertical {
         /// What is missing, and what there is.
         error: MotionError,
@@ -84,7 +85,7 @@ pub enum GroundError {
 }
 
 /// Largest record (bytes) that is read; the longest strong-motion files have a tenth of it.
-pub(crate) const RECORD_LIMIT: usize = 256 << 20;
+pub const RECORD_LIMIT: usize = 256 << 20;
 
 /// Reads or makes the motion of a scenario, scaled as it says.
 ///
@@ -98,7 +99,7 @@ pub fn ground(scenario: &Scenario) -> Result<Ground, GroundError> {
 ///
 /// # Errors
 /// As [`ground`].
-pub(crate) fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
+pub fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
     let mut ground = match &spec.source {
         MotionSource::None => return Ok(Ground::default()),
         MotionSource::Record(record) => recorded(record, spec.scale)?,
@@ -112,7 +113,10 @@ pub(crate) fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, Grou
 }
 
 /// A motion scaled and stretched as a scenario says, for a stack of a length scale.
-pub(crate) fn scaled(
+///
+/// # Errors
+/// When it cannot be scaled so.
+pub fn scaled(
     mut motion: GroundMotion,
     spec: &MotionSpec,
     run_scale: f64,
@@ -150,6 +154,7 @@ fn recorded(spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
         unit: spec.unit.map(unit).transpose()?,
         time_step: spec.time_step,
         sensitivity: spec.sensitivity,
+        ..ReadOptions::default()
     };
     let record = match &spec.source {
         RecordSource::Bundled(name) => {
@@ -159,13 +164,14 @@ fn recorded(spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
             })?
         }
         RecordSource::File(file) => {
-            let obtain = spec.obtain.as_ref().map_or_else(
-                || "; correct the path, or name another file with --record FILE".to_owned(),
-                |how| format!("; {how}, then name your file with --record FILE"),
-            );
+            let obtain = spec
+                .obtain
+                .as_ref()
+                .map_or_else(|| "; correct the path".to_owned(), |how| format!("; {how}"));
             read_file(&file.resolve(), &options, &obtain)?
         }
     };
+    require_strong_motion(&record)?;
     let mut warnings: Vec<String> =
         record.warnings.iter().map(|w| format!("{}: {w}", record.file)).collect();
     let horizontal = component_of(&record, spec.component.as_deref())?;
@@ -185,13 +191,16 @@ fn recorded(spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
         }
         Vertical::File(file) => {
             let other = read_file(&file.resolve(), &options, "; correct motion.vertical")?;
+            require_strong_motion(&other)?;
             warnings.extend(other.warnings.iter().map(|w| format!("{}: {w}", other.file)));
-            let processing = match spec.processing {
+            let (record, other, told) = on_one_clock(&record, &horizontal, other)?;
+            warnings.extend(told);
+            let theirs = match spec.processing {
                 ProcessingSpec::None => Processing::none(),
                 ProcessingSpec::Default => default_processing(&other),
             };
-            let vertical = other.ground_motion(&Component::Number(1), None, &processing)?;
-            let mut motion = record.ground_motion(&horizontal, None, &processing)?;
+            let vertical = other.ground_motion(&Component::Number(1), None, &theirs)?;
+            let mut motion = record.ground_motion(&Component::Number(1), None, &processing)?;
             motion.provenance.extend(vertical.provenance);
             let provenance = motion.provenance;
             let mut joined =
@@ -202,6 +211,37 @@ fn recorded(spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
     };
     let motion = scaled_by_both(motion, &record, &processing, scale)?;
     Ok(Ground { motion: Some(motion), warnings })
+}
+
+/// A horizontal component and the first channel of the file that was named for the vertical, beginning
+/// together where both tell when they begin; and what should be known about taking them together.
+fn on_one_clock(
+    record: &Record,
+    horizontal: &Component,
+    mut other: Record,
+) -> Result<(Record, Record, Vec<String>), MotionError> {
+    let told = record.unlike(&other).map(|what| format!("taken together although {what}"));
+    let mut both = record.clone();
+    both.channels = vec![record.component(horizontal)?];
+    both.channels.extend(std::mem::take(&mut other.channels).into_iter().take(1));
+    both.notes.clear();
+    both.align()?;
+    let vertical = both.channels.split_off(1);
+    let second = Record { channels: vertical, ..other };
+    let mut first = Record { channels: both.channels, ..record.clone() };
+    first.notes.extend(both.notes);
+    Ok((first, second, told.into_iter().collect()))
+}
+
+/// Refuses what no ground can have done: a step of 5 ms written as 5 s, a file of three values.
+fn require_strong_motion(record: &Record) -> Result<(), MotionError> {
+    match record.channels.iter().find_map(Channel::implausible) {
+        None => Ok(()),
+        Some(what) => Err(MotionError::Mismatch {
+            what: format!("{}: {what}", record.file),
+            remedy: "correct the step or the unit, or give another record".to_owned(),
+        }),
+    }
 }
 
 /// The measure of both horizontals that a scaling is about; none if it is about one component.

@@ -13,25 +13,21 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod assemble;
-pub mod calibrate;
 pub mod check;
 pub mod compare;
-pub mod decision;
+pub mod demand;
 pub mod ensemble;
 pub mod export;
 pub mod ground;
-pub mod heights;
 pub mod outcome;
 pub mod overlap;
 pub mod period;
-mod pool;
+pub mod pool;
 pub mod render;
 pub mod report;
-pub mod reproduce;
 pub mod run;
 pub mod scenario;
 pub mod step;
-pub mod study;
 pub mod summary;
 pub mod verify;
 pub mod watch;

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Threads take the tasks in their order, so the long ones belong first.
 /// Which thread does a task changes nothing about its result.
 /// `done` hears how many tasks are done.
-pub(crate) fn map<T: Sync, R: Send>(
+pub fn map<T: Sync, R: Send>(
     tasks: &[T],
     work: impl Fn(&T) -> R + Sync,
     done: &(dyn Fn(usize) + Sync),

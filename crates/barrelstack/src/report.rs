@@ -9,7 +9,8 @@ mod words;
 
 use barrelstack_report::{Document, Tone, Verdict};
 
-pub(crate) use drawing::{ground_histories, scene};
+pub(crate) use drawing::ground_histories;
+pub use drawing::scene;
 
 use crate::outcome::Outcome;
 use crate::run::Run;
@@ -17,7 +18,8 @@ use crate::summary::Summary;
 use crate::verify::Verification;
 
 pub(crate) use inputs::{readable, setting_row};
-pub(crate) use sections::{demands, standing_range, stress_figure, traces};
+pub(crate) use sections::traces;
+pub use sections::{standing_range, stress_figure};
 pub(crate) use words::{headline, provenance};
 
 /// What happened, in three plain sentences: the verdict, the why, and how far to trust it.

@@ -110,7 +110,7 @@ const SETTLE_TOLERANCE: f64 = 1e-10;
 const BOOKS_BROKEN: f64 = 0.1;
 
 /// Time (s) of a motion that is left at the end of a run which counts as cut short.
-pub(crate) const CUT: f64 = 0.01;
+pub const CUT: f64 = 0.01;
 
 /// Most steps of a run; a stack takes some 10⁵ steps a second.
 const MOST_STEPS: f64 = 1e9;
@@ -285,7 +285,7 @@ pub(crate) fn conclude(
 /// # Errors
 /// When the step asked for is above the critical one, with which no explicit method of a fixed step
 /// says anything.
-pub(crate) fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFailure> {
+pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFailure> {
     let scale = scenario.run.similitude.sqrt();
     let Some(step) = scenario.run.step.map(|step| step * scale) else {
         return Ok(default_step(assembly, scale));

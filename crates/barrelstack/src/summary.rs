@@ -3,10 +3,11 @@
 use barrelstack_dynamics::EnergySummary;
 use serde::Serialize;
 
-use crate::assemble::{Assembly, PartKind};
+use crate::assemble::PartKind;
+use crate::demand::Demands;
 use crate::outcome::Outcome;
 use crate::run::Run;
-use crate::watch::{Fates, StressEnvelope, Stresses};
+use crate::watch::StressEnvelope;
 
 /// Version of the summary's layout.
 pub const SUMMARY_SCHEMA: u32 = 1;
@@ -106,27 +107,6 @@ pub struct BodySummary {
     pub stress_amplification: Option<f64>,
     /// Average over the loaded boundary of the same ratio.
     pub mean_stress_amplification: Option<f64>,
-}
-
-/// Demands on the stack, while it stood unless said otherwise; all null where the run is invalid.
-#[derive(Clone, Debug, Default, Serialize)]
-pub struct Demands {
-    /// Largest displacement of the top barrels against the ground, over the height of the stack.
-    pub top_drift_ratio: Option<f64>,
-    /// Largest normal stress on a bottom-level barrel over the largest at rest.
-    pub stress_amplification: Option<f64>,
-    /// Average stress amplification over the loaded boundary of the bottom-level barrels.
-    pub mean_stress_amplification: Option<f64>,
-    /// Slip of the bottom rack on the ground, at the end of the run.
-    pub base_slip_residual: Option<f64>,
-    /// The same at the moment of the collapse (at the end if there was none).
-    pub base_slip_at_collapse: Option<f64>,
-    /// Largest slip of the bottom rack on the ground.
-    pub base_slip_peak: Option<f64>,
-    /// Largest tilt of any rack.
-    pub rack_tilt_peak: Option<f64>,
-    /// Largest walk of any rack on the barrels below.
-    pub rack_walk_peak: Option<f64>,
 }
 
 /// The force between two bodies.
@@ -275,7 +255,7 @@ impl Summary {
                 // Numbers of a run that broke down look like results and are none.
                 Demands::default()
             } else {
-                demands(&run.assembly, &run.fates, Some(&run.stresses))
+                Demands::of(&run.assembly, &run.fates, Some(&run.stresses))
             },
             interfaces: joints(run),
             straps: straps(run),
@@ -384,40 +364,6 @@ fn bodies(run: &Run) -> Vec<BodySummary> {
             }
         })
         .collect()
-}
-
-/// The demands on a stack of a run that did not break down; those of stress where stresses were watched.
-pub(crate) fn demands(assembly: &Assembly, fates: &Fates, stresses: Option<&Stresses>) -> Demands {
-    let of = |kind: PartKind, level: u32| {
-        assembly.of_kind(kind).filter(move |body| assembly.parts[*body].level == Some(level))
-    };
-    let most = |values: &mut dyn Iterator<Item = f64>| {
-        values.fold(None, |most: Option<f64>, v| {
-            Some(most.map_or(v, |m| if v.abs() > m.abs() { v } else { m }))
-        })
-    };
-    let fate = |body: usize| fates.fate(body);
-    let stresses = || of(PartKind::Barrel, 1).filter_map(|body| stresses?.of(body));
-    let drift = most(&mut of(PartKind::Barrel, assembly.levels).map(|b| fate(b).peak_displacement));
-    Demands {
-        top_drift_ratio: drift.filter(|_| assembly.height > 0.0).map(|d| d / assembly.height),
-        stress_amplification: most(&mut stresses().filter_map(StressEnvelope::amplification)),
-        mean_stress_amplification: most(
-            &mut stresses().filter_map(StressEnvelope::mean_amplification),
-        ),
-        base_slip_residual: most(&mut of(PartKind::Rack, 1).map(|b| fate(b).residual_slip)),
-        base_slip_at_collapse: most(
-            &mut of(PartKind::Rack, 1).map(|b| fate(b).displacement_at_collapse),
-        ),
-        base_slip_peak: most(&mut of(PartKind::Rack, 1).map(|b| fate(b).peak_slip)),
-        rack_tilt_peak: most(&mut assembly.of_kind(PartKind::Rack).map(|b| fate(b).peak_tilt)),
-        rack_walk_peak: most(
-            &mut assembly
-                .of_kind(PartKind::Rack)
-                .filter(|b| !assembly.parts[*b].supports.is_empty())
-                .map(|b| fate(b).peak_slip),
-        ),
-    }
 }
 
 fn straps(run: &Run) -> Vec<StrapSummary> {

@@ -1,4 +1,4 @@
-//! The documents name only what is there.
+//! The documents name only what is there, and libraries only what is theirs.
 
 use std::path::{Path, PathBuf};
 
@@ -34,4 +34,41 @@ fn every_path_that_a_document_names_exists() {
         }
     }
     assert!(checked > 40, "only {checked} paths found: has the way of naming them changed?");
+}
+
+/// Lines of code of a crate, with the file they stand in; comments are left out.
+fn code_of(folder: &Path, lines: &mut Vec<(PathBuf, String)>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            code_of(&path, lines);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+            lines.extend(code.map(|line| (path.clone(), line.to_owned())));
+        }
+    }
+}
+
+#[test]
+fn libraries_name_no_option_and_no_subcommand_of_the_command() {
+    let mut lines = Vec::new();
+    for entry in std::fs::read_dir(root().join("crates")).unwrap() {
+        let path = entry.unwrap().path();
+        // The command has its words; the checker of all others is a command too.
+        if !path.ends_with("cli") && !path.ends_with("validation") {
+            code_of(&path.join("src"), &mut lines);
+        }
+    }
+    assert!(lines.len() > 20_000, "only {} lines found", lines.len());
+    let option = |line: &str| {
+        [" --", "(--", "`--"].iter().any(|start| {
+            let mut rest = line.split(start).skip(1);
+            rest.any(|word| word.starts_with(|c: char| c.is_ascii_lowercase()))
+        })
+    };
+    for (path, line) in lines {
+        let named = option(&line) || line.contains("`barrelstack ");
+        assert!(!named, "{}: {}", path.display(), line.trim());
+    }
 }

@@ -17,6 +17,7 @@ Exit status:
   0    there is a result, whatever became of the stack
   1    the numbers broke down, and there is no verdict
   2    there is none: a mistake in what was asked for, or a file that could not be read or written
+  3    a motion was matched only nearly, and written as asked (motion match --accept-misfit)
   130  stopped by Ctrl-C: what was computed until then was printed and written";
 
 /// Does a stack of wine barrels survive an earthquake, how does it fail, what would save it?
@@ -44,7 +45,7 @@ pub(crate) enum Command {
     /// Run every case of the paper behind the model and set its numbers beside ours.
     Reproduce(ReproduceArgs),
     /// Read, look at, change and make ground motions.
-    Motion(crate::commands::motion::MotionArgs),
+    Motion(Box<crate::commands::motion::MotionArgs>),
     /// Find contact parameters, with their uncertainty, from your own tests.
     Calibrate(crate::commands::calibrate::CalibrateArgs),
     /// Run a scenario and write its figures, the report as PDF, animations and a ParaView series.

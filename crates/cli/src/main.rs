@@ -8,6 +8,7 @@ mod figures;
 mod interrupt;
 mod printer;
 mod progress;
+mod remedy;
 mod rows;
 
 use std::process::ExitCode;

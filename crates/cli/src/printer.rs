@@ -7,6 +7,8 @@ use anyhow::Context as _;
 use barrelstack::{Run, Summary};
 use barrelstack_report::Characters;
 
+use crate::remedy::remedy;
+
 /// Lines of a result.
 pub(crate) fn lines<T: AsRef<str>>(lines: impl IntoIterator<Item = T>) -> anyhow::Result<()> {
     let mut whole = String::new();
@@ -33,7 +35,10 @@ pub(crate) fn text(text: &str) -> anyhow::Result<()> {
 
 /// An error, with its causes, as one paragraph.
 pub(crate) fn error(error: &anyhow::Error) {
-    eprintln!("error: {error:#}");
+    match remedy(error) {
+        Some(next) => eprintln!("error: {error:#}; {next}"),
+        None => eprintln!("error: {error:#}"),
+    }
 }
 
 /// What became of the work, beside a result.

@@ -57,6 +57,9 @@ pub struct Round<S: Space> {
     pub arc_limits: [Option<S::Vector>; 2],
     /// Whether normals on the very limit of an arc belong to this piece and not to its neighbor.
     pub takes_limit: bool,
+    /// The straight sides beyond the ends of an arc, as unit normal and distance (m) from the center of
+    /// mass: a corner that is nearer to them is theirs to bear.
+    pub sides: [Option<(S::Vector, S::Real)>; 2],
     /// Penetration (m) from which on the nearest point lies behind the body and no contact is meant:
     /// an arc's center may lie far beyond the body whose boundary it is.
     pub greatest_depth: S::Real,

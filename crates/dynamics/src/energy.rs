@@ -267,6 +267,7 @@ mod tests {
             name: "disc-floor".to_owned(),
             normal: NormalLaw::SpeedGap { stiffness: 1e6, damping: 2e3 },
             stop: None,
+            rolling: None,
             friction: FrictionLaw::Frictionless,
             basis: Basis::Node,
         };

@@ -14,12 +14,14 @@
     reason = "all that reads returns the first problem found, at its place"
 )]
 
+pub mod declared;
 pub mod dimension;
 pub mod error;
 pub mod field;
 mod file_ref;
 mod fingerprint;
 pub mod listing;
+pub mod measured;
 pub mod merge;
 pub mod quantity;
 pub mod reader;

@@ -50,6 +50,11 @@ impl Writer {
         found.unwrap_or_else(|| panic!("field `{name}` is written but not defined"))
     }
 
+    /// What a field holds.
+    pub fn kind_of(&mut self, name: &'static str) -> Kind {
+        self.field(name).kind
+    }
+
     fn put(&mut self, name: &'static str, value: Value) {
         self.field(name);
         let node = Node { origin: Origin::Default, value };

@@ -4,6 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::error::MotionError;
+use crate::fiv3::fiv3;
 use crate::fourier::FourierSpectrum;
 use crate::history::History;
 use crate::math::{self, PI, STANDARD_GRAVITY};
@@ -66,6 +67,12 @@ pub enum IntensityMeasure {
         /// Damping ratio.
         damping: f64,
     },
+    /// Filtered incremental velocity at a period (m/s): the sum of the three largest increments of
+    /// velocity over 0.7 periods (Dávalos and Miranda 2019).
+    Fiv3 {
+        /// Period (s).
+        period: f64,
+    },
 }
 
 /// How a measure grows with the scale factor.
@@ -90,7 +97,12 @@ impl IntensityMeasure {
     pub fn unit(&self) -> &'static str {
         match self {
             Self::Pga | Self::Rms | Self::Sa { .. } => "m/s2",
-            Self::Pgv | Self::Arias | Self::Cav | Self::CavStandardized | Self::Asi => "m/s",
+            Self::Pgv
+            | Self::Arias
+            | Self::Cav
+            | Self::CavStandardized
+            | Self::Asi
+            | Self::Fiv3 { .. } => "m/s",
             Self::Pgd | Self::Housner { .. } | Self::Vsi => "m",
             Self::PgvOverPga
             | Self::SignificantDuration { .. }
@@ -111,7 +123,8 @@ impl IntensityMeasure {
             | Self::Asi
             | Self::Vsi
             | Self::Fajfar
-            | Self::Sa { .. } => Growth::Power(1.0),
+            | Self::Sa { .. }
+            | Self::Fiv3 { .. } => Growth::Power(1.0),
             Self::Arias => Growth::Power(2.0),
             Self::CavStandardized => Growth::Monotone,
             Self::PgvOverPga => Growth::None("a ratio does not change with the amplitude"),
@@ -174,6 +187,7 @@ impl IntensityMeasure {
             }
             Self::Housner { damping } => check_oscillator(1.0, damping),
             Self::Sa { period, damping } => check_oscillator(period, damping),
+            Self::Fiv3 { period } => MotionError::require_positive("period of FIV3 (s)", period),
             Self::Pga
             | Self::Pgv
             | Self::Pgd
@@ -216,6 +230,7 @@ impl IntensityMeasure {
                 motion.pgv() * duration.sqrt().sqrt()
             }
             Self::Sa { period, damping } => response(dt, a, period, damping)?.pseudo_acceleration,
+            Self::Fiv3 { period } => fiv3(dt, a, period),
         })
     }
 
@@ -394,6 +409,7 @@ impl fmt::Display for IntensityMeasure {
             Self::MeanPeriod => f.write_str("tm"),
             Self::Fajfar => f.write_str("fajfar"),
             Self::Sa { period, damping } => write!(f, "sa({period},{damping})"),
+            Self::Fiv3 { period } => write!(f, "fiv3({period})"),
         }
     }
 }
@@ -411,7 +427,7 @@ impl FromStr for IntensityMeasure {
             MotionError::parameter(
                 "intensity measure",
                 "pga, pgv, pgd, pgv/pga, arias, cav, cav-std, d5-75, d5-95, bracketed, rms, \
-                 housner, asi, vsi, tm, fajfar, sa(period) or sa(period,damping)",
+                 housner, asi, vsi, tm, fajfar, fiv3(period), sa(period) or sa(period,damping)",
                 format!("\"{text}\""),
             )
         };
@@ -445,6 +461,7 @@ impl FromStr for IntensityMeasure {
             ("vsi", []) => Self::Vsi,
             ("tm", []) => Self::MeanPeriod,
             ("fajfar", []) => Self::Fajfar,
+            ("fiv3", [period]) => Self::Fiv3 { period: *period },
             ("sa", [period]) => Self::Sa { period: *period, damping: 0.05 },
             ("sa", [period, damping]) => Self::Sa { period: *period, damping: *damping },
             (duration, []) => {

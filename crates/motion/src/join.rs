@@ -3,7 +3,7 @@
 
 use crate::error::MotionError;
 use crate::math;
-use crate::record::{Channel, Record};
+use crate::record::{Channel, Record, Stage};
 
 /// Shortest overlap that is looked for (s).
 const SHORTEST_OVERLAP: f64 = 1.0;
@@ -11,13 +11,26 @@ const SHORTEST_OVERLAP: f64 = 1.0;
 const LARGEST_MISFIT: f64 = 0.05;
 
 impl Record {
-    /// One record of several files that hold one component each, or several.
+    /// One record of several files that hold one component each, or several, on one clock
+    /// ([`Record::align`]).
     ///
     /// Channel names that occur twice get the file's name in front.
     ///
     /// # Errors
-    /// If there is no record, or the steps differ.
+    /// If there is no record, the steps differ, the files are of different stations, sensors, events,
+    /// publishers or stages, or have no span in common.
     pub fn gather(records: &[Self]) -> Result<Self, MotionError> {
+        if let Some(first) = records.first() {
+            records[1..].iter().try_for_each(|record| require_kin(first, record))?;
+        }
+        Self::gather_mixed(records)
+    }
+
+    /// As [`Record::gather`] whatever the files are of; their channels may then be combined.
+    ///
+    /// # Errors
+    /// If there is no record, the steps differ, or the files have no span in common.
+    pub fn gather_mixed(records: &[Self]) -> Result<Self, MotionError> {
         let Some((first, rest)) = records.split_first() else {
             return Err(MotionError::parameter("records to gather", "at least 1", 0));
         };
@@ -32,7 +45,7 @@ impl Record {
                 require_step(&gathered.channels[0], &channel)?;
                 gathered.channels.push(channel);
             }
-            if record.stage != gathered.stage {
+            if record.stage != gathered.stage && first.unlike(record).is_none() {
                 gathered.warn(
                     None,
                     format!(
@@ -44,8 +57,48 @@ impl Record {
             gathered.warnings.extend(record.warnings.iter().cloned());
             gathered.notes.extend(record.notes.iter().cloned());
             gathered.file = format!("{}, {}", gathered.file, record.file);
+            if let Some(what) = first.unlike(record) {
+                gathered.mixed = true;
+                gathered.warn(None, format!("taken together although {what}"));
+            }
+        }
+        if !rest.is_empty() {
+            let known = gathered.channels.iter().filter(|channel| channel.start.is_some()).count();
+            if known < gathered.channels.len() {
+                let whose =
+                    if known == 0 { "these files do not state" } else { "not all files state" };
+                gathered.notes.push(format!(
+                    "{whose} when their first samples were taken: they are taken for simultaneous"
+                ));
+            }
+            gathered.align()?;
         }
         Ok(gathered)
+    }
+
+    /// Why two files hold no components of one record, if they tell.
+    pub fn unlike(&self, other: &Self) -> Option<String> {
+        let one = self;
+        let files = format!("{} and {}", one.file, other.file);
+        for a in &one.channels {
+            if let Some(what) = other.channels.iter().find_map(|b| a.site.differs(&b.site)) {
+                return Some(format!("{files} are of {what}"));
+            }
+        }
+        let differ =
+            |a: &str, b: &str| !a.is_empty() && !b.is_empty() && !a.eq_ignore_ascii_case(b);
+        // Files of the user's own making may stand beside those of a publisher.
+        let own = |record: &Self| ["barrelstack", "columns"].contains(&record.format);
+        if differ(one.format, other.format) && !own(one) && !own(other) {
+            return Some(format!("{files} have the formats {} and {}", one.format, other.format));
+        }
+        if differ(&one.event, &other.event) {
+            return Some(format!("{files} are of \"{}\" and \"{}\"", one.event, other.event));
+        }
+        let stages = (one.stage, other.stage);
+        let known = one.stage != Stage::Unknown && other.stage != Stage::Unknown;
+        (known && one.stage != other.stage)
+            .then(|| format!("{files} are {} and {}", stages.0, stages.1))
     }
 
     /// Parts of one long record joined where they overlap.
@@ -66,6 +119,16 @@ impl Record {
         }
         joined.warnings.retain(|warning| !warning.message.contains("one part of a longer record"));
         Ok(joined)
+    }
+}
+
+fn require_kin(one: &Record, other: &Record) -> Result<(), MotionError> {
+    match one.unlike(other) {
+        None => Ok(()),
+        Some(what) => Err(MotionError::Mismatch {
+            what,
+            remedy: "give components that one sensor recorded in one event".to_owned(),
+        }),
     }
 }
 

@@ -34,8 +34,11 @@
 //! - Reading: [`read`], [`FORMATS`], [`ReadError`]; parts and components: [`Record::join`],
 //!   [`Record::gather`].
 //! - Choosing and processing: [`Component`], [`Record::ground_motion`], [`Processing`].
+//! - Corners from the noise: [`Record::noise_corners`]; across and along a fault:
+//!   [`Record::fault_axes`].
 //! - Measuring: [`IntensityMeasure`], [`Horizontals`], [`ResponseSpectrum`], [`rotated_spectrum`],
-//!   [`dominant_pulse`].
+//!   [`dominant_pulse`], [`classify_component`], [`classify_pair`].
+//! - Many records: [`group_files`], [`measure`], [`Flatfile`]; a set for a target: [`select`].
 //! - Scaling and matching: [`GroundMotion::scale_to`], [`GroundMotion::froude`],
 //!   [`GroundMotion::match_spectrum`], [`TargetSpectrum`].
 //! - Making: [`Pulse`], [`CloughPenzien`], [`BooreSource`], [`NearFault`], all from stated seeds of
@@ -48,20 +51,28 @@
     reason = "`!(x > 0.0)` refuses NaN with everything else that is not above zero"
 )]
 
+mod align;
 mod bundled;
+mod collection;
+mod corners;
 mod direction;
 mod error;
+mod fault_axes;
+mod fiv3;
 mod format;
 mod fourier;
 mod ground_motion;
 mod history;
 mod horizontals;
+mod instrument;
 mod intensity;
 mod join;
+mod matched;
 mod matching;
 mod math;
 mod process;
 mod pulse;
+mod pulse_class;
 mod pulse_fit;
 mod random;
 mod record;
@@ -69,26 +80,38 @@ mod response;
 mod rotd;
 mod sampled;
 mod select;
+mod selection;
+mod site;
 mod synthesis;
 mod target;
 mod told;
 mod units;
+mod utc;
 mod wavelets;
 pub mod write;
 
 pub use bundled::{BUNDLED, bundled};
+pub use collection::{
+    FlatRow, Flatfile, Measured, MeasuredComponent, MeasuredPair, RecordFiles, group_files,
+    measure, record_sequence_number,
+};
+pub use corners::{Corners, NoiseCriterion, noise_corners};
 pub use direction::{Direction, Orientation};
 pub use error::{MotionError, ReadError, ReadFailure, Refusal};
-pub use format::{FORMATS, Format, ReadOptions, read, slammer_step, station_xml_sensitivities};
+pub use fault_axes::Turned;
+pub use format::{FORMATS, Format, ReadOptions, read, slammer_step};
 pub use fourier::FourierSpectrum;
 pub use ground_motion::GroundMotion;
 pub use history::{Delayed, History};
 pub use horizontals::Horizontals;
+pub use instrument::{Instrument, station_xml};
 pub use intensity::{IntensityMeasure, arias, husid};
-pub use matching::{MatchMethod, Matched, Matching};
+pub use matched::{Matched, Missed};
+pub use matching::{MatchMethod, Matching};
 pub use math::STANDARD_GRAVITY;
 pub use process::{MeanRemoval, Pads, Processed, Processing, Residuals};
 pub use pulse::Pulse;
+pub use pulse_class::{ClassifiedPulse, classify_component, classify_pair};
 pub use pulse_fit::{PulseFit, dominant_pulse};
 pub use random::Random;
 pub use record::{Channel, Quantity, Record, Stage, StatedPeak, Warning};
@@ -98,6 +121,12 @@ pub use response::{
 pub use rotd::{RotatedPeak, rotated_peak, rotated_spectrum};
 pub use sampled::{Kinematics, Sampled};
 pub use select::Component;
+pub use selection::{
+    Candidate, Choosing, Chosen, Condition, Selection, SelectionTarget, select,
+    spectral_correlation,
+};
+pub use site::Site;
 pub use synthesis::{BooreSource, CloughPenzien, Envelope, NearFault, Path, SiteAmplification};
 pub use target::{ChileanZone, NCh2745Soil, SiteClass, TargetSpectrum};
 pub use units::AccelerationUnit;
+pub use utc::Utc;

@@ -4,9 +4,10 @@ use crate::error::MotionError;
 use crate::fourier::{apply_gain, forward_real, inverse};
 use crate::ground_motion::GroundMotion;
 use crate::history::History;
+use crate::matched::{Matched, Missed};
 use crate::math;
 use crate::process::{Pads, Processing};
-use crate::response::response;
+use crate::response::pseudo_accelerations;
 use crate::sampled::Sampled;
 use crate::target::TargetSpectrum;
 use crate::wavelets;
@@ -59,6 +60,9 @@ impl Default for Matching {
 /// Exponent of target over spectrum in one round of the frequency domain.
 const AMPLITUDE_STEP: f64 = 0.7;
 
+/// Steps to the shortest matched period: a peak between two samples is then missed by 1.2 % at most; with
+/// ten steps it would be 5 %, as much as a match may be off.
+const STEPS_A_PERIOD: f64 = 20.0;
 /// Periods to a decade at which the spectrum is matched.
 const PER_DECADE: f64 = 60.0;
 /// Periods judged to one matched, so that nothing hides between.
@@ -67,38 +71,10 @@ const JUDGED: usize = 3;
 const CHECKED: usize = 6;
 /// Share of the tolerance at which no further method is tried.
 const CLEAR: f64 = 0.98;
+/// Rounds without gain after which a method gives up.
+pub(crate) const PATIENCE: usize = 15;
 /// Share of the tolerance at which the rounds end.
 pub(crate) const GOOD_ENOUGH: f64 = 0.7;
-
-/// A matched motion.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Matched {
-    /// The motion; its horizontal component is matched, the vertical takes the same first scaling.
-    pub motion: GroundMotion,
-    /// Largest relative misfit from the shortest to the longest period, on a grid of 1080 periods to a
-    /// decade.
-    pub misfit: f64,
-    /// Rounds done.
-    pub rounds: usize,
-    /// The method asked for.
-    pub chosen: MatchMethod,
-    /// The method that began: the one asked for, or the frequency domain where wavelets alone
-    /// stalled.
-    pub first: MatchMethod,
-}
-
-impl Matched {
-    /// Where it was matched, for a sentence: "matched in …".
-    pub fn domain(&self) -> &'static str {
-        match (self.first, self.chosen) {
-            (MatchMethod::Time, _) => "the time domain",
-            (MatchMethod::Frequency, MatchMethod::Frequency) => "the frequency domain",
-            (MatchMethod::Frequency, MatchMethod::Time) => {
-                "the frequency domain, where the time domain stalled,"
-            }
-        }
-    }
-}
 
 impl GroundMotion {
     /// The motion with its horizontal component matched to a target spectrum.
@@ -122,6 +98,35 @@ impl GroundMotion {
     /// # Ok::<(), barrelstack_motion::MotionError>(())
     /// ```
     pub fn match_spectrum(
+        &self,
+        target: &TargetSpectrum,
+        settings: &Matching,
+    ) -> Result<Matched, MotionError> {
+        let matched = self.match_spectrum_nearly(target, settings)?;
+        if matched.missed.is_empty() {
+            return Ok(matched);
+        }
+        Err(MotionError::NotConverged {
+            what: "spectral matching".to_owned(),
+            reached: format!(
+                "a misfit of {:.1} % ({})",
+                100.0 * matched.misfit,
+                matched.missed_in_words()
+            ),
+            rounds: matched.rounds,
+            wanted: format!("{:.1} %", 100.0 * settings.tolerance),
+            remedy: "start from a motion closer to the target, accept a larger tolerance, or take \
+                     the best motion as it is"
+                .to_owned(),
+        })
+    }
+
+    /// As [`GroundMotion::match_spectrum`], and where the tolerance is not reached the best motion that
+    /// was found, with the periods that it misses ([`Matched::missed`]).
+    ///
+    /// # Errors
+    /// If a setting is out of range or the motion does not move.
+    pub fn match_spectrum_nearly(
         &self,
         target: &TargetSpectrum,
         settings: &Matching,
@@ -150,7 +155,7 @@ impl GroundMotion {
         };
         let work =
             Work { time_step, target, judged, judged_goal, checked, checked_goal, damping, chain };
-        let now = work.spectrum(&work.judged, &given)?;
+        let now = work.spectrum(&work.judged, &given);
         let factor = mean_ratio(&work.judged_goal, &now);
         if !(factor.is_finite() && factor > 0.0) {
             return Err(MotionError::Zero {
@@ -162,21 +167,13 @@ impl GroundMotion {
         let start: Vec<f64> = given.iter().map(|a| a * factor).collect();
         let (Best { acceleration, misfit, round: rounds }, first) =
             work.alternate(&start, settings)?;
-        if !(misfit <= settings.tolerance) {
-            return Err(MotionError::NotConverged {
-                what: "spectral matching".to_owned(),
-                reached: format!("a misfit of {:.1} %", 100.0 * misfit),
-                rounds,
-                wanted: format!("{:.1} %", 100.0 * settings.tolerance),
-                remedy: "start from a motion closer to the target, or accept a larger tolerance"
-                    .to_owned(),
-            });
-        }
+        let missed = work.missed(&acceleration, settings.tolerance);
         let horizontal = History::Sampled(Sampled::new(time_step, acceleration)?);
         let vertical = self.vertical.as_ref().map(|history| history.scaled(factor));
         let mut motion = GroundMotion::new(self.name.clone(), horizontal, vertical);
         motion.provenance.clone_from(&self.provenance);
-        let mut matched = Matched { motion, misfit, rounds, chosen: settings.method, first };
+        let chosen = settings.method;
+        let mut matched = Matched { motion, misfit, missed, rounds, chosen, first };
         matched.motion.provenance.push(format!(
             "scaled by {factor:.4} and matched in {} to {target} from {} to {} s: misfit at most \
              {:.2} % after {rounds} rounds, ends closed",
@@ -185,6 +182,10 @@ impl GroundMotion {
             settings.longest,
             100.0 * misfit
         ));
+        if !matched.missed.is_empty() {
+            let words = matched.missed_in_words();
+            matched.motion.provenance.push(format!("the target is missed {words}"));
+        }
         Ok(matched)
     }
 }
@@ -206,12 +207,12 @@ fn check(settings: &Matching, time_step: f64) -> Result<(), MotionError> {
     Ok(())
 }
 
-/// The same piecewise-linear motion in steps of at most a tenth of the shortest period, so that
+/// The same piecewise-linear motion in at least [`STEPS_A_PERIOD`] steps to the shortest period, so that
 /// wavelets and peaks are resolved.
 fn subdivided(motion: &Sampled, shortest: f64) -> (f64, Vec<f64>) {
-    let parts = (10.0 * motion.time_step() / shortest * (1.0 - 1e-9)).ceil().max(1.0);
+    let parts = (STEPS_A_PERIOD * motion.time_step() / shortest * (1.0 - 1e-9)).ceil().max(1.0);
     let a = motion.acceleration();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 3")]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 5")]
     let count = parts as usize;
     let mut fine = Vec::with_capacity(count * a.len());
     for pair in a.windows(2) {
@@ -276,24 +277,66 @@ pub(crate) struct Work<'a> {
 
 impl Work<'_> {
     /// Pseudo-accelerations at some periods.
-    fn spectrum(&self, periods: &[f64], acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
-        periods
-            .iter()
-            .map(|&period| {
-                response(self.time_step, acceleration, period, self.damping)
-                    .map(|peaks| peaks.pseudo_acceleration)
-            })
-            .collect()
+    fn spectrum(&self, periods: &[f64], acceleration: &[f64]) -> Vec<f64> {
+        pseudo_accelerations(self.time_step, acceleration, periods, self.damping)
     }
 
-    /// Largest relative misfit at the judged periods.
-    pub(crate) fn misfit(&self, acceleration: &[f64]) -> Result<f64, MotionError> {
-        Ok(misfit_of(&self.judged_goal, &self.spectrum(&self.judged, acceleration)?))
+    /// Largest relative misfit at the judged periods, which are few enough for every round.
+    pub(crate) fn judged_misfit(&self, acceleration: &[f64]) -> f64 {
+        misfit_of(&self.judged_goal, &self.spectrum(&self.judged, acceleration))
     }
 
     /// Largest relative misfit at all periods that are checked.
-    fn checked_misfit(&self, acceleration: &[f64]) -> Result<f64, MotionError> {
-        Ok(misfit_of(&self.checked_goal, &self.spectrum(&self.checked, acceleration)?))
+    pub(crate) fn misfit(&self, acceleration: &[f64]) -> f64 {
+        misfit_of(&self.checked_goal, &self.spectrum(&self.checked, acceleration))
+    }
+
+    /// Where the spectrum lies outside the tolerance.
+    fn missed(&self, acceleration: &[f64], tolerance: f64) -> Vec<Missed> {
+        let now = self.spectrum(&self.checked, acceleration);
+        let mut ranges: Vec<Missed> = Vec::new();
+        let mut open = false;
+        for ((&period, n), g) in self.checked.iter().zip(&now).zip(&self.checked_goal) {
+            let misfit = n / g - 1.0;
+            if misfit.abs() <= tolerance {
+                open = false;
+                continue;
+            }
+            match ranges.last_mut() {
+                Some(last) if open && last.misfit.signum() == misfit.signum() => {
+                    last.to = period;
+                    if misfit.abs() > last.misfit.abs() {
+                        last.misfit = misfit;
+                    }
+                }
+                _ => ranges.push(Missed { from: period, to: period, misfit }),
+            }
+            open = true;
+        }
+        ranges
+    }
+
+    /// How the spectrum lies about its target at every second period that is checked.
+    pub(crate) fn fit(&self, acceleration: &[f64]) -> Fit {
+        let half = |all: &[f64]| all.iter().copied().step_by(2).collect::<Vec<f64>>();
+        let (periods, goal) = (half(&self.checked), half(&self.checked_goal));
+        let now = self.spectrum(&periods, acceleration);
+        let misfits: Vec<f64> = goal.iter().zip(&now).map(|(g, n)| (n / g - 1.0).abs()).collect();
+        let powers = misfits.iter().map(|misfit| {
+            let square = misfit * misfit;
+            let fourth = square * square;
+            fourth * fourth * fourth
+        });
+        let mean = powers.sum::<f64>() / now.len() as f64;
+        let peak = |&k: &usize| {
+            let at = |k: Option<usize>| k.and_then(|k| misfits.get(k)).copied().unwrap_or(0.0);
+            misfits[k] >= at(k.checked_sub(1)) && misfits[k] > at(k.checked_add(1))
+        };
+        Fit {
+            misfit: misfits.iter().copied().fold(0.0, f64::max),
+            roughness: math::powf(mean, 1.0 / 12.0),
+            worst: (0..misfits.len()).filter(peak).map(|k| (periods[k], misfits[k])).collect(),
+        }
     }
 
     pub(crate) fn close(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
@@ -311,21 +354,19 @@ impl Work<'_> {
         let mut best = Best::new(start);
         let mut rounds = 0;
         if settings.method == Time {
-            let turns = [Time, Frequency, Time, Frequency, Time];
-            rounds = self.take_turns(&turns, start, settings, rounds, &mut best)?;
+            rounds = self.take_turns(&[Time], start, settings, rounds, &mut best)?;
             if best.misfit <= settings.tolerance {
                 return Ok((best, Time));
             }
         }
         let stalled = best.misfit;
-        let turns = [Frequency, Time, Frequency, Time, Frequency, Time];
-        self.take_turns(&turns, start, settings, rounds, &mut best)?;
+        self.take_turns(&[Frequency, Time, Frequency, Time], start, settings, rounds, &mut best)?;
         let first = if best.misfit < stalled { Frequency } else { settings.method };
         Ok((best, first))
     }
 
-    /// Each method on what the one before it left, until the tolerance is met; gives all rounds
-    /// done so far.
+    /// Each method on what the one before it left, polished by wavelets, until the tolerance is met;
+    /// gives all rounds done so far.
     fn take_turns(
         &self,
         turns: &[MatchMethod],
@@ -341,13 +382,17 @@ impl Work<'_> {
                 MatchMethod::Time => wavelets::match_in_time(self, &a, settings)?,
             };
             rounds += more;
-            best.offer(&next, self.checked_misfit(&next)?, rounds);
-            // The frequency domain would go from its own best motion where it went before.
-            let stuck = *method == MatchMethod::Time && more == 1;
-            if best.misfit <= CLEAR * settings.tolerance || stuck {
+            best.offer(&next, self.misfit(&next), rounds);
+            if best.misfit <= CLEAR * settings.tolerance {
                 break;
             }
-            a = next;
+            let (polished, more) = wavelets::polish(self, &next, settings)?;
+            rounds += more;
+            best.offer(&polished, self.misfit(&polished), rounds);
+            if best.misfit <= CLEAR * settings.tolerance {
+                break;
+            }
+            a = polished;
         }
         Ok(rounds)
     }
@@ -363,9 +408,9 @@ impl Work<'_> {
         // Ratios over the logarithm of frequency, from long periods to short ones.
         let ln_f: Vec<f64> = self.judged.iter().rev().map(|t| -math::ln(*t)).collect();
         for round in 1..=settings.rounds {
-            let now = self.spectrum(&self.judged, &a)?;
+            let now = self.spectrum(&self.judged, &a);
             best.offer(&a, misfit_of(&self.judged_goal, &now), round);
-            if best.misfit <= GOOD_ENOUGH * settings.tolerance {
+            if best.misfit <= GOOD_ENOUGH * settings.tolerance || round > best.round + PATIENCE {
                 break;
             }
             let ratio: Vec<f64> = self
@@ -385,6 +430,16 @@ impl Work<'_> {
         }
         Ok((best.acceleration, best.round))
     }
+}
+
+/// How a spectrum lies about its target.
+pub(crate) struct Fit {
+    /// Largest relative misfit.
+    pub(crate) misfit: f64,
+    /// A mean of all misfits in which the largest outweigh the others.
+    pub(crate) roughness: f64,
+    /// Periods (s) of locally largest misfit, and that misfit.
+    pub(crate) worst: Vec<(f64, f64)>,
 }
 
 /// The best motion so far.

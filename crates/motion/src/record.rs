@@ -4,6 +4,8 @@ use std::fmt;
 
 use crate::direction::{Direction, Orientation};
 use crate::math;
+use crate::site::Site;
+use crate::utc::Utc;
 
 /// How far a record was processed before it was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,6 +82,10 @@ pub struct Channel {
     pub acceleration: Vec<f64>,
     /// Velocity at the first sample (m/s), stated by some corrected records; 0 otherwise.
     pub initial_velocity: f64,
+    /// Instant of the first sample, where the file states it.
+    pub start: Option<Utc>,
+    /// Station, sensor and place.
+    pub site: Site,
     /// Peaks stated in the header.
     pub peaks: Vec<StatedPeak>,
 }
@@ -98,6 +104,8 @@ impl Channel {
             time_step,
             acceleration,
             initial_velocity: 0.0,
+            start: None,
+            site: Site::default(),
             peaks: Vec::new(),
         }
     }
@@ -123,7 +131,22 @@ impl Channel {
         math::peak(&crate::sampled::running_trapezoid(self.time_step, &self.velocity()))
     }
 
-    fn velocity(&self) -> Vec<f64> {
+    /// Why this can be no strong motion, if step, count or length say so.
+    pub fn implausible(&self) -> Option<String> {
+        let (step, count, length) = (self.time_step, self.acceleration.len(), self.duration());
+        let what = if !(1e-4..=0.1).contains(&step) {
+            format!("a step of {step} s, and strong motion has 0.0001 to 0.1 s")
+        } else if count < 50 {
+            format!("{count} samples, and no strong motion has fewer than 50")
+        } else if length < 1.0 {
+            format!("a length of {length} s, and no strong motion has less than 1 s")
+        } else {
+            return None;
+        };
+        Some(format!("channel {} has {what}", self.name))
+    }
+
+    pub(crate) fn velocity(&self) -> Vec<f64> {
         crate::sampled::integrate(self.time_step, &self.acceleration, self.initial_velocity).0
     }
 
@@ -168,6 +191,9 @@ pub struct Record {
     pub channels: Vec<Channel>,
     /// What the reader noticed.
     pub warnings: Vec<Warning>,
+    /// Whether channels of different stations and sensors may be combined, because the caller wished
+    /// it; readers never set it.
+    pub mixed: bool,
     /// What the reader did to the numbers beyond changing units, one sentence each.
     pub notes: Vec<String>,
 }
@@ -182,7 +208,16 @@ impl Record {
             stage,
             channels: Vec::new(),
             warnings: Vec::new(),
+            mixed: false,
             notes: Vec::new(),
+        }
+    }
+
+    /// Gives all channels one start and one place; the station is filled in when reading ends.
+    pub(crate) fn place(&mut self, start: Option<Utc>, site: &Site) {
+        for channel in &mut self.channels {
+            channel.start = start;
+            channel.site = site.clone();
         }
     }
 

@@ -174,6 +174,76 @@ pub fn response_subdivided(
     })
 }
 
+/// Oscillators that advance side by side: what one waits for, the others fill.
+pub(crate) const TOGETHER: usize = 8;
+
+/// Oscillators of several periods in step with one another; each has the bits of one alone.
+pub(crate) struct Bank {
+    /// Coefficient by coefficient, as [`Step`] has them for one oscillator.
+    displacement: [[f64; TOGETHER]; 4],
+    velocity: [[f64; TOGETHER]; 4],
+    pub(crate) u: [f64; TOGETHER],
+    v: [f64; TOGETHER],
+}
+
+impl Bank {
+    /// Oscillators at rest; where there are fewer than [`TOGETHER`], the last stands for the rest.
+    pub(crate) fn new(steps: &[Step]) -> Self {
+        let lane = |k: usize| &steps[k.min(steps.len() - 1)];
+        let of = |take: fn(&Step) -> &[f64; 4]| {
+            std::array::from_fn(|c| std::array::from_fn(|k| take(lane(k))[c]))
+        };
+        Self {
+            displacement: of(|step| &step.displacement),
+            velocity: of(|step| &step.velocity),
+            u: [0.0; TOGETHER],
+            v: [0.0; TOGETHER],
+        }
+    }
+
+    /// As [`Step::advance`].
+    #[inline]
+    pub(crate) fn advance(&mut self, load: f64, next: f64) {
+        let (d, r) = (&self.displacement, &self.velocity);
+        for k in 0..TOGETHER {
+            let (u, v) = (self.u[k], self.v[k]);
+            self.u[k] = d[0][k] * u + d[1][k] * v + d[2][k] * load + d[3][k] * next;
+            self.v[k] = r[0][k] * u + r[1][k] * v + r[2][k] * load + r[3][k] * next;
+        }
+    }
+
+    pub(crate) fn rates(&self) -> [f64; TOGETHER] {
+        self.v
+    }
+}
+
+/// Pseudo-accelerations (m/s²) at periods above zero, bit for bit those of [`response`].
+pub(crate) fn pseudo_accelerations(
+    time_step: f64,
+    acceleration: &[f64],
+    periods: &[f64],
+    damping: f64,
+) -> Vec<f64> {
+    let mut out = Vec::with_capacity(periods.len());
+    for some in periods.chunks(TOGETHER) {
+        let steps: Vec<Step> = some.iter().map(|t| Step::new(*t, damping, time_step)).collect();
+        let mut bank = Bank::new(&steps);
+        let mut peaks = [0.0_f64; TOGETHER];
+        for pair in acceleration.windows(2) {
+            bank.advance(-pair[0], -pair[1]);
+            for (peak, u) in peaks.iter_mut().zip(&bank.u) {
+                let size = u.abs();
+                *peak = if size > *peak { size } else { *peak };
+            }
+        }
+        out.extend(some.iter().zip(peaks).map(|(period, peak)| {
+            let w = TAU / period;
+            w * w * peak
+        }));
+    }
+    out
+}
+
 /// Response peaks over a list of periods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseSpectrum {
@@ -212,4 +282,20 @@ impl ResponseSpectrum {
 /// Periods from 0.01 s to 10 s, `per_decade` to a decade, evenly spaced in the logarithm.
 pub fn standard_periods(per_decade: usize) -> Vec<f64> {
     math::log_space(0.01, 10.0, 3 * per_decade.max(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn oscillators_side_by_side_have_the_bits_of_one_alone() {
+        let a: Vec<f64> = (0..900).map(|k| math::sin(0.13 * f64::from(k * k % 71))).collect();
+        let periods = standard_periods(7);
+        let together = pseudo_accelerations(0.01, &a, &periods, 0.05);
+        for (period, value) in periods.iter().zip(together) {
+            let alone = response(0.01, &a, *period, 0.05).unwrap().pseudo_acceleration;
+            assert_eq!(alone.to_bits(), value.to_bits(), "{period}");
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! Two horizontals taken together: median and largest response over all directions.
 
+use crate::direction::Direction;
 use crate::error::MotionError;
 use crate::math::{self, PI};
 use crate::response::{Step, check_oscillator};
@@ -18,6 +19,27 @@ pub struct RotatedPeak {
     pub smallest: f64,
     /// Direction of the largest, degrees from the first component towards the second, 0 to 179.
     pub angle: f64,
+}
+
+impl RotatedPeak {
+    /// Azimuth of the largest (degrees clockwise from north, 0 to below 180) where those of the two
+    /// components are known.
+    ///
+    /// ```
+    /// use barrelstack_motion::{Direction, rotated_peak};
+    /// // North-west and south-east moves of components N and E.
+    /// let peak = rotated_peak(&[1.0, -1.0], &[-1.0, 1.0]);
+    /// let (north, east) = (Direction::parse("N"), Direction::parse("E"));
+    /// assert_eq!(peak.azimuth(&north, &east), Some(135.0));
+    /// assert_eq!(peak.azimuth(&north, &Direction::parse("H2")), None);
+    /// ```
+    pub fn azimuth(&self, first: &Direction, second: &Direction) -> Option<f64> {
+        let (first, second) = (first.azimuth?, second.azimuth?);
+        // From the first towards the second is clockwise where the second lies to the right.
+        let clockwise = math::sin((second - first).to_radians()) > 0.0;
+        let turned = if clockwise { first + self.angle } else { first - self.angle };
+        Some(turned.rem_euclid(180.0))
+    }
 }
 
 /// Peaks over all directions of any pair of series: accelerations, velocities, displacements or

@@ -12,6 +12,10 @@ use crate::process::Processing;
 use crate::record::{Channel, Record, Stage};
 use crate::sampled::Sampled;
 
+/// Cosine of the angle from which on two horizontals are not perpendicular: within five degrees they
+/// are.
+const OBLIQUE: f64 = 0.09;
+
 /// A way to name one component of a record.
 ///
 /// Parses from `h1`, `h2`, `vertical`, `az:90`, `#3` (third channel), or a channel's name.
@@ -127,6 +131,7 @@ impl Record {
             for (second, second_azimuth) in &known[k + 1..] {
                 let apart = (second_azimuth - first_azimuth).to_radians();
                 if math::sin(apart).abs() > 0.5 {
+                    self.require_one_site(first, second)?;
                     return rotate((first, *first_azimuth), (second, *second_azimuth), azimuth);
                 }
             }
@@ -163,6 +168,7 @@ impl Record {
         provenance.extend(self.notes.iter().cloned());
         provenance.extend(self.warnings.iter().map(|warning| format!("warning: {warning}")));
         if let Some(second) = &mut second {
+            self.require_one_site(&first, second)?;
             cut_to_shorter(&mut first, second, &mut provenance)?;
         }
         if self.stage == Stage::Raw && processing.is_none() {
@@ -182,13 +188,69 @@ impl Record {
         Ok(motion)
     }
 
-    /// The first two horizontal components, processed as told and cut to the shorter.
+    fn require_one_site(&self, one: &Channel, other: &Channel) -> Result<(), MotionError> {
+        match one.site.differs(&other.site) {
+            Some(what) if !self.mixed => Err(MotionError::Mismatch {
+                what: format!(
+                    "channels {} and {} of {} are of {what}",
+                    one.name, other.name, self.file
+                ),
+                remedy: "choose channels of one sensor".to_owned(),
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// The two horizontal channels that measures over both are about: the first two that are not
+    /// vertical.
     ///
     /// # Errors
-    /// If there are not two, their steps differ, or a setting is out of range.
+    /// If there are not two, their directions are unknown or not perpendicular, or they are of
+    /// different stations or sensors.
+    pub fn horizontal_pair(&self) -> Result<(&Channel, &Channel), MotionError> {
+        let mut flat = self.channels.iter().filter(|channel| !channel.is_vertical());
+        let (Some(one), Some(two)) = (flat.next(), flat.next()) else {
+            return Err(MotionError::NoChannel {
+                file: self.file.clone(),
+                wanted: "second that is not vertical, which measures of both horizontals need"
+                    .to_owned(),
+                available: self.channel_names(),
+            });
+        };
+        for channel in [one, two] {
+            if channel.direction.orientation.is_none() {
+                return Err(MotionError::Mismatch {
+                    what: format!(
+                        "{} does not tell whether channel \"{}\" is horizontal",
+                        self.file, channel.name
+                    ),
+                    remedy: "name the channels after their directions, such as N and E".to_owned(),
+                });
+            }
+        }
+        self.require_one_site(one, two)?;
+        require_one_step(one, two)?;
+        if let (Some(a), Some(b)) = (one.direction.azimuth, two.direction.azimuth)
+            && math::cos((b - a).to_radians()).abs() > OBLIQUE
+        {
+            return Err(MotionError::Mismatch {
+                what: format!(
+                    "channels {} and {} of {} point to {a}° and {b}°, which are not perpendicular",
+                    one.name, two.name, self.file
+                ),
+                remedy: "choose two components along perpendicular azimuths".to_owned(),
+            });
+        }
+        Ok((one, two))
+    }
+
+    /// The [`Record::horizontal_pair`], processed as told and cut to the shorter.
+    ///
+    /// # Errors
+    /// As [`Record::horizontal_pair`]; if the steps differ or a setting is out of range.
     pub fn horizontals(&self, processing: &Processing) -> Result<(Sampled, Sampled), MotionError> {
-        let mut first = self.component(&Component::Horizontal1)?;
-        let mut second = self.component(&Component::Horizontal2)?;
+        let (first, second) = self.horizontal_pair()?;
+        let (mut first, mut second) = (first.clone(), second.clone());
         let mut told = Vec::new();
         cut_to_shorter(&mut first, &mut second, &mut told)?;
         let mut series = |channel: &Channel| -> Result<Sampled, MotionError> {
@@ -235,12 +297,7 @@ fn history(
     )?))
 }
 
-/// Same step required; the longer of two channels loses its end.
-fn cut_to_shorter(
-    first: &mut Channel,
-    second: &mut Channel,
-    provenance: &mut Vec<String>,
-) -> Result<(), MotionError> {
+fn require_one_step(first: &Channel, second: &Channel) -> Result<(), MotionError> {
     if (first.time_step - second.time_step).abs() > 1e-9 * first.time_step {
         return Err(MotionError::Mismatch {
             what: format!(
@@ -250,6 +307,16 @@ fn cut_to_shorter(
             remedy: "choose channels of one step".to_owned(),
         });
     }
+    Ok(())
+}
+
+/// Same step required; the longer of two channels loses its end.
+fn cut_to_shorter(
+    first: &mut Channel,
+    second: &mut Channel,
+    provenance: &mut Vec<String>,
+) -> Result<(), MotionError> {
+    require_one_step(first, second)?;
     let shorter = first.acceleration.len().min(second.acceleration.len());
     for channel in [first, second] {
         let extra = channel.acceleration.len() - shorter;
@@ -291,6 +358,7 @@ fn rotate(
         one.time_step,
         acceleration,
     );
+    (channel.start, channel.site) = (one.start, one.site);
     channel.initial_velocity =
         weight_one * one.initial_velocity + weight_two * two.initial_velocity;
     Ok(channel)

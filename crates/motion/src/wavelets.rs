@@ -1,9 +1,9 @@
 //! Time-domain matching: wavelets added where the responses peak.
 
 use crate::error::MotionError;
-use crate::matching::{Best, GOOD_ENOUGH, Matching, Work, matched_periods};
+use crate::matching::{Best, GOOD_ENOUGH, Matching, PATIENCE, Work, matched_periods};
 use crate::math::{self, TAU};
-use crate::response::Step;
+use crate::response::{Bank, Step, TOGETHER};
 
 /// Share of the misfit taken out in one round; more makes peaks jump to other times.
 const RELAXATION: f64 = 0.6;
@@ -14,6 +14,19 @@ const WATCHED: f64 = 0.85;
 const WATCHED_WEIGHT: f64 = 0.4;
 /// Ridge relative to the largest diagonal entry, which keeps neighbors from fighting.
 const RIDGE: f64 = 1e-2;
+
+/// Times a correction is solved again so that it lifts no other extremum above its goal.
+const BOUNDING: usize = 5;
+/// Shares of a correction that are tried: twice the last one that helped, half of one that did not.
+const LARGEST_SHARE: f64 = 0.8;
+const SMALLEST_SHARE: f64 = 0.05;
+/// Share of the tolerance at which polishing ends.
+const POLISHED: f64 = 0.95;
+/// Share of the tolerance within which polishing leaves a peak as it is: the less is asked for, the less
+/// is disturbed.
+const BAND: f64 = 0.6;
+/// Ratio of two periods that are too near each other for wavelets of their own.
+const NEIGHBOR: f64 = 1.006;
 
 /// A local extremum of an oscillator's response.
 #[derive(Clone, Copy)]
@@ -45,7 +58,6 @@ pub(crate) fn match_in_time(
     start: &[f64],
     settings: &Matching,
 ) -> Result<(Vec<f64>, usize), MotionError> {
-    let n = start.len();
     let mut a = work.close(start)?;
     let mut best = Best::new(&a);
     for round in 1..=settings.rounds {
@@ -54,36 +66,144 @@ pub(crate) fn match_in_time(
         if round == 2 * settings.rounds / 3 + 1 && best.round > 0 {
             a.clone_from(&best.acceleration);
         }
-        let oscillators: Vec<Oscillator> = matched_periods(settings, round)
-            .into_iter()
-            .map(|period| Oscillator {
-                period,
-                goal: work.target.acceleration(period),
-                step: Step::new(period, work.damping, work.time_step),
-            })
-            .collect();
-        let mut wavelets = Vec::with_capacity(oscillators.len());
-        let mut demands = Vec::new();
-        for (k, oscillator) in oscillators.iter().enumerate() {
-            let threshold = if watching { WATCHED * oscillator.goal } else { f64::INFINITY };
-            let extrema = extrema(&a, oscillator, threshold);
-            let peak = demand(&extrema, k, oscillator, work.time_step, &mut demands);
-            let period = oscillator.period;
-            wavelets.push(Wavelet::new(period, work.damping, work.time_step, peak.sample, n));
-        }
-        best.offer(&a, work.misfit(&a)?, round);
-        if best.misfit <= GOOD_ENOUGH * settings.tolerance {
+        best.offer(&a, work.judged_misfit(&a), round);
+        let stalled = watching && round > best.round.max(2 * settings.rounds / 3) + PATIENCE;
+        if best.misfit <= GOOD_ENOUGH * settings.tolerance || stalled {
             break;
         }
-        let amplitudes = solve(work, &oscillators, &wavelets, &demands);
-        for (wavelet, amplitude) in wavelets.iter().zip(&amplitudes) {
-            for (value, shape) in a[wavelet.first..].iter_mut().zip(&wavelet.values) {
-                *value += amplitude * shape;
-            }
-        }
-        a = work.close(&a)?;
+        a = work.close(&corrected(work, &a, &matched_periods(settings, round), watching))?;
     }
     Ok((best.acceleration, best.round))
+}
+
+/// Rounds that go from the best motion every time, by as much of the correction as makes it better;
+/// gives up after [`PATIENCE`] rounds that did not.
+pub(crate) fn polish(
+    work: &Work<'_>,
+    start: &[f64],
+    settings: &Matching,
+) -> Result<(Vec<f64>, usize), MotionError> {
+    let mut best = start.to_vec();
+    let mut fit = work.fit(start);
+    let (mut gained, mut share) = (0, LARGEST_SHARE);
+    let target = POLISHED * settings.tolerance;
+    for round in 1..=settings.rounds {
+        // Every third round asks for all, lest the rest wander to the edge of the band.
+        let band = if round % 3 == 0 { 0.0 } else { BAND * settings.tolerance };
+        let mut periods = matched_periods(settings, round);
+        periods.extend(
+            fit.worst
+                .iter()
+                .filter(|(_, misfit)| *misfit > BAND * settings.tolerance)
+                .map(|(t, _)| *t),
+        );
+        periods.sort_by(f64::total_cmp);
+        periods.dedup_by(|b, a| *b < NEIGHBOR * *a);
+        let full = work.close(&bounded(work, &best, &periods, band))?;
+        for _ in 0..2 {
+            let tried: Vec<f64> =
+                best.iter().zip(&full).map(|(a, b)| a + share * (b - a)).collect();
+            let now = work.fit(&tried);
+            if now.roughness < fit.roughness {
+                (best, fit, gained) = (tried, now, round);
+                if fit.misfit <= target && work.misfit(&best) <= target {
+                    return Ok((best, round));
+                }
+                share = (2.0 * share).min(LARGEST_SHARE);
+                break;
+            }
+            share = (0.5 * share).max(SMALLEST_SHARE);
+        }
+        if round > gained + PATIENCE {
+            break;
+        }
+    }
+    Ok((best, gained))
+}
+
+/// The motion with the wavelets of one round added.
+fn corrected(work: &Work<'_>, a: &[f64], periods: &[f64], watching: bool) -> Vec<f64> {
+    let oscillators = oscillators(work, periods);
+    let mut wavelets = Vec::with_capacity(oscillators.len());
+    let mut demands = Vec::new();
+    for (k, oscillator) in oscillators.iter().enumerate() {
+        let threshold = if watching { WATCHED * oscillator.goal } else { f64::INFINITY };
+        let extrema = extrema(a, oscillator, threshold);
+        let peak = demand(&extrema, k, oscillator, work.time_step, &mut demands);
+        wavelets.push(Wavelet::new(oscillator.period, work, peak.sample, a.len()));
+    }
+    let amplitudes = solve(work, &oscillators, &wavelets, &demands);
+    added(a, &wavelets, &amplitudes)
+}
+
+fn oscillators(work: &Work<'_>, periods: &[f64]) -> Vec<Oscillator> {
+    let oscillator = |&period: &f64| Oscillator {
+        period,
+        goal: work.target.acceleration(period),
+        step: Step::new(period, work.damping, work.time_step),
+    };
+    periods.iter().map(oscillator).collect()
+}
+
+fn added(a: &[f64], wavelets: &[Wavelet], amplitudes: &[f64]) -> Vec<f64> {
+    let mut sum = a.to_vec();
+    for (wavelet, amplitude) in wavelets.iter().zip(amplitudes) {
+        for (value, shape) in sum[wavelet.first..].iter_mut().zip(&wavelet.values) {
+            *value += amplitude * shape;
+        }
+    }
+    sum
+}
+
+/// The motion with wavelets that bring every peak into the band about its goal and lift no other extremum
+/// above it: what a solution would lift is asked for as well, and the system is solved again.
+fn bounded(work: &Work<'_>, a: &[f64], periods: &[f64], band: f64) -> Vec<f64> {
+    let oscillators = oscillators(work, periods);
+    let (mut wavelets, mut demands, mut values) = (Vec::new(), Vec::new(), Vec::new());
+    let mut active = Vec::new();
+    for (k, oscillator) in oscillators.iter().enumerate() {
+        let extrema = extrema(a, oscillator, WATCHED * oscillator.goal);
+        let mut peak = extrema[0];
+        for extremum in &extrema {
+            if extremum.value.abs() > peak.value.abs() {
+                peak = *extremum;
+            }
+        }
+        for extremum in extrema {
+            let Extremum { sample, value } = extremum;
+            let bounds = (1.0 - band, 1.0 + band);
+            let size = value.abs().clamp(bounds.0 * oscillator.goal, bounds.1 * oscillator.goal);
+            let change = (size - value.abs()) * value.signum();
+            demands.push(Demand { oscillator: k, sample, change, weight: 1.0 });
+            values.push(value);
+            active.push(sample == peak.sample);
+        }
+        wavelets.push(Wavelet::new(oscillator.period, work, peak.sample, a.len()));
+    }
+    let count = wavelets.len();
+    let rows = rows(work, &oscillators, &wavelets, &demands);
+    let mut amplitudes = Vec::new();
+    for _ in 0..BOUNDING {
+        let mut system = System::new(count);
+        for (k, row) in rows.chunks_exact(count).enumerate() {
+            if active[k] {
+                system.add(row, demands[k].change);
+            }
+        }
+        amplitudes = system.solve();
+        let mut more = false;
+        for (k, row) in rows.chunks_exact(count).enumerate() {
+            let change: f64 = row.iter().zip(&amplitudes).map(|(r, b)| r * b).sum();
+            let goal = oscillators[demands[k].oscillator].goal;
+            if !active[k] && (values[k] + change).abs() > (1.0 + band) * goal {
+                (active[k], more) = (true, true);
+            }
+        }
+        if !more {
+            break;
+        }
+    }
+    added(a, &wavelets, &amplitudes)
 }
 
 /// Least-squares amplitudes of the wavelets for the demands, which are in order of period.
@@ -94,25 +214,59 @@ fn solve(
     demands: &[Demand],
 ) -> Vec<f64> {
     let count = wavelets.len();
+    let rows = rows(work, oscillators, wavelets, demands);
     let mut system = System::new(count);
-    for group in demands.chunk_by(|a, b| a.oscillator == b.oscillator) {
-        let oscillator = &oscillators[group[0].oscillator];
-        let mut rows = vec![0.0; group.len() * count];
-        for (j, wavelet) in wavelets.iter().enumerate() {
-            let free = FreeVibration::new(oscillator.period, work.damping, work.time_step);
-            let mut state = (0.0, 0.0);
-            let mut at = wavelet.first;
-            for (i, demand) in group.iter().enumerate() {
-                let u =
-                    wavelet.advance(&oscillator.step, &free, &mut state, &mut at, demand.sample);
-                rows[i * count + j] = demand.weight * free.stiffness * u;
-            }
-        }
-        for (demand, row) in group.iter().zip(rows.chunks_exact(count)) {
-            system.add(row, demand.weight * demand.change);
-        }
+    for (demand, row) in demands.iter().zip(rows.chunks_exact(count)) {
+        system.add(row, demand.weight * demand.change);
     }
     system.solve()
+}
+
+/// Weighted responses at every demand to every wavelet of amplitude 1, row by row.
+fn rows(
+    work: &Work<'_>,
+    oscillators: &[Oscillator],
+    wavelets: &[Wavelet],
+    demands: &[Demand],
+) -> Vec<f64> {
+    let count = wavelets.len();
+    let mut rows = vec![0.0; demands.len() * count];
+    let mut first = 0;
+    for (group, some) in oscillators.chunks(TOGETHER).enumerate() {
+        let of = |demand: &Demand| demand.oscillator / TOGETHER == group;
+        let last = first + demands[first..].iter().take_while(|demand| of(demand)).count();
+        // What is asked of these oscillators, in order of time.
+        let mut asked: Vec<usize> = (first..last).collect();
+        asked.sort_by_key(|&row| demands[row].sample);
+        let steps: Vec<Step> = some.iter().map(|oscillator| oscillator.step).collect();
+        let free: Vec<FreeVibration> = some
+            .iter()
+            .map(|oscillator| FreeVibration::new(oscillator.period, work.damping, work.time_step))
+            .collect();
+        for (j, wavelet) in wavelets.iter().enumerate() {
+            let mut bank = Bank::new(&steps);
+            let (mut at, end) = (wavelet.first, wavelet.first + wavelet.values.len());
+            let value = |k: usize| wavelet.values.get(k - wavelet.first).copied().unwrap_or(0.0);
+            for &row in &asked {
+                let demand = &demands[row];
+                if demand.sample <= wavelet.first {
+                    continue;
+                }
+                while at < demand.sample.min(end) {
+                    bank.advance(-value(at), -value(at + 1));
+                    at += 1;
+                }
+                let k = demand.oscillator % TOGETHER;
+                let u = match demand.sample.checked_sub(end) {
+                    None | Some(0) => bank.u[k],
+                    Some(after) => free[k].displacement((bank.u[k], bank.rates()[k]), after),
+                };
+                rows[row * count + j] = demand.weight * free[k].stiffness * u;
+            }
+        }
+        first = last;
+    }
+    rows
 }
 
 /// Adds the demands of one oscillator and returns its peak.
@@ -182,7 +336,8 @@ struct Wavelet {
 impl Wavelet {
     /// `cos(w' (t - t_j + Δt)) exp(-((t - t_j + Δt)/γ)²)` with `w' = w √(1-ξ²)`,
     /// `Δt = atan(√(1-ξ²)/ξ)/w'` and `γ = 1.178 f^-0.93` (Al Atik and Abrahamson 2010).
-    fn new(period: f64, damping: f64, time_step: f64, peak: usize, n: usize) -> Self {
+    fn new(period: f64, work: &Work<'_>, peak: usize, n: usize) -> Self {
+        let Work { damping, time_step, .. } = *work;
         let q = (1.0 - damping * damping).sqrt();
         let w = TAU / period * q;
         let lag = math::atan2(q, damping) / w;
@@ -204,28 +359,6 @@ impl Wavelet {
             })
             .collect();
         Self { first, values }
-    }
-
-    /// Carries an oscillator from sample `at` to `sample` under this wavelet and gives its
-    /// displacement there; samples must come in ascending order.
-    fn advance(
-        &self,
-        step: &Step,
-        free: &FreeVibration,
-        state: &mut (f64, f64),
-        at: &mut usize,
-        sample: usize,
-    ) -> f64 {
-        if sample <= self.first {
-            return 0.0;
-        }
-        let end = self.first + self.values.len();
-        let value = |k: usize| self.values.get(k - self.first).copied().unwrap_or(0.0);
-        while *at < sample.min(end) {
-            *state = step.advance(state.0, state.1, -value(*at), -value(*at + 1));
-            *at += 1;
-        }
-        if sample > end { free.displacement(*state, sample - end) } else { state.0 }
     }
 }
 

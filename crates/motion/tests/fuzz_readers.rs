@@ -53,6 +53,7 @@ fn samples_grow_to_large_files_that_their_readers_take() {
         unit: Some(AccelerationUnit::Gal),
         time_step: Some(0.01),
         sensitivity: Some(1000.0),
+        ..ReadOptions::default()
     };
     for name in growing {
         let format = FORMATS.iter().find(|format| format.name == name).unwrap();

@@ -15,8 +15,8 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use barrelstack_motion::{
-    AccelerationUnit, Component, History, Processing, ReadError, ReadOptions, Record, Refusal,
-    STANDARD_GRAVITY, Stage, read,
+    AccelerationUnit, Channel, Component, History, Orientation, Processing, ReadError, ReadOptions,
+    Record, Refusal, STANDARD_GRAVITY, Stage, read,
 };
 use consistency::derivatives_of_one_another;
 
@@ -166,6 +166,16 @@ fn the_table_of_results_is_written() {
     std::fs::write(page(), table_of_results(&folder)).unwrap();
 }
 
+/// Degrees clockwise from north, or what is known instead.
+fn azimuth(channel: &Channel) -> String {
+    match (channel.direction.azimuth, channel.direction.orientation) {
+        (Some(azimuth), _) => azimuth.to_string(),
+        (None, Some(Orientation::Vertical)) => "up".to_owned(),
+        (None, Some(Orientation::Horizontal)) => "horizontal".to_owned(),
+        (None, None) => "unknown".to_owned(),
+    }
+}
+
 /// What the readers make of every file, as a page.
 fn table_of_results(folder: &Path) -> String {
     let mut text = String::from(
@@ -173,8 +183,8 @@ fn table_of_results(folder: &Path) -> String {
          PGV and PGD are by plain integration, trapezoids throughout; of a raw record they are drift.\n\
          A peak stated in the header stands behind the measured one, with its largest difference.\n\
          Regenerate with `cargo test -p barrelstack-motion --test shared_folder -- --ignored`.\n\n\
-         | file | format | stage | channel | step (s) | samples | PGA (g) | PGV (cm/s) | PGD (cm) | stated peaks |\n\
-         | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
+         | file | format | stage | channel | azimuth (°) | start (UTC) | step (s) | samples | PGA (g) | PGV (cm/s) | PGD (cm) | stated peaks |\n\
+         | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
     );
     let mut refused = String::from("\n## Refused\n\n| file | reason |\n| --- | --- |\n");
     let mut warned = String::from("\n## Warnings\n\n| file | warning |\n| --- | --- |\n");
@@ -201,10 +211,12 @@ fn table_of_results(folder: &Path) -> String {
                     };
                     writeln!(
                         text,
-                        "| {file} | {} | {} | {} | {} | {} | {:.4} | {:.2} | {:.2} | {stated} |",
+                        "| {file} | {} | {} | {} | {} | {} | {} | {} | {:.4} | {:.2} | {:.2} | {stated} |",
                         record.format,
                         record.stage,
                         channel.name,
+                        azimuth(channel),
+                        channel.start.map_or("not stated".to_owned(), |start| start.to_string()),
                         channel.time_step,
                         channel.acceleration.len(),
                         channel.pga() / STANDARD_GRAVITY,

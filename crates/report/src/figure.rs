@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 
 use crate::{
-    Block, Diagram, Document, Envelope, Plot, Strip, drawing::Drawing, escape, pages, raster,
+    Block, Diagram, Document, Envelope, Panels, Plot, Strip, drawing::Drawing, escape, pages,
+    raster,
 };
 
 /// One picture with a caption.
@@ -22,6 +23,8 @@ pub struct Figure {
 pub enum FigureKind {
     /// Lines over a pair of axes.
     Plot(Plot),
+    /// Several plots in rows.
+    Panels(Panels),
     /// A scene at chosen instants, side by side.
     Strip(Strip),
     /// Stress drawn around a body's outline.
@@ -58,12 +61,14 @@ impl Figure {
 
     /// The picture's data as CSV at full precision.
     ///
-    /// A plot gives `x` columns beside `y` columns, one pair for each series; a strip gives one
+    /// A plot gives `x` columns beside `y` columns, one pair for each series; panels give their plots
+    /// one below the other, an empty line between; a strip gives one
     /// row for each instant and body; an envelope one row for each sample; a diagram one row for each
     /// arrow.
     pub fn to_csv(&self) -> String {
         match &self.kind {
             FigureKind::Plot(plot) => plot.to_csv(),
+            FigureKind::Panels(panels) => panels.to_csv(),
             FigureKind::Strip(strip) => strip.to_csv(),
             FigureKind::Envelope(envelope) => envelope.to_csv(),
             FigureKind::Diagram(diagram) => diagram.to_csv(),
@@ -73,6 +78,7 @@ impl Figure {
     pub(crate) fn draw(&self, id: &str) -> Drawing {
         match &self.kind {
             FigureKind::Plot(plot) => plot.draw(id, &self.caption),
+            FigureKind::Panels(panels) => panels.draw(id, &self.caption),
             FigureKind::Strip(strip) => strip.draw(id, &self.caption),
             FigureKind::Envelope(envelope) => envelope.draw(&self.caption),
             FigureKind::Diagram(diagram) => diagram.draw(id, &self.caption),

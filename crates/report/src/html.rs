@@ -223,12 +223,13 @@ impl<'a> Writer<'a> {
         let live = match &figure.kind {
             FigureKind::Plot(plot) if plot.is_live() => Some(self.payload.add_plot(&id, plot)),
             FigureKind::Plot(_)
+            | FigureKind::Panels(_)
             | FigureKind::Strip(_)
             | FigureKind::Envelope(_)
             | FigureKind::Diagram(_) => None,
         };
         let kind = match &figure.kind {
-            FigureKind::Plot(_) => "plot",
+            FigureKind::Plot(_) | FigureKind::Panels(_) => "plot",
             FigureKind::Strip(_) => "strip",
             FigureKind::Envelope(_) => "envelope",
             FigureKind::Diagram(_) => "diagram",
@@ -240,7 +241,10 @@ impl<'a> Writer<'a> {
         }
         match &figure.kind {
             FigureKind::Strip(strip) => self.strip(strip, &id),
-            FigureKind::Plot(_) | FigureKind::Envelope(_) | FigureKind::Diagram(_) => {
+            FigureKind::Plot(_)
+            | FigureKind::Panels(_)
+            | FigureKind::Envelope(_)
+            | FigureKind::Diagram(_) => {
                 let drawing = figure.draw(&id).inline();
                 self.put(&format!("<div class=\"drawing\">{drawing}</div>\n"));
             }

@@ -50,6 +50,7 @@ mod pack;
 mod page;
 mod pages;
 mod paint;
+mod panels;
 mod pdf;
 mod player;
 mod player_data;
@@ -79,6 +80,7 @@ pub use markdown::{MarkdownBundle, markdown};
 pub use number::significant;
 pub use pack::{POSE_QUANTUM, TIME_QUANTUM};
 pub use pages::{Paper, document_pdf};
+pub use panels::Panels;
 pub use player::{Pane, Player, Players};
 pub use plot::{Axis, Band, Mark, Plot, Scale, Series, SeriesStyle};
 pub use scene::{

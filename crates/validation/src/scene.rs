@@ -122,7 +122,14 @@ pub fn points(points: &[Vec2]) -> Nodes<Planar> {
 
 /// An interface with constants per node.
 pub fn interface(normal: NormalLaw, friction: FrictionLaw) -> Interface<Planar> {
-    Interface { name: "contact".into(), normal, stop: None, friction, basis: Basis::Node }
+    Interface {
+        name: "contact".into(),
+        normal,
+        stop: None,
+        rolling: None,
+        friction,
+        basis: Basis::Node,
+    }
 }
 
 /// Coulomb friction with one coefficient.

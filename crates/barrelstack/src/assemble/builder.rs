@@ -149,6 +149,7 @@ impl<'a> Builder<'a> {
                             flip(&mut round.center);
                             round.limits.iter_mut().for_each(flip);
                             round.arc_limits.iter_mut().flatten().for_each(flip);
+                            round.sides.iter_mut().flatten().for_each(|side| flip(&mut side.0));
                         }
                     }
                     Nodes::Rolling { center, .. } => flip(center),

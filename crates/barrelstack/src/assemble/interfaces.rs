@@ -28,7 +28,7 @@ pub(super) fn interface(
     };
     let normal = together(normal(&law.normal, basis, scale), elements);
     let friction = friction(&law.friction, &normal, basis == Basis::Length, scale);
-    Interface { name: name.to_owned(), normal, stop: None, friction, basis }
+    Interface { name: name.to_owned(), normal, stop: None, rolling: None, friction, basis }
 }
 
 /// The law of several elements that share one penetration.

@@ -14,6 +14,9 @@ use super::transverse::TUBE_CORNER;
 use super::{AssembleError, PartKind};
 use crate::scenario::{Rack, RackKind, SeatContact, StackBody, View};
 
+/// Radius (m) of the round of a barrel's chime: an assumption.
+const CHIME_RADIUS: f64 = 0.01;
+
 /// Builds all levels; returns the height of the stack and the reach of a rack on its barrels (m).
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
     let spec = builder.spec;
@@ -26,6 +29,7 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
         ));
     }
     let profile = BarrelProfile::new(barrel.length, barrel.head_diameter, barrel.bilge_diameter)
+        .and_then(|sharp| sharp.rounded(CHIME_RADIUS))
         .ok_or_else(|| {
             AssembleError::Stack(format!(
                 "a barrel in longitudinal section needs 0 < head_diameter < bilge_diameter, found \

@@ -1,7 +1,9 @@
 //! The convex solids that a body is made of: what is drawn, what collides, what weighs.
 
 use barrelstack_dynamics::space::Rotation2;
-use barrelstack_dynamics::{Body, Face, Node, Nodes, Placed, Planar, Round, Shape, Vec2};
+use barrelstack_dynamics::{
+    Body, Face, Linear as _, Node, Nodes, Placed, Planar, Round, Shape, Vec2,
+};
 
 /// A convex part of a body, full-scale, in the frame of its draft.
 pub(super) struct Solid {
@@ -147,6 +149,9 @@ pub(super) fn boundary(shape: &Shape, offset: Vec2, tributary_length: f64) -> No
             let mut rounds = shape.rounds(tributary_length);
             for round in &mut rounds {
                 round.center += offset;
+                for (outward, distance) in round.sides.iter_mut().flatten() {
+                    *distance += outward.dot(offset);
+                }
             }
             Nodes::Rounds(rounds)
         }
@@ -193,6 +198,8 @@ fn scaled(shape: Shape, length: f64) -> Shape {
             profile.head_radius *= length;
             profile.bilge_radius *= length;
             profile.stave_radius *= length;
+            profile.rounding *= length;
+            profile.corner_height *= length;
             Shape::BarrelProfile(profile)
         }
     }

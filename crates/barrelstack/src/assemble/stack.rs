@@ -8,6 +8,10 @@ use super::interfaces::interface;
 use super::{AssembleError, Assembly, Similitude, longitudinal, pairs, straps, transverse};
 use crate::scenario::{self, StackSpec, View};
 
+/// Lever (m) of the resistance of barrels on hoops against rolling on floors, racks and each other: an
+/// assumption.
+const ROLLING_LEVER: f64 = 0.01;
+
 /// Builds a stack in its view.
 pub(super) fn assemble(
     spec: &StackSpec,
@@ -58,7 +62,11 @@ fn laws(spec: &StackSpec, scale: Similitude) -> Vec<Interface<Planar>> {
             stop: Some(Stop { depth: stroke, law: impact(stop) }),
             ..interface(name, law, behind, scale)
         },
-        None => interface(name, law, 1.0, scale),
+        // What has fallen does not roll for ever.
+        None => Interface {
+            rolling: Some(ROLLING_LEVER * scale.length),
+            ..interface(name, law, 1.0, scale)
+        },
     };
     named.map(law).collect()
 }

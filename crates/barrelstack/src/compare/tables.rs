@@ -3,6 +3,7 @@
 use barrelstack_report::{Cell, Column, Table};
 
 use super::{Difference, Side, letter};
+use crate::demand::DEMANDS;
 use crate::report;
 
 /// An empty table: first columns, then one for each run.
@@ -83,14 +84,13 @@ pub(super) fn demands(sides: &[Side]) -> Table {
         sides,
         &[],
     );
-    let all: Vec<_> = sides.iter().map(|side| report::demands(&side.summary)).collect();
-    let Some(first) = all.first() else { return table };
-    for (at, one) in first.iter().enumerate() {
-        let values: Vec<Option<f64>> = all.iter().map(|list| list[at].value).collect();
+    for demand in DEMANDS {
+        let shown = |side: &Side| demand.shown(&side.summary.demands);
+        let values: Vec<Option<f64>> = sides.iter().map(shown).collect();
         if values.iter().all(Option::is_none) {
             continue;
         }
-        let mut row = vec![Cell::text(one.name), Cell::text(one.unit)];
+        let mut row = vec![Cell::text(demand.label), Cell::text(demand.shown_unit)];
         row.extend(values.into_iter().map(|v| v.map_or(Cell::Missing, |v| Cell::Number(v, 3))));
         table.rows.push(row);
     }

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use crate::assemble::{Assembly, PartKind};
+use crate::demand::Demands;
 use crate::ground::Ground;
 use crate::outcome::Outcome;
 use crate::run::{CUT, Verdict};
 use crate::scenario::Scenario;
-use crate::summary::{Demands, demands};
 use crate::watch::{Ending, Fates};
 
 /// A case that is ready to run.
@@ -71,7 +71,7 @@ impl CaseResult {
             barrels: barrels.len(),
             falls: if sound { barrels.iter().map(fall).collect() } else { Vec::new() },
             fall_heights: if sound { heights().collect() } else { Vec::new() },
-            demands: if sound { demands(assembly, fates, None) } else { Demands::default() },
+            demands: if sound { Demands::of(assembly, fates, None) } else { Demands::default() },
             residual_displacement: (sound && !barrels.is_empty())
                 .then(|| residual.fold(0.0, largest)),
             ending: Some(verdict.ending),

@@ -12,7 +12,7 @@ use crate::run::Run;
 use crate::watch::Loss;
 
 /// The scene of a run.
-pub(crate) fn scene(run: &Run) -> Arc<Scene> {
+pub fn scene(run: &Run) -> Arc<Scene> {
     let frames = &run.recording.frames;
     Arc::new(Scene {
         bodies: (0..run.assembly.parts.len()).map(|i| body(&run.assembly, i)).collect(),

@@ -10,6 +10,7 @@ use barrelstack_report::{
 
 use super::{drawing, inputs, spectrum, trust};
 use crate::assemble::PartKind;
+use crate::demand::DEMANDS;
 use crate::run::Run;
 use crate::summary::Summary;
 use crate::verify::Verification;
@@ -118,79 +119,15 @@ fn fates(summary: &Summary) -> Table {
     table
 }
 
-/// A demand in the unit of its print.
-pub(crate) struct Demand {
-    /// What it is.
-    pub(crate) name: &'static str,
-    /// Its value; none where it does not apply.
-    pub(crate) value: Option<f64>,
-    /// Its unit.
-    pub(crate) unit: &'static str,
-}
-
-/// All demands, in reading order.
-pub(crate) fn demands(summary: &Summary) -> Vec<Demand> {
-    let demands = &summary.demands;
-    let demand = |name, value: Option<f64>, factor: f64, unit| Demand {
-        name,
-        value: value.map(|value| value * factor),
-        unit,
-    };
-    vec![
-        demand(
-            "drift of the top against the ground, of the height",
-            demands.top_drift_ratio,
-            100.0,
-            "%",
-        ),
-        demand(
-            "stress amplification, largest on a bottom barrel",
-            demands.stress_amplification,
-            1.0,
-            "× at rest",
-        ),
-        demand(
-            "stress amplification, average over the loaded boundary",
-            demands.mean_stress_amplification,
-            1.0,
-            "× at rest",
-        ),
-        demand(
-            "slip of the bottom rack on the ground, largest",
-            demands.base_slip_peak,
-            100.0,
-            "cm",
-        ),
-        demand(
-            "slip of the bottom rack, at the collapse",
-            demands.base_slip_at_collapse,
-            100.0,
-            "cm",
-        ),
-        demand(
-            "slip of the bottom rack, at the end of the run",
-            demands.base_slip_residual,
-            100.0,
-            "cm",
-        ),
-        demand("walk of a rack on the barrels below, largest", demands.rack_walk_peak, 100.0, "cm"),
-        demand(
-            "tilt of a rack, largest",
-            demands.rack_tilt_peak,
-            180.0 / std::f64::consts::PI,
-            "deg",
-        ),
-    ]
-}
-
 fn demand_table(summary: &Summary) -> Table {
     let mut table = Table::new(
         "While the stack stood, unless said otherwise.",
         &[("demand", ""), ("value", ""), ("unit", "")],
     );
-    for one in demands(summary) {
-        if let Some(value) = one.value {
-            table.rows.push(vec![Cell::text(one.name), number(value), Cell::text(one.unit)]);
+    for demand in DEMANDS {
+        if let Some(value) = demand.shown(&summary.demands) {
+            let (label, unit) = (Cell::text(demand.label), Cell::text(demand.shown_unit));
+            table.rows.push(vec![label, number(value), unit]);
         }
     }
     table
@@ -216,7 +153,7 @@ fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> 
 
 /// The range that shows a stack while it stands and as it gives way; what falls leaves the picture, as
 /// in the paper's histories. None where nothing collapses: then everything is shown.
-pub(crate) fn standing_range(run: &Run, series: &[Series]) -> Option<[f64; 2]> {
+pub fn standing_range(run: &Run, series: &[Series]) -> Option<[f64; 2]> {
     let until = run.fates.collapse_time()? + 0.5;
     let mut range = [0.0_f64; 2];
     for one in series {
@@ -278,7 +215,8 @@ fn stresses(run: &Run) -> Vec<Block> {
     blocks
 }
 
-pub(crate) fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
+/// The normal stress along the boundary of a body, at rest and at its largest.
+pub fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
     let name = &run.assembly.parts[envelope.body].name;
     let mut samples = Vec::new();
     let (mut at_rest, mut peak) = (Vec::new(), Vec::new());

@@ -176,9 +176,10 @@ pub const RACKS: &[CatalogRack] = &[
         name: "rack-on-rack",
         kind: RackKind::OnRacks,
         mass: 60.0,
-        posts: Some(Posts { height: 0.89, half_spacing: 0.70, spigot: 0.03 }),
+        width: 1.60,
+        posts: Some(Posts { height: 0.89, half_spacing: 0.77, spigot: 0.03 }),
         source: "racks that carry load on posts (Wines & Vines 2014, 2016); every number is an assumption, the post \
-                 height makes the usual level pitch",
+                 height makes the usual level pitch, and the posts stand clear of the barrels",
         ..TWO_BARREL
     },
     CatalogRack {
@@ -287,7 +288,8 @@ pub(super) fn rack_names() -> Vec<&'static str> {
     RACKS.iter().map(|rack| rack.name).collect()
 }
 
-pub(crate) fn record_names() -> Vec<&'static str> {
+/// Names of the records shipped with the program.
+pub fn record_names() -> Vec<&'static str> {
     RECORDS.iter().map(|(name, _)| *name).collect()
 }
 

@@ -49,13 +49,14 @@ pub mod schema;
 pub mod shape;
 pub mod stack;
 pub mod strap;
-pub(crate) mod template;
+pub mod template;
 
 pub use barrelstack_input::{
     Dimension, FileRef, Place, Problem, Quantity, QuantityError, Setting, Source, dimension, field,
     quantity,
 };
-pub(crate) use barrelstack_input::{fnv1a, merge, reader, tree, writer};
+pub use barrelstack_input::{fnv1a, reader, tree};
+use barrelstack_input::{merge, writer};
 
 pub use barrel::{Barrel, Fill};
 pub use error::ScenarioError;

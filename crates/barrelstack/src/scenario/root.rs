@@ -1,12 +1,14 @@
 //! The top of a scenario file.
 
+use barrelstack_input::declared::Declared as _;
+
 use super::error::ScenarioError;
 use super::field::{Default, Field, Kind, Named, Section, Variant, Variants, names};
 use super::reader::Reader;
 use super::run::Until;
 use super::tree::Table;
 use super::writer::Writer;
-use super::{Scenario, Scene, free, interface, motion, run, stack};
+use super::{OutcomeSpec, RecordSpec, Scenario, Scene, free, interface, motion, run, stack};
 
 /// Version of the scenario language.
 pub(super) const SCHEMA: u32 = 1;
@@ -120,12 +122,12 @@ pub(super) fn read(reader: Reader<'_>, fallback_title: &str) -> Result<Scenario,
         SceneKind::Free => Until::Duration,
     };
     let run = run::read_run(reader.section("run")?, until)?;
-    let record = run::read_record(reader.section("record")?)?;
+    let record = RecordSpec::read(reader.section("record")?)?;
     let scene = match kind {
         SceneKind::Stack => {
             let interfaces = stack::read_interfaces(reader.section("interface")?)?;
             let stack = stack::read(reader.section("stack")?, interfaces)?;
-            let outcome = run::read_outcome(reader.section("outcome")?)?;
+            let outcome = OutcomeSpec::read(reader.section("outcome")?)?;
             Scene::Stack { stack, outcome }
         }
         SceneKind::Free => Scene::Free(free::read(&reader)?),
@@ -155,14 +157,14 @@ pub(super) fn write(scenario: &Scenario) -> Table {
             writer.table("interface", stack::write_interfaces(&stack.interfaces));
             writer.table("motion", motion::write(&scenario.motion));
             writer.table("run", run::write_run(&scenario.run));
-            writer.table("record", run::write_record(&scenario.record));
-            writer.table("outcome", run::write_outcome(outcome));
+            writer.table("record", scenario.record.write());
+            writer.table("outcome", outcome.write());
         }
         Scene::Free(scene) => {
             free::write(&mut writer, scene);
             writer.table("motion", motion::write(&scenario.motion));
             writer.table("run", run::write_run(&scenario.run));
-            writer.table("record", run::write_record(&scenario.record));
+            writer.table("record", scenario.record.write());
         }
     }
     writer.finish()

@@ -1,5 +1,7 @@
 //! How a scenario is run, what is kept, and when a stack counts as collapsed.
 
+use barrelstack_input::section;
+
 use super::dimension::Dimension;
 use super::error::ScenarioError;
 use super::field::{Default, Field, Kind, Named, Range, Section, Variant, Variants, names};
@@ -61,32 +63,6 @@ pub struct RunSpec {
     pub similitude: f64,
     /// Whether the bodies are brought to rest under gravity before the motion starts.
     pub settle: bool,
-}
-
-/// What is kept of a run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RecordSpec {
-    /// Frames of all poses per second of simulated time (Hz).
-    pub frame_rate: f64,
-    /// Samples of time histories per second of simulated time (Hz).
-    pub history_rate: f64,
-}
-
-/// Thresholds that tell a collapse.
-#[derive(Debug, Clone, PartialEq)]
-pub struct OutcomeSpec {
-    /// A barrel has lost its seat when its center is this many barrel radii away from its place in
-    /// the rack.
-    pub seat_loss_ratio: f64,
-    /// A body has fallen when its center is this far below its place at rest (m).
-    pub fall_drop: f64,
-    /// A rack has left the barrels below when it has moved this part of its reach on them: across the barrels until
-    /// friction cannot hold it on the round, along them until its rail passes the end.
-    pub rack_slide_ratio: f64,
-    /// A level has rocked over when its rack is inclined more than this (rad).
-    pub rocking_angle: f64,
-    /// The stack has overturned when its bottom rack is inclined more than this (rad).
-    pub overturning_angle: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -197,73 +173,40 @@ pub static RUN: Section = Section {
     exclusive: &[],
 };
 
-/// What is kept.
-pub static RECORD: Section = Section {
-    name: "record",
-    help: "What is kept of the run.",
-    fields: &[
-        Field::new(
-            "frame_rate",
-            Kind::Quantity(
-                &[Dimension::FREQUENCY],
-                Range { least: 0.01, above: false, greatest: 1e4 },
-            ),
-            Default::Value("\"60 Hz\""),
-            "Frames of all poses per second of simulated time.",
-        ),
-        Field::new(
-            "history_rate",
-            Kind::Quantity(
-                &[Dimension::FREQUENCY],
-                Range { least: 0.01, above: false, greatest: 1e5 },
-            ),
-            Default::Value("\"200 Hz\""),
-            "Samples of time histories per second of simulated time.",
-        ),
-    ],
-    variants: None,
-    exclusive: &[],
-};
+section! {
+    /// What is kept of a run.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct RecordSpec;
+    /// What is kept of the run.
+    pub static RECORD = "record";
+    /// Frames of all poses per second of simulated time.
+    frame_rate: f64 =
+        Kind::Quantity(&[Dimension::FREQUENCY], Range::between(0.01, 1e4)), Default::Value("\"60 Hz\"");
+    /// Samples of time histories per second of simulated time.
+    history_rate: f64 =
+        Kind::Quantity(&[Dimension::FREQUENCY], Range::between(0.01, 1e5)), Default::Value("\"200 Hz\"");
+}
 
-/// Thresholds that tell a collapse.
-pub static OUTCOME: Section = Section {
-    name: "outcome",
-    help: "Thresholds that tell a collapse; every default is an assumption to be varied.",
-    fields: &[
-        Field::new(
-            "seat_loss_ratio",
-            Kind::Number(Range::up_to(10.0)),
-            Default::Value("0.5"),
-            "A barrel has lost its seat when its center is this many barrel radii away from its place in the rack.",
-        ),
-        Field::new(
-            "fall_drop",
-            Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE),
-            Default::Value("\"0.2 m\""),
-            "A body has fallen when its center is this far below its place at rest.",
-        ),
-        Field::new(
-            "rack_slide_ratio",
-            Kind::Number(Range::up_to(10.0)),
-            Default::Value("1.0"),
-            "A rack has left the barrels below when it has moved this part of its reach on them: across the barrels until friction cannot hold it on the round, along them until its rail passes the end.",
-        ),
-        Field::new(
-            "rocking_angle",
-            Kind::Quantity(&[Dimension::ANGLE], Range::up_to(3.2)),
-            Default::Value("\"20 deg\""),
-            "A level has rocked over when its rack is inclined more than this.",
-        ),
-        Field::new(
-            "overturning_angle",
-            Kind::Quantity(&[Dimension::ANGLE], Range::up_to(3.2)),
-            Default::Value("\"30 deg\""),
-            "The stack has overturned when its bottom rack is inclined more than this.",
-        ),
-    ],
-    variants: None,
-    exclusive: &[],
-};
+section! {
+    /// Thresholds that tell a collapse.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct OutcomeSpec;
+    /// Thresholds that tell a collapse; every default is an assumption to be varied.
+    pub static OUTCOME = "outcome";
+    /// A barrel has lost its seat when its center is this many barrel radii away from its place in the rack.
+    seat_loss_ratio: f64 = Kind::Number(Range::up_to(10.0)), Default::Value("0.5");
+    /// A body has fallen when its center is this far below its place at rest.
+    fall_drop: f64 =
+        Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE), Default::Value("\"0.2 m\"");
+    /// A rack has left the barrels below when it has moved this part of its reach on them: across the barrels until friction cannot hold it on the round, along them until its rail passes the end.
+    rack_slide_ratio: f64 = Kind::Number(Range::up_to(10.0)), Default::Value("1.0");
+    /// A level has rocked over when its rack is inclined more than this.
+    rocking_angle: f64 =
+        Kind::Quantity(&[Dimension::ANGLE], Range::up_to(3.2)), Default::Value("\"20 deg\"");
+    /// The stack has overturned when its bottom rack is inclined more than this.
+    overturning_angle: f64 =
+        Kind::Quantity(&[Dimension::ANGLE], Range::up_to(3.2)), Default::Value("\"30 deg\"");
+}
 
 /// Reads how it is run.
 ///
@@ -321,47 +264,5 @@ pub(super) fn write_run(run: &RunSpec) -> Table {
     writer.quantity("gravity", run.gravity);
     writer.number("similitude", run.similitude);
     writer.flag("settle", run.settle);
-    writer.finish()
-}
-
-/// Reads what is kept.
-pub(super) fn read_record(reader: Reader<'_>) -> Result<RecordSpec, ScenarioError> {
-    let record = RecordSpec {
-        frame_rate: reader.quantity("frame_rate")?,
-        history_rate: reader.quantity("history_rate")?,
-    };
-    reader.finish();
-    Ok(record)
-}
-
-/// Writes what is kept.
-pub(super) fn write_record(record: &RecordSpec) -> Table {
-    let mut writer = Writer::new(&RECORD);
-    writer.quantity("frame_rate", record.frame_rate);
-    writer.quantity("history_rate", record.history_rate);
-    writer.finish()
-}
-
-/// Reads the thresholds.
-pub(super) fn read_outcome(reader: Reader<'_>) -> Result<OutcomeSpec, ScenarioError> {
-    let outcome = OutcomeSpec {
-        seat_loss_ratio: reader.number("seat_loss_ratio")?,
-        fall_drop: reader.quantity("fall_drop")?,
-        rack_slide_ratio: reader.number("rack_slide_ratio")?,
-        rocking_angle: reader.quantity("rocking_angle")?,
-        overturning_angle: reader.quantity("overturning_angle")?,
-    };
-    reader.finish();
-    Ok(outcome)
-}
-
-/// Writes the thresholds.
-pub(super) fn write_outcome(outcome: &OutcomeSpec) -> Table {
-    let mut writer = Writer::new(&OUTCOME);
-    writer.number("seat_loss_ratio", outcome.seat_loss_ratio);
-    writer.quantity("fall_drop", outcome.fall_drop);
-    writer.number("rack_slide_ratio", outcome.rack_slide_ratio);
-    writer.quantity("rocking_angle", outcome.rocking_angle);
-    writer.quantity("overturning_angle", outcome.overturning_angle);
     writer.finish()
 }

@@ -1,5 +1,7 @@
 //! A stack of barrels on racks.
 
+use barrelstack_input::declared::Declared as _;
+
 use super::barrel::{self, BARREL, Barrel, Fill};
 use super::catalog;
 use super::dimension::Dimension;
@@ -401,7 +403,7 @@ pub(super) fn write(stack: &StackSpec) -> Table {
     writer.quantity("gap", stack.gap);
     writer.table("barrel", barrel::write(&stack.barrel));
     writer.table("rack", rack::write(&stack.rack));
-    writer.table("strap", strap::write(&stack.straps));
+    writer.table("strap", stack.straps.write());
     writer.tables("override", stack.overrides.iter().map(write_override).collect());
     writer.finish()
 }

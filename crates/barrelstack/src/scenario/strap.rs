@@ -1,11 +1,12 @@
 //! Straps that hold the top of a stack.
 
+use barrelstack_input::declared::Declared as _;
+use barrelstack_input::section;
+
 use super::dimension::Dimension;
 use super::error::ScenarioError;
-use super::field::{Default, Field, Kind, Named, Range, Section, names};
+use super::field::{Default, Kind, Named, Range, names};
 use super::reader::Reader;
-use super::tree::Table;
-use super::writer::Writer;
 
 /// What straps tie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,94 +17,41 @@ pub enum Ties {
     LevelsTogether,
 }
 
-/// Straps on the highest levels of a stack.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Straps {
-    /// How many of the highest levels are strapped; none with 0.
-    pub levels: u32,
-    /// What they tie.
-    pub ties: Ties,
-    /// Force per elongation of one strap (N/m).
-    pub stiffness: f64,
-    /// Force per rate of elongation of one strap (N·s/m).
-    pub damping: f64,
-    /// How far one strap gives at rest before it pulls (m).
-    pub slack: f64,
-    /// Force in one strap as it is put on (N).
-    pub pretension: f64,
-    /// Force above which one strap tears (N); none if it never does.
-    pub strength: Option<f64>,
-}
-
 impl Named for Ties {
     const NAMES: &'static [(&'static str, Self)] =
         &[("barrels-to-racks", Self::BarrelsToRacks), ("levels-together", Self::LevelsTogether)];
 }
 
-/// Straps.
-pub static STRAP: Section = Section {
-    name: "strap",
-    help: "Straps on the highest levels: they pull, never push, and have no mass.",
-    fields: &[
-        Field::new(
-            "levels",
-            Kind::Integer(0, 12),
-            Default::Value("0"),
-            "How many of the highest levels are strapped; 0 for no straps.",
-        ),
-        Field::new(
-            "ties",
-            Kind::Choice(names::<Ties>),
-            Default::Value("\"barrels-to-racks\""),
-            "Every barrel to its rack, or besides every rack to the one below.",
-        ),
-        Field::new(
-            "stiffness",
-            Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE),
-            Default::Value("\"100 kN/m\""),
-            "Force per elongation of one strap; that of a polyester strap is its strength over some \
-             5 to 7 % of its length.",
-        ),
-        Field::new(
-            "damping",
-            Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE),
-            Default::Value("\"0 N s/m\""),
-            "Force per rate of elongation of one strap, while it is taut.",
-        ),
-        Field::new(
-            "slack",
-            Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 1.0)),
-            Default::Value("\"0 m\""),
-            "How far one strap gives, on the stack at rest, before it pulls.",
-        ),
-        Field::new(
-            "pretension",
-            Kind::Quantity(&[Dimension::FORCE], Range::NOT_NEGATIVE),
-            Default::Value("\"0 N\""),
-            "Force in one strap as it is put on; the stack gives under it, and a part of it is lost.",
-        ),
-        Field::new(
-            "strength",
-            Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE),
-            Default::Nothing,
-            "Force above which one strap tears, for good; without it none does.",
-        ),
-    ],
-    variants: None,
-    exclusive: &[],
-};
+section! {
+    /// Straps on the highest levels of a stack.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Straps;
+    /// Straps on the highest levels: they pull, never push, and have no mass.
+    pub static STRAP = "strap";
+    /// How many of the highest levels are strapped; 0 for no straps.
+    levels: u32 = Kind::Integer(0, 12), Default::Value("0");
+    /// Every barrel to its rack, or besides every rack to the one below.
+    ties: Ties = Kind::Choice(names::<Ties>), Default::Value("\"barrels-to-racks\"");
+    /// Force per elongation of one strap; that of a polyester strap is its strength over some 5 to 7 % of its length.
+    stiffness: f64 =
+        Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"100 kN/m\"");
+    /// Force per rate of elongation of one strap, while it is taut.
+    damping: f64 =
+        Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
+    /// How far one strap gives, on the stack at rest, before it pulls.
+    slack: f64 =
+        Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 1.0)), Default::Value("\"0 m\"");
+    /// Force in one strap as it is put on; the stack gives under it, and a part of it is lost.
+    pretension: f64 =
+        Kind::Quantity(&[Dimension::FORCE], Range::NOT_NEGATIVE), Default::Value("\"0 N\"");
+    /// Force above which one strap tears, for good; without it none does.
+    strength: Option<f64> =
+        Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
+}
 
 /// Reads straps on a stack of a number of levels.
 pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, ScenarioError> {
-    let straps = Straps {
-        levels: reader.integer("levels")?,
-        ties: reader.choice("ties")?,
-        stiffness: reader.quantity("stiffness")?,
-        damping: reader.quantity("damping")?,
-        slack: reader.quantity("slack")?,
-        pretension: reader.quantity("pretension")?,
-        strength: reader.optional_quantity("strength")?,
-    };
+    let straps = Straps::read_fields(&reader)?;
     if straps.slack > 0.0 && straps.pretension > 0.0 {
         let message = "a strap with pretension has no slack; leave one of the two out".to_owned();
         return Err(reader.inconsistent("pretension", message));
@@ -128,17 +76,4 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, ScenarioEr
     }
     reader.finish();
     Ok(straps)
-}
-
-/// Writes straps.
-pub(super) fn write(straps: &Straps) -> Table {
-    let mut writer = Writer::new(&STRAP);
-    writer.integer("levels", straps.levels);
-    writer.choice("ties", straps.ties);
-    writer.quantity("stiffness", straps.stiffness);
-    writer.quantity("damping", straps.damping);
-    writer.quantity("slack", straps.slack);
-    writer.quantity("pretension", straps.pretension);
-    writer.optional_quantity("strength", straps.strength);
-    writer.finish()
 }

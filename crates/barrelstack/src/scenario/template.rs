@@ -13,29 +13,37 @@ use super::{MotionSpec, Scenario, merge, root};
 ///
 /// Values carry the place where they were written, so that a value that does not fit is told there.
 #[derive(Debug)]
-pub(crate) struct Template {
+pub struct Template {
     sources: Sources,
     table: Table,
     title: String,
 }
 
 /// A file that holds a scenario among other things: its sources, its table, and whether it may name files.
-pub(crate) struct Opened {
-    pub(crate) sources: Sources,
-    pub(crate) table: Table,
+pub struct Opened {
+    /// The file, and what it extends.
+    pub sources: Sources,
+    /// All that it holds.
+    pub table: Table,
     access: Access,
 }
 
 impl Opened {
     /// Reads and parses a file.
-    pub(crate) fn load(path: &Path) -> Result<Self, ScenarioError> {
+    ///
+    /// # Errors
+    /// When it cannot be read or is not TOML.
+    pub fn load(path: &Path) -> Result<Self, ScenarioError> {
         let name = path.display().to_string();
         let bytes = load::read_file(path, Place::Whole { file: name.clone() })?;
         Self::new(&name, &bytes, Access::Files)
     }
 
     /// Parses a text that may name built-in scenarios only.
-    pub(crate) fn parse(name: &str, text: &str) -> Result<Self, ScenarioError> {
+    ///
+    /// # Errors
+    /// When it is not TOML.
+    pub fn parse(name: &str, text: &str) -> Result<Self, ScenarioError> {
         Self::new(name, text.as_bytes(), Access::BuiltinOnly)
     }
 
@@ -48,18 +56,21 @@ impl Opened {
     }
 
     /// The name of the file without its ending.
-    pub(crate) fn stem(&self) -> String {
+    pub fn stem(&self) -> String {
         load::stem(&self.sources.files[0].name)
     }
 
     /// The folder of the file.
-    pub(crate) fn folder(&self) -> &Path {
+    pub fn folder(&self) -> &Path {
         &self.sources.files[0].folder
     }
 
     /// The scenario in the table of a key, laid over what it extends; `motion` tells whether it needs one of its
     /// own.
-    pub(crate) fn template(
+    ///
+    /// # Errors
+    /// When what it extends cannot be read.
+    pub fn template(
         &self,
         key: &str,
         fallback_title: &str,
@@ -88,7 +99,7 @@ impl Opened {
 
 impl Template {
     /// Forgets fields of a table that come from what the scenario extends and not from its own file.
-    pub(crate) fn forget_inherited(&mut self, table: &str, fields: &[&str]) {
+    pub fn forget_inherited(&mut self, table: &str, fields: &[&str]) {
         let own = |origin: Origin| match origin {
             Origin::File { file, .. } | Origin::Whole(file) => file == 0,
             Origin::Override(_) | Origin::Default => true,
@@ -103,13 +114,13 @@ impl Template {
     }
 
     /// The definition of the field at a path such as `interface.rack-ground.friction.coefficient`.
-    pub(crate) fn field(&self, path: &str) -> Option<&'static Field> {
+    pub fn field(&self, path: &str) -> Option<&'static Field> {
         let keys: Vec<&str> = path.split('.').map(str::trim).collect();
         merge::field_at(Some(&self.table), &root::ROOT, &keys)
     }
 
     /// The path that looks most like one that no field has.
-    pub(crate) fn nearest(&self, path: &str) -> Option<String> {
+    pub fn nearest(&self, path: &str) -> Option<String> {
         let mut keys: Vec<String> = path.split('.').map(|key| key.trim().to_owned()).collect();
         for at in 0..keys.len() {
             let above: Vec<&str> = keys[..at].iter().map(String::as_str).collect();
@@ -127,7 +138,10 @@ impl Template {
     }
 
     /// The scenario with values set at paths.
-    pub(crate) fn with<'a>(
+    ///
+    /// # Errors
+    /// The first problem found, where the value was written.
+    pub fn with<'a>(
         &self,
         changes: impl IntoIterator<Item = (&'a str, &'a Node)>,
     ) -> Result<Scenario, ScenarioError> {
@@ -150,7 +164,7 @@ impl Template {
     }
 
     /// The value at a path of a scenario, every default written out; `None` where it has none.
-    pub(crate) fn value_in(scenario: &Scenario, path: &str) -> Option<Value> {
+    pub fn value_in(scenario: &Scenario, path: &str) -> Option<Value> {
         let mut table = root::write(scenario);
         let mut keys = path.split('.').map(str::trim).peekable();
         while let Some(key) = keys.next() {
@@ -181,13 +195,16 @@ impl Template {
     }
 
     /// All texts that the scenario was read from, in order.
-    pub(crate) fn texts(&self) -> impl Iterator<Item = &str> {
+    pub fn texts(&self) -> impl Iterator<Item = &str> {
         self.sources.files.iter().map(|file| file.text.as_str())
     }
 }
 
 /// Reads the motion in a table whose entries come from the given sources.
-pub(crate) fn motion(
+///
+/// # Errors
+/// The first problem found, at its place.
+pub fn motion(
     sources: &Sources,
     path: &str,
     table: &Table,

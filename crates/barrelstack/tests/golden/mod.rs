@@ -194,7 +194,9 @@ fn of_lanes(width: Width, cases: &[Prepared]) -> Line {
     let mut audience = Audience { tell: &mut |_| {}, stop: &|| false };
     let results = simulate_in(width, cases, &mut audience).expect("nobody stops it");
     let mut hash = Hash::default();
-    results.iter().for_each(|result| hash.case(result));
+    for result in &results {
+        hash.case(result);
+    }
     let steps = results.iter().filter_map(|result| result.steps).sum();
     let work = Work { steps, ..Work::default() };
     Line { name: "small-cases-in-lanes".to_owned(), hash: hash.0, work }

@@ -5,12 +5,12 @@ use std::process::ExitCode;
 
 use anyhow::Context as _;
 use barrelstack::Scenario;
-use barrelstack::calibrate::collapse::{Errors, Observations, Settings};
-use barrelstack::calibrate::drop::{GRAVITY, Striker};
-use barrelstack::calibrate::{
+use barrelstack::scenario::{Dimension, Quantity};
+use barrelstack_calibration::collapse::{Errors, Observations, Settings};
+use barrelstack_calibration::drop::{GRAVITY, Striker};
+use barrelstack_calibration::{
     CalibrateError, Calibration, Parameter, Table, collapse, drop, friction, response, stiffness,
 };
-use barrelstack::scenario::{Dimension, Quantity};
 use clap::{Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -293,9 +293,7 @@ fn placed(error: CalibrateError, scenario: &ScenarioArgs) -> anyhow::Error {
     match error {
         CalibrateError::Run(failure) => super::placed(failure, scenario),
         CalibrateError::Scenario(reason) => anyhow::anyhow!("{}: {reason}", scenario.scenario),
-        error @ (CalibrateError::Unreadable { .. }
-        | CalibrateError::Table { .. }
-        | CalibrateError::Unsuited { .. }) => error.into(),
+        CalibrateError::Table(error) => error.into(),
     }
 }
 

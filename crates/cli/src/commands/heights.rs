@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use barrelstack::heights::{HEIGHTS, Heights, HeightsError, Request, VELOCITIES, View, heights};
-use barrelstack::study::{RunOptions, StudyError};
+use barrelstack_campaign::heights::{
+    HEIGHTS, Heights, HeightsError, Request, VELOCITIES, View, heights,
+};
+use barrelstack_campaign::study::{RunOptions, StudyError};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::interrupt::Interrupt;

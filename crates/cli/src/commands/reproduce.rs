@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use barrelstack::render::write_figures;
-use barrelstack::reproduce::{Comparison, Reproduction, percent, reproduce as run_all};
 use barrelstack_report::{Paper, document_pdf};
+use barrelstack_reproduction::{Comparison, Reproduction, percent, reproduce as run_all};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::args::ReproduceArgs;
@@ -44,10 +44,10 @@ fn write(args: &ReproduceArgs, found: &Reproduction) -> anyhow::Result<()> {
         let path = out.join(name);
         std::fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))
     };
-    put("index.html", barrelstack::reproduce::html(found).as_bytes())?;
-    let bundle = barrelstack::reproduce::markdown(found, "figures");
+    put("index.html", barrelstack_reproduction::html(found).as_bytes())?;
+    let bundle = barrelstack_reproduction::markdown(found, "figures");
     put("index.md", bundle.text.as_bytes())?;
-    put("table.md", barrelstack::reproduce::table(found).as_bytes())?;
+    put("table.md", barrelstack_reproduction::table(found).as_bytes())?;
     prepare(&out.join("figures"))?;
     for file in &bundle.files {
         put(&format!("figures/{}", file.name), &file.bytes)?;

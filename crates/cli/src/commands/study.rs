@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use barrelstack::study::{Collected, RunOptions, Study, StudyError};
+use barrelstack_campaign::study::{Collected, RunOptions, Study, StudyError};
 use clap::Subcommand;
 use serde_json::json;
 
@@ -147,9 +147,11 @@ pub(crate) fn study(args: &StudyArgs) -> anyhow::Result<ExitCode> {
         Some(Action::Export(args)) => export::export(args)?,
         Some(Action::Emit(args)) => emit::emit(args)?,
         Some(Action::Example { name, list }) => example(name.as_deref(), *list)?,
-        Some(Action::Fields) => printer::text(&barrelstack::study::reference())?,
+        Some(Action::Fields) => printer::text(&barrelstack_campaign::study::reference())?,
         Some(Action::Schema) => {
-            printer::lines([serde_json::to_string_pretty(&barrelstack::study::json_schema())?])?;
+            printer::lines([serde_json::to_string_pretty(
+                &barrelstack_campaign::study::json_schema(),
+            )?])?;
         }
     }
     Ok(ExitCode::SUCCESS)
@@ -290,13 +292,15 @@ fn collect(args: &FolderArgs) -> anyhow::Result<()> {
 
 fn example(name: Option<&str>, list: bool) -> anyhow::Result<()> {
     if list {
-        return printer::lines(barrelstack::study::builtin_names());
+        return printer::lines(barrelstack_campaign::study::builtin_names());
     }
     let name = match name {
         Some(name) => name,
-        None => barrelstack::study::builtin_names().next().context("there is no built-in study")?,
+        None => barrelstack_campaign::study::builtin_names()
+            .next()
+            .context("there is no built-in study")?,
     };
-    if let Some(text) = barrelstack::study::builtin(name) {
+    if let Some(text) = barrelstack_campaign::study::builtin(name) {
         return printer::text(text);
     }
     // The error of the library names those there are.

@@ -1,7 +1,7 @@
 //! The contacts of one pair: from gaps to forces on both bodies.
 
 use crate::body::{Nodes, Round};
-use crate::contact::{FrictionLaw, NormalLaw, Stop};
+use crate::contact::{FrictionLaw, NormalLaw, ROLLING_SPIN, Stop};
 use crate::elements::{Elements, Group, PairFrame};
 use crate::model::{Counts, Model};
 use crate::real::{Mask, Real};
@@ -73,6 +73,7 @@ fn touch_by<S: Space>(
         return;
     }
     let mut press = Press {
+        rolling: model.interfaces[pair.interface].rolling,
         stop: model.interfaces[pair.interface].stop,
         counted,
         normal,
@@ -129,6 +130,8 @@ fn touch_by<S: Space>(
 
 /// Nodes of a pair that press into a surface, one after the other.
 struct Press<'a, S: Space> {
+    /// Lever (m) at which normal forces resist rolling, if they do.
+    rolling: Option<S::Real>,
     stop: Option<Stop<S::Real>>,
     /// Where the contacts of the pair count; none if everywhere.
     counted: Option<<S::Real as Real>::Mask>,
@@ -203,7 +206,12 @@ impl<S: Space> Press<'_, S> {
                 let within = toward.dot(a).le(limit) & toward.dot(b).le(limit);
                 counts = counts | (against_round & within);
             }
-            let counts = counts & (-round.greatest_depth).lt(gap.distance);
+            let mut counts = counts & (-round.greatest_depth).lt(gap.distance);
+            for (outward, distance) in round.sides.iter().flatten() {
+                let point = round.center + toward * (round.radius + gap.distance);
+                let nearer = gap.distance.lt(point.dot(*outward) - *distance);
+                counts = counts & !(against_round & nearer);
+            }
             if (counts & gap.distance.lt(zero)).any() {
                 gap.distance = S::Real::select(counts, gap.distance, S::Real::splat(1.0));
                 let share =
@@ -271,6 +279,12 @@ impl<S: Space> Press<'_, S> {
         sum.damped += Wrench { force: contact.normal * damped, moment: lever * damped };
         let sliding = -S::along(friction.force, contact.normal);
         sum.friction += Wrench { force: sliding, moment: S::moment(arm, sliding) };
+        if let Some(lever) = self.rolling {
+            let spin = meeting.spin;
+            let slow = S::Real::splat(ROLLING_SPIN * ROLLING_SPIN);
+            let resisted = normal_force * lever / (spin.dot(spin) + slow).sqrt();
+            sum.friction += Wrench { force: S::Vector::default(), moment: -(spin * resisted) };
+        }
 
         self.slip_rates[element] = contact.slip_rate;
         self.pressed.push(Pressed {

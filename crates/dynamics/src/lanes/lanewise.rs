@@ -63,6 +63,17 @@ impl<T: Lanewise> Lanewise for Option<T> {
     }
 }
 
+impl<A: Lanewise, B: Lanewise> Lanewise for (A, B) {
+    type Single = (A::Single, B::Single);
+    fn in_all(single: &Self::Single) -> Self {
+        (A::in_all(&single.0), B::in_all(&single.1))
+    }
+    fn put(&mut self, lane: usize, single: &Self::Single) {
+        self.0.put(lane, &single.0);
+        self.1.put(lane, &single.1);
+    }
+}
+
 impl<T: Lanewise, const N: usize> Lanewise for [T; N] {
     type Single = [T::Single; N];
     fn in_all(single: &Self::Single) -> Self {
@@ -140,7 +151,7 @@ fields!(Cradle<R>, Cradle, Cradle { radius, sin, cos });
 fields!(
     BarrelProfile<R>,
     BarrelProfile,
-    BarrelProfile { half_length, head_radius, bilge_radius, stave_radius }
+    BarrelProfile { half_length, head_radius, bilge_radius, stave_radius, rounding, corner_height }
 );
 
 impl<R: Real> Lanewise for Round<Planar<R>> {
@@ -151,6 +162,7 @@ impl<R: Real> Lanewise for Round<Planar<R>> {
             radius: R::splat(single.radius),
             limits: Lanewise::in_all(&single.limits),
             arc_limits: Lanewise::in_all(&single.arc_limits),
+            sides: Lanewise::in_all(&single.sides),
             takes_limit: single.takes_limit,
             greatest_depth: R::splat(single.greatest_depth),
             tributary_length: R::splat(single.tributary_length),
@@ -161,6 +173,7 @@ impl<R: Real> Lanewise for Round<Planar<R>> {
         self.radius.put(lane, &single.radius);
         self.limits.put(lane, &single.limits);
         self.arc_limits.put(lane, &single.arc_limits);
+        self.sides.put(lane, &single.sides);
         self.greatest_depth.put(lane, &single.greatest_depth);
         self.tributary_length.put(lane, &single.tributary_length);
     }
@@ -328,6 +341,7 @@ impl<R: Real> Lanewise for Interface<Planar<R>> {
             name: single.name.clone(),
             normal: Lanewise::in_all(&single.normal),
             stop: Lanewise::in_all(&single.stop),
+            rolling: Lanewise::in_all(&single.rolling),
             friction: Lanewise::in_all(&single.friction),
             basis: single.basis,
         }
@@ -335,6 +349,7 @@ impl<R: Real> Lanewise for Interface<Planar<R>> {
     fn put(&mut self, lane: usize, single: &Self::Single) {
         self.normal.put(lane, &single.normal);
         self.stop.put(lane, &single.stop);
+        self.rolling.put(lane, &single.rolling);
         self.friction.put(lane, &single.friction);
     }
 }

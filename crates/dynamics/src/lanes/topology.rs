@@ -34,6 +34,7 @@ struct InterfaceKind {
     normal: Discriminant<NormalLaw>,
     exponent: Option<Exponent>,
     stop: Option<Discriminant<NormalLaw>>,
+    rolling: bool,
     friction: Discriminant<FrictionLaw>,
     basis: Basis,
 }
@@ -86,6 +87,7 @@ impl InterfaceKind {
             normal: discriminant(&interface.normal),
             exponent,
             stop: interface.stop.as_ref().map(|stop| discriminant(&stop.law)),
+            rolling: interface.rolling.is_some(),
             friction: discriminant(&interface.friction),
             basis: interface.basis,
         }

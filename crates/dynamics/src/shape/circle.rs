@@ -52,6 +52,7 @@ impl Circle {
             radius: self.radius,
             limits: [Vec2::default(); 2],
             arc_limits: [None; 2],
+            sides: [None; 2],
             takes_limit: true,
             greatest_depth: f64::INFINITY,
             tributary_length,

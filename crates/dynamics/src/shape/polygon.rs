@@ -256,6 +256,7 @@ impl Polygon {
                 radius: self.corner_radius,
                 limits: [-self.sides[(i + count - 1) % count].along, self.sides[i].along],
                 arc_limits: [None; 2],
+                sides: [None; 2],
                 takes_limit: true,
                 greatest_depth: f64::INFINITY,
                 tributary_length,

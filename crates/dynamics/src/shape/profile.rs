@@ -22,7 +22,14 @@ pub struct BarrelProfile<R = f64> {
     pub bilge_radius: R,
     /// Radius of the stave's arc (m): `((L/2)² + s²) / 2s` with `s` the bulge.
     pub stave_radius: R,
+    /// Radius of the round of its edges (m), with which staves end and heads begin.
+    pub rounding: R,
+    /// Height of the center of that round above the axis (m).
+    pub corner_height: R,
 }
+
+/// Parts into which a round edge is cut for drawing.
+const EDGE_STEPS: usize = 6;
 
 impl<R: Real> BarrelProfile<R> {
     #[inline(always)]
@@ -38,18 +45,20 @@ impl<R: Real> BarrelProfile<R> {
         let (left, below) = (point.x.lt(zero), point.z.lt(zero));
         let p = Vec2::new(point.x.abs(), point.z.abs());
         let arc_center = Vec2::new(zero, self.bilge_radius - self.stave_radius);
-        let corner = Vec2::new(self.half_length, self.head_radius);
+        // Distances are those from the core, which lies inside by the radius of the edges.
+        let core_length = self.half_length - self.rounding;
+        let corner = Vec2::new(core_length, self.corner_height);
 
         let from_center = p - arc_center;
         let arc_length = from_center.length();
-        let arc_distance = arc_length - self.stave_radius;
+        let arc_distance = arc_length - (self.stave_radius - self.rounding);
         let arc_normal = from_center * (one / arc_length);
-        let head_distance = p.x - self.half_length;
+        let head_distance = p.x - core_length;
 
         // Past the corner, seen from the arc's center or along the head: the corner is nearest.
         let beyond_arc = (from_center.z * (corner.x - arc_center.x))
             .lt(from_center.x * (corner.z - arc_center.z));
-        let beyond_head = self.head_radius.lt(p.z);
+        let beyond_head = self.corner_height.lt(p.z);
         let outside = zero.lt(arc_distance.max(head_distance));
         let by_corner = outside & beyond_arc & beyond_head;
         let from_corner = p - corner;
@@ -64,7 +73,7 @@ impl<R: Real> BarrelProfile<R> {
         let face_normal = Vec2::select(by_head, flat, arc_normal);
         let normal = Vec2::select(by_corner, from_corner * (one / safe), face_normal);
         let gap = Gap {
-            distance: R::select(by_corner, corner_distance, face_distance),
+            distance: R::select(by_corner, corner_distance, face_distance) - self.rounding,
             normal: Vec2::new(
                 R::select(left, -normal.x, normal.x),
                 R::select(below, -normal.z, normal.z),
@@ -92,7 +101,21 @@ impl BarrelProfile {
             head_radius: 0.5 * head_diameter,
             bilge_radius: 0.5 * bilge_diameter,
             stave_radius: (half_length * half_length + bulge * bulge) / (2.0 * bulge),
+            rounding: 0.0,
+            corner_height: 0.5 * head_diameter,
         })
+    }
+
+    /// The same with edges rounded by a radius (m), which must leave something of the heads.
+    ///
+    /// Returns none where it does not.
+    pub fn rounded(self, rounding: f64) -> Option<Self> {
+        let across = self.half_length - rounding;
+        let apart = self.stave_radius - rounding;
+        let rise = (apart * apart - across * across).max(0.0).sqrt();
+        let corner_height = self.bilge_radius - self.stave_radius + rise;
+        let sound = rounding >= 0.0 && across > 0.0 && corner_height > 0.0;
+        sound.then_some(Self { rounding, corner_height, ..self })
     }
 
     /// Radius (m) of the barrel at a distance (m) along its axis from the bilge.
@@ -101,24 +124,20 @@ impl BarrelProfile {
             + (self.stave_radius * self.stave_radius - x * x).max(0.0).sqrt()
     }
 
-    /// Half the angle (rad) over which a stave bends.
-    fn half_stave(&self) -> f64 {
-        math::atan2(self.half_length, self.stave_radius - self.bilge_radius + self.head_radius)
-    }
-
-    /// The four corners and the two staves.
+    /// The four edges and the two staves.
     pub(super) fn rounds(&self, tributary_length: f64) -> Vec<Round<Planar>> {
         let rise = self.stave_radius - self.bilge_radius;
         // Where a stave ends its normal leans by an angle with this sine and cosine.
-        let sin = self.half_length / self.stave_radius;
-        let cos = (rise + self.head_radius) / self.stave_radius;
-        let corner = |x: f64, z: f64| {
+        let sin = (self.half_length - self.rounding) / (self.stave_radius - self.rounding);
+        let cos = (rise + self.corner_height) / (self.stave_radius - self.rounding);
+        let edge = |x: f64, z: f64| {
             let toward_bilge = Vec2::new(-cos * x, sin * z);
             Round {
-                center: Vec2::new(x * self.half_length, z * self.head_radius),
-                radius: 0.0,
+                center: Vec2::new(x * (self.half_length - self.rounding), z * self.corner_height),
+                radius: self.rounding,
                 limits: [toward_bilge, Vec2::new(0.0, -z)],
                 arc_limits: [Some(toward_bilge), None],
+                sides: [None; 2],
                 takes_limit: false,
                 greatest_depth: f64::INFINITY,
                 tributary_length,
@@ -131,37 +150,61 @@ impl BarrelProfile {
                 radius: self.stave_radius,
                 limits,
                 arc_limits: limits.map(Some),
+                sides: [1.0, -1.0].map(|x| Some((Vec2::new(x, 0.0), self.half_length))),
                 takes_limit: true,
                 greatest_depth: self.head_radius,
                 tributary_length,
             }
         };
-        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-        let corners = corners.into_iter().map(|(x, z)| corner(x, z));
-        corners.chain([1.0, -1.0].map(stave)).collect()
+        let edges = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let edges = edges.into_iter().map(|(x, z)| edge(x, z));
+        edges.chain([1.0, -1.0].map(stave)).collect()
+    }
+
+    /// Half the angle (rad) over which a stave bends.
+    fn half_stave(&self) -> f64 {
+        math::atan2(
+            self.half_length - self.rounding,
+            self.stave_radius - self.bilge_radius + self.corner_height,
+        )
     }
 
     /// The chain from the right head over the top, the left head and the bottom.
     fn chain(&self, parts: usize) -> Vec<Vec2> {
         let half = self.half_stave();
-        let arc: Vec<Vec2> = (0..=parts)
-            .map(|i| {
-                let (sin, cos) = math::sin_cos(half * (1.0 - 2.0 * i as f64 / parts as f64));
-                Vec2::new(
-                    self.stave_radius * sin,
-                    self.bilge_radius - self.stave_radius + self.stave_radius * cos,
-                )
-            })
-            .collect();
-        arc.iter().copied().chain(arc.iter().map(|p| -*p)).collect()
+        let direction = |angle: f64| {
+            let (sin, cos) = math::sin_cos(angle);
+            Vec2::new(sin, cos)
+        };
+        let stave = (0..=parts).map(|i| {
+            let angle = half * (1.0 - 2.0 * i as f64 / parts as f64);
+            Vec2::new(0.0, self.bilge_radius - self.stave_radius)
+                + direction(angle) * self.stave_radius
+        });
+        // An edge turns from the end of a stave to the normal of the head, or the other way.
+        let edge = |x: f64, from: f64, to: f64| {
+            let center = Vec2::new(x * (self.half_length - self.rounding), self.corner_height);
+            let steps = if self.rounding > 0.0 { EDGE_STEPS } else { 0 };
+            let at = move |i: usize| {
+                let angle = from + (to - from) * i as f64 / EDGE_STEPS as f64;
+                center + direction(angle) * self.rounding
+            };
+            (0..steps).map(at).collect::<Vec<_>>()
+        };
+        let right = edge(1.0, FRAC_PI_2, half);
+        let left = edge(-1.0, -FRAC_PI_2, -half).into_iter().rev();
+        let top: Vec<Vec2> = right.into_iter().chain(stave).chain(left).collect();
+        top.iter().copied().chain(top.iter().map(|p| -*p)).collect()
     }
 
     pub(super) fn outline(&self) -> Vec<Vec2> {
         self.chain(24)
     }
 
+    /// Nodes of the profile with sharp edges.
     pub(super) fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {
-        let half = self.half_stave();
+        let half =
+            math::atan2(self.half_length, self.stave_radius - self.bilge_radius + self.head_radius);
         let rise = self.stave_radius - self.bilge_radius;
         let (a, b) = (self.half_length, self.head_radius);
         let stave = |center, middle: f64| Piece::Arc {

@@ -137,7 +137,14 @@ pub fn fixed(nodes: &[BoundaryNode]) -> Nodes<Planar> {
 
 /// An interface with constants per node.
 pub fn interface(normal: NormalLaw, friction: FrictionLaw) -> Interface<Planar> {
-    Interface { name: "test".into(), normal, stop: None, friction, basis: Basis::Node }
+    Interface {
+        name: "test".into(),
+        normal,
+        stop: None,
+        rolling: None,
+        friction,
+        basis: Basis::Node,
+    }
 }
 
 /// Coulomb friction with one coefficient.

@@ -117,10 +117,10 @@ impl<'a> Reader<'a> {
 
     /// The section as users know it.
     pub fn label(&self) -> String {
-        if !self.path.is_empty() {
-            format!("[{}]", self.path)
-        } else {
+        if self.path.is_empty() {
             format!("the {}", self.section.name)
+        } else {
+            format!("[{}]", self.path)
         }
     }
 
@@ -165,6 +165,11 @@ impl<'a> Reader<'a> {
         let example = self.section.any_field(name).map_or_else(String::new, Field::example);
         let problem = Problem::Missing { field: name.to_owned(), section: self.label(), example };
         self.sources.error(self.origin, problem)
+    }
+
+    /// What a field holds.
+    pub fn kind_of(&self, name: &'static str) -> Kind {
+        self.field(name).kind
     }
 
     fn entry(&self, name: &str) -> Option<&'a Node> {

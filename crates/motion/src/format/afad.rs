@@ -8,6 +8,8 @@ use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::math;
 use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::site::{Site, position};
+use crate::utc::{DateOrder, Utc};
 
 pub(crate) const FORMAT: Format =
     Format { name: "afad", title: "AFAD and NSMN text (Turkey)", sniff, read };
@@ -69,10 +71,10 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let first = names_line + 1;
     let mut columns = super::rows(source, first, source.lines.len(), names.len(), limit)?;
     let found = columns.first().map_or(0, Vec::len);
-    super::check_count(source, &mut record, count_line, count, found)?;
+    let used = super::check_count(source, &mut record, count_line, count, found)?;
     let peaks = field(source, "RAW PGA VALUES").map(|(_, text)| text).unwrap_or_default();
     for (name, column) in names.iter().zip(&mut columns) {
-        let values: Vec<f64> = column.iter().map(|value| value * GAL).collect();
+        let values: Vec<f64> = column[..used].iter().map(|value| value * GAL).collect();
         let mut channel = Channel::new(*name, Direction::parse(name), time_step, values);
         let stated = peaks
             .split_once(&format!("({name})"))
@@ -87,6 +89,15 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         }
         record.channels.push(channel);
     }
+    let text = |key: &str| field(source, key).map(|(_, text)| text).unwrap_or_default();
+    let stated = |key: &str| leading_number(text(key).as_bytes()).map(|(value, _)| value);
+    let site = Site {
+        elevation: stated("STATION ALTITUDE"),
+        vs30: stated("VS30").filter(|speed| *speed > 0.0),
+        ..Site::default()
+    };
+    let start = Utc::in_header(&text("RECORD TIME"), DateOrder::DayFirst);
+    record.place(start, &site.at(position(&text("STATION COORDINATES"))));
     if !latin1(source.bytes.get(..4000).unwrap_or(source.bytes)).contains("(gal)") {
         record.warn(
             None,

@@ -8,6 +8,7 @@ use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::record::{Channel, Record, Stage};
+use crate::site::{Site, position};
 use crate::units::AccelerationUnit;
 
 pub(crate) const FORMAT: Format =
@@ -73,7 +74,8 @@ fn read_component(
         ));
     }
     let unit = AccelerationUnit::TenthG;
-    let (mut values, mut next) = source.fixed(
+    let (mut values, mut next) = source.counted(
+        record,
         first + HEADER_LINES,
         count,
         Columns::new(10, 13),
@@ -92,7 +94,10 @@ fn read_component(
         Some(azimuth) => Direction::horizontal(azimuth),
         None => Direction::parse(&name),
     };
-    record.channels.push(Channel::new(name, direction, time_step, values));
+    let mut channel = Channel::new(name, direction, time_step, values);
+    let elevation = source.number_after(first + 7, "Altitude");
+    channel.site = Site { elevation, ..Site::default() }.at(position(&about));
+    record.channels.push(channel);
     if next < source.lines.len() {
         if !source.text(next).starts_with("/&") {
             return Err(source.error(

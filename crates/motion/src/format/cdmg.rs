@@ -8,7 +8,9 @@ use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::math::{self, STANDARD_GRAVITY};
 use crate::record::{Channel, Quantity, Record, StatedPeak};
+use crate::site::{Site, position};
 use crate::units::AccelerationUnit;
+use crate::utc::{DateOrder, Utc};
 
 /// Text lines and the 7 + 7 lines of integers and reals.
 const HEADER_LINES: usize = 27;
@@ -58,7 +60,7 @@ fn read_block(
     }
     if record.channels.is_empty() {
         record.event = source.text(first + 1);
-        record.station = source.text(first + 5);
+        record.station = station_name(source, first + 5);
     }
     let name = channel_name(source, first + 6);
     let direction = direction(source, first, &name);
@@ -67,13 +69,13 @@ fn read_block(
     let unit = unit(source, if equal { data } else { first + 11 }, options)?;
     let limit = LARGEST_ACCELERATION / unit.factor();
     let (time_step, mut values, mut next) = if equal {
-        read_equal(source, data, limit)?
+        read_equal(source, record, data, limit)?
     } else {
         let count = source
             .number_after(first + 10, "POINTS")
             .ok_or_else(|| missing(source, first + 10, "the number of points"))?;
         let count = super::whole(source, first + 10, "a number of points", count)?;
-        let (numbers, next) = source.fixed(data, 2 * count, pairs, limit.max(1e6))?;
+        let (numbers, next) = source.counted(record, data, 2 * count, pairs, limit.max(1e6))?;
         let timed = Timed {
             first_line: data,
             per_line: pairs.per_line / 2,
@@ -88,6 +90,8 @@ fn read_block(
         *value *= unit.factor();
     }
     let mut channel = Channel::new(name, direction, time_step, values);
+    channel.start = start(source, first);
+    channel.site = Site::default().at(position(&source.text(first + 4)));
     if let Some(peak) = stated_peak(source, first + 11, math::peak(&channel.acceleration)) {
         channel.peaks.push(peak);
     }
@@ -118,6 +122,7 @@ fn read_block(
 /// `12001 POINTS OF ACCEL DATA EQUALLY SPACED AT .005 SEC.  (UNITS: G)`.
 fn read_equal(
     source: &Source<'_>,
+    record: &mut Record,
     line: usize,
     limit: f64,
 ) -> Result<(f64, Vec<f64>, usize), ReadError> {
@@ -134,7 +139,7 @@ fn read_equal(
         .filter(|step| step.is_finite() && *step > 0.0)
         .ok_or_else(|| missing(source, line, "the step"))?;
     let columns = format_in(source, line).unwrap_or(Columns::new(8, 9));
-    let (values, next) = source.fixed(line + 1, count, columns, limit)?;
+    let (values, next) = source.counted(record, line + 1, count, columns, limit)?;
     Ok((time_step, values, next))
 }
 
@@ -159,6 +164,23 @@ fn missing(source: &Source<'_>, line: usize, what: &str) -> ReadError {
         format!("\"{}\"", super::source::shorten(&source.text(line))),
         "restore the header from the original file",
     )
+}
+
+/// The name in columns 1 to 40; behind it stand network and kind of data.
+pub(crate) fn station_name(source: &Source<'_>, line: usize) -> String {
+    let text = latin1(source.slice(line, 0, 40));
+    text.trim_start().split("   ").next().unwrap_or("").trim().to_owned()
+}
+
+/// `START TIME:  7/06/19, 03:19:37.0 UTC` among the text lines; a film recorder starts when it is
+/// triggered.
+pub(crate) fn start(source: &Source<'_>, first: usize) -> Option<Utc> {
+    (first..first + 6).find_map(|line| {
+        let at = ["START TIME:", "TRIGGER TIME:"]
+            .into_iter()
+            .find_map(|key| Some(source.find(line, key)? + key.len()))?;
+        Utc::in_header(&latin1(&source.raw(line)[at..]), DateOrder::MonthFirst)
+    })
 }
 
 /// `CHAN  1:  90 DEG`, `CHAN  2: V   (STA CHN:  2)` or `COMP N00W` without what follows in

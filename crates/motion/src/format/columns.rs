@@ -84,8 +84,13 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
         (step, without_time(source, first, end, table, &names, &mut record)?)
     };
     let count = columns.first().map_or(0, Vec::len);
+    let mut columns = columns;
     if let Some((stated, _)) = stated {
-        super::check_count(source, &mut record, first.saturating_sub(1), stated, count)?;
+        let line = first.saturating_sub(1);
+        let used = super::check_count(source, &mut record, line, stated, count)?;
+        for column in &mut columns {
+            column.truncate(used);
+        }
     }
     let unit = unit(source, first, options, &columns, &mut record)?;
     let names = if timed { names.get(1..).unwrap_or(&[]).to_vec() } else { names };

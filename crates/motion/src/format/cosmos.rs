@@ -9,6 +9,8 @@ use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::math::{self, STANDARD_GRAVITY};
 use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::site::Site;
+use crate::utc::Utc;
 
 pub(crate) const FORMAT: Format =
     Format { name: "cosmos", title: "COSMOS 1.20 volumes 0, 1 and 2", sniff, read };
@@ -151,7 +153,7 @@ fn read_channel(
     let count = super::whole(source, line, "a number of points", count)?;
     let columns =
         format_after(source, line).ok_or_else(|| damaged(source, line, "a Fortran format"))?;
-    let (mut values, mut next) = source.fixed(line + 1, count, columns, 1e12)?;
+    let (mut values, mut next) = source.counted(record, line + 1, count, columns, 1e12)?;
     let quantity = header.integer(2);
     let unit = header.integer(3);
     let refuse = |found: String| {
@@ -209,6 +211,8 @@ fn read_channel(
         direction = Direction::parse(&code);
     }
     let mut channel = Channel::new(name, direction, time_step, values);
+    channel.start = start(header);
+    channel.site = site(source, first, header);
     if let Some(peak) = header.real(64) {
         channel.peaks.push(StatedPeak {
             quantity: Quantity::Acceleration,
@@ -229,6 +233,20 @@ fn read_channel(
         ));
     }
     Ok((Ok(channel), next))
+}
+
+/// Integers 40 to 45 and real 30: the first sample.
+fn start(header: &Header) -> Option<Utc> {
+    let part = |n: usize| header.integer(n);
+    Utc::new(part(40)?, part(42)?, part(43)?, part(44)?, part(45)?, header.real(30)?)
+}
+
+/// Reals 1 to 3, and what text line 9 says of the sensor's place in a structure.
+fn site(source: &Source<'_>, first: usize, header: &Header) -> Site {
+    let line = source.text(first + 8);
+    let sensor = line.split_once("Location:").map_or("", |(_, place)| place.trim()).to_owned();
+    let site = Site { sensor, elevation: header.real(3), ..Site::default() };
+    site.at(header.real(1).zip(header.real(2)))
 }
 
 /// `LSB (µV) / (sensor sensitivity (V/g) × gain)`, or the caller's counts per m/s².

@@ -3,13 +3,14 @@
 //! 25 text lines, 7 lines 16I5, 13 lines of reals, then three blocks, each with a data line.
 //! Spec: Shakal, Huang and Rojahn 1985, CSMIP report OSMS 85-03.
 
-use super::cdmg::{channel_name, format_in};
+use super::cdmg::{channel_name, format_in, start, station_name};
 use super::source::{Columns, LARGEST_ACCELERATION, Source, latin1, leading_number, shorten};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::math;
 use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::site::{Site, position};
 use crate::units::AccelerationUnit;
 
 pub(crate) const FORMAT: Format =
@@ -70,7 +71,6 @@ fn read_channel(
     }
     let header = first..first + TEXT_LINES;
     if record.channels.is_empty() {
-        record.station = source.text(first + 5);
         record.event = source.text(first + 2);
     }
     // Line 7 by rule; the first line that begins with CHAN where a line is missing.
@@ -79,8 +79,12 @@ fn read_channel(
         .find(|&line| source.text(line).to_ascii_uppercase().starts_with("CHAN"))
         .unwrap_or(first + 6);
     let name = channel_name(source, name_line);
+    if record.channels.is_empty() {
+        // The line before it by rule.
+        record.station = station_name(source, name_line.saturating_sub(1));
+    }
     let (accelerations, mut next) =
-        read_block(source, first + HEADER_LINES, "acc", LARGEST_ACCELERATION * 1000.0)?
+        read_block(source, record, first + HEADER_LINES, "acc", LARGEST_ACCELERATION * 1000.0)?
             .ok_or_else(|| {
                 source.error(
                     first + HEADER_LINES,
@@ -94,10 +98,12 @@ fn read_channel(
     let step = time_step(source, first, first + HEADER_LINES)?;
     let values: Vec<f64> = accelerations.iter().map(|value| value * unit.factor()).collect();
     let mut channel = Channel::new(name.as_str(), Direction::parse(&name), step, values);
+    channel.start = start(source, first);
+    channel.site = Site::default().at(position(&source.text(name_line.saturating_sub(2))));
     let mut measured =
         vec![(Quantity::Acceleration, unit.factor(), math::peak(&channel.acceleration))];
     for (key, quantity) in [("vel", Quantity::Velocity), ("dis", Quantity::Displacement)] {
-        if let Some((block, after)) = read_block(source, next, key, 1e9)? {
+        if let Some((block, after)) = read_block(source, record, next, key, 1e9)? {
             measured.push((quantity, 0.01, 0.01 * math::peak(&block)));
             next = after;
         }
@@ -149,6 +155,7 @@ fn read_channel(
 /// One block of `key` (acc, vel, dis) if its data line stands here.
 fn read_block(
     source: &Source<'_>,
+    record: &mut Record,
     line: usize,
     key: &str,
     limit: f64,
@@ -159,7 +166,7 @@ fn read_block(
     let Some((count, _)) = leading_number(source.raw(line)) else { return Ok(None) };
     let count = super::whole(source, line, "a number of points", count)?;
     let columns = format_in(source, line).unwrap_or(Columns::new(8, 10));
-    source.fixed(line + 1, count, columns, limit).map(Some)
+    source.counted(record, line + 1, count, columns, limit).map(Some)
 }
 
 fn unit(

@@ -10,6 +10,8 @@ use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::math;
 use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::site::Site;
+use crate::utc::{DateOrder, Utc};
 
 pub(crate) const FORMAT: Format =
     Format { name: "cwa", title: "CWA/CWB text (Taiwan)", sniff, read };
@@ -100,7 +102,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     record.event = field(source, "#Origin Time").map(|(_, text)| text).unwrap_or_default();
     let rows = time.len();
     let timed = Timed { first_line: format_line + 1, per_line: 1, time, values, resolution: 0.001 };
-    let (mut time_step, values) = even_steps(source, &mut record, "all", timed)?;
+    let (mut time_step, mut values) = even_steps(source, &mut record, "all", timed)?;
     if let Some((line, rate)) = number(source, "#SampleRate(Hz):") {
         if (rate * time_step - 1.0).abs() < 1e-3 {
             time_step = 1.0 / rate;
@@ -118,7 +120,10 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             let stated = super::whole(source, line, "a record length", stated)?;
             // Whole seconds are stated; up to one second more or less is rounding.
             if (rows as f64 - stated as f64).abs() > rate {
-                super::check_count(source, &mut record, line, stated, rows)?;
+                let used = super::check_count(source, &mut record, line, stated, rows)?;
+                for column in &mut values {
+                    column.truncate(used);
+                }
             } else if rows != stated {
                 record.warn(
                     line + 1,
@@ -149,6 +154,13 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         }
         record.channels.push(channel);
     }
+    let stated = |key: &str| number(source, key).map(|(_, value)| value);
+    let position = stated("#StationLatitude(N):").zip(stated("#StationLongitude(E):"));
+    // Taiwan is eight hours ahead.
+    let start = field(source, "#StartTime(GMT+08):")
+        .and_then(|(_, text)| Utc::in_header(&text, DateOrder::DayFirst))
+        .map(|local| local.later(-8.0 * 3600.0));
+    record.place(start, &Site::default().at(position));
     Ok(record)
 }
 

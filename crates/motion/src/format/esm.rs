@@ -8,7 +8,9 @@ use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::math;
 use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::site::Site;
 use crate::units::AccelerationUnit;
+use crate::utc::Utc;
 
 pub(crate) const FORMAT: Format = Format { name: "esm", title: "ESM and ITACA ASCII", sniff, read };
 
@@ -28,6 +30,20 @@ fn field(source: &Source<'_>, end: usize, key: &str) -> Option<(usize, String)> 
         let (name, value) = text.split_once(':')?;
         (name.trim() == key).then(|| (line, value.trim().to_owned()))
     })
+}
+
+/// `20190728_160905.700`.
+fn start(text: &str) -> Option<Utc> {
+    let (date, clock) = text.split_once('_')?;
+    let whole = |part: Option<&str>| part?.parse::<i64>().ok();
+    Utc::new(
+        whole(date.get(..4))?,
+        whole(date.get(4..6))?,
+        whole(date.get(6..8))?,
+        whole(clock.get(..2))?,
+        whole(clock.get(2..4))?,
+        clock.get(4..)?.parse().ok()?,
+    )
 }
 
 fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
@@ -99,9 +115,19 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         let value = source.within(line, 0, value, limit)?;
         values.push(value * unit.factor());
     }
-    super::check_count(source, &mut record, count_line, count, values.len())?;
+    let used = super::check_count(source, &mut record, count_line, count, values.len())?;
+    values.truncate(used);
     let name = text("STREAM");
     let mut channel = Channel::new(name.clone(), Direction::parse(&name), time_step, values);
+    channel.start = start(&text("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS"));
+    let number = |key: &str| leading_number(text(key).as_bytes()).map(|(value, _)| value);
+    channel.site = Site {
+        sensor: text("LOCATION"),
+        elevation: number("STATION_ELEVATION_M"),
+        vs30: number("VS30_M/S").or(number("VS30_M/SEC")).filter(|speed| *speed > 0.0),
+        ..Site::default()
+    }
+    .at(number("STATION_LATITUDE_DEGREE").zip(number("STATION_LONGITUDE_DEGREE")));
     if let Some((value, digits)) = leading_number(text("PGA_CM/S^2").as_bytes()) {
         channel.peaks.push(StatedPeak {
             quantity: Quantity::Acceleration,

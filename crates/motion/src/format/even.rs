@@ -115,17 +115,16 @@ pub(crate) fn even_steps(
     Ok((step, columns))
 }
 
-/// A round step that the mean keeps within 0.1 % and nine of ten single steps within their digits.
+/// A round step from which no time strays by more than one unit of its last digit, as times do that
+/// were cut instead of rounded.
 fn jittered(time: &[f64], mean: f64, resolution: f64) -> Option<f64> {
     let step = 1.0 / (1.0 / mean).round();
-    let close = time
-        .windows(2)
-        .filter(|pair| (pair[1] - pair[0] - step).abs() <= 1.01 * resolution)
-        .count();
+    let strays = |(k, t): (usize, &f64)| {
+        (t - time[0] - k as f64 * step).abs() > 1.01 * resolution + 1e-9 * t.abs()
+    };
     // Times coarser than the step would say nothing about evenness.
     let fine = resolution < 0.5 * step;
-    (fine && (mean / step - 1.0).abs() <= 1e-3 && 10 * close >= 9 * (time.len() - 1))
-        .then_some(step)
+    (fine && !time.iter().enumerate().any(strays)).then_some(step)
 }
 
 /// Round steps near the mean, then the mean itself.

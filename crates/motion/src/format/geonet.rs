@@ -10,6 +10,8 @@ use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::math;
 use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::site::{Site, position};
+use crate::utc::Utc;
 
 pub(crate) const FORMAT: Format =
     Format { name: "geonet", title: "GeoNet V1A and V2A (New Zealand)", sniff, read };
@@ -75,6 +77,20 @@ fn read_component(
         .unwrap_or("")
         .to_owned();
     let mut channel = Channel::new(name.clone(), Direction::parse(&name), time_step, values);
+    // Year and month, day and hour, minute and milliseconds of time zero; a corrected record begins
+    // with the filter's pad before it.
+    #[expect(clippy::cast_possible_truncation, reason = "saturates, and is checked then")]
+    let whole = |row: usize, column: usize| cell(row, column) as i64;
+    let zero = Utc::new(
+        whole(1, 9),
+        whole(1, 10),
+        whole(2, 9),
+        whole(2, 10),
+        whole(4, 9),
+        1e-3 * cell(4, 10),
+    );
+    channel.start = zero.map(|zero| zero.later(-cell(7, 2)));
+    channel.site = Site::default().at(position(&source.text(first + 1)));
     let mut measured = vec![(Quantity::Acceleration, math::peak(&channel.acceleration))];
     if corrected {
         for (column, quantity) in [(5, Quantity::Velocity), (6, Quantity::Displacement)] {

@@ -10,12 +10,17 @@ use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::math;
 use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::site::Site;
+use crate::utc::{DateOrder, Utc};
 
 pub(crate) const FORMAT: Format =
     Format { name: "knet", title: "K-NET and KiK-net (NIED)", sniff, read };
 
 const HEADER_LINES: usize = 17;
 const GAL: f64 = 0.01;
+/// What is taken off the record time to get that of the first sample (s): the delay of the recorder
+/// and the nine hours of Japan time.
+const LATE: f64 = 15.0 + 9.0 * 3600.0;
 
 fn sniff(source: &Source<'_>) -> bool {
     source.text(0).starts_with("Origin Time")
@@ -66,6 +71,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let (name, direction, borehole) = direction(&direction_text);
     let first = field(source, "Memo").map_or(HEADER_LINES, |(line, _)| line + 1);
     let counts = read_counts(source, first, LARGEST_ACCELERATION / factor)?;
+    let mut used = counts.len();
     let (duration_line, duration) = need("Duration")?;
     if let Some((seconds, _)) = leading_number(duration.as_bytes()) {
         let stated = (seconds * rate).round();
@@ -74,7 +80,8 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             // Whole seconds are stated; up to one second more or less is rounding.
             let second = super::whole(source, duration_line, "a sampling frequency", rate.ceil())?;
             if counts.len().abs_diff(stated) > second {
-                super::check_count(source, &mut record, duration_line, stated, counts.len())?;
+                let (line, found) = (duration_line, counts.len());
+                used = super::check_count(source, &mut record, line, stated, found)?;
             } else if counts.len() != stated {
                 record.warn(
                     duration_line + 1,
@@ -83,7 +90,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             }
         }
     }
-    let mut values: Vec<f64> = counts.iter().map(|count| count * factor).collect();
+    let mut values: Vec<f64> = counts[..used].iter().map(|count| count * factor).collect();
     let offset = math::mean(&values);
     for value in &mut values {
         *value -= offset;
@@ -94,10 +101,24 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         offset / GAL
     ));
     let lower = source.name.to_ascii_lowercase();
-    if borehole || ["ns1", "ew1", "ud1"].iter().any(|end| lower.ends_with(end)) {
+    let borehole = borehole || ["ns1", "ew1", "ud1"].iter().any(|end| lower.ends_with(end));
+    if borehole {
         record.warn(None, "this is the borehole sensor, not the ground surface");
     }
     let mut channel = Channel::new(name, direction, 1.0 / rate, values);
+    channel.start = field(source, "Record Time")
+        .and_then(|(_, text)| Utc::in_header(&text, DateOrder::DayFirst))
+        .map(|late| late.later(-LATE));
+    let number = |key: &str| {
+        field(source, key).and_then(|(_, text)| leading_number(text.as_bytes())).map(|(v, _)| v)
+    };
+    channel.site = Site {
+        sensor: if borehole { "borehole" } else { "surface" }.to_owned(),
+        // -9999 stands for none.
+        elevation: number("Station Height").filter(|height| *height > -9000.0),
+        ..Site::default()
+    }
+    .at(number("Station Lat.").zip(number("Station Lon")));
     if let Some((line, text)) = field(source, "Max")
         && let Some((value, digits)) = leading_number(text.as_bytes())
     {

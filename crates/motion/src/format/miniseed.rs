@@ -7,10 +7,13 @@
 use std::collections::BTreeMap;
 
 use super::source::{Source, latin1};
-use super::{Format, ReadOptions};
+use super::{Format, ReadOptions, seed};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
+use crate::instrument::SeedName;
 use crate::record::{Channel, Record, Stage};
+use crate::site::Site;
+use crate::utc::Utc;
 
 pub(crate) const FORMAT: Format = Format { name: "miniseed", title: "miniSEED 2", sniff, read };
 
@@ -22,17 +25,15 @@ fn sniff(source: &Source<'_>) -> bool {
         && b[..6].iter().all(|c| c.is_ascii_digit() || *c == b' ')
         && matches!(b[6], b'D' | b'R' | b'Q' | b'M')
         && matches!(b[7], b' ' | 0)
-        && b[8..20].iter().all(|c| c.is_ascii_alphanumeric() || *c == b' ')
+        && b[8..20].iter().all(|c| c.is_ascii_alphanumeric() || matches!(*c, b' ' | b'-'))
 }
 
 /// One data record's header.
 struct Header {
-    id: String,
-    channel: String,
+    id: SeedName,
     samples: usize,
     rate: f64,
-    /// Start in seconds since the beginning of year 0, good for differences.
-    start: f64,
+    start: Utc,
     data: usize,
     length: usize,
     encoding: u8,
@@ -41,15 +42,15 @@ struct Header {
 
 /// One channel's samples so far.
 struct Trace {
-    channel: String,
     rate: f64,
-    end: f64,
+    start: Utc,
+    end: Utc,
     values: Vec<f64>,
 }
 
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
     let bytes = source.bytes;
-    let mut traces: BTreeMap<String, Trace> = BTreeMap::new();
+    let mut traces: BTreeMap<SeedName, Trace> = BTreeMap::new();
     let mut at = 0;
     while at + FIXED_HEADER <= bytes.len() {
         let header = header(source, at)?;
@@ -74,24 +75,46 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
             format!("{} bytes in all", bytes.len()),
         ));
     }
-    let Some(sensitivity) = options.sensitivity else {
-        return Err(source.error(
-            (),
-            Refusal::Missing,
-            "a sensitivity (miniSEED holds counts)",
-            "none",
-            "state the counts per m/s2 from the station's StationXML (InstrumentSensitivity)",
-        ));
-    };
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
+    let mut stations: Vec<String> =
+        traces.keys().map(|id| format!("{}.{}", id.network, id.station)).collect();
+    stations.dedup();
+    record.station = stations.join(", ");
     for (id, trace) in traces {
-        record.station.clone_from(&id);
-        let mut values: Vec<f64> = trace.values.iter().map(|count| count / sensitivity).collect();
-        super::remove_offset(&mut record, &trace.channel, &mut values);
-        let direction = Direction::parse(&trace.channel);
-        record.channels.push(Channel::new(trace.channel, direction, 1.0 / trace.rate, values));
+        let known = options.instruments.iter().find(|i| i.describes(&id, Some(trace.start)));
+        let sensitivity = known.map(|known| known.sensitivity).or(options.sensitivity);
+        let sensitivity = sensitivity.ok_or_else(|| {
+            source.error(
+                (),
+                Refusal::Missing,
+                format!("a sensitivity for channel {} (miniSEED holds counts)", id.channel),
+                "none",
+                "state the counts per m/s2 from the station's StationXML (InstrumentSensitivity)",
+            )
+        })?;
+        let step = 1.0 / trace.rate;
+        let values: Vec<f64> = trace.values.iter().map(|count| count / sensitivity).collect();
+        let mut values =
+            seed::as_acceleration(source, &mut record, options, &id, known, step, values)?;
+        if !seed::differentiates(options) {
+            super::remove_offset(&mut record, &id.channel, &mut values);
+        }
+        record.notes.push(format!(
+            "channel {}: counts divided by {sensitivity} counts per m/s2, as given",
+            id.channel
+        ));
+        let direction = known
+            .and_then(|known| known.direction)
+            .unwrap_or_else(|| Direction::parse(&id.channel));
+        let station = format!("{}.{}", id.network, id.station);
+        let mut channel = Channel::new(id.channel, direction, step, values);
+        channel.start = Some(trace.start);
+        channel.site = Site { station, sensor: id.location, ..Site::default() };
+        if let Some(known) = known {
+            known.complete(&mut channel.site);
+        }
+        record.channels.push(channel);
     }
-    record.notes.push(format!("counts divided by {sensitivity} counts per m/s2, as given"));
     Ok(record)
 }
 
@@ -110,6 +133,10 @@ fn two(bytes: &[u8], at: usize, big: bool) -> u16 {
     if big { u16::from_be_bytes(pair) } else { u16::from_le_bytes(pair) }
 }
 
+fn signed_pair(bytes: &[u8], at: usize, big: bool) -> f64 {
+    f64::from(i16::from_ne_bytes(two(bytes, at, big).to_ne_bytes()))
+}
+
 fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
     let bytes = &source.bytes[at..];
     // The year tells the byte order, as no flag does.
@@ -124,28 +151,38 @@ fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
         ));
     }
     let part = |from: usize, to: usize| latin1(&bytes[from..to]).trim().to_owned();
-    let id = format!("{}.{}.{}.{}", part(18, 20), part(8, 13), part(13, 15), part(15, 18));
-    let start = f64::from(year) * 366.0 * 86400.0
-        + f64::from(day) * 86400.0
-        + f64::from(bytes[24]) * 3600.0
-        + f64::from(bytes[25]) * 60.0
-        + f64::from(bytes[26])
-        + f64::from(two(bytes, 28, big)) * 1e-4;
-    #[expect(clippy::cast_possible_wrap, reason = "two's complement is the format's")]
-    let (factor, multiplier) =
-        (f64::from(two(bytes, 32, big) as i16), f64::from(two(bytes, 34, big) as i16));
+    // Blanks are an empty location code, and so is what programs print for one.
+    let location = Some(part(13, 15)).filter(|code| code != "--").unwrap_or_default();
+    let id =
+        SeedName { network: part(18, 20), station: part(8, 13), location, channel: part(15, 18) };
+    let (hour, minute, second) = (bytes[24].into(), bytes[25].into(), f64::from(bytes[26]));
+    let seconds = second + f64::from(two(bytes, 28, big)) * 1e-4;
+    let Some(mut start) = Utc::ordinal(year.into(), day.into(), hour, minute, seconds) else {
+        return Err(damaged(
+            source,
+            &format!("a start time in the data record at byte {at}"),
+            format!("day {day} of {year}, {hour}:{minute}:{seconds}"),
+        ));
+    };
+    let (factor, multiplier) = (signed_pair(bytes, 32, big), signed_pair(bytes, 34, big));
     let rate = if factor == 0.0 || multiplier == 0.0 {
         0.0
     } else {
         (if factor > 0.0 { factor } else { -1.0 / factor })
             * (if multiplier > 0.0 { multiplier } else { -1.0 / multiplier })
     };
+    // Bit 1 of the activity flags: the correction is in the time already.
+    if bytes[36] & 2 == 0 {
+        start = start.later(1e-4 * f64::from(i32::from_be_bytes(order(&bytes[40..44], big))));
+    }
     let mut encoding = None;
     let mut blockette = usize::from(two(bytes, 46, big));
     let mut seen = 0;
     while blockette >= FIXED_HEADER && blockette + 8 <= bytes.len() && seen < 16 {
         if two(bytes, blockette, big) == 1000 {
             encoding = Some((bytes[blockette + 4], bytes[blockette + 5], bytes[blockette + 6]));
+        } else if two(bytes, blockette, big) == 1001 {
+            start = start.later(1e-6 * f64::from(i8::from_ne_bytes([bytes[blockette + 5]])));
         }
         blockette = usize::from(two(bytes, blockette + 2, big));
         seen += 1;
@@ -165,37 +202,32 @@ fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
             format!("data at byte {data} of {length}, {rate} Hz"),
         ));
     }
-    let channel = part(15, 18);
-    Ok(Header { id, channel, samples, rate, start, data, length, encoding, big: order == 1 })
+    let big = order == 1;
+    Ok(Header { id, samples, rate, start, data, length, encoding, big })
 }
 
 /// Joins records of one channel; a gap or overlap is an error, because nothing may be made up.
 fn append(
     source: &Source<'_>,
-    traces: &mut BTreeMap<String, Trace>,
+    traces: &mut BTreeMap<SeedName, Trace>,
     header: &Header,
     mut values: Vec<f64>,
 ) -> Result<(), ReadError> {
-    let span = values.len() as f64 / header.rate;
+    let end = header.start.later(values.len() as f64 / header.rate);
     let Some(trace) = traces.get_mut(&header.id) else {
-        let trace = Trace {
-            channel: header.channel.clone(),
-            rate: header.rate,
-            end: header.start + span,
-            values,
-        };
+        let trace = Trace { rate: header.rate, start: header.start, end, values };
         traces.insert(header.id.clone(), trace);
         return Ok(());
     };
-    let off = header.start - trace.end;
+    let off = header.start.since(trace.end);
     if trace.rate != header.rate || off.abs() > 0.6 / header.rate {
         return Err(damaged(
             source,
-            &format!("{} without gaps at one rate", header.id),
+            &format!("{} without gaps at one rate", header.id.channel),
             format!("{off:.4} s between records at {} and {} Hz", trace.rate, header.rate),
         ));
     }
-    trace.end = header.start + span;
+    trace.end = end;
     trace.values.append(&mut values);
     Ok(())
 }

@@ -14,22 +14,26 @@ mod geonet;
 mod knet;
 mod miniseed;
 mod native;
+mod npz;
+mod number;
+mod packed;
 mod peer;
 mod refused;
 mod renadic;
 mod sac;
+mod seed;
 mod slammer;
 mod smc;
 mod source;
 mod unam;
 mod usc;
 
-pub use refused::station_xml_sensitivities;
 pub use slammer::slammer_step;
 
 use crate::error::{ReadError, Refusal};
+use crate::instrument::Instrument;
 use crate::math::STANDARD_GRAVITY;
-use crate::record::Record;
+use crate::record::{Quantity, Record};
 use crate::units::AccelerationUnit;
 use source::{LARGEST_ACCELERATION, Place, Source, parse_number, shorten};
 
@@ -43,8 +47,14 @@ pub struct ReadOptions {
     pub unit: Option<AccelerationUnit>,
     /// Step (s) for formats that state none.
     pub time_step: Option<f64>,
-    /// Counts to one m/s² for formats that hold counts.
+    /// Counts to one m/s² for formats that hold counts; to one m/s or m where [`ReadOptions::recorded`]
+    /// says that velocity or displacement was recorded.
     pub sensitivity: Option<f64>,
+    /// Metadata of single channels; the first that fits a channel goes before the sensitivity for all.
+    pub instruments: Vec<Instrument>,
+    /// What SEED and SAC files hold, where the caller knows better than their channel codes; velocity
+    /// and displacement are differentiated.
+    pub recorded: Option<Quantity>,
 }
 
 /// A readable format.
@@ -82,6 +92,11 @@ impl Format {
     fn read_source(&self, source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
         let mut record = (self.read)(source, options)?;
         record.format = self.name;
+        if options.recorded.is_some()
+            && ![sac::FORMAT.name, miniseed::FORMAT.name].contains(&self.name)
+        {
+            record.warn(None, "the file states what it holds; what was said of it was ignored");
+        }
         if options.time_step.is_some() && self.name != columns::FORMAT.name {
             record.warn(None, "the file states its step; the time step given was ignored");
         }
@@ -101,6 +116,7 @@ pub const FORMATS: &[Format] = &[
     sac::FORMAT,
     miniseed::FORMAT,
     native::FORMAT,
+    npz::FORMAT,
     smc::FORMAT,
     geonet::FORMAT,
     renadic::FORMAT,
@@ -120,9 +136,10 @@ pub const FORMATS: &[Format] = &[
 
 /// Files that are known and refused, tried first.
 const KNOWN_OTHERS: &[Format] =
-    &[refused::HDF5, refused::ARCHIVE, refused::XML, refused::USGS_BLOCKS, slammer::FORMAT];
+    &[refused::HDF5, refused::XML, refused::USGS_BLOCKS, slammer::FORMAT];
 
-/// Reads a strong-motion file of any format; `name` is used in messages only.
+/// Reads a strong-motion file of any format, also one inside a gzip or zip file; `name` is used in
+/// messages only.
 ///
 /// # Errors
 /// If no format fits, the file holds no acceleration, is damaged, or lacks a unit, step or
@@ -141,7 +158,19 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
     let source = Source::new(name, bytes);
     check_bytes(&source)?;
     check_options(&source, options)?;
-    let Some(format) = KNOWN_OTHERS.iter().chain(FORMATS).find(|format| (format.sniff)(&source))
+    if let Some((bytes, inside)) = packed::unpack(&source)? {
+        let inside = Source::new(&inside, &bytes);
+        check_bytes(&inside)?;
+        let mut record = read_any(&inside, options)?;
+        name.clone_into(&mut record.file);
+        return Ok(record);
+    }
+    read_any(&source, options)
+}
+
+/// Reads bytes that are not packed.
+fn read_any(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+    let Some(format) = KNOWN_OTHERS.iter().chain(FORMATS).find(|format| (format.sniff)(source))
     else {
         source.require_text()?;
         return Err(source.error(
@@ -152,7 +181,7 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
             "convert the file to plain columns, one value or time and value to a line",
         ));
     };
-    format.read_source(&source, options)
+    format.read_source(source, options)
 }
 
 /// Refuses what no format is.
@@ -227,6 +256,11 @@ fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
         ));
     }
     drop_dead_channels(source, record)?;
+    for channel in &mut record.channels {
+        if channel.site.station.is_empty() {
+            channel.site.station.clone_from(&record.station);
+        }
+    }
     for index in 0..record.channels.len() {
         let channel = &mut record.channels[index];
         let label = channel.name.clone();
@@ -276,6 +310,7 @@ fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
                 ));
             }
         }
+        messages.extend(record.channels[index].implausible());
         let in_g = pga / STANDARD_GRAVITY;
         if in_g > 3.0 {
             messages.push(format!("channel {label}: PGA is {in_g:.3} g; check the unit"));
@@ -286,7 +321,15 @@ fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
             record.warn(None, message);
         }
     }
-    Ok(())
+    record.align_each_site().map_err(|error| {
+        source.error(
+            (),
+            Refusal::Damaged,
+            "channels of one station and sensor that were recorded at one time",
+            error.to_string(),
+            "split the file by time",
+        )
+    })
 }
 
 /// A positive whole number from a header.
@@ -304,24 +347,34 @@ fn whole(source: &Source<'_>, line: usize, what: &str, value: f64) -> Result<usi
     ))
 }
 
-/// Compares a stated count with the values found: one less or two more are used with a warning,
-/// because headers in circulation are off by that much; anything else means a cut or mixed file.
+/// How many of the values found are used where a count is stated: one less or two more all are, because
+/// headers in circulation are off by that much; of more only the stated number; fewer mean a cut file.
 fn check_count(
     source: &Source<'_>,
     record: &mut Record,
     line: usize,
     stated: usize,
     found: usize,
-) -> Result<(), ReadError> {
+) -> Result<usize, ReadError> {
     if stated == found {
-        return Ok(());
+        return Ok(found);
     }
     if found + 1 == stated || found == stated + 1 || found == stated + 2 {
         record.warn(
             line + 1,
             format!("the header states {stated} values, the file holds {found}; all are used"),
         );
-        return Ok(());
+        return Ok(found);
+    }
+    if found > stated {
+        record.warn(
+            line + 1,
+            format!(
+                "the header states {stated} values, the file holds {found}; the last {} are left out",
+                found - stated
+            ),
+        );
+        return Ok(stated);
     }
     let column = source.find(line, &stated.to_string());
     Err(source.error(

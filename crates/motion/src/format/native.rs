@@ -12,27 +12,36 @@
 //! ```
 //!
 //! `# initial_velocity:` gives the velocity (m/s) at the first sample of each channel where it is not
-//! zero. Other `#` lines are comments. Spec: this file; written by [`crate::write::text`].
+//! zero. `# recorded:` gives start (UTC), place and sensor of all channels, or one such line to each:
+//! `start 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, elevation 12, vs30 330, sensor
+//! surface, station Napa`; what is not known is left out. Other `#` lines are comments. Spec: this file; written by [`crate::write::text`].
 
 use super::source::{LARGEST_ACCELERATION, Source, parse_number, shorten};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::record::{Channel, Record, Stage};
+use crate::site::Site;
 use crate::units::AccelerationUnit;
+use crate::utc::Utc;
+use crate::write::TITLE;
 
 pub(crate) const FORMAT: Format =
     Format { name: "barrelstack", title: "plain text form of this crate", sniff, read };
 
-const TITLE: &str = "# barrelstack motion 1";
-
 fn sniff(source: &Source<'_>) -> bool {
-    source.text(0).starts_with("# barrelstack motion")
+    written(source, 0).starts_with("# barrelstack motion")
+}
+
+/// A line as it was written, in UTF-8.
+fn written(source: &Source<'_>, line: usize) -> String {
+    std::str::from_utf8(source.raw(line))
+        .map_or_else(|_| source.text(line), |t| t.trim().to_owned())
 }
 
 fn field(source: &Source<'_>, end: usize, key: &str) -> Option<(usize, String)> {
     (0..end).find_map(|line| {
-        let text = source.text(line);
+        let text = written(source, line);
         let (name, value) = text.strip_prefix('#')?.split_once(':')?;
         (name.trim() == key).then(|| (line, value.trim().to_owned()))
     })
@@ -40,8 +49,20 @@ fn field(source: &Source<'_>, end: usize, key: &str) -> Option<(usize, String)> 
 
 fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let end = (0..source.lines.len())
-        .find(|&line| !source.text(line).starts_with('#'))
+        .find(|&line| !written(source, line).starts_with('#'))
         .ok_or_else(|| source.cut("rows of numbers after the header", "none"))?;
+    described(source, end, |names, limit| {
+        super::rows(source, end, source.lines.len(), names.len(), limit)
+    })
+}
+
+/// The record that the header in the lines before `end` describes; `columns` gives the numbers of the
+/// channels named, none of them above a limit, in the unit that the header states.
+pub(super) fn described(
+    source: &Source<'_>,
+    end: usize,
+    columns: impl FnOnce(&[&str], f64) -> Result<Vec<Vec<f64>>, ReadError>,
+) -> Result<Record, ReadError> {
     let refuse = |line: usize, expected: &str, found: &str| {
         source.error(
             line,
@@ -51,8 +72,8 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             "correct the header line",
         )
     };
-    if source.text(0) != TITLE {
-        return Err(refuse(0, &format!("\"{TITLE}\""), &source.text(0)));
+    if written(source, 0) != TITLE {
+        return Err(refuse(0, &format!("\"{TITLE}\""), &written(source, 0)));
     }
     let need = |key: &str| {
         field(source, end, key).ok_or_else(|| {
@@ -104,12 +125,14 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             _ => return Err(refuse(line, "raw, corrected or unknown", &text)),
         },
     };
+    let places = places(source, end, channels.len())?;
     let limit = LARGEST_ACCELERATION / unit.factor();
-    let columns = super::rows(source, end, source.lines.len(), channels.len(), limit)?;
+    let names: Vec<&str> = channels.iter().map(|(name, _)| name.as_str()).collect();
+    let columns = columns(&names, limit)?;
     let mut record = Record::new(FORMAT.name, source.name, stage);
     record.station = field(source, end, "station").map(|(_, text)| text).unwrap_or_default();
     record.event = field(source, end, "event").map(|(_, text)| text).unwrap_or_default();
-    for text in (0..end).map(|line| source.text(line)) {
+    for text in (0..end).map(|line| written(source, line)) {
         for key in ["source", "attribution", "licence", "processing"] {
             if let Some(value) = text.strip_prefix(&format!("# {key}: ")) {
                 record.notes.push(format!("{key}: {value}"));
@@ -120,7 +143,51 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         let values = column.iter().map(|value| value * unit.factor()).collect();
         let mut channel = Channel::new(name, direction, time_step, values);
         channel.initial_velocity = velocities.get(k).copied().unwrap_or(0.0);
+        (channel.start, channel.site) = places.get(k).cloned().unwrap_or_default();
         record.channels.push(channel);
     }
     Ok(record)
+}
+
+/// Start and place of every channel: one line for all, or one to a channel.
+fn places(
+    source: &Source<'_>,
+    end: usize,
+    channels: usize,
+) -> Result<Vec<(Option<Utc>, Site)>, ReadError> {
+    let mut found = Vec::new();
+    for line in 0..end {
+        let text = written(source, line);
+        let Some(words) = text.strip_prefix("# recorded:") else { continue };
+        found.push(place(words).ok_or_else(|| {
+            source.error(
+                line,
+                Refusal::Damaged,
+                "start, latitude, longitude, elevation, vs30, sensor or station between commas",
+                format!("\"{}\"", shorten(words)),
+                "correct the header line",
+            )
+        })?);
+    }
+    Ok(if found.len() == 1 { vec![found.remove(0); channels] } else { found })
+}
+
+/// `start 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, sensor surface`.
+fn place(words: &str) -> Option<(Option<Utc>, Site)> {
+    let (mut start, mut site) = (None, Site::default());
+    for part in words.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+        let (key, value) = part.split_once(' ')?;
+        let number = || parse_number(value.as_bytes());
+        match key {
+            "start" => start = Some(value.parse().ok()?),
+            "latitude" => site.latitude = Some(number()?),
+            "longitude" => site.longitude = Some(number()?),
+            "elevation" => site.elevation = Some(number()?),
+            "vs30" => site.vs30 = Some(number()?),
+            "sensor" => value.trim().clone_into(&mut site.sensor),
+            "station" => value.trim().clone_into(&mut site.station),
+            _ => return None,
+        }
+    }
+    Some((start, site))
 }

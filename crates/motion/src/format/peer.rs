@@ -50,13 +50,66 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     }
     let limit = LARGEST_ACCELERATION / unit.factor();
     let mut values = source.all_tokens(start, end, limit)?;
-    super::check_count(source, &mut record, counts.line, counts.count, values.len())?;
+    if values.len() < counts.count
+        && let Some((by_column, blanks)) = in_columns(source, start, end, limit)?
+        && by_column.len() == counts.count
+    {
+        for (line, column) in blanks {
+            record.warn(
+                line + 1,
+                format!("column {}: a blank field, which Fortran reads as 0", column + 1),
+            );
+        }
+        values = by_column;
+    }
+    let used = super::check_count(source, &mut record, counts.line, counts.count, values.len())?;
+    values.truncate(used);
     for value in &mut values {
         *value *= unit.factor();
     }
     let direction = Direction::parse(&component);
     record.channels.push(Channel::new(component, direction, counts.time_step, values));
     Ok(record)
+}
+
+/// Places of blank fields: line and first column, 0-based.
+type Blanks = Vec<(usize, usize)>;
+
+/// The values by columns as wide as in the first row, and the places of fields left blank; nothing if
+/// the rows are not of that form.
+fn in_columns(
+    source: &Source<'_>,
+    start: usize,
+    end: usize,
+    limit: f64,
+) -> Result<Option<(Vec<f64>, Blanks)>, ReadError> {
+    let mut row = Vec::new();
+    source.tokens(start, limit, &mut row)?;
+    let length = source.end_of(start);
+    if row.is_empty() || !length.is_multiple_of(row.len()) {
+        return Ok(None);
+    }
+    let width = length / row.len();
+    let (mut values, mut blanks) = (Vec::new(), Vec::new());
+    for line in start..end {
+        let last = line + 1 == end;
+        let filled = if last { source.end_of(line) } else { length };
+        for column in (0..filled).step_by(width) {
+            let field = source.slice(line, column, width);
+            if field.trim_ascii().is_empty() {
+                blanks.push((line, column));
+                values.push(0.0);
+            } else if let Some(value) = super::source::parse_number(field) {
+                values.push(source.within(line, column, value, limit)?);
+            } else {
+                return Ok(None);
+            }
+        }
+        if source.end_of(line) > length {
+            return Ok(None);
+        }
+    }
+    Ok(Some((values, blanks)))
 }
 
 /// `*** Begin data ***` and its like around the values of some copies.

@@ -1,9 +1,10 @@
 //! Files that are known and hold no acceleration history that can be read here.
 
-use super::source::{Source, leading_number};
+use super::source::Source;
 use super::{Format, ReadOptions};
 use crate::error::{ReadError, Refusal};
-use crate::record::Record;
+use crate::instrument::station_xml;
+use crate::record::{Quantity, Record};
 
 pub(crate) const HDF5: Format = Format {
     name: "hdf5",
@@ -14,9 +15,6 @@ pub(crate) const HDF5: Format = Format {
 
 pub(crate) const XML: Format =
     Format { name: "xml", title: "StationXML and QuakeML (refused)", sniff: is_xml, read: xml };
-
-pub(crate) const ARCHIVE: Format =
-    Format { name: "archive", title: "zip and gzip (refused)", sniff: is_archive, read: archive };
 
 /// Blocks of acceleration, velocity and displacement that the USGS gave out around 1987; no sample of
 /// them can be passed on, so that a reader could not be tested.
@@ -57,32 +55,19 @@ fn hdf5(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     ))
 }
 
-fn is_archive(source: &Source<'_>) -> bool {
-    source.bytes.starts_with(b"PK\x03\x04") || source.bytes.starts_with(&[0x1F, 0x8B])
-}
-
-fn archive(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
-    Err(source.error(
-        (),
-        Refusal::Unrecognized,
-        "a strong-motion file",
-        "a compressed archive",
-        "unpack it first",
-    ))
-}
-
 fn is_xml(source: &Source<'_>) -> bool {
     let text = source.text(0);
     text.starts_with("<?xml") || text.starts_with("<FDSNStationXML")
 }
 
 fn xml(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
-    let found = station_xml_sensitivities(source.bytes);
+    let mut found = station_xml(&String::from_utf8_lossy(source.bytes)).unwrap_or_default();
+    found.retain(|known| known.quantity == Some(Quantity::Acceleration));
     let remedy = if found.is_empty() {
         "give the waveform file".to_owned()
     } else {
         let list: Vec<String> =
-            found.iter().map(|(channel, value)| format!("{channel} {value}")).collect();
+            found.iter().map(|known| format!("{} {}", known.channel, known.sensitivity)).collect();
         format!(
             "give the waveform file with the sensitivity stated here (counts per m/s2: {})",
             list.join(", ")
@@ -95,33 +80,4 @@ fn xml(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         "XML metadata",
         remedy,
     ))
-}
-
-/// The overall sensitivities of the acceleration channels in a `StationXML` file: channel code and
-/// counts per m/s², in file order.
-pub fn station_xml_sensitivities(bytes: &[u8]) -> Vec<(String, f64)> {
-    let text = super::source::latin1(bytes);
-    let mut found = Vec::new();
-    for channel in text.split("<Channel ").skip(1) {
-        let code = channel.split("code=\"").nth(1).and_then(|rest| rest.split('"').next());
-        let Some(block) = channel
-            .split("<InstrumentSensitivity>")
-            .nth(1)
-            .and_then(|rest| rest.split("</InstrumentSensitivity>").next())
-        else {
-            continue;
-        };
-        let unit = block.split("<Name>").nth(1).and_then(|rest| rest.split('<').next());
-        let value = block
-            .split("<Value>")
-            .nth(1)
-            .and_then(|rest| leading_number(rest.as_bytes()))
-            .map(|(value, _)| value);
-        if let (Some(code), Some("M/S**2" | "m/s**2" | "M/S^2" | "m/s^2"), Some(value)) =
-            (code, unit, value)
-        {
-            found.push((code.to_owned(), value));
-        }
-    }
-    found
 }

@@ -1,12 +1,14 @@
 //! RENADIC, Universidad de Chile: CDMG volume 1 with pairs in g/10 and often a clock channel.
 //!
-//! Coordinates, dates and azimuth integers of these files are mostly zero and are not used.
+//! Coordinates, dates and azimuth integers of these files are mostly zero or of another day and are
+//! not used.
 //! Spec: the CDMG volume 1 layout; "UNIVERSIDAD DE CHILE - RENADIC" on line 8 of each channel.
 
 use super::source::Source;
 use super::{Format, ReadOptions, cdmg};
 use crate::error::ReadError;
 use crate::record::{Record, Stage};
+use crate::site::Site;
 
 pub(crate) const FORMAT: Format =
     Format { name: "renadic", title: "RENADIC (Universidad de Chile)", sniff, read };
@@ -18,6 +20,8 @@ fn sniff(source: &Source<'_>) -> bool {
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
     cdmg::read_blocks(source, options, &mut record, cdmg::PAIRS)?;
+    // Times and coordinates of these headers are those of the software's first day, or zero.
+    record.place(None, &Site::default());
     if source.name.to_ascii_lowercase().contains("parte") {
         record.warn(
             None,

@@ -3,10 +3,13 @@
 //! Spec: SAC users manual, "SAC data file format", header version 6.
 
 use super::source::{Source, latin1};
-use super::{Format, ReadOptions};
+use super::{Format, ReadOptions, seed};
 use crate::direction::{Direction, Orientation};
 use crate::error::{ReadError, Refusal};
+use crate::instrument::SeedName;
 use crate::record::{Channel, Record, Stage};
+use crate::site::Site;
+use crate::utc::Utc;
 
 pub(crate) const FORMAT: Format = Format { name: "sac", title: "SAC binary", sniff, read };
 
@@ -89,7 +92,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     }
     // IDEP: 6 displacement, 7 velocity, 8 acceleration, 5 unknown.
     let dependent = integer(bytes, DEPENDENT, big);
-    if matches!(dependent, 6 | 7) {
+    if matches!(dependent, 6 | 7) && options.recorded.is_none() {
         return Err(source.error(
             (),
             Refusal::NotAcceleration,
@@ -113,7 +116,23 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     let time_step = real(bytes, 0, big)
         .filter(|step| *step > 0.0)
         .ok_or_else(|| damaged("a step above 0 in word 1", "none".to_owned()))?;
-    let factor = match (options.sensitivity, options.unit) {
+    let text = |from: usize, length: usize| {
+        let raw = bytes.get(from..from + length).unwrap_or(&[]);
+        let raw = raw.split(|&b| b == 0).next().unwrap_or(&[]);
+        let text = latin1(raw).trim().to_owned();
+        if text == "-12345" { String::new() } else { text }
+    };
+    let location = Some(text(464, 8)).filter(|code| code != "--").unwrap_or_default();
+    let codes = SeedName {
+        network: text(608, 8),
+        station: text(440, 8),
+        location: location.clone(),
+        channel: text(600, 8),
+    };
+    let start = start(bytes, big);
+    let known = options.instruments.iter().find(|known| known.describes(&codes, start));
+    let sensitivity = known.map(|known| known.sensitivity).or(options.sensitivity);
+    let factor = match (sensitivity, options.unit) {
         (Some(sensitivity), _) => 1.0 / sensitivity,
         (None, Some(unit)) => unit.factor(),
         (None, None) => {
@@ -138,23 +157,20 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
         }
         values.push(value * factor);
     }
-    let text = |from: usize, length: usize| {
-        let raw = bytes.get(from..from + length).unwrap_or(&[]);
-        let raw = raw.split(|&b| b == 0).next().unwrap_or(&[]);
-        let text = latin1(raw).trim().to_owned();
-        if text == "-12345" { String::new() } else { text }
-    };
     // Single precision: 0.02 is stored as 0.0199999996; the nearest short decimal is meant.
     let time_step = (time_step * 1e7).round() / 1e7;
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
     format!("{} {}", text(608, 8), text(440, 8)).trim().clone_into(&mut record.station);
-    let name = text(600, 8);
-    let direction = match (real(bytes, 57, big), real(bytes, 58, big)) {
+    let name = codes.channel.clone();
+    let mut values =
+        seed::as_acceleration(source, &mut record, options, &codes, known, time_step, values)?;
+    let stated = match (real(bytes, 57, big), real(bytes, 58, big)) {
         (_, Some(0.0)) => Direction::up(),
         (_, Some(180.0)) => Direction { downward: true, ..Direction::up() },
         (Some(azimuth), Some(90.0)) => Direction::horizontal(azimuth),
         _ => Direction::parse(&name),
     };
+    let direction = known.and_then(|known| known.direction).unwrap_or(stated);
     let name = if name.is_empty() {
         match direction.orientation {
             Some(Orientation::Vertical) => "up".to_owned(),
@@ -163,7 +179,27 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     } else {
         name
     };
-    super::remove_offset(&mut record, &name, &mut values);
-    record.channels.push(Channel::new(name, direction, time_step, values));
+    if !seed::differentiates(options) {
+        super::remove_offset(&mut record, &name, &mut values);
+    }
+    let mut channel = Channel::new(name, direction, time_step, values);
+    channel.start = start;
+    // Five decimals of a degree are more than single precision holds.
+    let real = |index: usize| real(bytes, index, big).map(|value| (value * 1e5).round() / 1e5);
+    // Words 31 to 33: latitude, longitude, elevation; the "hole" is the location code.
+    channel.site = Site { sensor: location, elevation: real(33), ..Site::default() }
+        .at(real(31).zip(real(32)));
+    if let Some(known) = known {
+        known.complete(&mut channel.site);
+    }
+    record.channels.push(channel);
     Ok(record)
+}
+
+/// Words 70 to 75, the reference instant, and word 5, the time of the first sample after it.
+fn start(bytes: &[u8], big: bool) -> Option<Utc> {
+    let part = |index: usize| i64::from(integer(bytes, index, big));
+    let seconds = part(74) as f64 + 1e-3 * part(75) as f64;
+    let reference = Utc::ordinal(part(70), part(71), part(72), part(73), seconds)?;
+    Some(reference.later(real(bytes, 5, big)?))
 }

@@ -11,6 +11,8 @@ use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::math;
 use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::site::Site;
+use crate::utc::Utc;
 
 pub(crate) const FORMAT: Format = Format { name: "smc", title: "USGS SMC", sniff, read };
 
@@ -46,7 +48,8 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let stage = if title.contains("UNCORRECTED") { Stage::Raw } else { Stage::Corrected };
     let mut record = Record::new(FORMAT.name, source.name, stage);
     record.event = source.text(3);
-    let station = latin1(source.slice(5, 0, 41));
+    let end = source.find(5, "component").unwrap_or(41);
+    let station = latin1(source.slice(5, 0, end));
     station.split_once('=').map_or("", |(_, name)| name).trim().clone_into(&mut record.station);
     let (integers, line) =
         source.fixed(TEXT_LINES, 8 * INTEGER_LINES, Columns::new(8, 10), f64::INFINITY)?;
@@ -68,15 +71,12 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         }
     }
     let limit = LARGEST_ACCELERATION / GAL;
-    let (numbers, next) = source.fixed(data, count, Columns::new(8, 10), limit)?;
+    let (numbers, next) = source.counted(&mut record, data, count, Columns::new(8, 10), limit)?;
     if next < source.lines.len() {
-        return Err(source.error(
-            next,
-            Refusal::Damaged,
-            format!("the end of the file after {count} values"),
-            format!("\"{}\"", shorten(&source.text(next))),
-            "the header states fewer values than the file holds; get the file again",
-        ));
+        record.warn(
+            next + 1,
+            format!("what follows the {count} values is left out, from this line to the last"),
+        );
     }
     let name = component(source);
     let (time_step, values) = if let Some(rate) = real(1).filter(|rate| *rate > 0.0) {
@@ -100,6 +100,12 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     };
     let values: Vec<f64> = values.iter().map(|value| value * GAL).collect();
     let mut channel = Channel::new(name, direction, time_step, values);
+    // Without seconds and milliseconds these integers are the time of the event.
+    #[expect(clippy::cast_possible_truncation, reason = "saturates, and is checked then")]
+    let whole = |index: usize| known(index).map(|value| value as i64);
+    let clock = known(5).zip(known(6)).map(|(second, milli)| second + 1e-3 * milli);
+    channel.start = (|| Utc::ordinal(whole(1)?, whole(2)?, whole(3)?, whole(4)?, clock?))();
+    channel.site = Site::default().at(real(10).zip(real(11)));
     if let Some(Printed { value, resolution }) = source
         .printed_after(6, "pk acc")
         .or_else(|| source.find(6, "pk").and_then(|_| source.printed_after(6, "pk     ")))

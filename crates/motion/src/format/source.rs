@@ -1,6 +1,9 @@
 //! The bytes of a text file by line and column, and numbers read from them or refused with a place.
 
+use super::number::split_touching;
+pub(crate) use super::number::{Printed, leading_number, parse_number, resolution};
 use crate::error::{ReadError, ReadFailure, Refusal};
+use crate::record::Record;
 
 /// Largest acceleration any reader accepts (m/s²), about a thousand g's.
 pub(crate) const LARGEST_ACCELERATION: f64 = 1e4;
@@ -62,7 +65,8 @@ impl<'a> Source<'a> {
         let count = text.split(|&byte| byte == separator).count();
         let mut lines: Vec<&[u8]> = Vec::with_capacity(count);
         lines.extend(text.split(|&byte| byte == separator).map(|mut line| {
-            while let [rest @ .., b'\r'] = line {
+            // Some agencies fill their lines up with NUL.
+            while let [rest @ .., b'\r' | 0] = line {
                 line = rest;
             }
             line
@@ -186,6 +190,54 @@ impl<'a> Source<'a> {
         columns: Columns,
         limit: f64,
     ) -> Result<(Vec<f64>, usize), ReadError> {
+        self.fixed_or_more(line, count, columns, limit, false)
+            .map(|(values, next, _)| (values, next))
+    }
+
+    /// As [`Source::fixed`] where the count came first: what stands behind the last number, on its line
+    /// and on further lines of numbers, is left out with a warning.
+    pub(crate) fn counted(
+        &self,
+        record: &mut Record,
+        line: usize,
+        count: usize,
+        columns: Columns,
+        limit: f64,
+    ) -> Result<(Vec<f64>, usize), ReadError> {
+        let (values, mut next, mut more) = self.fixed_or_more(line, count, columns, limit, true)?;
+        let mut numbers = Vec::new();
+        while next < self.lines.len() {
+            numbers.clear();
+            let filler = self.raw(next).is_empty()
+                || (self.tokens(next, f64::INFINITY, &mut numbers).is_ok() && !numbers.is_empty());
+            if !filler {
+                break;
+            }
+            more += numbers.len();
+            next += 1;
+        }
+        if more > 0 {
+            record.warn(
+                next,
+                format!(
+                    "{more} numbers stand behind the {count} that the header states; they are left \
+                     out"
+                ),
+            );
+        }
+        Ok((values, next))
+    }
+
+    /// Values, the next line, and how many numbers in excess the last line had where `lenient`.
+    fn fixed_or_more(
+        &self,
+        line: usize,
+        count: usize,
+        columns: Columns,
+        limit: f64,
+        lenient: bool,
+    ) -> Result<(Vec<f64>, usize, usize), ReadError> {
+        let mut more = 0;
         let mut values = Vec::with_capacity(count.min(self.bytes.len()));
         let mut at = line;
         while values.len() < count {
@@ -199,14 +251,19 @@ impl<'a> Source<'a> {
             if let Err(error) = self.fixed_line(at, wanted, columns, limit, &mut values) {
                 values.truncate(before);
                 let mut tokens = Vec::with_capacity(wanted);
-                if self.tokens(at, limit, &mut tokens).is_err() || tokens.len() != wanted {
+                let read = self.tokens(at, limit, &mut tokens).is_ok();
+                let last = lenient && before + wanted == count && wanted < columns.per_line;
+                if read && last && tokens.len() > wanted {
+                    more = tokens.len() - wanted;
+                    tokens.truncate(wanted);
+                } else if !read || tokens.len() != wanted {
                     return Err(error);
                 }
                 values.append(&mut tokens);
             }
             at += 1;
         }
-        Ok((values, at))
+        Ok((values, at, more))
     }
 
     fn fixed_line(
@@ -363,13 +420,6 @@ impl From<(usize, usize)> for Place {
     }
 }
 
-/// A number with one unit of its last printed digit.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Printed {
-    pub(crate) value: f64,
-    pub(crate) resolution: f64,
-}
-
 /// Bytes as text, one character each.
 pub(crate) fn latin1(bytes: &[u8]) -> String {
     bytes.iter().map(|&byte| char::from(byte)).collect()
@@ -384,80 +434,8 @@ pub(crate) fn shorten(text: &str) -> String {
     }
 }
 
-/// A finite decimal number with optional Fortran exponent letter `D`; nothing else.
-pub(crate) fn parse_number(field: &[u8]) -> Option<f64> {
-    let field = field.trim_ascii();
-    // Rejects what the standard parser would accept as words: inf, nan, infinity.
-    let mut fortran = false;
-    for &byte in field {
-        match byte {
-            b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E' => {}
-            b'd' | b'D' => fortran = true,
-            _ => return None,
-        }
-    }
-    let text = std::str::from_utf8(field).ok()?;
-    let value: f64 =
-        if fortran { text.replace(['d', 'D'], "E").parse().ok()? } else { text.parse().ok()? };
-    value.is_finite().then_some(value)
-}
-
-/// Splits `-.123E-02-.456E-02` at signs that do not follow an exponent letter.
-fn split_touching(token: &[u8]) -> Option<Vec<(usize, f64)>> {
-    let mut pieces = Vec::new();
-    let mut start = 0;
-    for at in 1..=token.len() {
-        let boundary = at == token.len()
-            || (matches!(token[at], b'+' | b'-')
-                && (token[at - 1].is_ascii_digit() || token[at - 1] == b'.'));
-        if boundary {
-            // A piece without a decimal point is not a Fortran real: refuse to guess where it ends.
-            let piece = &token[start..at];
-            if !piece.contains(&b'.') {
-                return None;
-            }
-            pieces.push((start, parse_number(piece)?));
-            start = at;
-        }
-    }
-    Some(pieces)
-}
-
 fn is_separator(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b',' | b';')
-}
-
-/// The number at the start of `bytes` after blanks, `=` and `:`, with its text.
-pub(crate) fn leading_number(bytes: &[u8]) -> Option<(f64, String)> {
-    let skip = bytes.iter().position(|&b| !matches!(b, b' ' | b'\t' | b'=' | b':'))?;
-    let rest = &bytes[skip..];
-    let mut end = 0;
-    while end < rest.len() {
-        let byte = rest[end];
-        let sign_ok = end == 0 || matches!(rest[end - 1], b'e' | b'E');
-        let exponent_ok = end > 0
-            && rest.get(end + 1).is_some_and(|b| b.is_ascii_digit() || matches!(b, b'+' | b'-'));
-        match byte {
-            b'0'..=b'9' | b'.' => {}
-            b'+' | b'-' if sign_ok => {}
-            b'e' | b'E' if exponent_ok => {}
-            _ => break,
-        }
-        end += 1;
-    }
-    // A sentence may end in a full stop right after the number.
-    let value = parse_number(&rest[..end])?;
-    Some((value, latin1(&rest[..end])))
-}
-
-/// One unit of the last digit of a printed number.
-pub(crate) fn resolution(text: &str) -> f64 {
-    let lower = text.to_ascii_lowercase();
-    let (mantissa, exponent) = lower.split_once('e').unwrap_or((&lower, "0"));
-    let decimals = mantissa.split_once('.').map_or(0, |(_, fraction)| fraction.len());
-    let exponent: i32 = exponent.parse().unwrap_or(0);
-    let power = exponent.saturating_sub(i32::try_from(decimals).unwrap_or(0)).clamp(-300, 300);
-    crate::math::powf(10.0, f64::from(power))
 }
 
 fn find_ignoring_case(haystack: &[u8], needle: &[u8]) -> Option<usize> {

@@ -10,6 +10,8 @@ use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::math;
 use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::site::Site;
+use crate::utc::{DateOrder, Utc};
 
 pub(crate) const FORMAT: Format =
     Format { name: "unam", title: "UNAM and CICESE ASA 2.0 (Mexico)", sniff, read };
@@ -41,7 +43,6 @@ fn list(text: &str) -> Vec<String> {
     text.trim_start_matches('/').split('/').map(|part| part.trim().to_owned()).collect()
 }
 
-#[expect(clippy::too_many_lines, reason = "one header, read from top to bottom")]
 fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let need = |key: &str| {
         field(source, key).filter(|(_, value)| !value.is_empty()).ok_or_else(|| {
@@ -111,21 +112,19 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         }
     }
     let found = values.first().map_or(0, Vec::len);
-    super::check_count(source, &mut record, count_line, count, found)?;
+    // Here one or two in excess are left out too.
     if found > count {
         for column in &mut values {
             column.truncate(count);
         }
-        record
-            .notes
-            .push(format!("{} rows beyond the {count} stated were left out", found - count));
-        record.warnings.retain(|warning| warning.line != Some(count_line + 1));
         record.warn(
             count_line + 1,
             format!(
                 "the header states {count} samples, the file holds {found}; the rest is left out"
             ),
         );
+    } else {
+        super::check_count(source, &mut record, count_line, count, found)?;
     }
     record.station = need("CLAVE DE LA ESTACION")?.1;
     record.event = field(source, "FECHA DEL SISMO").map(|(_, text)| text).unwrap_or_default();
@@ -144,7 +143,33 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         }
         record.channels.push(channel);
     }
+    record.place(start(source), &site(source));
     Ok(record)
+}
+
+/// The first sample's hour on the day of the event, or on the day after where that hour would lie
+/// half a day before the event.
+fn start(source: &Source<'_>) -> Option<Utc> {
+    let (_, day) = field(source, "FECHA DEL SISMO")?;
+    let at = |hour: String| Utc::in_header(&format!("{day} {hour}"), DateOrder::DayFirst);
+    let first = at(field(source, "HORA DE LA PRIMERA MUESTRA")?.1)?;
+    let event = at(field(source, "HORA EPICENTRO")?.1)?;
+    let day = 86_400.0;
+    Some(if event.since(first) > 0.5 * day { first.later(day) } else { first })
+}
+
+/// `19.33024 LAT. N` and on the next line `99.181076 LONG. W`.
+fn site(source: &Source<'_>) -> Site {
+    let signed = |text: &str| {
+        let (value, _) = leading_number(text.trim_start_matches(':').as_bytes())?;
+        Some(if text.trim_end().ends_with(['S', 'W']) { -value } else { value })
+    };
+    let position = field(source, "COORDENADAS DE LA ESTACION")
+        .and_then(|(line, text)| signed(&text).zip(signed(&source.text(line + 1))));
+    let elevation = field(source, "ALTITUD")
+        .and_then(|(_, text)| leading_number(text.as_bytes()))
+        .map(|(height, _)| height);
+    Site { elevation, ..Site::default() }.at(position)
 }
 
 /// The line after the second ruler below `DATOS DE ACELERACION`.

@@ -13,7 +13,9 @@ mod text;
 pub use at2::at2;
 pub(crate) use csv::INITIAL_VELOCITY;
 pub use csv::csv;
+pub(crate) use npz::array_name;
 pub use npz::{archive, npz};
+pub(crate) use text::TITLE;
 pub use text::text;
 
 use crate::error::MotionError;

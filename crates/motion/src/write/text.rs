@@ -14,6 +14,7 @@
 //!
 //! One column stands for each channel, numbers as the shortest decimals that read back to the same
 //! double.
+//! `# recorded:` tells start (UTC), place and sensor, once or for each channel.
 //! `# initial_velocity:` (m/s, one to a channel) stands there where one is not zero.
 //! `az=` is the azimuth (degrees clockwise from north); `vertical` means positive upward;
 //! `horizontal` a horizontal of unknown azimuth; a name alone an unknown direction.
@@ -23,6 +24,9 @@ use std::fmt::Write as _;
 use crate::direction::Orientation;
 use crate::error::MotionError;
 use crate::record::{Channel, Record};
+
+/// The first line of the form.
+pub(crate) const TITLE: &str = "# barrelstack motion 1";
 
 /// A record in the crate's own text form; [`crate::read`] gives the accelerations and the initial
 /// velocities back bit for bit.
@@ -40,33 +44,10 @@ use crate::record::{Channel, Record};
 /// If there is no channel or the steps differ.
 pub fn text(record: &Record) -> Result<String, MotionError> {
     let (step, rows) = super::common(record)?;
-    let mut text = String::from("# barrelstack motion 1\n");
-    let mut head = |key: &str, value: &str| {
+    let mut text = format!("{TITLE}\n");
+    for (key, value) in head(record, step) {
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "# {key}: {}", super::line(value));
-    };
-    head("station", &record.station);
-    head("event", &record.event);
-    for note in super::provenance(record) {
-        match own_key(&note) {
-            Some((key, value)) => head(key, value),
-            None => head("processing", &note),
-        }
-    }
-    head("stage", &record.stage.to_string());
-    head("unit", "m/s2");
-    head("time_step", &format!("{step}"));
-    let channels: Vec<String> = record
-        .channels
-        .iter()
-        .zip(super::names(&record.channels))
-        .map(|(channel, name)| with_direction(channel, &name))
-        .collect();
-    head("channels", &channels.join(", "));
-    if record.channels.iter().any(|channel| channel.initial_velocity != 0.0) {
-        let velocities: Vec<String> =
-            record.channels.iter().map(|c| format!("{:e}", c.initial_velocity)).collect();
-        head("initial_velocity", &velocities.join(" "));
+        let _ = writeln!(text, "# {key}: {value}");
     }
     for row in 0..rows {
         for (k, channel) in record.channels.iter().enumerate() {
@@ -77,6 +58,64 @@ pub fn text(record: &Record) -> Result<String, MotionError> {
         text.push('\n');
     }
     Ok(text)
+}
+
+/// Keys and values of the header, in their order.
+pub(super) fn head(record: &Record, step: f64) -> Vec<(&'static str, String)> {
+    let mut lines: Vec<(&'static str, String)> =
+        vec![("station", record.station.clone()), ("event", record.event.clone())];
+    for note in super::provenance(record) {
+        match own_key(&note) {
+            Some((key, value)) => lines.push((key, value.to_owned())),
+            None => lines.push(("processing", note)),
+        }
+    }
+    lines.extend(recorded(record).into_iter().map(|words| ("recorded", words)));
+    lines.push(("stage", record.stage.to_string()));
+    lines.push(("unit", "m/s2".to_owned()));
+    lines.push(("time_step", format!("{step}")));
+    let channels: Vec<String> = record
+        .channels
+        .iter()
+        .zip(super::names(&record.channels))
+        .map(|(channel, name)| with_direction(channel, &name))
+        .collect();
+    lines.push(("channels", channels.join(", ")));
+    if record.channels.iter().any(|channel| channel.initial_velocity != 0.0) {
+        let velocities: Vec<String> =
+            record.channels.iter().map(|c| format!("{:e}", c.initial_velocity)).collect();
+        lines.push(("initial_velocity", velocities.join(" ")));
+    }
+    lines.into_iter().map(|(key, value)| (key, super::line(&value))).collect()
+}
+
+/// Start and place of the channels: one line if they share them, else one to a channel; none if
+/// nothing is known.
+fn recorded(record: &Record) -> Vec<String> {
+    let words = |channel: &Channel| {
+        let site = &channel.site;
+        let number = |key: &str, value: Option<f64>| value.map(|value| format!("{key} {value}"));
+        let text = |key: &str, value: &str| {
+            let value = super::line(&value.replace(',', " "));
+            (!value.is_empty()).then(|| format!("{key} {value}"))
+        };
+        let other = site.station != record.station;
+        let parts = [
+            channel.start.map(|start| format!("start {start}")),
+            number("latitude", site.latitude),
+            number("longitude", site.longitude),
+            number("elevation", site.elevation),
+            number("vs30", site.vs30),
+            text("sensor", &site.sensor),
+            other.then(|| text("station", &site.station)).flatten(),
+        ];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    };
+    let mut all: Vec<String> = record.channels.iter().map(words).collect();
+    if all.iter().all(|words| *words == all[0]) {
+        all.truncate(usize::from(!all[0].is_empty()));
+    }
+    all
 }
 
 /// Notes that a header of this form gave under a key of their own.

@@ -121,6 +121,7 @@ pub(crate) fn options(random: &mut Random) -> ReadOptions {
         unit: (choice & 0b11 != 0).then(|| *pick(random, &units)),
         time_step: (choice & 0b1100 != 0).then_some(0.01),
         sensitivity: (choice & 0b11_0000 != 0).then_some(1000.0),
+        ..ReadOptions::default()
     }
 }
 

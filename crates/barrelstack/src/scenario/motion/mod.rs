@@ -227,8 +227,8 @@ impl RecordMotion {
             if !path.is_file() {
                 let obtain = self.obtain.as_ref().map_or_else(String::new, |o| format!("; {o}"));
                 return Err(format!(
-                    "there is no record `{}`{obtain}; put the file there, or name another with \
-                     `--set {field}=PATH`",
+                    "there is no record `{}`{obtain}; put the file there, or name another as \
+                     `{field}`",
                     path.display()
                 ));
             }

@@ -1,11 +1,14 @@
 //! `barrelstack motion convert`, and what every command that writes a motion prints.
 
+use std::process::ExitCode;
+
 use barrelstack_motion::Record;
 
+use super::folder::{self, Batch, FolderArgs, Source, Worked};
 use super::info;
 use super::input::{Chain, Choice, Input};
 use super::measures::{self, USUAL};
-use super::output::{Output, Target};
+use super::output::{FormName, Output, Target};
 use crate::printer;
 
 /// What the forms are, at the end of the help.
@@ -36,16 +39,39 @@ pub(super) struct ConvertArgs {
     choice: Choice,
     #[command(flatten)]
     output: Output,
+    /// What the motions of a folder are written as.
+    #[arg(long, value_enum, default_value_t = FormName::Txt)]
+    form: FormName,
+    #[command(flatten)]
+    folder: FolderArgs,
 }
 
 /// Reads, chooses, writes.
-pub(super) fn convert(args: &ConvertArgs) -> anyhow::Result<()> {
+pub(super) fn convert(args: &ConvertArgs) -> anyhow::Result<ExitCode> {
+    if args.input.has_folder() {
+        let out = args.output.output.as_path();
+        let batch = Batch {
+            input: &args.input,
+            out,
+            folder: &args.folder,
+            settings: format!("convert to {:?}, {:?}", args.form, args.choice),
+            periods: None,
+            ending: Some(args.form.ending()),
+        };
+        let work = |source: &Source, record: &Record| {
+            let chosen = args.choice.take(record, Chain::None)?;
+            args.form.write(source, out, &chosen)?;
+            Ok(Worked::as_read(chosen))
+        };
+        return folder::run(&batch, &work)?.tell();
+    }
     let target = args.output.prepare()?;
     let read = args.input.read()?;
     let chosen = args.choice.take(&read, Chain::None)?;
     let columns: Vec<_> = chosen.channels.iter().map(|c| (c.name.clone(), c)).collect();
     let table = measures::table(&columns, &USUAL.iter().collect::<Vec<_>>())?;
-    finish(&target, &read, &chosen, table.lines())
+    finish(&target, &read, &chosen, table.lines())?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Writes a motion, then prints what was done to it, its measures and where it is.

@@ -1,10 +1,15 @@
 //! `barrelstack motion info`: what a file holds, so that a wrong unit or step is seen.
 
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::bail;
 use barrelstack_motion::{
-    Channel, FORMATS, Orientation, Quantity, Record, STANDARD_GRAVITY, Stage,
+    Channel, FORMATS, NoiseCriterion, Orientation, Quantity, Record, STANDARD_GRAVITY, Stage,
 };
 use serde_json::{Value, json};
 
+use super::folder::{self, Batch, FolderArgs, Worked};
 use super::input::Input;
 use super::measures::{self, FURTHER, Shown, USUAL};
 use super::table::{Table, number};
@@ -24,10 +29,22 @@ pub(super) struct InfoArgs {
     /// Print one JSON document, in SI units.
     #[arg(long)]
     json: bool,
+    /// Where the table of folders goes.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    folder: FolderArgs,
 }
 
 /// Prints header, channels, stated peaks and measures of every record.
-pub(super) fn info(args: &InfoArgs) -> anyhow::Result<()> {
+pub(super) fn info(args: &InfoArgs) -> anyhow::Result<ExitCode> {
+    match &args.out {
+        Some(out) => return table(args, out),
+        None if args.input.has_folder() => {
+            bail!("a folder is measured as a table: say where it goes, with --out DIR")
+        }
+        None => {}
+    }
     let records = args.input.read_each()?;
     let records =
         if args.input.join { vec![args.input.unite(&records)?] } else { together(&records)? };
@@ -53,7 +70,25 @@ pub(super) fn info(args: &InfoArgs) -> anyhow::Result<()> {
     for record in &records {
         warn(record);
     }
-    Ok(())
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Measures whole folders.
+fn table(args: &InfoArgs, out: &Path) -> anyhow::Result<ExitCode> {
+    if args.json || args.all_measures || args.input.join {
+        bail!(
+            "--json, --all-measures and --join are for files; the table of a folder has its own columns"
+        );
+    }
+    let batch = Batch {
+        input: &args.input,
+        out,
+        folder: &args.folder,
+        settings: "info".to_owned(),
+        periods: None,
+        ending: None,
+    };
+    folder::run(&batch, &|_, record| Ok(Worked::as_read(record.clone())))?.tell()
 }
 
 /// Neighboring files of one event, station and step are one record.
@@ -64,9 +99,7 @@ fn together(records: &[Record]) -> anyhow::Result<Vec<Record>> {
             let first = &group[0];
             let same_step =
                 |a: &Channel, b: &Channel| (a.time_step / b.time_step - 1.0).abs() < 1e-9;
-            first.format == record.format
-                && first.event == record.event
-                && first.station == record.station
+            Record::gather(&[first.clone(), record.clone()]).is_ok()
                 && !(first.event.is_empty() && first.station.is_empty())
                 && same_step(&first.channels[0], &record.channels[0])
         };
@@ -123,6 +156,11 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
         ]);
     }
     lines.extend(channels.lines());
+    let recorded = recorded(record);
+    if !recorded.is_empty() {
+        lines.push(String::new());
+        lines.extend(recorded.lines());
+    }
     let stated = stated(record);
     if !stated.is_empty() {
         lines.push(String::new());
@@ -133,8 +171,13 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
         record.channels.iter().map(|channel| (channel.name.clone(), channel)).collect();
     lines.extend(measures::table(&columns, shown)?.lines());
     if all {
-        let rotated = measures::rotated(record)?;
-        if !rotated.is_empty() {
+        let rotated = measures::rotated(record);
+        if let Err(error) = &rotated
+            && record.channels.len() > 1
+        {
+            lines.extend([String::new(), format!("  no measure over all directions: {error}")]);
+        }
+        if let Ok(rotated) = rotated {
             let head = ["over all directions", "unit", "RotD50", "RotD100"];
             let mut table = Table::new(2, head.map(str::to_owned));
             for row in rotated {
@@ -151,6 +194,13 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
         }
         lines.push(String::new());
         lines.extend(measures::pulses(record).into_iter().map(|line| format!("  {line}")));
+    }
+    if record.stage == Stage::Raw {
+        lines.extend([
+            String::new(),
+            "  corners that the noise before the shaking suggests".to_owned(),
+        ]);
+        lines.extend(corners(record).into_iter().map(|line| format!("    {line}")));
     }
     if !record.notes.is_empty() {
         lines.extend([String::new(), "  what was done".to_owned()]);
@@ -182,6 +232,51 @@ pub(super) fn direction(channel: &Channel) -> String {
     }
 }
 
+/// Corners of every channel, one sentence each; process takes them with `--corners auto`.
+fn corners(record: &Record) -> Vec<String> {
+    let criterion = NoiseCriterion::default();
+    let found = record.channels.iter().zip(record.noise_corners(&criterion));
+    found
+        .map(|(channel, corners)| match corners {
+            Ok(corners) => format!("{}: {}", channel.name, corners.sentence(&criterion)),
+            Err(error) => format!("none: {error}"),
+        })
+        .collect()
+}
+
+/// What a channel has in one column.
+type Cell<'a> = &'a dyn Fn(&Channel) -> String;
+
+/// When and where each channel was recorded, as far as the file tells; columns that would be empty
+/// are left out.
+fn recorded(record: &Record) -> Table {
+    let degrees = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.4}"));
+    let meters = |value: Option<f64>| value.map_or_else(String::new, number);
+    let several = record.channels.iter().any(|c| c.site.station != record.station);
+    let station = |c: &Channel| if several { c.site.station.clone() } else { String::new() };
+    let columns: [(&str, Cell<'_>); 7] = [
+        ("station", &station),
+        ("sensor", &|c| c.site.sensor.clone()),
+        ("start (UTC)", &|c| c.start.map_or_else(String::new, |start| start.to_string())),
+        ("latitude", &|c| degrees(c.site.latitude)),
+        ("longitude", &|c| degrees(c.site.longitude)),
+        ("elevation (m)", &|c| meters(c.site.elevation)),
+        ("Vs30 (m/s)", &|c| meters(c.site.vs30)),
+    ];
+    let told: Vec<_> = columns
+        .iter()
+        .filter(|(_, cell)| record.channels.iter().any(|channel| !cell(channel).is_empty()))
+        .collect();
+    let words = told.iter().filter(|(head, _)| ["station", "sensor"].contains(head)).count();
+    let head = std::iter::once("channel").chain(told.iter().map(|(head, _)| *head));
+    let mut table = Table::new(1 + words, head.map(str::to_owned));
+    for channel in record.channels.iter().filter(|_| !told.is_empty()) {
+        let cells = told.iter().map(|(_, cell)| cell(channel));
+        table.row(std::iter::once(channel.name.clone()).chain(cells));
+    }
+    table
+}
+
 /// Peaks of the header beside those of the numbers.
 fn stated(record: &Record) -> Table {
     let head = ["channel", "stated peak", "unit", "header", "numbers", "agree"];
@@ -208,7 +303,8 @@ fn stated(record: &Record) -> Table {
 
 fn document(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Value> {
     let mut channels = Vec::new();
-    for channel in &record.channels {
+    let corners = record.noise_corners(&NoiseCriterion::default());
+    for (channel, corners) in record.channels.iter().zip(corners) {
         let motion = measures::sampled(channel)?;
         let mut values = serde_json::Map::new();
         for Shown { measure, .. } in shown {
@@ -239,16 +335,29 @@ fn document(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Valu
             "name": channel.name,
             "azimuth": channel.direction.azimuth,
             "vertical": channel.is_vertical(),
+            "start": channel.start.map(|start| start.to_string()),
+            "station": channel.site.station,
+            "sensor": channel.site.sensor,
+            "latitude": channel.site.latitude,
+            "longitude": channel.site.longitude,
+            "elevation": channel.site.elevation,
+            "vs30": channel.site.vs30,
             "samples": channel.acceleration.len(),
             "time_step": channel.time_step,
             "duration": channel.duration(),
             "initial_velocity": channel.initial_velocity,
             "stated_peaks": peaks,
+            "noise_corners": corners.ok().map(|c| json!({
+                "high_pass": c.high_pass,
+                "low_pass": c.low_pass,
+                "arrival": c.arrival,
+                "least_ratio": c.least_ratio,
+            })),
             "measures": values,
             "velocity_pulse": pulse,
         }));
     }
-    let rotated = if all { measures::rotated(record)? } else { Vec::new() };
+    let rotated = if all { measures::rotated(record).unwrap_or_default() } else { Vec::new() };
     let rotated: Vec<Value> = rotated
         .iter()
         .map(|row| {

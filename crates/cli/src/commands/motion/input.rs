@@ -1,12 +1,13 @@
 //! What the commands read: files, joined or gathered, and the components chosen from them.
 
 use std::io::Read as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow, bail};
 use barrelstack::scenario::{Dimension, Quantity};
 use barrelstack_motion::{
-    AccelerationUnit, Component, MotionError, ReadOptions, Record, Refusal, Stage, bundled, read,
+    self as motion, AccelerationUnit, Component, Instrument, MotionError, ReadError, ReadOptions,
+    Record, Refusal, Stage, bundled, read, station_xml,
 };
 use clap::ValueEnum;
 
@@ -19,21 +20,45 @@ const LIMIT: u64 = 256 << 20;
 #[derive(Debug, clap::Args)]
 pub(super) struct Input {
     /// Motion files of any known format, or napa-college-2014, which comes with the program; several
-    /// are taken as components of one record (info shows files that cannot be apart).
+    /// are taken as components of one record (info shows files that cannot be apart). Info, plot,
+    /// process and convert take folders too, and all records in them.
     #[arg(required = true, value_name = "FILE")]
     pub(super) files: Vec<String>,
     /// Take several files as parts of one long record and join them where they overlap.
     #[arg(long)]
     pub(super) join: bool,
+    /// Take several files together although they are of different stations, sensors, events or
+    /// publishers, and combine their components.
+    #[arg(long, conflicts_with = "join")]
+    pub(super) allow_mixed: bool,
     /// Unit of acceleration where the file states none: g, g/10, m/s2, cm/s2, gal or mm/s2.
     #[arg(long, value_name = "UNIT")]
     unit: Option<String>,
     /// Step where the file states none, such as "0.005 s".
     #[arg(long, value_name = "TIME")]
     time_step: Option<String>,
-    /// Counts to one m/s2, where the file holds counts.
-    #[arg(long, value_name = "NUMBER")]
-    sensitivity: Option<f64>,
+    /// Counts to one m/s2, where the file holds counts; of one channel as HNE=427819, and then once
+    /// for each.
+    #[arg(long, value_name = "[CHANNEL=]NUMBER")]
+    sensitivity: Vec<String>,
+    /// StationXML with the sensitivity and the direction of each channel; without it files that end
+    /// with .xml beside a file of counts are looked into.
+    #[arg(long, value_name = "FILE")]
+    station_xml: Option<PathBuf>,
+    /// What SEED and SAC files of other instruments than accelerometers hold; it is differentiated.
+    #[arg(long = "as", value_enum, value_name = "QUANTITY")]
+    recorded: Option<Recorded>,
+}
+
+/// What an instrument recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Recorded {
+    /// Accelerations, whatever the channel code says.
+    Acceleration,
+    /// Velocities; the sensitivity is then counts to one m/s.
+    Velocity,
+    /// Displacements; the sensitivity is then counts to one m.
+    Displacement,
 }
 
 /// Which components, and what is done to them first.
@@ -78,7 +103,45 @@ impl Chain {
 impl Input {
     /// Every file by itself.
     pub(super) fn read_each(&self) -> anyhow::Result<Vec<Record>> {
-        let options = ReadOptions {
+        let mut records = self.read_as_they_are()?;
+        for record in &mut records {
+            record.mixed = self.allow_mixed;
+        }
+        Ok(records)
+    }
+
+    fn read_as_they_are(&self) -> anyhow::Result<Vec<Record>> {
+        let options = self.options()?;
+        self.files.iter().map(|file| self.read_one(file, &options)).collect()
+    }
+
+    /// The record of one file.
+    pub(super) fn read_alone(&self, file: &str) -> anyhow::Result<Record> {
+        let mut record = self.read_one(file, &self.options()?)?;
+        record.mixed = self.allow_mixed;
+        Ok(record)
+    }
+
+    /// Whether a folder is among the files.
+    pub(super) fn has_folder(&self) -> bool {
+        self.files.iter().any(|file| Path::new(file).is_dir())
+    }
+
+    /// What was told of the files, as words.
+    pub(super) fn told(&self) -> String {
+        format!(
+            "unit {:?}, step {:?}, sensitivity {:?} of {:?}, as {:?}, mixed {}",
+            self.unit,
+            self.time_step,
+            self.sensitivity,
+            self.station_xml,
+            self.recorded,
+            self.allow_mixed
+        )
+    }
+
+    fn options(&self) -> anyhow::Result<ReadOptions> {
+        Ok(ReadOptions {
             unit: self
                 .unit
                 .as_deref()
@@ -90,9 +153,65 @@ impl Input {
                 .as_deref()
                 .map(|text| quantity("--time-step", text, Dimension::TIME))
                 .transpose()?,
-            sensitivity: self.sensitivity,
-        };
-        self.files.iter().map(|file| read_file(file, &options)).collect()
+            recorded: self.recorded.map(|recorded| match recorded {
+                Recorded::Acceleration => motion::Quantity::Acceleration,
+                Recorded::Velocity => motion::Quantity::Velocity,
+                Recorded::Displacement => motion::Quantity::Displacement,
+            }),
+            ..self.sensitivities()?
+        })
+    }
+
+    /// The sensitivities that were typed, and those of the StationXML that was named.
+    fn sensitivities(&self) -> anyhow::Result<ReadOptions> {
+        let mut options = ReadOptions::default();
+        for text in &self.sensitivity {
+            let (channel, number) = text.split_once('=').unwrap_or(("", text));
+            let value = number.trim().parse::<f64>().ok().filter(|v| v.is_finite() && *v > 0.0);
+            let sensitivity = value.ok_or_else(|| {
+                anyhow!("--sensitivity {text}: expected a number above 0, or HNE=427819")
+            })?;
+            if channel.is_empty() {
+                options.sensitivity = Some(sensitivity);
+            } else {
+                let channel = channel.trim().to_owned();
+                options.instruments.push(Instrument {
+                    channel,
+                    sensitivity,
+                    ..Instrument::default()
+                });
+            }
+        }
+        if let Some(path) = &self.station_xml {
+            options.instruments.extend(instruments(path)?);
+        }
+        Ok(options)
+    }
+
+    /// Reads one file; counts without a sensitivity are looked up in the StationXML beside it.
+    fn read_one(&self, file: &str, options: &ReadOptions) -> anyhow::Result<Record> {
+        let first = read_file(file, options);
+        let lacking = first.as_ref().is_err_and(|error| {
+            error.downcast_ref::<ReadError>().is_some_and(|error| {
+                error.refusal == Refusal::Missing && error.expected.contains("sensitivity")
+            })
+        });
+        if !lacking || self.station_xml.is_some() {
+            return first.map_err(with_option);
+        }
+        for path in beside(Path::new(file)) {
+            // A file beside that is no StationXML is none of this file's business.
+            let Ok(found) = instruments(&path) else { continue };
+            let mut more = options.clone();
+            more.instruments.extend(found);
+            if let Ok(mut record) = read_file(file, &more) {
+                record
+                    .notes
+                    .push(format!("sensitivities from {}, which lies beside", path.display()));
+                return Ok(record);
+            }
+        }
+        first.map_err(with_option)
     }
 
     /// All files as one record.
@@ -105,7 +224,14 @@ impl Input {
         if self.join {
             return Ok(Record::join(records)?);
         }
-        Ok(Record::gather(records)?)
+        if self.allow_mixed {
+            return Ok(Record::gather_mixed(records)?);
+        }
+        // What differs between the files can be overruled; steps and times cannot.
+        Record::gather(records).map_err(|error| match Record::gather_mixed(records) {
+            Ok(_) => anyhow!("{error}, or add --allow-mixed"),
+            Err(_) => error.into(),
+        })
     }
 }
 
@@ -172,7 +298,7 @@ pub(super) fn processed(record: &Record, chain: &Processing) -> Result<Record, M
 }
 
 /// Channels of one record end together; the longer ones lose their last samples.
-fn cut_to_shortest(record: &mut Record) {
+pub(super) fn cut_to_shortest(record: &mut Record) {
     let shortest = record.channels.iter().map(|c| c.acceleration.len()).min().unwrap_or(0);
     for channel in &mut record.channels {
         let extra = channel.acceleration.len() - shortest;
@@ -232,22 +358,55 @@ fn read_file(file: &str, options: &ReadOptions) -> anyhow::Result<Record> {
         return Ok(record);
     }
     let bytes = bytes(path)?;
-    read(&bytes, file, options).map_err(|error| {
-        if error.refusal != Refusal::Missing {
-            return error.into();
+    Ok(read(&bytes, file, options)?)
+}
+
+/// The reader knows what is missing, this program where to state it.
+fn with_option(error: anyhow::Error) -> anyhow::Error {
+    let Some(cause) = error.downcast_ref::<ReadError>() else { return error };
+    let option = match cause.refusal {
+        Refusal::NotAcceleration if cause.expected.contains("accelerometer") => {
+            "add --as velocity, with the sensitivity in counts to one m/s"
         }
-        // The reader knows what is missing, this program where to state it.
-        let option = if error.expected.contains("unit") {
-            "add --unit g, or the unit it is"
-        } else if error.expected.contains("step") {
+        Refusal::Missing if cause.expected.contains("unit") => "add --unit g, or the unit it is",
+        Refusal::Missing if cause.expected.contains("step") => {
             "add --time-step \"0.01 s\", or the step it is"
-        } else if error.expected.contains("sensitivity") || error.expected.contains("counts") {
-            "add --sensitivity with the counts to one m/s2"
-        } else {
-            return error.into();
-        };
-        anyhow!("{error}: {option}")
-    })
+        }
+        Refusal::Missing
+            if cause.expected.contains("sensitivity") || cause.expected.contains("counts") =>
+        {
+            "add --sensitivity with the counts to one m/s2, or --station-xml with the station's file"
+        }
+        Refusal::Missing | Refusal::NotAcceleration | Refusal::Damaged | Refusal::Unrecognized => {
+            return error;
+        }
+    };
+    anyhow!("{error}: {option}")
+}
+
+/// The channels of a StationXML file.
+fn instruments(path: &Path) -> anyhow::Result<Vec<Instrument>> {
+    let text = bytes(path)?;
+    let found =
+        station_xml(&String::from_utf8_lossy(&text)).with_context(|| path.display().to_string())?;
+    if found.is_empty() {
+        bail!("{}: it states no sensitivity of any channel", path.display());
+    }
+    Ok(found)
+}
+
+/// Files beside one whose ending is that of StationXML, in the order of their names.
+fn beside(file: &Path) -> Vec<PathBuf> {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let Ok(entries) = std::fs::read_dir(folder.unwrap_or(Path::new("."))) else {
+        return Vec::new();
+    };
+    let mut found: Vec<PathBuf> = entries
+        .filter_map(|entry| entry.ok().map(|entry| entry.path()))
+        .filter(|path| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("xml")))
+        .collect();
+    found.sort();
+    found
 }
 
 /// The bytes of a file of at most 256 MB.

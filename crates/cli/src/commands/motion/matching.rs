@@ -1,19 +1,24 @@
 //! `barrelstack motion match`: a motion whose response spectrum follows a target.
 
-use anyhow::bail;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{anyhow, bail};
 use barrelstack::scenario::Dimension;
 use barrelstack_motion::{
-    GroundMotion, History, MatchMethod, Matching, Record, STANDARD_GRAVITY, Sampled, Stage,
-    TargetSpectrum, response,
+    GroundMotion, History, MatchMethod, Matching, MotionError, Record, STANDARD_GRAVITY, Sampled,
+    Stage, TargetSpectrum, response,
 };
 use clap::ValueEnum;
 
 use super::input::{self, Chain, Choice, Input, quantity};
 use super::measures::{self, sampled};
 use super::output::Output;
+use super::panels;
 use super::process::share;
 use super::table::{Table, number, percent};
 use super::target;
+use crate::printer;
 
 /// Arguments of `match`.
 #[derive(Debug, clap::Args)]
@@ -42,9 +47,19 @@ pub(super) struct MatchArgs {
     /// Largest misfit accepted at any matched period.
     #[arg(long, value_name = "SHARE", default_value = "5 %")]
     tolerance: String,
+    /// Write the best motion also where it misses the tolerance; what it misses is said, and the exit
+    /// status is then 3.
+    #[arg(long)]
+    accept_misfit: bool,
     #[command(flatten)]
     output: Output,
+    /// Draw target, before and after as panels, as .png, .svg or .pdf.
+    #[arg(long, value_name = "FILE")]
+    figure: Option<PathBuf>,
 }
+
+/// Exit status of a match that was written although it misses its target.
+const NEAR: u8 = 3;
 
 /// How the motion is changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -56,8 +71,11 @@ enum Method {
 }
 
 /// Matches and writes.
-pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<()> {
+pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
     let target = args.output.prepare()?;
+    if let Some(figure) = &args.figure {
+        panels::vacant_picture(figure, args.output.overwrite)?;
+    }
     let spectrum = target::target(&args.to)?;
     let settings = Matching {
         method: match args.method {
@@ -71,11 +89,26 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<()> {
     };
     let read = args.input.read()?;
     let before = args.choice.take(&read, Chain::Default)?;
-    let after = matched(args, &before, &spectrum, &settings)?;
+    let (after, missed) = matched(args, &before, &spectrum, &settings)?;
     let mut lines = measures::before_after(&before, &after)?.lines();
     lines.push(String::new());
     lines.extend(comparison(args, &before, &after, &spectrum, &settings)?.lines());
-    super::change::finish(&target, &read, &after, lines)
+    super::change::finish(&target, &read, &after, lines)?;
+    if let Some(figure) = &args.figure {
+        let place = place(args, &before)?;
+        let one = |record| panels::only(record, place);
+        panels::write(figure, &panels::compared(&one(&before)?, &one(&after)?, Some(&spectrum))?)?;
+        printer::lines([format!("written: {}", figure.display())])?;
+    }
+    match missed {
+        None => Ok(ExitCode::SUCCESS),
+        Some(words) => {
+            printer::warning(&format!(
+                "the target is missed {words}: accepted as asked; exit status {NEAR}"
+            ));
+            Ok(ExitCode::from(NEAR))
+        }
+    }
 }
 
 /// Which channel is matched.
@@ -90,12 +123,13 @@ fn place(args: &MatchArgs, record: &Record) -> anyhow::Result<usize> {
     }
 }
 
+/// The matched record, and the periods that it misses, in words, if it misses any.
 fn matched(
     args: &MatchArgs,
     before: &Record,
     spectrum: &TargetSpectrum,
     settings: &Matching,
-) -> anyhow::Result<Record> {
+) -> anyhow::Result<(Record, Option<String>)> {
     let place = place(args, before)?;
     let channel = &before.channels[place];
     let horizontal = History::Sampled(sampled(channel)?);
@@ -103,7 +137,19 @@ fn matched(
     // the factor for all others.
     let probe = History::Sampled(Sampled::new(1.0, vec![1.0, 1.0])?);
     let given = GroundMotion::new(channel.name.clone(), horizontal, Some(probe));
-    let matched = given.match_spectrum(spectrum, settings)?;
+    let matched = if args.accept_misfit {
+        given.match_spectrum_nearly(spectrum, settings)?
+    } else {
+        given.match_spectrum(spectrum, settings).map_err(|error| match error {
+            MotionError::NotConverged { .. } => anyhow!("{error}: add --accept-misfit"),
+            other @ (MotionError::Parameter { .. }
+            | MotionError::NotScalable { .. }
+            | MotionError::Zero { .. }
+            | MotionError::NoChannel { .. }
+            | MotionError::Mismatch { .. }) => other.into(),
+        })?
+    };
+    let missed = (!matched.missed.is_empty()).then(|| matched.missed_in_words());
     let (History::Sampled(series), Some(probe)) =
         (&matched.motion.horizontal, &matched.motion.vertical)
     else {
@@ -146,7 +192,10 @@ fn matched(
             channel.time_step
         ));
     }
-    Ok(after)
+    if let Some(words) = &missed {
+        after.notes.push(format!("{}: the target is missed {words}", channel.name));
+    }
+    Ok((after, missed))
 }
 
 /// Spectra before, after and wanted at some periods.

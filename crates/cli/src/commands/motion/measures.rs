@@ -41,6 +41,7 @@ pub(super) const FURTHER: &[Shown] = &[
     shown("ASI, 5 %", IntensityMeasure::Asi),
     shown("VSI, 5 %", IntensityMeasure::Vsi),
     shown("Fajfar index", IntensityMeasure::Fajfar),
+    shown("FIV3(1.0 s)", IntensityMeasure::Fiv3 { period: 1.0 }),
     shown("Sa(0.2 s), 5 %", IntensityMeasure::Sa { period: 0.2, damping: 0.05 }),
     shown("Sa(0.5 s), 5 %", IntensityMeasure::Sa { period: 0.5, damping: 0.05 }),
     shown("Sa(1.0 s), 5 %", IntensityMeasure::Sa { period: 1.0, damping: 0.05 }),
@@ -52,7 +53,7 @@ pub(super) fn reading(measure: &IntensityMeasure) -> (&'static str, f64) {
         IntensityMeasure::Pga | IntensityMeasure::Rms | IntensityMeasure::Sa { .. } => {
             ("g", 1.0 / STANDARD_GRAVITY)
         }
-        IntensityMeasure::Pgv => ("cm/s", 100.0),
+        IntensityMeasure::Pgv | IntensityMeasure::Fiv3 { .. } => ("cm/s", 100.0),
         IntensityMeasure::Pgd | IntensityMeasure::Housner { .. } | IntensityMeasure::Vsi => {
             ("cm", 100.0)
         }
@@ -136,14 +137,6 @@ pub(super) fn pulses(record: &Record) -> Vec<String> {
     record.channels.iter().map(sentence).collect()
 }
 
-/// The first two horizontals, if there are two of one step.
-pub(super) fn horizontals(record: &Record) -> Option<(&Channel, &Channel)> {
-    let mut flat = record.channels.iter().filter(|channel| !channel.is_vertical());
-    let (one, two) = (flat.next()?, flat.next()?);
-    let even = (one.time_step / two.time_step - 1.0).abs() < 1e-9;
-    even.then_some((one, two))
-}
-
 /// A measure over all horizontal directions.
 pub(super) struct Rotated {
     /// The measure.
@@ -154,9 +147,9 @@ pub(super) struct Rotated {
     pub(super) peak: RotatedPeak,
 }
 
-/// `RotD50` and `RotD100` of the two horizontals; nothing if there are not two.
+/// `RotD50` and `RotD100` of the two horizontals.
 pub(super) fn rotated(record: &Record) -> Result<Vec<Rotated>, MotionError> {
-    let Some((one, two)) = horizontals(record) else { return Ok(Vec::new()) };
+    let (one, two) = record.horizontal_pair()?;
     let (first, second) = (sampled(one)?, sampled(two)?);
     let (a, b) = (first.acceleration(), second.acceleration());
     let mut rows = vec![

@@ -1,15 +1,18 @@
 //! `barrelstack motion`: read, look at, change and make ground motions.
 
 mod change;
+mod folder;
 mod info;
 mod input;
 mod matching;
 mod measures;
 mod output;
+mod panels;
 mod plot;
 mod process;
 mod pulses;
 mod scale;
+mod select;
 mod spectrum;
 mod synth;
 mod table;
@@ -24,6 +27,8 @@ const AFTER_HELP: &str = "\
 Start with:
   barrelstack motion info my-site.AT2                    duration, PGA, PGV, PGD: is the unit right?
   barrelstack motion plot my-site.AT2 -o pictures        accelerations, velocities, spectra as SVG
+  barrelstack motion info records --out table            a whole folder: one row a record, CSV and Parquet
+  barrelstack motion select records --target ec8:ag=0.3,site=B --out set   a set for a study
   barrelstack motion scale my-site.AT2 --to \"pgv=60 cm/s\" -o strong.txt
   barrelstack run demo-napa --record strong.txt --set motion.vertical=false
 
@@ -51,6 +56,8 @@ enum MotionCommand {
     Convert(change::ConvertArgs),
     /// Remove means, taper, filter and close the ends, each step printed.
     Process(process::ProcessArgs),
+    /// Choose from folders a set whose spectra have a target's mean and spread.
+    Select(select::SelectArgs),
     /// Scale to a measure of intensity or by a factor, all components alike; or to another length.
     Scale(scale::ScaleArgs),
     /// Match the response spectrum to a code's or a table's.
@@ -64,12 +71,13 @@ enum MotionCommand {
 /// Does what was typed.
 pub(crate) fn motion(args: &MotionArgs) -> anyhow::Result<ExitCode> {
     match &args.command {
-        MotionCommand::Info(args) => info::info(args),
-        MotionCommand::Plot(args) => plot::plot(args),
-        MotionCommand::Convert(args) => change::convert(args),
-        MotionCommand::Process(args) => process::process(args),
+        MotionCommand::Info(args) => return info::info(args),
+        MotionCommand::Plot(args) => return plot::plot(args),
+        MotionCommand::Convert(args) => return change::convert(args),
+        MotionCommand::Process(args) => return process::process(args),
+        MotionCommand::Select(args) => return select::select(args),
         MotionCommand::Scale(args) => scale::scale(args),
-        MotionCommand::Match(args) => matching::match_spectrum(args),
+        MotionCommand::Match(args) => return matching::match_spectrum(args),
         MotionCommand::Spectrum(args) => spectrum::spectrum(args),
         MotionCommand::Synth(args) => synth::synth(args),
     }?;

@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 use barrelstack_motion::{Record, Stage, write};
 
+use super::folder::Source;
+
 /// Where a motion goes.
 #[derive(Debug, clap::Args)]
 pub(super) struct Output {
     /// The file to write; its ending says the form: .at2 (PEER, g, one component), .csv, .npz (NumPy)
-    /// or .txt (the program's own, exact).
-    #[arg(long, short, value_name = "FILE")]
+    /// or .txt (the program's own, exact). Of whole folders, the folder for all.
+    #[arg(long, short, value_name = "FILE", visible_alias = "out")]
     pub(super) output: PathBuf,
     /// Replace the file if it is there.
     #[arg(long)]
@@ -31,6 +33,40 @@ enum Form {
 pub(super) struct Target {
     path: PathBuf,
     form: Form,
+}
+
+/// What the files of a whole folder are written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum FormName {
+    /// NumPy.
+    Npz,
+    /// Numbers between commas.
+    Csv,
+    /// The program's own, exact.
+    Txt,
+}
+
+impl FormName {
+    /// The ending of its files.
+    pub(super) fn ending(self) -> &'static str {
+        match self {
+            Self::Npz => "npz",
+            Self::Csv => "csv",
+            Self::Txt => "txt",
+        }
+    }
+
+    /// Writes a record into a file of this form, in a folder that is made where it is missing.
+    pub(super) fn write(self, source: &Source, out: &Path, record: &Record) -> anyhow::Result<()> {
+        let path = source.beside(out, self.ending());
+        make_folder_of(&path)?;
+        let form = match self {
+            Self::Npz => Form::Npz,
+            Self::Csv => Form::Csv,
+            Self::Txt => Form::Text,
+        };
+        Target { path, form }.write(record).map(drop)
+    }
 }
 
 impl Output {
@@ -120,6 +156,14 @@ pub(super) fn vacant(path: &Path, overwrite: bool) -> anyhow::Result<()> {
         }
         _ => Ok(()),
     }
+}
+
+/// Makes the folder of a file where it is missing.
+pub(super) fn make_folder_of(path: &Path) -> anyhow::Result<()> {
+    let Some(folder) = path.parent() else { return Ok(()) };
+    std::fs::create_dir_all(folder)
+        .map_err(super::input::plain)
+        .with_context(|| format!("cannot make the folder {}", folder.display()))
 }
 
 /// Writes under a temporary name and renames, so that the file is never half there.

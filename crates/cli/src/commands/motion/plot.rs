@@ -1,6 +1,7 @@
 //! `barrelstack motion plot`: a record as pictures, with their numbers beside.
 
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use anyhow::{Context as _, bail};
 use barrelstack_motion::{
@@ -10,10 +11,12 @@ use barrelstack_motion::{
 use barrelstack_report::{Axis, Band, Figure, FigureKind, Format, Plot, Series};
 use clap::ValueEnum;
 
+use super::folder::{self, Batch, FolderArgs, Source, Worked};
 use super::info;
 use super::input::{self, Chain, Choice, Input};
 use super::measures::sampled;
-use super::output::{store, vacant};
+use super::output::{self, store, vacant};
+use super::panels;
 use super::process::share;
 use crate::figures::FigureArgs;
 use crate::printer;
@@ -26,7 +29,7 @@ pub(super) struct PlotArgs {
     #[command(flatten)]
     choice: Choice,
     /// A folder for all figures, or one .svg, .png or .pdf file; the numbers go beside each as .csv.
-    #[arg(long, short, value_name = "DIR|FILE")]
+    #[arg(long, short, value_name = "DIR|FILE", visible_alias = "out")]
     output: PathBuf,
     /// Which figure; may be repeated. Without it a folder gets all, a file the accelerations.
     #[arg(long, value_enum)]
@@ -39,11 +42,15 @@ pub(super) struct PlotArgs {
     /// Replace figures that are there.
     #[arg(long)]
     overwrite: bool,
+    #[command(flatten)]
+    folder: FolderArgs,
 }
 
 /// Figures of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Kind {
+    /// All of a record: components with their peaks, Husid, response and Fourier spectra.
+    Panels,
     /// Acceleration over time (g).
     Acceleration,
     /// Velocity over time (cm/s).
@@ -61,6 +68,7 @@ enum Kind {
 impl Kind {
     fn file(self) -> &'static str {
         match self {
+            Self::Panels => "panels",
             Self::Acceleration => "acceleration",
             Self::Velocity => "velocity",
             Self::Displacement => "displacement",
@@ -72,7 +80,10 @@ impl Kind {
 }
 
 /// Draws and writes.
-pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<()> {
+pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<ExitCode> {
+    if args.input.has_folder() {
+        return folders(args);
+    }
     let files = files(args)?;
     for (_, path) in &files {
         let in_folder =
@@ -89,7 +100,7 @@ pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<()> {
     let record = args.choice.take(&read, Chain::Default)?;
     let figures: Vec<(Figure, &Path)> = files
         .iter()
-        .map(|(kind, path)| Ok((figure(*kind, &record, &damping)?, path.as_path())))
+        .map(|(kind, path)| Ok((figure(*kind, &record, &read, &damping)?, path.as_path())))
         .collect::<anyhow::Result<_>>()?;
     if !is_file(&args.output) {
         std::fs::create_dir_all(&args.output)
@@ -110,7 +121,35 @@ pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<()> {
     }
     printer::lines(lines)?;
     info::warn(&Record { stage: record.stage, ..read });
-    Ok(())
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Draws every record of folders as panels.
+fn folders(args: &PlotArgs) -> anyhow::Result<ExitCode> {
+    if args.figure.iter().any(|kind| *kind != Kind::Panels) {
+        bail!("records of a folder are drawn as panels: leave --figure out, or name panels");
+    }
+    let formats = if args.formats.names_any() { args.formats.formats() } else { vec![Format::Png] };
+    let out = args.output.as_path();
+    let batch = Batch {
+        input: &args.input,
+        out,
+        folder: &args.folder,
+        settings: format!("plot {formats:?}, {:?}", args.choice),
+        periods: None,
+        ending: Some(formats[0].extension()),
+    };
+    let work = |source: &Source, record: &Record| {
+        let chosen = args.choice.take(record, Chain::Default)?;
+        let figure = panels::record(&chosen, record)?;
+        for format in &formats {
+            let path = source.beside(out, format.extension());
+            output::make_folder_of(&path)?;
+            panels::write(&path, &figure)?;
+        }
+        Ok(Worked::done(chosen))
+    };
+    folder::run(&batch, &work)?.tell()
 }
 
 /// The format that the name of a file asks for; None for a folder.
@@ -170,7 +209,10 @@ fn files(args: &PlotArgs) -> anyhow::Result<Vec<(Kind, PathBuf)>> {
         .collect())
 }
 
-fn figure(kind: Kind, record: &Record, damping: &[f64]) -> anyhow::Result<Figure> {
+fn figure(kind: Kind, record: &Record, read: &Record, damping: &[f64]) -> anyhow::Result<Figure> {
+    if kind == Kind::Panels {
+        return panels::record(record, read);
+    }
     let mut plot = Plot::default();
     // The strongest first: the weaker ones are drawn over it and stay in sight.
     let mut channels: Vec<&Channel> = record.channels.iter().collect();
@@ -180,12 +222,13 @@ fn figure(kind: Kind, record: &Record, damping: &[f64]) -> anyhow::Result<Figure
     }
     let time = || Axis::new("time", "s");
     (plot.x, plot.y) = match kind {
+        Kind::Panels => (Axis::default(), Axis::default()),
         Kind::Acceleration => (time(), Axis::new("acceleration", "g")),
         Kind::Velocity => (time(), Axis::new("velocity", "cm/s")),
         Kind::Displacement => (time(), Axis::new("displacement", "cm")),
         Kind::Arias => (time(), Axis::new("Arias intensity", "m/s")),
         Kind::Response => {
-            (Axis::new("period", "s").log(), Axis::new("pseudo-spectral acceleration", "g"))
+            (Axis::new("period", "s").log(), Axis::new("pseudo-spectral acceleration", "g").log())
         }
         Kind::Fourier => {
             (Axis::new("frequency", "Hz").log(), Axis::new("Fourier amplitude", "m/s").log())
@@ -225,6 +268,7 @@ fn series(kind: Kind, channel: &Channel, damping: &[f64]) -> anyhow::Result<Vec<
         vec![Series::new(name, times(), values.iter().map(|value| factor * value).collect())]
     };
     Ok(match kind {
+        Kind::Panels => Vec::new(),
         Kind::Acceleration => over_time(a, 1.0 / STANDARD_GRAVITY),
         Kind::Velocity => over_time(sampled(channel)?.velocity(), 100.0),
         Kind::Displacement => over_time(sampled(channel)?.displacement(), 100.0),

@@ -1,13 +1,20 @@
 //! `barrelstack motion process`: from a raw record to one that can be integrated, in visible steps.
 
-use anyhow::bail;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::str::FromStr;
+
+use anyhow::{anyhow, bail};
 use barrelstack::scenario::Dimension;
-use barrelstack_motion::{MeanRemoval, Pads, Processing};
+use barrelstack_motion::{Channel, MeanRemoval, NoiseCriterion, Pads, Processing, Record, Stage};
 use clap::ValueEnum;
 
+use super::folder::{self, Batch, FolderArgs, Source, Worked};
 use super::input::{self, Chain, Input, quantity};
 use super::measures;
-use super::output::Output;
+use super::output::{FormName, Output};
+use super::panels;
+use crate::printer;
 
 /// Arguments of `process`.
 #[derive(Debug, clap::Args)]
@@ -44,8 +51,54 @@ pub(super) struct ProcessArgs {
     /// Bring the last velocity and displacement to zero by the smallest smooth acceleration.
     #[arg(long, value_enum)]
     close: Option<Answer>,
+    /// Take both corners from the record: auto finds where the signal is at least three times the noise
+    /// before the first arrival; both horizontals share theirs.
+    #[arg(long, value_enum, conflicts_with_all = ["high_pass", "low_pass"])]
+    corners: Option<CornersFrom>,
+    /// Turn the horizontals first: to fault-normal and fault-parallel of a strike in degrees, such as
+    /// strike:122, or to the direction of the largest velocity, vmax.
+    #[arg(long, value_name = "AXES", conflicts_with = "component")]
+    rotate: Option<Axes>,
     #[command(flatten)]
     output: Output,
+    /// What the motions of a folder are written as.
+    #[arg(long, value_enum, default_value_t = FormName::Txt)]
+    form: FormName,
+    /// Draw before and after as panels beside the motion, as .png, .svg or .pdf.
+    #[arg(long, value_name = "FILE")]
+    figure: Option<PathBuf>,
+    #[command(flatten)]
+    folder: FolderArgs,
+}
+
+/// Where corners come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum CornersFrom {
+    /// From the noise before the first arrival.
+    Auto,
+}
+
+/// Directions that the horizontals are turned to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Axes {
+    Strike(f64),
+    Fastest,
+}
+
+impl FromStr for Axes {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let strike = text.strip_prefix("strike:").and_then(|degrees| degrees.trim().parse().ok());
+        match (text, strike) {
+            ("vmax", _) => Ok(Self::Fastest),
+            (_, Some(strike)) if f64::is_finite(strike) => Ok(Self::Strike(strike)),
+            _ => Err(
+                "expected strike: with degrees clockwise from north, such as strike:122, or vmax"
+                    .to_owned(),
+            ),
+        }
+    }
 }
 
 /// Which mean is removed.
@@ -78,7 +131,7 @@ enum Answer {
 }
 
 impl ProcessArgs {
-    fn chain(&self, stage: barrelstack_motion::Stage) -> anyhow::Result<Processing> {
+    fn chain(&self, stage: Stage) -> anyhow::Result<Processing> {
         let mut chain = self.chain.of(stage);
         match self.mean {
             Some(Mean::Keep) => chain.mean = MeanRemoval::Keep,
@@ -113,6 +166,57 @@ impl ProcessArgs {
         }
         Ok(chain)
     }
+
+    /// The record as chosen and turned, and the same processed.
+    fn both(&self, read: &Record) -> anyhow::Result<(Record, Record)> {
+        let choice = input::Choice { component: self.component.clone(), processing: None };
+        let mut before = choice.take(read, Chain::None)?;
+        if let Some(axes) = self.rotate {
+            let turned = match axes {
+                Axes::Strike(strike) => read.fault_axes(strike)?,
+                Axes::Fastest => read.fastest_axes()?,
+            };
+            before.channels.retain(Channel::is_vertical);
+            before.channels.splice(0..0, [turned.first, turned.second]);
+            before.notes.push(turned.note);
+        }
+        let chain = self.chain(read.stage)?;
+        if chain.is_none() && self.corners.is_none() {
+            bail!(
+                "this chain does nothing: name a step, such as --high-pass \"0.1 Hz\", or use convert"
+            );
+        }
+        let after = match self.corners {
+            Some(CornersFrom::Auto) => by_noise(&before, &chain)?,
+            None => input::processed(&before, &chain)?,
+        };
+        Ok((before, after))
+    }
+}
+
+/// Every channel after the chain with the corners of its own noise.
+fn by_noise(before: &Record, chain: &Processing) -> anyhow::Result<Record> {
+    let criterion = NoiseCriterion::default();
+    let mut after = before.clone();
+    after.channels.clear();
+    for (channel, corners) in before.channels.iter().zip(before.noise_corners(&criterion)) {
+        let corners = corners.map_err(|error| {
+            anyhow!("--corners auto: {error}, with --high-pass and --low-pass, or none")
+        })?;
+        let chain = Processing {
+            high_pass: Some(corners.high_pass),
+            low_pass: Some(corners.low_pass),
+            ..chain.clone()
+        };
+        let alone = Record { channels: vec![channel.clone()], notes: Vec::new(), ..before.clone() };
+        let done = input::processed(&alone, &chain)?;
+        after.notes.push(format!("{}: {}", channel.name, corners.sentence(&criterion)));
+        after.notes.extend(done.notes);
+        after.channels.extend(done.channels);
+    }
+    after.stage = Stage::Corrected;
+    input::cut_to_shortest(&mut after);
+    Ok(after)
 }
 
 /// A share as a plain number or in percent.
@@ -125,18 +229,56 @@ pub(super) fn share(option: &str, text: &str) -> anyhow::Result<f64> {
 }
 
 /// Processes and writes.
-pub(super) fn process(args: &ProcessArgs) -> anyhow::Result<()> {
-    let target = args.output.prepare()?;
-    let read = args.input.read()?;
-    let choice = input::Choice { component: args.component.clone(), processing: None };
-    let before = choice.take(&read, Chain::None)?;
-    let chain = args.chain(read.stage)?;
-    if chain.is_none() {
-        bail!(
-            "this chain does nothing: name a step, such as --high-pass \"0.1 Hz\", or use convert"
-        );
+pub(super) fn process(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
+    if args.input.has_folder() {
+        return folders(args);
     }
-    let after = input::processed(&before, &chain)?;
+    let target = args.output.prepare()?;
+    if let Some(figure) = &args.figure {
+        panels::vacant_picture(figure, args.output.overwrite)?;
+    }
+    let read = args.input.read()?;
+    let (before, after) = args.both(&read)?;
     let table = measures::before_after(&before, &after)?;
-    super::change::finish(&target, &read, &after, table.lines())
+    super::change::finish(&target, &read, &after, table.lines())?;
+    if let Some(figure) = &args.figure {
+        panels::write(figure, &panels::before_after(&before, &after)?)?;
+        printer::lines([format!("written: {}", figure.display())])?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Processes all records of folders.
+fn folders(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
+    let out = args.output.output.as_path();
+    if args.figure.is_some() {
+        bail!("--figure is for one record; draw those of a folder with motion plot");
+    }
+    let options = ProcessOptions(args);
+    let batch = Batch {
+        input: &args.input,
+        out,
+        folder: &args.folder,
+        settings: format!("process to {:?}, {options:?}", args.form),
+        periods: None,
+        ending: Some(args.form.ending()),
+    };
+    let work = |source: &Source, record: &Record| {
+        let (_, after) = args.both(record)?;
+        args.form.write(source, out, &after)?;
+        Ok(Worked::done(after))
+    };
+    folder::run(&batch, &work)?.tell()
+}
+
+/// All that decides what becomes of a record, as words.
+struct ProcessOptions<'a>(&'a ProcessArgs);
+
+impl std::fmt::Debug for ProcessOptions<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let a = self.0;
+        write!(f, "{:?} {:?} {:?} {}", a.component, a.chain, a.mean, a.detrend)?;
+        write!(f, " {:?} {:?} {:?} {:?}", a.taper, a.high_pass, a.low_pass, a.order)?;
+        write!(f, " {:?} {:?} {:?} {:?}", a.pads, a.close, a.corners, a.rotate)
+    }
 }

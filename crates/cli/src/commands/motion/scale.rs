@@ -75,12 +75,8 @@ fn factor_to(
     value: f64,
 ) -> anyhow::Result<(f64, String)> {
     if let Some(over) = args.of.as_deref().and_then(|name| name.parse::<Horizontals>().ok()) {
-        let Some((first, second)) = measures::horizontals(record) else {
-            bail!(
-                "--of {over}: it needs two horizontal components of one step, and {} has not",
-                record.file
-            );
-        };
+        let (first, second) =
+            record.horizontal_pair().map_err(|error| anyhow!("--of {over}: {error}"))?;
         let factor = over.scale_factor(measure, &sampled(first)?, &sampled(second)?, value)?;
         return Ok((factor, format!("{} and {} ({over})", first.name, second.name)));
     }

@@ -3,16 +3,15 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use anyhow::bail;
+use anyhow::{anyhow, bail};
 use barrelstack::scenario::Dimension;
 use barrelstack_motion::{
-    Record, ResponsePeaks, RotatedPeak, STANDARD_GRAVITY, response, rotated_spectrum,
+    Channel, Record, ResponsePeaks, RotatedPeak, STANDARD_GRAVITY, response, rotated_spectrum,
     standard_periods,
 };
 
 use super::info;
 use super::input::{Chain, Choice, Input, quantity};
-use super::measures::horizontals;
 use super::output::{store, vacant};
 use super::process::share;
 use super::table::{Table, number, percent};
@@ -53,7 +52,29 @@ struct Spectra {
     periods: Vec<f64>,
     damping: f64,
     channels: Vec<(String, Vec<ResponsePeaks>)>,
-    rotated: Option<Vec<RotatedPeak>>,
+    rotated: Option<Rotated>,
+}
+
+/// Peaks over all directions, and where the largest point.
+struct Rotated {
+    peaks: Vec<RotatedPeak>,
+    /// Degrees clockwise from north where both azimuths are known, else from the first component
+    /// towards the second.
+    directions: Vec<f64>,
+    /// What the directions are counted from.
+    from: &'static str,
+}
+
+impl Rotated {
+    fn of((one, two): (&Channel, &Channel), periods: &[f64], damping: f64) -> anyhow::Result<Self> {
+        let (a, b) = (&one.acceleration, &two.acceleration);
+        let peaks = rotated_spectrum(one.time_step, a, b, periods, damping)?;
+        let azimuths: Option<Vec<f64>> =
+            peaks.iter().map(|peak| peak.azimuth(&one.direction, &two.direction)).collect();
+        let from = if azimuths.is_some() { "azimuth" } else { "from the first" };
+        let directions = azimuths.unwrap_or_else(|| peaks.iter().map(|p| p.angle).collect());
+        Ok(Self { peaks, directions, from })
+    }
 }
 
 impl Spectra {
@@ -66,16 +87,11 @@ impl Spectra {
                 .collect::<Result<Vec<_>, _>>()?;
             channels.push((channel.name.clone(), peaks));
         }
-        let rotated = match horizontals(record) {
-            _ if !rotd => None,
-            Some((one, two)) => Some(rotated_spectrum(
-                one.time_step,
-                &one.acceleration,
-                &two.acceleration,
-                periods,
-                damping,
-            )?),
-            None => bail!("--rotd needs two horizontal components, and {} has fewer", record.file),
+        let rotated = if rotd {
+            let pair = record.horizontal_pair().map_err(|error| anyhow!("--rotd: {error}"))?;
+            Some(Rotated::of(pair, periods, damping)?)
+        } else {
+            None
         };
         Ok(Self { periods: periods.to_vec(), damping, channels, rotated })
     }
@@ -85,8 +101,9 @@ impl Spectra {
         for (name, _) in &self.channels {
             head.extend([format!("{name} Sa (g)"), "PSV (cm/s)".to_owned(), "Sd (cm)".to_owned()]);
         }
-        if self.rotated.is_some() {
-            head.extend(["RotD50 Sa (g)", "RotD100 Sa (g)", "at (°)"].map(str::to_owned));
+        if let Some(rotated) = &self.rotated {
+            head.extend(["RotD50 Sa (g)", "RotD100 Sa (g)"].map(str::to_owned));
+            head.push(format!("{} (°)", rotated.from));
         }
         let mut table = Table::new(0, head);
         for (k, period) in self.periods.iter().enumerate() {
@@ -97,9 +114,9 @@ impl Spectra {
                 row.push(number(100.0 * peaks[k].displacement));
             }
             if let Some(rotated) = &self.rotated {
-                row.push(number(rotated[k].median / STANDARD_GRAVITY));
-                row.push(number(rotated[k].largest / STANDARD_GRAVITY));
-                row.push(format!("{:.0}", rotated[k].angle));
+                row.push(number(rotated.peaks[k].median / STANDARD_GRAVITY));
+                row.push(number(rotated.peaks[k].largest / STANDARD_GRAVITY));
+                row.push(format!("{:.0}", rotated.directions[k]));
             }
             table.row(row);
         }
@@ -119,11 +136,9 @@ impl Spectra {
                 format!("{name} absolute acceleration (m/s2)"),
             ]);
         }
-        if self.rotated.is_some() {
-            head.extend(
-                ["RotD50 (m/s2)", "RotD100 (m/s2)", "direction of RotD100 (deg from the first)"]
-                    .map(str::to_owned),
-            );
+        if let Some(rotated) = &self.rotated {
+            head.extend(["RotD50 (m/s2)", "RotD100 (m/s2)"].map(str::to_owned));
+            head.push(format!("direction of RotD100 (deg {})", rotated.from));
         }
         if text.is_empty() {
             text.push_str(&head.join(","));
@@ -141,8 +156,8 @@ impl Spectra {
                 );
             }
             if let Some(rotated) = &self.rotated {
-                let r = &rotated[k];
-                let _ = write!(text, ",{},{},{}", r.median, r.largest, r.angle);
+                let (r, direction) = (&rotated.peaks[k], rotated.directions[k]);
+                let _ = write!(text, ",{},{},{direction}", r.median, r.largest);
             }
             text.push('\n');
         }

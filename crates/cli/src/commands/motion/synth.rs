@@ -1,9 +1,10 @@
 //! `barrelstack motion synth`: motions from formulas and from random numbers of a stated seed.
 
+use anyhow::anyhow;
 use barrelstack::scenario::Dimension;
 use barrelstack_motion::{
     BooreSource, Channel, CloughPenzien, Direction, Envelope, GroundMotion, NearFault, Pulse,
-    Record, Stage,
+    Record, SiteAmplification, Stage,
 };
 use clap::{Subcommand, ValueEnum};
 
@@ -132,6 +133,16 @@ struct Source {
     /// High-frequency attenuation at the site.
     #[arg(long, value_name = "TIME", default_value = "0.04 s")]
     kappa: String,
+    /// Shear-wave velocity at the source.
+    #[arg(long, value_name = "VELOCITY", default_value = "3500 m/s")]
+    beta: String,
+    /// Quality factor of the path: at 1 Hz, and after a comma the exponent of the frequency in Hz.
+    #[arg(long, value_name = "Q,EXPONENT", default_value = "180,0.45")]
+    quality: String,
+    /// Site amplification of Fourier amplitudes: frequency in Hz and factor between commas, such as
+    /// "0.1,1;1,1.5;10,2", in ascending order; without it 1.
+    #[arg(long, value_name = "TABLE")]
+    site_amplification: Option<String>,
     #[command(flatten)]
     seed: Seed,
 }
@@ -169,16 +180,43 @@ impl Source {
         let pascal = quantity("--stress", &self.stress, Dimension::STIFFNESS_PER_LENGTH)?;
         source.stress = pascal / 1e5;
         source.path.kappa = quantity("--kappa", &self.kappa, Dimension::TIME)?;
+        source.velocity = quantity("--beta", &self.beta, Dimension::VELOCITY)? / 1000.0;
+        let numbers = pair(&self.quality).ok_or_else(|| {
+            anyhow!("--quality: `{}` is no factor and exponent such as 180,0.45", self.quality)
+        })?;
+        (source.path.quality, source.path.quality_exponent) = numbers;
+        if let Some(text) = &self.site_amplification {
+            let points: Option<Vec<(f64, f64)>> = text.split(';').map(pair).collect();
+            source.path.amplification = SiteAmplification::Table(points.ok_or_else(|| {
+                anyhow!(
+                    "--site-amplification: `{text}` is no list of frequency and factor such as \
+                         0.1,1;1,1.5;10,2"
+                )
+            })?);
+        }
         Ok(source)
     }
+}
+
+/// Two numbers with a comma between.
+fn pair(text: &str) -> Option<(f64, f64)> {
+    let (one, two) = text.split_once(',')?;
+    Some((one.trim().parse().ok()?, two.trim().parse().ok()?))
 }
 
 impl Source {
     fn sentence(&self) -> String {
         format!(
-            "stochastic method (Boore): magnitude {}, distance {}, stress parameter {}, kappa {}, seed \
-             {}",
-            self.magnitude, self.distance, self.stress, self.kappa, self.seed.seed
+            "stochastic method (Boore): magnitude {}, distance {}, stress parameter {}, beta {}, \
+             Q and its exponent {}, kappa {}, site amplification {}, seed {}",
+            self.magnitude,
+            self.distance,
+            self.stress,
+            self.beta,
+            self.quality,
+            self.kappa,
+            self.site_amplification.as_deref().unwrap_or("none"),
+            self.seed.seed
         )
     }
 
@@ -315,6 +353,7 @@ fn write(
         stage: Stage::Corrected,
         channels: vec![channel],
         warnings: Vec::new(),
+        mixed: false,
         notes: motion.provenance,
     };
     let columns: Vec<_> = record.channels.iter().map(|c| (c.name.clone(), c)).collect();

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use barrelstack::study::{Collected, Endings, Status, StudyTable, Tally};
+use barrelstack_campaign::study::{Collected, Endings, Status, StudyTable, Tally};
 use serde_json::{Value, json};
 
 /// A number of things, such as "1 case" and "2 cases".

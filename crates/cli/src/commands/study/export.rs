@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use anyhow::Context as _;
-use barrelstack::decision::{Request, decide, export as exported};
-use barrelstack::study::Collected;
+use barrelstack_campaign::decision::{Request, decide, export as exported};
+use barrelstack_campaign::study::Collected;
 
 use crate::printer;
 

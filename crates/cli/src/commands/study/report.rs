@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
-use barrelstack::decision::{Decision, Request, SiteHazard, decide};
-use barrelstack::study::Collected;
+use barrelstack_campaign::decision::{Decision, Request, SiteHazard, decide};
+use barrelstack_campaign::study::Collected;
 
 use crate::commands::heights::page;
 use crate::printer;

@@ -1,0 +1,143 @@
+//! Demands on a stack: each declared once, with where it comes from, what it is called, and its unit in print.
+
+use serde::Serialize;
+
+use crate::assemble::{Assembly, PartKind};
+use crate::watch::{Fate, Fates, StressEnvelope, Stresses};
+
+/// A demand on a stack.
+#[derive(Clone, Copy, Debug)]
+pub struct Demand {
+    /// Key in files.
+    pub name: &'static str,
+    /// What it is, in print.
+    pub label: &'static str,
+    /// Unit in files, which is SI; `1` for a ratio.
+    pub unit: &'static str,
+    /// Unit in print.
+    pub shown_unit: &'static str,
+    /// What a value in files is multiplied by in print.
+    pub factor: f64,
+    /// Its value in files; none where it does not apply.
+    pub get: fn(&Demands) -> Option<f64>,
+}
+
+impl Demand {
+    /// Its value in print; none where it does not apply.
+    pub fn shown(&self, demands: &Demands) -> Option<f64> {
+        (self.get)(demands).map(|value| value * self.factor)
+    }
+}
+
+/// Each line: the doc comment, the key, unit, label, factor and unit in print, and where the value comes from.
+macro_rules! demands {
+    ($(
+        $(#[doc = $doc:literal])+
+        $name:ident $unit:literal: $label:literal, $factor:literal $shown:literal, $of:expr;
+    )*) => {
+        /// Demands on the stack, while it stood unless said otherwise; all null where the run is invalid.
+        #[derive(Clone, Debug, Default, Serialize)]
+        pub struct Demands {
+            $($(#[doc = $doc])+ pub $name: Option<f64>,)*
+        }
+
+        /// All demands, in reading order.
+        pub static DEMANDS: &[Demand] = &[$(Demand {
+            name: stringify!($name),
+            label: $label,
+            unit: $unit,
+            shown_unit: $shown,
+            factor: $factor,
+            get: |demands| demands.$name,
+        }),*];
+
+        impl Demands {
+            /// The demands on a stack of a run that did not break down; those of stress where stresses
+            /// were watched.
+            pub(crate) fn of(
+                assembly: &Assembly,
+                fates: &Fates,
+                stresses: Option<&Stresses>,
+            ) -> Self {
+                let seen = Seen { assembly, fates, stresses };
+                Self { $($name: seen.most($of)),* }
+            }
+        }
+    };
+}
+
+demands! {
+    /// Largest displacement of the top barrels against the ground, over the height of the stack.
+    top_drift_ratio "1": "drift of the top against the ground, of the height", 100.0 "%", |seen, body| {
+        let height = seen.assembly.height;
+        let drift = seen.fate(body, PartKind::Barrel, Some(seen.assembly.levels))?.peak_displacement;
+        (height > 0.0).then_some(drift / height)
+    };
+    /// Largest normal stress on a bottom-level barrel over the largest at rest.
+    stress_amplification "1": "stress amplification, largest on a bottom barrel", 1.0 "× at rest",
+        |seen, body| seen.stress(body)?.amplification();
+    /// Average stress amplification over the loaded boundary of the bottom-level barrels.
+    mean_stress_amplification "1": "stress amplification, average over the loaded boundary", 1.0 "× at rest",
+        |seen, body| seen.stress(body)?.mean_amplification();
+    /// Largest slip of the bottom rack on the ground.
+    base_slip_peak "m": "slip of the bottom rack on the ground, largest", 100.0 "cm",
+        |seen, body| Some(seen.fate(body, PartKind::Rack, Some(1))?.peak_slip);
+    /// Slip of the bottom rack on the ground, at the moment of the collapse (at the end if there was none).
+    base_slip_at_collapse "m": "slip of the bottom rack, at the collapse", 100.0 "cm",
+        |seen, body| Some(seen.fate(body, PartKind::Rack, Some(1))?.displacement_at_collapse);
+    /// The same at the end of the run.
+    base_slip_residual "m": "slip of the bottom rack, at the end of the run", 100.0 "cm",
+        |seen, body| Some(seen.fate(body, PartKind::Rack, Some(1))?.residual_slip);
+    /// Largest walk of any rack on the barrels below.
+    rack_walk_peak "m": "walk of a rack on the barrels below, largest", 100.0 "cm", |seen, body| {
+        let fate = seen.fate(body, PartKind::Rack, None)?;
+        (!seen.assembly.parts[body].supports.is_empty()).then_some(fate.peak_slip)
+    };
+    /// Largest tilt of any rack.
+    rack_tilt_peak "rad": "tilt of a rack, largest", 57.295_779_513_082_32 "deg",
+        |seen, body| Some(seen.fate(body, PartKind::Rack, None)?.peak_tilt);
+}
+
+/// What demands are taken from.
+struct Seen<'a> {
+    assembly: &'a Assembly,
+    fates: &'a Fates,
+    stresses: Option<&'a Stresses>,
+}
+
+impl Seen<'_> {
+    /// The largest value in size, with its sign, of all bodies that have one.
+    fn most(&self, of: fn(&Self, usize) -> Option<f64>) -> Option<f64> {
+        let larger = |most: f64, value: f64| if value.abs() > most.abs() { value } else { most };
+        (0..self.assembly.parts.len()).filter_map(|body| of(self, body)).reduce(larger)
+    }
+
+    /// The fate of a body of a kind on a level; none for any other.
+    fn fate(&self, body: usize, kind: PartKind, level: Option<u32>) -> Option<Fate> {
+        let part = &self.assembly.parts[body];
+        let wanted = part.kind == kind && level.is_none_or(|level| part.level == Some(level));
+        wanted.then(|| self.fates.fate(body))
+    }
+
+    /// The stress around a barrel of the bottom level.
+    fn stress(&self, body: usize) -> Option<&StressEnvelope> {
+        self.fate(body, PartKind::Barrel, Some(1))?;
+        self.stresses?.of(body)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{DEMANDS, Demands};
+
+    #[test]
+    fn keys_in_files_are_those_of_the_list_in_its_order() {
+        let written = serde_json::to_string(&Demands::default()).unwrap();
+        let places: Vec<usize> =
+            DEMANDS.iter().map(|d| written.find(&format!("\"{}\":", d.name)).unwrap()).collect();
+        assert!(places.is_sorted(), "{written}");
+        assert_eq!(written.matches(':').count(), DEMANDS.len());
+        let tilt = DEMANDS.iter().find(|demand| demand.name == "rack_tilt_peak").unwrap();
+        assert_eq!(tilt.factor, 180.0 / std::f64::consts::PI);
+    }
+}

@@ -1,0 +1,194 @@
+//! What was seen of collapses: one row a test, from a video or from notes.
+
+use barrelstack::outcome::CollapseMode;
+use barrelstack::scenario::Dimension;
+use barrelstack_input::measured::Entry;
+
+use crate::{CalibrateError, Table};
+
+/// The word for a barrel that still stood when the watch ended, and for a stack that did.
+const STANDS: &str = "stands";
+
+/// What follows the name of a barrel in the head of its column.
+const FELL: &str = " fell";
+
+/// Columns that are not of a barrel.
+const COLUMNS: [&str; 6] =
+    ["scenario", "mode", "first barrel", "loss of seat", "first fall", "until"];
+
+/// When something happened.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Time {
+    /// At this time (s).
+    At(f64),
+    /// Not before the watch ended.
+    Never,
+}
+
+/// How a stack went.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Mode {
+    /// It kept standing.
+    Stands,
+    /// It collapsed in this mode.
+    Collapse(CollapseMode),
+}
+
+/// One test.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Observed {
+    /// The scenario of the test, where the file names one.
+    pub(super) scenario: Option<String>,
+    /// How the stack went.
+    pub(super) mode: Option<Mode>,
+    /// The first barrel to fall.
+    pub(super) first_barrel: Option<String>,
+    /// When the first body left its seat.
+    pub(super) loss: Option<Time>,
+    /// When the first barrel had fallen.
+    pub(super) first_fall: Option<Time>,
+    /// When barrels had fallen, by name.
+    pub(super) falls: Vec<(String, Time)>,
+    /// How long (s) it was watched, from the start of the motion.
+    pub(super) until: f64,
+}
+
+impl Observed {
+    /// Every row of a table; `margin` (s) is added to the last time of a row without an end of the
+    /// watch.
+    pub(super) fn read(
+        table: &Table,
+        margin: f64,
+    ) -> Result<(Vec<Self>, Vec<String>), CalibrateError> {
+        let barrels: Vec<String> = table
+            .names()
+            .filter_map(|name| name.strip_suffix(FELL).map(|barrel| barrel.trim().to_owned()))
+            .collect();
+        let heads: Vec<String> = barrels.iter().map(|barrel| format!("{barrel}{FELL}")).collect();
+        let known: Vec<&str> =
+            COLUMNS.into_iter().chain(heads.iter().map(String::as_str)).collect();
+        let mut warnings = table.unused(&known);
+        let ends = times(table, "until")?;
+        let losses = times(table, "loss of seat")?;
+        let first_falls = times(table, "first fall")?;
+        let falls: Vec<Vec<Option<Time>>> =
+            heads.iter().map(|head| times(table, head)).collect::<Result<_, _>>()?;
+        let mut tests = Vec::new();
+        for row in 0..table.count() {
+            let text = |name: &str| Some(table.cell(row, name)).filter(|cell| !cell.is_empty());
+            let test = Self {
+                scenario: text("scenario"),
+                mode: mode(table, row)?,
+                first_barrel: text("first barrel"),
+                loss: losses[row],
+                first_fall: first_falls[row],
+                falls: barrels
+                    .iter()
+                    .zip(&falls)
+                    .filter_map(|(barrel, times)| Some((barrel.clone(), times[row]?)))
+                    .collect(),
+                until: 0.0,
+            };
+            tests.push(test.watched(table, row, ends[row], margin)?);
+        }
+        if tests.iter().any(|test| !test.falls.is_empty() && test.repeats_itself()) {
+            warnings.push(
+                "\"first fall\" and \"first barrel\" are left out where fall times of barrels are given, \
+                 which say the same"
+                    .to_owned(),
+            );
+        }
+        for test in tests.iter_mut().filter(|test| !test.falls.is_empty()) {
+            (test.first_fall, test.first_barrel) = (None, None);
+        }
+        Ok((tests, warnings))
+    }
+
+    fn repeats_itself(&self) -> bool {
+        self.first_fall.is_some() || self.first_barrel.is_some()
+    }
+
+    /// All times, with the column of each.
+    fn times(&self) -> impl Iterator<Item = (String, Time)> + '_ {
+        let own = [("loss of seat", self.loss), ("first fall", self.first_fall)];
+        let own = own.into_iter().filter_map(|(name, time)| Some((name.to_owned(), time?)));
+        own.chain(self.falls.iter().map(|(barrel, time)| (format!("{barrel}{FELL}"), *time)))
+    }
+
+    /// The test with the end of its watch.
+    fn watched(
+        mut self,
+        table: &Table,
+        row: usize,
+        end: Option<Time>,
+        margin: f64,
+    ) -> Result<Self, CalibrateError> {
+        let last = self
+            .times()
+            .filter_map(|(_, time)| if let Time::At(time) = time { Some(time) } else { None })
+            .fold(0.0, f64::max);
+        if self.mode.is_none() && self.times().next().is_none() && self.first_barrel.is_none() {
+            let remedy = "state a mode or a time, or remove the row";
+            return Err(table.at(row, "mode", "something that was seen", "nothing", remedy).into());
+        }
+        if let Some(Time::At(until)) = end {
+            if let Some((column, _)) =
+                self.times().find(|(_, time)| matches!(time, Time::At(time) if *time > until))
+            {
+                let expected = format!("a time up to the end of the watch at {until} s");
+                let found = table.cell(row, &column);
+                let remedy = "correct it, or the column \"until\"";
+                return Err(table.at(row, &column, &expected, &found, remedy).into());
+            }
+            self.until = until;
+            return Ok(self);
+        }
+        let open = self.mode == Some(Mode::Stands)
+            || self.times().any(|(_, time)| time == Time::Never)
+            || last == 0.0;
+        if open {
+            let remedy = "what stands, and a mode without a time, say nothing without it";
+            return Err(table
+                .at(row, "until", "how long the test was watched", "nothing", remedy)
+                .into());
+        }
+        self.until = last + margin;
+        Ok(self)
+    }
+}
+
+/// The times of a column, where there is one.
+fn times(table: &Table, name: &str) -> Result<Vec<Option<Time>>, CalibrateError> {
+    if !table.has(name) {
+        return Ok(vec![None; table.count()]);
+    }
+    let time = |(row, entry): (usize, Entry)| match entry {
+        Entry::Empty => Ok(None),
+        Entry::Word => Ok(Some(Time::Never)),
+        Entry::Number(time) if time > 0.0 => Ok(Some(Time::At(time))),
+        Entry::Number(_) => {
+            let found = table.cell(row, name);
+            let remedy = "count time from the start of the scenario's motion";
+            Err(table.at(row, name, "a time above zero", &found, remedy).into())
+        }
+    };
+    table.entries(name, Dimension::TIME, STANDS)?.into_iter().enumerate().map(time).collect()
+}
+
+fn mode(table: &Table, row: usize) -> Result<Option<Mode>, CalibrateError> {
+    let cell = table.cell(row, "mode");
+    if cell.is_empty() {
+        return Ok(None);
+    }
+    if cell == STANDS {
+        return Ok(Some(Mode::Stands));
+    }
+    let modes = CollapseMode::ALL;
+    if let Some(mode) = modes.into_iter().find(|mode| mode.name() == cell) {
+        return Ok(Some(Mode::Collapse(mode)));
+    }
+    let names = modes.map(CollapseMode::name).join(", ");
+    let expected = format!("{names} or {STANDS}");
+    let remedy = "name the mode so, or leave it empty";
+    Err(table.at(row, "mode", &expected, &format!("\"{cell}\""), remedy).into())
+}

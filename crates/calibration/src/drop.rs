@@ -1,0 +1,265 @@
+//! Restitution and damping `c` from drops: heights, or times of impact.
+
+use barrelstack::scenario::Dimension;
+use barrelstack_dynamics::contact::restitution;
+use barrelstack_dynamics::math;
+use barrelstack_fragility::student_quantile;
+
+use super::least_squares::{self, Fit, Start};
+use super::result::{quoted, rounded, short};
+use super::statistics::mean;
+use super::{CalibrateError, Calibration, Estimate, Table, impact};
+
+/// What falls on what, as far as the file does not say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Striker {
+    /// Mass (kg) that falls.
+    pub mass: f64,
+    /// Stiffness `k` (N/m) of one contact node.
+    pub stiffness: f64,
+    /// Nodes that it falls on at once.
+    pub nodes: u32,
+    /// Acceleration of gravity (m/s²).
+    pub gravity: f64,
+}
+
+/// Standard gravity (m/s²).
+pub const GRAVITY: f64 = 9.80665;
+
+/// Fits from a start; parameters are about 1, and differences and the last step small.
+fn fit(start: &[f64], evaluate: &least_squares::Evaluate<'_>) -> Option<Fit> {
+    let parameters = start.to_vec();
+    least_squares::fit(Start { parameters, slopes: None, width: 1e-4, share: 0.01 }, evaluate)
+}
+
+/// Restitution, and with a striker the damping, from a table with the columns `drop height` and
+/// `rebound height`, or `time` of the impacts of one bounce sequence.
+///
+/// With a striker, the impact is solved with gravity and with its duration, and ζ is fitted so that it
+/// shows the rebounds or the times: gravity presses the mass into the contact and takes from the
+/// rebound of slow impacts.
+/// Without one the rebound is taken as that of an instantaneous impact.
+/// The scatter is taken as that of restitution from drop to drop, or as that of the times.
+///
+/// # Errors
+/// When the table lacks its columns or rows, or what rebounds does not fit a drop.
+pub fn drop(
+    table: &Table,
+    striker: Option<Striker>,
+    interface: &str,
+) -> Result<Calibration, CalibrateError> {
+    let found =
+        if table.has("time") { from_times(table, striker)? } else { from_heights(table, striker)? };
+    let mut warnings = table.unused(&["time", "drop height", "rebound height"]);
+    warnings.extend(found.warnings);
+    let e = found.restitution.value;
+    let mut estimates = vec![found.restitution];
+    let mut facts = vec![("impacts".to_owned(), found.impacts.to_string())];
+    let scenario;
+    if let (Some(striker), Some((log_ratio, half))) = (striker, found.log_ratio) {
+        let whole = |ratio: f64| {
+            let nodes = f64::from(striker.nodes);
+            restitution::damping(striker.stiffness * nodes, ratio, striker.mass) / nodes
+        };
+        let estimate = |name: &str, of: &dyn Fn(f64) -> f64, dimension| Estimate {
+            name: name.to_owned(),
+            value: of(math::exp(log_ratio)),
+            low: of(math::exp(log_ratio - half)),
+            high: of(math::exp(log_ratio + half)),
+            dimension,
+        };
+        estimates.push(estimate("damping ratio", &|ratio| ratio, Dimension::NONE));
+        let damping = estimate("damping c", &whole, Dimension::DAMPING);
+        scenario = format!(
+            "[interface.{interface}]\nstiffness = {}\ndamping = {}\n",
+            quoted(striker.stiffness, Dimension::STIFFNESS),
+            quoted(damping.value, Dimension::DAMPING)
+        );
+        estimates.push(damping);
+        facts.push(("falling mass".to_owned(), format!("{} kg", short(striker.mass))));
+        let k = short(striker.stiffness);
+        facts.push((
+            "stiffness k".to_owned(),
+            format!("{k} N/m at each of {} nodes, taken as exact", striker.nodes),
+        ));
+    } else {
+        warnings.push(
+            "gravity during the impact is left out, so slow impacts show too little restitution: give the \
+             mass and the stiffness for the damping c"
+                .to_owned(),
+        );
+        scenario = format!(
+            "[interface.{interface}]\nrestitution = {}\n# restitution needs reference_mass, what falls on one node, and \
+             stiffness beside it\n",
+            rounded(e)
+        );
+    }
+    let title = format!("drop test {}: rebound of the speed-gap law", table.file());
+    Ok(Calibration { title, estimates, facts, scenario, warnings, ..Calibration::default() })
+}
+
+/// What either form of the test gives.
+struct Found {
+    restitution: Estimate,
+    /// ln ζ and half its interval.
+    log_ratio: Option<(f64, f64)>,
+    impacts: usize,
+    warnings: Vec<String>,
+}
+
+impl Striker {
+    /// Whole stiffness (N/m) and damping (N·s/m) at a damping ratio.
+    fn constants(&self, ratio: f64) -> (f64, f64) {
+        let stiffness = self.stiffness * f64::from(self.nodes);
+        (stiffness, restitution::damping(stiffness, ratio, self.mass))
+    }
+
+    fn strike(&self, log_ratio: f64, speed: f64) -> super::Impact {
+        let (stiffness, damping) = self.constants(math::exp(log_ratio));
+        impact(self.mass, stiffness, damping, self.gravity, speed)
+    }
+}
+
+fn from_heights(table: &Table, striker: Option<Striker>) -> Result<Found, CalibrateError> {
+    let from = table.positive("drop height", Dimension::LENGTH)?;
+    let to = table.positive("rebound height", Dimension::LENGTH)?;
+    if let Some(row) = from.iter().zip(&to).position(|(from, to)| to >= from) {
+        let expected = format!("less than the drop height {}", table.cell(row, "drop height"));
+        let found = table.cell(row, "rebound height");
+        let remedy = "nothing rebounds higher than it fell; correct the row or remove it";
+        return Err(table.at(row, "rebound height", &expected, &found, remedy).into());
+    }
+    if from.len() < 2 {
+        return Err(table.unsuited("one drop shows no scatter: at least two are needed").into());
+    }
+    let shown: Vec<f64> = from.iter().zip(&to).map(|(from, to)| (to / from).sqrt()).collect();
+    let (e, half) = mean(&shown);
+    let restitution = Estimate::symmetric("restitution", e, half, Dimension::NONE);
+    let mut warnings = Vec::new();
+    let Some(striker) = striker else {
+        return Ok(Found { restitution, log_ratio: None, impacts: from.len(), warnings });
+    };
+    let start = start_ratio(e);
+    let residuals = |point: &Vec<f64>| -> Option<Vec<f64>> {
+        let residual = |(from, e): (&f64, &f64)| {
+            let speed = (2.0 * striker.gravity * from).sqrt();
+            striker.strike(point[0], speed).speed / speed - e
+        };
+        Some(from.iter().zip(&shown).map(residual).collect())
+    };
+    let found = fit(&[start], &|points| points.iter().map(residuals).collect());
+    let log_ratio =
+        log_interval(found.as_ref(), 0).ok_or_else(|| table.unsuited(no_rebound(&striker)))?;
+    let slow = from.iter().fold(f64::INFINITY, |least, from| least.min(*from));
+    warnings.extend(gravity_warning(&striker, log_ratio.0, (2.0 * striker.gravity * slow).sqrt()));
+    Ok(Found { restitution, log_ratio: Some(log_ratio), impacts: from.len(), warnings })
+}
+
+fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, CalibrateError> {
+    let times = table.required("time", Dimension::TIME)?;
+    let flights: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if let Some(row) = flights.iter().position(|flight| *flight <= 0.0) {
+        let (expected, found) = (
+            format!("a time after {} of the row above", table.cell(row, "time")),
+            table.cell(row + 1, "time"),
+        );
+        return Err(table
+            .at(row + 1, "time", &expected, &found, "sort the impacts by time")
+            .into());
+    }
+    if times.len() < 4 {
+        return Err(table.unsuited(format!(
+            "{} impacts do not show restitution and its scatter: at least four of one bounce sequence \
+             are needed",
+            times.len()
+        )).into());
+    }
+    let count = flights.len() as f64;
+    let e = math::pow(flights[flights.len() - 1] / flights[0], 1.0 / (count - 1.0));
+    if e >= 1.0 {
+        return Err(table.unsuited(
+            "the flights between impacts do not grow shorter: are these the impacts of one bounce?",
+        ).into());
+    }
+    // Instants in units of the first flight, speeds in units of the first one's: all about 1.
+    let (origin, unit) = (times[0], flights[0]);
+    let instant = |e: f64, at: usize| (1.0 - math::pow(e, at as f64)) / (1.0 - e);
+    let bounce = |point: &Vec<f64>| -> Option<Vec<f64>> {
+        let e = math::exp(point[2]);
+        let residual = |(at, time): (usize, &f64)| {
+            point[0] + math::exp(point[1]) * instant(e, at) - (time - origin) / unit
+        };
+        Some(times.iter().enumerate().map(residual).collect())
+    };
+    let plain = fit(&[0.0, 0.0, math::log(e)], &|points| points.iter().map(bounce).collect());
+    let (log_e, half) = log_interval(plain.as_ref(), 2)
+        .ok_or_else(|| table.unsuited("the times do not follow a bounce sequence"))?;
+    let restitution = Estimate {
+        name: "restitution".to_owned(),
+        value: math::exp(log_e),
+        low: math::exp(log_e - half),
+        high: math::exp(log_e + half),
+        dimension: Dimension::NONE,
+    };
+    let mut warnings = Vec::new();
+    let Some(striker) = striker else {
+        return Ok(Found { restitution, log_ratio: None, impacts: times.len(), warnings });
+    };
+    // The speed before the first impact from the first flight, which starts with the speed after it.
+    let first_speed = 0.5 * striker.gravity * unit / restitution.value;
+    let solved = |point: &Vec<f64>| -> Option<Vec<f64>> {
+        let (mut time, mut speed) = (point[0], first_speed * math::exp(point[1]));
+        let mut residuals = Vec::with_capacity(times.len());
+        for measured in &times {
+            residuals.push(time - (measured - origin) / unit);
+            let found = striker.strike(point[2], speed);
+            speed = found.speed;
+            time += (found.duration + 2.0 * speed / striker.gravity) / unit;
+        }
+        Some(residuals)
+    };
+    let start = [0.0, 0.0, start_ratio(restitution.value)];
+    let found = fit(&start, &|points| points.iter().map(solved).collect());
+    let log_ratio =
+        log_interval(found.as_ref(), 2).ok_or_else(|| table.unsuited(no_rebound(&striker)))?;
+    let last = 0.5 * striker.gravity * flights[flights.len() - 1];
+    warnings.extend(gravity_warning(&striker, log_ratio.0, last));
+    Ok(Found { restitution, log_ratio: Some(log_ratio), impacts: times.len(), warnings })
+}
+
+/// ln ζ without gravity, from which the fit with gravity starts.
+fn start_ratio(e: f64) -> f64 {
+    let ratio = restitution::speed_gap_damping_ratio(e).unwrap_or(0.1);
+    math::log(ratio.clamp(1e-3, 1e3))
+}
+
+/// A parameter and half its 95 % interval; none where the fit failed or does not determine it.
+fn log_interval(fit: Option<&Fit>, at: usize) -> Option<(f64, f64)> {
+    let fit = fit.filter(|fit| fit.converged && fit.matters.iter().all(|matters| *matters))?;
+    let variance = fit.covariance.as_ref()?[at][at];
+    Some((fit.parameters[at], student_quantile(0.95, fit.freedom) * variance.sqrt()))
+}
+
+fn no_rebound(striker: &Striker) -> String {
+    format!(
+        "no damping shows these rebounds for {} kg on {} nodes of {} N/m under gravity: check mass, \
+         stiffness and their units",
+        short(striker.mass),
+        striker.nodes,
+        short(striker.stiffness)
+    )
+}
+
+/// Slow impacts sink in under gravity before they rebound, and say little about the damper.
+fn gravity_warning(striker: &Striker, log_ratio: f64, speed: f64) -> Option<String> {
+    let ideal = restitution::speed_gap(math::exp(log_ratio));
+    let shown = striker.strike(log_ratio, speed).speed / speed;
+    (shown < 0.9 * ideal).then(|| {
+        format!(
+            "gravity takes {:.0} % of the slowest rebound ({} m/s): c then leans on k; drop from higher, \
+             or leave out the last bounces",
+            100.0 * (1.0 - shown / ideal),
+            short(speed)
+        )
+    })
+}

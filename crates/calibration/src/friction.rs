@@ -1,0 +1,153 @@
+//! Friction coefficients from pull tests or tilt tests.
+
+use std::fmt::Write as _;
+
+use barrelstack::scenario::Dimension;
+use barrelstack_dynamics::math;
+use barrelstack_fragility::student_quantile;
+
+use super::drop::GRAVITY;
+use super::result::{rounded, short};
+use super::statistics::{line, mean};
+use super::{CalibrateError, Calibration, Estimate, Table};
+
+/// Columns of both tests.
+const COLUMNS: [&str; 6] = [
+    "normal force",
+    "breakaway force",
+    "sliding force",
+    "angle",
+    "sliding distance",
+    "sliding time",
+];
+
+/// Static and kinetic friction from a table of repeated tests, one a row.
+///
+/// Pull tests have the columns `normal force`, `breakaway force` (the largest pull before it moves)
+/// and, for the kinetic coefficient, `sliding force`; each row gives a ratio of forces.
+/// Tilt tests have the column `angle` of first slip, whose tangent is μ, and, for the kinetic
+/// coefficient, `sliding distance` and `sliding time` from rest at that angle:
+/// `μ = tan α − 2 s / (t² g cos α)`.
+/// The interval is that of the mean over the rows by Student's t.
+///
+/// # Errors
+/// When the table lacks its columns, has less than two rows, or a value cannot be meant.
+pub fn friction(table: &Table, interface: &str) -> Result<Calibration, CalibrateError> {
+    let (test, rest, slide) = if table.has("angle") {
+        let (rest, slide) = tilt(table)?;
+        ("tilt", rest, slide)
+    } else {
+        let (rest, slide) = pull(table)?;
+        ("pull", rest, slide)
+    };
+    if rest.len() < 2 {
+        return Err(table
+            .unsuited("one row shows no scatter: repeat the test at least once")
+            .into());
+    }
+    let coefficient = |name: &str, values: &[f64]| {
+        let (value, half) = mean(values);
+        Estimate::symmetric(name, value, half, Dimension::NONE)
+    };
+    let mut warnings = table.unused(&COLUMNS);
+    warnings.extend(load_warning(table, &rest)?);
+    let static_estimate = coefficient("static friction", &rest);
+    let mut estimates = vec![static_estimate];
+    let mut scenario = format!("[interface.{interface}.friction]\n");
+    let at_rest = estimates[0].value;
+    if let Some(slide) = slide {
+        let kinetic = coefficient("kinetic friction", &slide);
+        if kinetic.value <= 0.0 {
+            return Err(table.unsuited(format!(
+                "the kinetic coefficient comes out as {}: check distance, time and angle, and their units",
+                short(kinetic.value)
+            )).into());
+        }
+        let _ = writeln!(scenario, "coefficient = {}", rounded(kinetic.value));
+        if at_rest > kinetic.value {
+            let _ = writeln!(scenario, "static_coefficient = {}", rounded(at_rest));
+        } else {
+            warnings.push(
+                "sliding takes no less than breaking away: static_coefficient is left out, so that both \
+                 are the kinetic one"
+                    .to_owned(),
+            );
+        }
+        estimates.push(kinetic);
+    } else {
+        let _ = writeln!(scenario, "coefficient = {}", rounded(at_rest));
+        warnings.push(
+            "there is no test of sliding: the kinetic coefficient is taken as the static one, which is \
+             the larger of the two"
+                .to_owned(),
+        );
+    }
+    warnings.extend(estimates.iter().filter(|estimate| estimate.low <= 0.0).map(|estimate| {
+        format!("the interval of {} reaches zero: repeat the test", estimate.name)
+    }));
+    Ok(Calibration {
+        title: format!("{test} test {}: friction", table.file()),
+        facts: vec![("tests".to_owned(), rest.len().to_string())],
+        estimates,
+        scenario,
+        warnings,
+        ..Calibration::default()
+    })
+}
+
+/// Static coefficients, and kinetic ones where they were measured.
+type Coefficients = (Vec<f64>, Option<Vec<f64>>);
+
+fn pull(table: &Table) -> Result<Coefficients, CalibrateError> {
+    let normal = table.positive("normal force", Dimension::FORCE)?;
+    let over_normal = |column: &str| -> Result<Vec<f64>, CalibrateError> {
+        let pull = table.positive(column, Dimension::FORCE)?;
+        Ok(pull.iter().zip(&normal).map(|(pull, normal)| pull / normal).collect())
+    };
+    let rest = over_normal("breakaway force")?;
+    let slide = table.has("sliding force").then(|| over_normal("sliding force")).transpose()?;
+    Ok((rest, slide))
+}
+
+fn tilt(table: &Table) -> Result<Coefficients, CalibrateError> {
+    let angles = table.positive("angle", Dimension::ANGLE)?;
+    if let Some(row) = angles.iter().position(|angle| *angle >= std::f64::consts::FRAC_PI_2) {
+        let found = table.cell(row, "angle");
+        let remedy = "correct the angle, or its unit in the header";
+        return Err(table.at(row, "angle", "less than a right angle", &found, remedy).into());
+    }
+    let rest = angles.iter().map(|angle| math::tan(*angle)).collect();
+    if !table.has("sliding distance") && !table.has("sliding time") {
+        return Ok((rest, None));
+    }
+    let distance = table.positive("sliding distance", Dimension::LENGTH)?;
+    let time = table.positive("sliding time", Dimension::TIME)?;
+    let slide = angles.iter().zip(distance.iter().zip(&time)).map(|(angle, (distance, time))| {
+        math::tan(*angle) - 2.0 * distance / (time * time * GRAVITY * math::cos(*angle))
+    });
+    Ok((rest, Some(slide.collect())))
+}
+
+/// A coefficient that goes with the load is no constant (a slope outside its 99 % interval).
+fn load_warning(table: &Table, rest: &[f64]) -> Result<Option<String>, CalibrateError> {
+    if !table.has("normal force") || table.has("angle") {
+        return Ok(None);
+    }
+    let normal = table.positive("normal force", Dimension::FORCE)?;
+    let Some(found) = line(&normal, rest) else { return Ok(None) };
+    let clear =
+        found.slope.abs() > student_quantile(0.99, found.freedom) * found.slope_variance.sqrt();
+    let low = normal.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = normal.iter().copied().fold(0.0, f64::max);
+    let at = |force: f64| short(found.intercept + found.slope * force);
+    Ok(clear.then(|| {
+        format!(
+            "the coefficient goes with the load, from {} at {} N to {} at {} N: test near the load that \
+             the stack puts on the interface",
+            at(low),
+            short(low),
+            at(high),
+            short(high)
+        )
+    }))
+}

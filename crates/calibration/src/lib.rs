@@ -1,0 +1,34 @@
+//! Calibration: from a user's tests to contact parameters, each with its 95 % interval.
+//!
+//! | test | file | gives |
+//! |---|---|---|
+//! | [`stiffness`] | penetration and force | `k` |
+//! | [`mod@drop`] | drop and rebound heights, or times of impact | restitution, `c` |
+//! | [`friction`] | pull forces, or tilt angles | static and kinetic μ |
+//! | [`response`] | histories of a shaken stack | `k`, `c`, μ together |
+//! | [`mod@collapse`] | mode and fall times of collapses | `k`, `c`, μ together |
+//!
+//! Files are CSV with a header whose columns carry their unit, such as `penetration (mm),force (kN)`.
+//! Intervals hold what scatters in the file; what is given as exact (a mass, the model itself) is not
+//! in them.
+
+// Results have the same bits on every machine, so transcendental functions are those of `libm`.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+pub mod collapse;
+pub mod drop;
+mod error;
+pub mod friction;
+mod impact;
+pub mod least_squares;
+mod parameters;
+pub mod response;
+mod result;
+pub mod statistics;
+pub mod stiffness;
+
+pub use barrelstack_input::measured::{Table, TableError};
+pub use error::CalibrateError;
+pub use impact::{Impact, impact};
+pub use parameters::Parameter;
+pub use result::{Calibration, Estimate};

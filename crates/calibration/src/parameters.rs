@@ -1,0 +1,230 @@
+//! The contact parameters that a test of a whole stack may tell, and scenarios with other values of them.
+
+use std::fmt::Write as _;
+
+use barrelstack::scenario::{
+    Basis, Damping, Dimension, Friction, Interface, NormalLaw, Scenario, Scene,
+};
+use barrelstack_dynamics::math;
+
+use super::CalibrateError;
+use super::result::{quoted, rounded};
+
+/// A parameter that a response or a collapse may tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parameter {
+    /// Stiffness of barrel–rack; that of rack–ground keeps its ratio to it.
+    Stiffness,
+    /// Damping of barrel–rack; that of rack–ground keeps its ratio to it.
+    Damping,
+    /// Friction of barrel–rack; static and kinetic keep their ratio.
+    FrictionBarrelRack,
+    /// Friction of rack–ground; static and kinetic keep their ratio.
+    FrictionRackGround,
+}
+
+impl Parameter {
+    /// All parameters, with the word that names them on the command line.
+    pub const NAMES: [(&'static str, Self); 4] = [
+        ("k", Self::Stiffness),
+        ("c", Self::Damping),
+        ("mu-br", Self::FrictionBarrelRack),
+        ("mu-rg", Self::FrictionRackGround),
+    ];
+
+    /// What tables call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stiffness => "stiffness k",
+            Self::Damping => "damping c",
+            Self::FrictionBarrelRack => "friction barrel-rack",
+            Self::FrictionRackGround => "friction rack-ground",
+        }
+    }
+}
+
+/// Constants of one interface.
+#[derive(Clone, Copy)]
+struct Constants {
+    stiffness: f64,
+    damping: f64,
+    kinetic: f64,
+    rest: f64,
+}
+
+/// The parameters of a scenario that are to be found, as the scenario has them.
+///
+/// A point holds the logarithm of a factor on each of them, in their order.
+pub(super) struct Tunable {
+    parameters: Vec<Parameter>,
+    barrel_rack: Constants,
+    rack_ground: Constants,
+    basis: Basis,
+}
+
+impl Tunable {
+    /// # Errors
+    /// When the scenario is no stack of linear laws with friction.
+    pub(super) fn new(
+        scenario: &Scenario,
+        parameters: &[Parameter],
+    ) -> Result<Self, CalibrateError> {
+        let refuse = |reason: &str| CalibrateError::Scenario(reason.to_owned());
+        let Scene::Stack { stack, .. } = &scenario.scene else {
+            return Err(refuse(
+                "k, c and μ are fitted to a stack, and this scenario is a free scene",
+            ));
+        };
+        let interfaces = &stack.interfaces;
+        let barrel_rack = constants("barrel-rack", &interfaces.barrel_rack)?;
+        let rack_ground = constants("rack-ground", &interfaces.rack_ground)?;
+        let basis = interfaces.barrel_rack.basis;
+        if interfaces.rack_ground.basis != basis {
+            return Err(refuse(
+                "interface barrel-rack and rack-ground differ in `basis`: state both per node or both \
+                 per length",
+            ));
+        }
+        Ok(Self { parameters: parameters.to_vec(), barrel_rack, rack_ground, basis })
+    }
+
+    /// The point of the scenario's own values.
+    pub(super) fn origin(&self) -> Vec<f64> {
+        vec![0.0; self.parameters.len()]
+    }
+
+    /// The parameters, in the order of a point.
+    pub(super) fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// The value that a parameter has in the scenario (SI).
+    pub(super) fn start(&self, parameter: Parameter) -> f64 {
+        match parameter {
+            Parameter::Stiffness => self.barrel_rack.stiffness,
+            Parameter::Damping => self.barrel_rack.damping,
+            Parameter::FrictionBarrelRack => self.barrel_rack.kinetic,
+            Parameter::FrictionRackGround => self.rack_ground.kinetic,
+        }
+    }
+
+    /// What a parameter measures.
+    pub(super) fn dimension(&self, parameter: Parameter) -> Dimension {
+        match (parameter, self.basis) {
+            (Parameter::Stiffness, Basis::Node) => Dimension::STIFFNESS,
+            (Parameter::Stiffness, Basis::Length) => Dimension::STIFFNESS_PER_LENGTH,
+            (Parameter::Damping, Basis::Node) => Dimension::DAMPING,
+            (Parameter::Damping, Basis::Length) => Dimension::DAMPING_PER_LENGTH,
+            (Parameter::FrictionBarrelRack | Parameter::FrictionRackGround, _) => Dimension::NONE,
+        }
+    }
+
+    /// A scenario with the values of a point in place of its own.
+    pub(super) fn at(&self, scenario: &Scenario, point: &[f64]) -> Scenario {
+        let mut scenario = scenario.clone();
+        if let Scene::Stack { stack, .. } = &mut scenario.scene {
+            set(&mut stack.interfaces.barrel_rack, &self.constants(true, point));
+            set(&mut stack.interfaces.rack_ground, &self.constants(false, point));
+        }
+        scenario
+    }
+
+    /// The constants of barrel–rack or of rack–ground at a point.
+    fn constants(&self, barrel_rack: bool, point: &[f64]) -> Constants {
+        let mut constants = if barrel_rack { self.barrel_rack } else { self.rack_ground };
+        for (parameter, log) in self.parameters.iter().zip(point) {
+            let factor = math::exp(*log);
+            match parameter {
+                Parameter::Stiffness => constants.stiffness *= factor,
+                Parameter::Damping => constants.damping *= factor,
+                Parameter::FrictionBarrelRack if barrel_rack => {
+                    constants.kinetic *= factor;
+                    constants.rest *= factor;
+                }
+                Parameter::FrictionRackGround if !barrel_rack => {
+                    constants.kinetic *= factor;
+                    constants.rest *= factor;
+                }
+                Parameter::FrictionBarrelRack | Parameter::FrictionRackGround => {}
+            }
+        }
+        constants
+    }
+
+    /// The lines for a scenario: each interface with all that was fitted of it.
+    pub(super) fn scenario_lines(&self, point: &[f64]) -> String {
+        let mut text = String::new();
+        let has = |parameter| self.parameters.contains(&parameter);
+        for (name, own) in [
+            ("barrel-rack", Parameter::FrictionBarrelRack),
+            ("rack-ground", Parameter::FrictionRackGround),
+        ] {
+            let constants = self.constants(name == "barrel-rack", point);
+            if has(Parameter::Stiffness) || has(Parameter::Damping) {
+                let _ = writeln!(
+                    text,
+                    "[interface.{name}]\nstiffness = {}\ndamping = {}",
+                    quoted(constants.stiffness, self.dimension(Parameter::Stiffness)),
+                    quoted(constants.damping, self.dimension(Parameter::Damping)),
+                );
+            }
+            if has(own) {
+                let _ = writeln!(
+                    text,
+                    "[interface.{name}.friction]\ncoefficient = {}",
+                    rounded(constants.kinetic)
+                );
+                if constants.rest > constants.kinetic {
+                    let _ = writeln!(text, "static_coefficient = {}", rounded(constants.rest));
+                }
+            }
+        }
+        text
+    }
+}
+
+/// The constants of an interface, which must be such that a factor can change them.
+fn constants(name: &str, interface: &Interface) -> Result<Constants, CalibrateError> {
+    let refuse =
+        |reason: &str| Err(CalibrateError::Scenario(format!("interface.{name}: {reason}")));
+    let (NormalLaw::SpeedGap { stiffness, damping }
+    | NormalLaw::KelvinVoigt { stiffness, damping }) = interface.normal
+    else {
+        return refuse(
+            "k and c are those of a linear law: law = \"speed-gap\" or \"kelvin-voigt\"",
+        );
+    };
+    let Damping::Coefficient(damping) = damping else {
+        return refuse("state `damping` in place of `restitution`, so that c is not tied to k");
+    };
+    let (kinetic, rest) = match interface.friction {
+        Friction::Coulomb { coefficient, static_coefficient, .. } => {
+            (coefficient, static_coefficient)
+        }
+        Friction::Regularized { coefficient, .. } => (coefficient, coefficient),
+        Friction::None => return refuse("a fit needs a law of friction: law = \"coulomb\""),
+    };
+    if [stiffness, damping, kinetic].iter().any(|value| *value <= 0.0) {
+        return refuse("a fit needs stiffness, damping and friction above zero to start from");
+    }
+    Ok(Constants { stiffness, damping, kinetic, rest })
+}
+
+fn set(interface: &mut Interface, to: &Constants) {
+    match &mut interface.normal {
+        NormalLaw::SpeedGap { stiffness, damping }
+        | NormalLaw::KelvinVoigt { stiffness, damping } => {
+            *stiffness = to.stiffness;
+            *damping = Damping::Coefficient(to.damping);
+        }
+        NormalLaw::HuntCrossley { .. } | NormalLaw::Hertz { .. } | NormalLaw::Rebound { .. } => {}
+    }
+    match &mut interface.friction {
+        Friction::Coulomb { coefficient, static_coefficient, .. } => {
+            *coefficient = to.kinetic;
+            *static_coefficient = to.rest;
+        }
+        Friction::Regularized { coefficient, .. } => *coefficient = to.kinetic,
+        Friction::None => {}
+    }
+}

@@ -1,0 +1,263 @@
+//! Stiffness, damping and friction together from the recorded response of a shaken stack.
+
+mod simulate;
+
+use barrelstack::run::RunFailure;
+use barrelstack::scenario::Scenario;
+use barrelstack_dynamics::math;
+use barrelstack_fragility::student_quantile;
+
+use self::simulate::{Measured, Simulator};
+use super::least_squares::{Fit, Start, condition, fit, normalized};
+use super::result::{inseparable, short};
+use super::{CalibrateError, Calibration, Estimate, Parameter, Table};
+
+/// Differences of the logarithms of the parameters over which sensitivities are taken: wide enough
+/// that single nodes coming into contact average out.
+const WIDTH: f64 = 0.01;
+
+/// The last step of a fit as a share of the standard error; what it leaves adds 0.3 % to an interval.
+const SHARE: f64 = 0.05;
+
+/// The same for the first fit, which is wanted for the scatter of the channels.
+const FIRST_SHARE: f64 = 0.2;
+
+/// Share of a channel's own size below which its residuals are taken as rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Correlation above which two parameters cannot be told apart.
+const ALIKE: f64 = 0.95;
+
+/// Largest ratio of eigenvalues of a test that determines its parameters.
+const ILL: f64 = 1e3;
+
+/// Fits parameters of a stack to its recorded histories.
+///
+/// The table has a column `time` from the start of the scenario's motion and further columns named as
+/// in `histories.csv`, such as `B1.1 displacement x (m)` (relative to the ground and to the place at
+/// rest) or `R1 rotation (rad)`; `until` (s) leaves out later rows.
+///
+/// The sum of squares of simulated less recorded values, each over the scatter of its channel, is
+/// minimized over the logarithms of the parameters; the scatter is that of a first fit.
+/// The covariance is that of the last sensitivities and residuals. Where residuals follow one another
+/// (lag-one correlation ρ), it is widened by (1 + ρ)/(1 − ρ).
+///
+/// The fit starts from the scenario and finds the minimum next to it.
+/// Impacts, slips and falls make responses chaotic within seconds: short windows of mild shaking that
+/// still slide a little keep the response smooth.
+///
+/// # Errors
+/// When the scenario is no stack of linear laws, the table does not go with it, or the first
+/// simulation fails.
+pub fn response(
+    scenario: &Scenario,
+    table: &Table,
+    parameters: &[Parameter],
+    until: Option<f64>,
+) -> Result<Calibration, CalibrateError> {
+    let measured = Measured::read(table, until)?;
+    let simulator = Simulator::new(scenario, &measured, parameters)?;
+    let simulated = simulator.first()?;
+    let rows = measured.times.len();
+    let values = rows * measured.channels.len();
+    if values <= parameters.len() + 1 {
+        return Err(table
+            .unsuited(format!(
+                "{values} recorded values do not determine {} parameters and their scatter",
+                parameters.len()
+            ))
+            .into());
+    }
+    let sizes: Vec<f64> = measured.channels.iter().map(|(_, values)| rms(values)).collect();
+    if let Some(still) = sizes.iter().position(|size| *size == 0.0) {
+        let name = &measured.channels[still].0;
+        return Err(table
+            .unsuited(format!("column \"{name}\" is zero throughout: remove it"))
+            .into());
+    }
+
+    let several = measured.channels.len() > 1;
+    let start = Start {
+        parameters: vec![0.0; parameters.len()],
+        slopes: None,
+        width: WIDTH,
+        share: if several { FIRST_SHARE } else { SHARE },
+    };
+    let mut scatter = sizes.clone();
+    let mut found = weighted(&simulator, start, &measured, &scatter)?;
+    if several {
+        let factors: Vec<f64> = by_channel(&found.residuals, rows)
+            .zip(scatter.iter().zip(&sizes))
+            .map(|(residuals, (scatter, size))| rms(residuals).max(ROUNDING * size / scatter))
+            .collect();
+        for (scatter, factor) in scatter.iter_mut().zip(&factors) {
+            *scatter *= factor;
+        }
+        // Other weights scale sensitivities; the stack need not be simulated for them again.
+        let scaled = |slope: &Vec<f64>| -> Vec<f64> {
+            let channels = by_channel(slope, rows).zip(&factors);
+            channels.flat_map(|(values, factor)| values.iter().map(move |v| v / factor)).collect()
+        };
+        let start = Start {
+            slopes: Some(found.slopes.iter().map(scaled).collect()),
+            parameters: found.parameters,
+            width: WIDTH,
+            share: SHARE,
+        };
+        found = weighted(&simulator, start, &measured, &scatter)?;
+    }
+
+    let mut warnings = simulated.warnings;
+    if !found.converged {
+        warnings.push(
+            "the fit did not settle: start closer, shorten the window or fit fewer parameters"
+                .to_owned(),
+        );
+    }
+    let follow = correlation_in_time(&found.residuals, rows);
+    // Chance alone shows a correlation of 2/√n.
+    let widening = if follow > 2.0 / (values as f64).sqrt() {
+        let follow = follow.min(0.999);
+        warnings.push(format!(
+            "residuals follow one another (correlation {follow:.2} from sample to sample): the model does \
+             not show all that was recorded, or it was filtered; the intervals are widened for it"
+        ));
+        ((1.0 + follow) / (1.0 - follow)).sqrt()
+    } else {
+        1.0
+    };
+    let (estimates, correlation) = estimates(&simulator, parameters, &found, widening);
+    let condition = condition(&normalized(&found.information));
+    warnings.extend(identifiability(&estimates, &correlation, condition, &found.matters));
+
+    let mut facts = vec![
+        ("window".to_owned(), format!("{} s, {rows} rows", short(measured.end()))),
+        ("condition number".to_owned(), short(condition)),
+        ("simulations".to_owned(), simulator.count().to_string()),
+    ];
+    for (((name, _), scatter), residuals) in
+        measured.channels.iter().zip(&scatter).zip(by_channel(&found.residuals, rows))
+    {
+        facts.push((format!("scatter of {name}"), short(scatter * rms(residuals))));
+    }
+    Ok(Calibration {
+        title: format!("response {}: fitted by simulations", table.file()),
+        scenario: simulator.tunable.scenario_lines(&found.parameters),
+        estimates,
+        correlation,
+        condition: Some(condition),
+        facts,
+        warnings,
+    })
+}
+
+fn weighted(
+    simulator: &Simulator<'_>,
+    start: Start,
+    measured: &Measured,
+    scatter: &[f64],
+) -> Result<Fit, CalibrateError> {
+    let residuals = |simulated: Vec<Vec<f64>>| -> Vec<f64> {
+        let mut residuals = Vec::new();
+        for ((values, recorded), scatter) in simulated.iter().zip(&measured.channels).zip(scatter) {
+            residuals.extend(values.iter().zip(&recorded.1).map(|(a, b)| (a - b) / scatter));
+        }
+        residuals
+    };
+    let evaluate = |points: &[Vec<f64>]| -> Vec<Option<Vec<f64>>> {
+        simulator.batch(points).into_iter().map(|found| found.map(residuals)).collect()
+    };
+    fit(start, &evaluate).ok_or_else(|| {
+        CalibrateError::Run(RunFailure::Duration(
+            "the stack does not stand for values 1 % from those of the scenario: start from a sounder \
+             scenario"
+                .to_owned(),
+        ))
+    })
+}
+
+/// Estimates and their correlations, both in the order of `parameters`.
+fn estimates(
+    simulator: &Simulator<'_>,
+    parameters: &[Parameter],
+    found: &Fit,
+    widening: f64,
+) -> (Vec<Estimate>, Vec<Vec<f64>>) {
+    let t = student_quantile(0.95, found.freedom) * widening;
+    let place = |at: usize| found.matters[..at].iter().filter(|matters| **matters).count();
+    let known = |at: usize| found.covariance.as_ref().filter(|_| found.matters[at]);
+    let estimate = |(at, parameter): (usize, &Parameter)| {
+        let half = known(at).map_or(f64::INFINITY, |c| t * c[place(at)][place(at)].sqrt());
+        let value = |log: f64| simulator.tunable.start(*parameter) * math::exp(log);
+        let log = found.parameters[at];
+        Estimate {
+            name: parameter.name().to_owned(),
+            value: value(log),
+            low: value(log - half),
+            high: value(log + half),
+            dimension: simulator.tunable.dimension(*parameter),
+        }
+    };
+    let estimates = parameters.iter().enumerate().map(estimate).collect();
+    let correlation = found.covariance.as_ref().map(|covariance| normalized(covariance));
+    let entry = |i: usize, j: usize| match &correlation {
+        _ if i == j => 1.0,
+        Some(correlation) if found.matters[i] && found.matters[j] => {
+            correlation[place(i)][place(j)]
+        }
+        _ => 0.0,
+    };
+    let count = parameters.len();
+    let rows = (0..count).map(|i| (0..count).map(|j| entry(i, j)).collect()).collect();
+    (estimates, rows)
+}
+
+/// What the test cannot tell, one sentence each.
+fn identifiability(
+    estimates: &[Estimate],
+    correlation: &[Vec<f64>],
+    condition: f64,
+    matters: &[bool],
+) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (estimate, matters) in estimates.iter().zip(matters) {
+        if !matters {
+            warnings.push(format!(
+                "{} leaves no trace in this test and keeps the value of the scenario: nothing depends on \
+                 it here",
+                estimate.name
+            ));
+        } else if estimate.high > 4.0 * estimate.low {
+            warnings.push(format!(
+                "this test hardly determines {}: its interval spans a factor of {}",
+                estimate.name,
+                short(estimate.high / estimate.low)
+            ));
+        }
+    }
+    warnings.extend(inseparable(estimates, correlation, ALIKE));
+    if condition > ILL {
+        warnings.push(format!(
+            "the parameters together are ill determined (condition number {}): fit fewer of them, or \
+             record more channels",
+            short(condition)
+        ));
+    }
+    warnings
+}
+
+fn by_channel(residuals: &[f64], rows: usize) -> impl Iterator<Item = &[f64]> {
+    residuals.chunks_exact(rows)
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+/// Correlation of residuals with those of the sample before, over all channels.
+fn correlation_in_time(residuals: &[f64], rows: usize) -> f64 {
+    let pairs = by_channel(residuals, rows).flat_map(|channel| channel.windows(2));
+    let together: f64 = pairs.map(|pair| pair[0] * pair[1]).sum();
+    let own: f64 = residuals.iter().map(|value| value * value).sum();
+    if own > 0.0 { together / own } else { 0.0 }
+}

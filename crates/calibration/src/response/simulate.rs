@@ -1,0 +1,176 @@
+//! A scenario with changed constants, simulated at the times of a recording.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use barrelstack::assemble::assemble;
+use barrelstack::outcome::Outcome;
+use barrelstack::pool;
+use barrelstack::run::{Run, run, time_step};
+use barrelstack::scenario::{Dimension, Scenario};
+
+use crate::parameters::{Parameter, Tunable};
+use crate::{CalibrateError, Table};
+
+/// A recording: times (s) and channels by name.
+pub(super) struct Measured {
+    pub(super) times: Vec<f64>,
+    pub(super) channels: Vec<(String, Vec<f64>)>,
+}
+
+impl Measured {
+    pub(super) fn read(table: &Table, until: Option<f64>) -> Result<Self, CalibrateError> {
+        let mut times = table.required("time", Dimension::TIME)?;
+        if let Some(row) = times.iter().position(|time| *time < 0.0) {
+            let found = table.cell(row, "time");
+            let remedy = "count time from the start of the scenario's motion";
+            return Err(table.at(row, "time", "a time of at least zero", &found, remedy).into());
+        }
+        if let Some(row) = times.windows(2).position(|pair| pair[1] <= pair[0]) {
+            let expected = format!("a time after {} of the row above", table.cell(row, "time"));
+            let found = table.cell(row + 1, "time");
+            return Err(table
+                .at(row + 1, "time", &expected, &found, "sort the rows by time")
+                .into());
+        }
+        let kept =
+            times.iter().take_while(|time| until.is_none_or(|until| **time <= until)).count();
+        times.truncate(kept);
+        if kept < 3 {
+            return Err(table
+                .unsuited(format!("{kept} rows are left in the window: lengthen it"))
+                .into());
+        }
+        let mut channels = Vec::new();
+        for name in table.names().filter(|name| !name.eq_ignore_ascii_case("time")) {
+            let dimension =
+                if name.ends_with("rotation") { Dimension::ANGLE } else { Dimension::LENGTH };
+            let mut values = table.required(name, dimension)?;
+            values.truncate(kept);
+            channels.push((name.to_owned(), values));
+        }
+        if channels.is_empty() {
+            return Err(table.unsuited(
+                "there is no channel beside the time: add columns such as `B1.1 displacement x (m)`",
+            ).into());
+        }
+        Ok(Self { times, channels })
+    }
+
+    /// Time (s) of the last row.
+    pub(super) fn end(&self) -> f64 {
+        self.times.last().copied().unwrap_or(0.0)
+    }
+}
+
+/// Simulates a scenario for sets of logarithms of factors on its constants.
+pub(super) struct Simulator<'a> {
+    scenario: Scenario,
+    measured: &'a Measured,
+    pub(super) tunable: Tunable,
+    count: AtomicUsize,
+}
+
+/// What the first simulation says.
+pub(super) struct First {
+    pub(super) warnings: Vec<String>,
+}
+
+impl<'a> Simulator<'a> {
+    pub(super) fn new(
+        scenario: &Scenario,
+        measured: &'a Measured,
+        parameters: &[Parameter],
+    ) -> Result<Self, CalibrateError> {
+        let tunable = Tunable::new(scenario, parameters)?;
+        let mut scenario = scenario.clone();
+        scenario.run.stop_after_collapse = None;
+        let scale = scenario.run.similitude.sqrt();
+        // One step for all simulations, so that a change of step does not pass for an effect of a
+        // parameter; the step of a run is a small share of the critical one.
+        let assembly = assemble(&scenario).map_err(barrelstack::run::RunFailure::from)?;
+        let step = time_step(&scenario, &assembly)? / scale;
+        scenario.run.step = Some(step);
+        // Two steps more, so that the last row lies between samples.
+        scenario.run.duration = Some(measured.end() / scale + 2.0 * step);
+        // Every step is sampled, so that interpolation adds nothing to the residuals.
+        scenario.record.history_rate = 1.0 / step;
+        scenario.record.frame_rate = 1.0;
+        let count = AtomicUsize::new(0);
+        Ok(Self { scenario, measured, tunable, count })
+    }
+
+    /// How many simulations were run.
+    pub(super) fn count(&self) -> usize {
+        self.count.load(Ordering::Relaxed)
+    }
+
+    /// Runs the scenario as it is, and checks that it shows the channels that were recorded.
+    pub(super) fn first(&self) -> Result<First, CalibrateError> {
+        let run = self.run(&self.tunable.origin())?;
+        for (name, _) in &self.measured.channels {
+            if run.recording.channel(name).is_none() {
+                let bodies = run.recording.channels.iter().map(|channel| channel.name.as_str());
+                let names: Vec<&str> = bodies
+                    .filter(|name| name.contains(" displacement ") || name.ends_with(" rotation"))
+                    .filter(|name| !name.starts_with("ground "))
+                    .collect();
+                return Err(CalibrateError::Scenario(format!(
+                    "the scenario has no channel \"{name}\"; it has {}",
+                    names.join(", ")
+                )));
+            }
+        }
+        let mut warnings = Vec::new();
+        match &run.outcome {
+            Outcome::Collapse { time, .. } => warnings.push(format!(
+                "with the values of the scenario the stack collapses at {time:.2} s, within the window: end \
+                 it before"
+            )),
+            Outcome::Invalid { reason } => {
+                return Err(CalibrateError::Scenario(reason.clone()));
+            }
+            Outcome::Stable | Outcome::NotJudged => {}
+        }
+        Ok(First { warnings })
+    }
+
+    fn run(&self, point: &[f64]) -> Result<Run, barrelstack::run::RunFailure> {
+        self.count.fetch_add(1, Ordering::Relaxed);
+        run(&self.tunable.at(&self.scenario, point), &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// All channels at the recorded times; none where the stack cannot be simulated.
+    fn channels(&self, point: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let run = self.run(point).ok()?;
+        if matches!(run.outcome, Outcome::Invalid { .. }) {
+            return None;
+        }
+        let times = &run.recording.times;
+        let channel = |(name, _): &(String, Vec<f64>)| {
+            let values = &run.recording.channel(name)?.values;
+            Some(
+                self.measured.times.iter().map(|time| interpolated(times, values, *time)).collect(),
+            )
+        };
+        self.measured.channels.iter().map(channel).collect()
+    }
+
+    /// Several points on all cores; which thread runs which changes nothing.
+    pub(super) fn batch(&self, points: &[Vec<f64>]) -> Vec<Option<Vec<Vec<f64>>>> {
+        pool::map(points, |point| self.channels(point), &|_| ())
+    }
+}
+
+/// Linear between samples, constant beyond the last.
+fn interpolated(times: &[f64], values: &[f64], time: f64) -> f64 {
+    let above = times.partition_point(|sample| *sample < time);
+    match (above.checked_sub(1), values.get(above)) {
+        (None, _) => values.first().copied().unwrap_or(0.0),
+        (Some(below), None) => values[below],
+        (Some(below), Some(high)) => {
+            let share = (time - times[below]) / (times[above] - times[below]);
+            values[below] + share * (high - values[below])
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! Stiffness `k` from a press test: penetration against force.
+
+use barrelstack::scenario::Dimension;
+use barrelstack_fragility::student_quantile;
+
+use super::result::{quoted, short};
+use super::statistics::line;
+use super::{CalibrateError, Calibration, Estimate, Table};
+
+/// How much lower the information criterion of the other law must be before it is mentioned; a
+/// difference of ten leaves the worse of two models essentially no support (Burnham and Anderson
+/// 2002).
+const CLEARLY: f64 = 10.0;
+
+/// Fits `F = k (δ − δ₀)` to a press test with the columns `penetration` and `force`.
+///
+/// δ₀ is the seating offset: the reading at which the surfaces first touch.
+/// The scatter is taken as that of the force, the same in every row.
+/// `nodes` are the contact nodes that share the force; `k` is that of one.
+/// `interface` names the pair in the lines for a scenario, such as "barrel-rack".
+///
+/// # Errors
+/// When the table lacks a column, has less than three rows, or its force does not grow with
+/// penetration.
+pub fn stiffness(
+    table: &Table,
+    nodes: u32,
+    interface: &str,
+) -> Result<Calibration, CalibrateError> {
+    let penetration = table.required("penetration", Dimension::LENGTH)?;
+    let force = table.required("force", Dimension::FORCE)?;
+    let found = line(&penetration, &force).ok_or_else(|| {
+        table.unsuited(
+            "a slope and its scatter need at least three rows, at more than one penetration",
+        )
+    })?;
+    let (slope, t) = (found.slope, student_quantile(0.95, found.freedom));
+    if slope <= 0.0 {
+        return Err(table.unsuited(format!(
+            "the force falls with penetration ({} N/m): keep the rows of pressing, and count both \
+             positive into the surface",
+            short(slope)
+        )).into());
+    }
+    let per_node = slope / f64::from(nodes);
+    let half = t * found.slope_variance.sqrt();
+    // δ₀ = x̄ − ȳ/k, with independent errors of ȳ and k.
+    let offset = -found.intercept / slope;
+    let lever = (found.center - offset) / slope;
+    let offset_variance =
+        found.center_variance / (slope * slope) + lever * lever * found.slope_variance;
+    let stiffness =
+        Estimate::symmetric("stiffness k", per_node, half / f64::from(nodes), Dimension::STIFFNESS);
+    let seating = Estimate::symmetric(
+        "seating offset",
+        offset,
+        t * offset_variance.sqrt(),
+        Dimension::LENGTH,
+    );
+
+    let mut warnings = table.unused(&["penetration", "force"]);
+    let outside = force.iter().filter(|force| **force <= 0.0).count();
+    if outside > 0 {
+        warnings.push(format!(
+            "{outside} of {} rows carry no force: remove the rows before the surfaces touch, they \
+             lower k",
+            force.len()
+        ));
+    }
+    if let Some((hertz, difference)) = hertz(&penetration, &force, found.squares)
+        && difference > CLEARLY
+    {
+        warnings.push(format!(
+            "force grows as penetration to the power 1.5 rather than in proportion (its information \
+             criterion is lower by {difference:.0}): the straight line holds between these loads only; \
+             law = \"hertz\" with stiffness = {} fits better",
+            quoted(hertz / f64::from(nodes), Dimension::HERTZ_STIFFNESS)
+        ));
+    }
+    if half > slope {
+        warnings.push("the interval of k reaches zero: press further or measure more rows".into());
+    }
+    let scatter = (found.squares / found.freedom as f64).sqrt();
+    let facts = vec![
+        ("rows".to_owned(), force.len().to_string()),
+        ("nodes that share the force".to_owned(), nodes.to_string()),
+        ("scatter of the force".to_owned(), format!("{} N", short(scatter))),
+    ];
+    let scenario = format!(
+        "[interface.{interface}]\nstiffness = {}\n# a stiffness needs its damping beside it: `barrelstack \
+         calibrate drop`\n",
+        quoted(per_node, Dimension::STIFFNESS)
+    );
+    Ok(Calibration {
+        title: format!("press test {}: force in proportion to penetration", table.file()),
+        estimates: vec![stiffness, seating],
+        facts,
+        scenario,
+        warnings,
+        ..Calibration::default()
+    })
+}
+
+/// `k` (N/m^1.5) of `F = k (δ − δ₀)^1.5`, and by how much its information criterion (Akaike 1974) is
+/// below that of the straight line; both laws have two parameters.
+///
+/// For a given δ₀ the best `k` is a ratio of sums, so δ₀ alone is searched: on a grid over the span of
+/// the readings to either side of the first one, then finer around the best.
+fn hertz(penetration: &[f64], force: &[f64], line_squares: f64) -> Option<(f64, f64)> {
+    let low = penetration.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = penetration.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let at = |offset: f64| {
+        let shape = |x: &f64| {
+            let depth = (x - offset).max(0.0);
+            depth * depth.sqrt()
+        };
+        let own: f64 = penetration.iter().map(|x| shape(x) * shape(x)).sum();
+        let product: f64 = penetration.iter().zip(force).map(|(x, f)| shape(x) * f).sum();
+        let k = product / own;
+        let left = |(x, f): (&f64, &f64)| (f - k * shape(x)) * (f - k * shape(x));
+        (k, penetration.iter().zip(force).map(left).sum::<f64>())
+    };
+    let (mut center, mut width) = (low, high - low);
+    for _ in 0..8 {
+        let tries = (-20..=20).map(|i| center + width * f64::from(i) / 21.0);
+        let best = tries.min_by(|a, b| at(*a).1.total_cmp(&at(*b).1))?;
+        (center, width) = (best, width / 10.0);
+    }
+    let (k, squares) = at(center);
+    let rows = force.len() as f64;
+    // An exact line leaves nothing to compare, up to the rounding of the sums.
+    let rounding = 1e-24 * force.iter().map(|f| f * f).sum::<f64>();
+    let ratio = line_squares.max(rounding) / squares.max(rounding);
+    Some((k, rows * barrelstack_dynamics::math::log(ratio)))
+}

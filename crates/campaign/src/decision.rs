@@ -1,0 +1,167 @@
+//! From the cases of a study to decisions: how likely is collapse, how sure is that, what is lost, how often.
+//!
+//! ```text
+//! StudyTable ─▶ Cases ─ limit state × measure ─▶ LimitCurve (raw fractions, fit, bands, warnings)
+//!                 │ └─ fall heights ─▶ Losses
+//! hazard.csv ─────┴──────────────────▶ Site (annual rates)
+//!                                        └─▶ Decision ─▶ page (HTML, Markdown), JSON
+//! ```
+//!
+//! Raw fractions stand beside every fit, and a fit that the data do not support is replaced by the reason.
+
+mod cases;
+mod curve;
+mod export;
+mod figures;
+mod hazard;
+mod indices;
+mod json;
+mod limit;
+mod loss;
+mod measures;
+mod modes;
+mod page;
+mod sensitivity;
+mod words;
+
+use barrelstack_report::Document;
+
+use crate::measured::TableError;
+use crate::study::Collected;
+
+pub(crate) use figures::{bars, chance_axis};
+pub(crate) use json::bounds as interval_json;
+pub(crate) use page::{heading, text};
+pub(crate) use words::{percent, refusal};
+
+pub use cases::{Case, Cases, Measure};
+pub use curve::{BandKind, LimitCurve};
+pub use export::{ExportError, Exported, export};
+pub use hazard::{Lost, Site, SiteHazard};
+pub use indices::Sensitivity;
+pub use limit::LimitState;
+pub use loss::{Breakage, Losses};
+pub use measures::MeasureRow;
+pub use modes::ModeIncidence;
+pub use sensitivity::{Effect, Group};
+
+/// What else a decision rests on.
+#[derive(Clone, Debug, Default)]
+pub struct Request {
+    /// How often the site is shaken how hard.
+    pub hazard: Option<SiteHazard>,
+    /// Years for which a chance is wanted; 50 without.
+    pub years: Option<f64>,
+}
+
+/// Everything that a study says.
+#[derive(Clone, Debug)]
+pub struct Decision {
+    /// The cases.
+    pub cases: Cases,
+    /// One curve a limit state, over the measure of the study; the first is the loss of the first seat.
+    pub curves: Vec<LimitCurve>,
+    /// How collapse divides among its modes over the measure of the study, the most frequent first.
+    pub modes: Vec<ModeIncidence>,
+    /// Every measure, the most efficient first.
+    pub measures: Vec<MeasureRow>,
+    /// Barrels and wine lost at each level, or why they are not known.
+    pub losses: Result<Losses, String>,
+    /// What varied quantities do to the variance of collapse and of the demands; empty but for a design made
+    /// for it.
+    pub sensitivities: Vec<Sensitivity>,
+    /// What varied factors change, the largest effect first.
+    pub effects: Vec<Effect>,
+    /// What it means at the site.
+    pub site: Option<Site>,
+    /// What the reader must know.
+    pub warnings: Vec<String>,
+    /// The page.
+    pub document: Document,
+}
+
+impl Decision {
+    /// The page as one file that asks the network for nothing.
+    pub fn html(&self) -> String {
+        barrelstack_report::html(&self.document)
+    }
+
+    /// The page as text, with its figures and tables as files for a folder named `figure_dir`.
+    pub fn markdown(&self, figure_dir: &str) -> barrelstack_report::MarkdownBundle {
+        barrelstack_report::markdown(&self.document, figure_dir)
+    }
+
+    /// The numbers as JSON, in SI units.
+    pub fn json(&self) -> serde_json::Value {
+        json::of(self)
+    }
+}
+
+/// Why a study decides nothing.
+#[derive(Debug, thiserror::Error)]
+pub enum DecisionError {
+    /// No case has a verdict.
+    #[error(
+        "none of the {rows} cases of the study has a verdict, so there is nothing to decide from; look at the column \
+         `error` of its table"
+    )]
+    NoCases {
+        /// Rows of the table.
+        rows: usize,
+    },
+    /// The table is not one of a study.
+    #[error(
+        "the table of the study has no column `{0}`; it was written by another version of the program"
+    )]
+    Column(&'static str),
+    /// The hazard curve cannot be used.
+    #[error(transparent)]
+    Hazard(#[from] TableError),
+}
+
+/// Reads everything that a study says.
+///
+/// Resampling starts from the seed of the study, so that the same study gives the same page.
+///
+/// # Errors
+/// When no case has a verdict, or the hazard is over a measure that the study does not have.
+pub fn decide(collected: &Collected, request: &Request) -> Result<Decision, DecisionError> {
+    let cases = Cases::read(collected)?;
+    let curves: Vec<LimitCurve> = LimitState::worth_telling(&cases)
+        .into_iter()
+        .map(|limit| LimitCurve::of(&cases, limit, cases.main))
+        .collect();
+    let modes = modes::of(&cases, &curves[0]);
+    let losses = Losses::of(&cases);
+    let measures = measures::compare(&cases);
+    let sensitivities = indices::of(collected);
+    let effects = sensitivity::effects(collected, &cases);
+    let site = match &request.hazard {
+        Some(hazard) => {
+            let losses = losses.as_ref().ok();
+            Some(Site::of(&cases, &curves, hazard, request.years.unwrap_or(50.0), losses)?)
+        }
+        None => None,
+    };
+    let warnings = words::warnings(
+        &cases,
+        &curves,
+        losses.as_ref().ok(),
+        site.as_ref(),
+        &collected.provenance,
+    );
+    let mut decision = Decision {
+        cases,
+        curves,
+        modes,
+        measures,
+        losses,
+        sensitivities,
+        effects,
+        site,
+        warnings,
+        document: Document::default(),
+    };
+    decision.document = page::document(&decision, &collected.provenance);
+    Ok(decision)
+}

@@ -1,0 +1,411 @@
+//! The page: how high is safe, for someone with a minute.
+
+use barrelstack_fragility::{Interval, wilson};
+use barrelstack_report::{
+    Axis, Block, Cell, Document, Figure, FigureKind, Plot, Rating, Series, SeriesStyle, Table,
+    Tone, Verdict, significant,
+};
+
+use super::plan::{HEIGHTS, VELOCITIES, View};
+use super::{AtLevel, Heights, field};
+use crate::decision::{LimitCurve, bars, chance_axis, heading, percent, refusal, text};
+use crate::scenario::catalog;
+
+/// Largest share of collapse that is called low, and the largest upper bound of its interval.
+const LOW: (f64, f64) = (0.05, 0.20);
+
+/// Largest share that is called medium.
+const MEDIUM: f64 = 0.25;
+
+/// The whole page.
+pub(super) fn document(all: &Heights) -> Document {
+    Document {
+        title: format!("How high is safe: stacks on {} racks", all.request.rack),
+        verdict: Verdict {
+            headline: headline(all),
+            sentences: sentences(all),
+            tone: Tone::Neutral,
+        },
+        blocks: blocks(all),
+        provenance: vec![
+            ("racks".into(), rack_source(&all.request.rack)),
+            ("motions".into(), all.motions.to_string()),
+            ("runs".into(), all.runs.to_string()),
+            ("seed".into(), all.request.seed.to_string()),
+            ("program".into(), format!("barrelstack {}", env!("CARGO_PKG_VERSION"))),
+        ],
+        warnings: all.warnings.clone(),
+    }
+}
+
+fn rack_source(name: &str) -> String {
+    catalog::rack(name).map_or_else(String::new, |rack| format!("{name}: {}", rack.source))
+}
+
+/// How strong a peak ground velocity (m/s) is taken to be felt, in the words of shaking maps: an assumption, since the
+/// classes are those of earthquakes in California on average (Wald et al. 1999).
+fn felt(velocity: f64) -> &'static str {
+    match 100.0 * velocity {
+        v if v < 8.1 => "moderate (V)",
+        v if v < 16.0 => "strong (VI)",
+        v if v < 31.0 => "very strong (VII)",
+        v if v < 60.0 => "severe (VIII)",
+        v if v < 116.0 => "violent (IX)",
+        _ => "extreme (X)",
+    }
+}
+
+fn shaking(velocity: f64) -> String {
+    format!("{:.0} cm/s", 100.0 * velocity)
+}
+
+/// A height at a level of PGV (m/s) in the direction in which more stacks collapse.
+fn worse(all: &Heights, levels: u32, velocity: f64) -> Option<AtLevel> {
+    View::ALL
+        .into_iter()
+        .filter_map(|view| all.of(levels, view)?.at(velocity))
+        .max_by(|a, b| a.stripe.fraction().total_cmp(&b.stripe.fraction()))
+}
+
+fn rating(at: &AtLevel) -> Rating {
+    let share = at.stripe.fraction();
+    if share <= LOW.0 && at.interval.high <= LOW.1 {
+        Rating::Good
+    } else if share <= MEDIUM {
+        Rating::Fair
+    } else {
+        Rating::Poor
+    }
+}
+
+/// The highest stack of which it and all lower ones are rated low at a level of PGV (m/s).
+fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
+    HEIGHTS
+        .into_iter()
+        .take_while(|levels| {
+            worse(all, *levels, velocity).is_some_and(|at| rating(&at) == Rating::Good)
+        })
+        .last()
+}
+
+/// Fewest motions whose interval can end low enough, were no stack to collapse.
+fn fewest_motions() -> u32 {
+    (1..).find(|n| wilson(0, *n, 0.95).high <= LOW.1).unwrap_or(u32::MAX)
+}
+
+fn headline(all: &Heights) -> String {
+    let motions = u32::try_from(all.motions).unwrap_or(u32::MAX);
+    if motions < fewest_motions() {
+        let more = fewest_motions() - motions;
+        return format!(
+            "Too few motions to call anything low in risk: {motions} shook every stack, and {more} more would do."
+        );
+    }
+    let strongest =
+        (0..VELOCITIES.len()).rev().find_map(|at| Some((at, highest_low(all, VELOCITIES[at])?)));
+    match strongest {
+        Some((at, levels)) => {
+            let next = (at + 1 < VELOCITIES.len()).then(|| {
+                format!("; from {} on not even two levels are", shaking(VELOCITIES[at + 1]))
+            });
+            format!(
+                "Up to {levels} levels are low in risk in shaking of {}{}.",
+                shaking(VELOCITIES[at]),
+                next.unwrap_or_default()
+            )
+        }
+        None => {
+            format!("Not even two levels are low in risk in shaking of {}.", shaking(VELOCITIES[0]))
+        }
+    }
+}
+
+fn sentences(all: &Heights) -> Vec<String> {
+    let mut said = vec![format!(
+        "Stacks of two to six levels on {} racks were shaken {} times, across and along the barrels, by {} motions.",
+        all.request.rack, all.runs, all.motions
+    )];
+    let share = |levels: u32| {
+        let velocity = VELOCITIES.into_iter().find(|v| *v >= 0.5)?;
+        Some((velocity, worse(all, levels, velocity)?.stripe.fraction()))
+    };
+    if let (Some((velocity, low)), Some((_, high))) = (share(3), share(6)) {
+        said.push(format!(
+            "In shaking as strong as near Napa in 2014 ({}), {} of the stacks of three levels and {} of those of six \
+             collapse in their weaker direction.",
+            shaking(velocity),
+            percent(low),
+            percent(high)
+        ));
+    }
+    said
+}
+
+fn blocks(all: &Heights) -> Vec<Block> {
+    let mut blocks = vec![
+        heading("How high is safe"),
+        Block::Table(card(all)),
+        text(format!(
+            "Each cell is the share of stacks that collapse in the direction in which more do, and the range in which the \
+             true chance lies with 95 % confidence. ✓ low: at most {:.0} %, and the range ends at {:.0} % or below. \
+             ! medium: at most {:.0} %. ✗ high: more. These limits are a choice.",
+            100.0 * LOW.0,
+            100.0 * LOW.1,
+            100.0 * MEDIUM
+        )),
+        text(
+            "Find your site's line: ask for the peak ground velocity of your design earthquake, or read it off a ShakeMap \
+             of a past one. The Roman numeral is an assumption: the intensity that goes with such a velocity in \
+             California on average (Wald et al. 1999).",
+        ),
+        Block::Figure(chart(all)),
+        heading("Both directions"),
+    ];
+    for view in View::ALL {
+        blocks.push(Block::Table(direction(all, view)));
+    }
+    blocks.push(Block::Figure(medians(all)));
+    blocks.push(Block::Table(median_table(all)));
+    blocks.push(heading("Against what happened at Napa in 2014"));
+    blocks.extend(field::napa(all));
+    blocks.push(heading("What this rests on"));
+    blocks.push(Block::List(rests_on(all)));
+    blocks
+}
+
+fn height_columns() -> Vec<(&'static str, &'static str)> {
+    let names = ["2 levels", "3 levels", "4 levels", "5 levels", "6 levels"];
+    [("shaking (PGV)", ""), ("felt as", "")].into_iter().chain(names.map(|n| (n, ""))).collect()
+}
+
+fn judged(at: &AtLevel) -> Cell {
+    let rating = rating(at);
+    let sign = match rating {
+        Rating::Good => "✓",
+        Rating::Fair => "!",
+        Rating::Poor => "✗",
+    };
+    let whole = |share: f64| format!("{:.0}", 100.0 * share);
+    Cell::Rated(
+        rating,
+        format!(
+            "{sign} {} % ({}–{})",
+            whole(at.stripe.fraction()),
+            whole(at.interval.low),
+            whole(at.interval.high)
+        ),
+    )
+}
+
+/// The card: shaking down, height across.
+fn card(all: &Heights) -> Table {
+    let mut table = Table::new(
+        format!(
+            "Chance that a stack on {} racks collapses, by height and strength of shaking.",
+            all.request.rack
+        ),
+        &height_columns(),
+    );
+    for velocity in VELOCITIES {
+        let mut row = vec![Cell::text(shaking(velocity)), Cell::text(felt(velocity))];
+        row.extend(
+            HEIGHTS
+                .map(|levels| worse(all, levels, velocity).map_or(Cell::Missing, |at| judged(&at))),
+        );
+        table.rows.push(row);
+    }
+    table
+}
+
+fn direction(all: &Heights, view: View) -> Table {
+    let mut table = Table::new(
+        format!("Collapse under shaking {}: collapsed stacks of those run.", view.words()),
+        &height_columns(),
+    );
+    for velocity in VELOCITIES {
+        let mut row = vec![Cell::text(shaking(velocity)), Cell::text(felt(velocity))];
+        row.extend(HEIGHTS.map(|levels| {
+            let found = all.of(levels, view).and_then(|height| height.at(velocity));
+            found.map_or(Cell::Missing, |at| {
+                Cell::text(format!("{} of {}", at.stripe.failures, at.stripe.cases))
+            })
+        }));
+        table.rows.push(row);
+    }
+    table
+}
+
+fn level_axis() -> Axis {
+    Axis { range: Some([1.6, 6.4]), ..Axis::new("levels", "") }
+}
+
+/// Chance against height at three strengths of shaking, with their intervals.
+fn chart(all: &Heights) -> Figure {
+    let mut series = Vec::new();
+    for (index, at) in [1, 3, 5].into_iter().enumerate() {
+        // Beside each other, so that the bars can be told apart.
+        let shift = 0.07 * (index as f64 - 1.0);
+        let points: Vec<(f64, f64, Interval)> = HEIGHTS
+            .into_iter()
+            .filter_map(|levels| {
+                let found = worse(all, levels, VELOCITIES[at])?;
+                Some((f64::from(levels) + shift, found.stripe.fraction(), found.interval))
+            })
+            .collect();
+        let (x, y) = points.iter().map(|(x, y, _)| (*x, *y)).unzip();
+        let style = SeriesStyle { index: Some(index), dots: true, ..SeriesStyle::default() };
+        series.push(Series { style, ..Series::new(shaking(VELOCITIES[at]), x, y) });
+        let plain = SeriesStyle { dots: false, ..style };
+        series.push(bars("", points.iter().map(|(x, _, interval)| (*x, *interval)), plain));
+    }
+    Figure {
+        id: "height-chart".into(),
+        caption: "Chance of collapse against height in the weaker direction, at three strengths of shaking. Upright bars: \
+                  95 % confidence."
+            .into(),
+        kind: FigureKind::Plot(Plot {
+            x: level_axis(),
+            y: chance_axis("chance of collapse"),
+            series,
+            ..Plot::default()
+        }),
+    }
+}
+
+/// The PGV at which half of the stacks collapse, against height.
+fn medians(all: &Heights) -> Figure {
+    let mut series = Vec::new();
+    for (index, view) in View::ALL.into_iter().enumerate() {
+        let shift = 0.05 * (2.0 * index as f64 - 1.0);
+        let points: Vec<(f64, f64, Option<Interval>)> = all
+            .heights
+            .iter()
+            .filter(|height| height.view == view)
+            .filter_map(|height| {
+                let fit = height.by_velocity.fit.as_ref().ok()?;
+                let at = f64::from(height.levels) + shift;
+                Some((at, 100.0 * fit.curve.median, height.by_velocity.median))
+            })
+            .collect();
+        let (x, y) = points.iter().map(|(x, y, _)| (*x, *y)).unzip();
+        let style = SeriesStyle { index: Some(index), dots: true, ..SeriesStyle::default() };
+        series.push(Series { style, ..Series::new(view.words(), x, y) });
+        let bounds = points.iter().filter_map(|(x, _, bounds)| {
+            let bounds = (*bounds)?;
+            let bounds = Interval { low: 100.0 * bounds.low, high: 100.0 * bounds.high };
+            bounds.high.is_finite().then_some((*x, bounds))
+        });
+        series.push(bars("", bounds, SeriesStyle { dots: false, ..style }));
+    }
+    Figure {
+        id: "medians".into(),
+        caption: "Peak ground velocity at which half of the stacks collapse, by the fitted curves, with 95 % intervals. \
+                  A height without a dot has no curve: the table says why."
+            .into(),
+        kind: FigureKind::Plot(Plot {
+            x: level_axis(),
+            y: Axis::new("median PGV of collapse", "cm/s"),
+            series,
+            ..Plot::default()
+        }),
+    }
+}
+
+fn median_table(all: &Heights) -> Table {
+    let mut table = Table::new(
+        "Fragility by height and direction: lognormal curves of greatest likelihood.",
+        &[
+            ("levels", ""),
+            ("shaken", ""),
+            ("median PGV", "cm/s"),
+            ("95 % interval", "cm/s"),
+            ("dispersion", ""),
+            ("median PGA", "g"),
+            ("dispersion (PGA)", ""),
+            ("remark", ""),
+        ],
+    );
+    for height in &all.heights {
+        let (pgv, pga) = (&height.by_velocity, &height.by_acceleration);
+        let number =
+            |curve: &LimitCurve, of: fn(&barrelstack_fragility::Fit) -> f64, scale: f64| {
+                curve.fit.as_ref().map_or(Cell::Missing, |fit| Cell::Number(scale * of(fit), 3))
+            };
+        let g = 1.0 / barrelstack_motion::STANDARD_GRAVITY;
+        table.rows.push(vec![
+            Cell::text(height.levels.to_string()),
+            Cell::text(height.view.words()),
+            number(pgv, |fit| fit.curve.median, 100.0),
+            pgv.median.filter(|_| pgv.fit.is_ok()).map_or(Cell::Missing, |bounds| {
+                let shown = |x: f64| {
+                    if x.is_finite() { significant(100.0 * x, 3) } else { "∞".to_owned() }
+                };
+                Cell::text(format!("{} to {}", shown(bounds.low), shown(bounds.high)))
+            }),
+            number(pgv, |fit| fit.curve.dispersion, 1.0),
+            number(pga, |fit| fit.curve.median, g),
+            number(pga, |fit| fit.curve.dispersion, 1.0),
+            match &pgv.fit {
+                Ok(_) if pgv.violates_order() => Cell::text("not monotone: use the counts"),
+                Ok(_) => Cell::text(""),
+                Err(reason) => Cell::text(refusal(reason, shaking)),
+            },
+        ]);
+    }
+    table
+}
+
+fn rests_on(all: &Heights) -> Vec<String> {
+    vec![
+        format!(
+            "Motions: both horizontal components of South Napa 2014 at Napa College with its vertical, {} synthetic ones \
+             (earthquakes of M 6 at 8 km and M 7 at 20 km by Boore's method, and pulses of near faults){}, each scaled to \
+             every level of PGV.",
+            all.request.synthetic,
+            if all.request.records.is_empty() { "" } else { ", and the records that were named" }
+        ),
+        "Full Bordeaux barrels of 225 L. Friction is drawn for every run: rack on floor about 0.5 (scatter 20 %), barrel on \
+         rack about 0.3 (scatter 25 %). Both are assumptions; wet floors and painted racks differ. Measure yours."
+            .into(),
+        "One stack alone in a plane: no neighbors, no walls, no straps. Collapse is the loss of the first seat of a barrel \
+         or a rack."
+            .into(),
+        "Scaled motions are not the motions of stronger earthquakes: real ones are longer and have longer periods. Levels far \
+         from a motion's own strength are the least certain."
+            .into(),
+        "Intervals count every motion as one observation and hold for motions like these, not for what the model leaves out."
+            .into(),
+        "Racks are those of the catalog, of which several dimensions are assumptions. A study runs the same for \
+         racks and rooms of your own: the folder holds the studies of this page."
+            .into(),
+    ]
+}
+
+/// Warnings, the most important first.
+pub(super) fn warnings(all: &Heights) -> Vec<String> {
+    let mut said = all.ends.clone();
+    if all.left_out > 0 {
+        said.push(format!(
+            "{} of {} runs have no verdict and are left out; the column `error` of the tables says why.",
+            all.left_out, all.runs
+        ));
+    }
+    for height in &all.heights {
+        for fall in height.by_velocity.monotony.significant(0.05) {
+            said.push(format!(
+                "{} levels shaken {}: {} of {} collapse at {}, but only {} of {} at {} (p = {}). Stronger shaking is not \
+                 always worse for this stack; do not read safety into that.",
+                height.levels,
+                height.view.words(),
+                fall.from.failures,
+                fall.from.cases,
+                shaking(fall.from.intensity),
+                fall.to.failures,
+                fall.to.cases,
+                shaking(fall.to.intensity),
+                significant(fall.p, 2)
+            ));
+        }
+    }
+    said
+}

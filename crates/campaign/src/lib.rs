@@ -1,0 +1,18 @@
+//! Many runs of stacks: studies, what they mean for decisions, and how high is safe.
+//!
+//! ```text
+//! STUDY.toml ─▶ study ─▶ table of cases ─▶ decision (fragility, losses, annual rates) ─▶ page
+//!                 ▲                            │
+//!              heights ◀───────────────────────┘
+//! ```
+
+// Results have the same bits on every machine, so transcendental functions are those of `libm`.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+pub mod decision;
+pub mod heights;
+pub mod study;
+
+// The domain's rooms, by the names that they have there.
+use barrelstack::{ensemble, ground, outcome, run, scenario, watch};
+use barrelstack_input::{measured, system};

@@ -1,0 +1,195 @@
+//! Studies: one scenario run many times, with other values and other motions.
+//!
+//! ```text
+//! STUDY.toml ─▶ Study ─ design ─▶ cases ─ plan ─▶ chunks ─ ensemble ─▶ one Parquet shard a chunk
+//!                                                                    │ collect
+//!                                                  StudyTable: one row a case ─▶ CSV, Parquet
+//! ```
+//!
+//! A study is a deterministic list of chunks.
+//! A chunk is run as a whole, and its shard gets its name only when it is whole and on the disk, so a shard that is
+//! there is a chunk that is done: what is killed goes on from there, on one machine or on many.
+//! What is drawn for a case depends on the seed of the study and on what the case is, not on how many there are.
+//!
+//! ```no_run
+//! use std::ops::ControlFlow;
+//! use std::path::Path;
+//! use barrelstack_campaign::study::{RunOptions, Study};
+//!
+//! let study = Study::load(Path::new("STUDY.toml"))?;
+//! let collected = study.run(Path::new("results"), &RunOptions::default(), &|_| ControlFlow::Continue(()))?;
+//! println!("{}", collected.table.to_csv());
+//! # Ok::<(), barrelstack_campaign::study::StudyError>(())
+//! ```
+
+mod builtin;
+mod column;
+mod design;
+mod distribution;
+mod endings;
+mod ensembles;
+mod error;
+mod execute;
+mod fields;
+mod file;
+mod folder;
+mod grow;
+mod ida;
+mod motions;
+mod plan;
+mod prepare;
+mod rows;
+mod setting;
+mod shard;
+mod sobol;
+mod stop;
+mod table;
+
+use crate::scenario::template::Template;
+
+pub use builtin::{get as builtin, names as builtin_names};
+pub use column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
+pub use design::Design;
+pub use distribution::Distribution;
+pub use endings::{Endings, Following};
+pub use error::StudyError;
+pub use execute::{Progress, RunOptions};
+pub use fields::STUDY;
+pub use folder::{Collected, MotionSource, Provenance, Status};
+pub use grow::Common;
+pub use ida::Hunt;
+pub use plan::Chunk;
+pub use stop::{StopRule, Tally};
+pub use table::StudyTable;
+
+use design::Cases;
+use motions::Motion;
+use plan::Chunks;
+use setting::Setting;
+
+/// A study: what is varied, what shakes it, and which cases are run.
+#[derive(Debug)]
+pub struct Study {
+    /// One line for people.
+    pub title: String,
+    /// Seed of everything that is drawn.
+    pub seed: u64,
+    /// Which cases are run.
+    pub design: Design,
+    /// The text of the study file.
+    text: String,
+    template: Template,
+    factors: Vec<Factor>,
+    motions: Vec<Motion>,
+    intensity: Option<Intensity>,
+    /// The levels that are crossed with the rest.
+    levels: Vec<Option<f64>>,
+    /// Cases of a chunk; of an incremental dynamic analysis, hunts.
+    chunk: u32,
+    cases: Cases,
+    chunks: Chunks,
+    /// Fingerprint of the study, its records and the version of the program.
+    hash: u64,
+}
+
+/// A field that is varied.
+#[derive(Clone, Debug)]
+struct Factor {
+    /// Name of its column.
+    name: String,
+    /// Paths of the fields that take the value.
+    fields: Vec<String>,
+    variation: Variation,
+    /// What its column holds.
+    column: ColumnSpec,
+    /// The value of the base, where it has one.
+    base: Option<Value>,
+    /// Whether it changes what bodies and contacts there are.
+    structural: bool,
+}
+
+/// How a field is varied.
+#[derive(Clone, Debug)]
+enum Variation {
+    Values(Vec<Setting>),
+    Distribution(Distribution),
+}
+
+impl Factor {
+    /// The values that are crossed with those of other factors.
+    fn crossed(&self) -> Option<&[Setting]> {
+        match &self.variation {
+            Variation::Values(values) => Some(values),
+            Variation::Distribution(_) => None,
+        }
+    }
+}
+
+/// The intensity to which motions are scaled.
+#[derive(Clone, Debug)]
+struct Intensity {
+    measure: barrelstack_motion::IntensityMeasure,
+    levels: Levels,
+}
+
+/// The levels of an intensity (SI).
+#[derive(Clone, Debug)]
+enum Levels {
+    List(Vec<f64>),
+    Distribution(Distribution),
+    /// Found by an incremental dynamic analysis.
+    Hunted,
+}
+
+/// The schema (JSON Schema 2020-12) of a study file, for completion and checking in editors.
+pub fn json_schema() -> serde_json::Value {
+    barrelstack_input::schema::of_file("barrelstack study", &STUDY)
+}
+
+/// Every table and field of a study file in Markdown; those of `[base]` are those of a scenario file.
+pub fn reference() -> String {
+    let fields = barrelstack_input::reference::of_tables(
+        &STUDY,
+        &["scenario", "motion", "sine", "pulse", "scale"],
+        "a scenario file has there",
+    );
+    format!("# Fields of a study file\n\n{fields}")
+}
+
+impl Study {
+    /// The fingerprint of the study: its text, the scenarios it extends, the bytes of its records, and the version of
+    /// the program.
+    pub fn hash(&self) -> u64 {
+        self.hash
+    }
+
+    /// How many cases there are; of an adaptive design, at most.
+    pub fn cases(&self) -> u64 {
+        let runs = if let Design::Ida(hunt) = &self.design { hunt.runs } else { 1 };
+        self.cases.count(self).saturating_mul(u64::from(runs))
+    }
+
+    /// Whether the number of cases depends on what becomes of them.
+    pub fn is_adaptive(&self) -> bool {
+        match &self.design {
+            Design::Ida(_) => true,
+            Design::MonteCarlo { half_width, .. } => half_width.is_some(),
+            Design::FullFactorial
+            | Design::OneAtATime { .. }
+            | Design::LatinHypercube { .. }
+            | Design::Sobol { .. }
+            | Design::Saltelli { .. }
+            | Design::Stripes => false,
+        }
+    }
+
+    /// What a chunk has: "cases", or "hunts" of an incremental dynamic analysis.
+    pub fn chunk_unit(&self) -> &'static str {
+        if matches!(self.design, Design::Ida(_)) { "hunts" } else { "cases" }
+    }
+
+    /// How many motions there are.
+    pub fn motions(&self) -> usize {
+        self.motions.len()
+    }
+}

@@ -1,0 +1,497 @@
+//! From a study file to a checked study.
+
+use std::path::Path;
+
+use barrelstack_motion::IntensityMeasure;
+
+use crate::scenario::field::Range;
+use crate::scenario::reader::{Reader, nearest};
+use crate::scenario::template::{Opened, Template};
+use crate::scenario::tree::{Node, Origin};
+use crate::scenario::{Dimension, MotionSource, Problem, Scenario, ScenarioError};
+
+use super::column::{ColumnSpec, Role};
+use super::design::{Cases, Design};
+use super::distribution::Distribution;
+use super::error::StudyError;
+use super::fields::{DesignKind, STUDY};
+use super::ida::Hunt;
+use super::motions::{Motion, Shaking, hash_files};
+use super::plan::Chunks;
+use super::setting::{Domain, Setting};
+use super::{Factor, Intensity, Levels, Study, Variation, ensembles};
+
+/// The quantile that is tried for the low end of a distribution, and from 1 for the high end.
+const LOW: f64 = 1e-6;
+
+/// Fields of `[base.run]` that end a case early, and hold only where the study file itself says so.
+const ENDS: [&str; 3] = ["until", "duration", "stop_after_collapse"];
+
+/// Most cases that a design may have.
+const MOST_CASES: u64 = 10_000_000;
+
+impl Study {
+    /// Reads a study file, the scenarios it extends, and the bytes of its records.
+    ///
+    /// # Errors
+    /// The first problem found, at its place.
+    pub fn load(path: &Path) -> Result<Self, StudyError> {
+        read(&Opened::load(path)?)
+    }
+
+    /// Reads a study from text; it may extend built-in scenarios only, and `source_name` is shown in errors.
+    ///
+    /// # Errors
+    /// As [`Study::load`].
+    pub fn parse(source_name: &str, text: &str) -> Result<Self, StudyError> {
+        read(&Opened::parse(source_name, text)?)
+    }
+
+    /// Reads a built-in study.
+    ///
+    /// # Errors
+    /// When there is none of that name.
+    pub fn built_in(name: &str) -> Result<Self, StudyError> {
+        let Some(text) = super::builtin::get(name) else {
+            let known: Vec<&str> = super::builtin::names().collect();
+            let near = nearest(name, &known)
+                .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+            return Err(StudyError::BuiltIn(format!(
+                "there is no built-in study \"{name}\"{near} (there are: {})",
+                known.join(", ")
+            )));
+        };
+        Self::parse(&format!("{name}.toml"), text)
+    }
+}
+
+fn read(opened: &Opened) -> Result<Study, StudyError> {
+    let top = Reader::open(
+        &opened.sources,
+        &STUDY,
+        String::new(),
+        Some(&opened.table),
+        Origin::Whole(0),
+    )?;
+    top.integer("schema")?;
+    let title = top.optional_text("title")?.unwrap_or_else(|| opened.stem());
+    let seed = u64::from(top.integer("seed")?);
+    // The base is read by the scenario's own reader; here it only has to be a table.
+    let base = top.table("base")?;
+    let sets = top.sections("motion")?;
+    if let Some(motion) = base.get("motion").filter(|_| !sets.is_empty()) {
+        let message =
+            "the study has both [base.motion] and [[motion]], which takes its place; keep one"
+                .to_owned();
+        return Err(top.error_at(motion.origin, Problem::Inconsistent { message }).into());
+    }
+    let mut template = opened.template("base", &title, sets.is_empty())?;
+    // How long a scenario is run was chosen for its own motion and for a film of it.
+    template.forget_inherited("run", &ENDS);
+    let scenario = template.with([])?;
+
+    let mut motions = Vec::new();
+    for (number, set) in (1..).zip(sets) {
+        motions.extend(ensembles::read(&set, opened, number, seed)?);
+        set.finish();
+    }
+    let own = motions.is_empty();
+    if own {
+        motions.push(Motion { name: "base".to_owned(), shaking: Shaking::Base });
+    }
+    unique_names(&top, &motions)?;
+
+    let mut factors: Vec<Factor> = Vec::new();
+    for reader in top.sections("factor")? {
+        let factor = read_factor(reader, &template, &scenario, own)?;
+        if let Some(error) = clash(&top, &factors, &factor) {
+            return Err(error.into());
+        }
+        factors.push(factor);
+    }
+    let intensity = top.optional_section("intensity")?.map(read_intensity).transpose()?;
+    if intensity.is_some() && own && scenario.motion.source == MotionSource::None {
+        let message =
+            "there is no motion to scale: the ground of the base stays at rest; add [[motion]]"
+                .to_owned();
+        return Err(top.inconsistent("intensity", message).into());
+    }
+    let (design, chunk, intensity) = read_design(top.section("design")?, intensity, &factors)?;
+    let levels = match &intensity {
+        Some(Intensity { levels: Levels::List(levels), .. }) => {
+            levels.iter().copied().map(Some).collect()
+        }
+        _ => vec![None],
+    };
+    top.finish();
+
+    let mut study = Study {
+        title,
+        seed,
+        design,
+        text: opened.sources.files[0].text.clone(),
+        template,
+        factors,
+        motions,
+        intensity,
+        levels,
+        chunk,
+        cases: Cases::Crossed,
+        chunks: Chunks::Even { count: 0, size: 1 },
+        hash: 0,
+    };
+    study.cases = Cases::new(&study);
+    if matches!(study.design, Design::Saltelli { .. }) && study.varied().is_empty() {
+        let message = "nothing varies: a design for sensitivity needs a [[factor]], several motions or levels";
+        let problem = Problem::Inconsistent { message: message.to_owned() };
+        return Err(opened.sources.error(Origin::Whole(0), problem).into());
+    }
+    let cases = study.cases();
+    if cases > MOST_CASES {
+        let message = format!(
+            "the study has more than {MOST_CASES} cases: take fewer values, or a sampled design"
+        );
+        return Err(opened
+            .sources
+            .error(Origin::Whole(0), Problem::Inconsistent { message })
+            .into());
+    }
+    study.chunks = Chunks::of(&study);
+    study.hash = hash(&study, own.then_some(&scenario))?;
+    Ok(study)
+}
+
+/// The fingerprint of everything that rows depend on.
+fn hash(study: &Study, scenario: Option<&Scenario>) -> Result<u64, StudyError> {
+    let mut all = vec![env!("CARGO_PKG_VERSION").to_owned(), crate::ensemble::VERSION.to_string()];
+    all.extend(study.template.texts().map(str::to_owned));
+    for motion in &study.motions {
+        let files = motion.shaking.files(scenario.map(|scenario| &scenario.motion));
+        let bytes = hash_files(&motion.name, &files)?.unwrap_or(0);
+        all.push(format!("{} {bytes:016x}", motion.name));
+    }
+    Ok(crate::scenario::fnv1a(all.join("\u{0}").as_bytes()))
+}
+
+fn unique_names(top: &Reader<'_>, motions: &[Motion]) -> Result<(), ScenarioError> {
+    let mut seen = std::collections::BTreeSet::new();
+    for motion in motions {
+        if !seen.insert(&motion.name) {
+            let message = format!(
+                "two motions have the name \"{}\"; give their [[motion]] each a `name` of its own",
+                motion.name
+            );
+            return Err(top.inconsistent("motion", message));
+        }
+    }
+    Ok(())
+}
+
+/// Two factors that would set the same field, or take the same column.
+fn clash(top: &Reader<'_>, factors: &[Factor], new: &Factor) -> Option<ScenarioError> {
+    let error = |message| Some(top.inconsistent("factor", message));
+    for factor in factors {
+        if factor.name == new.name {
+            return error(format!(
+                "two factors have the name `{}`; give one another `name`",
+                new.name
+            ));
+        }
+        if let Some(field) = new.fields.iter().find(|field| factor.fields.contains(field)) {
+            return error(format!(
+                "the factors `{}` and `{}` both set {field}",
+                factor.name, new.name
+            ));
+        }
+    }
+    super::rows::fixed_columns()
+        .any(|column| column == new.name)
+        .then(|| {
+            error(format!(
+                "every table has a column `{}`; give the factor another `name`",
+                new.name
+            ))
+        })
+        .flatten()
+}
+
+fn read_factor(
+    reader: Reader<'_>,
+    template: &Template,
+    scenario: &Scenario,
+    own_motion: bool,
+) -> Result<Factor, ScenarioError> {
+    let field = reader.text("field")?.trim().to_owned();
+    let name = reader.optional_text("name")?.unwrap_or_else(|| field.clone());
+    let mut fields = vec![field.clone()];
+    fields.extend(reader.texts("also")?.into_iter().map(|text| text.trim().to_owned()));
+    let mut domain = None;
+    for (index, path) in fields.iter().enumerate() {
+        let of = domain_of(
+            &reader,
+            if index == 0 { "field" } else { "also" },
+            path,
+            template,
+            own_motion,
+        )?;
+        if domain.get_or_insert(of) != &of {
+            let message = format!("`{path}` does not take the same kind of value as `{field}`");
+            return Err(reader.inconsistent("also", message));
+        }
+    }
+    let Some(domain) = domain else { return Err(reader.missing("field")) };
+    let (variation, domain) = read_variation(&reader, domain, "values")?;
+    let Some(variation) = variation else {
+        return Err(reader.one_of(&["values", "range", "distribution"]));
+    };
+    reader.finish();
+    // Every value is tried by itself, so that one which the scenario refuses is told now and here.
+    let ends: Vec<Setting> = match &variation {
+        Variation::Values(values) => values.clone(),
+        Variation::Distribution(distribution) => match distribution.settings() {
+            Some(settings) => settings.cloned().collect(),
+            None => [LOW, 0.5, 1.0 - LOW].map(|u| distribution.quantile(u)).to_vec(),
+        },
+    };
+    for setting in &ends {
+        template.with(fields.iter().map(|field| (field.as_str(), &setting.node)))?;
+    }
+    let base = Template::value_in(scenario, &field).and_then(|value| domain.told(&value));
+    let column = ColumnSpec::new(&name, &domain.unit(), Role::Factor, domain.column_kind());
+    let structural = !domain.continuous();
+    Ok(Factor { name, fields, variation, column, base, structural })
+}
+
+fn domain_of(
+    reader: &Reader<'_>,
+    key: &str,
+    path: &str,
+    template: &Template,
+    own_motion: bool,
+) -> Result<Domain, ScenarioError> {
+    let Some(field) = template.field(path) else {
+        let message = format!(
+            "a scenario has no field `{path}`{}",
+            template
+                .nearest(path)
+                .map_or(String::new(), |near| format!(", did you mean `{near}`?"))
+        );
+        return Err(reader.inconsistent(key, message));
+    };
+    if path.starts_with("motion.") && !own_motion {
+        let message = format!("`{path}` is set by [[motion]]; vary it there");
+        return Err(reader.inconsistent(key, message));
+    }
+    if matches!(path, "motion.record" | "motion.vertical_record") {
+        // What these files hold is part of the fingerprint of the study only where [[motion]] lists them.
+        let message = format!("`{path}` names a file; list the `records` of [[motion]]");
+        return Err(reader.inconsistent(key, message));
+    }
+    if matches!(path, "title" | "schema" | "extends") || path.starts_with("record.") {
+        let message = format!("`{path}` changes nothing that happens to the stack");
+        return Err(reader.inconsistent(key, message));
+    }
+    Domain::of(field).ok_or_else(|| {
+        let message = format!(
+            "`{path}` holds {}; a factor varies a single value: name a field in it",
+            field.kind
+        );
+        reader.inconsistent(key, message)
+    })
+}
+
+/// Reads a list (whose key is given), a range or a distribution; none where there is none of them.
+fn read_variation(
+    reader: &Reader<'_>,
+    domain: Domain,
+    list: &'static str,
+) -> Result<(Option<Variation>, Domain), ScenarioError> {
+    let first = match reader.nodes(list)? {
+        Some(nodes) => nodes.first().cloned(),
+        None => None,
+    };
+    let range = reader.optional_section("range")?;
+    let distribution = reader.optional_section("distribution")?;
+    let inner = |section: &Option<Reader<'_>>,
+                 keys: &[&'static str]|
+     -> Result<Option<Node>, ScenarioError> {
+        let Some(section) = section else { return Ok(None) };
+        for key in keys {
+            if section.has(key) {
+                return if *key == "values" {
+                    Ok(section.nodes(key)?.and_then(|nodes| nodes.first().cloned()))
+                } else {
+                    section.node(key)
+                };
+            }
+        }
+        Ok(None)
+    };
+    let first = match first {
+        Some(node) => Some(node),
+        None => match inner(&range, &["from"])? {
+            Some(node) => Some(node),
+            None => inner(&distribution, &["from", "mean", "median", "values"])?,
+        },
+    };
+    let domain = first.as_ref().map_or(domain, |node| domain.fixed_by(node));
+    let variation = if reader.has(list) {
+        Some(Variation::Values(domain.settings(reader, list)?))
+    } else if let Some(range) = range {
+        let origin = reader.origin_of("range");
+        let values = domain.range(&range, origin)?;
+        range.finish();
+        Some(Variation::Values(values))
+    } else if let Some(distribution) = distribution {
+        let origin = reader.origin_of("distribution");
+        Some(Variation::Distribution(Distribution::read(distribution, domain, origin)?))
+    } else {
+        None
+    };
+    Ok((variation, domain))
+}
+
+/// What levels of a measure are written in.
+fn dimension_of(measure: IntensityMeasure) -> Option<&'static [Dimension]> {
+    match measure.unit() {
+        "m/s2" => Some(&[Dimension::ACCELERATION]),
+        "m/s" => Some(&[Dimension::VELOCITY]),
+        "m" => Some(&[Dimension::LENGTH]),
+        _ => None,
+    }
+}
+
+fn read_intensity(reader: Reader<'_>) -> Result<Intensity, ScenarioError> {
+    let text = reader.text("measure")?;
+    let measure: IntensityMeasure = text
+        .parse()
+        .map_err(|error| reader.inconsistent("measure", format!("`intensity.measure`: {error}")))?;
+    let Some(dimensions) = dimension_of(measure) else {
+        let message = format!(
+            "motions cannot be scaled to {measure}; take pga, pgv, pgd, arias, cav or sa(0.5)"
+        );
+        return Err(reader.inconsistent("measure", message));
+    };
+    let (variation, _) = read_variation(&reader, Domain::positive(dimensions), "levels")?;
+    if let Some(Variation::Distribution(distribution)) = &variation
+        && distribution.quantile(LOW).number() <= 0.0
+    {
+        let message = "a level has to be above zero, and some of the distribution are not; cut it with `least`";
+        return Err(reader.inconsistent("distribution", message.to_owned()));
+    }
+    reader.finish();
+    let levels = match variation {
+        Some(Variation::Values(values)) => {
+            Levels::List(values.iter().map(Setting::number).collect())
+        }
+        Some(Variation::Distribution(distribution)) => Levels::Distribution(distribution),
+        None => Levels::Hunted,
+    };
+    Ok(Intensity { measure, levels })
+}
+
+/// Reads `[design]`; gives it with the size of its chunks and the intensity that it works with.
+fn read_design(
+    reader: Reader<'_>,
+    intensity: Option<Intensity>,
+    factors: &[Factor],
+) -> Result<(Design, u32, Option<Intensity>), ScenarioError> {
+    let kind: DesignKind = reader.choice("kind")?;
+    let chunk = reader.optional_integer("chunk")?;
+    let refuse = |message: &str| Err(reader.inconsistent("kind", message.to_owned()));
+    let hunted = matches!(&intensity, Some(Intensity { levels: Levels::Hunted, .. }));
+    if hunted && kind != DesignKind::Ida {
+        return refuse(
+            "[intensity] has no levels; give it `levels`, a `range` or a `distribution`",
+        );
+    }
+    let drawn_levels =
+        matches!(&intensity, Some(Intensity { levels: Levels::Distribution(_), .. }));
+    let drawn = factors.iter().find(|factor| factor.crossed().is_none());
+    let design = match kind {
+        DesignKind::FullFactorial => {
+            if let Some(factor) = drawn {
+                return refuse(&format!(
+                    "a full factorial design crosses values, and `{}` has a distribution: list its `values`, or take \
+                     a sampled design such as \"sobol\"",
+                    factor.name
+                ));
+            }
+            Design::FullFactorial
+        }
+        DesignKind::OneAtATime => {
+            if factors.is_empty() {
+                return refuse("a one-at-a-time design needs at least one [[factor]]");
+            }
+            let nodes = reader.nodes("quantiles")?.unwrap_or_default();
+            let range = Range { least: 0.0, above: true, greatest: 1.0 - 1e-9 };
+            let quantiles = nodes.iter().map(|node| reader.read_number("quantiles", node, range));
+            Design::OneAtATime { quantiles: quantiles.collect::<Result<_, _>>()? }
+        }
+        DesignKind::LatinHypercube => Design::LatinHypercube { count: reader.integer("count")? },
+        DesignKind::Sobol => {
+            let most = super::sobol::DIMENSIONS - 2;
+            if factors.len() > most {
+                return refuse(&format!(
+                    "the points of Sobol' here have at most {most} factors, this study has {}; take \
+                     \"latin-hypercube\"",
+                    factors.len()
+                ));
+            }
+            Design::Sobol { count: reader.integer("count")? }
+        }
+        DesignKind::Saltelli => {
+            let most = super::sobol::DIMENSIONS / 2 - 2;
+            if factors.len() > most {
+                return refuse(&format!(
+                    "the blocks of Saltelli here have at most {most} factors, this study has {}; leave out those that \
+                     matter least",
+                    factors.len()
+                ));
+            }
+            Design::Saltelli { count: reader.integer("count")? }
+        }
+        DesignKind::MonteCarlo => {
+            let (least, most) = (reader.integer("least")?, reader.integer("most")?);
+            let half_width = reader.optional_number("half_width")?;
+            if half_width.is_some() && least > most {
+                return refuse(&format!("`least` is {least}, above `most`, {most}"));
+            }
+            Design::MonteCarlo { half_width, least, most }
+        }
+        DesignKind::Stripes => {
+            if !matches!(&intensity, Some(Intensity { levels: Levels::List(_), .. })) {
+                return refuse("stripes need levels: add [intensity] with `levels` or a `range`");
+            }
+            Design::Stripes
+        }
+        DesignKind::Ida => Design::Ida(read_hunt(&reader, intensity.as_ref())?),
+    };
+    if drawn_levels && matches!(kind, DesignKind::FullFactorial | DesignKind::OneAtATime) {
+        return refuse("this design crosses levels; give [intensity] `levels` or a `range`");
+    }
+    reader.finish();
+    let usual = if kind == DesignKind::Ida { 8 } else { 64 };
+    Ok((design, chunk.unwrap_or(usual), intensity))
+}
+
+fn read_hunt(reader: &Reader<'_>, intensity: Option<&Intensity>) -> Result<Hunt, ScenarioError> {
+    let Some(Intensity { measure, levels: Levels::Hunted }) = intensity else {
+        let message = "an incremental dynamic analysis needs [intensity] with a `measure` and finds the levels itself: \
+                       leave out `levels`, `range` and `distribution`";
+        return Err(reader.inconsistent("kind", message.to_owned()));
+    };
+    let dimensions = dimension_of(*measure).unwrap_or(&[Dimension::NONE]);
+    let read = |name: &'static str, range: Range| -> Result<Option<f64>, ScenarioError> {
+        let Some(node) = reader.node(name)? else { return Ok(None) };
+        reader.read_quantity(name, &node, dimensions, range).map(|quantity| Some(quantity.value))
+    };
+    let (Some(first), Some(step)) =
+        (read("first", Range::POSITIVE)?, read("step", Range::POSITIVE)?)
+    else {
+        return Err(reader.missing("first"));
+    };
+    let growth = read("growth", Range::NOT_NEGATIVE)?.unwrap_or(0.5 * step);
+    let resolution = reader.number("resolution")?;
+    Ok(Hunt { first, step, growth, resolution, runs: reader.integer("runs")? })
+}

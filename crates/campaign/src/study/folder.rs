@@ -1,0 +1,523 @@
+//! The folder of a study: what it belongs to, and the shards of the chunks that are done.
+//!
+//! ```text
+//! study.json                        what the shards belong to
+//! study.toml                        the study file, as it was
+//! shards/000012-<fingerprint>.parquet   one chunk; its name holds the fingerprint of its bytes
+//! table.csv, table.parquet, columns.csv, provenance.json   all rows, what their columns are, and what they
+//!                                   come from, written when the study is collected
+//! ```
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{ErrorKind, Write as _};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::scenario::fnv1a;
+use crate::system;
+
+use super::column::ColumnSpec;
+use super::design::Design;
+use super::error::StudyError;
+use super::grow::Common;
+use super::motions::hash_files;
+use super::shard;
+use super::stop::{StopRule, Tally};
+use super::table::StudyTable;
+use super::{Intensity, Study};
+
+/// Version of the layout of a folder.
+const LAYOUT: u32 = 2;
+
+/// Largest file (bytes) of a folder that is read.
+const FILE_LIMIT: usize = 1 << 30;
+
+const MANIFEST: &str = "study.json";
+const SHARDS: &str = "shards";
+
+/// Under this key a shard says what its chunk holds.
+const KEY: &str = "chunk";
+
+/// What the rows of a study come from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Version of this layout.
+    pub schema: u32,
+    /// The program.
+    pub program: String,
+    /// Its version.
+    pub version: String,
+    /// The title of the study.
+    pub title: String,
+    /// Fingerprint of the study file, the scenarios it extends, the bytes of its records, and the version.
+    pub study_hash: String,
+    /// Seed of everything that was drawn.
+    pub seed: u64,
+    /// The design, as study files name it.
+    pub design: String,
+    /// The intensity measure of the column `level`.
+    pub measure: Option<String>,
+    /// When a Monte Carlo design has enough cases.
+    pub stop: Option<StopRule>,
+    /// Factors that are drawn anew for each case of a motion.
+    pub drawn: Vec<String>,
+    /// What a design for sensitivity exchanges, in the order of the cases of a block; empty for others.
+    pub varied: Vec<String>,
+    /// What all cases depend on.
+    pub common: Vec<Common>,
+    /// The motions, in order.
+    pub motions: Vec<MotionSource>,
+    /// The columns of the table.
+    pub columns: Vec<ColumnSpec>,
+    /// Chunks in all; of a Monte Carlo design, at most.
+    pub chunks: usize,
+    /// Chunks that are done.
+    pub chunks_done: usize,
+    /// Rows of the table.
+    pub cases: usize,
+    /// Whether nothing is left to run.
+    pub complete: bool,
+}
+
+/// A motion of a study.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MotionSource {
+    /// Its name in the table.
+    pub name: String,
+    /// Where it comes from: files, or how it is made.
+    pub source: String,
+    /// Fingerprint of the bytes of its files; none where it has none.
+    pub hash: Option<String>,
+    /// Fingerprint of how it is made.
+    pub key: String,
+}
+
+/// The rows of a study, with what they come from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Collected {
+    /// One row a case.
+    pub table: StudyTable,
+    /// What the rows come from.
+    pub provenance: Provenance,
+}
+
+/// How far a study is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Status {
+    /// What the folder belongs to.
+    pub provenance: Provenance,
+    /// How the cases that are done ended.
+    pub tally: Tally,
+    /// Chunks that are still to be run, ascending.
+    pub missing: Vec<usize>,
+}
+
+/// A folder that belongs to a study.
+#[derive(Clone, Debug)]
+pub(super) struct Folder {
+    path: PathBuf,
+}
+
+impl Folder {
+    /// A folder for a study: made when it is not there, checked when it is.
+    ///
+    /// A study that grew, or changed in nothing that all its cases have in common, keeps the chunks that are
+    /// still what they were; only a run as a whole may decide that (`grows`).
+    pub(super) fn open(path: &Path, study: &Study, grows: bool) -> Result<Self, StudyError> {
+        let folder = Self { path: path.to_owned() };
+        let refuse = |reason: String| Err(StudyError::Folder { folder: path.to_owned(), reason });
+        if path.is_file() {
+            return refuse("is a file, not a folder; name another".to_owned());
+        }
+        let (manifest, shards) = (path.join(MANIFEST), path.join(SHARDS));
+        // Listed before the manifest is looked for: what another run makes in between comes after its manifest.
+        let foreign = first_in(path, &[SHARDS]).or_else(|| first_in(&shards, &[]));
+        if manifest.is_file() {
+            let known = manifest_of(path)?;
+            if known.study_hash != study.fingerprint() {
+                let wanted = study.provenance()?;
+                let reason = match difference(&known, &wanted) {
+                    None if grows => return folder.regrown(study, &wanted),
+                    None => "the study was changed since; run it as a whole once, which keeps what is still valid".to_owned(),
+                    Some(reason) => format!("belongs to another study: {reason}"),
+                };
+                return refuse(format!(
+                    "{reason}; name another folder, or go back to the study that it belongs to (a copy of its file is {})",
+                    path.join("study.toml").display()
+                ));
+            }
+        } else if let Some(foreign) = foreign {
+            return refuse(format!(
+                "holds {foreign} and is no folder of a study; name another, new or empty"
+            ));
+        }
+        fs::create_dir_all(&shards)
+            .map_err(|error| StudyError::system("make the folder", &shards, &error))?;
+        if !manifest.is_file() {
+            let text = serde_json::to_string_pretty(&study.provenance()?)
+                .map_err(|error| StudyError::Table(error.to_string()))?;
+            write_whole(&manifest, format!("{text}\n").as_bytes())?;
+        }
+        // After the manifest, so that a folder without one holds nothing of ours but an empty folder of shards.
+        let copy = path.join("study.toml");
+        if !copy.is_file() {
+            write_whole(&copy, study.text.as_bytes())?;
+        }
+        Ok(folder)
+    }
+
+    /// The folder, now of another study with the same cases or some of them: shards whose chunks are not what they
+    /// were get the ending `.replaced`.
+    fn regrown(self, study: &Study, wanted: &Provenance) -> Result<Self, StudyError> {
+        let keys = study.chunk_keys()?;
+        for (chunk, path) in self.shards()? {
+            let bytes = read_file(&path)?;
+            let key = shard::text_of(bytes, KEY).unwrap_or_default();
+            if keys.get(&chunk).is_none_or(|wanted| key != format!("{wanted:016x}")) {
+                let aside = path.with_extension("replaced");
+                fs::rename(&path, &aside)
+                    .map_err(|error| StudyError::system("rename", &path, &error))?;
+            }
+        }
+        let text = serde_json::to_string_pretty(wanted)
+            .map_err(|error| StudyError::Table(error.to_string()))?;
+        write_whole(&self.path.join("study.toml"), study.text.as_bytes())?;
+        write_whole(&self.path.join(MANIFEST), format!("{text}\n").as_bytes())?;
+        Ok(self)
+    }
+
+    /// The shards by chunk; two of one chunk are told apart by their fingerprints, and either will do.
+    pub(super) fn shards(&self) -> Result<BTreeMap<usize, PathBuf>, StudyError> {
+        shards(&self.path)
+    }
+
+    /// Removes what killed runs left behind.
+    pub(super) fn clean(&self) -> Result<(), StudyError> {
+        for folder in [self.path.clone(), self.path.join(SHARDS)] {
+            for path in list(&folder)? {
+                if path.extension().is_some_and(|extension| extension == "part") {
+                    // Its run may be alive and have given it its name by now.
+                    drop(fs::remove_file(&path));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the shard of a chunk: under another name first, so that it has its name only when it is whole and on the
+    /// disk.
+    pub(super) fn write_shard(
+        &self,
+        chunk: usize,
+        key: u64,
+        table: &StudyTable,
+    ) -> Result<(), StudyError> {
+        let about = [(KEY, format!("{key:016x}"))];
+        let bytes = shard::to_bytes(table, &about).map_err(StudyError::Table)?;
+        let name = format!("{chunk:06}-{:016x}.parquet", fnv1a(&bytes));
+        write_whole(&self.path.join(SHARDS).join(name), &bytes)
+    }
+
+    /// Writes all rows and what they come from.
+    pub(super) fn write_table(&self, collected: &Collected) -> Result<(), StudyError> {
+        let provenance = serde_json::to_string_pretty(&collected.provenance)
+            .map_err(|error| StudyError::Table(error.to_string()))?;
+        write_whole(&self.path.join("table.csv"), collected.table.to_csv().as_bytes())?;
+        // The table travels alone: what it comes from goes with it.
+        let study = fs::read_to_string(self.path.join("study.toml")).unwrap_or_default();
+        let about = [("study", study), ("provenance", provenance.clone())];
+        let bytes = shard::to_bytes(&collected.table, &about).map_err(StudyError::Table)?;
+        write_whole(&self.path.join("table.parquet"), &bytes)?;
+        write_whole(&self.path.join("columns.csv"), collected.table.dictionary().as_bytes())?;
+        write_whole(&self.path.join("provenance.json"), format!("{provenance}\n").as_bytes())
+    }
+}
+
+/// What is different between what a folder belongs to and a study; none where they have in common what all cases
+/// depend on, so that chunks may be kept.
+fn difference(known: &Provenance, wanted: &Provenance) -> Option<String> {
+    if known.version != wanted.version {
+        return Some(format!(
+            "it was made by version {}, this is {}",
+            known.version, wanted.version
+        ));
+    }
+    if known.seed != wanted.seed {
+        return Some(format!("its seed is {}, that of this one {}", known.seed, wanted.seed));
+    }
+    // A motion that is gone or is another under its name would leave rows behind that nobody can place.
+    let changed = known.motions.iter().find(|motion| !wanted.motions.contains(motion));
+    if let Some(motion) = changed {
+        let same_name = wanted.motions.iter().any(|other| other.name == motion.name);
+        let what = if motion.hash.is_some() { "record" } else { "motion" };
+        return Some(if same_name {
+            format!("the {what} \"{}\" has changed", motion.name)
+        } else {
+            format!("it has the motion \"{}\", which this one has not", motion.name)
+        });
+    }
+    let changed = known.common.iter().find(|common| !wanted.common.contains(common));
+    changed.map(|common| format!("{} has changed", common.what))
+}
+
+/// The bytes of a file of a folder.
+fn read_file(path: &Path) -> Result<Vec<u8>, StudyError> {
+    system::read(path, FILE_LIMIT).map_err(|reason| StudyError::System {
+        doing: "read",
+        path: path.to_owned(),
+        reason,
+    })
+}
+
+/// The manifest of a folder.
+fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
+    let refuse = |reason: String| StudyError::Folder { folder: folder.to_owned(), reason };
+    let path = folder.join(MANIFEST);
+    if !path.is_file() {
+        return Err(refuse(if folder.is_dir() {
+            format!("is no folder of a study: it has no {MANIFEST}; name one that a study wrote")
+        } else {
+            "is not there; name a folder that a study wrote".to_owned()
+        }));
+    }
+    let bytes = read_file(&path)?;
+    let known: Provenance = serde_json::from_slice(&bytes).map_err(|error| {
+        refuse(format!(
+            "holds a {MANIFEST} that is no manifest of a study: {error}; name another folder"
+        ))
+    })?;
+    if known.schema != LAYOUT {
+        return Err(refuse(format!(
+            "was written by version {} in layout {} of such folders, and this version reads layout {LAYOUT}; use that \
+             version, or name another folder",
+            known.version, known.schema
+        )));
+    }
+    Ok(known)
+}
+
+/// The first name in a folder but for some names and hidden ones, as a sentence may give it; none where there is no
+/// folder.
+fn first_in(folder: &Path, but: &[&str]) -> Option<String> {
+    let names = fs::read_dir(folder).ok()?.flatten();
+    let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    names.filter(|name| !but.contains(&name.as_str()) && !name.starts_with('.')).min()
+}
+
+/// The files of a folder, sorted.
+fn list(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
+    let failed = |error: &std::io::Error| StudyError::system("list", folder, error);
+    let entries = fs::read_dir(folder).map_err(|error| failed(&error))?;
+    let mut paths = Vec::new();
+    for entry in entries {
+        paths.push(entry.map_err(|error| failed(&error))?.path());
+    }
+    paths.sort();
+    Ok(paths)
+}
+
+fn shards(folder: &Path) -> Result<BTreeMap<usize, PathBuf>, StudyError> {
+    let mut found = BTreeMap::new();
+    for path in list(&folder.join(SHARDS))? {
+        if let Some((chunk, _)) = named(&path) {
+            found.entry(chunk).or_insert(path);
+        }
+    }
+    Ok(found)
+}
+
+/// Chunk and fingerprint in the name of a shard; none for any other file.
+fn named(path: &Path) -> Option<(usize, u64)> {
+    let name = path.file_name()?.to_str()?.strip_suffix(".parquet")?;
+    let (chunk, hash) = name.split_once('-')?;
+    Some((chunk.parse().ok()?, u64::from_str_radix(hash, 16).ok()?))
+}
+
+/// Reads a shard; what its bytes are must be what its name says.
+pub(super) fn read_shard(path: &Path, specs: &[ColumnSpec]) -> Result<StudyTable, StudyError> {
+    let damaged = |reason: String| StudyError::Shard { path: path.to_owned(), reason };
+    let bytes = read_file(path)?;
+    let (chunk, hash) =
+        named(path).ok_or_else(|| damaged("its name is not that of a shard".to_owned()))?;
+    let found = fnv1a(&bytes);
+    if found != hash {
+        return Err(damaged(format!(
+            "its {} bytes have the fingerprint {found:016x}, not the one in its name",
+            bytes.len()
+        )));
+    }
+    let table = StudyTable::from_parquet(bytes).map_err(|error| damaged(error.to_string()))?;
+    let of_chunk =
+        |number: &Option<i64>| number.and_then(|n| usize::try_from(n).ok()) == Some(chunk);
+    if !table.specs().eq(specs.iter())
+        || !table.integers("chunk").is_some_and(|all| all.iter().all(of_chunk))
+    {
+        return Err(damaged("it holds rows of something else".to_owned()));
+    }
+    Ok(table)
+}
+
+/// Writes a file under another name, brings it to the disk, and gives it its own.
+pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
+    let folder = path.parent().unwrap_or_else(|| Path::new("."));
+    let name =
+        path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let part = folder.join(format!(".{name}.{}.part", std::process::id()));
+    let write = || -> std::io::Result<()> {
+        let mut file = File::create(&part)?;
+        file.write_all(bytes)?;
+        file.sync_all()?;
+        fs::rename(&part, path)?;
+        sync_folder(folder)
+    };
+    let mut result = write();
+    // Another run that tidies the folder may have taken the file for a leftover.
+    if result.as_ref().is_err_and(|error| error.kind() == ErrorKind::NotFound) && folder.is_dir() {
+        result = write();
+    }
+    result.map_err(|error| {
+        drop(fs::remove_file(&part));
+        StudyError::system("write", path, &error)
+    })
+}
+
+/// Brings the names in a folder to the disk, where the system has a way to.
+#[cfg(unix)]
+fn sync_folder(folder: &Path) -> std::io::Result<()> {
+    File::open(folder)?.sync_all()
+}
+
+#[cfg(not(unix))]
+fn sync_folder(_: &Path) -> std::io::Result<()> {
+    Ok(())
+}
+
+impl Study {
+    /// What the rows of the study come from, before there are any.
+    ///
+    /// # Errors
+    /// When a record cannot be read.
+    pub fn provenance(&self) -> Result<Provenance, StudyError> {
+        let base = self.template.with([])?;
+        let motions = self.motions.iter().map(|motion| {
+            let files = motion.shaking.files(Some(&base.motion));
+            let source = motion.shaking.source(&base.motion);
+            let hash = hash_files(&motion.name, &files)?.map(|hash| format!("{hash:016x}"));
+            let key = format!("{:016x}", fnv1a(format!("{:?}", motion.shaking).as_bytes()));
+            Ok(MotionSource { name: motion.name.clone(), source, hash, key })
+        });
+        let motions = motions.collect::<Result<_, StudyError>>()?;
+        Ok(Provenance {
+            schema: LAYOUT,
+            program: "barrelstack".to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            title: self.title.clone(),
+            study_hash: self.fingerprint(),
+            seed: self.seed,
+            design: self.design.name().to_owned(),
+            measure: self.intensity.as_ref().map(|Intensity { measure, .. }| measure.to_string()),
+            stop: self.stop_rule(),
+            drawn: self.drawn(),
+            varied: match self.design {
+                Design::Saltelli { .. } => {
+                    self.varied().into_iter().map(|(_, name)| name).collect()
+                }
+                Design::FullFactorial
+                | Design::OneAtATime { .. }
+                | Design::LatinHypercube { .. }
+                | Design::Sobol { .. }
+                | Design::MonteCarlo { .. }
+                | Design::Stripes
+                | Design::Ida(_) => Vec::new(),
+            },
+            common: self.common()?,
+            motions,
+            columns: self.columns(),
+            chunks: self.chunk_count(),
+            chunks_done: 0,
+            cases: 0,
+            complete: false,
+        })
+    }
+
+    /// The fingerprint as files have it.
+    fn fingerprint(&self) -> String {
+        format!("{:016x}", self.hash())
+    }
+
+    /// The factors that a design of stripes draws anew for each case.
+    fn drawn(&self) -> Vec<String> {
+        let drawn = self.factors.iter().filter(|factor| factor.crossed().is_none());
+        let names = drawn.map(|factor| factor.name.clone());
+        if matches!(self.design, Design::Stripes) { names.collect() } else { Vec::new() }
+    }
+
+    /// When there are enough cases; none where all are run.
+    pub(super) fn stop_rule(&self) -> Option<StopRule> {
+        let Design::MonteCarlo { half_width, least, .. } = self.design else { return None };
+        half_width.map(|half_width| StopRule { half_width, least })
+    }
+}
+
+impl Collected {
+    /// Reads what is done of a study, finished or not.
+    ///
+    /// Of a Monte Carlo design the chunks count that are done without a gap, up to the one with which there are enough
+    /// cases: which of the later ones were run by chance changes nothing.
+    ///
+    /// # Errors
+    /// When the folder is that of no study, or a shard is damaged.
+    pub fn read(folder: &Path) -> Result<Self, StudyError> {
+        let mut provenance = manifest_of(folder)?;
+        let shards = shards(folder)?;
+        let ordered = provenance.design == "monte-carlo";
+        let mut parts = Vec::new();
+        let mut tally = Tally::default();
+        let mut met = false;
+        for chunk in 0..provenance.chunks {
+            let Some(path) = shards.get(&chunk) else {
+                if ordered {
+                    break;
+                }
+                continue;
+            };
+            let part = read_shard(path, &provenance.columns)?;
+            tally = tally.plus(Tally::of(&part));
+            parts.push(part);
+            met = provenance.stop.is_some_and(|rule| rule.met(tally));
+            if met {
+                break;
+            }
+        }
+        let table = StudyTable::join(&provenance.columns, &parts)?;
+        provenance.chunks_done = parts.len();
+        provenance.cases = table.rows();
+        provenance.complete = met || parts.len() == provenance.chunks;
+        Ok(Self { table, provenance })
+    }
+
+    /// Writes the rows into their folder: `table.csv`, `table.parquet` and `provenance.json`.
+    ///
+    /// # Errors
+    /// When a file cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), StudyError> {
+        Folder { path: folder.to_owned() }.write_table(self)
+    }
+
+    /// How far the study is.
+    ///
+    /// # Errors
+    /// As [`Collected::read`].
+    pub fn status(folder: &Path) -> Result<Status, StudyError> {
+        let Self { table, provenance } = Self::read(folder)?;
+        let done = shards(folder)?;
+        let missing = if provenance.complete {
+            Vec::new()
+        } else {
+            (0..provenance.chunks).filter(|chunk| !done.contains_key(chunk)).collect()
+        };
+        Ok(Status { tally: Tally::of(&table), provenance, missing })
+    }
+}

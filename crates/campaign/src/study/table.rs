@@ -1,0 +1,210 @@
+//! The table of a study: one row a case, in the order of the cases.
+
+use std::fmt::Write as _;
+
+use super::column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
+use super::error::StudyError;
+use super::shard;
+
+/// One row a case, in the order of the cases; typed columns in SI units.
+///
+/// Columns are found by name without the unit, such as `pgv`.
+/// A value is `None` where it does not apply (the mode of a stack that stood) or is not known (anything of a
+/// case that could not run, whose reason stands in `error`).
+///
+/// ```no_run
+/// use barrelstack_campaign::study::{Collected, Tally};
+///
+/// let table = Collected::read(std::path::Path::new("results"))?.table;
+/// let strongest = table.numbers("pgv").unwrap_or_default().iter().flatten().copied().fold(0.0, f64::max);
+/// println!("{} of {} collapse, up to {strongest} m/s", Tally::of(&table).collapsed, table.rows());
+/// # Ok::<(), barrelstack_campaign::study::StudyError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct StudyTable {
+    columns: Vec<Column>,
+}
+
+impl StudyTable {
+    /// A table of columns of the same length.
+    ///
+    /// # Errors
+    /// When two columns have the same name, or lengths or kinds differ.
+    pub fn new(columns: Vec<Column>) -> Result<Self, StudyError> {
+        let rows = columns.first().map_or(0, |column| column.values.len());
+        for (index, column) in columns.iter().enumerate() {
+            let name = &column.spec.name;
+            if columns[..index].iter().any(|other| other.spec.name == *name) {
+                return Err(StudyError::Table(format!("two columns have the name `{name}`")));
+            }
+            if column.values.len() != rows {
+                let found = column.values.len();
+                return Err(StudyError::Table(format!(
+                    "the column `{name}` has {found} rows where others have {rows}"
+                )));
+            }
+            let fits = matches!(
+                (&column.values, column.spec.kind),
+                (Values::Integer(_), ValueKind::Integer)
+                    | (Values::Number(_), ValueKind::Number)
+                    | (Values::Text(_), ValueKind::Text)
+            );
+            if !fits {
+                return Err(StudyError::Table(format!("the column `{name}` holds another kind")));
+            }
+        }
+        Ok(Self { columns })
+    }
+
+    /// A table without rows.
+    pub(super) fn empty(specs: &[ColumnSpec]) -> Self {
+        let column =
+            |spec: &ColumnSpec| Column { spec: spec.clone(), values: Values::empty(spec.kind) };
+        Self { columns: specs.iter().map(column).collect() }
+    }
+
+    /// Appends a row, one value a column.
+    pub(super) fn push(&mut self, row: Vec<Option<Value>>) -> Result<(), StudyError> {
+        if row.len() != self.columns.len() {
+            let (found, expected) = (row.len(), self.columns.len());
+            return Err(StudyError::Table(format!(
+                "a row has {found} values for {expected} columns"
+            )));
+        }
+        self.columns.iter_mut().zip(row).try_for_each(|(column, value)| column.values.push(value))
+    }
+
+    /// Tables of the same columns as one, sorted by case.
+    pub(super) fn join(specs: &[ColumnSpec], parts: &[Self]) -> Result<Self, StudyError> {
+        let mut order: Vec<(i64, usize, usize)> = Vec::new();
+        for (index, part) in parts.iter().enumerate() {
+            if !part.specs().eq(specs.iter()) {
+                return Err(StudyError::Table(
+                    "shards of two studies have other columns".to_owned(),
+                ));
+            }
+            let cases = part.integers("case").unwrap_or_default();
+            order.extend(
+                cases.iter().enumerate().filter_map(|(row, case)| Some(((*case)?, index, row))),
+            );
+        }
+        order.sort_unstable();
+        let mut table = Self::empty(specs);
+        for (number, column) in table.columns.iter_mut().enumerate() {
+            for (_, part, row) in &order {
+                column.values.push(parts[*part].columns[number].values.get(*row))?;
+            }
+        }
+        Ok(table)
+    }
+
+    /// How many cases there are.
+    pub fn rows(&self) -> usize {
+        self.columns.first().map_or(0, |column| column.values.len())
+    }
+
+    /// All columns, in order.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// What the columns hold, in order.
+    pub fn specs(&self) -> impl Iterator<Item = &ColumnSpec> {
+        self.columns.iter().map(|column| &column.spec)
+    }
+
+    /// The columns of a role, in order, such as all factors.
+    pub fn of_role(&self, role: Role) -> impl Iterator<Item = &Column> {
+        self.columns.iter().filter(move |column| column.spec.role == role)
+    }
+
+    /// The column of a name, without its unit.
+    pub fn column(&self, name: &str) -> Option<&Column> {
+        self.columns.iter().find(|column| column.spec.name == name)
+    }
+
+    /// The numbers (SI) of a column; `None` when there is no such column of numbers.
+    pub fn numbers(&self, name: &str) -> Option<&[Option<f64>]> {
+        if let Values::Number(values) = &self.column(name)?.values { Some(values) } else { None }
+    }
+
+    /// The whole numbers of a column; `None` when there is no such column of whole numbers.
+    pub fn integers(&self, name: &str) -> Option<&[Option<i64>]> {
+        if let Values::Integer(values) = &self.column(name)?.values { Some(values) } else { None }
+    }
+
+    /// The texts of a column; `None` when there is no such column of texts.
+    pub fn texts(&self, name: &str) -> Option<&[Option<String>]> {
+        if let Values::Text(values) = &self.column(name)?.values { Some(values) } else { None }
+    }
+
+    /// The table as CSV: a heading line with units, then one line a case; nothing where there is no value.
+    ///
+    /// Numbers have the fewest digits that read back to the same bits.
+    pub fn to_csv(&self) -> String {
+        let mut text = String::new();
+        let headings: Vec<String> = self.specs().map(|spec| field(&spec.heading())).collect();
+        let _ = writeln!(text, "{}", headings.join(","));
+        for row in 0..self.rows() {
+            for (index, column) in self.columns.iter().enumerate() {
+                if index > 0 {
+                    text.push(',');
+                }
+                match column.values.get(row) {
+                    None => {}
+                    Some(Value::Integer(value)) => drop(write!(text, "{value}")),
+                    Some(Value::Number(value)) => {
+                        text.push_str(&crate::scenario::quantity::plain(value));
+                    }
+                    Some(Value::Text(value)) => text.push_str(&field(&value)),
+                }
+            }
+            text.push('\n');
+        }
+        text
+    }
+
+    /// The table as the bytes of a Parquet file; the same table gives the same bytes.
+    ///
+    /// # Errors
+    /// When it cannot be encoded.
+    pub fn to_parquet(&self) -> Result<Vec<u8>, StudyError> {
+        shard::to_bytes(self, &[]).map_err(StudyError::Table)
+    }
+
+    /// What every column is, as CSV: its name in CSV and in Parquet files, unit, role, kind, and meaning.
+    pub fn dictionary(&self) -> String {
+        let mut text = "csv,parquet,unit,role,kind,meaning\n".to_owned();
+        let names = shard::plain_names(self.specs());
+        for (spec, name) in self.specs().zip(names) {
+            let word = |of: serde_json::Value| of.as_str().unwrap_or_default().to_owned();
+            let cells = [
+                spec.heading(),
+                name,
+                spec.unit.clone(),
+                serde_json::to_value(spec.role).map_or_else(|_| String::new(), word),
+                serde_json::to_value(spec.kind).map_or_else(|_| String::new(), word),
+                super::rows::meaning(spec).to_owned(),
+            ];
+            let _ = writeln!(text, "{}", cells.map(|cell| field(&cell)).join(","));
+        }
+        text
+    }
+
+    /// A table from the bytes of a Parquet file that [`StudyTable::to_parquet`] gave.
+    ///
+    /// # Errors
+    /// When the bytes are none.
+    pub fn from_parquet(bytes: Vec<u8>) -> Result<Self, StudyError> {
+        shard::from_bytes(bytes).map_err(StudyError::Table)
+    }
+}
+
+/// A field of a CSV file (RFC 4180), quoted where it has to be.
+fn field(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}

@@ -1,0 +1,294 @@
+//! Decisions from tables whose answers are known.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
+use barrelstack_campaign::decision::{
+    DecisionError, LimitState, Request, SiteHazard, decide, export,
+};
+use barrelstack_campaign::study::{
+    Collected, Column, ColumnSpec, MotionSource, Provenance, Role, StudyTable, ValueKind, Values,
+};
+
+/// Twelve records at eight levels; `falls` says how many barrels of six fall for a record at a level (m/s).
+fn study(falls: impl Fn(usize, f64) -> usize) -> Collected {
+    let levels = [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
+    let cases: Vec<(usize, f64)> =
+        (0..12).flat_map(|record| levels.map(|level| (record, level))).collect();
+    let count: Vec<usize> = cases.iter().map(|(record, level)| falls(*record, *level)).collect();
+    let spec = |name: &str, unit: &str, role, kind| ColumnSpec {
+        name: name.into(),
+        unit: unit.into(),
+        role,
+        kind,
+    };
+    let number = |name: &str, unit: &str, role, values: Vec<Option<f64>>| Column {
+        spec: spec(name, unit, role, ValueKind::Number),
+        values: Values::Number(values),
+    };
+    let text = |name: &str, role, values: Vec<Option<String>>| Column {
+        spec: spec(name, "", role, ValueKind::Text),
+        values: Values::Text(values),
+    };
+    let integer = |name: &str, role, values: Vec<Option<i64>>| Column {
+        spec: spec(name, "", role, ValueKind::Integer),
+        values: Values::Integer(values),
+    };
+    let each = |of: &dyn Fn(usize, f64, usize) -> Option<f64>| -> Vec<Option<f64>> {
+        cases.iter().zip(&count).map(|((r, x), n)| of(*r, *x, *n)).collect()
+    };
+    let say = |of: &dyn Fn(usize) -> Option<String>| count.iter().map(|n| of(*n)).collect();
+    let rows = cases.len();
+    let columns = vec![
+        integer("case", Role::Key, (0..rows).map(|row| i64::try_from(row).ok()).collect()),
+        number("friction", "", Role::Factor, each(&|r, _, _| Some(0.3 + 0.02 * r as f64))),
+        text(
+            "record",
+            Role::Motion,
+            cases.iter().map(|(r, _)| Some(format!("record {r}"))).collect(),
+        ),
+        number("level", "m/s", Role::Motion, each(&|_, x, _| Some(x))),
+        number("pga", "m/s2", Role::Intensity, each(&|r, x, _| Some(x * (6.0 + 0.5 * r as f64)))),
+        number("pgv", "m/s", Role::Intensity, each(&|_, x, _| Some(x * (1.0 + 1e-12)))),
+        text(
+            "outcome",
+            Role::Outcome,
+            say(&|n| Some(if n > 0 { "collapse" } else { "stable" }.into())),
+        ),
+        text("ended", Role::Run, vec![Some("rest".into()); rows]),
+        number("motion_left", "s", Role::Run, vec![Some(0.0); rows]),
+        text("mode", Role::Outcome, say(&|n| (n > 0).then(|| "rocking".into()))),
+        integer("barrels", Role::Outcome, vec![Some(6); rows]),
+        text("fall_heights", Role::Outcome, say(&|n| (n > 0).then(|| vec!["1.8"; n].join(";")))),
+        number("top_drift_ratio", "", Role::Demand, each(&|_, x, n| (n == 0).then_some(0.05 * x))),
+    ];
+    let motions = (0..12)
+        .map(|r| MotionSource {
+            name: format!("record {r}"),
+            source: "made".into(),
+            hash: None,
+            key: r.to_string(),
+        })
+        .collect();
+    let table = StudyTable::new(columns).unwrap();
+    let provenance = Provenance {
+        schema: 1,
+        program: "barrelstack".into(),
+        version: "0".into(),
+        title: "made by hand".into(),
+        study_hash: "0".into(),
+        seed: 7,
+        design: "stripes".into(),
+        measure: Some("pgv".into()),
+        stop: None,
+        drawn: vec!["friction".into()],
+        varied: Vec::new(),
+        common: Vec::new(),
+        motions,
+        columns: table.specs().cloned().collect(),
+        chunks: 1,
+        chunks_done: 1,
+        cases: rows,
+        complete: true,
+    };
+    Collected { table, provenance }
+}
+
+/// Capacity of each record (m/s): lognormal by its quantiles, median 0.5, dispersion 0.3.
+fn capacity(record: usize) -> f64 {
+    let share = (record as f64 + 0.5) / 12.0;
+    0.5 * (0.3 * barrelstack_fragility::normal_quantile(share)).exp()
+}
+
+fn ordinary() -> Collected {
+    study(|record, level| if level >= capacity(record) { 4 } else { 0 })
+}
+
+#[test]
+fn the_fragility_of_known_capacities_is_found_and_the_curve_is_not_doubted() {
+    let found = decide(&ordinary(), &Request::default()).unwrap();
+    let curve = &found.curves[0];
+    assert_eq!(curve.limit, LimitState::SeatLost);
+    let fit = curve.fit.as_ref().unwrap();
+    assert!((fit.curve.median / 0.5 - 1.0).abs() < 0.05, "{:?}", fit.curve);
+    assert!((fit.curve.dispersion / 0.3 - 1.0).abs() < 0.25, "{:?}", fit.curve);
+    assert!(curve.median.unwrap().holds(0.5));
+    assert!(curve.returned.is_empty() && curve.monotony.p == 1.0);
+    assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+    // Raw counts are those of the table.
+    let failures: u32 = curve.stripes.iter().map(|stripe| stripe.failures).sum();
+    assert_eq!(failures as usize, found.cases.all.iter().filter(|case| case.collapsed).count());
+}
+
+#[test]
+fn the_same_study_gives_the_same_page_to_the_byte() {
+    let once = || decide(&ordinary(), &Request::default()).unwrap();
+    assert_eq!(once().html(), once().html());
+    assert_eq!(once().json(), once().json());
+}
+
+#[test]
+fn an_island_of_collapse_is_told_with_its_levels_and_not_smoothed_away() {
+    // Everything between 0.3 and 0.5 m/s falls, little stands again above, all falls at the top.
+    let island = study(|record, level| {
+        let falls = (0.3..0.55).contains(&level) || level > 0.85 || (record == 0 && level > 0.3);
+        if falls { 2 } else { 0 }
+    });
+    let found = decide(&island, &Request::default()).unwrap();
+    let told = found.warnings.iter().find(|w| w.contains("not monotone")).expect("a warning");
+    assert!(told.contains("12 of 12 cases at 50 cm/s, but only 1 of 12 at 60 cm/s"), "{told}");
+    assert!(found.document.verdict.headline.contains("raw fractions"));
+    assert!(found.warnings.iter().any(|w| w.contains("stand at a higher level")));
+    assert_eq!(found.curves[0].returned.len(), 11);
+}
+
+#[test]
+fn a_stack_that_never_falls_gets_its_bound_and_no_curve() {
+    let found = decide(&study(|_, _| 0), &Request::default()).unwrap();
+    let reason = found.curves[0].fit.as_ref().unwrap_err().to_string();
+    assert!(reason.starts_with("no case failed up to"), "{reason}");
+    let interval = found.curves[0].intervals[7];
+    assert!(interval.low == 0.0 && (interval.high - 0.2425).abs() < 1e-3, "{interval:?}");
+    assert!(found.html().contains("No fragility curve is fitted"));
+}
+
+#[test]
+fn losses_count_barrels_and_burst_them_by_the_height_of_their_fall() {
+    let found = decide(&ordinary(), &Request::default()).unwrap();
+    let last = found.losses.as_ref().unwrap().levels.last().unwrap();
+    let collapsed = (0..12).filter(|record| capacity(*record) <= 0.9).count() as f64;
+    assert!((last.fallen - 4.0 * collapsed / 12.0).abs() < 1e-12);
+    let chance = barrelstack_campaign::decision::Breakage::RANGE[1].probability(1.8);
+    assert!((chance - 0.0443).abs() < 5e-4, "{chance}");
+    assert!((last.burst[1] - chance * last.fallen).abs() < 1e-12);
+    assert!(last.burst[0] < last.burst[1] && last.burst[1] < last.burst[2]);
+}
+
+#[test]
+fn a_hazard_curve_gives_annual_rates_that_agree_with_the_closed_form() {
+    // λ = 10⁻³ (x/0.5)⁻² from 1 cm/s to 50 m/s.
+    let mut rows = String::new();
+    for i in 0..=40 {
+        let x = (0.2 * f64::from(i) - 100.0_f64.ln()).exp();
+        rows += &[100.0 * x, 1e-3 * (x / 0.5).powi(-2)].map(|v| v.to_string()).join(",");
+        rows += "\n";
+    }
+    let hazard =
+        SiteHazard::parse("site.csv", &format!("pgv (cm/s),rate (1/year)\n{rows}")).unwrap();
+    let request = Request { hazard: Some(hazard), years: Some(50.0) };
+    let found = decide(&ordinary(), &request).unwrap();
+    let site = found.site.as_ref().unwrap();
+    let curve = found.curves[0].fit.as_ref().unwrap().curve;
+    let exact =
+        1e-3 * (curve.median / 0.5).powi(-2) * (0.5 * (2.0 * curve.dispersion).powi(2)).exp();
+    let rate = site.limits[0].fitted.unwrap();
+    assert!((rate.low / exact - 1.0).abs() < 1e-3, "{} {exact}", rate.low); // measured 1e-6
+    let chance = 1.0 - (-50.0 * rate.low).exp();
+    assert!((site.limits[0].chance - chance).abs() < 1e-12);
+    assert!(site.lost.as_ref().is_some_and(|lost| lost.fallen.low > 0.0 && lost.wine[1] > 0.0));
+    assert!(site.limits[0].interval.unwrap().holds(rate.low));
+}
+
+#[test]
+fn a_hazard_curve_that_does_not_serve_is_refused_with_the_place() {
+    let refused = |text: &str| SiteHazard::parse("site.csv", text).unwrap_err().to_string();
+    let said = refused("pgv (cm/s),rate\n5,0.1\n20,0.01\n");
+    assert!(said.contains("site.csv, line 1") && said.contains("rate (1/year)"), "{said}");
+    let said = refused("speed (cm/s),rate (1/year)\n5,0.1\n20,0.01\n");
+    assert!(said.contains("pgv") && said.contains("speed"), "{said}");
+    let said = refused("pgv (cm/s),rate (1/year)\n5,0.1\n20,0.2\n");
+    assert!(said.contains("row 2") && said.contains("cannot be exceeded more often"), "{said}");
+    let said = refused("pgv (cm/s),rate (1/year)\n5,0.1\n20,x\n");
+    assert!(said.contains("line 3") && said.contains("\"x\""), "{said}");
+    let hazard =
+        SiteHazard::parse("site.csv", "pga (g),rate (1/year)\n0.1,0.1\n0.2,0.01\n").unwrap();
+    let request = Request { hazard: Some(hazard), years: None };
+    let error = decide(&ordinary(), &request).unwrap_err();
+    assert!(error.to_string().contains("are over pgv; give"), "{error}");
+}
+
+#[test]
+fn a_table_without_a_verdict_is_refused() {
+    let mut collected = ordinary();
+    let mut columns = collected.table.columns().to_vec();
+    for column in &mut columns {
+        if column.spec.name == "outcome" {
+            column.values = Values::Text(vec![Some("error".into()); 96]);
+        }
+    }
+    collected.table = StudyTable::new(columns).unwrap();
+    let error = decide(&collected, &Request::default()).unwrap_err();
+    assert!(matches!(error, DecisionError::NoCases { rows: 96 }), "{error}");
+}
+
+#[test]
+fn every_measure_stands_in_one_table_and_the_cause_comes_first() {
+    let found = decide(&ordinary(), &Request::default()).unwrap();
+    assert_eq!(found.measures.len(), 2);
+    let first = &found.cases.measures[found.measures[0].measure].name;
+    // Capacities were set in PGV and fall with the number of the record, of which PGA knows.
+    let likelihood = |at: usize| found.measures[at].collapse.as_ref().unwrap().fit.ln_likelihood;
+    assert!(likelihood(0) >= likelihood(1), "{first}");
+    assert!(found.measures.iter().all(|row| row.drift.is_some()));
+}
+
+#[test]
+fn hunted_levels_count_by_first_collapse_and_not_by_where_the_hunt_went() {
+    let mut collected = ordinary();
+    collected.provenance.design = "ida".into();
+    let found = decide(&collected, &Request::default()).unwrap();
+    let fit = found.curves[0].fit.as_ref().unwrap();
+    assert!((fit.curve.median / 0.5 - 1.0).abs() < 0.05, "{:?}", fit.curve);
+    assert!(found.curves[0].monotony.p == 1.0);
+    // At the highest level all is known: each of the twelve failed below it or stood at it.
+    let last = found.curves[0].stripes.last().unwrap();
+    let failed = (0..12).filter(|record| capacity(*record) <= 0.9).count();
+    assert_eq!((last.intensity, last.cases, last.failures as usize), (0.9, 12, failed));
+    assert!(found.warnings.iter().any(|w| w.starts_with("Levels were chosen by hunting")));
+}
+
+#[test]
+fn what_is_exported_is_the_same_curve_to_four_digits() {
+    let collected = ordinary();
+    let decision = decide(&collected, &Request::default()).unwrap();
+    let found = export(&decision, &collected.provenance, "stack <A>").unwrap();
+    let text =
+        |name: &str| &found.files.iter().find(|(known, _)| *known == name).expect("a file").1;
+    // OpenQuake states a lognormal capacity by its mean and standard deviation, over PGV in cm/s.
+    let parsed = roxmltree::Document::parse(text("openquake-fragility.xml")).unwrap();
+    let node = |name: &str| parsed.descendants().find(|n| n.has_tag_name(name)).expect("a node");
+    assert_eq!(node("imls").attribute("imt"), Some("PGV"));
+    assert_eq!(node("fragilityFunction").attribute("id"), Some("stack <A>"));
+    assert!(node("description").text().unwrap().contains("seed 7"));
+    let names: Vec<&str> = node("limitStates").text().unwrap().split_whitespace().collect();
+    let params: Vec<_> = parsed.descendants().filter(|n| n.has_tag_name("params")).collect();
+    assert_eq!(params.iter().map(|n| n.attribute("ls").unwrap()).collect::<Vec<_>>(), names);
+    let fitted: Vec<_> =
+        decision.curves.iter().filter_map(|curve| curve.fit.as_ref().ok()).collect();
+    assert_eq!(fitted.len(), names.len());
+    let row: Vec<&str> = text("pelicun-fragility.csv").lines().nth(1).unwrap().split(',').collect();
+    for (at, (node, fit)) in params.iter().zip(&fitted).enumerate() {
+        let number = |name| node.attribute(name).unwrap().parse::<f64>().unwrap();
+        let (mean, deviation) = (number("mean"), number("stddev"));
+        let variance = (1.0 + (deviation / mean).powi(2)).ln();
+        let median = mean / (0.5 * variance).exp();
+        let theirs = barrelstack_fragility::Lognormal { median, dispersion: variance.sqrt() };
+        let column = |k: usize| row[6 + 4 * at + k].parse::<f64>().unwrap();
+        let pelicun = barrelstack_fragility::Lognormal { median: column(1), dispersion: column(2) };
+        for x in [0.3, 0.5, 0.8] {
+            let ours = fit.curve.probability(x);
+            // Measured: 1e-15.
+            assert!((theirs.probability(100.0 * x) - ours).abs() < 1e-4);
+            assert!((pelicun.probability(100.0 * x) - ours).abs() < 1e-4);
+        }
+    }
+    let parsed = roxmltree::Document::parse(text("openquake-vulnerability.xml")).unwrap();
+    let node = |name: &str| parsed.descendants().find(|n| n.has_tag_name(name)).expect("a node");
+    let numbers = |name: &str| -> Vec<f64> {
+        node(name).text().unwrap().split_whitespace().map(|n| n.parse().unwrap()).collect()
+    };
+    let losses = decision.losses.as_ref().unwrap();
+    for (mean, loss) in numbers("meanLRs").iter().zip(&losses.levels) {
+        assert!((mean - loss.fallen / 6.0).abs() < 1e-12);
+    }
+    assert_eq!(numbers("imls").len(), numbers("covLRs").len());
+}

@@ -1,0 +1,44 @@
+//! How high is safe: what is asked for is checked before anything is run, and a stop keeps what was done.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use barrelstack_campaign::heights::{HEIGHTS, HeightsError, Request, VELOCITIES, View, heights};
+use barrelstack_campaign::study::{RunOptions, StudyError};
+
+fn stopped_at_once(request: &Request) -> (Result<(), HeightsError>, u64) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let all = AtomicU64::new(0);
+    let result = heights(request, folder.path(), &RunOptions::default(), &|_, of| {
+        all.store(of, Ordering::Relaxed);
+        ControlFlow::Break(())
+    });
+    (result.map(drop), all.load(Ordering::Relaxed))
+}
+
+#[test]
+fn every_height_direction_motion_and_level_is_a_run() {
+    let request = Request { synthetic: 3, ..Request::default() };
+    let (result, runs) = stopped_at_once(&request);
+    assert!(matches!(result, Err(HeightsError::Study(StudyError::Stopped))), "{result:?}");
+    // Two components of the bundled record and three synthetic motions; the record unscaled beside them.
+    let stacks = HEIGHTS.len() * View::ALL.len();
+    assert_eq!(usize::try_from(runs).unwrap(), stacks * (VELOCITIES.len() * 5 + 2));
+}
+
+#[test]
+fn an_unknown_rack_is_refused_with_those_there_are() {
+    let request = Request { rack: "shelf".into(), ..Request::default() };
+    let said = stopped_at_once(&request).0.expect_err("no such rack").to_string();
+    assert_eq!(
+        said,
+        "there is no rack `shelf`; those are two-barrel, four-barrel, rack-on-rack, candia-2008"
+    );
+}
+
+#[test]
+fn a_record_that_is_not_there_is_refused_before_anything_is_run() {
+    let request = Request { records: vec!["no-such-file.AT2".into()], ..Request::default() };
+    let said = stopped_at_once(&request).0.expect_err("no such file").to_string();
+    assert!(said.contains("no-such-file.AT2"), "{said}");
+}

@@ -1,0 +1,320 @@
+//! Whole folders: every record read, worked on and measured, one row of a table each.
+
+mod columns;
+mod journal;
+mod tree;
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use anyhow::{Context as _, bail};
+use barrelstack::pool;
+use barrelstack::scenario::{Dimension, fnv1a};
+use barrelstack_campaign::study::{Column, StudyTable};
+use barrelstack_motion::{Flatfile, Processing, Record, Stage, measure, record_sequence_number};
+use indicatif::ProgressBar;
+
+use super::input::{self, Chain, Input};
+use super::output::store;
+use crate::interrupt::Interrupt;
+use crate::printer;
+use crate::progress;
+use columns::{Found, cells};
+use journal::{Entry, Journal};
+pub(super) use tree::Source;
+
+/// Periods (s) of the spectra where none are named.
+const PERIODS: [f64; 20] = [
+    0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0,
+    4.0, 5.0, 10.0,
+];
+/// Refused files that are named on the terminal; the table has all.
+const NAMED: usize = 5;
+
+/// What goes with folders.
+#[derive(Debug, clap::Args)]
+pub(super) struct FolderArgs {
+    /// Flatfile of NGA-West2 as CSV; joined by the record sequence number in the names of files.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(super) flatfile: Option<PathBuf>,
+    /// Periods of the table's spectra in seconds between commas, or with a unit each.
+    #[arg(long = "table-periods", value_name = "LIST", value_delimiter = ',')]
+    periods: Vec<String>,
+    /// Show no progress, which is shown on a terminal only.
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+impl FolderArgs {
+    /// Periods (s) of the table.
+    fn periods(&self) -> anyhow::Result<Vec<f64>> {
+        if self.periods.is_empty() {
+            return Ok(PERIODS.to_vec());
+        }
+        let one = |text: &String| match text.trim().parse::<f64>() {
+            Ok(value) => Ok(value),
+            Err(_) => input::quantity("--table-periods", text, Dimension::TIME),
+        };
+        let mut periods = self.periods.iter().map(one).collect::<Result<Vec<f64>, _>>()?;
+        if let Some(wrong) = periods.iter().find(|t| !(t.is_finite() && **t > 0.0)) {
+            bail!("--table-periods: expected periods above 0 s, found {wrong}");
+        }
+        periods.sort_by(f64::total_cmp);
+        periods.dedup();
+        Ok(periods)
+    }
+}
+
+/// What is done to every record of folders.
+pub(super) struct Batch<'a> {
+    /// Files and folders.
+    pub(super) input: &'a Input,
+    /// Where everything goes.
+    pub(super) out: &'a Path,
+    /// Flatfile, periods.
+    pub(super) folder: &'a FolderArgs,
+    /// What the rows depend on beside the files, as words: another word is another table.
+    pub(super) settings: String,
+    /// Periods (s) of the spectra; those of the arguments without.
+    pub(super) periods: Option<Vec<f64>>,
+    /// Ending of the file that is made of every record: what is gone is made anew.
+    pub(super) ending: Option<&'static str>,
+}
+
+/// A record as it is to be measured, and how.
+pub(super) struct Worked {
+    /// The record, after what was done to it.
+    pub(super) record: Record,
+    /// What is done to it before it is measured.
+    pub(super) before: Processing,
+}
+
+impl Worked {
+    /// As read, measured after what a scenario would do to it.
+    pub(super) fn as_read(record: Record) -> Self {
+        let before = Chain::Default.of(record.stage);
+        Self { record, before }
+    }
+
+    /// What was done here, measured as it is.
+    pub(super) fn done(record: Record) -> Self {
+        Self { record, before: Processing::none() }
+    }
+}
+
+/// What came of a batch.
+pub(super) struct Measurements {
+    /// One row a record, sorted by name.
+    pub(super) table: StudyTable,
+    refused: Vec<(String, String)>,
+    before: usize,
+    /// Whether it was stopped before its end.
+    stopped: bool,
+    out: PathBuf,
+}
+
+/// Does `work` to every record, on all cores, and writes the table: `records.csv`,
+/// `records.parquet`, and `refused.csv` with the reasons.
+///
+/// What is done is noted in `rows.jsonl` as it is done, under the fingerprint of the files' bytes: the
+/// same command goes on where it was stopped, and does anew what has changed.
+pub(super) fn run(
+    batch: &Batch<'_>,
+    work: &(dyn Fn(&Source, &Record) -> anyhow::Result<Worked> + Sync),
+) -> anyhow::Result<Measurements> {
+    let flatfile = batch.folder.flatfile.as_deref().map(flatfile).transpose()?;
+    let periods = match &batch.periods {
+        Some(periods) => periods.clone(),
+        None => batch.folder.periods()?,
+    };
+    std::fs::create_dir_all(batch.out)
+        .map_err(input::plain)
+        .with_context(|| format!("cannot make the folder {}", batch.out.display()))?;
+    let sources = tree::sources(&batch.input.files, batch.out)?;
+    if sources.is_empty() {
+        bail!("{}: there are no files", batch.input.files.join(", "));
+    }
+    let specs: Vec<_> = cells(None, &periods).into_iter().map(|(spec, _)| spec).collect();
+    let fingerprint = flatfile.as_ref().map_or(0, |(_, hash)| *hash);
+    let settings =
+        format!("{}; {}; flatfile {fingerprint:016x}", batch.settings, batch.input.told());
+    let journal = Journal::open(batch.out, &settings, &specs)?;
+    let bar = bar(!batch.folder.quiet, sources.len());
+    let interrupt = Interrupt::listen();
+    let before = AtomicUsize::new(0);
+    let one = |source: &Source| -> anyhow::Result<Option<Entry>> {
+        if interrupt.asked() {
+            return Ok(None);
+        }
+        let hash = fingerprint_of(source);
+        let made = |ending: &str| source.beside(batch.out, ending).exists();
+        let known = journal.known(&source.record.name, hash);
+        if let Some(entry) = known.filter(|e| e.row.is_none() || batch.ending.is_none_or(made)) {
+            before.fetch_add(1, Ordering::Relaxed);
+            return Ok(Some(entry));
+        }
+        let (entry, sure) = entry(batch.input, source, hash, &periods, flatfile.as_ref(), work);
+        if sure {
+            journal.note(&entry)?;
+        }
+        Ok(Some(entry))
+    };
+    let done = pool::map(&sources, one, &|done| bar.set_position(done as u64));
+    bar.finish_and_clear();
+    let mut entries = Vec::new();
+    let mut stopped = false;
+    for (entry, source) in done.into_iter().zip(&sources) {
+        match entry? {
+            Some(entry) => entries.push((entry, source)),
+            None => stopped = true,
+        }
+    }
+    let mut columns: Vec<Column> = specs.into_iter().map(columns::empty).collect();
+    for (entry, _) in entries.iter().filter(|(entry, _)| entry.row.is_some()) {
+        for (column, value) in columns.iter_mut().zip(entry.row.iter().flatten()) {
+            columns::push(column, value.as_ref());
+        }
+    }
+    let refused = entries.into_iter().flat_map(|(entry, _)| entry.refused).collect();
+    let before = before.into_inner();
+    let out = batch.out.to_owned();
+    let found = Measurements { table: StudyTable::new(columns)?, refused, before, stopped, out };
+    found.write()?;
+    Ok(found)
+}
+
+impl Measurements {
+    fn write(&self) -> anyhow::Result<()> {
+        store(&self.out.join("records.csv"), self.table.to_csv().as_bytes())?;
+        store(&self.out.join("records.parquet"), &self.table.to_parquet()?)?;
+        let mut text = "file,reason\n".to_owned();
+        for (file, reason) in &self.refused {
+            let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{},{}", quoted(file), quoted(reason));
+        }
+        store(&self.out.join("refused.csv"), text.as_bytes())
+    }
+
+    /// Tells what was done, and gives the status: 130 if it was stopped.
+    pub(super) fn tell(&self) -> anyhow::Result<ExitCode> {
+        let plural = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
+        let mut lines = vec![format!(
+            "{} measured{}, {} refused",
+            plural(self.table.rows(), "record"),
+            if self.before > 0 {
+                format!(" ({} of them before)", self.before)
+            } else {
+                String::new()
+            },
+            plural(self.refused.len(), "file")
+        )];
+        for (_, reason) in self.refused.iter().take(NAMED) {
+            lines.push(format!("  {reason}"));
+        }
+        if self.refused.len() > NAMED {
+            lines.push(format!("  and {} more in refused.csv", self.refused.len() - NAMED));
+        }
+        let out = self.out.display();
+        lines.push(format!("written: {out}, with records.csv, records.parquet and refused.csv"));
+        printer::lines(lines)?;
+        if self.stopped {
+            printer::note("stopped; the same command goes on from here");
+            return Ok(ExitCode::from(130));
+        }
+        if self.table.rows() == 0 {
+            bail!("no record could be read; refused.csv has the reasons");
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// Fingerprint of the bytes of the files of a source; of one that cannot be read, as of none.
+fn fingerprint_of(source: &Source) -> u64 {
+    let mut all = Vec::new();
+    for path in source.paths() {
+        let hash = input::bytes(&path).map_or(0, |bytes| fnv1a(&bytes));
+        all.extend_from_slice(&hash.to_le_bytes());
+    }
+    fnv1a(&all)
+}
+
+/// Reads, works on and measures one record.
+///
+/// Files that cannot be read, and records that cannot be worked on, are refused with the reason; what
+/// may be due to the disk alone is not sure, and is tried again the next time.
+fn entry(
+    input: &Input,
+    source: &Source,
+    hash: u64,
+    periods: &[f64],
+    flatfile: Option<&(Flatfile, u64)>,
+    work: &(dyn Fn(&Source, &Record) -> anyhow::Result<Worked> + Sync),
+) -> (Entry, bool) {
+    let mut entry =
+        Entry { record: source.record.name.clone(), hash, row: None, refused: Vec::new() };
+    let mut records = Vec::new();
+    for path in source.paths() {
+        let file = path.display().to_string();
+        match input.read_alone(&file) {
+            Ok(record) => records.push(record),
+            Err(error) => entry.refused.push((file, format!("{error:#}"))),
+        }
+    }
+    if records.is_empty() {
+        return (entry, true);
+    }
+    let whole =
+        source.paths().iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ");
+    let record = match input.unite(&records) {
+        Ok(record) => record,
+        Err(error) => {
+            entry.refused.push((whole.clone(), format!("{whole}: no record together: {error:#}")));
+            return (entry, true);
+        }
+    };
+    let worked = match work(source, &record) {
+        Ok(worked) => worked,
+        Err(error) => {
+            entry.refused.push((whole.clone(), format!("{whole}: {error:#}")));
+            return (entry, false);
+        }
+    };
+    match measure(&worked.record, &worked.before, periods) {
+        Ok(measured) => {
+            let number = record_sequence_number(&source.record.files[0]);
+            let flat = flatfile.zip(number).and_then(|((flatfile, _), n)| flatfile.get(n));
+            let found = Found { source, worked: &worked, measured: &measured, number, flat };
+            entry.row = Some(cells(Some(&found), periods).into_iter().map(|(_, v)| v).collect());
+        }
+        Err(error) => entry.refused.push((whole.clone(), format!("{whole}: {error}"))),
+    }
+    (entry, true)
+}
+
+fn flatfile(path: &Path) -> anyhow::Result<(Flatfile, u64)> {
+    let bytes = input::bytes(path)?;
+    let text = String::from_utf8_lossy(&bytes);
+    Ok((Flatfile::parse(&path.display().to_string(), &text)?, fnv1a(&bytes)))
+}
+
+fn bar(show: bool, records: usize) -> ProgressBar {
+    use std::io::IsTerminal as _;
+    if !(show && std::io::stderr().is_terminal()) {
+        return ProgressBar::hidden();
+    }
+    let template = "{spinner} {bar:30} {pos} of {len} records, {per_sec}, {eta} to go";
+    ProgressBar::new(records as u64).with_style(progress::style(template))
+}
+
+/// The stage in one word, raw records told as processed where they are measured so.
+fn stage_of(worked: &Worked) -> (String, &'static str) {
+    let processing = match (worked.record.stage, worked.before.is_none()) {
+        (Stage::Raw, false) => "compact, for the measures",
+        (Stage::Raw, true) => "none",
+        (Stage::Corrected | Stage::Unknown, _) => "as it is",
+    };
+    (worked.record.stage.to_string(), processing)
+}

@@ -1,0 +1,102 @@
+//! The files under folders, in one order on every machine.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail};
+use barrelstack_motion::{RecordFiles, group_files};
+
+use crate::commands::motion::input;
+
+/// Deepest folder within a folder; a chain of links cannot be followed for ever.
+const DEEPEST: usize = 32;
+
+/// The files of one record and the folder that they were found under.
+#[derive(Clone, Debug)]
+pub(in crate::commands::motion) struct Source {
+    root: PathBuf,
+    /// Name and files, relative to the folder.
+    pub(in crate::commands::motion) record: RecordFiles,
+}
+
+impl Source {
+    /// Its files.
+    pub(in crate::commands::motion) fn paths(&self) -> Vec<PathBuf> {
+        self.record.files.iter().map(|file| self.root.join(file)).collect()
+    }
+
+    /// Where something made of it goes under a folder: its own name with another ending.
+    pub(in crate::commands::motion) fn beside(&self, out: &Path, ending: &str) -> PathBuf {
+        let name = self.record.name.replace('?', "X");
+        out.join(format!("{name}.{ending}"))
+    }
+}
+
+/// The records of files and folders, those of every folder sorted; hidden files and what lies under
+/// `out` are left alone.
+pub(super) fn sources(given: &[String], out: &Path) -> anyhow::Result<Vec<Source>> {
+    let out =
+        out.canonicalize().map_err(input::plain).context("cannot find the folder to write")?;
+    let folders = given.iter().filter(|path| Path::new(path).is_dir()).count();
+    let mut sources = Vec::new();
+    for path in given {
+        let root = Path::new(path);
+        let mut files = Vec::new();
+        let (root, label) = if root.is_dir() {
+            walk(root, "", &out, 0, &mut files)?;
+            let name = root.file_name().map(|name| name.to_string_lossy().into_owned());
+            // Records of two folders may have the same name.
+            let label = name.filter(|_| folders > 1).map_or_else(String::new, |n| format!("{n}/"));
+            (root.to_owned(), label)
+        } else {
+            let Some(name) = root.file_name().map(|name| name.to_string_lossy().into_owned())
+            else {
+                bail!("cannot read {path}: there is no such file");
+            };
+            files.push(name);
+            (root.parent().unwrap_or(Path::new("")).to_owned(), String::new())
+        };
+        for mut record in group_files(&files) {
+            record.name = format!("{label}{}", record.name);
+            sources.push(Source { root: root.clone(), record });
+        }
+    }
+    sources.sort_by(|a, b| a.record.name.cmp(&b.record.name));
+    for pair in sources.windows(2) {
+        if pair[0].record.name == pair[1].record.name {
+            let [one, two] = [&pair[0], &pair[1]].map(|s| s.root.display().to_string());
+            bail!("{} is found under {one} and {two}: give them one by one", pair[0].record.name);
+        }
+    }
+    Ok(sources)
+}
+
+fn walk(
+    folder: &Path,
+    before: &str,
+    out: &Path,
+    depth: usize,
+    files: &mut Vec<String>,
+) -> anyhow::Result<()> {
+    let refused = || format!("cannot read the folder {}", folder.display());
+    if depth > DEEPEST {
+        bail!("{}: it lies more than {DEEPEST} folders deep", refused());
+    }
+    let entries = std::fs::read_dir(folder).map_err(input::plain).with_context(refused)?;
+    for entry in entries {
+        let entry = entry.map_err(input::plain).with_context(refused)?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if name.starts_with('.') {
+            continue;
+        }
+        let path = entry.path();
+        if path.is_dir() {
+            let own = path.canonicalize().is_ok_and(|path| path == *out);
+            if !own {
+                walk(&path, &format!("{before}{name}/"), out, depth + 1, files)?;
+            }
+        } else {
+            files.push(format!("{before}{name}"));
+        }
+    }
+    Ok(())
+}

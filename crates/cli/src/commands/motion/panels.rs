@@ -1,0 +1,276 @@
+//! Pictures of whole records: every component with its peaks, Husid, spectra; before and after.
+
+use std::path::Path;
+
+use anyhow::{anyhow, bail};
+use barrelstack_motion::{
+    Channel, FourierSpectrum, NoiseCriterion, Record, ResponseSpectrum, STANDARD_GRAVITY, Sampled,
+    TargetSpectrum, husid, rotated_spectrum, standard_periods,
+};
+use barrelstack_report::{
+    Axis, Band, Figure, FigureKind, Format, Mark, Panels, Plot, Series, significant,
+};
+
+use super::measures::sampled;
+use super::output::{store, vacant};
+
+/// Damping ratio of the spectra.
+const DAMPING: f64 = 0.05;
+/// Dots per inch of pictures as pixels: three plots beside each other have some 2000 at this.
+const DPI: f64 = 96.0;
+/// How much of the velocity's axis lies beyond the peak after processing: what drifts before it
+/// leaves the picture.
+const BEYOND: f64 = 1.5;
+
+/// The quantities of one component over time.
+#[derive(Clone, Copy)]
+enum Kind {
+    Acceleration,
+    Velocity,
+    Displacement,
+}
+
+impl Kind {
+    const ALL: [Self; 3] = [Self::Acceleration, Self::Velocity, Self::Displacement];
+
+    /// Name, unit, how many of it are one SI unit, and what its peak is called.
+    fn words(self) -> (&'static str, &'static str, f64, &'static str) {
+        match self {
+            Self::Acceleration => ("acceleration", "g", 1.0 / STANDARD_GRAVITY, "PGA"),
+            Self::Velocity => ("velocity", "cm/s", 100.0, "PGV"),
+            Self::Displacement => ("displacement", "cm", 100.0, "PGD"),
+        }
+    }
+
+    /// Values in the unit of reading.
+    fn values(self, motion: &Sampled) -> Vec<f64> {
+        let (_, _, factor, _) = self.words();
+        let values = match self {
+            Self::Acceleration => motion.acceleration(),
+            Self::Velocity => motion.velocity(),
+            Self::Displacement => motion.displacement(),
+        };
+        values.iter().map(|value| factor * value).collect()
+    }
+
+    fn axis(self, channel: &str) -> Axis {
+        let (name, unit, ..) = self.words();
+        Axis::new(format!("{channel}: {name}"), unit)
+    }
+}
+
+/// A record: acceleration, velocity and displacement of every component with their peaks, build-up of
+/// the Arias intensity, response spectra, and Fourier amplitudes with the corners that the noise of
+/// the record as `read` suggests.
+pub(super) fn record(record: &Record, read: &Record) -> anyhow::Result<Figure> {
+    let mut rows = Vec::new();
+    for channel in &record.channels {
+        let motion = sampled(channel)?;
+        let row = Kind::ALL.map(|kind| {
+            let values = kind.values(&motion);
+            let marks = peak_mark(kind, channel.time_step, &values).into_iter().collect();
+            let series = vec![Series::new("", times(channel), values)];
+            Plot { x: time(), y: kind.axis(&channel.name), series, marks, ..Plot::default() }
+        });
+        rows.push(row.to_vec());
+    }
+    let corners = read.noise_corners(&NoiseCriterion::default());
+    let corners: Vec<(f64, f64)> =
+        corners.into_iter().flatten().map(|c| (c.high_pass, c.low_pass)).collect();
+    let channels: Vec<(String, &Channel)> =
+        record.channels.iter().map(|c| (c.name.clone(), c)).collect();
+    rows.push(vec![
+        build_up(record),
+        response(&channels, Some(record), None)?,
+        fourier(&channels, &corners),
+    ]);
+    Ok(figure(record, "panels", "components, build-up of the Arias intensity, and spectra", rows))
+}
+
+/// A record before and after processing: every component, response spectra, Fourier amplitudes.
+pub(super) fn before_after(before: &Record, after: &Record) -> anyhow::Result<Figure> {
+    compared(before, after, None)
+}
+
+/// As [`before_after`], with the spectrum that was matched.
+pub(super) fn compared(
+    before: &Record,
+    after: &Record,
+    target: Option<&TargetSpectrum>,
+) -> anyhow::Result<Figure> {
+    let mut rows = Vec::new();
+    let mut channels = Vec::new();
+    for (old, new) in before.channels.iter().zip(&after.channels) {
+        let (was, is) = (sampled(old)?, sampled(new)?);
+        // What is longer has pads at both ends: the recorded part begins later.
+        let shift = 0.5 * (new.duration() - old.duration());
+        let row = Kind::ALL.map(|kind| {
+            let values = kind.values(&is);
+            let marks = peak_mark(kind, new.time_step, &values).into_iter().collect();
+            let peak = values.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
+            let range = matches!(kind, Kind::Velocity | Kind::Displacement)
+                .then_some([-BEYOND * peak, BEYOND * peak]);
+            let y = Axis { range, ..kind.axis(&new.name) };
+            let earlier: Vec<f64> = times(old).iter().map(|t| t + shift).collect();
+            let series = vec![
+                Series::new("before", earlier, kind.values(&was)),
+                Series::new("after", times(new), values),
+            ];
+            Plot { x: time(), y, series, marks, ..Plot::default() }
+        });
+        rows.push(row.to_vec());
+        channels.push((format!("{} before", old.name), old));
+        channels.push((format!("{} after", new.name), new));
+    }
+    rows.push(vec![response(&channels, None, target)?, fourier(&channels, &[])]);
+    Ok(figure(after, "before-after", "before and after", rows))
+}
+
+/// Writes a picture; its ending says the format.
+pub(super) fn write(path: &Path, figure: &Figure) -> anyhow::Result<()> {
+    store(path, &figure.to_bytes(format(path)?, DPI))
+}
+
+/// Refuses a picture that cannot be written.
+pub(super) fn vacant_picture(path: &Path, overwrite: bool) -> anyhow::Result<()> {
+    format(path)?;
+    vacant(path, overwrite)
+}
+
+fn format(path: &Path) -> anyhow::Result<Format> {
+    let ending = path.extension().unwrap_or_default();
+    Format::ALL
+        .into_iter()
+        .find(|format| ending.eq_ignore_ascii_case(format.extension()))
+        .ok_or_else(|| anyhow!("{}: figures are written as .svg, .png or .pdf", path.display()))
+}
+
+/// The panels of a channel picked by `--of`, for records of several.
+pub(super) fn only(record: &Record, place: usize) -> anyhow::Result<Record> {
+    let Some(channel) = record.channels.get(place) else { bail!("there is no such component") };
+    Ok(Record { channels: vec![channel.clone()], ..record.clone() })
+}
+
+fn figure(record: &Record, id: &str, what: &str, rows: Vec<Vec<Plot>>) -> Figure {
+    let parts = [record.station.as_str(), record.event.as_str()];
+    let known: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+    let title = if known.is_empty() { record.file.clone() } else { known.join(", ") };
+    let mut lines =
+        vec![format!("{}, format {}, stage {}", record.file, record.format, record.stage)];
+    if let Some(channel) = record.channels.first() {
+        let start = channel.start.map_or_else(String::new, |start| format!(", from {start}"));
+        let samples = channel.acceleration.len();
+        lines.push(format!("{samples} samples, one every {} s{start}", channel.time_step));
+    }
+    let caption = format!("{title}: {what}");
+    Figure { id: id.to_owned(), caption, kind: FigureKind::Panels(Panels { title, lines, rows }) }
+}
+
+fn time() -> Axis {
+    Axis::new("time", "s")
+}
+
+fn times(channel: &Channel) -> Vec<f64> {
+    (0..channel.acceleration.len()).map(|k| k as f64 * channel.time_step).collect()
+}
+
+/// Sample of the largest absolute value.
+fn at_peak(values: &[f64]) -> f64 {
+    let larger =
+        |best: usize, k: usize| if values[k].abs() > values[best].abs() { k } else { best };
+    (0..values.len()).reduce(larger).unwrap_or(0) as f64
+}
+
+fn peak_mark(kind: Kind, time_step: f64, values: &[f64]) -> Option<Mark> {
+    let (_, unit, _, peak) = kind.words();
+    let at = time_step * at_peak(values);
+    let largest = values.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
+    let label = format!("{peak} {} {unit} at {} s", significant(largest, 3), significant(at, 4));
+    (!values.is_empty()).then_some(Mark { at, label })
+}
+
+/// Husid plots, the strong part of the strongest component shaded.
+fn build_up(record: &Record) -> Plot {
+    let mut plot =
+        Plot { x: time(), y: Axis::new("share of the Arias intensity", ""), ..Plot::default() };
+    let strongest = record.channels.iter().reduce(|a, b| if b.pga() > a.pga() { b } else { a });
+    for channel in &record.channels {
+        let values = husid(&channel.acceleration);
+        if strongest.is_some_and(|strongest| std::ptr::eq(strongest, channel)) {
+            let at = |share: f64| {
+                values.iter().position(|v| *v >= share).unwrap_or(0) as f64 * channel.time_step
+            };
+            let (from, to) = (at(0.05), at(0.95));
+            let label = format!("{}: D5-95 {} s", channel.name, significant(to - from, 3));
+            plot.bands.push(Band { from, to, label });
+        }
+        plot.series.push(Series::new(channel.name.as_str(), times(channel), values));
+    }
+    plot
+}
+
+/// Response spectra, with both horizontals over all directions and the target where there are any.
+fn response(
+    channels: &[(String, &Channel)],
+    whole: Option<&Record>,
+    target: Option<&TargetSpectrum>,
+) -> anyhow::Result<Plot> {
+    let periods = standard_periods(30);
+    let damping = target.map_or(DAMPING, TargetSpectrum::damping);
+    let in_g = |values: Vec<f64>| values.iter().map(|v| v / STANDARD_GRAVITY).collect::<Vec<f64>>();
+    let mut plot = Plot {
+        x: Axis::new("period", "s").log(),
+        y: Axis::new(format!("pseudo-acceleration, {}", super::table::percent(damping)), "g").log(),
+        ..Plot::default()
+    };
+    if let Some(target) = target {
+        let values = periods.iter().map(|t| target.acceleration(*t)).collect();
+        plot.series.push(Series::new("target", periods.clone(), in_g(values)));
+    }
+    for (name, channel) in channels {
+        let spectrum =
+            ResponseSpectrum::new(channel.time_step, &channel.acceleration, &periods, damping)?;
+        let values = in_g(spectrum.pseudo_acceleration());
+        plot.series.push(Series::new(name.as_str(), periods.clone(), values));
+    }
+    if let Some((one, two)) = whole.and_then(|record| record.horizontal_pair().ok()) {
+        let peaks = rotated_spectrum(
+            one.time_step,
+            &one.acceleration,
+            &two.acceleration,
+            &periods,
+            damping,
+        )?;
+        let median = peaks.iter().map(|peak| peak.median).collect();
+        let largest = peaks.iter().map(|peak| peak.largest).collect();
+        plot.series.push(Series::new("RotD50", periods.clone(), in_g(median)));
+        plot.series.push(Series::new("RotD100", periods, in_g(largest)));
+    }
+    Ok(plot)
+}
+
+/// Fourier amplitudes, the corners marked that the noise suggests.
+fn fourier(channels: &[(String, &Channel)], corners: &[(f64, f64)]) -> Plot {
+    let mut plot = Plot {
+        x: Axis::new("frequency", "Hz").log(),
+        y: Axis::new("Fourier amplitude", "m/s").log(),
+        ..Plot::default()
+    };
+    for (name, channel) in channels {
+        let spectrum = FourierSpectrum::new(channel.time_step, &channel.acceleration);
+        // The logarithm has no place for frequency 0.
+        let (f, c) = (&spectrum.frequency[1..], &spectrum.amplitude[1..]);
+        plot.series.push(Series::new(name.as_str(), f.to_vec(), c.to_vec()));
+    }
+    let mut known: Vec<f64> = Vec::new();
+    for (corner, what) in
+        corners.iter().flat_map(|(high, low)| [(*high, "high-pass"), (*low, "low-pass")])
+    {
+        if !known.contains(&corner) {
+            known.push(corner);
+            let label = format!("{what} {} Hz", significant(corner, 3));
+            plot.marks.push(Mark { at: corner, label });
+        }
+    }
+    plot
+}

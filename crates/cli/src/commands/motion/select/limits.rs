@@ -1,0 +1,128 @@
+//! Which records may be chosen: ranges of magnitude, distance and site, and the pulse class.
+
+use std::str::FromStr;
+
+use barrelstack_campaign::study::StudyTable;
+
+use super::Pulses;
+
+/// A range, open where an end is left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Range {
+    from: f64,
+    to: f64,
+}
+
+impl Range {
+    pub(super) fn ends(self) -> [f64; 2] {
+        [self.from, self.to]
+    }
+
+    fn holds(self, value: f64) -> bool {
+        (self.from..=self.to).contains(&value)
+    }
+}
+
+impl FromStr for Range {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let refuse =
+            || "expected two numbers with .. between, such as 6..7.5, 6.. or ..30".to_owned();
+        let (from, to) = text.split_once("..").ok_or_else(refuse)?;
+        let end = |text: &str, open: f64| match text.trim() {
+            "" => Ok(open),
+            text => text.parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(refuse),
+        };
+        let range = Self { from: end(from, 0.0)?, to: end(to, f64::MAX)? };
+        if range.from > range.to {
+            return Err(format!("{} is above {}", range.from, range.to));
+        }
+        Ok(range)
+    }
+}
+
+/// Limits that are in force.
+pub(super) struct Limits {
+    pub(super) magnitude: Option<Range>,
+    pub(super) distance: Option<Range>,
+    pub(super) vs30: Option<Range>,
+    pub(super) pulses: Pulses,
+}
+
+/// How many records each limit left out, and for how many it could not be told.
+#[derive(Debug, Default)]
+pub(super) struct LeftOut {
+    counts: Vec<(&'static str, usize, usize)>,
+}
+
+impl Limits {
+    /// The rows within all limits, and what became of the others.
+    pub(super) fn rows(&self, table: &StudyTable) -> (Vec<usize>, LeftOut) {
+        let mut rows: Vec<usize> = (0..table.rows()).collect();
+        let mut left_out = LeftOut::default();
+        let numbers = |name: &str| table.numbers(name).unwrap_or_default();
+        let integers = |name: &str| table.integers(name).unwrap_or_default();
+        let ranges = [
+            ("magnitude", self.magnitude, numbers("magnitude")),
+            ("distance", self.distance, numbers("rupture_distance")),
+            ("Vs30", self.vs30, numbers("vs30")),
+        ];
+        for (name, range, values) in ranges {
+            let Some(range) = range else { continue };
+            left_out.keep(name, &mut rows, |row| values[row].map(|value| range.holds(value)));
+        }
+        let wanted = match self.pulses {
+            Pulses::Any => return (rows, left_out),
+            Pulses::Only => 1,
+            Pulses::None => 0,
+        };
+        let (pair, single) = (integers("pulse_shahi_baker"), integers("pulse_baker_h1"));
+        let class = |row: usize| pair[row].or(single[row]).map(|class| class == wanted);
+        left_out.keep("pulse class", &mut rows, class);
+        (rows, left_out)
+    }
+}
+
+impl LeftOut {
+    fn keep(
+        &mut self,
+        name: &'static str,
+        rows: &mut Vec<usize>,
+        within: impl Fn(usize) -> Option<bool>,
+    ) {
+        let (mut outside, mut unknown) = (0, 0);
+        rows.retain(|row| match within(*row) {
+            Some(true) => true,
+            Some(false) => {
+                outside += 1;
+                false
+            }
+            None => {
+                unknown += 1;
+                false
+            }
+        });
+        self.counts.push((name, outside, unknown));
+    }
+
+    /// Of how many records how many may be chosen, and why not the others.
+    pub(super) fn sentence(&self, all: usize, candidates: usize, spectrum: &str) -> String {
+        let mut reasons = Vec::new();
+        let mut lost = 0;
+        for (name, outside, unknown) in &self.counts {
+            lost += outside + unknown;
+            if outside + unknown > 0 {
+                reasons.push(format!(
+                    "{outside} outside the limit of {name}, {unknown} of unknown {name}"
+                ));
+            }
+        }
+        if candidates + lost < all {
+            reasons.push(format!("{} without a {spectrum} spectrum", all - candidates - lost));
+        }
+        let why =
+            if reasons.is_empty() { String::new() } else { format!(": {}", reasons.join(", ")) };
+        format!("{candidates} of {all} records may be chosen{why}")
+    }
+}

@@ -1,0 +1,192 @@
+//! `barrelstack motion select`: a set of records for a target, ready for a study.
+
+mod limits;
+mod page;
+mod set;
+mod target;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use barrelstack_campaign::study::StudyTable;
+use barrelstack_motion::{Candidate, Choosing, select as choose};
+use clap::ValueEnum;
+
+use super::folder::{self, Batch, FolderArgs, Worked};
+use super::input::Input;
+use crate::printer;
+use limits::{Limits, Range};
+
+/// What the help ends with.
+const AFTER_HELP: &str = "\
+Targets:
+  FILE.csv     a ground-motion model's table: \"period (s), median (g), sigma\", sigma that of ln Sa;
+               with --at and --level or --epsilon the spectrum conditional on one period
+               (correlations of Baker and Jayaram 2008), else the model's own
+  asce7:…, ec8:…, …   a code spectrum, which all records shall follow; see motion match --help
+Example:
+  barrelstack motion select records --flatfile NGA.csv --target model.csv --at 1.0 --epsilon 2 \\
+    --count 30 --scale 0.25..4 --magnitude 6.. --out set
+  barrelstack study set/study.toml --out runs";
+
+/// Arguments of `select`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = AFTER_HELP)]
+pub(super) struct SelectArgs {
+    #[command(flatten)]
+    input: Input,
+    /// What the spectra shall look like; the kinds are below.
+    #[arg(long, value_name = "TARGET")]
+    target: String,
+    /// Period at which Sa is given, one of the table's.
+    #[arg(long, value_name = "TIME")]
+    at: Option<String>,
+    /// Sa at that period, such as "0.6 g".
+    #[arg(long, value_name = "ACCELERATION", requires = "at", conflicts_with = "epsilon")]
+    level: Option<String>,
+    /// Sa at that period, as standard deviations of ln Sa above the median.
+    #[arg(long, value_name = "NUMBER", requires = "at", allow_hyphen_values = true)]
+    epsilon: Option<f64>,
+    /// Shortest period that counts.
+    #[arg(long, value_name = "TIME", default_value = "0.05 s")]
+    shortest: String,
+    /// Longest period that counts.
+    #[arg(long, value_name = "TIME", default_value = "5 s")]
+    longest: String,
+    /// How many records.
+    #[arg(long, value_name = "NUMBER", default_value_t = 30)]
+    count: usize,
+    /// Which spectrum of a record counts.
+    #[arg(long, value_enum, default_value_t = Spectrum::Rotd50)]
+    spectrum: Spectrum,
+    /// Smallest and largest factor.
+    #[arg(long, value_name = "FROM..TO", default_value = "0.25..4")]
+    scale: Range,
+    /// Magnitudes, from the flatfile.
+    #[arg(long, value_name = "FROM..TO")]
+    magnitude: Option<Range>,
+    /// Distances to the rupture in km, from the flatfile.
+    #[arg(long, value_name = "FROM..TO")]
+    distance: Option<Range>,
+    /// Vs30 in m/s, from the flatfile or the header.
+    #[arg(long, value_name = "FROM..TO")]
+    vs30: Option<Range>,
+    /// Which pulse class (Shahi and Baker 2014; Baker 2007 where there is one horizontal).
+    #[arg(long, value_enum, default_value_t = Pulses::Any)]
+    pulses: Pulses,
+    /// Most records of one event.
+    #[arg(long, value_name = "NUMBER")]
+    most_of_event: Option<usize>,
+    /// Seed of the spectra that are simulated.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    seed: u64,
+    /// The scenario that the study shakes.
+    #[arg(long, value_name = "SCENARIO", default_value = "candia-8-barrels")]
+    base: String,
+    /// Where set, study and page go, with the table of all records.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    #[command(flatten)]
+    folder: FolderArgs,
+}
+
+/// Which spectrum of a record counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Spectrum {
+    /// Median over all directions of both horizontals.
+    Rotd50,
+    /// First horizontal component.
+    H1,
+}
+
+impl Spectrum {
+    fn column(self, period: f64) -> String {
+        match self {
+            Self::Rotd50 => format!("sa_rotd50_{period}"),
+            Self::H1 => format!("sa_h1_{period}"),
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Rotd50 => "RotD50",
+            Self::H1 => "first horizontal",
+        }
+    }
+}
+
+/// Which pulse class.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Pulses {
+    /// All.
+    Any,
+    /// Pulse-like ones.
+    Only,
+    /// Those without a pulse.
+    None,
+}
+
+/// Measures, chooses, writes.
+pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
+    let target = target::target(args)?;
+    let periods = target.periods().to_vec();
+    let batch = Batch {
+        input: &args.input,
+        out: &args.out,
+        folder: &args.folder,
+        settings: "select".to_owned(),
+        periods: Some(periods.clone()),
+        ending: None,
+    };
+    let found = folder::run(&batch, &|_, record| Ok(Worked::as_read(record.clone())))?;
+    let status = found.tell()?;
+    if status != ExitCode::SUCCESS {
+        return Ok(status);
+    }
+    let limits = Limits {
+        magnitude: args.magnitude,
+        distance: args.distance,
+        vs30: args.vs30,
+        pulses: args.pulses,
+    };
+    let (rows, left_out) = limits.rows(&found.table);
+    let (rows, candidates) = candidates(args, &found.table, &rows, &periods);
+    let told = left_out.sentence(found.table.rows(), candidates.len(), args.spectrum.name());
+    printer::lines([&told])?;
+    let [least, largest] = args.scale.ends();
+    let choosing = Choosing {
+        count: args.count,
+        scale: [least.max(f64::MIN_POSITIVE), largest],
+        most_of_group: args.most_of_event,
+        seed: args.seed,
+    };
+    let selection = choose(&target, &candidates, &choosing)?;
+    let set = set::Set { args, table: &found.table, rows: &rows, selection: &selection };
+    set.write()?;
+    page::write(&set, &target, &candidates, &told)?;
+    printer::lines(set.summary(&target))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Rows with a whole spectrum, as candidates; records of one event are a group.
+fn candidates(
+    args: &SelectArgs,
+    table: &StudyTable,
+    rows: &[usize],
+    periods: &[f64],
+) -> (Vec<usize>, Vec<Candidate>) {
+    let columns: Vec<&[Option<f64>]> =
+        periods.iter().filter_map(|period| table.numbers(&args.spectrum.column(*period))).collect();
+    let events = table.texts("event").unwrap_or_default();
+    let mut kept = Vec::new();
+    let mut candidates = Vec::new();
+    for &row in rows {
+        let spectrum: Option<Vec<f64>> =
+            columns.iter().map(|column| column[row].filter(|sa| *sa > 0.0)).collect();
+        let Some(spectrum) = spectrum else { continue };
+        let group = events[row].clone().unwrap_or_else(|| format!("record {row}"));
+        kept.push(row);
+        candidates.push(Candidate { spectrum, group });
+    }
+    (kept, candidates)
+}

@@ -1,0 +1,147 @@
+//! The set as files: its table, and a study that takes it as it is.
+
+use std::fmt::Write as _;
+
+use barrelstack_campaign::study::StudyTable;
+use barrelstack_motion::{Chosen, Selection, SelectionTarget};
+
+use super::SelectArgs;
+use crate::commands::motion::output::store;
+
+/// A set and where it comes from.
+pub(super) struct Set<'a> {
+    pub(super) args: &'a SelectArgs,
+    pub(super) table: &'a StudyTable,
+    /// Row of the table of every candidate.
+    pub(super) rows: &'a [usize],
+    pub(super) selection: &'a Selection,
+}
+
+impl Set<'_> {
+    /// The records with their rows of the table.
+    pub(super) fn chosen(&self) -> impl Iterator<Item = (usize, &Chosen)> {
+        self.selection.chosen.iter().map(|chosen| (self.rows[chosen.candidate], chosen))
+    }
+
+    /// A text of the table.
+    pub(super) fn text(&self, column: &str, row: usize) -> &str {
+        let texts = self.table.texts(column).unwrap_or_default();
+        texts.get(row).and_then(Option::as_deref).unwrap_or_default()
+    }
+
+    /// A number of the table.
+    pub(super) fn number(&self, column: &str, row: usize) -> Option<f64> {
+        self.table.numbers(column)?.get(row).copied().flatten()
+    }
+
+    /// Writes `selection.csv` and `study.toml`.
+    pub(super) fn write(&self) -> anyhow::Result<()> {
+        store(&self.args.out.join("selection.csv"), self.csv().as_bytes())?;
+        store(&self.args.out.join("study.toml"), self.study()?.as_bytes())
+    }
+
+    fn csv(&self) -> String {
+        let mut text =
+            "record,files,event,factor,magnitude,rupture_distance (km),vs30 (m/s)\n".to_owned();
+        let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+        for (row, chosen) in self.chosen() {
+            let number = |column: &str| {
+                self.number(column, row).map_or_else(String::new, |value| value.to_string())
+            };
+            // Writing to a String cannot fail.
+            let _ = writeln!(
+                text,
+                "{},{},{},{},{},{},{}",
+                quoted(self.text("record", row)),
+                quoted(self.text("files", row)),
+                quoted(self.text("event", row)),
+                chosen.scale,
+                number("magnitude"),
+                number("rupture_distance"),
+                number("vs30")
+            );
+        }
+        text
+    }
+
+    /// A study of the set: every horizontal a motion of its own, with the factor of its record.
+    fn study(&self) -> anyhow::Result<String> {
+        let a = self.args;
+        let mut text = format!(
+            "# {} records chosen for {}, seed {}, as shaken by their factors.\n\
+             # Records are named with their whole paths; move them and this file must follow.\n\
+             schema = 1\ntitle = {}\nseed = {}\n\n[base]\nextends = {}\n\n\
+             [design]\nkind = \"full-factorial\"\n",
+            self.selection.chosen.len(),
+            a.target,
+            a.seed,
+            quoted(&format!("{} records for {}", self.selection.chosen.len(), a.target))?,
+            a.seed,
+            quoted(&a.base)?
+        );
+        for (row, chosen) in self.chosen() {
+            for place in ["h1", "h2"] {
+                let (file, channel) = (
+                    self.text(&format!("file_{place}"), row),
+                    self.text(&format!("name_{place}"), row),
+                );
+                if file.is_empty() {
+                    continue;
+                }
+                let path = std::path::absolute(file)?.display().to_string();
+                let name = format!("{} {channel}", self.text("record", row));
+                // Writing to a String cannot fail.
+                let _ = write!(
+                    text,
+                    "\n[[motion]]\nname = {}\nrecords = [{}]\ncomponents = [{}]\nscale = {{ factor = {} }}\n",
+                    quoted(&name)?,
+                    quoted(&path)?,
+                    quoted(self.text(&format!("place_{place}"), row))?,
+                    chosen.scale
+                );
+            }
+        }
+        Ok(text)
+    }
+
+    /// What was chosen and how near it comes, for people.
+    pub(super) fn summary(&self, target: &SelectionTarget) -> Vec<String> {
+        let out = self.args.out.display();
+        vec![
+            self.fit(target),
+            format!("written: {out}/selection.csv, {out}/study.toml and {out}/index.html"),
+            format!("next: barrelstack study {out}/study.toml --out runs"),
+        ]
+    }
+
+    /// How near the set comes.
+    pub(super) fn fit(&self, target: &SelectionTarget) -> String {
+        let selection = self.selection;
+        let spread = target.deviation().iter().any(|s| *s > 0.0);
+        format!(
+            "{} of {} within the factors chosen: median within {:.1} % of the target, {} after {} rounds \
+             of exchanges",
+            selection.chosen.len(),
+            selection.eligible,
+            100.0 * selection.median_error(target),
+            if spread {
+                format!(
+                    "standard deviation of ln Sa within {:.1} %",
+                    100.0 * selection.deviation_error(target)
+                )
+            } else {
+                format!(
+                    "standard deviation of ln Sa up to {:.2} around it",
+                    selection.deviation_error(target)
+                )
+            },
+            selection.rounds
+        )
+    }
+}
+
+/// A text as TOML has it.
+fn quoted(text: &str) -> anyhow::Result<String> {
+    // A JSON string is a basic string of TOML.
+    Ok(serde_json::to_string(text)?)
+}

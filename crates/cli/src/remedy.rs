@@ -1,0 +1,36 @@
+//! What to type after an error: libraries state the fact, the command knows its own words.
+
+use anyhow::Error;
+use barrelstack::RunFailure;
+use barrelstack::compare::CompareError;
+use barrelstack::export::ExportError;
+use barrelstack::ground::GroundError;
+
+/// What to type after an error, where one option helps.
+pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
+    error.chain().find_map(|cause| {
+        if let Some(ExportError::Occupied { .. }) = cause.downcast_ref() {
+            return Some(
+                "name another folder, or add --overwrite to replace what an earlier run wrote there",
+            );
+        }
+        if let Some(CompareError::TooFew(_)) = cause.downcast_ref() {
+            return Some("name another scenario, or add --against PATH=VALUE");
+        }
+        if let Some(RunFailure::Ground(ground)) = cause.downcast_ref() {
+            return of_ground(ground);
+        }
+        cause.downcast_ref().and_then(of_ground)
+    })
+}
+
+fn of_ground(error: &GroundError) -> Option<&'static str> {
+    match error {
+        GroundError::Unreadable { .. } => Some("name your file with --record FILE"),
+        GroundError::Read(_)
+        | GroundError::Motion(_)
+        | GroundError::Vertical { .. }
+        | GroundError::UnknownBundled { .. }
+        | GroundError::Unit { .. } => None,
+    }
+}

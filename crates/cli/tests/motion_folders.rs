@@ -1,0 +1,185 @@
+//! Whole folders of records: the table, what is refused, what is done anew, and a set for a study.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use barrelstack_motion::Random;
+use common::{barrelstack, stderr, stdout};
+
+/// Runs `motion` in a way that must succeed, and gives what it printed.
+fn motion(arguments: &[&str]) -> String {
+    let output = barrelstack([&["motion"], arguments].concat());
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
+    stdout(&output)
+}
+
+/// Runs `motion` in a way that must be refused with these words.
+fn refused(arguments: &[String], words: &str) {
+    let all = std::iter::once("motion").chain(arguments.iter().map(String::as_str));
+    let output = barrelstack(all);
+    assert_ne!(output.status.code(), Some(0), "{arguments:?}: {}", stdout(&output));
+    assert!(stderr(&output).contains(words), "{arguments:?}: {}", stderr(&output));
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+/// A folder of `count` made records of two horizontals, one file of words, and a flatfile.
+fn records(count: usize) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let below = folder.path().join("records/below");
+    fs::create_dir_all(&below).unwrap();
+    let mut flatfile = "RSN,magnitude,rrup,vs30\n".to_owned();
+    for k in 0..count {
+        // Noise of a color of its own under an envelope.
+        let motion = |seed: usize| -> Vec<f64> {
+            let mut random = Random::new(seed as u64);
+            let (memory, mut last) = (0.5 + 0.04 * k as f64, 0.0);
+            let sample = |n: u32| {
+                last = memory * last + random.normal();
+                let t = 0.02 * f64::from(n);
+                last * t * (-t / 3.0).exp()
+            };
+            (0..1500).map(sample).collect()
+        };
+        let (east, north) = (motion(2 * k), motion(2 * k + 1));
+        let mut lines =
+            "# barrelstack motion 1\n# station: S\n# event: made\n# stage: corrected\n# unit: \
+                         m/s2\n# time_step: 0.02\n# channels: E az=90, N az=0\n"
+                .to_owned();
+        for (x, y) in east.iter().zip(&north) {
+            lines.push_str(&format!("{x:e} {y:e}\n"));
+        }
+        fs::write(below.join(format!("RSN{}_made.txt", k + 1)), lines).unwrap();
+        flatfile.push_str(&format!("{},{},{},300\n", k + 1, 5.5 + 0.1 * (k % 20) as f64, 10 + k));
+    }
+    fs::write(folder.path().join("records/README.md"), "no record\n").unwrap();
+    fs::write(folder.path().join("flat.csv"), flatfile).unwrap();
+    folder
+}
+
+#[test]
+fn a_folder_becomes_a_table_and_a_stopped_one_goes_on() {
+    let folder = records(6);
+    let (records, out) = (folder.path().join("records"), folder.path().join("out"));
+    let flatfile = folder.path().join("flat.csv");
+    let all = ["info", text(&records), "--out", text(&out), "--flatfile", text(&flatfile)];
+    let told = motion(&all);
+    assert!(told.starts_with("6 records measured, 1 file refused\n"), "{told}");
+    let table = fs::read_to_string(out.join("records.csv")).unwrap();
+    assert_eq!(table.lines().count(), 7);
+    let head: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    for column in
+        ["record", "magnitude", "pga_h1 (m/s2)", "pulse_shahi_baker", "sa_rotd50_1 (m/s2)"]
+    {
+        assert!(head.contains(&column), "{column}");
+    }
+    let reasons = fs::read_to_string(out.join("refused.csv")).unwrap();
+    assert!(reasons.contains("README.md") && reasons.contains("expected"), "{reasons}");
+    let parquet = fs::read(out.join("records.parquet")).unwrap();
+    assert!(parquet.starts_with(b"PAR1"));
+
+    // As a kill leaves it: half of the lines, the last one cut.
+    let journal = out.join("rows.jsonl");
+    let whole = fs::read_to_string(&journal).unwrap();
+    let lines: Vec<&str> = whole.lines().collect();
+    let cut = format!("{}\n{}", lines[..4].join("\n"), &lines[4][..100]);
+    fs::write(&journal, cut).unwrap();
+    fs::remove_file(out.join("records.csv")).unwrap();
+    let told = motion(&all);
+    assert!(told.starts_with("6 records measured (3 of them before), 1 file refused"), "{told}");
+    assert_eq!(fs::read_to_string(out.join("records.csv")).unwrap(), table);
+    assert_eq!(fs::read(out.join("records.parquet")).unwrap(), parquet);
+
+    // A touched file is not done again, a changed one is.
+    let one = records.join("below/RSN1_made.txt");
+    let bytes = fs::read(&one).unwrap();
+    fs::write(&one, &bytes).unwrap();
+    assert!(motion(&all).contains("6 of them before"), "{told}");
+    fs::write(&one, [&bytes[..], b"0 0\n"].concat()).unwrap();
+    let told = motion(&all);
+    // The refused file counts among what was done before.
+    assert!(told.starts_with("6 records measured (6 of them before)"), "{told}");
+
+    let other = ["info", text(&records), "--out", text(&out), "--table-periods", "1,2"];
+    refused(&other.map(str::to_owned), "holds the table of another command");
+    refused(&["info", text(&records)].map(str::to_owned), "--out DIR");
+}
+
+#[test]
+fn a_folder_is_processed_converted_and_drawn() {
+    let folder = records(2);
+    let records = folder.path().join("records");
+    let out = |name: &str| folder.path().join(name);
+    motion(&["process", text(&records), "--out", text(&out("p")), "--high-pass", "0.2 Hz"]);
+    let made = fs::read_to_string(out("p").join("below/RSN1_made.txt.txt")).unwrap();
+    assert!(made.contains("at 0.2000 Hz"));
+    motion(&["convert", text(&records), "--out", text(&out("c")), "--form", "csv"]);
+    assert!(out("c").join("below/RSN2_made.txt.csv").is_file());
+    motion(&["plot", text(&records), "--out", text(&out("d"))]);
+    let png = fs::read(out("d").join("below/RSN1_made.txt.png")).unwrap();
+    assert!(png.starts_with(b"\x89PNG"));
+    // What is gone is made anew.
+    fs::remove_file(out("d").join("below/RSN1_made.txt.png")).unwrap();
+    let told = motion(&["plot", text(&records), "--out", text(&out("d"))]);
+    assert!(told.starts_with("2 records measured (2 of them before)"), "{told}");
+    assert!(out("d").join("below/RSN1_made.txt.png").is_file());
+}
+
+#[test]
+fn a_set_for_a_target_is_a_study_that_runs() {
+    let folder = records(12);
+    let (records, out) = (folder.path().join("records"), folder.path().join("set"));
+    let model = folder.path().join("model.csv");
+    let table = "period (s), median (g), sigma\n0.1, 0.5, 0.5\n0.3, 0.5, 0.5\n1.0, 0.2, 0.6\n";
+    fs::write(&model, table).unwrap();
+    let flatfile = folder.path().join("flat.csv");
+    let select = |out: &Path, more: &[&str]| {
+        let usual = [
+            "select",
+            text(&records),
+            "--target",
+            text(&model),
+            "--at",
+            "1.0",
+            "--epsilon",
+            "1",
+            "--count",
+            "4",
+            "--scale",
+            "0.01..1000",
+            "--out",
+            text(out),
+            "--flatfile",
+            text(&flatfile),
+        ];
+        [&usual[..], more].concat().into_iter().map(str::to_owned).collect::<Vec<String>>()
+    };
+    let arguments = select(&out, &["--magnitude", "5.6..", "--distance", "..20"]);
+    let told = motion(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+    assert!(told.contains("10 of 12 records may be chosen"), "{told}");
+    assert!(told.contains("1 outside the limit of magnitude, 0 of unknown magnitude"), "{told}");
+    for file in ["selection.csv", "study.toml", "index.html", "figures/spectra.svg"] {
+        assert!(out.join(file).is_file(), "{file}");
+    }
+    let chosen = fs::read_to_string(out.join("selection.csv")).unwrap();
+    assert_eq!(chosen.lines().count(), 5);
+    let plan = barrelstack(["study", "plan", text(&out.join("study.toml"))]);
+    assert_eq!(plan.status.code(), Some(0), "{}", stderr(&plan));
+    // Four records of two horizontals each.
+    assert!(stdout(&plan).contains("8 cases"), "{}", stdout(&plan));
+    let again = folder.path().join("again");
+    let arguments = select(&again, &["--magnitude", "5.6..", "--distance", "..20"]);
+    motion(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+    assert_eq!(fs::read_to_string(again.join("selection.csv")).unwrap(), chosen);
+    refused(
+        &select(&folder.path().join("x"), &["--count", "400"]),
+        "cannot be used multiple times",
+    );
+    refused(&select(&folder.path().join("y"), &["--vs30", "9..1"]), "9 is above 1");
+}

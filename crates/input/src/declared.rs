@@ -1,0 +1,197 @@
+//! One declaration of a table: the type, its fields, and how they are read and written.
+
+use crate::error::InputError;
+use crate::field::{Kind, Named, Section};
+use crate::reader::Reader;
+use crate::tree::Table;
+use crate::writer::Writer;
+
+/// A type that is declared with the fields that it is read from and written to; made by [`section!`](crate::section).
+pub trait Declared: Sized {
+    /// The table in files.
+    fn section() -> &'static Section;
+
+    /// Reads the fields; the caller checks what they mean together and ends the reading.
+    fn read_fields(reader: &Reader<'_>) -> Result<Self, InputError>;
+
+    /// Writes the fields.
+    fn write_fields(&self, writer: &mut Writer);
+
+    /// Reads a table that has these fields only and in which every value goes with every other.
+    fn read(reader: Reader<'_>) -> Result<Self, InputError> {
+        let read = Self::read_fields(&reader)?;
+        reader.finish();
+        Ok(read)
+    }
+
+    /// Writes a table that has these fields only.
+    fn write(&self) -> Table {
+        let mut writer = Writer::new(Self::section());
+        self.write_fields(&mut writer);
+        writer.finish()
+    }
+}
+
+/// What a field of a declared type may hold.
+pub trait Held: Sized {
+    /// Reads the field of a name.
+    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError>;
+
+    /// Writes the field of a name.
+    fn write(&self, writer: &mut Writer, name: &'static str);
+}
+
+/// A plain number, or a quantity in SI.
+impl Held for f64 {
+    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
+        if is_plain(reader.kind_of(name)) { reader.number(name) } else { reader.quantity(name) }
+    }
+
+    fn write(&self, writer: &mut Writer, name: &'static str) {
+        if is_plain(writer.kind_of(name)) {
+            writer.number(name, *self);
+        } else {
+            writer.quantity(name, *self);
+        }
+    }
+}
+
+fn is_plain(kind: Kind) -> bool {
+    matches!(kind, Kind::Number(_))
+}
+
+/// A quantity in SI that may be absent, or has a word in its place.
+impl Held for Option<f64> {
+    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
+        if has_word(reader.kind_of(name)) {
+            reader.word_or_quantity(name)
+        } else {
+            reader.optional_quantity(name)
+        }
+    }
+
+    fn write(&self, writer: &mut Writer, name: &'static str) {
+        if has_word(writer.kind_of(name)) {
+            writer.word_or_quantity(name, *self);
+        } else {
+            writer.optional_quantity(name, *self);
+        }
+    }
+}
+
+fn has_word(kind: Kind) -> bool {
+    matches!(kind, Kind::WordOr(..))
+}
+
+impl Held for u32 {
+    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
+        reader.integer(name)
+    }
+
+    fn write(&self, writer: &mut Writer, name: &'static str) {
+        writer.integer(name, *self);
+    }
+}
+
+impl Held for bool {
+    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
+        reader.flag(name)
+    }
+
+    fn write(&self, writer: &mut Writer, name: &'static str) {
+        writer.flag(name, *self);
+    }
+}
+
+/// A member of a closed set.
+impl<T: Named> Held for T {
+    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
+        reader.choice(name)
+    }
+
+    fn write(&self, writer: &mut Writer, name: &'static str) {
+        writer.choice(name, *self);
+    }
+}
+
+/// Declares a type with the table that it is read from: each field once, with its type, what it holds, what an
+/// absent one means, and its help, which is its doc comment.
+///
+/// ```
+/// use barrelstack_input::declared::Declared;
+/// use barrelstack_input::field::{Default, Kind, Range};
+/// use barrelstack_input::{Dimension, section};
+///
+/// section! {
+///     /// A spring that ends when it tears.
+///     #[derive(Clone, Debug, PartialEq)]
+///     pub struct Spring;
+///     /// A spring.
+///     pub static SPRING = "spring";
+///     /// Force per elongation.
+///     stiffness: f64 = Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Required;
+///     /// Force above which it tears; without it it never does.
+///     strength: Option<f64> = Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
+/// }
+///
+/// let spring = Spring { stiffness: 1e5, strength: None };
+/// assert_eq!(SPRING.help, "A spring.");
+/// assert_eq!(SPRING.fields[0].example(), "`stiffness = \"9.8 kN/cm\"`");
+/// assert_eq!(barrelstack_input::writer::to_toml(&spring.write()), "stiffness = \"100000 N/m\"\n");
+/// ```
+#[macro_export]
+macro_rules! section {
+    (
+        $(#[$about:meta])*
+        $visible:vis struct $type:ident;
+        $(#[doc = $help:literal])+
+        $seen:vis static $section:ident = $name:literal;
+        $(
+            $(#[doc = $text:literal])+
+            $field:ident: $held:ty = $kind:expr, $default:expr;
+        )*
+    ) => {
+        $(#[$about])*
+        $visible struct $type {
+            $(
+                #[doc = concat!($($text),+)]
+                #[doc = concat!("\n\nIn files: `", stringify!($kind), "`, `", stringify!($default), "`.")]
+                pub $field: $held,
+            )*
+        }
+
+        $(#[doc = $help])+
+        $seen static $section: $crate::field::Section = $crate::field::Section {
+            name: $name,
+            help: concat!($($help),+).trim_ascii(),
+            fields: &[$(
+                $crate::field::Field::new(
+                    stringify!($field),
+                    $kind,
+                    $default,
+                    concat!($($text),+).trim_ascii(),
+                ),
+            )*],
+            variants: None,
+            exclusive: &[],
+        };
+
+        impl $crate::declared::Declared for $type {
+            fn section() -> &'static $crate::field::Section {
+                &$section
+            }
+
+            fn read_fields(
+                reader: &$crate::reader::Reader<'_>,
+            ) -> ::std::result::Result<Self, $crate::InputError> {
+                Ok(Self {
+                    $($field: $crate::declared::Held::read(reader, stringify!($field))?,)*
+                })
+            }
+
+            fn write_fields(&self, writer: &mut $crate::writer::Writer) {
+                $($crate::declared::Held::write(&self.$field, writer, stringify!($field));)*
+            }
+        }
+    };
+}

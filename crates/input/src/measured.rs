@@ -1,0 +1,370 @@
+//! A table of measurements: CSV with a unit in the header of every column.
+
+use std::path::{Path, PathBuf};
+
+use crate::system;
+use crate::{Dimension, Quantity};
+
+/// Most bytes of a file of measurements.
+const SIZE_LIMIT: usize = 64 << 20;
+
+/// A table of measurements.
+///
+/// Columns are separated by commas, or by semicolons or tabs where the header has those.
+/// Empty lines and lines that start with `#` are skipped.
+///
+/// ```
+/// use barrelstack_input::measured::Table;
+/// use barrelstack_input::Dimension;
+///
+/// let table = Table::parse("press.csv", "penetration (mm),force (kN)\n0.5,0.49\n1.0,0.98\n")?;
+/// assert_eq!(table.required("force", Dimension::FORCE)?, [490.0, 980.0]);
+/// # Ok::<(), barrelstack_input::measured::TableError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Table {
+    file: String,
+    header_line: usize,
+    columns: Vec<Column>,
+    rows: Vec<(usize, Vec<String>)>,
+}
+
+/// Why a table cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TableError {
+    /// The file cannot be read.
+    #[error("cannot read {path}: {reason}", path = path.display())]
+    Unreadable {
+        /// The path.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+    /// A place of the file is not what it should be.
+    #[error("{file}, line {line}{place}: expected {expected}, found {found}; {remedy}", place = in_column(column.as_deref()))]
+    Cell {
+        /// The file.
+        file: String,
+        /// The line, from 1.
+        line: usize,
+        /// The column, as the header names it; none where the whole line is meant.
+        column: Option<String>,
+        /// What should stand there.
+        expected: Box<str>,
+        /// What stands there.
+        found: Box<str>,
+        /// The next move.
+        remedy: Box<str>,
+    },
+    /// The file is no such table, or holds not what is asked of it.
+    #[error("{file}: {reason}")]
+    Unsuited {
+        /// The file.
+        file: String,
+        /// Why, with the next move.
+        reason: String,
+    },
+}
+
+fn in_column(column: Option<&str>) -> String {
+    column.map(|name| format!(", column \"{name}\"")).unwrap_or_default()
+}
+
+/// What stands in a cell of a column with gaps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Entry {
+    /// Nothing.
+    Empty,
+    /// The word that stands for no number.
+    Word,
+    /// A value (SI).
+    Number(f64),
+}
+
+/// The head of a column.
+#[derive(Clone, Debug)]
+struct Column {
+    name: String,
+    unit: Option<String>,
+}
+
+impl Column {
+    /// Splits `force (kN)`.
+    fn of(text: &str) -> Self {
+        match text.strip_suffix(')').and_then(|text| text.rsplit_once('(')) {
+            Some((name, unit)) => {
+                Self { name: name.trim().to_owned(), unit: Some(unit.trim().to_owned()) }
+            }
+            None => Self { name: text.to_owned(), unit: None },
+        }
+    }
+
+    fn is(&self, name: &str) -> bool {
+        self.name.eq_ignore_ascii_case(name)
+    }
+}
+
+impl Table {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// When it cannot be read or is no table.
+    pub fn load(path: &Path) -> Result<Self, TableError> {
+        let unreadable = |reason| TableError::Unreadable { path: path.to_owned(), reason };
+        let bytes = system::read(path, SIZE_LIMIT).map_err(unreadable)?;
+        let text = String::from_utf8(bytes)
+            .map_err(|_| unreadable("it is not text in UTF-8: export it as CSV".to_owned()))?;
+        Self::parse(&path.display().to_string(), &text)
+    }
+
+    /// Reads a text; `file` is what errors call it.
+    ///
+    /// # Errors
+    /// When there is no header, no row below it, or a row of another width.
+    pub fn parse(file: &str, text: &str) -> Result<Self, TableError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut lines = text
+            .lines()
+            .enumerate()
+            .map(|(at, line)| (at + 1, line.trim()))
+            .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+        let unsuited = |reason: &str| TableError::Unsuited {
+            file: file.to_owned(),
+            reason: reason.to_owned(),
+        };
+        let (header_line, header) = lines
+            .next()
+            .ok_or_else(|| unsuited("it is empty: write a header such as `penetration (mm),force (kN)` and the measurements below it"))?;
+        let separator = [';', '\t'].into_iter().find(|mark| header.contains(*mark)).unwrap_or(',');
+        let cells = |line: &str| -> Vec<String> {
+            line.split(separator)
+                .map(|cell| cell.trim().trim_matches('"').trim().to_owned())
+                .collect()
+        };
+        let columns: Vec<Column> = cells(header).iter().map(|cell| Column::of(cell)).collect();
+        let mut rows = Vec::new();
+        for (line, text) in lines {
+            let row = cells(text);
+            if row.len() != columns.len() {
+                return Err(TableError::Cell {
+                    file: file.to_owned(),
+                    line,
+                    column: None,
+                    expected: format!("{} columns as in the header", columns.len()).into(),
+                    found: row.len().to_string().into(),
+                    remedy: "complete the row or remove it".into(),
+                });
+            }
+            rows.push((line, row));
+        }
+        if rows.is_empty() {
+            return Err(unsuited("it has a header and no measurements below it"));
+        }
+        Ok(Self { file: file.to_owned(), header_line, columns, rows })
+    }
+
+    /// What errors call the file.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Names of all columns, without their units.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.columns.iter().map(|column| column.name.as_str())
+    }
+
+    /// Whether there is a column of this name, in capitals or not.
+    pub fn has(&self, name: &str) -> bool {
+        self.columns.iter().any(|column| column.is(name))
+    }
+
+    /// A warning for every column that is none of `known`.
+    pub fn unused(&self, known: &[&str]) -> Vec<String> {
+        let unknown = |column: &&Column| !known.iter().any(|name| column.is(name));
+        let columns = self.columns.iter().filter(unknown);
+        columns.map(|column| format!("column \"{}\" is not used", column.name)).collect()
+    }
+
+    /// How many rows of measurements there are.
+    pub fn count(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The values (SI) of a column that must be there.
+    ///
+    /// # Errors
+    /// When it is missing, has no unit or another one, or holds anything but numbers.
+    pub fn required(&self, name: &str, dimension: Dimension) -> Result<Vec<f64>, TableError> {
+        let (at, unit) = self.place(name, dimension)?;
+        let column = &self.columns[at].name;
+        let value = |(line, row): &(usize, Vec<String>)| self.value(*line, column, &row[at], unit);
+        self.rows.iter().map(value).collect()
+    }
+
+    /// The cells of a column that must be there, each with a number (SI), a `word` in place of one, or
+    /// nothing.
+    ///
+    /// # Errors
+    /// As [`Table::required`], for cells that hold anything else.
+    pub fn entries(
+        &self,
+        name: &str,
+        dimension: Dimension,
+        word: &str,
+    ) -> Result<Vec<Entry>, TableError> {
+        let (at, unit) = self.place(name, dimension)?;
+        let column = &self.columns[at].name;
+        let entry = |(line, row): &(usize, Vec<String>)| match row[at].as_str() {
+            "" => Ok(Entry::Empty),
+            cell if cell == word => Ok(Entry::Word),
+            cell => self.value(*line, column, cell, unit).map(Entry::Number),
+        };
+        self.rows.iter().map(entry).collect()
+    }
+
+    /// Where a column stands, and its unit.
+    fn place(&self, name: &str, dimension: Dimension) -> Result<(usize, &str), TableError> {
+        let mut found = self.columns.iter().enumerate().filter(|(_, column)| column.is(name));
+        let example = || format!("`{name} ({})`", dimension.si_unit());
+        let at_header = |column: Option<String>, expected: String, found: String, remedy: &str| {
+            let (file, line) = (self.file.clone(), self.header_line);
+            let (expected, found, remedy) = (expected.into(), found.into(), remedy.into());
+            TableError::Cell { file, line, column, expected, found, remedy }
+        };
+        let listed = || {
+            let names: Vec<String> = self.names().map(|name| format!("\"{name}\"")).collect();
+            names.join(", ")
+        };
+        let Some((at, column)) = found.next() else {
+            let expected = format!("a column {}", example());
+            return Err(at_header(None, expected, listed(), "name the column so in the header"));
+        };
+        if found.next().is_some() {
+            let expected = format!("one column {}", example());
+            return Err(at_header(
+                None,
+                expected,
+                listed(),
+                "keep one of those with the same name",
+            ));
+        }
+        let named = Some(column.name.clone());
+        let Some(unit) = column.unit.as_deref().filter(|unit| !unit.is_empty()) else {
+            let expected = format!("a unit in parentheses, as in {}", example());
+            return Err(at_header(named, expected, "none".to_owned(), "add it to the header"));
+        };
+        // The notation of the program's own histories.
+        let unit = if unit == "m/s2" { "m/s^2" } else { unit };
+        if let Err(error) = Quantity::parse_as(&format!("1 {unit}"), &[dimension]) {
+            let expected = format!("a unit of {dimension}");
+            let found = format!("\"{unit}\" ({error})");
+            return Err(at_header(named, expected, found, "correct the unit in the header"));
+        }
+        Ok((at, unit))
+    }
+
+    fn value(&self, line: usize, column: &str, cell: &str, unit: &str) -> Result<f64, TableError> {
+        let number = cell.parse::<f64>().ok().filter(|number| number.is_finite());
+        let quantity = number.and_then(|_| Quantity::parse(&format!("{cell} {unit}")).ok());
+        quantity.map(|quantity| quantity.value).ok_or_else(|| {
+            let shown: String = cell.chars().filter(|c| !c.is_control()).take(40).collect();
+            let found = if cell.is_empty() { "nothing".to_owned() } else { format!("\"{shown}\"") };
+            let remedy = "correct it, or remove the row (the decimal mark is a point)";
+            self.refuse(line, column, "a number", &found, remedy)
+        })
+    }
+
+    /// As [`Table::required`], and every value must be positive.
+    ///
+    /// # Errors
+    /// As there, and at the first value that is not.
+    pub fn positive(&self, name: &str, dimension: Dimension) -> Result<Vec<f64>, TableError> {
+        let values = self.required(name, dimension)?;
+        if let Some(row) = values.iter().position(|value| *value <= 0.0) {
+            let found = self.cell(row, name);
+            return Err(self.at(
+                row,
+                name,
+                "a number above zero",
+                &found,
+                "correct it, or remove the row",
+            ));
+        }
+        Ok(values)
+    }
+
+    /// The values of a column of annual rates, whose unit is `1/year`, `1/yr` or `1/a`: a year is no SI unit, and
+    /// rates are kept a year.
+    ///
+    /// # Errors
+    /// When the column is missing, has another unit, or holds anything but numbers.
+    pub fn per_year(&self, name: &str) -> Result<Vec<f64>, TableError> {
+        let place = self.columns.iter().position(|column| column.is(name));
+        let unit = place.and_then(|at| self.columns[at].unit.as_deref());
+        let (Some(at), Some("1/year" | "1/yr" | "1/a")) = (place, unit) else {
+            let heads = self.columns.iter().map(|column| match &column.unit {
+                Some(unit) => format!("\"{} ({unit})\"", column.name),
+                None => format!("\"{}\"", column.name),
+            });
+            return Err(TableError::Cell {
+                file: self.file.clone(),
+                line: self.header_line,
+                column: None,
+                expected: format!("a column `{name} (1/year)`").into(),
+                found: heads.collect::<Vec<_>>().join(", ").into(),
+                remedy: "name the column so in the header".into(),
+            });
+        };
+        let number = |(line, row): &(usize, Vec<String>)| {
+            let value = row[at].parse::<f64>().ok().filter(|value| value.is_finite());
+            let remedy = "correct it, or remove the row (the decimal mark is a point)";
+            value.ok_or_else(|| {
+                self.refuse(*line, name, "a number", &format!("\"{}\"", row[at]), remedy)
+            })
+        };
+        self.rows.iter().map(number).collect()
+    }
+
+    /// An error at a value of a row, counted from 0.
+    pub fn at(
+        &self,
+        row: usize,
+        column: &str,
+        expected: &str,
+        found: &str,
+        remedy: &str,
+    ) -> TableError {
+        let line = self.rows.get(row).map_or(self.header_line, |(line, _)| *line);
+        self.refuse(line, column, expected, found, remedy)
+    }
+
+    /// What stands in a row, counted from 0, as it was written.
+    pub fn cell(&self, row: usize, name: &str) -> String {
+        let at = self.columns.iter().position(|column| column.is(name));
+        let cell = at.and_then(|at| self.rows.get(row)?.1.get(at));
+        cell.cloned().unwrap_or_default()
+    }
+
+    fn refuse(
+        &self,
+        line: usize,
+        column: &str,
+        expected: &str,
+        found: &str,
+        remedy: &str,
+    ) -> TableError {
+        TableError::Cell {
+            file: self.file.clone(),
+            line,
+            column: Some(column.to_owned()),
+            expected: expected.into(),
+            found: found.into(),
+            remedy: remedy.into(),
+        }
+    }
+
+    /// The file as a whole does not serve.
+    pub fn unsuited(&self, reason: impl Into<String>) -> TableError {
+        TableError::Unsuited { file: self.file.clone(), reason: reason.into() }
+    }
+}

@@ -1,0 +1,161 @@
+//! Which files of a folder are components of one record, told by their names.
+
+use std::collections::BTreeMap;
+
+use crate::format::file_stem;
+
+/// Files that hold one record.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RecordFiles {
+    /// Name of the record: the path without what tells the components apart.
+    pub name: String,
+    /// Its files, sorted.
+    pub files: Vec<String>,
+}
+
+/// Groups paths (with `/` between folders) into records, sorted by name.
+///
+/// Names of one folder belong together where they differ in the component alone:
+///
+/// - `RSN995_NORTHR_PEL090.AT2` and `RSN995_NORTHR_PEL-UP.AT2` by their record sequence number, other
+///   names that end in `.AT2` by what stands before an azimuth, `-E` or `-UP`;
+/// - `AOM0011801241951.EW`, `.NS` and `.UD`, and those of a borehole (`.EW1`) apart from those of the
+///   surface (`.EW2`);
+/// - names with a SEED channel such as `HNE` between dots, dashes or underscores.
+///
+/// Any other file is a record of its own.
+/// Whether the channels do belong together is for [`crate::Record::gather`] to tell.
+///
+/// ```
+/// use barrelstack_motion::group_files;
+/// let files = ["a/RSN6_ELC180.AT2", "a/RSN6_ELC270.AT2", "a/x.smc"].map(str::to_owned);
+/// let records = group_files(&files);
+/// assert_eq!(records[0].name, "a/RSN6_ELC");
+/// assert_eq!(records[0].files.len(), 2);
+/// assert_eq!(records[1].name, "a/x.smc");
+/// ```
+pub fn group_files(paths: &[String]) -> Vec<RecordFiles> {
+    let mut groups: BTreeMap<String, RecordFiles> = BTreeMap::new();
+    let mut sorted: Vec<&String> = paths.iter().collect();
+    sorted.sort_unstable();
+    sorted.dedup();
+    for path in sorted {
+        let (folder, file) = match path.rfind('/') {
+            Some(at) => path.split_at(at + 1),
+            None => ("", path.as_str()),
+        };
+        let (key, name) = key(file);
+        let record = groups
+            .entry(format!("{folder}{key}"))
+            .or_insert_with(|| RecordFiles { name: format!("{folder}{name}"), files: Vec::new() });
+        record.files.push(path.clone());
+    }
+    let mut records: Vec<RecordFiles> = groups.into_values().collect();
+    for record in &mut records {
+        // A file that stands alone keeps its whole name, which nobody else has.
+        if let [file] = record.files.as_slice() {
+            record.name.clone_from(file);
+        }
+    }
+    records.sort_by(|a, b| a.name.cmp(&b.name));
+    records
+}
+
+/// What the components of a record share, and how the record is called.
+fn key(file: &str) -> (String, String) {
+    let stem = file_stem(file);
+    let ending = file.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_uppercase();
+    if ending == "AT2" {
+        let name = without_component(&stem);
+        let number = super::flatfile::record_sequence_number(file);
+        return (number.map_or_else(|| format!("{name}.AT2"), |n| format!("RSN{n}.AT2")), name);
+    }
+    for component in ["EW", "NS", "UD"] {
+        if let Some(sensor) = ending.strip_prefix(component)
+            && matches!(sensor, "" | "1" | "2")
+        {
+            let name = if sensor.is_empty() { stem } else { format!("{stem}.{sensor}") };
+            return (format!("{name}.knet"), name);
+        }
+    }
+    seed(file).map_or_else(|| (file.to_owned(), file.to_owned()), |name| (name.clone(), name))
+}
+
+/// A name of PEER's without its component.
+fn without_component(stem: &str) -> String {
+    let upper = stem.to_ascii_uppercase();
+    for ending in ["-UP", "-DWN", "-DN", "-VER", "-V", "-N", "-E", "-S", "-W", "-NS", "-EW", "UP"] {
+        if upper.ends_with(ending) {
+            return stem[..stem.len() - ending.len()].to_owned();
+        }
+    }
+    let azimuth = stem.len().checked_sub(3).and_then(|at| stem.get(at..));
+    match azimuth {
+        Some(digits) if digits.bytes().all(|b| b.is_ascii_digit()) => {
+            stem[..stem.len() - 3].trim_end_matches(['-', '_']).to_owned()
+        }
+        _ => stem.to_owned(),
+    }
+}
+
+/// A name with a question mark in place of the direction of its SEED channel.
+fn seed(file: &str) -> Option<String> {
+    let mut start = 0;
+    for part in file.split_inclusive(['.', '_', '-']) {
+        let word = part.trim_end_matches(['.', '_', '-']);
+        if let [band, instrument, direction] = word.as_bytes()
+            && band.is_ascii_uppercase()
+            && matches!(instrument, b'N' | b'L' | b'G' | b'H')
+            && matches!(direction, b'N' | b'E' | b'Z' | b'1' | b'2' | b'3')
+        {
+            return Some(format!("{}?{}", &file[..start + 2], &file[start + 3..]));
+        }
+        start += part.len();
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::group_files;
+
+    fn names(files: &[&str]) -> Vec<(String, usize)> {
+        let files: Vec<String> = files.iter().map(|file| (*file).to_owned()).collect();
+        group_files(&files).into_iter().map(|r| (r.name, r.files.len())).collect()
+    }
+
+    #[test]
+    fn components_come_together_and_nothing_else_does() {
+        let found = names(&[
+            "p/RSN1503_CHICHI_TCU065-E.AT2",
+            "p/RSN1503_CHICHI_TCU065-N.AT2",
+            "p/RSN1503_CHICHI_TCU065-V.AT2",
+            "q/RSN1503_CHICHI_TCU065-E.AT2",
+            "k/AOM0011801241951.EW",
+            "k/AOM0011801241951.NS",
+            "k/AOM0011801241951.UD",
+            "k/IBRH11.EW1",
+            "k/IBRH11.NS1",
+            "k/IBRH11.EW2",
+            "m/BK.CMB.00.HNE__2014.mseed",
+            "m/BK.CMB.00.HNN__2014.mseed",
+            "m/BK.CMB.10.HNN__2014.mseed",
+            "CE58667.V2",
+            "CE58668.V2",
+        ]);
+        let expected = [
+            ("CE58667.V2", 1),
+            ("CE58668.V2", 1),
+            ("k/AOM0011801241951", 3),
+            ("k/IBRH11.1", 2),
+            ("k/IBRH11.EW2", 1),
+            ("m/BK.CMB.00.HN?__2014.mseed", 2),
+            ("m/BK.CMB.10.HNN__2014.mseed", 1),
+            ("p/RSN1503_CHICHI_TCU065", 3),
+            ("q/RSN1503_CHICHI_TCU065-E.AT2", 1),
+        ];
+        let expected: Vec<(String, usize)> =
+            expected.iter().map(|(name, count)| ((*name).to_owned(), *count)).collect();
+        assert_eq!(found, expected);
+    }
+}

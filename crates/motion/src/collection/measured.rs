@@ -1,0 +1,148 @@
+//! What a record measures: every component, both horizontals together, and the pulse.
+
+use crate::error::MotionError;
+use crate::horizontals::Horizontals;
+use crate::intensity::IntensityMeasure;
+use crate::process::Processing;
+use crate::pulse_class::{ClassifiedPulse, classify_all, classify_component};
+use crate::record::{Channel, Record};
+use crate::response::response;
+use crate::rotd::{RotatedPeak, rotated_spectrum};
+use crate::sampled::Sampled;
+
+/// Damping ratio of all spectra.
+const DAMPING: f64 = 0.05;
+/// Oscillator of FIV3 (s).
+const FIV3: IntensityMeasure = IntensityMeasure::Fiv3 { period: 1.0 };
+
+/// Measures of one component (SI).
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredComponent {
+    /// Name of the channel.
+    pub name: String,
+    /// Azimuth (degrees clockwise from north), where known.
+    pub azimuth: Option<f64>,
+    /// Peak acceleration (m/s²), velocity (m/s) and displacement (m).
+    pub peaks: [f64; 3],
+    /// Arias intensity (m/s).
+    pub arias: f64,
+    /// Cumulative absolute velocity (m/s).
+    pub cav: f64,
+    /// Significant duration from 5 to 95 % (s).
+    pub duration: f64,
+    /// FIV3 at 1 s (m/s).
+    pub fiv3: f64,
+    /// Pulse after Baker (2007); none for a vertical component.
+    pub pulse: Option<ClassifiedPulse>,
+    /// Pseudo-accelerations (m/s²) at 5 % damping.
+    pub spectrum: Vec<f64>,
+}
+
+/// Measures of both horizontals together (SI).
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredPair {
+    /// `RotD50` of peak acceleration (m/s²) and velocity (m/s).
+    pub peaks: [f64; 2],
+    /// `RotD50` and `RotD100` of the pseudo-accelerations (m/s²) at 5 % damping.
+    pub spectrum: Vec<RotatedPeak>,
+    /// Pulse after Shahi and Baker (2014).
+    pub pulse: Option<ClassifiedPulse>,
+}
+
+/// Measures of a record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// The first two components that are not vertical, in order.
+    pub horizontals: Vec<MeasuredComponent>,
+    /// The first vertical component.
+    pub vertical: Option<MeasuredComponent>,
+    /// Both horizontals, if they are a pair.
+    pub pair: Option<MeasuredPair>,
+    /// Why there is no pair.
+    pub no_pair: Option<String>,
+}
+
+/// Measures a record after processing, its spectra at `periods` (s).
+///
+/// # Errors
+/// If the record has no channel or a setting is out of range.
+pub fn measure(
+    record: &Record,
+    processing: &Processing,
+    periods: &[f64],
+) -> Result<Measured, MotionError> {
+    if record.channels.is_empty() {
+        return Err(MotionError::parameter("channels", "at least one", 0));
+    }
+    let motion = |channel: &Channel| -> Result<Sampled, MotionError> {
+        let done =
+            processing.apply(channel.time_step, &channel.acceleration, channel.initial_velocity)?;
+        Sampled::with_initial_velocity(channel.time_step, done.acceleration, done.initial_velocity)
+    };
+    let flat: Vec<&Channel> = record.channels.iter().filter(|c| !c.is_vertical()).take(2).collect();
+    let mut horizontals = Vec::new();
+    for channel in &flat {
+        horizontals.push(component(channel, &motion(channel)?, periods)?);
+    }
+    let vertical = record.channels.iter().find(|c| c.is_vertical());
+    let vertical = vertical.map(|c| component(c, &motion(c)?, periods)).transpose()?;
+    let (pair, no_pair) = match record.horizontal_pair() {
+        Ok(_) => {
+            let (first, second) = record.horizontals(processing)?;
+            let mut pair = both(&first, &second, periods)?;
+            // A motion without a velocity has no pulse, which is no reason to refuse it.
+            if let Ok((singles, together)) = classify_all(&first, &second) {
+                pair.pulse = Some(together);
+                for (component, pulse) in horizontals.iter_mut().zip(singles) {
+                    component.pulse = Some(pulse);
+                }
+            }
+            (Some(pair), None)
+        }
+        Err(error) => {
+            for (component, channel) in horizontals.iter_mut().zip(&flat) {
+                component.pulse = classify_component(&motion(channel)?).ok();
+            }
+            (None, Some(error.to_string()))
+        }
+    };
+    Ok(Measured { horizontals, vertical, pair, no_pair })
+}
+
+fn component(
+    channel: &Channel,
+    motion: &Sampled,
+    periods: &[f64],
+) -> Result<MeasuredComponent, MotionError> {
+    let (step, a) = (motion.time_step(), motion.acceleration());
+    let spectrum = periods
+        .iter()
+        .map(|t| response(step, a, *t, DAMPING).map(|peaks| peaks.pseudo_acceleration))
+        .collect::<Result<_, _>>()?;
+    Ok(MeasuredComponent {
+        name: channel.name.clone(),
+        azimuth: channel.direction.azimuth,
+        peaks: [motion.pga(), motion.pgv(), motion.pgd_by_trapezoid()],
+        arias: IntensityMeasure::Arias.of(motion)?,
+        cav: IntensityMeasure::Cav.of(motion)?,
+        duration: IntensityMeasure::D5_95.of(motion)?,
+        fiv3: FIV3.of(motion)?,
+        pulse: None,
+        spectrum,
+    })
+}
+
+fn both(first: &Sampled, second: &Sampled, periods: &[f64]) -> Result<MeasuredPair, MotionError> {
+    let of = |measure| Horizontals::RotD50.of(measure, first, second);
+    Ok(MeasuredPair {
+        peaks: [of(IntensityMeasure::Pga)?, of(IntensityMeasure::Pgv)?],
+        spectrum: rotated_spectrum(
+            first.time_step(),
+            first.acceleration(),
+            second.acceleration(),
+            periods,
+            DAMPING,
+        )?,
+        pulse: None,
+    })
+}

@@ -1,0 +1,62 @@
+//! The first arrival: where the noise before the shaking ends.
+
+use crate::math;
+
+/// Share of the peak at which the shaking has begun for sure.
+const SURE: f64 = 0.2;
+/// How far a search reaches behind what was found before, as a part of the time up to the strong motion.
+const BEHIND: f64 = 0.1;
+
+/// Time (s) after the first sample of the first arrival; 0 if the shaking is there from the start.
+///
+/// Two stretches, each of one variance, explain the record up to its first strong motion best when
+/// they meet at the arrival: the smallest of Akaike's criterion
+/// `k ln var(a₁…k) + (n − k − 1) ln var(a₍k₊₁₎…n)` (Maeda 1985).
+/// A second search, which ends a little behind the first one's answer, finds a weak first arrival
+/// before a strong second one.
+pub(super) fn arrival(time_step: f64, a: &[f64]) -> f64 {
+    let level = math::mean(&a[..a.len().min(100)]);
+    let peak = a.iter().fold(0.0_f64, |peak, a| peak.max((a - level).abs()));
+    let Some(strong) = a.iter().position(|a| (a - level).abs() >= SURE * peak) else { return 0.0 };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, small")]
+    let behind = (BEHIND * strong as f64).ceil() as usize;
+    let until = |end: usize| &a[..(end + behind).min(a.len())];
+    let Some(first) = split(until(strong)) else { return 0.0 };
+    time_step * split(until(first)).unwrap_or(first) as f64
+}
+
+/// Where two stretches of constant variance meet; None if there are too few samples.
+fn split(a: &[f64]) -> Option<usize> {
+    // A variance of fewer samples says nothing.
+    let margin = 10;
+    if a.len() < 4 * margin {
+        return None;
+    }
+    let n = a.len();
+    let mean = math::mean(a);
+    let mut sums = vec![(0.0, 0.0)];
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for value in a {
+        let value = value - mean;
+        sum += value;
+        squares += value * value;
+        sums.push((sum, squares));
+    }
+    let variance = |from: usize, to: usize| {
+        let count = (to - from) as f64;
+        let mean = (sums[to].0 - sums[from].0) / count;
+        // Digits are the resolution of noise: a stretch of equal numbers has no variance at all.
+        ((sums[to].1 - sums[from].1) / count - mean * mean).max(1e-12 * squares / n as f64)
+    };
+    let criterion = |k: usize| {
+        k as f64 * math::ln(variance(0, k)) + (n - k - 1) as f64 * math::ln(variance(k, n))
+    };
+    let mut best = (margin, f64::INFINITY);
+    for k in margin..n - margin {
+        let value = criterion(k);
+        if value < best.1 {
+            best = (k, value);
+        }
+    }
+    (squares > 0.0).then_some(best.0)
+}

@@ -1,0 +1,259 @@
+//! Corners of the filters from the record itself: where the shaking stands above the noise before it.
+
+mod arrival;
+mod smooth;
+
+use crate::error::MotionError;
+use crate::fourier::forward_real;
+use crate::math::{self, PI};
+use crate::record::{Channel, Record};
+
+use arrival::arrival;
+use smooth::konno_ohmachi;
+
+/// Shortest noise (s) from which corners are taken.
+const SHORTEST_NOISE: f64 = 1.0;
+/// Shortest shaking (s).
+const SHORTEST_SHAKING: f64 = 5.0;
+/// Part of each end of noise and shaking that is tapered.
+const TAPER: f64 = 0.05;
+/// Highest low-pass corner, over the Nyquist frequency and in Hz.
+const HIGHEST: (f64, f64) = (0.75, 40.0);
+
+/// What the ratio of signal to noise must be, and where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoiseCriterion {
+    /// Least ratio of the smoothed Fourier amplitudes of signal and noise.
+    pub ratio: f64,
+    /// Frequency (Hz) from which the ratio must be kept; the high-pass lies at or below it.
+    pub from: f64,
+    /// Frequency (Hz) up to which the ratio must be kept; the low-pass lies above it.
+    pub to: f64,
+    /// Coefficient `b` of the smoothing window of Konno and Ohmachi (1998).
+    pub bandwidth: f64,
+}
+
+impl Default for NoiseCriterion {
+    /// A ratio of 3 from 0.2 to 5 Hz, smoothed with `b` = 20.
+    fn default() -> Self {
+        Self { ratio: 3.0, from: 0.2, to: 5.0, bandwidth: 20.0 }
+    }
+}
+
+/// Corners that a channel's own noise suggests.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corners {
+    /// High-pass (Hz).
+    pub high_pass: f64,
+    /// Low-pass (Hz).
+    pub low_pass: f64,
+    /// Time (s) after the first sample at which the noise ends and the shaking begins.
+    pub arrival: f64,
+    /// Smallest ratio of signal to noise between the criterion's frequencies.
+    pub least_ratio: f64,
+}
+
+impl Corners {
+    /// How they were found, for provenance.
+    pub fn sentence(&self, criterion: &NoiseCriterion) -> String {
+        let unknown = 1.0 / self.arrival;
+        format!(
+            "corners {:.4} and {:.2} Hz, between which the signal is at least {} times the noise of \
+             the first {:.2} s, and {:.1} times from {} to {} Hz{}",
+            self.high_pass,
+            self.low_pass,
+            criterion.ratio,
+            self.arrival,
+            self.least_ratio,
+            criterion.from,
+            criterion.to,
+            if self.high_pass < unknown {
+                format!(" (so short a noise says little below {unknown:.2} Hz)")
+            } else {
+                String::new()
+            }
+        )
+    }
+}
+
+/// Noise and signal of a channel, smoothed.
+struct Spectra {
+    frequency: Vec<f64>,
+    /// Signal over noise, see [`noise_corners`].
+    ratio: Vec<f64>,
+}
+
+/// The corners of one channel whose noise ends at `arrival` (s).
+///
+/// The spectrum of the noise, multiplied with the root of the ratio of the lengths, is that of the
+/// noise within the shaking; what stands above it is signal.
+/// Their ratio is divided by the same root, which asks more where the noise is short.
+/// The band is the first in which signal over noise keeps the criterion from its lower to its upper
+/// frequency; the high-pass is no lower than one over the duration and than where the ratio has its
+/// minimum below its peak; the low-pass is at most 0.75 of the Nyquist frequency and 40 Hz.
+/// This is the rule of the USGS's automatic processing (Hearne et al. 2019; Ramos-Sepúlveda et al. 2023).
+///
+/// # Errors
+/// If there is less than a second of noise or five of shaking, or the ratio is not kept.
+pub fn noise_corners(
+    channel: &Channel,
+    arrival: f64,
+    criterion: &NoiseCriterion,
+) -> Result<Corners, MotionError> {
+    let refuse = |what: String| MotionError::Mismatch {
+        what: format!("channel {}: {what}", channel.name),
+        remedy: "give the corners yourself".to_owned(),
+    };
+    let (dt, a) = (channel.time_step, &channel.acceleration);
+    let split = samples(arrival, dt).min(a.len());
+    if arrival < SHORTEST_NOISE {
+        return Err(refuse(format!(
+            "{arrival:.2} s of noise before the shaking, where {SHORTEST_NOISE} s are needed"
+        )));
+    }
+    let shaking = (a.len() - split) as f64 * dt;
+    if shaking < SHORTEST_SHAKING {
+        return Err(refuse(format!(
+            "{shaking:.2} s after the arrival, where {SHORTEST_SHAKING} s are needed"
+        )));
+    }
+    let first = a[0];
+    if a[..split].iter().all(|value| *value == first) {
+        return Err(refuse(format!(
+            "the noise of {arrival:.2} s before the shaking is below the file's last digit"
+        )));
+    }
+    let spectra = Spectra::of(dt, &a[..split], &a[split..], criterion.bandwidth);
+    let (low, high) = spectra.band(criterion).ok_or_else(|| {
+        refuse(format!(
+            "signal over noise falls to {:.2} between {} and {} Hz, where {} is needed",
+            spectra.least(criterion),
+            criterion.from,
+            criterion.to,
+            criterion.ratio
+        ))
+    })?;
+    let high_pass = low.max(1.0 / channel.duration()).max(spectra.foot());
+    let low_pass = high.min(HIGHEST.0 * 0.5 / dt).min(HIGHEST.1);
+    Ok(Corners { high_pass, low_pass, arrival, least_ratio: spectra.least(criterion) })
+}
+
+impl Record {
+    /// The corners of every channel, in order; both horizontals share the narrower band, so that they
+    /// can be turned together.
+    ///
+    /// All channels take the earliest arrival that any of them shows.
+    pub fn noise_corners(&self, criterion: &NoiseCriterion) -> Vec<Result<Corners, MotionError>> {
+        let first = self
+            .channels
+            .iter()
+            .map(|channel| arrival(channel.time_step, &channel.acceleration))
+            .fold(f64::INFINITY, f64::min);
+        let mut found: Vec<Result<Corners, MotionError>> =
+            self.channels.iter().map(|c| noise_corners(c, first, criterion)).collect();
+        let flat: Vec<bool> = self.channels.iter().map(|channel| !channel.is_vertical()).collect();
+        let mut band = (0.0_f64, f64::INFINITY);
+        for (corners, _) in found.iter().zip(&flat).filter(|(_, flat)| **flat) {
+            let Ok(corners) = corners else { return found };
+            band = (band.0.max(corners.high_pass), band.1.min(corners.low_pass));
+        }
+        for (corners, _) in found.iter_mut().zip(&flat).filter(|(_, flat)| **flat) {
+            if let Ok(corners) = corners {
+                (corners.high_pass, corners.low_pass) = band;
+            }
+        }
+        found
+    }
+}
+
+impl Spectra {
+    fn of(dt: f64, noise: &[f64], shaking: &[f64], bandwidth: f64) -> Self {
+        let length = noise.len().max(shaking.len()).next_power_of_two();
+        let frequency: Vec<f64> =
+            (0..=length / 2).map(|k| k as f64 / (length as f64 * dt)).collect();
+        let centers = math::log_space(frequency[1], frequency[length / 2], 300);
+        let smooth = |part: &[f64]| -> Vec<f64> {
+            let mean = math::mean(part);
+            let mut part: Vec<f64> = part.iter().map(|a| a - mean).collect();
+            taper(&mut part);
+            let amplitude: Vec<f64> =
+                forward_real(&part, length)[..=length / 2].iter().map(|x| x.norm()).collect();
+            konno_ohmachi(&frequency, &amplitude, &centers, bandwidth)
+        };
+        let stretch = (shaking.len() as f64 / noise.len() as f64).sqrt();
+        let ratio = smooth(shaking)
+            .iter()
+            .zip(smooth(noise))
+            .map(|(all, noise)| (all - stretch * noise) / (stretch * noise) / stretch)
+            .collect::<Vec<f64>>();
+        // Below one over the length of the shaking nothing is known.
+        let known = 1.0 / (shaking.len() as f64 * dt);
+        let first = centers.partition_point(|f| *f < known);
+        Self { frequency: centers[first..].to_vec(), ratio: ratio[first..].to_vec() }
+    }
+
+    /// The first stretch of frequencies with enough signal that spans those of the criterion.
+    fn band(&self, criterion: &NoiseCriterion) -> Option<(f64, f64)> {
+        let enough = |k: usize| self.ratio[k] >= criterion.ratio;
+        let mut start = None;
+        for k in 0..self.ratio.len() {
+            match (start, enough(k)) {
+                (None, true) => start = Some(k),
+                (Some(first), false) => {
+                    if self.spans(first, k - 1, criterion) {
+                        return Some((self.frequency[first], self.frequency[k - 1]));
+                    }
+                    start = None;
+                }
+                (None, false) | (Some(_), true) => {}
+            }
+        }
+        let last = self.ratio.len().checked_sub(1)?;
+        let first = start.filter(|first| self.spans(*first, last, criterion))?;
+        Some((self.frequency[first], self.frequency[last]))
+    }
+
+    fn spans(&self, first: usize, last: usize, criterion: &NoiseCriterion) -> bool {
+        self.frequency[first] <= criterion.from && self.frequency[last] > criterion.to
+    }
+
+    /// Smallest ratio between the frequencies of the criterion.
+    fn least(&self, criterion: &NoiseCriterion) -> f64 {
+        let inside = self.frequency.iter().zip(&self.ratio);
+        inside
+            .filter(|(f, _)| (criterion.from..=criterion.to).contains(*f))
+            .fold(f64::INFINITY, |least, (_, ratio)| least.min(*ratio))
+    }
+
+    /// Frequency of the smallest ratio below that of the largest: drift lifts what lies lower.
+    fn foot(&self) -> f64 {
+        let best = |range: std::ops::Range<usize>, sign: f64| {
+            range.reduce(
+                |best, k| {
+                    if sign * self.ratio[k] > sign * self.ratio[best] { k } else { best }
+                },
+            )
+        };
+        best(0..self.ratio.len(), 1.0)
+            .and_then(|peak| best(0..peak, -1.0))
+            .map_or(0.0, |foot| self.frequency[foot])
+    }
+}
+
+fn samples(seconds: f64, dt: f64) -> usize {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative")]
+    let n = (seconds / dt).round().clamp(0.0, 1e9) as usize;
+    n
+}
+
+/// Half a Hann window at each end.
+fn taper(a: &mut [f64]) {
+    let n = a.len();
+    let width = TAPER * n as f64;
+    let ends = samples(width, 1.0).min(n / 2);
+    for k in 0..ends {
+        let weight = 0.5 * (1.0 - math::cos(PI * k as f64 / ends as f64));
+        a[k] *= weight;
+        a[n - 1 - k] *= weight;
+    }
+}

@@ -1,0 +1,70 @@
+//! Two horizontals turned to where they matter: across and along a fault, or where the ground was fastest.
+
+use crate::error::MotionError;
+use crate::record::{Channel, Record};
+use crate::rotd::rotated_peak;
+use crate::select::Component;
+
+/// Two horizontals turned.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Turned {
+    /// Across the fault, or along the fastest direction.
+    pub first: Channel,
+    /// Along the fault, or across the fastest direction.
+    pub second: Channel,
+    /// What was done, one sentence.
+    pub note: String,
+}
+
+impl Record {
+    /// The motion across (fault-normal) and along (fault-parallel) a fault of a strike (degrees
+    /// clockwise from north), positive at 90 degrees clockwise from the strike and along it.
+    ///
+    /// # Errors
+    /// If the strike is not finite or there are not two horizontals of known azimuth.
+    pub fn fault_axes(&self, strike: f64) -> Result<Turned, MotionError> {
+        MotionError::require_finite("strike (degrees)", strike)?;
+        let named = |azimuth: f64, name: &str| -> Result<Channel, MotionError> {
+            let mut channel = self.component(&Component::Azimuth(azimuth.rem_euclid(360.0)))?;
+            name.clone_into(&mut channel.name);
+            // What the header stated is true of another direction or name.
+            channel.peaks.clear();
+            Ok(channel)
+        };
+        Ok(Turned {
+            first: named(strike + 90.0, "FN")?,
+            second: named(strike, "FP")?,
+            note: format!(
+                "turned to fault-normal FN (azimuth {}) and fault-parallel FP (azimuth {}) of strike \
+                 {strike} degrees",
+                (strike + 90.0).rem_euclid(360.0),
+                strike.rem_euclid(360.0)
+            ),
+        })
+    }
+
+    /// The motion along the horizontal direction of the largest velocity, and across it.
+    ///
+    /// # Errors
+    /// If there are not two horizontals of known azimuth.
+    pub fn fastest_axes(&self) -> Result<Turned, MotionError> {
+        let north = self.component(&Component::Azimuth(0.0))?;
+        let east = self.component(&Component::Azimuth(90.0))?;
+        let peak = rotated_peak(&north.velocity(), &east.velocity());
+        let turned = self.fault_axes(peak.angle - 90.0)?;
+        let named = |mut channel: Channel, name: &str| {
+            name.clone_into(&mut channel.name);
+            channel
+        };
+        Ok(Turned {
+            first: named(turned.first, "VMAX"),
+            second: named(turned.second, "VMAX-90"),
+            note: format!(
+                "turned to VMAX, the direction of the largest velocity, {:.1} cm/s at azimuth {}, and \
+                 VMAX-90, 90 degrees before it",
+                100.0 * peak.largest,
+                peak.angle
+            ),
+        })
+    }
+}

@@ -1,0 +1,155 @@
+//! NumPy archives as this crate writes them: arrays of accelerations, and the header in arrays of
+//! strings.
+//!
+//! Spec: NumPy enhancement proposal 1, the `.npy` format, versions 1.0 and 2.0; [`crate::write::npz`].
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::io::{Cursor, Read as _};
+
+use super::source::{Source, latin1, shorten};
+use super::{Format, ReadOptions, native};
+use crate::error::{ReadError, Refusal};
+use crate::record::Record;
+use crate::write::{TITLE, array_name};
+
+pub(crate) const FORMAT: Format =
+    Format { name: "npz", title: "NumPy archive of this crate", sniff, read };
+
+/// Most bytes of one array.
+const LARGEST: u64 = 128 << 20;
+/// Most arrays of one archive.
+const MOST: usize = 4096;
+
+enum Array {
+    Numbers(Vec<f64>),
+    Words(Vec<String>),
+}
+
+fn sniff(source: &Source<'_>) -> bool {
+    is_numpy(source)
+}
+
+pub(super) fn is_numpy(source: &Source<'_>) -> bool {
+    // The name of the first file of the archive stands 30 bytes behind its beginning.
+    let name = source.bytes.get(30..source.bytes.len().min(200)).unwrap_or(&[]);
+    source.bytes.starts_with(b"PK\x03\x04") && name.windows(4).any(|four| four == b".npy")
+}
+
+fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
+    let damaged = |expected: &str, found: String| {
+        source.error((), Refusal::Damaged, expected, found, "write the archive again")
+    };
+    let mut arrays = BTreeMap::new();
+    let mut archive = zip::ZipArchive::new(Cursor::new(source.bytes))
+        .map_err(|error| damaged("a NumPy archive", error.to_string()))?;
+    if archive.len() > MOST {
+        return Err(damaged("arrays of one record", format!("{} arrays", archive.len())));
+    }
+    let mut room = LARGEST;
+    for index in 0..archive.len() {
+        let entry = archive
+            .by_index(index)
+            .map_err(|error| damaged("an array in a NumPy archive", error.to_string()))?;
+        let name = entry.name().ok().and_then(|n| n.strip_suffix(".npy").map(str::to_owned));
+        let Some(name) = name else { continue };
+        let mut bytes = Vec::new();
+        entry
+            .take(room + 1)
+            .read_to_end(&mut bytes)
+            .map_err(|error| damaged(&format!("array {name}"), error.to_string()))?;
+        let left = room.checked_sub(bytes.len() as u64);
+        room = left
+            .ok_or_else(|| damaged("at most 128 MB of arrays", format!("more in array {name}")))?;
+        let array = array(&bytes).ok_or_else(|| {
+            let found = shorten(&latin1(bytes.get(10..90).unwrap_or(&[])));
+            damaged(&format!("numbers or strings in a row as array {name}"), found)
+        })?;
+        arrays.insert(name, array);
+    }
+    if !matches!(arrays.get("channels"), Some(Array::Words(_))) {
+        let names: Vec<&str> = arrays.keys().map(String::as_str).collect();
+        return Err(source.error(
+            (),
+            Refusal::Unrecognized,
+            "an array of strings named channels, as this program writes it",
+            shorten(&names.join(", ")),
+            "save the accelerations as plain columns and state their unit and step",
+        ));
+    }
+    let mut header = format!("{TITLE}\n");
+    for (key, array) in &arrays {
+        if let Array::Words(words) = array {
+            for word in words {
+                let word: String =
+                    word.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+                // Writing to a String cannot fail.
+                let _ = writeln!(header, "# {key}: {word}");
+            }
+        }
+    }
+    let text = Source::new(source.name, header.as_bytes());
+    native::described(&text, text.lines.len(), |names, limit| {
+        let mut rows = None;
+        let mut columns = Vec::new();
+        for name in names {
+            let key = format!("{}_acceleration", array_name(name));
+            let Some(Array::Numbers(values)) = arrays.get(&key) else {
+                return Err(damaged(
+                    &format!("an array of numbers named {key}"),
+                    "none".to_owned(),
+                ));
+            };
+            if *rows.get_or_insert(values.len()) != values.len() {
+                return Err(damaged("arrays of one length", format!("{} in {key}", values.len())));
+            }
+            if let Some(bad) = values.iter().find(|value| !(value.abs() <= limit)) {
+                return Err(damaged(&format!("accelerations in {key}"), bad.to_string()));
+            }
+            columns.push(values.clone());
+        }
+        Ok(columns)
+    })
+}
+
+/// One array of numbers or strings in a row; nothing if it is something else.
+fn array(bytes: &[u8]) -> Option<Array> {
+    let rest = bytes.strip_prefix(b"\x93NUMPY")?;
+    let (head, data) = match rest.first()? {
+        1 => {
+            let length = usize::from(u16::from_le_bytes(rest.get(2..4)?.try_into().ok()?));
+            (rest.get(4..4 + length)?, rest.get(4 + length..)?)
+        }
+        2 | 3 => {
+            let length = u32::from_le_bytes(rest.get(2..6)?.try_into().ok()?);
+            let end = usize::try_from(length).ok()?.checked_add(6)?;
+            (rest.get(6..end)?, rest.get(end..)?)
+        }
+        _ => return None,
+    };
+    let head = std::str::from_utf8(head).ok()?;
+    let after =
+        |key: &str| head.split_once(key).map(|(_, rest)| rest.trim_start_matches([':', ' ']));
+    let kind = after("'descr'")?.strip_prefix('\'')?.split('\'').next()?;
+    let shape = after("'shape'")?.strip_prefix('(')?.split(')').next()?;
+    let count: usize = shape.strip_suffix(',')?.trim().parse().ok()?;
+    if kind == "<f8" {
+        let whole = count.checked_mul(8)? == data.len();
+        let number = |eight: &[u8]| eight.try_into().map(f64::from_le_bytes).ok();
+        return whole
+            .then(|| data.chunks_exact(8).filter_map(number).collect())
+            .map(Array::Numbers);
+    }
+    let length: usize = kind.strip_prefix("<U")?.parse().ok()?;
+    let size = length.checked_mul(4).filter(|size| *size > 0)?;
+    if size.checked_mul(count)? != data.len() {
+        return None;
+    }
+    let sign =
+        |four: &[u8]| four.try_into().ok().and_then(|b| char::from_u32(u32::from_le_bytes(b)));
+    let word = |bytes: &[u8]| -> Option<String> {
+        let signs: Option<String> = bytes.chunks_exact(4).map(sign).collect();
+        Some(signs?.trim_end_matches('\0').to_owned())
+    };
+    data.chunks_exact(size).map(word).collect::<Option<_>>().map(Array::Words)
+}

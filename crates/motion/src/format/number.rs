@@ -1,0 +1,82 @@
+//! Numbers as files print them.
+
+use super::source::latin1;
+
+/// A number with one unit of its last printed digit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Printed {
+    pub(crate) value: f64,
+    pub(crate) resolution: f64,
+}
+
+/// A finite decimal number with optional Fortran exponent letter `D`; nothing else.
+pub(crate) fn parse_number(field: &[u8]) -> Option<f64> {
+    let field = field.trim_ascii();
+    // Rejects what the standard parser would accept as words: inf, nan, infinity.
+    let mut fortran = false;
+    for &byte in field {
+        match byte {
+            b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E' => {}
+            b'd' | b'D' => fortran = true,
+            _ => return None,
+        }
+    }
+    let text = std::str::from_utf8(field).ok()?;
+    let value: f64 =
+        if fortran { text.replace(['d', 'D'], "E").parse().ok()? } else { text.parse().ok()? };
+    value.is_finite().then_some(value)
+}
+
+/// Splits `-.123E-02-.456E-02` at signs that do not follow an exponent letter.
+pub(super) fn split_touching(token: &[u8]) -> Option<Vec<(usize, f64)>> {
+    let mut pieces = Vec::new();
+    let mut start = 0;
+    for at in 1..=token.len() {
+        let boundary = at == token.len()
+            || (matches!(token[at], b'+' | b'-')
+                && (token[at - 1].is_ascii_digit() || token[at - 1] == b'.'));
+        if boundary {
+            // A piece without a decimal point is not a Fortran real: refuse to guess where it ends.
+            let piece = &token[start..at];
+            if !piece.contains(&b'.') {
+                return None;
+            }
+            pieces.push((start, parse_number(piece)?));
+            start = at;
+        }
+    }
+    Some(pieces)
+}
+
+/// The number at the start of `bytes` after blanks, `=` and `:`, with its text.
+pub(crate) fn leading_number(bytes: &[u8]) -> Option<(f64, String)> {
+    let skip = bytes.iter().position(|&b| !matches!(b, b' ' | b'\t' | b'=' | b':'))?;
+    let rest = &bytes[skip..];
+    let mut end = 0;
+    while end < rest.len() {
+        let byte = rest[end];
+        let sign_ok = end == 0 || matches!(rest[end - 1], b'e' | b'E');
+        let exponent_ok = end > 0
+            && rest.get(end + 1).is_some_and(|b| b.is_ascii_digit() || matches!(b, b'+' | b'-'));
+        match byte {
+            b'0'..=b'9' | b'.' => {}
+            b'+' | b'-' if sign_ok => {}
+            b'e' | b'E' if exponent_ok => {}
+            _ => break,
+        }
+        end += 1;
+    }
+    // A sentence may end in a full stop right after the number.
+    let value = parse_number(&rest[..end])?;
+    Some((value, latin1(&rest[..end])))
+}
+
+/// One unit of the last digit of a printed number.
+pub(crate) fn resolution(text: &str) -> f64 {
+    let lower = text.to_ascii_lowercase();
+    let (mantissa, exponent) = lower.split_once('e').unwrap_or((&lower, "0"));
+    let decimals = mantissa.split_once('.').map_or(0, |(_, fraction)| fraction.len());
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    let power = exponent.saturating_sub(i32::try_from(decimals).unwrap_or(0)).clamp(-300, 300);
+    crate::math::powf(10.0, f64::from(power))
+}

@@ -1,0 +1,168 @@
+//! What metadata say of an instrument: sensitivity, quantity, direction; from `StationXML` or by hand.
+
+use crate::direction::Direction;
+use crate::error::MotionError;
+use crate::record::Quantity;
+use crate::site::Site;
+use crate::utc::Utc;
+
+/// Metadata of one channel of a station; an empty code stands for any.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Instrument {
+    /// Network code.
+    pub network: String,
+    /// Station code.
+    pub station: String,
+    /// Location code; none for any, empty for the empty one.
+    pub location: Option<String>,
+    /// Channel code, such as `HNE`.
+    pub channel: String,
+    /// From when and until when this holds.
+    pub epoch: (Option<Utc>, Option<Utc>),
+    /// Counts to one m/s², or to one m/s or m as the quantity says.
+    pub sensitivity: f64,
+    /// What the instrument measures, where that is known.
+    pub quantity: Option<Quantity>,
+    /// Where it points, where that is known.
+    pub direction: Option<Direction>,
+    /// Latitude, longitude (degrees) and elevation (m), where known.
+    pub place: [Option<f64>; 3],
+}
+
+impl Instrument {
+    /// Whether this describes a channel that begins at `start`.
+    pub(crate) fn describes(&self, seed: &SeedName, start: Option<Utc>) -> bool {
+        let fits = |mine: &str, theirs: &str| mine.is_empty() || mine.eq_ignore_ascii_case(theirs);
+        let (from, until) = self.epoch;
+        fits(&self.network, &seed.network)
+            && fits(&self.station, &seed.station)
+            && self.location.as_ref().is_none_or(|code| *code == seed.location)
+            && fits(&self.channel, &seed.channel)
+            && start.is_none_or(|start| {
+                from.is_none_or(|from| from <= start) && until.is_none_or(|until| start <= until)
+            })
+    }
+
+    /// What is known about a place that a waveform file does not tell.
+    pub(crate) fn complete(&self, site: &mut Site) {
+        let [latitude, longitude, elevation] = self.place;
+        site.latitude = site.latitude.or(latitude);
+        site.longitude = site.longitude.or(longitude);
+        site.elevation = site.elevation.or(elevation);
+    }
+}
+
+/// The four codes of a channel.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct SeedName {
+    pub(crate) network: String,
+    pub(crate) station: String,
+    pub(crate) location: String,
+    pub(crate) channel: String,
+}
+
+impl SeedName {
+    /// What the second letter of the channel code says is measured, if it is no acceleration
+    /// (SEED 2.4, appendix A).
+    pub(crate) fn other_quantity(&self) -> Option<(Quantity, &'static str)> {
+        let [_, instrument, _] = self.channel.as_bytes() else { return None };
+        match instrument {
+            b'H' => Some((Quantity::Velocity, "a high-gain seismometer")),
+            b'L' => Some((Quantity::Velocity, "a low-gain seismometer")),
+            b'P' => Some((Quantity::Velocity, "a geophone")),
+            _ => None,
+        }
+    }
+}
+
+/// The channels of a `StationXML` file that have a sensitivity, in file order.
+///
+/// # Errors
+/// If the text is no XML.
+pub fn station_xml(text: &str) -> Result<Vec<Instrument>, MotionError> {
+    let document = roxmltree::Document::parse(text).map_err(|error| {
+        MotionError::parameter("StationXML", "an XML document", error.to_string())
+    })?;
+    let mut found = Vec::new();
+    let any =
+        |name: &'static str| move |node: &roxmltree::Node<'_, '_>| node.tag_name().name() == name;
+    for channel in document.descendants().filter(any("Channel")) {
+        let code = |level: &'static str, key: &str| {
+            let node = channel.ancestors().find(|node| node.tag_name().name() == level)?;
+            node.attribute(key).map(str::trim)
+        };
+        let text = |node: roxmltree::Node<'_, '_>, name: &'static str| {
+            node.children().find(any(name)).and_then(|n| n.text()).map(|t| t.trim().to_owned())
+        };
+        let number = |name: &'static str| text(channel, name)?.parse::<f64>().ok();
+        let Some(block) = channel.descendants().find(any("InstrumentSensitivity")) else {
+            continue;
+        };
+        let Some(sensitivity) = text(block, "Value")
+            .and_then(|value| value.parse::<f64>().ok())
+            .filter(|value| value.is_finite() && *value > 0.0)
+        else {
+            continue;
+        };
+        let unit = block.children().find(any("InputUnits")).and_then(|node| text(node, "Name"));
+        let quantity = unit.and_then(|unit| {
+            match unit.to_ascii_uppercase().replace(['*', '^', ' '], "").as_str() {
+                "M/S2" | "M/S/S" | "M/SEC2" => Some(Quantity::Acceleration),
+                "M/S" | "M/SEC" => Some(Quantity::Velocity),
+                "M" => Some(Quantity::Displacement),
+                _ => None,
+            }
+        });
+        let direction = number("Dip").and_then(|dip| match dip {
+            -90.0 => Some(Direction::up()),
+            90.0 => Some(Direction { downward: true, ..Direction::up() }),
+            0.0 => number("Azimuth").map(Direction::horizontal),
+            _ => None,
+        });
+        let date = |key: &str| code("Channel", key).and_then(|text| text.parse().ok());
+        found.push(Instrument {
+            network: code("Network", "code").unwrap_or_default().to_owned(),
+            station: code("Station", "code").unwrap_or_default().to_owned(),
+            location: Some(code("Channel", "locationCode").unwrap_or_default().replace('-', "")),
+            channel: code("Channel", "code").unwrap_or_default().to_owned(),
+            epoch: (date("startDate"), date("endDate")),
+            sensitivity,
+            quantity,
+            direction,
+            place: [number("Latitude"), number("Longitude"), number("Elevation")],
+        });
+    }
+    Ok(found)
+}
+
+/// Rates of a series by central differences of fourth order, of first order next to the ends.
+pub(crate) fn differentiated(values: &[f64], time_step: f64) -> Vec<f64> {
+    let n = values.len();
+    let slope = |a: usize, b: usize| (values[b] - values[a]) / ((b - a) as f64 * time_step);
+    (0..n)
+        .map(|k| match k {
+            _ if n < 2 => 0.0,
+            2.. if k + 2 < n => (4.0 * slope(k - 1, k + 1) - slope(k - 2, k + 2)) / 3.0,
+            _ => slope(k.saturating_sub(1), (k + 1).min(n - 1)),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{cos, sin};
+
+    #[test]
+    fn a_wave_is_differentiated() {
+        // Thirty samples to a wave: measured 1.3e-4 of its largest rate.
+        let w = 2.0;
+        let step = std::f64::consts::TAU / w / 30.0;
+        let values: Vec<f64> = (0..200).map(|k| sin(w * step * f64::from(k))).collect();
+        let rates = differentiated(&values, step);
+        for (k, rate) in rates.iter().enumerate().skip(2).take(196) {
+            let exact = w * cos(w * step * k as f64);
+            assert!((rate - exact).abs() < 2e-4 * w, "{k}: {rate} {exact}");
+        }
+    }
+}

@@ -1,0 +1,341 @@
+//! Whether a motion is pulse-like, by the two published classifications.
+
+mod wavelet;
+
+use crate::error::MotionError;
+use crate::math;
+use crate::sampled::Sampled;
+
+use wavelet::{Pair, Wavelet};
+
+/// Shortest and longest period (s) of a pulse.
+const PERIODS: (f64, f64) = (0.25, 15.0);
+/// Scales between them, evenly spaced.
+const SCALES: usize = 50;
+/// Wavelets that make up a pulse.
+const WAVELETS: usize = 10;
+/// How far (in scales) the middles of a pulse's wavelets lie from that of the first, and how much of
+/// the record a pulse takes from those looked for after it.
+const REACH: f64 = 0.4;
+/// Prospective pulses of a pair of components.
+const PULSES: usize = 5;
+/// Step (s) to which velocities are thinned: a twenty-fifth of the shortest period.
+const STEP: f64 = 0.01;
+
+/// A velocity pulse extracted as a sum of wavelets, and how it was judged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClassifiedPulse {
+    /// Whether the motion is pulse-like.
+    pub pulse_like: bool,
+    /// The pulse indicator: above 0.85 of 1 (Baker 2007), or above 0 (Shahi and Baker 2014).
+    pub indicator: f64,
+    /// Period of the pulse (s).
+    pub period: f64,
+    /// Whether the pulse comes too late to be that of the rupture's direction.
+    pub late: bool,
+    /// Direction of the component that holds it (degrees from the first towards the second, 0 to
+    /// below 180); 0 for a single component.
+    pub angle: f64,
+    /// Peak velocity of that component (m/s).
+    pub pgv: f64,
+}
+
+/// One component, judged by Baker (2007, BSSA 97:1486-1501):
+///
+/// ```text
+/// PI = 1/(1 + exp(−23.3 + 14.6 PGV ratio + 20.5 energy ratio))
+/// ```
+///
+/// The ratios are those of the motion without its pulse to the motion.
+/// It is pulse-like if PI exceeds 0.85, PGV reaches 30 cm/s, and the pulse has a tenth of its energy
+/// before the motion has a fifth.
+///
+/// # Errors
+/// If the motion is shorter than the shortest pulse or does not move.
+pub fn classify_component(motion: &Sampled) -> Result<ClassifiedPulse, MotionError> {
+    let thin = Thinned::of(motion, None)?;
+    let [map, ..] = Map::of(&thin);
+    single(&thin.first, thin.time_step, &map)
+}
+
+/// Both horizontals one by one as [`classify_component`], and together as [`classify_pair`], in one
+/// go.
+///
+/// # Errors
+/// As [`classify_pair`].
+pub(crate) fn classify_all(
+    first: &Sampled,
+    second: &Sampled,
+) -> Result<([ClassifiedPulse; 2], ClassifiedPulse), MotionError> {
+    let thin = Thinned::of(first, Some(second))?;
+    let [one, two, both] = Map::of(&thin);
+    let singles =
+        [single(&thin.first, thin.time_step, &one)?, single(&thin.second, thin.time_step, &two)?];
+    Ok((singles, double(&thin, both)?))
+}
+
+fn single(velocity: &[f64], time_step: f64, map: &Map) -> Result<ClassifiedPulse, MotionError> {
+    let found = map.strongest().ok_or_else(still)?;
+    let pulse = Extracted::of(velocity, time_step, found);
+    let (pgv_ratio, energy_ratio) = pulse.ratios(velocity);
+    let exponent = -23.3 + 14.6 * pgv_ratio + 20.5 * energy_ratio;
+    let indicator = 1.0 / (1.0 + math::exp(exponent));
+    let late = time_of(velocity, 0.2) <= time_of(&pulse.velocity, 0.1);
+    let pgv = math::peak(velocity);
+    Ok(ClassifiedPulse {
+        pulse_like: indicator > 0.85 && pgv >= 0.3 && !late,
+        indicator,
+        period: wavelet::period(pulse.scale),
+        late,
+        angle: 0.0,
+        pgv,
+    })
+}
+
+/// Two horizontals, judged in the directions of their five strongest wavelets by Shahi and Baker
+/// (2014, BSSA 104:2456-2466), with PGV in cm/s:
+///
+/// ```text
+/// PC = 0.63 PGV ratio + 0.777 energy ratio
+/// PI = 9.384 (0.76 − PC − 0.0616 PGV)(PC + 6.914·10⁻⁴ PGV − 1.072) − 6.179
+/// ```
+///
+/// A pulse counts if PI is above 0 and it has a twentieth of its energy before the motion has 17 %.
+/// Given is the first that counts, else the first.
+///
+/// # Errors
+/// If the steps differ, or as [`classify_component`].
+pub fn classify_pair(first: &Sampled, second: &Sampled) -> Result<ClassifiedPulse, MotionError> {
+    let thin = Thinned::of(first, Some(second))?;
+    let [_, _, both] = Map::of(&thin);
+    double(&thin, both)
+}
+
+fn double(thin: &Thinned, mut map: Map) -> Result<ClassifiedPulse, MotionError> {
+    let mut best: Option<ClassifiedPulse> = None;
+    for _ in 0..PULSES {
+        let Some(found) = map.strongest() else { break };
+        let (x, y) = found.coefficients;
+        let length = math::hypot(x, y);
+        let (c, s) = (x / length, y / length);
+        let along: Vec<f64> =
+            thin.first.iter().zip(&thin.second).map(|(a, b)| a * c + b * s).collect();
+        let pulse = Extracted::of(&along, thin.time_step, found);
+        let (pgv_ratio, energy_ratio) = pulse.ratios(&along);
+        let pgv = math::peak(&along);
+        let cm = 100.0 * pgv;
+        let pc = 0.63 * pgv_ratio + 0.777 * energy_ratio;
+        let indicator = 9.384 * (0.76 - pc - 0.0616 * cm) * (pc + 6.914e-4 * cm - 1.072) - 6.179;
+        let start = time_of(&pulse.velocity, 0.05);
+        let late = energy_until(&along, start) >= 0.17;
+        let judged = ClassifiedPulse {
+            pulse_like: indicator > 0.0 && !late,
+            indicator,
+            period: wavelet::period(pulse.scale),
+            late,
+            angle: half_turn(math::atan2(s, c).to_degrees()),
+            pgv,
+        };
+        if judged.pulse_like {
+            return Ok(judged);
+        }
+        best = best.or(Some(judged));
+        map.take_out(found);
+    }
+    best.ok_or_else(still)
+}
+
+/// A direction (degrees) from 0 to below 180.
+fn half_turn(degrees: f64) -> f64 {
+    // The remainder of a little less than nothing is rounded to the whole.
+    let angle = degrees.rem_euclid(180.0);
+    if angle < 180.0 { angle } else { 0.0 }
+}
+
+fn still() -> MotionError {
+    MotionError::parameter("motion", "a velocity other than zero", "zero")
+}
+
+/// Velocities (m/s) thinned to what pulses need.
+struct Thinned {
+    time_step: f64,
+    first: Vec<f64>,
+    second: Vec<f64>,
+}
+
+impl Thinned {
+    fn of(first: &Sampled, second: Option<&Sampled>) -> Result<Self, MotionError> {
+        let dt = first.time_step();
+        if let Some(second) = second
+            && (second.time_step() / dt - 1.0).abs() > 1e-9
+        {
+            return Err(MotionError::Mismatch {
+                what: format!(
+                    "one horizontal has a step of {dt} s, the other of {} s",
+                    second.time_step()
+                ),
+                remedy: "choose components of one step".to_owned(),
+            });
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1")]
+        let every = (STEP / dt * (1.0 + 1e-9)).floor().clamp(1.0, 1e6) as usize;
+        let thin = |motion: &Sampled| -> Vec<f64> {
+            motion.velocity().iter().copied().step_by(every).collect()
+        };
+        let mut one = thin(first);
+        let mut two = second.map_or_else(|| vec![0.0; one.len()], thin);
+        let common = one.len().min(two.len());
+        one.truncate(common);
+        two.truncate(common);
+        let time_step = dt * every as f64;
+        let duration = time_step * common as f64;
+        if duration < PERIODS.0 {
+            return Err(MotionError::parameter(
+                "duration (s)",
+                format!("at least the shortest pulse, {} s", PERIODS.0),
+                duration,
+            ));
+        }
+        Ok(Self { time_step, first: one, second: two })
+    }
+}
+
+/// A place in time and scale with the coefficients of both components there.
+#[derive(Clone, Copy)]
+struct Found {
+    /// Scale before and after, between which the pulse's own is looked for (s).
+    scales: (f64, f64),
+    scale: f64,
+    at: usize,
+    coefficients: (f64, f64),
+}
+
+impl Found {
+    /// Square of the coefficients.
+    fn strength(self) -> f64 {
+        let (x, y) = self.coefficients;
+        x * x + y * y
+    }
+}
+
+/// The strongest wavelet of every time.
+struct Map {
+    best: Vec<Option<Found>>,
+    time_step: f64,
+}
+
+impl Map {
+    /// The maps of the first component, of the second, and of both together.
+    fn of(thin: &Thinned) -> [Self; 3] {
+        let (least, largest) = (wavelet::scale(PERIODS.0), wavelet::scale(PERIODS.1));
+        let step = (largest - least) / SCALES as f64;
+        let wavelet = |k: usize| Wavelet::new(least + step * k as f64, thin.time_step);
+        let pair = Pair::new(&thin.first, &thin.second, &wavelet(SCALES));
+        let empty = || Self { best: vec![None; thin.first.len()], time_step: thin.time_step };
+        let mut maps = [empty(), empty(), empty()];
+        for k in 0..=SCALES {
+            let scale = least + step * k as f64;
+            let scales = ((scale - step).max(least), (scale + step).min(largest));
+            for (at, (x, y)) in pair.coefficients(&wavelet(k)).into_iter().enumerate() {
+                let views = [(x, 0.0), (0.0, y), (x, y)];
+                for (map, coefficients) in maps.iter_mut().zip(views) {
+                    let next = Found { scales, scale, at, coefficients };
+                    let before = map.best[at].map_or(0.0, Found::strength);
+                    if next.strength() > before {
+                        map.best[at] = Some(next);
+                    }
+                }
+            }
+        }
+        maps
+    }
+
+    fn strongest(&self) -> Option<Found> {
+        let found = self.best.iter().flatten().copied();
+        found.reduce(|best, next| if next.strength() > best.strength() { next } else { best })
+    }
+
+    /// Leaves out the times around a pulse.
+    fn take_out(&mut self, found: Found) {
+        let reach = reach(found.scale, self.time_step);
+        let last = (found.at + reach).min(self.best.len() - 1);
+        self.best[found.at.saturating_sub(reach)..=last].fill(None);
+    }
+}
+
+/// How many samples a pulse of a scale (s) reaches to each side.
+fn reach(scale: f64, time_step: f64) -> usize {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
+    let samples = (REACH * scale / time_step).ceil() as usize;
+    samples
+}
+
+/// A pulse taken out of a velocity.
+struct Extracted {
+    scale: f64,
+    velocity: Vec<f64>,
+}
+
+impl Extracted {
+    /// Ten wavelets of one scale, each the strongest of what the others left near the first.
+    fn of(velocity: &[f64], time_step: f64, found: Found) -> Self {
+        let (low, high) = found.scales;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
+        let finer = ((high - low) / time_step).round().max(1.0) as usize;
+        let mut best = (found.scale, 0.0_f64);
+        for k in 0..=finer {
+            let scale = low + (high - low) * k as f64 / finer as f64;
+            let size = Wavelet::new(scale, time_step).coefficient(velocity, found.at).abs();
+            if size > best.1 {
+                best = (scale, size);
+            }
+        }
+        let scale = best.0;
+        let wavelet = Wavelet::new(scale, time_step);
+        let pair = Pair::new(velocity, &vec![0.0; velocity.len()], &wavelet);
+        let mut left: Vec<f64> = pair.coefficients(&wavelet).into_iter().map(|c| c.0).collect();
+        let overlap = wavelet.overlap();
+        let reach = reach(scale, time_step);
+        let mut pulse = vec![0.0; velocity.len()];
+        // Later wavelets are looked for around the one before, as the authors' program does.
+        let mut at = found.at;
+        for _ in 0..WAVELETS {
+            let near = at.saturating_sub(reach)..=(at + reach).min(velocity.len() - 1);
+            at = near.fold(at, |best, k| if left[k].abs() > left[best].abs() { k } else { best });
+            let factor = left[at];
+            wavelet.add_to(&mut pulse, at, factor);
+            for (k, value) in left.iter_mut().enumerate() {
+                if let Some(overlap) = overlap.get(k.abs_diff(at)) {
+                    *value -= factor * overlap;
+                }
+            }
+        }
+        Self { scale, velocity: pulse }
+    }
+
+    /// Peak velocity and energy of what is left, over those of the whole.
+    fn ratios(&self, whole: &[f64]) -> (f64, f64) {
+        let left: Vec<f64> = whole.iter().zip(&self.velocity).map(|(a, b)| a - b).collect();
+        let energy = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
+        (math::peak(&left) / math::peak(whole), energy(&left) / energy(whole))
+    }
+}
+
+/// Sample at which the sum of squares passes a share of the whole.
+fn time_of(values: &[f64], share: f64) -> usize {
+    let total: f64 = values.iter().map(|v| v * v).sum();
+    let mut sum = 0.0;
+    values
+        .iter()
+        .position(|v| {
+            sum += v * v;
+            sum > share * total
+        })
+        .unwrap_or(0)
+}
+
+/// Share of the sum of squares before a sample.
+fn energy_until(values: &[f64], sample: usize) -> f64 {
+    let energy = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
+    energy(&values[..sample]) / energy(values)
+}

@@ -1,0 +1,199 @@
+//! Instants of universal time, as headers state them.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::error::MotionError;
+
+const MICROSECOND: f64 = 1e-6;
+const DAY: i64 = 86_400_000_000;
+
+/// An instant of universal time (UTC), to the microsecond; leap seconds are not counted.
+///
+/// Prints as and parses from `2014-08-24T10:20:33.000Z`.
+///
+/// ```
+/// use barrelstack_motion::Utc;
+/// let start: Utc = "2014-08-24T10:20:33.500Z".parse()?;
+/// assert_eq!(start.later(86_400.0).since(start), 86_400.0);
+/// assert_eq!(start.to_string(), "2014-08-24T10:20:33.500Z");
+/// # Ok::<(), barrelstack_motion::MotionError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Utc {
+    /// Microseconds since the beginning of 1970.
+    microseconds: i64,
+}
+
+/// The order of a date's numbers where the year does not come first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum DateOrder {
+    /// As in the United States.
+    MonthFirst,
+    /// As almost everywhere else.
+    DayFirst,
+}
+
+impl Utc {
+    /// A date of the Gregorian calendar and a time of day; nothing if there is no such instant
+    /// between the years 1900 and 2199.
+    pub fn new(
+        year: i64,
+        month: i64,
+        day: i64,
+        hour: i64,
+        minute: i64,
+        seconds: f64,
+    ) -> Option<Self> {
+        if !(1..=12).contains(&month) || !(1..=days_in(year, month)).contains(&day) {
+            return None;
+        }
+        let before: i64 = (1..month).map(|month| days_in(year, month)).sum();
+        Self::ordinal(year, before + day, hour, minute, seconds)
+    }
+
+    /// As [`Utc::new`] with the day of the year, counted from 1.
+    pub fn ordinal(year: i64, day: i64, hour: i64, minute: i64, seconds: f64) -> Option<Self> {
+        let sound = (1900..2200).contains(&year)
+            && (1..=365 + i64::from(is_leap(year))).contains(&day)
+            && (0..24).contains(&hour)
+            && (0..60).contains(&minute)
+            && (0.0..61.0).contains(&seconds);
+        let years: i64 = (1900..year).map(|year| 365 + i64::from(is_leap(year))).sum();
+        // 1900 to 1969: 70 years, 17 of them leap years.
+        let days = years - (70 * 365 + 17) + day - 1;
+        let clock = Self { microseconds: days * DAY + (hour * 60 + minute) * 60_000_000 };
+        sound.then(|| clock.later(seconds))
+    }
+
+    /// Seconds from `other` to this instant.
+    pub fn since(self, other: Self) -> f64 {
+        (self.microseconds - other.microseconds) as f64 * MICROSECOND
+    }
+
+    /// The instant some seconds later, or earlier if negative; at most a century away.
+    #[must_use]
+    pub fn later(self, seconds: f64) -> Self {
+        #[expect(clippy::cast_possible_truncation, reason = "at most a century of microseconds")]
+        let away = (seconds / MICROSECOND).round().clamp(-3.2e15, 3.2e15) as i64;
+        Self { microseconds: self.microseconds + away }
+    }
+
+    /// The first six numbers of a text such as `8/24/14, 10:20:33.0 UTC`; a year of two digits lies
+    /// between 1950 and 2049.
+    pub(crate) fn in_header(text: &str, order: DateOrder) -> Option<Self> {
+        let mut numbers = text
+            .split(|c: char| !c.is_ascii_digit() && c != '.')
+            .filter(|part| part.contains(|c: char| c.is_ascii_digit()))
+            .map(|part| part.trim_matches('.').parse::<f64>().ok());
+        let mut next = || numbers.next().flatten();
+        #[expect(clippy::cast_possible_truncation, reason = "saturates, and is checked then")]
+        let whole = |value: f64| value as i64;
+        let date = [next()?, next()?, next()?].map(whole);
+        let (hour, minute, seconds) = (whole(next()?), whole(next()?), next().unwrap_or(0.0));
+        let [first, second, third] = date;
+        let (mut year, month, day) = match order {
+            _ if first >= 1000 => (first, second, third),
+            DateOrder::MonthFirst => (third, first, second),
+            DateOrder::DayFirst => (third, second, first),
+        };
+        if (0..100).contains(&year) {
+            year += if year < 50 { 2000 } else { 1900 };
+        }
+        Self::new(year, month, day, hour, minute, seconds)
+    }
+}
+
+fn is_leap(year: i64) -> bool {
+    year % 4 == 0 && (year % 100 != 0 || year % 400 == 0)
+}
+
+fn days_in(year: i64, month: i64) -> i64 {
+    match month {
+        2 => 28 + i64::from(is_leap(year)),
+        4 | 6 | 9 | 11 => 30,
+        _ => 31,
+    }
+}
+
+impl fmt::Display for Utc {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut day = self.microseconds.div_euclid(DAY);
+        let clock = self.microseconds.rem_euclid(DAY);
+        let (mut year, mut month) = (1970, 1);
+        while day < 0 {
+            year -= 1;
+            day += 365 + i64::from(is_leap(year));
+        }
+        while day >= 365 + i64::from(is_leap(year)) {
+            day -= 365 + i64::from(is_leap(year));
+            year += 1;
+        }
+        while day >= days_in(year, month) {
+            day -= days_in(year, month);
+            month += 1;
+        }
+        let (second, micro) = (clock / 1_000_000, clock % 1_000_000);
+        write!(
+            f,
+            "{year:04}-{month:02}-{:02}T{:02}:{:02}:{:02}",
+            day + 1,
+            second / 3600,
+            second / 60 % 60,
+            second % 60
+        )?;
+        if micro % 1000 == 0 {
+            write!(f, ".{:03}Z", micro / 1000)
+        } else {
+            write!(f, ".{micro:06}Z")
+        }
+    }
+}
+
+impl FromStr for Utc {
+    type Err = MotionError;
+
+    fn from_str(text: &str) -> Result<Self, MotionError> {
+        Self::in_header(text, DateOrder::DayFirst).ok_or_else(|| {
+            MotionError::parameter(
+                "instant (UTC)",
+                "a date and a time such as 2014-08-24T10:20:33.000Z",
+                format!("\"{text}\""),
+            )
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_day_of_three_centuries_prints_and_parses_back() {
+        let mut day = Utc::new(1900, 1, 1, 23, 59, 58.25).unwrap();
+        // 300 years, 73 of them leap years: 1900 and 2100 are none.
+        for _ in 0..300 * 365 + 73 {
+            let text = day.to_string();
+            assert_eq!(text.parse::<Utc>().unwrap(), day, "{text}");
+            day = day.later(86_400.0);
+        }
+        assert!(day.to_string().starts_with("2200-01-01T23:59:58.250"));
+    }
+
+    #[test]
+    fn known_instants_are_met() {
+        assert_eq!(Utc::new(1970, 1, 1, 0, 0, 0.0).unwrap().microseconds, 0);
+        // 946 684 800 s: the Unix time of the year 2000.
+        assert_eq!(Utc::new(2000, 1, 1, 0, 0, 0.0).unwrap().microseconds, 946_684_800_000_000);
+        let napa = Utc::new(2014, 8, 24, 10, 20, 33.0);
+        assert_eq!(napa, Utc::ordinal(2014, 236, 10, 20, 33.0));
+        let us = |text| Utc::in_header(text, DateOrder::MonthFirst);
+        assert_eq!(us(" 8/24/14, 10:20:33.0 UTC (GPS)"), napa);
+        assert_eq!(us("08/24/2014, 10:20:33.000 UTC (Q=2)"), napa);
+        assert_eq!(us("2014/08/24 10:20:33.0 UTC (Q=5)"), napa);
+        assert_eq!(Utc::in_header("24/08/2014 10:20:33.000000 (GMT)", DateOrder::DayFirst), napa);
+        for nothing in ["", "To be determined", "13/45/14, 10:20:33", "2014 02 30 1 1 1", "1 2 3"] {
+            assert_eq!(us(nothing), None, "{nothing}");
+        }
+    }
+}

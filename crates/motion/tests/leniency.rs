@@ -1,0 +1,176 @@
+//! What agencies' files have in excess is left out and told; what they lack is an error; times that are
+//! uneven are not taken for even ones.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by unwrap")]
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use barrelstack_motion::{ReadOptions, Record, STANDARD_GRAVITY, read};
+
+fn bytes(file: &str) -> Vec<u8> {
+    std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(file)).unwrap()
+}
+
+fn given(bytes: &[u8]) -> Record {
+    read(bytes, "file", &ReadOptions::default()).unwrap()
+}
+
+fn told(record: &Record) -> String {
+    record.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+}
+
+/// The same numbers as the file without what was added.
+fn same(file: &str, changed: &[u8], word: &str) {
+    let (clean, record) = (given(&bytes(file)), given(changed));
+    assert_eq!(clean.channels, record.channels, "{file}");
+    assert!(told(&record).contains(word), "{file}: {}", told(&record));
+}
+
+#[test]
+fn rows_and_padding_behind_the_stated_count_are_left_out() {
+    for file in ["smc/corrected.smc", "smc/uncorrected.smc"] {
+        let mut rows = bytes(file);
+        rows.extend(b" 1.0000E+0 2.0000E+0 3.0000E+0 4.0000E+0\n 1.0000E+0\n");
+        same(file, &rows, "5 numbers stand behind");
+        let mut zeros = bytes(file);
+        zeros.extend([0_u8; 512]);
+        assert_eq!(given(&zeros).channels, given(&bytes(file)).channels);
+        let mut both = bytes(file);
+        both.extend(b" 1.0000E+0\n");
+        both.extend([0_u8; 80]);
+        both.extend(b"\n");
+        same(file, &both, "1 numbers stand behind");
+        let mut words = bytes(file);
+        words.extend(b"end of file\n");
+        same(file, &words, "from this line to the last");
+        // A row less stays an error.
+        let text = String::from_utf8(bytes(file)).unwrap();
+        let cut: Vec<&str> = text.lines().collect();
+        let cut = cut[..cut.len() - 2].join("\n");
+        let error = read(cut.as_bytes(), "cut", &ReadOptions::default()).unwrap_err();
+        assert!(error.to_string().contains("the file is cut"), "{error}");
+    }
+}
+
+#[test]
+fn numbers_in_excess_on_the_last_line_are_left_out() {
+    let file = "csmip-v2/example.V2";
+    let text = String::from_utf8(bytes(file)).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    // The line before the first block of velocities is the last of accelerations, and short.
+    let last = lines.iter().position(|line| line.contains("veloc data")).unwrap() - 1;
+    let mut more: Vec<String> = lines.iter().map(ToString::to_string).collect();
+    more[last] += "   .000000";
+    more.insert(last + 1, "   .000000   .000000".to_owned());
+    same(file, more.join("\n").as_bytes(), "3 numbers stand behind the 103");
+}
+
+#[test]
+fn formats_that_count_their_rows_leave_the_rest_out() {
+    for (file, row, word) in [
+        ("afad/example.txt", "0.1 0.2 0.3\n", "the last 7 are left out"),
+        ("esm/example.ACC.ASC", "0.1\n", "the last 7 are left out"),
+        ("peer/nga-west2.AT2", " .1\n", "the last 7 are left out"),
+    ] {
+        let mut more = bytes(file);
+        for _ in 0..7 {
+            more.extend(row.as_bytes());
+        }
+        same(file, &more, word);
+    }
+}
+
+/// Volume 1 of USC with the given times (s) of a wave, in g/10.
+fn film(times: &[f64]) -> String {
+    let text = String::from_utf8(bytes("usc/example.y0a")).unwrap();
+    let mut head: Vec<String> = text.lines().take(27).map(str::to_owned).collect();
+    let last = times.last().unwrap();
+    head[10] = format!("NO. OF POINTS = {:6}      DURATION = {last:7.3} SEC", times.len());
+    // The peak that the header states is another file's.
+    "UNITS ARE SEC AND G/10".clone_into(&mut head[11]);
+    let mut out = head.join("\n");
+    for (k, t) in times.iter().enumerate() {
+        if k % 5 == 0 {
+            out.push_str("\n ");
+        }
+        let _ = write!(out, "{t:7.3}{:7.3}", 3.0 * wave(*t));
+    }
+    out + "\n/&\n"
+}
+
+fn wave(t: f64) -> f64 {
+    (std::f64::consts::TAU * 2.5 * t).sin()
+}
+
+#[test]
+fn times_digitized_unevenly_are_interpolated_and_not_squeezed() {
+    // Steps of 4 ms, nine of ten within a millisecond of the mean, as a film is digitized; some are 13 ms.
+    let mut times = vec![0.0];
+    for k in 1..2000 {
+        let step = if k % 40 == 7 { 0.013 } else { 0.004 };
+        times.push(times[k - 1] + step);
+    }
+    let record = given(film(&times).as_bytes());
+    let channel = &record.channels[0];
+    let worst = channel
+        .acceleration
+        .iter()
+        .enumerate()
+        .map(|(k, a)| {
+            let t = k as f64 * channel.time_step;
+            (a / (0.1 * STANDARD_GRAVITY) - 3.0 * wave(t)).abs()
+        })
+        .fold(0.0, f64::max);
+    // Of a wave of 3: printed digits and chords across 13 ms; measured 0.016. Squeezed, it was 3.
+    assert!(worst < 0.02, "{worst}");
+    let told = told(&record);
+    assert!(told.contains("unevenly spaced times (0.0040 to 0.0130 s"), "{told}");
+}
+
+#[test]
+fn times_that_were_cut_instead_of_rounded_are_still_even() {
+    let times: Vec<f64> =
+        (0..800).map(|k| (f64::from(k) / 240.0 * 1000.0).floor() / 1000.0).collect();
+    let record = given(film(&times).as_bytes());
+    assert_eq!(record.channels[0].time_step, 1.0 / 240.0);
+    assert_eq!(record.channels[0].acceleration.len(), 800);
+}
+
+#[test]
+fn a_blank_field_of_an_at2_file_does_not_shift_what_follows() {
+    let clean = given(&bytes("peer/nga-west2.AT2"));
+    let text = String::from_utf8(bytes("peer/nga-west2.AT2")).unwrap();
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    lines[6].replace_range(30..45, &" ".repeat(15));
+    let record = given(lines.join("\n").as_bytes());
+    let (old, new) = (&clean.channels[0].acceleration, &record.channels[0].acceleration);
+    assert_eq!(old.len(), new.len());
+    for (k, (a, b)) in old.iter().zip(new).enumerate() {
+        assert_eq!(*b, if k == 12 { 0.0 } else { *a }, "{k}");
+    }
+    assert!(told(&record).contains("line 7: column 31: a blank field"), "{}", told(&record));
+}
+
+#[test]
+fn steps_counts_and_lengths_that_no_strong_motion_has_are_told() {
+    let at2 = |step: &str, count: usize| {
+        let mut text = format!(
+            "A\nEVENT, STATION, 90\nACCELERATION IN UNITS OF G\nNPTS= {count}, DT= {step} SEC\n"
+        );
+        for k in 0..count {
+            let _ = writeln!(text, "{:.4}", 0.1 * wave(0.013 * k as f64));
+        }
+        given(text.as_bytes())
+    };
+    assert_eq!(at2(".01", 200).channels[0].implausible(), None);
+    for (step, count, word) in [
+        ("5.0", 200, "a step of 5 s"),
+        (".00001", 200_000, "a step of 0.00001 s"),
+        (".02", 30, "30 samples"),
+        (".005", 100, "a length of 0.495 s"),
+    ] {
+        let record = at2(step, count);
+        assert!(told(&record).contains(word), "{}", told(&record));
+    }
+}

@@ -1,0 +1,366 @@
+//! When and where a channel was recorded is kept, and channels of one record begin together.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by unwrap")]
+
+use std::io::Write as _;
+use std::path::Path;
+
+use barrelstack_motion::{
+    AccelerationUnit, Channel, Direction, Processing, Quantity, ReadOptions, Record, Site, Stage,
+    Utc, read, station_xml, write,
+};
+
+fn options() -> ReadOptions {
+    ReadOptions {
+        unit: Some(AccelerationUnit::G),
+        time_step: None,
+        sensitivity: Some(1000.0),
+        ..ReadOptions::default()
+    }
+}
+
+fn sample(file: &str) -> Record {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(file);
+    read(&std::fs::read(path).unwrap(), file, &options()).unwrap()
+}
+
+fn shared(file: &str) -> Option<Record> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions");
+    if !folder.is_dir() {
+        // Straight to stderr: the test runner swallows what a passing test prints.
+        let _ = writeln!(std::io::stderr(), "SKIPPED: {} is not there", folder.display());
+        return None;
+    }
+    Some(read(&std::fs::read(folder.join(file)).unwrap(), file, &options()).unwrap())
+}
+
+fn start(record: &Record) -> String {
+    record.channels[0].start.map_or("none".to_owned(), |start| start.to_string())
+}
+
+#[test]
+fn starts_are_universal_time_whatever_the_clock_of_the_agency() {
+    // Japan time less nine hours and the recorder's fifteen seconds; Taiwan time less eight hours.
+    for (file, expected) in [
+        ("knet/example.EW", "1903-01-02T10:51:28.000Z"),
+        ("cwa/example.dat", "1903-01-02T15:50:29.000Z"),
+        ("miniseed/steim1.mseed", "2003-01-02T01:02:00.000Z"),
+        ("peer/nga-west2.AT2", "none"),
+        ("renadic/example.v1", "none"),
+    ] {
+        assert_eq!(start(&sample(file)), expected, "{file}");
+    }
+}
+
+#[test]
+fn headers_of_the_agencies_tell_start_and_place() {
+    for (file, expected, north, east, elevation) in [
+        ("csmip-v1/CICCC.RAW", "2019-07-06T03:19:37.000Z", 35.525, -117.365, None),
+        ("csmip-v1/LA116TH.RAW", "1994-01-17T12:31:04.100Z", 33.929, -118.26, None),
+        ("csmip-v2/CE58667.V2", "2014-08-24T10:20:33.000Z", 37.973, -122.038, None),
+        (
+            "cosmos/Cosmos12TimeSeriesTest.v1",
+            "2005-06-16T20:53:04.400Z",
+            34.046,
+            -117.035,
+            Some(15.0),
+        ),
+        ("smc/2516b_a.smc", "2011-08-23T17:50:56.000Z", 38.951_099, -77.335_861, None),
+        ("smc/0111a.smc", "none", 37.728, -122.385, None),
+        (
+            "geonet/20190430_064319_INHS_21.V1A",
+            "2019-04-30T06:42:39.000Z",
+            -39.1561,
+            174.1906,
+            None,
+        ),
+        // Five seconds of pad before 11:02:19.715.
+        (
+            "geonet/20161113_110259_WTMC_20.V2A",
+            "2016-11-13T11:02:14.715Z",
+            -42.6194,
+            173.0536,
+            None,
+        ),
+        (
+            "afad/20170720223109_0921.txt",
+            "2017-07-20T22:30:58.000Z",
+            37.8747,
+            27.592_23,
+            Some(66.0),
+        ),
+        ("bhrc/5526-1.V1", "none", 37.734, 47.801, Some(2026.0)),
+        // The day after the event.
+        ("unam/CUP50401.012", "2004-01-02T00:00:01.000Z", 19.330_24, -99.181_076, Some(2240.0)),
+        ("usc/017m30cc.y0a", "none", 34.419_17, -118.426_11, None),
+        ("knet/AOM0011801241951.EW", "2018-01-24T10:51:28.000Z", 41.5267, 140.9244, Some(39.0)),
+        (
+            "sac/20190706031952.CJ.T001230.HNE.sac",
+            "2019-07-06T03:19:52.000Z",
+            34.063_69,
+            -118.336_33,
+            Some(0.0),
+        ),
+        (
+            "esm/HL.DLFA..HNE.D.20190728.160908.C.ACC.ASC",
+            "2019-07-28T16:09:05.700Z",
+            38.478_36,
+            22.495_83,
+            Some(570.0),
+        ),
+    ] {
+        let Some(record) = shared(file) else { return };
+        assert_eq!(start(&record), expected, "{file}");
+        for channel in &record.channels {
+            let site = &channel.site;
+            let (found, other) = (site.latitude.unwrap(), site.longitude.unwrap());
+            assert!(
+                (found - north).abs() < 1e-4 && (other - east).abs() < 1e-4,
+                "{file}: {site:?}"
+            );
+            assert_eq!(site.elevation, elevation, "{file}");
+            assert_eq!(site.station, record.station, "{file}");
+        }
+    }
+    assert_eq!(shared("csmip-v2/CE58667.V2").unwrap().station, "Concord - Clayton & Ellis");
+    assert_eq!(shared("smc/0111a.smc").unwrap().station, "San Francisco, 1295 Shafter, F");
+}
+
+#[test]
+fn our_own_text_keeps_start_and_place() {
+    let mut record = sample("afad/example.txt");
+    let start = "2014-08-24T10:20:33.000125Z".parse().ok();
+    for channel in &mut record.channels {
+        channel.start = start;
+        channel.site.latitude = Some(38.27);
+        channel.site.longitude = Some(-122.0 - 1.0 / 3.0);
+        channel.site.vs30 = Some(330.0);
+        channel.site.sensor = "basement".to_owned();
+    }
+    let read_back = |record: &Record| {
+        let text = write::text(record).unwrap();
+        read(text.as_bytes(), "again.txt", &ReadOptions::default()).unwrap()
+    };
+    let same = |one: &Record, two: &Record| {
+        for (a, b) in one.channels.iter().zip(&two.channels) {
+            assert_eq!((a.start, &a.site), (b.start, &b.site));
+        }
+    };
+    same(&record, &read_back(&record));
+    // One channel of another station: a line for each.
+    record.channels[1].site = Site { station: "Elsewhere".to_owned(), ..Site::default() };
+    record.channels[2].start = None;
+    same(&record, &read_back(&record));
+    let broken = write::text(&record).unwrap().replace("vs30 330", "vs30 soft");
+    let error = read(broken.as_bytes(), "broken.txt", &ReadOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("vs30"), "{error}");
+}
+
+/// A record of one channel of our own making: a wave of ten seconds at 100 Hz that began `late`
+/// seconds after the full minute.
+fn wave(name: &str, late: f64, seconds: u32) -> Record {
+    let mut record = sample("barrelstack/example.txt");
+    let origin: Utc = "2014-08-24T10:20:00.000Z".parse().unwrap();
+    let values = (0..100 * seconds).map(|k| motion_at(late + f64::from(k) / 100.0)).collect();
+    let mut channel = Channel::new(name, Direction::parse(name), 0.01, values);
+    channel.start = Some(origin.later(late));
+    record.channels = vec![channel];
+    record.file = format!("{name}.txt");
+    record
+}
+
+fn motion_at(t: f64) -> f64 {
+    (2.0 * t).sin() + 0.3 * (37.0 * t).cos()
+}
+
+#[test]
+fn channels_that_begin_apart_are_cut_to_their_common_span() {
+    let gathered = Record::gather(&[wave("N", 20.0, 30), wave("E", 0.0, 40)]).unwrap();
+    let [north, east] = gathered.channels.as_slice() else { panic!("two channels") };
+    // Both last from 20 to 39.99 s after the minute and hold the same wave.
+    assert_eq!(north.acceleration.len(), 2000);
+    assert_eq!(east.acceleration.len(), 2000);
+    assert_eq!(north.start, east.start);
+    let off = north.acceleration.iter().zip(&east.acceleration).map(|(a, b)| (a - b).abs());
+    assert!(off.fold(0.0, f64::max) < 1e-9);
+    let told = gathered.notes.join("\n");
+    assert!(told.contains("channel E begins 20.0000 s before N: 2000 samples outside"), "{told}");
+    assert!(told.contains("channel N: 1000 samples outside"), "{told}");
+}
+
+#[test]
+fn parts_of_a_step_are_shifted() {
+    let gathered = Record::gather(&[wave("N", 0.0, 20), wave("E", 1.0036, 20)]).unwrap();
+    let [north, east] = gathered.channels.as_slice() else { panic!("two channels") };
+    assert_eq!(north.start, east.start);
+    let n = east.acceleration.len().min(north.acceleration.len());
+    assert!((1898..=1901).contains(&n), "{n}");
+    // Away from the ends, where less is known; measured 2.3e-6.
+    let off = north.acceleration[..n].iter().zip(&east.acceleration).map(|(a, b)| (a - b).abs());
+    let worst = off.skip(32).take(n - 64).fold(0.0, f64::max);
+    assert!(worst < 4e-6, "{worst:e}");
+    assert!(gathered.notes.join("\n").contains("shifted by 0.360 of a step"));
+}
+
+#[test]
+fn channels_without_a_common_span_are_refused() {
+    let error = Record::gather(&[wave("N", 0.0, 10), wave("E", 20.0, 10)]).unwrap_err();
+    assert!(error.to_string().contains("no span in common"), "{error}");
+}
+
+/// The sample with its channel's last letter, second of the start and location changed.
+fn seed(letter: u8, second: u8, location: [u8; 2]) -> Vec<u8> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/miniseed/int32.mseed");
+    let mut bytes = std::fs::read(path).unwrap();
+    let length = 1 << bytes[54];
+    for record in bytes.chunks_mut(length) {
+        record[13..15].copy_from_slice(&location);
+        record[17] = letter;
+        record[26] += second;
+    }
+    bytes
+}
+
+#[test]
+fn channels_of_one_seed_file_begin_together() {
+    let whole = read(&seed(b'E', 0, *b"00"), "one.mseed", &options()).unwrap();
+    let count = whole.channels[0].acceleration.len();
+    let both = [seed(b'E', 0, *b"00"), seed(b'N', 1, *b"00")].concat();
+    let record = read(&both, "both.mseed", &options()).unwrap();
+    for channel in &record.channels {
+        // The second begins a hundred samples later.
+        assert_eq!(channel.acceleration.len(), count - 100);
+        assert_eq!(start(&record), "2003-01-02T01:02:01.000Z");
+    }
+    assert!(record.notes.join("\n").contains("begins 1.0000 s before"));
+    let apart = [seed(b'E', 0, *b"00"), seed(b'N', 50, *b"00")].concat();
+    let error = read(&apart, "apart.mseed", &options()).unwrap_err();
+    assert!(error.to_string().contains("no span in common"), "{error}");
+    // Two sensors in one file are read, and not combined.
+    let sensors = [seed(b'E', 0, *b"00"), seed(b'N', 0, *b"10")].concat();
+    let record = read(&sensors, "sensors.mseed", &options()).unwrap();
+    assert_eq!(record.station, "ZZ.XXXX");
+    let error = record.horizontal_pair().unwrap_err().to_string();
+    assert!(error.contains("sensor \"00\" and sensor \"10\""), "{error}");
+    let mixed = Record { mixed: true, ..record };
+    assert!(mixed.horizontal_pair().is_ok());
+    // What programs print for an empty location code.
+    let empty = read(&seed(b'E', 0, *b"--"), "empty.mseed", &options()).unwrap();
+    assert_eq!(empty.channels[0].site.sensor, "");
+}
+
+#[test]
+fn files_of_other_stations_sensors_events_and_publishers_are_not_combined() {
+    let refused = |one: &Record, other: &Record, word: &str| {
+        let error = Record::gather(&[one.clone(), other.clone()]).unwrap_err().to_string();
+        assert!(error.contains(word), "{word}: {error}");
+    };
+    let one = sample("knet/example.EW");
+    let mut other = one.clone();
+    other.channels[0].site.station = "XXX002".to_owned();
+    refused(&one, &other, "station \"XXX002\"");
+    refused(&one, &sample("knet/borehole.NS1"), "sensor \"surface\" and sensor \"borehole\"");
+    let one = sample("peer/nga-west2.AT2");
+    let other = Record { event: "Another, 1/2/1903".to_owned(), ..one.clone() };
+    refused(&one, &other, "Another");
+    let copy = Record { stage: Stage::Raw, ..one.clone() };
+    refused(&one, &copy, "corrected and raw");
+    let copy = Record { format: "smc", ..one.clone() };
+    refused(&one, &copy, "formats peer and smc");
+    // Asked for, they are, and the record says so.
+    let mixed = Record::gather_mixed(&[one.clone(), copy]).unwrap();
+    assert!(
+        mixed.mixed && mixed.warnings.iter().any(|w| w.message.contains("taken together although"))
+    );
+    let kin = Record::gather(&[one, sample("peer/cut-header.AT2")]).unwrap();
+    assert!(kin.notes.join("\n").contains("taken for simultaneous"));
+}
+
+#[test]
+fn measures_of_both_horizontals_need_directions_that_are_known_and_perpendicular() {
+    let pair = |a: &str, b: &str| {
+        let mut record = wave("N", 0.0, 10);
+        let values = record.channels[0].acceleration.clone();
+        let channel = |name: &str| Channel::new(name, Direction::parse(name), 0.01, values.clone());
+        record.channels = vec![channel(a), channel(b)];
+        record.horizontals(&Processing::none()).map(|_| ()).map_err(|error| error.to_string())
+    };
+    for (a, b) in [("N", "E"), ("L", "T"), ("N28W", "S62W"), ("4", "90"), ("HN1", "HN2")] {
+        assert_eq!(pair(a, b), Ok(()), "{a} {b}");
+    }
+    assert!(pair("N", "column 2").unwrap_err().contains("whether channel \"column 2\""));
+    assert!(pair("N", "S").unwrap_err().contains("not perpendicular"));
+    assert!(pair("0", "30").unwrap_err().contains("not perpendicular"));
+    assert!(pair("N", "UP").unwrap_err().contains("no channel"));
+}
+
+const STATION_XML: &str = r#"<?xml version="1.0"?>
+<FDSNStationXML xmlns="http://www.fdsn.org/xml/station/1">
+ <Network code="ZZ"><Station code="XXXX">
+  <Channel code="HNE" locationCode="00" startDate="1990-01-01T00:00:00" endDate="2000-01-01T00:00:00">
+   <Response><InstrumentSensitivity><Value>1</Value>
+    <InputUnits><Name>M/S**2</Name></InputUnits></InstrumentSensitivity></Response>
+  </Channel>
+  <Channel locationCode="00" code="HNE" startDate="2000-01-01T00:00:00">
+   <Latitude>38.5</Latitude><Longitude>-120.5</Longitude><Elevation>697</Elevation>
+   <Azimuth>85.5</Azimuth><Dip>0</Dip>
+   <Response><InstrumentSensitivity><Value>2000</Value>
+    <InputUnits><Name>m/s**2</Name></InputUnits></InstrumentSensitivity></Response>
+  </Channel>
+  <Channel locationCode="00" code="HHE" startDate="2000-01-01T00:00:00">
+   <Response><InstrumentSensitivity><Value>500</Value>
+    <InputUnits><Name>M/S</Name></InputUnits></InstrumentSensitivity></Response>
+  </Channel>
+ </Station></Network>
+</FDSNStationXML>"#;
+
+#[test]
+fn station_xml_gives_each_channel_its_sensitivity_direction_and_place() {
+    let bytes = seed(b'E', 0, *b"00");
+    let by_number = read(&bytes, "a.mseed", &options()).unwrap();
+    let instruments = station_xml(STATION_XML).unwrap();
+    assert_eq!(instruments.len(), 3);
+    let known = ReadOptions { instruments, ..ReadOptions::default() };
+    let record = read(&bytes, "a.mseed", &known).unwrap();
+    let (one, two) = (&by_number.channels[0], &record.channels[0]);
+    // The sensitivity of its time, 2000 and not 1, against the 1000 of the options.
+    assert!((two.pga() / one.pga() - 0.5).abs() < 1e-12);
+    assert_eq!(two.direction.azimuth, Some(85.5));
+    assert_eq!((two.site.latitude, two.site.elevation), (Some(38.5), Some(697.0)));
+    // Another location code is another channel.
+    let error = read(&seed(b'E', 0, *b"10"), "a.mseed", &known).unwrap_err();
+    assert!(error.to_string().contains("a sensitivity for channel HNE"), "{error}");
+    assert!(station_xml("<FDSNStationXML>").is_err());
+}
+
+#[test]
+fn channels_of_seismometers_are_refused_or_differentiated() {
+    let mut bytes = seed(b'E', 0, *b"00");
+    let length = 1 << bytes[54];
+    for record in bytes.chunks_mut(length) {
+        record[16] = b'H';
+    }
+    let error = read(&bytes, "a.mseed", &options()).unwrap_err().to_string();
+    assert!(error.contains("HHE, which records velocity (a high-gain seismometer)"), "{error}");
+    let known =
+        ReadOptions { instruments: station_xml(STATION_XML).unwrap(), ..ReadOptions::default() };
+    let error = read(&bytes, "a.mseed", &known).unwrap_err().to_string();
+    assert!(error.contains("its metadata say"), "{error}");
+    let asked = |quantity| ReadOptions { recorded: Some(quantity), ..options() };
+    let velocity = read(&bytes, "a.mseed", &asked(Quantity::Velocity)).unwrap();
+    assert!(velocity.notes.join("\n").contains("velocity differentiated once"));
+    let plain = read(&bytes, "a.mseed", &asked(Quantity::Acceleration)).unwrap();
+    // Integrated again it is what was recorded, but for a constant and half a step.
+    let again: Vec<f64> = velocity.channels[0]
+        .acceleration
+        .iter()
+        .scan(0.0, |sum, a| {
+            *sum += a * 0.01;
+            Some(*sum)
+        })
+        .collect();
+    let recorded = &plain.channels[0].acceleration;
+    let shift = |k: usize| f64::midpoint(recorded[k], recorded[k + 1]) - again[k];
+    let spread = (1..recorded.len() - 2).map(|k| (shift(k) - shift(1)).abs()).fold(0.0, f64::max);
+    assert!(spread < 0.01 * plain.channels[0].pga(), "{spread}");
+}

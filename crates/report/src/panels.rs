@@ -1,0 +1,68 @@
+//! Several plots in rows, as one figure.
+
+use crate::{
+    Plot,
+    drawing::{Anchor, Drawing, text_width},
+};
+
+/// Height (px) of the title above everything, and of that above a row.
+const TITLE: f64 = 26.0;
+/// Gap (px) between plots beside each other.
+const GAP: f64 = 10.0;
+
+/// Plots in rows under a title; all plots of a row stand at the same height.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Panels {
+    /// What is shown, above all.
+    pub title: String,
+    /// Further words below the title, one line each.
+    pub lines: Vec<String>,
+    /// The rows from top to bottom.
+    pub rows: Vec<Vec<Plot>>,
+}
+
+impl Panels {
+    pub(crate) fn draw(&self, id: &str, caption: &str) -> Drawing {
+        let drawn: Vec<Vec<Drawing>> = self
+            .rows
+            .iter()
+            .enumerate()
+            .map(|(row, plots)| {
+                let one = |(k, plot): (usize, &Plot)| plot.draw(&format!("{id}-{row}-{k}"), "");
+                plots.iter().enumerate().map(one).collect()
+            })
+            .collect();
+        let wide = |row: &Vec<Drawing>| {
+            let gaps = GAP * row.len().saturating_sub(1) as f64;
+            row.iter().map(|plot| plot.width).sum::<f64>() + gaps
+        };
+        let words = self.lines.iter().map(|line| text_width(line, 12.0) + 20.0);
+        let width = drawn.iter().map(wide).chain(words).fold(0.0, f64::max);
+        let head = TITLE + 16.0 * self.lines.len() as f64;
+        let tall = |row: &Vec<Drawing>| row.iter().map(|plot| plot.height).fold(0.0, f64::max);
+        let height = head + drawn.iter().map(|row| tall(row) + GAP).sum::<f64>();
+        let mut drawing = Drawing::new(width, height, caption);
+        drawing.text("label", [10.0, 18.0], Anchor::Start, &self.title);
+        for (k, line) in self.lines.iter().enumerate() {
+            drawing.text("note", [10.0, 34.0 + 16.0 * k as f64], Anchor::Start, line);
+        }
+        let mut top = head;
+        for row in drawn {
+            let height = tall(&row);
+            let mut left = 0.0;
+            for plot in row {
+                // What is higher for its labels stands with its axis where the others have theirs.
+                let at = [left, top + height - plot.height];
+                left += plot.width + GAP;
+                drawing.nest(at, plot);
+            }
+            top += height + GAP;
+        }
+        drawing
+    }
+
+    pub(crate) fn to_csv(&self) -> String {
+        let tables: Vec<String> = self.rows.iter().flatten().map(Plot::to_csv).collect();
+        tables.join("\n")
+    }
+}

@@ -1,0 +1,120 @@
+//! The cases of the paper as scenarios, all on one geometry.
+
+use std::path::Path;
+
+use barrelstack::ground::ground;
+use barrelstack::scenario::{Scale, Scenario};
+use barrelstack_motion::STANDARD_GRAVITY;
+
+use super::ReproduceError;
+
+/// Peak acceleration (g) of the component PEL360 of RSN995 as PEER publishes it.
+const PEL360_PGA: f64 = 0.358_34;
+
+/// How far (g) the peak of a file may be from it: two agencies differ in the sixth digit.
+const PGA_TOLERANCE: f64 = 1e-4;
+
+/// What shakes the six barrels.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Motion {
+    /// The paper's record, from a file of this name.
+    Paper {
+        /// Name of the file.
+        file: String,
+    },
+    /// A file with another peak than the paper's record.
+    Other {
+        /// Name of the file.
+        file: String,
+        /// Its peak acceleration, unscaled (m/s²).
+        pga: f64,
+    },
+    /// The bundled record of South Napa, since no file was named.
+    Bundled,
+}
+
+impl Motion {
+    /// Whether results under it can stand beside the paper's.
+    pub fn is_papers(&self) -> bool {
+        matches!(self, Self::Paper { .. })
+    }
+
+    /// The motion in a few words.
+    pub(super) fn name(&self) -> String {
+        match self {
+            Self::Paper { .. } => "Hollywood Storage N-S at 60 cm/s".into(),
+            Self::Other { file, .. } => format!("{file} at 60 cm/s"),
+            Self::Bundled => "South Napa at 60 cm/s".into(),
+        }
+    }
+
+    /// The motion for captions, which must not be mistaken.
+    pub(super) fn words(&self) -> String {
+        let name = self.name();
+        if self.is_papers() { name } else { format!("{name}, not the paper's record") }
+    }
+}
+
+/// The five cases.
+#[derive(Clone, Debug)]
+pub(super) struct Cases {
+    /// Six barrels, rack–ground friction 0.4.
+    pub(super) six: Scenario,
+    /// Six barrels, rack–ground friction 0.1.
+    pub(super) slippery: Scenario,
+    /// Eight barrels at full scale.
+    pub(super) eight: Scenario,
+    /// Eight barrels at the scale of the test.
+    pub(super) half: Scenario,
+    /// Four levels along the barrels.
+    pub(super) along: Scenario,
+    /// What shakes the six barrels.
+    pub(super) motion: Motion,
+}
+
+impl Cases {
+    /// The cases, the six barrels under `record`.
+    pub(super) fn new(record: Option<&Path>) -> Result<Self, ReproduceError> {
+        let change = match record {
+            Some(path) => record_of(path),
+            None => r#"motion={bundled = "napa-college-2014", component = "horizontal-1", scale = {pgv = "60 cm/s"}}"#
+                .to_owned(),
+        };
+        let six = Scenario::builtin("candia-6-barrels", std::slice::from_ref(&change))?;
+        let slippery = Scenario::builtin("candia-6-barrels-low-friction", &[change])?;
+        let motion = match record {
+            Some(path) => recognize(path)?,
+            None => Motion::Bundled,
+        };
+        Ok(Self {
+            six,
+            slippery,
+            eight: Scenario::builtin("candia-8-barrels", &[])?,
+            half: Scenario::builtin("candia-8-barrels-half-scale", &[])?,
+            along: Scenario::builtin("candia-8-barrels-longitudinal", &[])?,
+            motion,
+        })
+    }
+}
+
+/// The change of a scenario that names a record.
+fn record_of(path: &Path) -> String {
+    // Quoted as JSON, which is a quoted text in TOML too.
+    format!("motion.record={}", serde_json::Value::from(path.display().to_string()))
+}
+
+/// Whether a file is the paper's record, told by its peak before any scaling.
+///
+/// # Errors
+/// When the file cannot be read.
+pub fn recognize(path: &Path) -> Result<Motion, ReproduceError> {
+    let mut unscaled = Scenario::builtin("candia-6-barrels", &[record_of(path)])?;
+    unscaled.motion.scale = Scale::Factor(1.0);
+    let pga = ground(&unscaled)?.motion.map_or(0.0, |motion| motion.pga());
+    let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    Ok(if (pga / STANDARD_GRAVITY - PEL360_PGA).abs() < PGA_TOLERANCE {
+        Motion::Paper { file }
+    } else {
+        Motion::Other { file, pga }
+    })
+}

@@ -1,0 +1,187 @@
+//! The eight barrels with every contact parameter 10 % less and 10 % more: "robust against variations
+//! of the contact element parameters within 10 %".
+
+use barrelstack::scenario::{Scenario, StackSpec};
+use barrelstack::summary::Summary;
+use barrelstack_report::{Block, Cell, Table};
+
+use super::pool::Job;
+use super::vary;
+
+/// How far each parameter goes.
+const REACH: f64 = 0.10;
+
+/// How many members there are.
+pub(super) const COUNT: usize = 24;
+
+type Change = fn(&mut StackSpec, f64);
+
+/// The parameters, each with what multiplies it.
+const PARAMETERS: [(&str, Change); 4] = [
+    ("k", vary::stiffness),
+    ("c", vary::damping),
+    ("μ barrel–rack", vary::barrel_rack_friction),
+    ("μ rack–ground", vary::rack_ground_friction),
+];
+
+/// The runs: one parameter at a time, then all corners.
+pub(super) fn jobs(base: &Scenario) -> Vec<Job> {
+    members()
+        .into_iter()
+        .map(|factors| {
+            let scenario = vary::with(base, |stack| {
+                for ((_, change), factor) in PARAMETERS.iter().zip(factors) {
+                    if factor != 1.0 {
+                        change(stack, factor);
+                    }
+                }
+            });
+            Job { label: format!("eight barrels, {}", name(factors)), scenario, keep: false }
+        })
+        .collect()
+}
+
+/// Factors of the four parameters: eight members with one changed, sixteen with all.
+fn members() -> Vec<[f64; 4]> {
+    let mut members = Vec::new();
+    for parameter in 0..4 {
+        for sign in [-1.0, 1.0] {
+            let mut factors = [1.0; 4];
+            factors[parameter] += sign * REACH;
+            members.push(factors);
+        }
+    }
+    for corner in 0..16_u32 {
+        members.push(std::array::from_fn(|parameter| {
+            if corner & (8 >> parameter) == 0 { 1.0 - REACH } else { 1.0 + REACH }
+        }));
+    }
+    members
+}
+
+fn name(factors: [f64; 4]) -> String {
+    let changed: Vec<String> = PARAMETERS
+        .iter()
+        .zip(factors)
+        .filter(|(_, factor)| *factor != 1.0)
+        .map(|((name, _), factor)| format!("{name} {}10 %", if factor < 1.0 { "−" } else { "+" }))
+        .collect();
+    if changed.is_empty() { "as stated".into() } else { changed.join(", ") }
+}
+
+/// What the members say together.
+pub(super) struct Agreement {
+    /// How many members there are.
+    pub(super) members: usize,
+    /// How many collapse in the same mode as the base case.
+    pub(super) same_mode: usize,
+    /// In how many every barrel of the top level falls.
+    pub(super) top_down: usize,
+    /// In how many a barrel of the top level is the first to have fallen.
+    pub(super) top_first: usize,
+    /// Least and greatest first fall (s).
+    pub(super) fall: [f64; 2],
+    /// Least and greatest drift of the top.
+    pub(super) drift: [f64; 2],
+    /// Least and greatest stress amplification.
+    pub(super) amplification: [f64; 2],
+}
+
+fn top_falls(summary: &Summary) -> bool {
+    let top = summary.bodies.iter().filter_map(|b| b.level).max();
+    let mut barrels = summary.bodies.iter().filter(|b| b.kind == "barrel" && b.level == top);
+    barrels.all(|b| b.fell_at.is_some())
+}
+
+fn top_falls_first(summary: &Summary) -> bool {
+    let fallen = summary.bodies.iter().filter(|b| b.kind == "barrel");
+    let first = fallen
+        .filter_map(|b| Some((b.fell_at?, b.level)))
+        .min_by(|(one, _), (other, _)| one.total_cmp(other));
+    let top = summary.bodies.iter().filter_map(|b| b.level).max();
+    first.is_some_and(|(_, level)| level == top)
+}
+
+/// Compares the members with the base case.
+pub(super) fn agreement(base: &Summary, members: &[Summary]) -> Agreement {
+    let same_mode = members.iter().filter(|m| m.outcome.mode == base.outcome.mode);
+    let range = |value: &dyn Fn(&Summary) -> Option<f64>| {
+        let values = members.iter().filter_map(value);
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+    };
+    Agreement {
+        members: members.len(),
+        same_mode: same_mode.count(),
+        top_down: members.iter().filter(|m| top_falls(m)).count(),
+        top_first: members.iter().filter(|m| top_falls_first(m)).count(),
+        fall: range(&|m| m.outcome.first_fall),
+        drift: range(&|m| m.demands.top_drift_ratio),
+        amplification: range(&|m| m.demands.stress_amplification),
+    }
+}
+
+/// The outcomes as tables: one parameter at a time in sight, the corners folded away.
+pub(super) fn blocks(base: &Summary, members: &[Summary]) -> Vec<Block> {
+    let names: Vec<String> = self::members().into_iter().map(name).collect();
+    let single = PARAMETERS.len() * 2;
+    let mut one = table("The eight barrels with one contact parameter changed.");
+    one.rows.push(row("as stated", base));
+    let mut corners = table("The eight barrels with all four contact parameters changed at once.");
+    for (at, (name, member)) in names.iter().zip(members).enumerate() {
+        let into = if at < single { &mut one } else { &mut corners };
+        into.rows.push(row(name, member));
+    }
+    vec![
+        Block::Table(one),
+        Block::Details {
+            summary: "All sixteen corners".into(),
+            blocks: vec![Block::Table(corners)],
+        },
+    ]
+}
+
+fn table(caption: &str) -> Table {
+    Table::new(
+        caption,
+        &[
+            ("parameters", ""),
+            ("outcome", ""),
+            ("first body", ""),
+            ("leaves its seat", "s"),
+            ("first fall", "s"),
+            ("drift", "%"),
+            ("stress", "× at rest"),
+        ],
+    )
+}
+
+fn row(name: &str, summary: &Summary) -> Vec<Cell> {
+    let number = |value: Option<f64>, factor: f64| {
+        value.map_or(Cell::Missing, |v| Cell::Number(v * factor, 3))
+    };
+    let outcome = &summary.outcome;
+    vec![
+        Cell::text(name),
+        Cell::text(outcome.mode.unwrap_or(outcome.kind)),
+        outcome.first.as_ref().map_or(Cell::Missing, Cell::text),
+        number(outcome.time, 1.0),
+        number(outcome.first_fall, 1.0),
+        number(summary.demands.top_drift_ratio, 100.0),
+        number(summary.demands.stress_amplification, 1.0),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{members, name};
+
+    #[test]
+    fn every_member_is_another_one_and_none_is_the_base() {
+        let members = members();
+        assert_eq!(members.len(), super::COUNT);
+        for (at, factors) in members.iter().enumerate() {
+            assert!(!members[..at].contains(factors), "{}", name(*factors));
+            assert_ne!(*factors, [1.0; 4]);
+        }
+    }
+}

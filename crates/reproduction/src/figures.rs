@@ -1,0 +1,299 @@
+//! The paper's figures, drawn from our runs.
+
+use std::sync::Arc;
+
+use barrelstack::assemble::{Assembly, PartKind};
+use barrelstack::report::{scene, standing_range, stress_figure};
+use barrelstack::run::Run;
+use barrelstack_report::{
+    Arrow, Axis, Block, Cell, Diagram, Figure, FigureKind, Mark, Panel, Player, Plot, Point, Scene,
+    Series, Strip, Table,
+};
+
+use super::numbering;
+
+/// The scene of a run, to be shared by its pictures.
+pub(super) fn scene_of(run: &Run) -> Arc<Scene> {
+    scene(run)
+}
+
+/// A run to watch.
+pub(super) fn player(scene: &Arc<Scene>, id: &str, caption: &str) -> Block {
+    Block::Player(Player {
+        id: id.to_owned(),
+        caption: caption.to_owned(),
+        scene: Arc::clone(scene),
+        traces: Vec::new(),
+    })
+}
+
+/// A sequence at chosen instants.
+pub(super) fn strip(
+    scene: &Arc<Scene>,
+    id: &str,
+    caption: &str,
+    panels: impl IntoIterator<Item = (f64, String)>,
+) -> Block {
+    let panels = panels.into_iter().map(|(time, note)| Panel { time, note }).collect();
+    Block::Figure(Figure {
+        id: id.to_owned(),
+        caption: caption.to_owned(),
+        kind: FigureKind::Strip(Strip { scene: Arc::clone(scene), panels }),
+    })
+}
+
+/// The moments of a collapse: at rest, before, the loss of seat, and how it goes on.
+pub(super) fn moments(run: &Run) -> Vec<(f64, String)> {
+    let mut panels = vec![(0.0, "at rest".to_owned())];
+    let end = run.end_time;
+    let Some(loss) = run.fates.collapse_time() else {
+        for part in 1..=5 {
+            let time = end * f64::from(part) / 5.0;
+            panels.push((time, if part == 5 { "end".into() } else { String::new() }));
+        }
+        return panels;
+    };
+    let first = run.fates.first().map_or("", |body| run.assembly.parts[body].name.as_str());
+    panels.push((loss - 0.4, "0.4 s before".into()));
+    panels.push((loss, format!("{first} leaves its seat")));
+    panels.push((loss + 0.35, "0.35 s after".into()));
+    panels.push((loss + 0.7, "0.7 s after".into()));
+    panels.push((loss + 1.0, "1 s after".into()));
+    panels.retain(|(time, _)| *time >= 0.0 && *time <= end);
+    panels
+}
+
+/// The sequence of a collapse by what happens in it: the loss of seat, and each fall of the top level.
+pub(super) fn events(run: &Run) -> Vec<(f64, String)> {
+    let mut panels = vec![(0.0, "at rest".to_owned())];
+    let Some(loss) = run.fates.collapse_time() else { return moments(run) };
+    let parts = &run.assembly.parts;
+    let columns = run.scenario.stack().map_or(2, |stack| stack.columns);
+    let named = |body: usize| match numbering::number(&parts[body].name, columns) {
+        Some(number) => format!("{number} = {}", parts[body].name),
+        None => parts[body].name.clone(),
+    };
+    let first = run.fates.first().map_or_else(String::new, named);
+    panels.push((loss - 0.3, "0.3 s before".into()));
+    panels.push((loss, format!("{first} leaves its seat")));
+    let top = run
+        .assembly
+        .of_kind(PartKind::Barrel)
+        .filter(|body| parts[*body].level == Some(run.assembly.levels));
+    for body in top {
+        if let Some(fell) = run.fates.fate(body).fell_at {
+            panels.push((fell, format!("{} has fallen", named(body))));
+        }
+    }
+    let last = panels.iter().map(|(time, _)| *time).fold(0.0, f64::max);
+    panels.push((last + 0.5, "0.5 s later".into()));
+    panels.retain(|(time, _)| *time >= 0.0 && *time <= run.end_time);
+    panels.sort_by(|one, other| one.0.total_cmp(&other.0));
+    panels
+}
+
+/// How far from its center an arrow ends in a barrel, as a share of the radius: within the round, clear
+/// of the number.
+const ARROW_END: f64 = 0.5;
+
+/// Where an arrow to the ground starts and ends (m): the rack on it is too flat to hold one.
+const GROUND_ARROW: [f64; 2] = [0.07, -0.05];
+
+/// The section at rest with the paper's numbers, and an arrow from every contact body to its target
+/// body, as in the paper.
+pub(super) fn contact_bodies(run: &Run, id: &str, caption: &str) -> Block {
+    let assembly = &run.assembly;
+    let parts = &assembly.parts;
+    let columns = run.scenario.stack().map_or(2, |stack| stack.columns);
+    let rest: Vec<Point> = run
+        .recording
+        .frames
+        .poses
+        .first()
+        .map(|poses| poses.iter().map(|[x, z, _]| [*x, *z]).collect())
+        .unwrap_or_default();
+    let mut arrows = Vec::new();
+    for (contactor, target, _) in designed_pairs(run) {
+        let meaning = format!("{} on {}", parts[contactor].name, parts[target].name);
+        let ends = if target == Assembly::GROUND {
+            let barrels = assembly.of_kind(PartKind::Barrel);
+            let above = barrels.filter(|body| parts[*body].carrier == Some(contactor));
+            above.map(|body| GROUND_ARROW.map(|z| [rest[body][0], z])).collect()
+        } else {
+            vec![arrow(parts, &rest, contactor, target)]
+        };
+        arrows.extend(ends.into_iter().map(|[from, to]| Arrow {
+            from,
+            to,
+            meaning: meaning.clone(),
+        }));
+    }
+    let labels = parts.iter().enumerate().filter_map(|(at, part)| {
+        let number = numbering::number(&part.name, columns)?;
+        let lift = if part.kind == PartKind::Rack { 0.09 } else { 0.0 };
+        let aside = if part.kind == PartKind::Rack && columns == 1 { 0.14 } else { 0.0 };
+        Some(([rest[at][0] + aside, rest[at][1] + lift], number.to_string()))
+    });
+    let labels = labels.collect();
+    Block::Figure(Figure {
+        id: id.to_owned(),
+        caption: caption.to_owned(),
+        kind: FigureKind::Diagram(Diagram { scene: scene_of(run), time: 0.0, labels, arrows }),
+    })
+}
+
+/// From a rack upright into the barrel it meets, or the other way round.
+fn arrow(
+    parts: &[barrelstack::assemble::Part],
+    rest: &[Point],
+    from: usize,
+    to: usize,
+) -> [Point; 2] {
+    let end = |body: usize, other: usize| {
+        let [x, z] = rest[body];
+        if parts[body].kind == PartKind::Barrel {
+            [x, z + ARROW_END * parts[body].size * (rest[other][1] - z).signum()]
+        } else {
+            [rest[other][0], z]
+        }
+    };
+    [end(from, to), end(to, from)]
+}
+
+/// Histories of the horizontal displacement of the paper's bodies 1, 4 and 7, relative to the ground.
+pub(super) fn histories(run: &Run, id: &str, caption: &str) -> Block {
+    let recording = &run.recording;
+    let columns = run.scenario.stack().map_or(2, |stack| stack.columns);
+    let series: Vec<Series> = [1, 4, 7]
+        .into_iter()
+        .filter_map(|number| {
+            let name = numbering::name(number, columns);
+            let channel = recording.displacement(&name)?;
+            let values = channel.values.iter().map(|v| 100.0 * v).collect();
+            let label = format!("barrel {number} ({name})");
+            Some(Series::new(label, recording.times.clone(), values))
+        })
+        .collect();
+    let range = standing_range(run, &series);
+    let mut marks: Vec<Mark> = run
+        .fates
+        .collapse_time()
+        .map(|at| Mark { at, label: "loss of seat".into() })
+        .into_iter()
+        .collect();
+    if let Some(at) = peak_velocity_time(run) {
+        marks.push(Mark { at, label: "peak ground velocity".into() });
+    }
+    Block::Figure(Figure {
+        id: id.to_owned(),
+        caption: caption.to_owned(),
+        kind: FigureKind::Plot(Plot {
+            x: Axis::new("time", "s"),
+            y: Axis { range, ..Axis::new("displacement", "cm") },
+            series,
+            marks,
+            interactive: true,
+            ..Plot::default()
+        }),
+    })
+}
+
+/// When (s) the ground is fastest.
+pub(super) fn peak_velocity_time(run: &Run) -> Option<f64> {
+    let velocity = &run.recording.channel("ground velocity x")?.values;
+    let fastest = velocity.iter().zip(&run.recording.times);
+    fastest.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs())).map(|(_, time)| *time)
+}
+
+/// The stress around one of the paper's bodies.
+pub(super) fn envelope(run: &Run, number: u32, id: &str, caption: &str) -> Option<Block> {
+    let name = numbering::name(number, run.scenario.stack()?.columns);
+    let body = run.assembly.parts.iter().position(|part| part.name == name)?;
+    let figure = stress_figure(run, run.stresses.of(body)?);
+    Some(Block::Figure(Figure { id: id.to_owned(), caption: caption.to_owned(), ..figure }))
+}
+
+/// Length of boundary (m) under stress at rest and at any time while the stack stood, on the upper or
+/// the lower half of a barrel.
+pub(super) fn footprint(run: &Run, name: &str, upper: bool) -> Option<[f64; 2]> {
+    let body = run.assembly.parts.iter().position(|part| part.name == name)?;
+    let envelope = run.stresses.of(body)?;
+    let mut lengths = [0.0; 2];
+    for (at, point) in envelope.points.iter().enumerate() {
+        if (point.normal.z > 0.0) == upper {
+            for (length, stress) in lengths.iter_mut().zip([&envelope.at_rest, &envelope.peak]) {
+                if stress[at] > 0.0 {
+                    *length += envelope.lengths[at];
+                }
+            }
+        }
+    }
+    Some(lengths)
+}
+
+/// Which body carries nodes against which, for all bodies that lean on each other by design.
+pub(super) fn pairs(run: &Run, caption: &str) -> Table {
+    let parts = &run.assembly.parts;
+    let columns = run.scenario.stack().map_or(2, |stack| stack.columns);
+    let mut table = Table::new(
+        caption,
+        &[
+            ("contact body, with the nodes", ""),
+            ("target body, with the surface", ""),
+            ("the contact body is", ""),
+            ("force at rest", "kN"),
+        ],
+    );
+    let named = |body: usize| match numbering::number(&parts[body].name, columns) {
+        Some(number) => format!("{number} = {}", parts[body].name),
+        None => parts[body].name.clone(),
+    };
+    for (contactor, target, at_rest) in designed_pairs(run) {
+        let above = is_above(run, contactor, target);
+        table.rows.push(vec![
+            Cell::text(named(contactor)),
+            Cell::text(named(target)),
+            Cell::text(if above { "above" } else { "below" }),
+            Cell::Number(1e-3 * at_rest, 3),
+        ]);
+    }
+    table
+}
+
+/// Contactor, target and force at rest (N) of all bodies that lean on each other by design.
+fn designed_pairs(run: &Run) -> impl Iterator<Item = (usize, usize, f64)> {
+    run.recording.joints.iter().filter_map(|joint| {
+        let pair = run.assembly.model.pairs().iter().find(|pair| {
+            let between = [pair.contactor, pair.target];
+            between == [joint.upper, joint.lower] || between == [joint.lower, joint.upper]
+        })?;
+        Some((pair.contactor, pair.target, joint.at_rest))
+    })
+}
+
+/// Whether one body lies on the other.
+fn is_above(run: &Run, one: usize, other: usize) -> bool {
+    run.recording.joints.iter().any(|joint| [joint.upper, joint.lower] == [one, other])
+}
+
+/// Whether every designed contact of a run is carried by nodes of a rack.
+pub(super) fn racks_carry_the_nodes(run: &Run) -> bool {
+    let parts = &run.assembly.parts;
+    designed_pairs(run).all(|(contactor, _, _)| parts[contactor].kind == PartKind::Rack)
+}
+
+/// Largest distance (m at full scale) between two runs of one stack at two scales, at equivalent
+/// instants up to a time (s at full scale).
+pub(super) fn scale_difference(full: &Run, half: &Run, until: f64) -> f64 {
+    let length = half.scenario.run.similitude;
+    let (a, b) = (&full.recording.frames, &half.recording.frames);
+    let frames = a.times.iter().zip(a.poses.iter().zip(&b.poses));
+    let mut largest = 0.0_f64;
+    for (_, (one, other)) in frames.take_while(|(time, _)| **time <= until) {
+        for (p, q) in one.iter().zip(other) {
+            let [dx, dz] = [p[0] - q[0] / length, p[1] - q[1] / length];
+            largest = largest.max(libm::hypot(dx, dz));
+        }
+    }
+    largest
+}

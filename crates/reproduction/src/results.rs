@@ -1,0 +1,159 @@
+//! The runs of all cases and studies: what is to do, and what came of it.
+
+use barrelstack::run::Run;
+use barrelstack::scenario::{Scale, Scenario};
+use barrelstack::summary::Summary;
+
+use super::cases::{Cases, Motion};
+use super::pool::{Done, Job};
+use super::racks::{self, Tried};
+use super::study::{self, Factor, Study, Subject};
+use super::{ReproduceError, ensemble, vary};
+
+/// The paper's measured parameters over its calibrated ones: k is 10 % greater than measured, c 16 %.
+pub(super) const MEASURED: (f64, f64) = (1.0 / 1.10, 1.0 / 1.16);
+
+/// Everything there is to run.
+pub(super) struct Plan {
+    /// The jobs, long ones first.
+    pub(super) jobs: Vec<Job>,
+    studies: Vec<(Subject, Vec<Factor>)>,
+    /// How many jobs come before those of the studies.
+    single: usize,
+}
+
+/// A case with all that was seen of it.
+pub(super) struct Ran {
+    /// The run.
+    pub(super) run: Run,
+    /// Its summary.
+    pub(super) summary: Summary,
+}
+
+/// Everything that was run.
+pub(super) struct Results {
+    /// What shook the six barrels.
+    pub(super) motion: Motion,
+    /// Six barrels, rack–ground friction 0.4.
+    pub(super) six: Ran,
+    /// Six barrels, rack–ground friction 0.1.
+    pub(super) slippery: Ran,
+    /// Eight barrels at full scale.
+    pub(super) eight: Ran,
+    /// Eight barrels at half scale.
+    pub(super) half: Ran,
+    /// Four levels along the barrels.
+    pub(super) along: Ran,
+    /// Eight barrels under the sine that starts to the other side.
+    pub(super) mirrored: Summary,
+    /// Eight barrels with the measured contact parameters.
+    pub(super) measured: Summary,
+    /// Eight barrels with contact parameters 10 % off.
+    pub(super) ensemble: Vec<Summary>,
+    /// Other racks that give the paper's numbers as well.
+    pub(super) racks: Vec<Tried>,
+    /// What moves each case.
+    pub(super) studies: Vec<Study>,
+}
+
+impl Plan {
+    /// Plans the runs of all cases, and of the studies where they are wanted.
+    pub(super) fn new(cases: &Cases, with_studies: bool) -> Self {
+        let mut mirrored = cases.eight.clone();
+        mirrored.motion.scale = Scale::Factor(-1.0);
+        let measured = vary::with(&cases.eight, |stack| {
+            vary::stiffness(stack, MEASURED.0);
+            vary::damping(stack, MEASURED.1);
+        });
+        let job = |label: &str, scenario: &Scenario, keep| Job {
+            label: label.to_owned(),
+            scenario: scenario.clone(),
+            keep,
+        };
+        let mut jobs = vec![
+            job("six barrels on a slippery floor", &cases.slippery, true),
+            job("four levels along the barrels", &cases.along, true),
+            job("six barrels", &cases.six, true),
+            job("eight barrels at half scale", &cases.half, true),
+            job("eight barrels", &cases.eight, true),
+            job("eight barrels, sine to the other side", &mirrored, false),
+            job("eight barrels, measured parameters", &measured, false),
+        ];
+        let single = jobs.len();
+        if !with_studies {
+            return Self { jobs, studies: Vec::new(), single };
+        }
+        let mut subjects = vec![(Subject::Along, &cases.along), (Subject::Eight, &cases.eight)];
+        // A study explains differences from the paper; under another motion there is none to explain.
+        if cases.motion.is_papers() {
+            subjects.insert(1, (Subject::Six, &cases.six));
+        }
+        let studies: Vec<(Subject, Vec<Factor>)> = subjects
+            .into_iter()
+            .map(|(subject, base)| (subject, study::factors(subject, base)))
+            .collect();
+        for (subject, factors) in &studies {
+            jobs.extend(study::jobs(*subject, factors));
+        }
+        jobs.extend(ensemble::jobs(&cases.eight));
+        jobs.extend(racks::jobs(cases));
+        Self { jobs, studies, single }
+    }
+
+    /// Sorts what came of the jobs.
+    pub(super) fn read(self, motion: Motion, done: Vec<Done>) -> Result<Results, ReproduceError> {
+        let labels: Vec<String> = self.jobs.into_iter().map(|job| job.label).collect();
+        let lost =
+            |at: usize| ReproduceError::Lost { case: labels.get(at).cloned().unwrap_or_default() };
+        let mut rest = done.into_iter();
+        let mut singles = rest.by_ref().take(self.single).enumerate();
+        let mut next = || singles.next().ok_or_else(|| lost(0));
+        let ran = |(at, done): (usize, Done)| match done.run {
+            Some(run) => Ok(Ran { run: *run, summary: done.summary }),
+            None => Err(lost(at)),
+        };
+        let slippery = ran(next()?)?;
+        let along = ran(next()?)?;
+        let six = ran(next()?)?;
+        let half = ran(next()?)?;
+        let eight = ran(next()?)?;
+        let mirrored = next()?.1.summary;
+        let measured = next()?.1.summary;
+        let mut summaries = rest.map(|done| done.summary);
+        let mut studies: Vec<Study> = self
+            .studies
+            .into_iter()
+            .map(|(subject, factors)| {
+                let base = match subject {
+                    Subject::Six => &six,
+                    Subject::Eight => &eight,
+                    Subject::Along => &along,
+                };
+                Study::new(subject, base.summary.clone(), factors, &mut summaries)
+            })
+            .collect();
+        studies.sort_by_key(|study| study.subject);
+        let ensemble = summaries.by_ref().take(ensemble::COUNT).collect();
+        let racks = racks::read(motion.is_papers(), &mut summaries);
+        Ok(Results {
+            motion,
+            six,
+            slippery,
+            eight,
+            half,
+            along,
+            mirrored,
+            measured,
+            ensemble,
+            racks,
+            studies,
+        })
+    }
+}
+
+impl Results {
+    /// The study of a case; none where it was not run.
+    pub(super) fn study(&self, subject: Subject) -> Option<&Study> {
+        self.studies.iter().find(|study| study.subject == subject)
+    }
+}

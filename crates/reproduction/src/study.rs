@@ -1,0 +1,348 @@
+//! What moves a case: one quantity that the paper leaves open changed at a time, down and up.
+
+use barrelstack::scenario::{Scenario, StackSpec};
+use barrelstack::summary::Summary;
+
+use super::pool::Job;
+use super::vary::{self, brief, with};
+
+/// A case to study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Subject {
+    /// Six barrels under a record.
+    Six,
+    /// Eight barrels under the sine.
+    Eight,
+    /// Four levels along the barrels under the sine.
+    Along,
+}
+
+/// The time of a case that the paper states.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Clock {
+    /// When the first body leaves its seat.
+    Loss,
+    /// When the first barrel has fallen.
+    Fall,
+}
+
+impl Subject {
+    /// What the case is called in captions.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Six => "six barrels",
+            Self::Eight => "eight barrels",
+            Self::Along => "four levels along the barrels",
+        }
+    }
+
+    /// Which time stands beside the paper's.
+    pub(super) fn clock(self) -> Clock {
+        match self {
+            Self::Six | Self::Along => Clock::Loss,
+            Self::Eight => Clock::Fall,
+        }
+    }
+
+    /// How long (s) a member runs at most, and after its collapse: long enough for the first fall.
+    fn duration(self) -> (f64, f64) {
+        match self {
+            Self::Six => (20.0, 0.1),
+            Self::Eight => (12.0, 1.6),
+            Self::Along => (10.0, 0.1),
+        }
+    }
+}
+
+impl Clock {
+    /// The words for it.
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Self::Loss => "first loss of seat",
+            Self::Fall => "first fall",
+        }
+    }
+
+    /// The time (s) in a summary.
+    pub(super) fn time(self, summary: &Summary) -> Option<f64> {
+        match self {
+            Self::Loss => summary.outcome.time,
+            Self::Fall => summary.outcome.first_fall,
+        }
+    }
+}
+
+/// One quantity and what it was changed to.
+pub(super) struct Factor {
+    /// The quantity with its regular value, such as "cradle angle 28°".
+    pub(super) name: String,
+    /// What it was changed to, and the run of it.
+    pub(super) ends: Vec<(String, Scenario)>,
+}
+
+/// A factor with its runs done.
+pub(super) struct Effect {
+    /// The quantity with its regular value.
+    pub(super) name: String,
+    /// What it was changed to, and what came of it.
+    pub(super) ends: Vec<(String, Summary)>,
+}
+
+/// A case with all its effects.
+pub(super) struct Study {
+    /// The case.
+    pub(super) subject: Subject,
+    /// The case as stated.
+    pub(super) base: Summary,
+    /// The largest effect on the time first.
+    pub(super) effects: Vec<Effect>,
+}
+
+/// What a quantity is changed to, each with its name.
+type Ends<'a> = [(&'a str, &'a dyn Fn(&mut StackSpec)); 2];
+
+/// The factors of a case.
+pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
+    let (duration, after) = subject.duration();
+    let mut base = brief(base, after);
+    base.run.duration = Some(duration);
+    let base = &base;
+    let Some(stack) = base.stack() else { return Vec::new() };
+    let rack = &stack.rack;
+
+    let mut list = Vec::new();
+    let mut change = |name: String, ends: Ends<'_>| {
+        let ends = ends.map(|(label, change)| (label.to_owned(), with(base, change)));
+        list.push(Factor { name, ends: ends.into() });
+    };
+    let centimeters = |value: f64| barrelstack_report::significant(100.0 * value, 3);
+    let share =
+        |change: fn(&mut StackSpec, f64), by: f64| move |stack: &mut StackSpec| change(stack, by);
+    let percent = |list: &mut dyn FnMut(String, Ends<'_>), name: &str, f| {
+        list(name.to_owned(), [("−10 %", &share(f, 0.9)), ("+10 %", &share(f, 1.1))]);
+    };
+
+    if subject == Subject::Along {
+        change(
+            format!("rails at ±{} cm", centimeters(rack.rail_half_spacing)),
+            [
+                ("−2 cm", &|s| s.rack.rail_half_spacing -= 0.02),
+                ("+2 cm", &|s| s.rack.rail_half_spacing += 0.02),
+            ],
+        );
+        change(
+            format!("rails {} cm wide", centimeters(rack.rail_width)),
+            [("−1 cm", &|s| s.rack.rail_width -= 0.01), ("+1 cm", &|s| s.rack.rail_width += 0.01)],
+        );
+    } else {
+        let angle = match rack.cradle {
+            barrelstack::scenario::Cradle::Supports { angle } => angle.to_degrees(),
+            barrelstack::scenario::Cradle::Arc { half_angle, .. } => half_angle.to_degrees(),
+        };
+        change(
+            format!("cradle supports at ±{}°", barrelstack_report::significant(angle, 3)),
+            [
+                ("−3°", &|s| vary::cradle_angle(s, -3_f64.to_radians())),
+                ("+3°", &|s| vary::cradle_angle(s, 3_f64.to_radians())),
+            ],
+        );
+        change(
+            format!("bearing ±{} cm", centimeters(rack.foot_half_length)),
+            [
+                ("−1 cm", &|s| s.rack.foot_half_length -= 0.01),
+                ("+1 cm", &|s| s.rack.foot_half_length += 0.01),
+            ],
+        );
+    }
+    change(
+        format!("nodes every {} cm", centimeters(rack.node_spacing)),
+        [("half", &|s| s.rack.node_spacing *= 0.5), ("double", &|s| s.rack.node_spacing *= 2.0)],
+    );
+    change(
+        format!("rack {} kg", barrelstack_report::significant(rack.mass, 3)),
+        [("−10 kg", &|s| s.rack.mass -= 10.0), ("+10 kg", &|s| s.rack.mass += 10.0)],
+    );
+    change(
+        "stick stiffness 1 × normal".to_owned(),
+        [
+            ("half", &|s| vary::stick_stiffness(s, 0.5)),
+            ("double", &|s| vary::stick_stiffness(s, 2.0)),
+        ],
+    );
+    percent(&mut change, "k", vary::stiffness);
+    percent(&mut change, "c", vary::damping);
+    percent(&mut change, "μ barrel–rack", vary::barrel_rack_friction);
+    percent(&mut change, "μ rack–ground", vary::rack_ground_friction);
+    list.push(Factor {
+        name: "wine turns with the wood".into(),
+        ends: vec![("wine at rest".into(), with(base, vary::fluid))],
+    });
+    if subject != Subject::Six {
+        list.push(Factor {
+            name: "sine at full amplitude at once".into(),
+            ends: [("grows for 0.5 cycle", 0.5), ("grows for 1 cycle", 1.0)]
+                .map(|(label, cycles)| (label.to_owned(), vary::ramped(base, cycles)))
+                .into(),
+        });
+    }
+    list
+}
+
+/// The runs of factors, in order.
+pub(super) fn jobs(subject: Subject, factors: &[Factor]) -> impl Iterator<Item = Job> {
+    factors.iter().flat_map(move |factor| {
+        factor.ends.iter().map(move |(label, scenario)| Job {
+            label: format!("{}, {}: {label}", subject.name(), factor.name),
+            scenario: scenario.clone(),
+            keep: false,
+        })
+    })
+}
+
+impl Study {
+    /// Puts factors and the summaries of their runs together; `next` gives them in the order of the
+    /// jobs.
+    pub(super) fn new(
+        subject: Subject,
+        base: Summary,
+        factors: Vec<Factor>,
+        next: &mut dyn Iterator<Item = Summary>,
+    ) -> Self {
+        let mut effects: Vec<Effect> = factors
+            .into_iter()
+            .map(|factor| Effect {
+                name: factor.name,
+                ends: factor.ends.into_iter().map(|(label, _)| label).zip(&mut *next).collect(),
+            })
+            .collect();
+        let clock = subject.clock();
+        let weight = |effect: &Effect| {
+            let from = clock.time(&base).unwrap_or(0.0);
+            // What does not collapse at all is the largest effect there is.
+            let changes = effect.ends.iter().map(|(_, summary)| {
+                clock.time(summary).map_or(f64::INFINITY, |time| (time - from).abs())
+            });
+            changes.fold(0.0, f64::max)
+        };
+        effects.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
+        Self { subject, base, effects }
+    }
+
+    /// Least and greatest time (s) among all changes that collapse, the case as stated included.
+    pub(super) fn times(&self) -> Option<[f64; 2]> {
+        let clock = self.subject.clock();
+        let all = self.effects.iter().flat_map(|effect| &effect.ends).map(|(_, summary)| summary);
+        let times = all.chain([&self.base]).filter_map(|summary| clock.time(summary));
+        times.fold(None, |range: Option<[f64; 2]>, time| {
+            let [low, high] = range.unwrap_or([time; 2]);
+            Some([low.min(time), high.max(time)])
+        })
+    }
+
+    /// The changes that bring a quantity to the published value or past it, in words.
+    pub(super) fn reaching(
+        &self,
+        published: f64,
+        of: impl Fn(&Summary) -> Option<f64>,
+    ) -> Vec<String> {
+        let Some(ours) = of(&self.base) else { return Vec::new() };
+        let mut found = Vec::new();
+        for effect in &self.effects {
+            for (label, summary) in &effect.ends {
+                let crosses = |value: f64| (value - published) * (ours - published) <= 0.0;
+                if of(summary).is_some_and(crosses) {
+                    found.push(format!("{} ({label})", effect.name));
+                }
+            }
+        }
+        found
+    }
+
+    /// The changes with which something holds, in words.
+    pub(super) fn holding(&self, what: impl Fn(&Summary) -> bool) -> Vec<String> {
+        let mut found = Vec::new();
+        for effect in &self.effects {
+            for (label, _) in effect.ends.iter().filter(|(_, summary)| what(summary)) {
+                found.push(format!("{} ({label})", effect.name));
+            }
+        }
+        found
+    }
+
+    /// The change that brings a quantity nearest to a published value, in words, and what it is then.
+    pub(super) fn nearest(
+        &self,
+        published: f64,
+        of: impl Fn(&Summary) -> Option<f64>,
+    ) -> Option<(String, f64)> {
+        let mut best: Option<(String, f64)> = None;
+        for effect in &self.effects {
+            for (label, summary) in &effect.ends {
+                let Some(value) = of(summary) else { continue };
+                let farther = |(_, known): &(String, f64)| {
+                    (known - published).abs() > (value - published).abs()
+                };
+                if best.as_ref().is_none_or(farther) {
+                    best = Some((format!("{} ({label})", effect.name), value));
+                }
+            }
+        }
+        best
+    }
+
+    /// The changes that move a quantity most, at most `count`, in words with what becomes of it.
+    pub(super) fn strongest(
+        &self,
+        count: usize,
+        of: impl Fn(&Summary) -> Option<f64>,
+        shown: impl Fn(f64) -> String,
+    ) -> Vec<String> {
+        let Some(ours) = of(&self.base) else { return Vec::new() };
+        let mut found: Vec<(f64, String)> = Vec::new();
+        for effect in &self.effects {
+            for (label, summary) in &effect.ends {
+                if let Some(value) = of(summary) {
+                    let words = format!("{} ({label}): {}", effect.name, shown(value));
+                    found.push(((value - ours).abs(), words));
+                }
+            }
+        }
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        found.into_iter().take(count).map(|(_, words)| words).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Subject, factors};
+    use barrelstack::scenario::Scenario;
+
+    #[test]
+    fn every_change_makes_another_scenario_that_can_be_built() {
+        let cases = [
+            (Subject::Six, "candia-6-barrels"),
+            (Subject::Eight, "candia-8-barrels"),
+            (Subject::Along, "candia-8-barrels-longitudinal"),
+        ];
+        for (subject, name) in cases {
+            let base = Scenario::builtin(name, &[]).unwrap();
+            let mut seen = Vec::new();
+            for factor in factors(subject, &base) {
+                for (label, scenario) in factor.ends {
+                    let print = scenario.fingerprint();
+                    assert!(
+                        !seen.contains(&print),
+                        "{name}, {}: {label} changes nothing",
+                        factor.name
+                    );
+                    seen.push(print);
+                    barrelstack::assemble::assemble(&scenario).unwrap_or_else(|error| {
+                        panic!("{name}, {}: {label}: {error}", factor.name)
+                    });
+                }
+            }
+            // Ten quantities, the sine's start where there is one; the fill has one other end.
+            assert_eq!(seen.len(), if subject == Subject::Six { 19 } else { 21 });
+        }
+    }
+}

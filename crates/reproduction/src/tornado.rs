@@ -1,0 +1,143 @@
+//! A study as a picture and a table: how far each change moves time, drift and stress.
+
+use barrelstack::summary::Summary;
+use barrelstack_report::{
+    Axis, Block, Cell, Figure, FigureKind, Mark, Plot, Series, SeriesStyle, Table,
+};
+
+use super::study::{Clock, Study};
+
+/// The three quantities of a tornado, with their place in a row.
+const PLACES: [f64; 3] = [0.18, -0.04, -0.26];
+
+/// Picture and table of a study.
+pub(super) fn blocks(study: &Study, id: &str, published: [Option<f64>; 3]) -> Vec<Block> {
+    vec![Block::Figure(figure(study, id, published)), Block::Table(table(study))]
+}
+
+/// Time, drift and stress of a run.
+fn values(clock: Clock, summary: &Summary) -> [Option<f64>; 3] {
+    [clock.time(summary), summary.demands.top_drift_ratio, summary.demands.stress_amplification]
+}
+
+fn figure(study: &Study, id: &str, published: [Option<f64>; 3]) -> Figure {
+    let clock = study.subject.clock();
+    let base = values(clock, &study.base);
+    let change = |quantity: usize, summary: &Summary| -> Option<f64> {
+        Some(100.0 * (values(clock, summary)[quantity]? / base[quantity]? - 1.0))
+    };
+    let count = study.effects.len();
+    let mut series: Vec<Series> = [clock.words(), "drift of the top", "stress amplification"]
+        .into_iter()
+        .enumerate()
+        .map(|(quantity, label)| Series {
+            style: SeriesStyle { dots: true, index: Some(quantity), ..SeriesStyle::default() },
+            ..Series::new(label, Vec::new(), Vec::new())
+        })
+        .collect();
+    let (mut low, mut high) = (0.0_f64, 0.0_f64);
+    for (row, effect) in study.effects.iter().enumerate() {
+        for (quantity, line) in series.iter_mut().enumerate() {
+            let y = (count - row) as f64 + PLACES[quantity];
+            for x in effect.ends.iter().filter_map(|(_, summary)| change(quantity, summary)) {
+                (low, high) = (low.min(x), high.max(x));
+                // Every bar starts from the case as stated; the gap parts it from the next.
+                for (x, y) in [(0.0, y), (x, y), (f64::NAN, y)] {
+                    line.x.push(x);
+                    line.y.push(y);
+                }
+            }
+        }
+    }
+    let marks = published.iter().zip(base).zip(["time", "drift", "stress"]).filter_map(
+        |((published, base), label)| {
+            let at = 100.0 * ((*published)? / base? - 1.0);
+            (low.min(-30.0)..=high.max(30.0))
+                .contains(&at)
+                .then(|| Mark { at, label: format!("paper’s {label}") })
+        },
+    );
+    let marks: Vec<Mark> = marks.collect();
+    for mark in &marks {
+        (low, high) = (low.min(mark.at), high.max(mark.at));
+    }
+    let span = (high - low).max(1.0);
+    // The names of the rows stand at the right, clear of the bars.
+    let range = [low - 0.05 * span, high + 0.45 * span];
+    let levels = study
+        .effects
+        .iter()
+        .enumerate()
+        .map(|(row, effect)| Mark { at: (count - row) as f64 - 0.45, label: effect.name.clone() });
+    Figure {
+        id: id.to_owned(),
+        caption: format!(
+            "What moves the {}: change against the case as stated, one quantity changed at a time, the \
+             largest effect on the {} on top. Rows are numbered as in the table below, which names both \
+             ends. Upright lines: where the published values stand.",
+            study.subject.name(),
+            clock.words()
+        ),
+        kind: FigureKind::Plot(Plot {
+            x: Axis { range: Some(range), ..Axis::new("change", "%") },
+            y: Axis {
+                range: Some([0.4, count as f64 + 0.65]),
+                ..Axis::new("row of the table", "")
+            },
+            series,
+            marks,
+            levels: levels.collect(),
+            ..Plot::default()
+        }),
+    }
+}
+
+fn table(study: &Study) -> Table {
+    let clock = study.subject.clock();
+    let mut table = Table::new(
+        format!(
+            "The {} with one quantity changed at a time. Time: {}.",
+            study.subject.name(),
+            clock.words()
+        ),
+        &[
+            ("row", ""),
+            ("quantity", ""),
+            ("changed", ""),
+            ("outcome", ""),
+            ("first", ""),
+            ("time", "s"),
+            ("drift", "%"),
+            ("stress", "× at rest"),
+        ],
+    );
+    let cells = |summary: &Summary| {
+        let [time, drift, stress] = values(clock, summary);
+        let number = |value: Option<f64>| value.map_or(Cell::Missing, |v| Cell::Number(v, 3));
+        let outcome = &summary.outcome;
+        vec![
+            Cell::text(outcome.mode.unwrap_or(outcome.kind)),
+            outcome.first.as_ref().map_or(Cell::Missing, Cell::text),
+            number(time),
+            number(drift.map(|d| 100.0 * d)),
+            number(stress),
+        ]
+    };
+    let mut base = vec![Cell::text(""), Cell::text("as stated"), Cell::text("")];
+    base.extend(cells(&study.base));
+    table.rows.push(base);
+    let count = study.effects.len();
+    for (row, effect) in study.effects.iter().enumerate() {
+        for (at, (label, summary)) in effect.ends.iter().enumerate() {
+            let first = at == 0;
+            let mut line = vec![
+                Cell::text(if first { (count - row).to_string() } else { String::new() }),
+                Cell::text(if first { effect.name.as_str() } else { "" }),
+                Cell::text(label),
+            ];
+            line.extend(cells(summary));
+            table.rows.push(line);
+        }
+    }
+    table
+}

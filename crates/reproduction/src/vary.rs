@@ -1,0 +1,105 @@
+//! One change of a scenario at a time.
+
+use barrelstack::scenario::{
+    Cradle, Damping, Fill, Friction, Interface, MotionSource, NormalLaw, Scenario, Scene, StackSpec,
+};
+
+/// A scenario with its stack changed; a free scene stays as it is.
+pub(super) fn with(scenario: &Scenario, change: impl FnOnce(&mut StackSpec)) -> Scenario {
+    let mut changed = scenario.clone();
+    if let Scene::Stack { stack, .. } = &mut changed.scene {
+        change(stack);
+    }
+    changed
+}
+
+/// A scenario that is stopped a while (s) after its collapse and of which nothing is drawn.
+pub(super) fn brief(scenario: &Scenario, after: f64) -> Scenario {
+    let mut brief = scenario.clone();
+    brief.run.stop_after_collapse = Some(after);
+    brief.record.frame_rate = 1.0;
+    brief.record.history_rate = 1.0;
+    brief
+}
+
+/// The interfaces of the seats of a stack.
+fn seats(stack: &mut StackSpec) -> [&mut Interface; 3] {
+    let all = &mut stack.interfaces;
+    [&mut all.rack_ground, &mut all.barrel_rack, &mut all.rack_rack]
+}
+
+/// Multiplies the contact stiffness of all seats.
+pub(super) fn stiffness(stack: &mut StackSpec, factor: f64) {
+    for interface in seats(stack) {
+        match &mut interface.normal {
+            NormalLaw::SpeedGap { stiffness, .. }
+            | NormalLaw::KelvinVoigt { stiffness, .. }
+            | NormalLaw::HuntCrossley { stiffness, .. }
+            | NormalLaw::Rebound { stiffness, .. }
+            | NormalLaw::Hertz { stiffness } => *stiffness *= factor,
+        }
+    }
+}
+
+/// Multiplies the contact damping of all seats where it is stated as a coefficient.
+pub(super) fn damping(stack: &mut StackSpec, factor: f64) {
+    for interface in seats(stack) {
+        if let NormalLaw::SpeedGap { damping: Damping::Coefficient(c), .. }
+        | NormalLaw::KelvinVoigt { damping: Damping::Coefficient(c), .. } = &mut interface.normal
+        {
+            *c *= factor;
+        }
+    }
+}
+
+/// Multiplies a friction coefficient, kinetic and static.
+fn friction(interface: &mut Interface, factor: f64) {
+    match &mut interface.friction {
+        Friction::Coulomb { coefficient, static_coefficient, .. } => {
+            *coefficient *= factor;
+            *static_coefficient *= factor;
+        }
+        Friction::Regularized { coefficient, .. } => *coefficient *= factor,
+        Friction::None => {}
+    }
+}
+
+/// Multiplies the friction between barrels and racks.
+pub(super) fn barrel_rack_friction(stack: &mut StackSpec, factor: f64) {
+    friction(&mut stack.interfaces.barrel_rack, factor);
+}
+
+/// Multiplies the friction between the bottom rack and the ground.
+pub(super) fn rack_ground_friction(stack: &mut StackSpec, factor: f64) {
+    friction(&mut stack.interfaces.rack_ground, factor);
+}
+
+/// Multiplies the tangential over the normal stiffness of sticks everywhere.
+pub(super) fn stick_stiffness(stack: &mut StackSpec, factor: f64) {
+    for interface in seats(stack) {
+        if let Friction::Coulomb { tangential_stiffness_ratio, .. } = &mut interface.friction {
+            *tangential_stiffness_ratio *= factor;
+        }
+    }
+}
+
+/// Adds to the angle (rad) of cradle supports; a trough stays as it is.
+pub(super) fn cradle_angle(stack: &mut StackSpec, more: f64) {
+    if let Cradle::Supports { angle } = &mut stack.rack.cradle {
+        *angle += more;
+    }
+}
+
+/// The barrels with the wine at rest while the wood turns, at the same mass.
+pub(super) fn fluid(stack: &mut StackSpec) {
+    stack.barrel.fill = Fill::FullFluid;
+}
+
+/// A sine that grows over so many cycles.
+pub(super) fn ramped(scenario: &Scenario, cycles: f64) -> Scenario {
+    let mut changed = scenario.clone();
+    if let MotionSource::Sine(sine) = &mut changed.motion.source {
+        sine.ramp_cycles = cycles;
+    }
+    changed
+}
