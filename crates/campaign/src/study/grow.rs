@@ -4,17 +4,17 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::Study;
 use super::design::{Case, Design};
 use super::error::StudyError;
 use super::motions::hash_files;
-use super::{Study, Variation};
 use crate::scenario::fnv1a;
 use crate::scenario::quantity::plain;
 
 /// One thing on which every case of a study depends, with its fingerprint.
 ///
-/// How many cases there are, which motions and which levels is not among them: these tell cases from each
-/// other, and the key of a chunk holds them.
+/// How many samples there are is not among them, nor which motions: these tell cases from each other, and the
+/// key of a chunk holds them. More samples and more motions come behind those that there were.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Common {
     /// What it is, as a sentence calls it.
@@ -30,21 +30,9 @@ impl Study {
         let factors: Vec<String> = self
             .factors
             .iter()
-            .map(|factor| {
-                // Listed values tell cases from each other; a distribution makes each of them.
-                let drawn = match &factor.variation {
-                    Variation::Values(_) if !self.is_sampled() => String::new(),
-                    Variation::Values(_) | Variation::Distribution(_) => {
-                        format!("{:?}", factor.variation)
-                    }
-                };
-                format!("{} {:?} {drawn}", factor.name, factor.fields)
-            })
+            .map(|f| format!("{} {:?} {:?}", f.name, f.fields, f.variation))
             .collect();
-        let levels = self.intensity.as_ref().map(|intensity| {
-            let sampled = self.is_sampled().then(|| format!("{:?}", intensity.levels));
-            format!("{} {}", intensity.measure, sampled.unwrap_or_default())
-        });
+        let intensity = self.intensity.as_ref().map(|i| format!("{} {:?}", i.measure, i.levels));
         let design = match &self.design {
             Design::LatinHypercube { count } => format!("latin-hypercube of {count}"),
             Design::Ida(hunt) => format!("{hunt:?}"),
@@ -65,7 +53,7 @@ impl Study {
             ("`seed`", seed),
             ("the scenario in [base]", base),
             ("a [[factor]]", factors.join("\n")),
-            ("[intensity]", levels.unwrap_or_default()),
+            ("[intensity]", intensity.unwrap_or_default()),
             ("[design]", format!("{design}, chunks of {}", self.chunk)),
             ("the number of motions, from which each sample takes one,", motions),
         ];
@@ -76,7 +64,7 @@ impl Study {
         Ok(parts.into_iter().map(common).collect())
     }
 
-    /// Whether cases are samples, so that one depends on how values and levels are distributed.
+    /// Whether cases are samples, so that which motion one takes depends on how many there are.
     fn is_sampled(&self) -> bool {
         match self.design {
             Design::LatinHypercube { .. }
