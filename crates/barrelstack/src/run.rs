@@ -290,7 +290,7 @@ pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFai
     let Some(step) = scenario.run.step.map(|step| step * scale) else {
         return Ok(default_step(assembly, scale));
     };
-    let critical = critical_time_step(assembly);
+    let critical = critical_time_step(assembly, scale);
     let adapts = matches!(scenario.run.method, scenario::Method::BogackiShampine { .. });
     if adapts || step < critical {
         return Ok(step);

@@ -175,6 +175,7 @@ fn every_sample_of_a_raw_record_comes_to_rest_and_stays_consistent() {
         unit: Some(barrelstack_motion::AccelerationUnit::G),
         time_step: Some(0.01),
         sensitivity: Some(4000.0),
+        ..ReadOptions::default()
     };
     let mut seen = 0;
     for folder in std::fs::read_dir(root).unwrap() {

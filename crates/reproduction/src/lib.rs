@@ -10,6 +10,7 @@ mod cases;
 mod compare;
 mod ensemble;
 mod figures;
+mod neighborhood;
 mod numbering;
 mod page;
 mod pool;

@@ -9,7 +9,7 @@ use super::cases::Motion;
 use super::compare::{Comparison, Verdict, percent};
 use super::results::Results;
 use super::study::Subject;
-use super::{ensemble, figures, numbering, racks, tornado};
+use super::{ensemble, figures, neighborhood, numbering, racks, tornado};
 
 /// The whole page.
 pub(super) fn document(results: &Results, rows: &[Comparison]) -> Document {
@@ -107,6 +107,7 @@ fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
              which the paper's text does not describe:",
         ));
         blocks.push(racks::block(&results.racks));
+        blocks.push(neighborhood::block(&results.neighborhood));
         blocks.extend(studies(results));
     }
     blocks.push(heading(2, "What is not compared"));

@@ -5,6 +5,7 @@ use barrelstack::scenario::{Scale, Scenario};
 use barrelstack::summary::Summary;
 
 use super::cases::{Cases, Motion};
+use super::neighborhood::{self, Kept};
 use super::pool::{Done, Job};
 use super::racks::{self, Tried};
 use super::study::{self, Factor, Study, Subject};
@@ -52,6 +53,8 @@ pub(super) struct Results {
     pub(super) ensemble: Vec<Summary>,
     /// Other racks that give the paper's numbers as well.
     pub(super) racks: Vec<Tried>,
+    /// How many racks near the reconstructed one keep the paper's findings.
+    pub(super) neighborhood: Kept,
     /// What moves each case.
     pub(super) studies: Vec<Study>,
 }
@@ -97,6 +100,7 @@ impl Plan {
         }
         jobs.extend(ensemble::jobs(&cases.eight));
         jobs.extend(racks::jobs(cases));
+        jobs.extend(neighborhood::jobs(cases));
         Self { jobs, studies, single }
     }
 
@@ -135,6 +139,7 @@ impl Plan {
         studies.sort_by_key(|study| study.subject);
         let ensemble = summaries.by_ref().take(ensemble::COUNT).collect();
         let racks = racks::read(motion.is_papers(), &mut summaries);
+        let neighborhood = neighborhood::read(motion.is_papers(), &mut summaries);
         Ok(Results {
             motion,
             six,
@@ -146,6 +151,7 @@ impl Plan {
             measured,
             ensemble,
             racks,
+            neighborhood,
             studies,
         })
     }

@@ -147,7 +147,7 @@ pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
             ],
         );
         change(
-            format!("bearing ±{} cm", centimeters(rack.foot_half_length)),
+            format!("feet ±{} cm", centimeters(rack.foot_half_length)),
             [
                 ("−1 cm", &|s| s.rack.foot_half_length -= 0.01),
                 ("+1 cm", &|s| s.rack.foot_half_length += 0.01),

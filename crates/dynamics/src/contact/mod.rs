@@ -32,9 +32,15 @@ impl Basis {
     }
 }
 
-/// Spin (rad/s) of one body relative to the other at which 71 % of the resistance to rolling is reached:
-/// the moment is the normal force times its lever times `ω / √(ω² + ω₀²)`.
-pub const ROLLING_SPIN: f64 = 0.1;
+/// Resistance to rolling: a moment against the spin ω of one body relative to the other, the normal force
+/// times a lever times `ω / √(ω² + ω₀²)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rolling<R = f64> {
+    /// The lever (m).
+    pub lever: R,
+    /// `ω₀` (rad/s): the spin at which 71 % of the moment is reached.
+    pub spin: R,
+}
 
 /// How two kinds of surfaces push on each other.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,8 +51,8 @@ pub struct Interface<S: Space> {
     pub normal: NormalLaw<S::Real>,
     /// What the surfaces meet beyond the stroke of that law; none where it has no end.
     pub stop: Option<Stop<S::Real>>,
-    /// Lever (m) at which the normal force resists rolling (see [`ROLLING_SPIN`]); none where it does not.
-    pub rolling: Option<S::Real>,
+    /// How the normal force resists rolling; none where it does not.
+    pub rolling: Option<Rolling<S::Real>>,
     /// Slip to friction force.
     pub friction: FrictionLaw<S::Real>,
     /// What the constants are stated for.

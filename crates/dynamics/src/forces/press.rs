@@ -1,7 +1,7 @@
 //! The contacts of one pair: from gaps to forces on both bodies.
 
 use crate::body::{Nodes, Round};
-use crate::contact::{FrictionLaw, NormalLaw, ROLLING_SPIN, Stop};
+use crate::contact::{FrictionLaw, NormalLaw, Rolling, Stop};
 use crate::elements::{Elements, Group, PairFrame};
 use crate::model::{Counts, Model};
 use crate::real::{Mask, Real};
@@ -130,8 +130,8 @@ fn touch_by<S: Space>(
 
 /// Nodes of a pair that press into a surface, one after the other.
 struct Press<'a, S: Space> {
-    /// Lever (m) at which normal forces resist rolling, if they do.
-    rolling: Option<S::Real>,
+    /// How normal forces resist rolling, if they do.
+    rolling: Option<Rolling<S::Real>>,
     stop: Option<Stop<S::Real>>,
     /// Where the contacts of the pair count; none if everywhere.
     counted: Option<<S::Real as Real>::Mask>,
@@ -237,7 +237,12 @@ impl<S: Space> Press<'_, S> {
         }
         // Whether a side of this corner runs along the other side toward its end, and not away from it.
         let end = self.frame.to_contactor(nearest.toward_end);
-        let along = round.limits[0].dot(end).max(round.limits[1].dot(end));
+        let mut along = zero;
+        for (limit, arc) in round.limits.iter().zip(&round.arc_limits) {
+            if arc.is_none() {
+                along = along.max(limit.dot(end));
+            }
+        }
         let (from, to) = PARALLEL;
         let together =
             ((along - S::Real::splat(from)) * S::Real::splat(1.0 / (to - from))).max(zero);
@@ -279,10 +284,10 @@ impl<S: Space> Press<'_, S> {
         sum.damped += Wrench { force: contact.normal * damped, moment: lever * damped };
         let sliding = -S::along(friction.force, contact.normal);
         sum.friction += Wrench { force: sliding, moment: S::moment(arm, sliding) };
-        if let Some(lever) = self.rolling {
+        if let Some(rolling) = self.rolling {
             let spin = meeting.spin;
-            let slow = S::Real::splat(ROLLING_SPIN * ROLLING_SPIN);
-            let resisted = normal_force * lever / (spin.dot(spin) + slow).sqrt();
+            let scale = (spin.dot(spin) + rolling.spin * rolling.spin).sqrt();
+            let resisted = normal_force * rolling.lever / scale;
             sum.friction += Wrench { force: S::Vector::default(), moment: -(spin * resisted) };
         }
 

@@ -1,0 +1,135 @@
+//! The neighborhood of the reconstructed rack: how many racks a little other, with contact parameters a
+//! little other, keep all findings of the paper.
+
+use barrelstack::scenario::{Cradle, Scenario, StackSpec};
+use barrelstack::summary::Summary;
+use barrelstack_report::{Block, Cell, Table};
+
+use super::cases::Cases;
+use super::pool::Job;
+use super::vary::{self, brief, with};
+
+/// How many draws.
+pub(super) const COUNT: usize = 40;
+
+/// How far each length and angle of the rack goes, and each coefficient of friction.
+const REACH: f64 = 0.05;
+
+/// How far stiffness and damping go.
+const PARAMETERS: f64 = 0.10;
+
+/// What is asked of a draw.
+const QUESTIONS: [&str; 5] = [
+    "eight barrels: the top level leaves first",
+    "eight barrels: drift within 4 to 7 %",
+    "six barrels: both upper levels rock off after 8.5 to 12 s",
+    "along the barrels: the rack of the second level slides off first",
+    "along the barrels: it does within 3 to 6 s",
+];
+
+/// How many draws keep each finding, and how many keep all.
+pub(super) struct Kept {
+    draws: usize,
+    /// None for what needs the paper's record.
+    each: [Option<usize>; 5],
+    pub(super) all: usize,
+}
+
+/// A number between −1 and 1 of a draw: fractional parts of multiples of √primes (Richtmyer 1951), which
+/// fill the box evenly and are the same everywhere.
+fn draw(index: usize, dimension: usize) -> f64 {
+    const PRIMES: [f64; 12] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0, 31.0, 37.0];
+    2.0 * ((index + 1) as f64 * PRIMES[dimension].sqrt()).fract() - 1.0
+}
+
+fn change(stack: &mut StackSpec, index: usize) {
+    let near = |dimension| 1.0 + REACH * draw(index, dimension);
+    let wide = |dimension| 1.0 + PARAMETERS * draw(index, dimension);
+    let rack = &mut stack.rack;
+    if let Cradle::Supports { angle } = &mut rack.cradle {
+        *angle *= near(0);
+    }
+    rack.foot_half_length *= near(1);
+    rack.foot_height *= near(2);
+    rack.clearance *= near(3);
+    rack.pitch *= near(4);
+    rack.width *= near(4);
+    rack.rail_half_spacing *= near(5);
+    rack.rail_width *= near(6);
+    rack.mass *= near(7);
+    vary::stiffness(stack, wide(8));
+    vary::damping(stack, wide(9));
+    vary::barrel_rack_friction(stack, near(10));
+    vary::rack_ground_friction(stack, near(11));
+}
+
+/// The runs of every draw: eight barrels, along the barrels, and six where the paper's record shakes them.
+pub(super) fn jobs(cases: &Cases) -> Vec<Job> {
+    let mut jobs = Vec::new();
+    for index in 0..COUNT {
+        let mut job = |case: &str, base: &Scenario, until: Option<f64>| {
+            let mut scenario = with(&brief(base, 0.05), |stack| change(stack, index));
+            scenario.run.duration = until.or(scenario.run.duration);
+            jobs.push(Job {
+                label: format!("{case}, neighbor {}", index + 1),
+                scenario,
+                keep: false,
+            });
+        };
+        job("eight barrels", &cases.eight, None);
+        job("along the barrels", &cases.along, None);
+        if cases.motion.is_papers() {
+            job("six barrels", &cases.six, Some(20.0));
+        }
+    }
+    jobs
+}
+
+/// Counts, from the summaries in the order of the jobs.
+pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> Kept {
+    let mut kept = Kept { draws: 0, each: [Some(0); 5], all: 0 };
+    while let (true, Some(eight), Some(along)) = (kept.draws < COUNT, next.next(), next.next()) {
+        let six = if with_six { next.next() } else { None };
+        let within = |value: Option<f64>, low: f64, high: f64| {
+            value.is_some_and(|value| (low..=high).contains(&value))
+        };
+        let answers = [
+            Some(eight.outcome.mode == Some("ejection") && eight.outcome.from_level == Some(4)),
+            Some(within(eight.demands.top_drift_ratio, 0.04, 0.07)),
+            six.map(|six| {
+                six.outcome.mode == Some("rocking")
+                    && six.outcome.from_level == Some(2)
+                    && within(six.outcome.time, 8.5, 12.0)
+            }),
+            Some(along.outcome.mode == Some("rack-sliding") && along.outcome.from_level == Some(2)),
+            Some(within(along.outcome.time, 3.0, 6.0)),
+        ];
+        for (count, answer) in kept.each.iter_mut().zip(answers) {
+            *count = match (*count, answer) {
+                (Some(count), Some(answer)) => Some(count + usize::from(answer)),
+                (_, None) | (None, _) => None,
+            };
+        }
+        kept.all += usize::from(answers.iter().all(|answer| answer.unwrap_or(true)));
+        kept.draws += 1;
+    }
+    kept
+}
+
+/// The table.
+pub(super) fn block(kept: &Kept) -> Block {
+    let mut table = Table::new(
+        format!(
+            "The neighborhood of the reconstructed rack: {} racks whose lengths and angles lie within ±5 % \
+             of it, with k and c within ±10 % and both coefficients of friction within ±5 %, drawn evenly.",
+            kept.draws
+        ),
+        &[("finding", ""), ("kept by", "of all draws")],
+    );
+    for (question, count) in QUESTIONS.iter().zip(kept.each) {
+        let cell = count.map_or(Cell::Missing, |count| Cell::text(count.to_string()));
+        table.rows.push(vec![Cell::text(*question), cell]);
+    }
+    table.rows.push(vec![Cell::text("all that were asked"), Cell::text(kept.all.to_string())]);
+    Block::Table(table)
+}
