@@ -137,6 +137,13 @@ const SAMPLES: &[Expected] = &[
         1e-6,
     ),
     (
+        "npz/example.npz",
+        Stage::Corrected,
+        0.01,
+        &[("E", 0, 103), ("N", 1, 103), ("Up", 2, 103)],
+        1e-12,
+    ),
+    (
         "barrelstack/example.txt",
         Stage::Corrected,
         0.01,
@@ -341,7 +348,7 @@ fn text_samples() -> Vec<&'static str> {
         .iter()
         .chain(OFFSET)
         .map(|sample| sample.0)
-        .filter(|file| !file.starts_with("sac") && !file.starts_with("miniseed"))
+        .filter(|file| !["sac", "miniseed", "npz"].iter().any(|binary| file.starts_with(binary)))
         .chain(["usc/example.y0a", "smc/uncorrected.smc"])
         .collect()
 }

@@ -208,8 +208,10 @@ impl<S: Space> Press<'_, S> {
             }
             let mut counts = counts & (-round.greatest_depth).lt(gap.distance);
             for (outward, distance) in round.sides.iter().flatten() {
-                let point = round.center + toward * (round.radius + gap.distance);
-                let nearer = gap.distance.lt(point.dot(*outward) - *distance);
+                // The round of the other, about its center, as near to the side as to the arc.
+                let center = round.center + toward * nearest.core;
+                let rounding = nearest.core - nearest.gap.distance;
+                let nearer = gap.distance.lt(center.dot(*outward) - *distance - rounding);
                 counts = counts & !(against_round & nearer);
             }
             if (counts & gap.distance.lt(zero)).any() {

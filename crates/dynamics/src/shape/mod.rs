@@ -153,7 +153,7 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
             Self::Cradle(shape) => Nearest::endless(shape.gap(point), none),
             Self::BarrelProfile(shape) => {
                 let (gap, round) = shape.nearest(point);
-                Nearest::endless(gap, round)
+                Nearest { core: gap.distance + shape.rounding, ..Nearest::endless(gap, round) }
             }
         }
     }

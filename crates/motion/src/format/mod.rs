@@ -27,6 +27,7 @@ mod smc;
 mod source;
 mod unam;
 mod usc;
+mod zip;
 
 pub use slammer::slammer_step;
 

@@ -5,10 +5,9 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::io::{Cursor, Read as _};
 
 use super::source::{Source, latin1, shorten};
-use super::{Format, ReadOptions, native};
+use super::{Format, ReadOptions, native, zip};
 use crate::error::{ReadError, Refusal};
 use crate::record::Record;
 use crate::write::{TITLE, array_name};
@@ -16,10 +15,8 @@ use crate::write::{TITLE, array_name};
 pub(crate) const FORMAT: Format =
     Format { name: "npz", title: "NumPy archive of this crate", sniff, read };
 
-/// Most bytes of one array.
-const LARGEST: u64 = 128 << 20;
-/// Most arrays of one archive.
-const MOST: usize = 4096;
+/// Most bytes of all arrays.
+const LARGEST: u64 = 64 << 20;
 
 enum Array {
     Numbers(Vec<f64>),
@@ -41,26 +38,12 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         source.error((), Refusal::Damaged, expected, found, "write the archive again")
     };
     let mut arrays = BTreeMap::new();
-    let mut archive = zip::ZipArchive::new(Cursor::new(source.bytes))
-        .map_err(|error| damaged("a NumPy archive", error.to_string()))?;
-    if archive.len() > MOST {
-        return Err(damaged("arrays of one record", format!("{} arrays", archive.len())));
-    }
+    let entries = zip::entries(source.bytes).map_err(|found| damaged("a NumPy archive", found))?;
     let mut room = LARGEST;
-    for index in 0..archive.len() {
-        let entry = archive
-            .by_index(index)
-            .map_err(|error| damaged("an array in a NumPy archive", error.to_string()))?;
-        let name = entry.name().ok().and_then(|n| n.strip_suffix(".npy").map(str::to_owned));
-        let Some(name) = name else { continue };
-        let mut bytes = Vec::new();
-        entry
-            .take(room + 1)
-            .read_to_end(&mut bytes)
-            .map_err(|error| damaged(&format!("array {name}"), error.to_string()))?;
-        let left = room.checked_sub(bytes.len() as u64);
-        room = left
-            .ok_or_else(|| damaged("at most 128 MB of arrays", format!("more in array {name}")))?;
+    for entry in entries {
+        let Some(name) = entry.name.strip_suffix(".npy").map(str::to_owned) else { continue };
+        let bytes = entry.unpack(room).map_err(|found| damaged("an array", found))?;
+        room -= bytes.len() as u64;
         let array = array(&bytes).ok_or_else(|| {
             let found = shorten(&latin1(bytes.get(10..90).unwrap_or(&[])));
             damaged(&format!("numbers or strings in a row as array {name}"), found)

@@ -1,13 +1,13 @@
 //! One record inside a gzip or zip file.
 
-use std::borrow::Cow;
-use std::io::{Cursor, Read};
+use std::io::Read;
 
 use super::source::{Source, shorten};
+use super::zip;
 use crate::error::{ReadError, Refusal};
 
-/// Most bytes that are unpacked; the longest strong-motion files have a fifth of it.
-const LARGEST: u64 = 128 << 20;
+/// Most bytes that are unpacked; the longest strong-motion files have less than half of it.
+const LARGEST: u64 = 64 << 20;
 
 /// The bytes of the one file inside, and its name; nothing where the file is not packed.
 pub(super) fn unpack(source: &Source<'_>) -> Result<Option<(Vec<u8>, String)>, ReadError> {
@@ -19,26 +19,24 @@ pub(super) fn unpack(source: &Source<'_>) -> Result<Option<(Vec<u8>, String)>, R
     if !source.bytes.starts_with(b"PK\x03\x04") || super::npz::is_numpy(source) {
         return Ok(None);
     }
-    let mut archive = zip::ZipArchive::new(Cursor::new(source.bytes))
-        .map_err(|error| damaged(source, &error.to_string()))?;
+    let entries = zip::entries(source.bytes).map_err(|found| damaged(source, &found))?;
     // Folders, and what one system adds about its own files, are no records.
-    let files: Vec<String> = archive
-        .file_names()
-        .map(|name| name.map_or_else(|_| "without a legible name".to_owned(), Cow::into_owned))
-        .filter(|name| !name.ends_with('/') && !name.starts_with("__MACOSX"))
+    let files: Vec<zip::Entry<'_>> = entries
+        .into_iter()
+        .filter(|entry| !entry.name.ends_with('/') && !entry.name.starts_with("__MACOSX"))
         .collect();
-    let [name] = files.as_slice() else {
+    let [file] = files.as_slice() else {
+        let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
         return Err(source.error(
             (),
             Refusal::Unrecognized,
             "an archive of one file",
-            format!("{} files ({})", files.len(), shorten(&files.join(", "))),
+            format!("{} files ({})", files.len(), shorten(&names.join(", "))),
             "unpack it and give the files of one record",
         ));
     };
-    let inside = archive.by_name(name).map_err(|error| damaged(source, &error.to_string()))?;
-    let bytes = all(source, inside)?;
-    Ok(Some((bytes, format!("{}/{name}", source.name))))
+    let bytes = file.unpack(LARGEST).map_err(|found| damaged(source, &found))?;
+    Ok(Some((bytes, format!("{}/{}", source.name, file.name))))
 }
 
 fn damaged(source: &Source<'_>, found: &str) -> ReadError {
@@ -59,7 +57,7 @@ fn all(source: &Source<'_>, inside: impl Read) -> Result<Vec<u8>, ReadError> {
         return Err(source.error(
             (),
             Refusal::Damaged,
-            "at most 128 MB when unpacked",
+            "at most 64 MB when unpacked",
             "more",
             "no strong-motion file is that long; cut it to one record",
         ));
