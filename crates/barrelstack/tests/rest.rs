@@ -43,6 +43,7 @@ fn shaken(seconds: u32, more: &[&str]) -> Vec<Prepared> {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "sixteen runs of two minutes; run in release")]
 fn what_rests_has_said_all_that_it_says_in_two_minutes() {
     let by_rest = results(Width::widest(), &shaken(60, &[]));
     let whole = results(Width::widest(), &shaken(120, &["run.until=duration"]));
@@ -69,6 +70,7 @@ fn what_rests_has_said_all_that_it_says_in_two_minutes() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "sixty runs of nine seconds; run in release")]
 fn rest_is_the_same_in_every_lane() {
     let cases = shaken(9, &[]);
     let alone: Vec<String> = cases

@@ -79,15 +79,16 @@ fn estimates(
     let each = || (0..count).map(|at| &blocks[pick(at)]);
     let n = count as f64;
     let mean = each().map(|block| block[0] + block[1]).sum::<f64>() / (2.0 * n);
-    let square = |x: f64| (x - mean) * (x - mean);
-    let variance = each().map(|b| square(b[0]) + square(b[1])).sum::<f64>() / (2.0 * n - 1.0);
+    let square = |x: f64| x * x;
+    let variance =
+        each().map(|b| square(b[0] - mean) + square(b[1] - mean)).sum::<f64>() / (2.0 * n - 1.0);
     // A spread that rounding alone explains is none.
     if variance <= 1e-24 * mean * mean || variance == 0.0 {
         return None;
     }
     let of = |input: usize| {
         let first = each().map(|b| (b[1] - mean) * (b[2 + input] - b[0])).sum::<f64>() / n;
-        let total = each().map(|b| (b[0] - b[2 + input]).powi(2)).sum::<f64>() / (2.0 * n);
+        let total = each().map(|b| square(b[0] - b[2 + input])).sum::<f64>() / (2.0 * n);
         (first / variance, total / variance)
     };
     Some((0..blocks[0].len() - 2).map(of).collect())

@@ -11,7 +11,7 @@ use crate::proportion::Interval;
 /// A curve, and those with each group of evidence, such as all cases of one record, left out.
 ///
 /// Intervals are the delete-one jackknife of groups about the curve itself (the correction for few groups
-/// that Bell and McCaffrey 2002 compare as the jackknife, and others call CR3) with Student's t of one degree
+/// that Bell and `McCaffrey` 2002 compare as the jackknife, and others call CR3) with Student's t of one degree
 /// of freedom less than there are groups.
 /// They take nothing for granted of how the cases of one record depend on each other.
 /// Where tried, they hold the truth in 93 to 98 of 100 campaigns with 8 to 40 records at ten levels, at one
@@ -128,7 +128,7 @@ pub fn grouped_mean(groups: &[(f64, f64)], level: f64) -> Interval {
         return Interval { low: 0.0, high: 1.0 };
     }
     let p = groups.iter().map(|(sum, _)| sum).sum::<f64>() / cases;
-    let squares: f64 = groups.iter().map(|(sum, cases)| (sum - p * cases).powi(2)).sum();
+    let squares: f64 = groups.iter().map(|(sum, cases)| sum - p * cases).map(|off| off * off).sum();
     let variance = count / (count - 1.0) * squares / (cases * cases);
     let alike = p * (1.0 - p) / variance;
     let n = if variance > 0.0 && alike > 0.0 { alike } else { count };
