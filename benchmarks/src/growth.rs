@@ -57,7 +57,7 @@ impl Stage {
         let assembly = assemble(&scenario)?;
         let step = default_step(&assembly, 1.0);
         let mut rest = State::initial(&assembly.model);
-        settle(&assembly.model, &mut rest, &mut Scratch::new(&assembly.model), step, 1e-9)?;
+        settle(&assembly.model, &mut rest, &mut Scratch::new(&assembly.model), 1e-9)?;
         Ok(Self { model: assembly.model, rest, ground: ground(&scenario)?, step })
     }
 

@@ -23,7 +23,7 @@ impl Scene {
     pub(crate) fn consensus(degrees: f64) -> Result<Self, Failure> {
         let model = consensus::eight_barrels(degrees)?;
         let mut rest = State::initial(&model);
-        settle(&model, &mut rest, &mut Scratch::new(&model), 1e-4, 1e-9)?;
+        settle(&model, &mut rest, &mut Scratch::new(&model), 1e-9)?;
         Ok(Self { model, rest })
     }
 

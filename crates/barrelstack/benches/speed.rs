@@ -10,7 +10,7 @@ use barrelstack::assemble::{Assembly, assemble};
 use barrelstack::ground::{Ground, ground};
 use barrelstack::scenario::Scene;
 use barrelstack::step::default_step;
-use barrelstack::watch::{Thresholds, Watch};
+use barrelstack::watch::{End, Thresholds, Watch};
 use barrelstack::{Scenario, Summary};
 use barrelstack_dynamics::{
     EnergyLedger, Method, Model, Observer, Planar, Scratch, Simulation, State, settle, simulate,
@@ -149,7 +149,7 @@ impl Stage {
         let step = default_step(&assembly, 1.0);
         let mut state = State::initial(&assembly.model);
         let mut scratch = Scratch::new(&assembly.model);
-        settle(&assembly.model, &mut state, &mut scratch, step, 1e-10)?;
+        settle(&assembly.model, &mut state, &mut scratch, 1e-10)?;
         Ok(Self { scenario: scenario.clone(), assembly, ground, state, scratch, step })
     }
 
@@ -193,6 +193,8 @@ impl Stage {
     ) -> u64 {
         let Scene::Stack { outcome, .. } = &self.scenario.scene else { return 0 };
         let record = &self.scenario.record;
+        let mut scenario = self.scenario.clone();
+        scenario.run.stop_after_collapse = after;
         let mut progress = |_| ControlFlow::Continue(());
         let mut watch = Watch::new(
             &self.assembly,
@@ -201,7 +203,7 @@ impl Stage {
             scratch,
             Thresholds::of(outcome, 1.0),
             (record.frame_rate, record.history_rate),
-            after,
+            End::new(&scenario, &self.assembly, &self.ground),
             &mut progress,
         );
         let end_time = self.scenario.run.duration.unwrap_or(12.0);

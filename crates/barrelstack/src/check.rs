@@ -5,8 +5,10 @@ use barrelstack_dynamics::{Scratch, State};
 use crate::assemble::{PartKind, assemble};
 use crate::ground::ground;
 use crate::overlap::check_overlap;
-use crate::run::{RunFailure, at_rest, time_step};
+use crate::rest::at_rest;
+use crate::run::{RunFailure, time_step};
 use crate::scenario::Scenario;
+use crate::stick::SoftStick;
 
 /// What a check found.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,7 +53,7 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
     lines.push(format!("  time step     {:.3} ms", 1e3 * step));
     if scenario.run.settle {
         let start = state.poses.clone();
-        let settled = at_rest(scenario, &assembly, &mut state, &mut scratch)?;
+        let settled = at_rest(&assembly, &mut state, &mut scratch)?;
         let deepest = state
             .poses
             .iter()
@@ -65,6 +67,14 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
             1e3 * deepest,
             settled.unbalanced
         ));
+        let locked = settled.locked;
+        lines.push(format!(
+            "  friction      locked in as the stack sank: {:.0} % of the normal forces, at {} contacts \
+             that hold and {} at their limit",
+            100.0 * locked.friction,
+            locked.holding,
+            locked.slipping
+        ));
     }
     let ground = ground(scenario)?;
     if let Some(motion) = &ground.motion {
@@ -76,6 +86,10 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
             100.0 * motion.pgv(),
             100.0 * motion.pgd()
         ));
+    }
+    if scenario.run.settle {
+        let soft = SoftStick::of(&assembly, &scratch, ground.motion.as_ref());
+        lines.extend(soft.iter().map(|stick| format!("  stick         {stick}")));
     }
     lines.extend(ground.warnings.iter().map(|warning| format!("  warning       {warning}")));
     lines.push(format!("  fingerprint   {:016x}", scenario.fingerprint()));

@@ -5,16 +5,17 @@ use std::ops::ControlFlow;
 use barrelstack_dynamics::contact::Basis;
 use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::{
-    EnergySummary, Method, Motion, Planar, RunError, Scratch, SettleError, Settled, Simulation,
-    State, settle, simulate,
+    EnergySummary, Method, Motion, Planar, RunError, Scratch, Settled, Simulation, State, simulate,
 };
 
 use crate::assemble::{AssembleError, Assembly, assemble};
 use crate::ground::{Ground, GroundError, ground};
 use crate::outcome::{Outcome, judge};
 use crate::overlap::check_overlap;
+use crate::rest::{Restless, at_rest};
 use crate::scenario::{self, Scenario, Scene, Until};
 use crate::step::{critical_time_step, default_step};
+use crate::stick::SoftStick;
 use crate::watch::{End, Ending, Fates, Recording, StrapFate, Stresses, Thresholds, Watch};
 
 /// Everything that was seen of a run.
@@ -85,7 +86,7 @@ pub enum RunFailure {
     Assemble(#[from] AssembleError),
     /// The stack does not stand by itself.
     #[error(transparent)]
-    Settle(#[from] SettleError),
+    Settle(#[from] Restless),
     /// The step is too long for the contacts.
     #[error("run.step = {asked} ms is too long: {reason}; try {instead} ms, or leave it out")]
     Step {
@@ -101,9 +102,6 @@ pub enum RunFailure {
     Duration(String),
 }
 
-/// Largest share of gravity that may be left unbalanced at rest.
-const SETTLE_TOLERANCE: f64 = 1e-10;
-
 /// Share of the energy that went through, missing from the books, above which a run is invalid.
 ///
 /// A hundred times what leads to a warning, and a thousand times what a sound step leaves open.
@@ -114,9 +112,6 @@ pub const CUT: f64 = 0.01;
 
 /// Most steps of a run; a stack takes some 10⁵ steps a second.
 const MOST_STEPS: f64 = 1e9;
-
-/// Share of the way of the body that goes furthest from which a body counts as gone with it.
-const LOST_SHARE: f64 = 0.25;
 
 /// Runs a scenario.
 ///
@@ -142,6 +137,7 @@ pub fn run(
     let rates =
         (scenario.record.frame_rate / time_scale, scenario.record.history_rate / time_scale);
     let (evaluations, elements) = (scratch.evaluations, scratch.contact_evaluations);
+    let sticks = SoftStick::of(&assembly, &scratch, ground.motion.as_ref());
     let mut told = |time| progress(Progress { time, end_time });
     let mut watch = Watch::new(
         &assembly,
@@ -157,8 +153,14 @@ pub fn run(
     let Watch { recording, stresses, fates, straps, ending, .. } = watch;
     let ending = ending.unwrap_or(Ending::of_time(scenario));
     let ended = result.map(|totals| Ended::of(&totals));
-    let Verdict { outcome, energy, steps, warnings, ending } =
+    let Verdict { outcome, energy, steps, mut warnings, ending } =
         conclude(&assembly, &ground, &fates, ended, state.time, ending);
+    if outcome == Outcome::Stable {
+        // What fell has no slip to be wrong about.
+        let slips = (0..assembly.parts.len()).map(|body| fates.fate(body).residual_slip.abs());
+        let most = slips.fold(0.0, f64::max);
+        warnings.extend(sticks.iter().filter(|stick| stick.shows_in(most)).map(|s| s.to_string()));
+    }
     let interrupted = ending == Ending::Interrupted;
     let work = Work {
         steps,
@@ -209,7 +211,7 @@ pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunF
     let step = time_step(scenario, &assembly)?;
     check_length(end_time, step)?;
     let settled = if scenario.run.settle {
-        Some(at_rest(scenario, &assembly, &mut state, &mut scratch)?)
+        Some(at_rest(&assembly, &mut state, &mut scratch)?)
     } else {
         barrelstack_dynamics::evaluate(&assembly.model, &state, &mut scratch);
         None
@@ -217,7 +219,7 @@ pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunF
     assembly.strap(&mut state).map_err(AssembleError::from)?;
     if scenario.run.settle && assembly.model.straps().iter().any(|s| s.length < s.span(&state)) {
         // Straps that pull from the start press the stack together.
-        at_rest(scenario, &assembly, &mut state, &mut scratch)?;
+        at_rest(&assembly, &mut state, &mut scratch)?;
     }
     if matches!(scenario.scene, Scene::Free(_)) {
         // Equilibrium is that of the places; what the scenario sets in motion starts from there.
@@ -290,7 +292,7 @@ pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFai
     let Some(step) = scenario.run.step.map(|step| step * scale) else {
         return Ok(default_step(assembly, scale));
     };
-    let critical = critical_time_step(assembly);
+    let critical = critical_time_step(assembly, scale);
     let adapts = matches!(scenario.run.method, scenario::Method::BogackiShampine { .. });
     if adapts || step < critical {
         return Ok(step);
@@ -305,29 +307,6 @@ pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFai
 /// A step (s) in milliseconds, to be printed.
 fn milliseconds(step: f64) -> f64 {
     (1e9 * step).round() / 1e6
-}
-
-/// Lets the stack come to rest, with the step that its stiffest contact suggests: where it comes to rest
-/// does not depend on the step of the run.
-///
-/// # Errors
-/// When it does not; names the lowest of the bodies that go, which the others lose their hold with.
-pub(crate) fn at_rest(
-    scenario: &Scenario,
-    assembly: &Assembly,
-    state: &mut State<Planar>,
-    scratch: &mut Scratch<Planar>,
-) -> Result<Settled, SettleError> {
-    let step = default_step(assembly, scenario.run.similitude.sqrt());
-    let start = state.poses.clone();
-    settle(&assembly.model, state, scratch, step, SETTLE_TOLERANCE).map_err(|error| {
-        let SettleError::NotAtRest { body, moved } = error;
-        let ways = state.poses.iter().zip(&start).map(|(a, b)| (a.position - b.position).length());
-        let lowest = ways.enumerate().find(|(_, way)| *way > LOST_SHARE * moved);
-        lowest.map_or(SettleError::NotAtRest { body, moved }, |(lowest, way)| {
-            SettleError::NotAtRest { body: assembly.parts[lowest].name.clone(), moved: way }
-        })
-    })
 }
 
 pub(crate) fn method(scenario: &Scenario) -> Method {

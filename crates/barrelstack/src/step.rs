@@ -17,21 +17,23 @@ const SHARE: f64 = 0.1;
 /// from the last step overshoot.
 const DAMPING_SHARE: f64 = 0.7;
 
-/// Penetration (m) at which laws that stiffen with penetration are measured.
+/// Penetration (m) of full scale at which laws that stiffen with penetration are measured.
 const REFERENCE: f64 = 0.01;
 
 /// Share of the critical time step of impacts that is taken: they are over within a few milliseconds, and
 /// may not force the step of what stands.
-const IMPACT_SHARE: f64 = 0.6;
+const IMPACT_SHARE: f64 = 0.4;
 
 /// The time step (s): a share of the critical one, rounded down to a number that is easily said at full
 /// scale; `time_scale` is that of similitude.
 pub fn default_step(assembly: &Assembly, time_scale: f64) -> f64 {
+    let depth = REFERENCE * time_scale * time_scale;
     let damping =
-        fastest(&assembly.model, damping_rate) + of_straps(assembly, |strap| strap.damping);
-    let seats = critical(assembly, |law| !matches!(law, NormalLaw::Rebound { .. }));
+        fastest(&assembly.model, |model, pair, body| damping_rate(model, pair, body, depth))
+            + of_straps(assembly, |strap| strap.damping);
+    let seats = critical(assembly, depth, |law| !matches!(law, NormalLaw::Rebound { .. }));
     let step = (SHARE * seats)
-        .min(IMPACT_SHARE * critical_time_step(assembly))
+        .min(IMPACT_SHARE * critical_time_step(assembly, time_scale))
         .min(DAMPING_SHARE / damping)
         / time_scale;
     let full_scale = if step.is_finite() { round_down(step) } else { 1e-3 };
@@ -42,15 +44,16 @@ pub fn default_step(assembly: &Assembly, time_scale: f64) -> f64 {
 ///
 /// For an explicit method it is 2/ω, with ω² = Σk/m for the stiffest body: the springs of all nodes of
 /// one of its boundaries that face one target, over its mass, and those of its straps.
-pub fn critical_time_step(assembly: &Assembly) -> f64 {
-    critical(assembly, |_| true)
+/// Laws that stiffen count with a penetration of 1 cm at full scale; `time_scale` is that of similitude.
+pub fn critical_time_step(assembly: &Assembly, time_scale: f64) -> f64 {
+    critical(assembly, REFERENCE * time_scale * time_scale, |_| true)
 }
 
-/// The same for the contacts of some laws.
-fn critical(assembly: &Assembly, of: fn(&NormalLaw) -> bool) -> f64 {
+/// The same for the contacts of some laws, at a penetration (m).
+fn critical(assembly: &Assembly, depth: f64, of: fn(&NormalLaw) -> bool) -> f64 {
     let contacts = fastest(&assembly.model, |model, pair, body| {
         let law = &model.interfaces()[pair.interface].normal;
-        if of(law) { stiffness_rate(model, pair, body) } else { 0.0 }
+        if of(law) { stiffness_rate(model, pair, body, depth) } else { 0.0 }
     });
     2.0 / (contacts + of_straps(assembly, |strap| strap.stiffness)).sqrt()
 }
@@ -86,15 +89,22 @@ fn fastest(
 }
 
 /// Σk/m (1/s²) of the nodes that face a target at a time: a quarter of those around a body at most.
-fn stiffness_rate(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>) -> f64 {
-    let stiffness = model.interfaces()[pair.interface].normal.tangent_stiffness(REFERENCE);
+fn stiffness_rate(
+    model: &Model<Planar>,
+    pair: &ContactPair,
+    body: &Body<Planar>,
+    depth: f64,
+) -> f64 {
+    let interface = &model.interfaces()[pair.interface];
+    let normal = interface.normal.tangent_stiffness(depth);
+    let stiffness = normal.max(interface.friction.stick_stiffness());
     facing(model, pair, 0.25) * stiffness / body.mass
 }
 
 /// Σc/m, or Σc d²/I if more (1/s), of the nodes that face a target at a time: on a flat target half of
 /// those around a body, on a round one a quarter.
-fn damping_rate(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>) -> f64 {
-    let damping = model.interfaces()[pair.interface].normal.tangent_damping(REFERENCE);
+fn damping_rate(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>, depth: f64) -> f64 {
+    let damping = model.interfaces()[pair.interface].normal.tangent_damping(depth);
     let flat = match &model.bodies()[pair.target].surfaces[pair.surface].surface {
         Shape::HalfPlane(_) | Shape::Polygon(_) => true,
         Shape::Circle(_) | Shape::Cradle(_) | Shape::BarrelProfile(_) => false,

@@ -51,7 +51,7 @@ pub struct End<R: Real = f64> {
 
 impl End {
     /// As a scenario says.
-    pub(crate) fn new(scenario: &Scenario, assembly: &Assembly, ground: &Ground) -> Self {
+    pub fn new(scenario: &Scenario, assembly: &Assembly, ground: &Ground) -> Self {
         let run = &scenario.run;
         let after = run.stop_after_collapse.map(|after| after * run.similitude.sqrt());
         Self {

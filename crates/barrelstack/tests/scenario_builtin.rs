@@ -91,5 +91,5 @@ fn a_missing_record_says_where_to_get_it() {
     let sentence = record.check_files().unwrap_err();
     assert!(sentence.starts_with("there is no record `RSN995_NORTHR_PEL360.AT2`"), "{sentence}");
     assert!(sentence.contains("NGA-West2"), "{sentence}");
-    assert!(sentence.contains("--set motion.record=PATH"), "{sentence}");
+    assert!(sentence.contains("name another as `motion.record`"), "{sentence}");
 }

@@ -87,8 +87,8 @@ pub fn stiffness(
         ("scatter of the force".to_owned(), format!("{} N", short(scatter))),
     ];
     let scenario = format!(
-        "[interface.{interface}]\nstiffness = {}\n# a stiffness needs its damping beside it: `barrelstack \
-         calibrate drop`\n",
+        "[interface.{interface}]\nstiffness = {}\n# a stiffness needs its damping beside it, which a drop test \
+         gives\n",
         quoted(per_node, Dimension::STIFFNESS)
     );
     Ok(Calibration {

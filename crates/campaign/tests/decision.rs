@@ -62,7 +62,12 @@ fn study(falls: impl Fn(usize, f64) -> usize) -> Collected {
         number("top_drift_ratio", "", Role::Demand, each(&|_, x, n| (n == 0).then_some(0.05 * x))),
     ];
     let motions = (0..12)
-        .map(|r| MotionSource { name: format!("record {r}"), source: "made".into(), hash: None })
+        .map(|r| MotionSource {
+            name: format!("record {r}"),
+            source: "made".into(),
+            hash: None,
+            key: r.to_string(),
+        })
         .collect();
     let table = StudyTable::new(columns).unwrap();
     let provenance = Provenance {
@@ -77,6 +82,7 @@ fn study(falls: impl Fn(usize, f64) -> usize) -> Collected {
         stop: None,
         drawn: vec!["friction".into()],
         varied: Vec::new(),
+        common: Vec::new(),
         motions,
         columns: table.specs().cloned().collect(),
         chunks: 1,

@@ -331,7 +331,7 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
         .run(folder.path(), &RunOptions::default(), &|_| ControlFlow::Continue(()))
         .unwrap_err();
     let told = error.to_string();
-    assert!(told.contains("belongs to another study: the study file has changed since"), "{told}");
+    assert!(told.contains("belongs to another study: a [[factor]] has changed"), "{told}");
     let told =
         Study::parse("test.toml", &format!("{BASE}{text}").replacen("seed = 7", "seed = 8", 1))
             .unwrap()
@@ -342,18 +342,18 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
     assert_eq!(std::fs::read(folder.path().join("study.json")).unwrap(), before);
 
     // A later version may lay folders out in another way.
-    let later = String::from_utf8(before).unwrap().replacen("\"schema\": 1", "\"schema\": 2", 1);
+    let later = String::from_utf8(before).unwrap().replacen("\"schema\": 2", "\"schema\": 3", 1);
     std::fs::write(folder.path().join("study.json"), later).unwrap();
     let error = Collected::read(folder.path()).unwrap_err().to_string();
     assert!(
-        error.contains("in layout 2 of such folders, and this version reads layout 1"),
+        error.contains("in layout 3 of such folders, and this version reads layout 2"),
         "{error}"
     );
 
     // Shards without what says whose they are.
     std::fs::remove_file(folder.path().join("study.json")).unwrap();
     std::fs::remove_file(folder.path().join("study.toml")).unwrap();
-    for name in ["table.csv", "table.parquet", "provenance.json"] {
+    for name in ["table.csv", "table.parquet", "columns.csv", "provenance.json"] {
         std::fs::remove_file(folder.path().join(name)).unwrap();
     }
     let error = other

@@ -455,7 +455,7 @@ fn constants_per_length_do_not_depend_on_the_spacing_of_nodes() {
         let mut law = rough();
         law.basis = barrelstack_dynamics::Basis::Length;
         let body = block("block", (0.6, 0.3), 40.0, Some(spacing), pose(0.0, 0.15, 0.0));
-        let scene = Scene::new(vec![floor(), body], law, DOWN).settled(2e-4, 1e-10);
+        let scene = Scene::new(vec![floor(), body], law, DOWN).settled(1e-10);
         0.15 - scene.state.poses[1].position.z
     };
     // The corners stand for half of the short sides too, whatever the spacing: take that away.

@@ -161,7 +161,7 @@ fn two_points(angle: f64, law: NormalLaw, friction: FrictionLaw) -> Scene {
     body.nodes = vec![];
     assert_eq!(body.motion, Motion::Free);
     assert!(matches!(body.surfaces[0].surface, Shape::Circle(Circle { .. })));
-    Scene::new(vec![ground, body], interface(law, friction), DOWN).settled(1e-4, 1e-9)
+    Scene::new(vec![ground, body], interface(law, friction), DOWN).settled(1e-9)
 }
 
 #[test]

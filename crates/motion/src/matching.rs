@@ -24,8 +24,9 @@ pub enum MatchMethod {
     /// (Lilhanand and Tseng 1988; Al Atik and Abrahamson 2010, Earthquake Spectra 26:601-617).
     ///
     /// Keeps the character of the motion; slower.
-    /// Where it stalls, rounds in the frequency domain follow; if that fails too, the match begins
-    /// anew with the frequency domain first, and the provenance says so.
+    /// Where it stalls, rounds follow that go from the best motion and keep all other extrema below the
+    /// target; if that fails too, the match begins anew with the frequency domain first, and the
+    /// provenance says so.
     Time,
 }
 

@@ -210,11 +210,13 @@ impl Record {
     pub fn horizontal_pair(&self) -> Result<(&Channel, &Channel), MotionError> {
         let mut flat = self.channels.iter().filter(|channel| !channel.is_vertical());
         let (Some(one), Some(two)) = (flat.next(), flat.next()) else {
-            return Err(MotionError::NoChannel {
-                file: self.file.clone(),
-                wanted: "second that is not vertical, which measures of both horizontals need"
-                    .to_owned(),
-                available: self.channel_names(),
+            return Err(MotionError::Mismatch {
+                what: format!(
+                    "measures over directions need two horizontal components, and {} has {}",
+                    self.file,
+                    self.channel_names()
+                ),
+                remedy: "give the files of both".to_owned(),
             });
         };
         for channel in [one, two] {

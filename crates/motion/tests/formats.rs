@@ -348,7 +348,7 @@ fn text_samples() -> Vec<&'static str> {
         .iter()
         .chain(OFFSET)
         .map(|sample| sample.0)
-        .filter(|file| !file.starts_with("sac") && !file.starts_with("miniseed"))
+        .filter(|file| !["sac", "miniseed", "npz"].iter().any(|binary| file.starts_with(binary)))
         .chain(["usc/example.y0a", "smc/uncorrected.smc"])
         .collect()
 }

@@ -291,7 +291,7 @@ fn measures_of_both_horizontals_need_directions_that_are_known_and_perpendicular
     assert!(pair("N", "column 2").unwrap_err().contains("whether channel \"column 2\""));
     assert!(pair("N", "S").unwrap_err().contains("not perpendicular"));
     assert!(pair("0", "30").unwrap_err().contains("not perpendicular"));
-    assert!(pair("N", "UP").unwrap_err().contains("no channel"));
+    assert!(pair("N", "UP").unwrap_err().contains("two horizontal components"));
 }
 
 const STATION_XML: &str = r#"<?xml version="1.0"?>

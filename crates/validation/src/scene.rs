@@ -209,8 +209,8 @@ impl Scene {
     ///
     /// # Errors
     /// When it does not stand.
-    pub fn settled(mut self, time_step: f64, tolerance: f64) -> Result<Self, Failure> {
-        settle(&self.model, &mut self.state, &mut self.scratch, time_step, tolerance)?;
+    pub fn settled(mut self, tolerance: f64) -> Result<Self, Failure> {
+        settle(&self.model, &mut self.state, &mut self.scratch, tolerance)?;
         Ok(self)
     }
 

@@ -43,7 +43,7 @@ fn a_step_takes_no_more_arithmetic_than_it_did() {
 /// Touching nodes, plain operations, divisions and choices of a step.
 fn per_step(model: &Model<Planar>, method: Method) -> [u64; 4] {
     let mut rest = State::initial(model);
-    settle(model, &mut rest, &mut Scratch::new(model), 1e-4, 1e-9).unwrap();
+    settle(model, &mut rest, &mut Scratch::new(model), 1e-9).unwrap();
     let time_step = 0.25e-3;
     let end_time = time_step * STEPS as f64;
     let case = Case { model, state: rest, drive: GROUND, time_step, end_time };

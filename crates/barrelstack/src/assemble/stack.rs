@@ -1,6 +1,6 @@
 //! A stack in one of its two views, with its laws of contact.
 
-use barrelstack_dynamics::contact::Stop;
+use barrelstack_dynamics::contact::{Rolling, Stop};
 use barrelstack_dynamics::{Interface, Model, Planar, Vec2};
 
 use super::builder::Builder;
@@ -11,6 +11,9 @@ use crate::scenario::{self, StackSpec, View};
 /// Lever (m) of the resistance of barrels on hoops against rolling on floors, racks and each other: an
 /// assumption.
 const ROLLING_LEVER: f64 = 0.01;
+
+/// Spin (rad/s) at which most of that resistance is reached.
+const ROLLING_SPIN: f64 = 0.1;
 
 /// Builds a stack in its view.
 pub(super) fn assemble(
@@ -64,7 +67,10 @@ fn laws(spec: &StackSpec, scale: Similitude) -> Vec<Interface<Planar>> {
         },
         // What has fallen does not roll for ever.
         None => Interface {
-            rolling: Some(ROLLING_LEVER * scale.length),
+            rolling: Some(Rolling {
+                lever: ROLLING_LEVER * scale.length,
+                spin: ROLLING_SPIN / scale.time(),
+            }),
             ..interface(name, law, 1.0, scale)
         },
     };

@@ -29,8 +29,9 @@ const BAR_RADIUS: f64 = 0.015;
 /// Half the thickness (m) of the lips of a cup: an assumption.
 const LIP_RADIUS: f64 = 0.004;
 
-/// Radius (m) of the corners of tubes: an assumption.
-pub(super) const TUBE_CORNER: f64 = 0.005;
+/// Radius (m) of the corners of tubes: an assumption. Two of them are more than the stroke of a seat, so
+/// that the cores of tubes never meet.
+pub(super) const TUBE_CORNER: f64 = 0.012;
 
 /// Builds all levels; returns the height of the stack and the reach of a rack on its barrels (m).
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {

@@ -244,7 +244,8 @@ fn vulnerability(decision: &Decision, foreign: &Foreign, asset: &str, about: &st
 fn pelicun(limits: &[(String, Lognormal)], foreign: &Foreign, asset: &str) -> String {
     let mut head =
         "ID,Incomplete,Demand-Type,Demand-Unit,Demand-Offset,Demand-Directional".to_owned();
-    let quoted = asset.replace('"', "\"\"");
+    // A hyphen divides the parts of an identity there.
+    let quoted = asset.replace('"', "\"\"").replace('-', ".");
     let mut row = format!("\"{quoted}\",0,{},{},0,0", foreign.demand, foreign.unit);
     for (number, (_, curve)) in (1..).zip(limits) {
         // Writing to a String cannot fail.

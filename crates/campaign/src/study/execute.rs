@@ -46,6 +46,8 @@ struct Shared<'a> {
     study: &'a Study,
     folder: &'a Folder,
     shelf: Shelf,
+    /// What tells the motions from all others.
+    motions: Vec<u64>,
     rule: Option<StopRule>,
     stop: AtomicBool,
     state: Mutex<State>,
@@ -83,7 +85,7 @@ impl Study {
         let shelf = Shelf::default();
         // Before the folder is made: a study that cannot run leaves none behind.
         self.try_motions(&shelf)?;
-        let place = Folder::open(folder, self)?;
+        let place = Folder::open(folder, self, true)?;
         place.clean()?;
         let (done, damaged) = self.done(&place)?;
         let rule = self.stop_rule();
@@ -102,6 +104,7 @@ impl Study {
             study: self,
             folder: &place,
             shelf,
+            motions: self.motion_keys()?,
             rule,
             stop: AtomicBool::new(false),
             state: Mutex::new(state),
@@ -145,14 +148,17 @@ impl Study {
                 chunks - 1
             )));
         }
-        let place = Folder::open(folder, self)?;
+        let place = Folder::open(folder, self, false)?;
         if let Some(path) = place.shards()?.get(&chunk) {
-            read_shard(path, &self.columns())?;
-            return Ok(false);
+            match read_shard(path, &self.columns()) {
+                Ok(_) => return Ok(false),
+                Err(StudyError::Shard { .. }) => set_aside(path)?,
+                Err(error) => return Err(error),
+            }
         }
         let mut bench = Bench { shelf: &Shelf::default(), tell: &mut |_| {}, stop };
         let table = self.compute(chunk, &mut bench)?.ok_or(StudyError::Stopped)?;
-        place.write_shard(chunk, &table)?;
+        place.write_shard(chunk, self.chunk_key(chunk, &self.motion_keys()?), &table)?;
         Ok(true)
     }
 
@@ -162,20 +168,25 @@ impl Study {
         let columns = self.columns();
         let mut done = BTreeMap::new();
         let mut damaged = 0;
-        for (chunk, path) in folder.shards()? {
+        let shards = folder.shards()?.into_iter();
+        for (chunk, path) in shards.filter(|(chunk, _)| *chunk < self.chunk_count()) {
             match read_shard(&path, &columns) {
                 Ok(table) => drop(done.insert(chunk, Tally::of(&table))),
                 Err(StudyError::Shard { path, .. }) => {
                     damaged += 1;
-                    std::fs::rename(&path, path.with_extension("damaged")).map_err(|error| {
-                        StudyError::system("set aside the damaged shard", &path, &error)
-                    })?;
+                    set_aside(&path)?;
                 }
                 Err(error) => return Err(error),
             }
         }
         Ok((done, damaged))
     }
+}
+
+/// Gives a damaged shard another name, so that its chunk is run again and nothing is lost.
+fn set_aside(path: &Path) -> Result<(), StudyError> {
+    std::fs::rename(path, path.with_extension("damaged"))
+        .map_err(|error| StudyError::system("set aside the damaged shard", path, &error))
 }
 
 impl Shared<'_> {
@@ -215,7 +226,7 @@ impl Shared<'_> {
         let stop = || self.stop.load(Ordering::Relaxed);
         let mut bench = Bench { shelf: &self.shelf, tell: &mut tell, stop: &stop };
         let Some(table) = self.study.compute(chunk, &mut bench)? else { return Ok(()) };
-        self.folder.write_shard(chunk, &table)?;
+        self.folder.write_shard(chunk, self.study.chunk_key(chunk, &self.motions), &table)?;
         let mut state = self.state();
         state.done.insert(chunk, Tally::of(&table));
         state.progress.chunks_done += 1;

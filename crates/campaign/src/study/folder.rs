@@ -21,7 +21,9 @@ use crate::system;
 use super::column::ColumnSpec;
 use super::design::Design;
 use super::error::StudyError;
+use super::grow::Common;
 use super::motions::hash_files;
+use super::shard;
 use super::stop::{StopRule, Tally};
 use super::table::StudyTable;
 use super::{Intensity, Study};
@@ -34,6 +36,9 @@ const FILE_LIMIT: usize = 1 << 30;
 
 const MANIFEST: &str = "study.json";
 const SHARDS: &str = "shards";
+
+/// Under this key a shard says what its chunk holds.
+const KEY: &str = "chunk";
 
 /// What the rows of a study come from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -60,6 +65,8 @@ pub struct Provenance {
     pub drawn: Vec<String>,
     /// What a design for sensitivity exchanges, in the order of the cases of a block; empty for others.
     pub varied: Vec<String>,
+    /// What all cases depend on.
+    pub common: Vec<Common>,
     /// The motions, in order.
     pub motions: Vec<MotionSource>,
     /// The columns of the table.
@@ -83,6 +90,8 @@ pub struct MotionSource {
     pub source: String,
     /// Fingerprint of the bytes of its files; none where it has none.
     pub hash: Option<String>,
+    /// Fingerprint of how it is made.
+    pub key: String,
 }
 
 /// The rows of a study, with what they come from.
@@ -113,7 +122,10 @@ pub(super) struct Folder {
 
 impl Folder {
     /// A folder for a study: made when it is not there, checked when it is.
-    pub(super) fn open(path: &Path, study: &Study) -> Result<Self, StudyError> {
+    ///
+    /// A study that grew, or changed in nothing that all its cases have in common, keeps the chunks that are
+    /// still what they were; only a run as a whole may decide that (`grows`).
+    pub(super) fn open(path: &Path, study: &Study, grows: bool) -> Result<Self, StudyError> {
         let folder = Self { path: path.to_owned() };
         let refuse = |reason: String| Err(StudyError::Folder { folder: path.to_owned(), reason });
         if path.is_file() {
@@ -125,10 +137,14 @@ impl Folder {
         if manifest.is_file() {
             let known = manifest_of(path)?;
             if known.study_hash != study.fingerprint() {
+                let wanted = study.provenance()?;
+                let reason = match difference(&known, &wanted) {
+                    None if grows => return folder.regrown(study, &wanted),
+                    None => "the study was changed since; run it as a whole once, which keeps what is still valid".to_owned(),
+                    Some(reason) => format!("belongs to another study: {reason}"),
+                };
                 return refuse(format!(
-                    "belongs to another study: {}; name another folder, or go back to the study that it belongs to \
-                     (a copy of its file is {})",
-                    difference(&known, &study.provenance()?),
+                    "{reason}; name another folder, or go back to the study that it belongs to (a copy of its file is {})",
                     path.join("study.toml").display()
                 ));
             }
@@ -152,6 +168,26 @@ impl Folder {
         Ok(folder)
     }
 
+    /// The folder, now of another study with the same cases or some of them: shards whose chunks are not what they
+    /// were get the ending `.replaced`.
+    fn regrown(self, study: &Study, wanted: &Provenance) -> Result<Self, StudyError> {
+        let keys = study.chunk_keys()?;
+        for (chunk, path) in self.shards()? {
+            let bytes = read_file(&path)?;
+            let key = shard::text_of(bytes, KEY).unwrap_or_default();
+            if keys.get(&chunk).is_none_or(|wanted| key != format!("{wanted:016x}")) {
+                let aside = path.with_extension("replaced");
+                fs::rename(&path, &aside)
+                    .map_err(|error| StudyError::system("rename", &path, &error))?;
+            }
+        }
+        let text = serde_json::to_string_pretty(wanted)
+            .map_err(|error| StudyError::Table(error.to_string()))?;
+        write_whole(&self.path.join("study.toml"), study.text.as_bytes())?;
+        write_whole(&self.path.join(MANIFEST), format!("{text}\n").as_bytes())?;
+        Ok(self)
+    }
+
     /// The shards by chunk; two of one chunk are told apart by their fingerprints, and either will do.
     pub(super) fn shards(&self) -> Result<BTreeMap<usize, PathBuf>, StudyError> {
         shards(&self.path)
@@ -172,8 +208,14 @@ impl Folder {
 
     /// Writes the shard of a chunk: under another name first, so that it has its name only when it is whole and on the
     /// disk.
-    pub(super) fn write_shard(&self, chunk: usize, table: &StudyTable) -> Result<(), StudyError> {
-        let bytes = table.to_parquet()?;
+    pub(super) fn write_shard(
+        &self,
+        chunk: usize,
+        key: u64,
+        table: &StudyTable,
+    ) -> Result<(), StudyError> {
+        let about = [(KEY, format!("{key:016x}"))];
+        let bytes = shard::to_bytes(table, &about).map_err(StudyError::Table)?;
         let name = format!("{chunk:06}-{:016x}.parquet", fnv1a(&bytes));
         write_whole(&self.path.join(SHARDS).join(name), &bytes)
     }
@@ -186,31 +228,47 @@ impl Folder {
         // The table travels alone: what it comes from goes with it.
         let study = fs::read_to_string(self.path.join("study.toml")).unwrap_or_default();
         let about = [("study", study), ("provenance", provenance.clone())];
-        let bytes = super::shard::to_bytes(&collected.table, &about).map_err(StudyError::Table)?;
+        let bytes = shard::to_bytes(&collected.table, &about).map_err(StudyError::Table)?;
         write_whole(&self.path.join("table.parquet"), &bytes)?;
         write_whole(&self.path.join("columns.csv"), collected.table.dictionary().as_bytes())?;
         write_whole(&self.path.join("provenance.json"), format!("{provenance}\n").as_bytes())
     }
 }
 
-/// What is different between what a folder belongs to and a study.
-fn difference(known: &Provenance, wanted: &Provenance) -> String {
+/// What is different between what a folder belongs to and a study; none where they have in common what all cases
+/// depend on, so that chunks may be kept.
+fn difference(known: &Provenance, wanted: &Provenance) -> Option<String> {
     if known.version != wanted.version {
-        return format!("it was made by version {}, this is {}", known.version, wanted.version);
+        return Some(format!(
+            "it was made by version {}, this is {}",
+            known.version, wanted.version
+        ));
     }
     if known.seed != wanted.seed {
-        return format!("its seed is {}, that of this one {}", known.seed, wanted.seed);
+        return Some(format!("its seed is {}, that of this one {}", known.seed, wanted.seed));
     }
+    // A motion that is gone or is another under its name would leave rows behind that nobody can place.
     let changed = known.motions.iter().find(|motion| !wanted.motions.contains(motion));
-    match changed {
-        Some(motion) if wanted.motions.iter().any(|other| other.name == motion.name) => {
-            let what = if motion.hash.is_some() { "record" } else { "motion" };
+    if let Some(motion) = changed {
+        let same_name = wanted.motions.iter().any(|other| other.name == motion.name);
+        let what = if motion.hash.is_some() { "record" } else { "motion" };
+        return Some(if same_name {
             format!("the {what} \"{}\" has changed", motion.name)
-        }
-        Some(motion) => format!("it has the motion \"{}\", which this one has not", motion.name),
-        None if known.title == wanted.title => "the study file has changed since".to_owned(),
-        None => format!("\"{}\"", known.title),
+        } else {
+            format!("it has the motion \"{}\", which this one has not", motion.name)
+        });
     }
+    let changed = known.common.iter().find(|common| !wanted.common.contains(common));
+    changed.map(|common| format!("{} has changed", common.what))
+}
+
+/// The bytes of a file of a folder.
+fn read_file(path: &Path) -> Result<Vec<u8>, StudyError> {
+    system::read(path, FILE_LIMIT).map_err(|reason| StudyError::System {
+        doing: "read",
+        path: path.to_owned(),
+        reason,
+    })
 }
 
 /// The manifest of a folder.
@@ -224,11 +282,7 @@ fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
             "is not there; name a folder that a study wrote".to_owned()
         }));
     }
-    let bytes = system::read(&path, FILE_LIMIT).map_err(|reason| StudyError::System {
-        doing: "read",
-        path: path.clone(),
-        reason,
-    })?;
+    let bytes = read_file(&path)?;
     let known: Provenance = serde_json::from_slice(&bytes).map_err(|error| {
         refuse(format!(
             "holds a {MANIFEST} that is no manifest of a study: {error}; name another folder"
@@ -284,11 +338,7 @@ fn named(path: &Path) -> Option<(usize, u64)> {
 /// Reads a shard; what its bytes are must be what its name says.
 pub(super) fn read_shard(path: &Path, specs: &[ColumnSpec]) -> Result<StudyTable, StudyError> {
     let damaged = |reason: String| StudyError::Shard { path: path.to_owned(), reason };
-    let bytes = system::read(path, FILE_LIMIT).map_err(|reason| StudyError::System {
-        doing: "read",
-        path: path.to_owned(),
-        reason,
-    })?;
+    let bytes = read_file(path)?;
     let (chunk, hash) =
         named(path).ok_or_else(|| damaged("its name is not that of a shard".to_owned()))?;
     let found = fnv1a(&bytes);
@@ -355,7 +405,8 @@ impl Study {
             let files = motion.shaking.files(Some(&base.motion));
             let source = motion.shaking.source(&base.motion);
             let hash = hash_files(&motion.name, &files)?.map(|hash| format!("{hash:016x}"));
-            Ok(MotionSource { name: motion.name.clone(), source, hash })
+            let key = format!("{:016x}", fnv1a(format!("{:?}", motion.shaking).as_bytes()));
+            Ok(MotionSource { name: motion.name.clone(), source, hash, key })
         });
         let motions = motions.collect::<Result<_, StudyError>>()?;
         Ok(Provenance {
@@ -381,6 +432,7 @@ impl Study {
                 | Design::Stripes
                 | Design::Ida(_) => Vec::new(),
             },
+            common: self.common()?,
             motions,
             columns: self.columns(),
             chunks: self.chunk_count(),

@@ -53,6 +53,14 @@ pub(super) fn from_bytes(bytes: Vec<u8>) -> Result<StudyTable, String> {
     read(bytes).map_err(|error| error.to_string())
 }
 
+/// A text that [`to_bytes`] was given beside the table; none where it was not.
+pub(super) fn text_of(bytes: Vec<u8>, key: &str) -> Option<String> {
+    let reader = SerializedFileReader::new(bytes::Bytes::from(bytes)).ok()?;
+    let pairs = reader.metadata().file_metadata().key_value_metadata()?;
+    let key = format!("barrelstack.{key}");
+    pairs.iter().find(|pair| pair.key == key)?.value.clone()
+}
+
 fn write(table: &StudyTable, about: &[(&str, String)]) -> Result<Vec<u8>, ParquetError> {
     let specs: Vec<&ColumnSpec> = table.specs().collect();
     let described =

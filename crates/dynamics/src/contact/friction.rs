@@ -104,6 +104,15 @@ impl<R: Real> FrictionLaw<R> {
         }
     }
 
+    /// The stiffness (N/m) with which it holds what does not slip; zero for laws that do not hold.
+    #[inline(always)]
+    pub fn stick_stiffness(&self) -> R {
+        match *self {
+            Self::Frictionless | Self::Regularized { .. } => R::zero(),
+            Self::Coulomb { tangential_stiffness, .. } => tangential_stiffness,
+        }
+    }
+
     /// The speed (m/s) at which a body creeps under a steady tangential force that is `share` of the
     /// friction limit (0 ≤ share < 1); zero for laws that hold.
     pub fn creep_speed(&self, share: f64) -> R {

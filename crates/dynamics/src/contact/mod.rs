@@ -4,6 +4,7 @@ mod friction;
 mod normal;
 pub mod restitution;
 
+use crate::real::Real as _;
 use crate::space::Space;
 
 pub use friction::{Friction, FrictionLaw, Stick};
@@ -32,9 +33,15 @@ impl Basis {
     }
 }
 
-/// Spin (rad/s) of one body relative to the other at which 71 % of the resistance to rolling is reached:
-/// the moment is the normal force times its lever times `ω / √(ω² + ω₀²)`.
-pub const ROLLING_SPIN: f64 = 0.1;
+/// Resistance to rolling: a moment against the spin ω of one body relative to the other, the normal force
+/// times a lever times `ω / √(ω² + ω₀²)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rolling<R = f64> {
+    /// The lever (m).
+    pub lever: R,
+    /// `ω₀` (rad/s): the spin at which 71 % of the moment is reached.
+    pub spin: R,
+}
 
 /// How two kinds of surfaces push on each other.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,10 +52,25 @@ pub struct Interface<S: Space> {
     pub normal: NormalLaw<S::Real>,
     /// What the surfaces meet beyond the stroke of that law; none where it has no end.
     pub stop: Option<Stop<S::Real>>,
-    /// Lever (m) at which the normal force resists rolling (see [`ROLLING_SPIN`]); none where it does not.
-    pub rolling: Option<S::Real>,
+    /// How the normal force resists rolling; none where it does not.
+    pub rolling: Option<Rolling<S::Real>>,
     /// Slip to friction force.
     pub friction: FrictionLaw<S::Real>,
     /// What the constants are stated for.
     pub basis: Basis,
+}
+
+impl<S: Space> Interface<S> {
+    /// The stiffness (N/m) at a penetration (m), along the normal or of the stick, whichever is more.
+    #[inline(always)]
+    pub fn stiffness(&self, depth: S::Real) -> S::Real {
+        let mut normal = self.normal.tangent_stiffness(depth);
+        if let Some(stop) = self.stop {
+            let beyond = depth - stop.depth;
+            let reached = S::Real::zero().lt(beyond);
+            let hard = stop.law.tangent_stiffness(beyond);
+            normal += S::Real::select(reached, hard, S::Real::zero());
+        }
+        normal.max(self.friction.stick_stiffness())
+    }
 }

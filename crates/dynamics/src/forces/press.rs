@@ -1,7 +1,7 @@
 //! The contacts of one pair: from gaps to forces on both bodies.
 
 use crate::body::{Nodes, Round};
-use crate::contact::{FrictionLaw, NormalLaw, ROLLING_SPIN, Stop};
+use crate::contact::{FrictionLaw, NormalLaw, Rolling, Stop};
 use crate::elements::{Elements, Group, PairFrame};
 use crate::model::{Counts, Model};
 use crate::real::{Mask, Real};
@@ -130,8 +130,8 @@ fn touch_by<S: Space>(
 
 /// Nodes of a pair that press into a surface, one after the other.
 struct Press<'a, S: Space> {
-    /// Lever (m) at which normal forces resist rolling, if they do.
-    rolling: Option<S::Real>,
+    /// How normal forces resist rolling, if they do.
+    rolling: Option<Rolling<S::Real>>,
     stop: Option<Stop<S::Real>>,
     /// Where the contacts of the pair count; none if everywhere.
     counted: Option<<S::Real as Real>::Mask>,
@@ -208,8 +208,10 @@ impl<S: Space> Press<'_, S> {
             }
             let mut counts = counts & (-round.greatest_depth).lt(gap.distance);
             for (outward, distance) in round.sides.iter().flatten() {
-                let point = round.center + toward * (round.radius + gap.distance);
-                let nearer = gap.distance.lt(point.dot(*outward) - *distance);
+                // The round of the other, about its center, as near to the side as to the arc.
+                let center = round.center + toward * nearest.core;
+                let rounding = nearest.core - nearest.gap.distance;
+                let nearer = gap.distance.lt(center.dot(*outward) - *distance - rounding);
                 counts = counts & !(against_round & nearer);
             }
             if (counts & gap.distance.lt(zero)).any() {
@@ -223,25 +225,37 @@ impl<S: Space> Press<'_, S> {
         }
     }
 
-    /// The share with which a corner counts on a side near whose end the corner of the other body may bear
-    /// on a side of its own.
+    /// The share with which a corner counts on a side, near whose end the corner of the other body may
+    /// itself bear on a side of this one.
     ///
-    /// Where two boxes just overlap, face on face, both corners lie at one place and are one contact; they
-    /// become two, at both ends of where the faces overlap, as these ends part.
+    /// Where two faces end at one place, one of the two corners there counts, the first body's as long as
+    /// it has a side of the other before it. Where two boxes just overlap, face on face, both do: they are
+    /// one contact, which becomes two as the ends of the overlap part.
     #[inline(always)]
     fn companion(&self, round: &Round<S>, nearest: &Nearest<S>) -> S::Real {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
-        let parted = (nearest.to_end * S::Real::splat(1.0 / COMPANION)).max(zero).min(one);
-        if one.le(parted).all() {
+        if S::Real::splat(COMPANION).le(nearest.to_end).all() {
             return one;
         }
-        // Whether a side of this corner runs along the other side toward its end, and not away from it.
-        let end = self.frame.to_contactor(nearest.toward_end);
-        let along = round.limits[0].dot(end).max(round.limits[1].dot(end));
+        let ahead = self.frame.to_contactor(nearest.toward_end);
+        let out = self.frame.to_contactor(nearest.gap.normal);
+        // From this corner to the one at the end of the side.
+        let apart = ahead * nearest.to_end - out * nearest.core;
         let (from, to) = PARALLEL;
-        let together =
-            ((along - S::Real::splat(from)) * S::Real::splat(1.0 / (to - from))).max(zero);
-        one - (one - parted) * together.min(one)
+        let mut share = one;
+        for (limit, arc) in round.limits.iter().zip(&round.arc_limits) {
+            if arc.is_some() {
+                continue;
+            }
+            // How far that corner lies along a side of this one, and whether the two sides are face on face.
+            let along = apart.dot(*limit);
+            let parted = (along * S::Real::splat(1.0 / COMPANION)).min(one);
+            let facing =
+                (limit.dot(ahead).abs() - S::Real::splat(from)) * S::Real::splat(1.0 / (to - from));
+            let left = one - (one - parted) * facing.max(zero).min(one);
+            share = S::Real::select(zero.lt(along), share.min(left), share);
+        }
+        share
     }
 
     /// The forces of a node at `node` (m), which penetrates in at least one lane; in the frame of the
@@ -279,10 +293,10 @@ impl<S: Space> Press<'_, S> {
         sum.damped += Wrench { force: contact.normal * damped, moment: lever * damped };
         let sliding = -S::along(friction.force, contact.normal);
         sum.friction += Wrench { force: sliding, moment: S::moment(arm, sliding) };
-        if let Some(lever) = self.rolling {
+        if let Some(rolling) = self.rolling {
             let spin = meeting.spin;
-            let slow = S::Real::splat(ROLLING_SPIN * ROLLING_SPIN);
-            let resisted = normal_force * lever / (spin.dot(spin) + slow).sqrt();
+            let scale = (spin.dot(spin) + rolling.spin * rolling.spin).sqrt();
+            let resisted = normal_force * rolling.lever / scale;
             sum.friction += Wrench { force: S::Vector::default(), moment: -(spin * resisted) };
         }
 

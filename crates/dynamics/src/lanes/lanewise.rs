@@ -1,7 +1,7 @@
 //! From things made of single numbers to the same things made of bundles, lane by lane.
 
 use crate::body::{Body, Face, Node, Nodes, Placed, Round};
-use crate::contact::{FrictionLaw, Interface, NormalLaw, Stick, Stop};
+use crate::contact::{FrictionLaw, Interface, NormalLaw, Rolling, Stick, Stop};
 use crate::forces::Losses;
 use crate::model::Model;
 use crate::real::{Mask, Real};
@@ -147,6 +147,7 @@ fields!(Node<Planar<R>>, Node<Planar>, Node { position, tributary_length });
 fields!(Face<Planar<R>>, Face<Planar>, Face { point, outward });
 fields!(Placed<Planar<R>>, Placed<Planar>, Placed { surface, offset, rotation });
 fields!(Circle<R>, Circle, Circle { radius });
+fields!(Rolling<R>, Rolling, Rolling { lever, spin });
 fields!(Cradle<R>, Cradle, Cradle { radius, sin, cos });
 fields!(
     BarrelProfile<R>,

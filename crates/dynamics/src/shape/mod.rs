@@ -41,6 +41,8 @@ pub struct Nearest<S: Space> {
     pub to_end: S::Real,
     /// Unit vector along that piece toward that end.
     pub toward_end: S::Vector,
+    /// Distance (m) to the core, from which the boundary is grown.
+    pub core: S::Real,
 }
 
 impl<S: Space> Nearest<S> {
@@ -48,7 +50,7 @@ impl<S: Space> Nearest<S> {
     #[inline(always)]
     fn endless(gap: Gap<S>, round: <S::Real as Real>::Mask) -> Self {
         let to_end = S::Real::splat(f64::INFINITY);
-        Self { gap, round, to_end, toward_end: S::Vector::default() }
+        Self { gap, round, to_end, toward_end: S::Vector::default(), core: gap.distance }
     }
 }
 
@@ -151,7 +153,7 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
             Self::Cradle(shape) => Nearest::endless(shape.gap(point), none),
             Self::BarrelProfile(shape) => {
                 let (gap, round) = shape.nearest(point);
-                Nearest::endless(gap, round)
+                Nearest { core: gap.distance + shape.rounding, ..Nearest::endless(gap, round) }
             }
         }
     }

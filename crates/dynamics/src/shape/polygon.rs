@@ -125,7 +125,8 @@ impl<R: Real> Polygon<R> {
             distance: R::select(outside, distance, deepest) - self.corner_radius,
             normal: Vec2::select(outside, nearest * (one / safe), deepest_normal),
         };
-        Nearest { gap, round: outside & at_corner, to_end, toward_end }
+        let core = gap.distance + self.corner_radius;
+        Nearest { gap, round: outside & at_corner, to_end, toward_end, core }
     }
 
     #[inline(always)]

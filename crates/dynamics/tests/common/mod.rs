@@ -17,7 +17,7 @@ use barrelstack_dynamics::space::Rotation2;
 use barrelstack_dynamics::{
     Basis, Body, BodyId, ContactPair, Counts, Drive, EnergyLedger, FrictionLaw, Interface, Method,
     Model, Motion, Node, Nodes, NormalLaw, Observer, Placed, Planar, Pose, RunError, Scratch,
-    Settled, Shape, Simulation, State, Twist, Vec2, settle, simulate,
+    SettleError, Settled, Shape, Simulation, State, Twist, Vec2, settle, simulate,
 };
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};
 
@@ -214,18 +214,14 @@ impl Scene {
     }
 
     /// Settles the scene.
-    pub fn settled(mut self, time_step: f64, tolerance: f64) -> Self {
-        self.settle(time_step, tolerance).unwrap();
+    pub fn settled(mut self, tolerance: f64) -> Self {
+        self.settle(tolerance).unwrap();
         self
     }
 
     /// Settles, or says why not.
-    pub fn settle(
-        &mut self,
-        time_step: f64,
-        tolerance: f64,
-    ) -> Result<Settled, barrelstack_dynamics::SettleError> {
-        settle(&self.model, &mut self.state, &mut self.scratch, time_step, tolerance)
+    pub fn settle(&mut self, tolerance: f64) -> Result<Settled, SettleError> {
+        settle(&self.model, &mut self.state, &mut self.scratch, tolerance)
     }
 
     /// Runs to a time (s).

@@ -16,7 +16,7 @@ pub(crate) const FORMAT: Format =
     Format { name: "npz", title: "NumPy archive of this crate", sniff, read };
 
 /// Most bytes of all arrays.
-const LARGEST: u64 = 128 << 20;
+const LARGEST: u64 = 64 << 20;
 
 enum Array {
     Numbers(Vec<f64>),

@@ -6,8 +6,8 @@ use super::source::{Source, shorten};
 use super::zip;
 use crate::error::{ReadError, Refusal};
 
-/// Most bytes that are unpacked; the longest strong-motion files have a fifth of it.
-const LARGEST: u64 = 128 << 20;
+/// Most bytes that are unpacked; the longest strong-motion files have less than half of it.
+const LARGEST: u64 = 64 << 20;
 
 /// The bytes of the one file inside, and its name; nothing where the file is not packed.
 pub(super) fn unpack(source: &Source<'_>) -> Result<Option<(Vec<u8>, String)>, ReadError> {
@@ -57,7 +57,7 @@ fn all(source: &Source<'_>, inside: impl Read) -> Result<Vec<u8>, ReadError> {
         return Err(source.error(
             (),
             Refusal::Damaged,
-            "at most 128 MB when unpacked",
+            "at most 64 MB when unpacked",
             "more",
             "no strong-motion file is that long; cut it to one record",
         ));

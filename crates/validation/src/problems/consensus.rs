@@ -183,7 +183,7 @@ fn is_rack(body: usize) -> bool {
 /// When (s) the first barrel falls in the scene made of bodies, for either drop.
 fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
     let step = 1e-4;
-    let mut scene = Scene::of(eight_barrels(degrees)?).settled(step, 1e-9)?;
+    let mut scene = Scene::of(eight_barrels(degrees)?).settled(1e-9)?;
     let rest: Vec<f64> = scene.state.poses.iter().map(|p| p.position.z).collect();
     let drive = Shake::Swing { amplitude: 0.1016, omega: TAU / 1.0748 };
     let mut fallen = [None; 2];

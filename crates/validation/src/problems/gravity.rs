@@ -48,7 +48,7 @@ fn column(count: u32) -> Result<Scene, Failure> {
         let place = (0.0, 0.1 + 0.2 * f64::from(i));
         bodies.push(brick(&format!("brick {i}"), (0.5, 0.2), MASS, place));
     }
-    Scene::new(bodies, interface(firm(), rough()), DOWN)?.settled(2e-4, 1e-9)
+    Scene::new(bodies, interface(firm(), rough()), DOWN)?.settled(1e-9)
 }
 
 /// The problems of this theory.
@@ -124,7 +124,7 @@ fn cradle(angle: f64) -> Problem {
             let damping = restitution::damping(stiffness, 0.5, mass);
             let normal = NormalLaw::SpeedGap { stiffness, damping };
             let laws = interface(normal, FrictionLaw::Frictionless);
-            let scene = Scene::new(vec![ground, barrel], laws, DOWN)?.settled(1e-4, 1e-10)?;
+            let scene = Scene::new(vec![ground, barrel], laws, DOWN)?.settled(1e-10)?;
             let found = scene.scratch.contacts.iter().map(|c| c.normal_force).fold(0.0, f64::max);
             let sunk = -scene.state.poses[1].position.z;
             let steeper = atan2(radius * sin(angle), radius * cos(angle) - sunk);
@@ -180,7 +180,7 @@ fn stands(n: u32, share: f64) -> Result<bool, Failure> {
         bodies.push(block(&format!("brick {i}"), (length, height), MASS, at));
     }
     let mut scene = Scene::new(bodies, interface(firm(), rough()), DOWN)?;
-    Ok(settle(&scene.model, &mut scene.state, &mut scene.scratch, 2e-4, 1e-7).is_ok())
+    Ok(settle(&scene.model, &mut scene.state, &mut scene.scratch, 1e-7).is_ok())
 }
 
 fn overhang(n: u32) -> Problem {

@@ -238,7 +238,7 @@ fn two_points(angle: f64, friction: FrictionLaw) -> Result<Scene, Failure> {
     ground.nodes = vec![points(&[point(-1.0), point(1.0)])];
     let mut body = disc("barrel", RADIUS, MASS, 0.5 * RADIUS * RADIUS, Vec2::default());
     body.nodes = vec![];
-    Scene::new(vec![ground, body], interface(firm(0), friction), DOWN)?.settled(1e-4, 1e-9)
+    Scene::new(vec![ground, body], interface(firm(0), friction), DOWN)?.settled(1e-9)
 }
 
 fn leaves(angle: f64) -> Problem {

@@ -39,7 +39,7 @@ fn tower(sizes: &[(f64, f64)], frictions: (f64, f64)) -> Result<Scene, Failure> 
         .into_iter()
         .map(|pair| ContactPair { interface: usize::from(!on_ground(&pair)), ..pair })
         .collect();
-    Scene::of(Model::new(bodies, laws.to_vec(), pairs, DOWN)?).settled(STEP, 1e-6)
+    Scene::of(Model::new(bodies, laws.to_vec(), pairs, DOWN)?).settled(1e-6)
 }
 
 /// Time step (s).

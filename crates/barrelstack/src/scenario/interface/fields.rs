@@ -76,8 +76,8 @@ const STIFFNESS: Field = Field::new(
         Range::POSITIVE,
     ),
     Default::Derived(
-        "in a stack 9.8 kN/cm for a linear law per node, 1.2e9 N/m^1.5 for a rebound per node; must \
-         be given otherwise",
+        "in a stack 9.8 kN/cm for a linear law per node, and for a rebound per node 1.2e9 N/m^1.5, \
+         5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise",
     ),
     "Stiffness k: N/m per node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent 1.5.",
 );
@@ -246,7 +246,7 @@ pub static FRICTION: Section = Section {
                         "tangential_stiffness_ratio",
                         Kind::Number(Range::up_to(100.0)),
                         Default::Value("1.0"),
-                        "Tangential stiffness of the stick over the normal stiffness.",
+                        "Tangential stiffness of the stick over the normal stiffness; a stiffer one turns friction round sooner, at a smaller step.",
                     ),
                     Field::new(
                         "tangential_damping_ratio",

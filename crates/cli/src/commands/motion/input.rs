@@ -41,7 +41,7 @@ pub(super) struct Input {
     /// for each.
     #[arg(long, value_name = "[CHANNEL=]NUMBER")]
     sensitivity: Vec<String>,
-    /// StationXML with the sensitivity and the direction of each channel; without it files that end
+    /// `StationXML` with the sensitivity and the direction of each channel; without it files that end
     /// with .xml beside a file of counts are looked into.
     #[arg(long, value_name = "FILE")]
     station_xml: Option<PathBuf>,
@@ -162,7 +162,7 @@ impl Input {
         })
     }
 
-    /// The sensitivities that were typed, and those of the StationXML that was named.
+    /// The sensitivities that were typed, and those of the `StationXML` that was named.
     fn sensitivities(&self) -> anyhow::Result<ReadOptions> {
         let mut options = ReadOptions::default();
         for text in &self.sensitivity {
@@ -188,7 +188,7 @@ impl Input {
         Ok(options)
     }
 
-    /// Reads one file; counts without a sensitivity are looked up in the StationXML beside it.
+    /// Reads one file; counts without a sensitivity are looked up in the `StationXML` beside it.
     fn read_one(&self, file: &str, options: &ReadOptions) -> anyhow::Result<Record> {
         let first = read_file(file, options);
         let lacking = first.as_ref().is_err_and(|error| {
@@ -384,7 +384,7 @@ fn with_option(error: anyhow::Error) -> anyhow::Error {
     anyhow!("{error}: {option}")
 }
 
-/// The channels of a StationXML file.
+/// The channels of a `StationXML` file.
 fn instruments(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     let text = bytes(path)?;
     let found =
@@ -395,7 +395,7 @@ fn instruments(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     Ok(found)
 }
 
-/// Files beside one whose ending is that of StationXML, in the order of their names.
+/// Files beside one whose ending is that of `StationXML`, in the order of their names.
 fn beside(file: &Path) -> Vec<PathBuf> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
     let Ok(entries) = std::fs::read_dir(folder.unwrap_or(Path::new("."))) else {

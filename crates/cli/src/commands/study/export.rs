@@ -18,7 +18,7 @@ pub(super) struct ExportArgs {
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// What the other program calls a stack (its taxonomy, or the identity of its component).
-    #[arg(long, value_name = "NAME", default_value = "wine-barrel-stack")]
+    #[arg(long, value_name = "NAME", default_value = "wine.barrel.stack")]
     asset: String,
 }
 

@@ -1,0 +1,84 @@
+//! What the elastic stick does to slip that goes to and fro.
+//!
+//! A stick turns its friction round over twice the stretch at which it yields, and not at once: every
+//! reversal of slip comes late by √(4 stretch / acceleration).
+//! For a block on swinging ground that made slip 0.3 to 2.7 √(stretch / amplitude) larger or smaller
+//! (`crates/dynamics/tests/reversal.rs`), so that root is what is told.
+
+use std::fmt;
+
+use barrelstack_dynamics::forces::tributary_length;
+use barrelstack_dynamics::{Basis, FrictionLaw, Interface, Planar, Scratch};
+use barrelstack_motion::GroundMotion;
+
+use crate::assemble::Assembly;
+
+/// Share of slip above which its error is told.
+const TOLD: f64 = 0.05;
+
+/// An interface whose stick is soft for the motion at hand.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SoftStick {
+    interface: String,
+    /// Stretch (m) at which the sticks of all its contacts at rest yield together.
+    yields: f64,
+    /// Displacement of the ground (m).
+    swing: f64,
+    /// Error of slip, as a share of it.
+    error: f64,
+}
+
+impl SoftStick {
+    /// Those of a stack at rest, for a motion of the ground.
+    pub(crate) fn of(
+        assembly: &Assembly,
+        rest: &Scratch<Planar>,
+        motion: Option<&GroundMotion>,
+    ) -> Vec<Self> {
+        let Some(swing) = motion.map(GroundMotion::pgd) else { return Vec::new() };
+        let model = &assembly.model;
+        let mut sums = vec![(0.0, 0.0); model.interfaces().len()];
+        for contact in &rest.contacts {
+            let pair = &model.pairs()[contact.pair];
+            let interface = &model.interfaces()[pair.interface];
+            let weight = match interface.basis {
+                Basis::Node => 1.0,
+                Basis::Length => tributary_length(model, pair, contact.node as usize),
+            };
+            let stiffness = interface.friction.stick_stiffness() * weight;
+            if let FrictionLaw::Coulomb { static_coefficient, .. } = interface.friction {
+                sums[pair.interface].0 += static_coefficient * contact.normal_force;
+                sums[pair.interface].1 += stiffness;
+            }
+        }
+        let soft = |(interface, (limit, stiffness)): (&Interface<Planar>, (f64, f64))| {
+            let yields = limit / stiffness;
+            let error = (yields / swing).sqrt();
+            let interface = interface.name.clone();
+            (error > TOLD).then_some(Self { interface, yields, swing, error })
+        };
+        model.interfaces().iter().zip(sums).filter_map(soft).collect()
+    }
+
+    /// Whether bodies that slipped by so much (m) did more than stretch it.
+    pub(crate) fn shows_in(&self, slip: f64) -> bool {
+        slip > 2.0 * self.yields
+    }
+}
+
+impl fmt::Display for SoftStick {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}: the elastic stick yields after {:.2} mm, so slip that goes to and fro, on ground that \
+             moves by {:.0} mm, may be {:.0} % off that of rigid friction; {:.0} times its \
+             friction.tangential_stiffness_ratio makes that {:.0} %",
+            self.interface,
+            1e3 * self.yields,
+            1e3 * self.swing,
+            100.0 * self.error,
+            (self.error / TOLD).powi(2).ceil(),
+            100.0 * TOLD
+        )
+    }
+}

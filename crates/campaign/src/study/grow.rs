@@ -1,0 +1,117 @@
+//! What a folder may keep when its study has changed: the chunks whose cases are still the same.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::Study;
+use super::design::{Case, Design};
+use super::error::StudyError;
+use super::motions::hash_files;
+use crate::scenario::fnv1a;
+use crate::scenario::quantity::plain;
+
+/// One thing on which every case of a study depends, with its fingerprint.
+///
+/// How many samples there are is not among them, nor which motions: these tell cases from each other, and the
+/// key of a chunk holds them. More samples and more motions come behind those that there were.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Common {
+    /// What it is, as a sentence calls it.
+    pub what: String,
+    /// Its fingerprint.
+    pub hash: String,
+}
+
+impl Study {
+    /// What all cases have in common.
+    pub(super) fn common(&self) -> Result<Vec<Common>, StudyError> {
+        let base = self.template.with([])?;
+        let factors: Vec<String> = self
+            .factors
+            .iter()
+            .map(|f| format!("{} {:?} {:?}", f.name, f.fields, f.variation))
+            .collect();
+        let intensity = self.intensity.as_ref().map(|i| format!("{} {:?}", i.measure, i.levels));
+        let design = match &self.design {
+            Design::LatinHypercube { count } => format!("latin-hypercube of {count}"),
+            Design::Ida(hunt) => format!("{hunt:?}"),
+            Design::OneAtATime { quantiles } => format!("one-at-a-time {quantiles:?}"),
+            Design::FullFactorial
+            | Design::Sobol { .. }
+            | Design::Saltelli { .. }
+            | Design::MonteCarlo { .. }
+            | Design::Stripes => self.design.name().to_owned(),
+        };
+        let motions =
+            if self.is_sampled() { self.motions.len().to_string() } else { String::new() };
+        let version = format!("{} {}", env!("CARGO_PKG_VERSION"), crate::ensemble::VERSION);
+        let seed = self.seed.to_string();
+        let base = format!("{:016x}", base.fingerprint());
+        let parts = [
+            ("the version of the program", version),
+            ("`seed`", seed),
+            ("the scenario in [base]", base),
+            ("a [[factor]]", factors.join("\n")),
+            ("[intensity]", intensity.unwrap_or_default()),
+            ("[design]", format!("{design}, chunks of {}", self.chunk)),
+            ("the number of motions, from which each sample takes one,", motions),
+        ];
+        let common = |(what, text): (&str, String)| Common {
+            what: what.to_owned(),
+            hash: format!("{:016x}", fnv1a(text.as_bytes())),
+        };
+        Ok(parts.into_iter().map(common).collect())
+    }
+
+    /// Whether cases are samples, so that which motion one takes depends on how many there are.
+    fn is_sampled(&self) -> bool {
+        match self.design {
+            Design::LatinHypercube { .. }
+            | Design::Sobol { .. }
+            | Design::Saltelli { .. }
+            | Design::MonteCarlo { .. } => true,
+            Design::FullFactorial
+            | Design::OneAtATime { .. }
+            | Design::Stripes
+            | Design::Ida(_) => false,
+        }
+    }
+
+    /// What tells the motions from all others: how each is made, and the bytes of its files.
+    pub(super) fn motion_keys(&self) -> Result<Vec<u64>, StudyError> {
+        let base = self.template.with([])?;
+        let key = |motion: &super::Motion| {
+            let files = hash_files(&motion.name, &motion.shaking.files(Some(&base.motion)))?;
+            let text = format!("{} {:?} {files:?}", motion.name, motion.shaking);
+            Ok(fnv1a(text.as_bytes()))
+        };
+        self.motions.iter().map(key).collect()
+    }
+
+    /// What a chunk holds, apart from what all cases have in common: its cases, their motions, levels and
+    /// values, in order.
+    pub(super) fn chunk_key(&self, chunk: usize, motions: &[u64]) -> u64 {
+        let words = |case: &Case| {
+            let settings: Vec<String> = case
+                .settings
+                .iter()
+                .map(|setting| setting.as_ref().map_or_else(String::new, super::Setting::word))
+                .collect();
+            let level = case.level.map_or_else(String::new, plain);
+            let motion = motions[case.motion];
+            format!("{} {:016x} {motion:016x} {level} {settings:?}", case.number, case.id)
+        };
+        let numbers = self.chunks.numbers(chunk);
+        let all: Vec<String> =
+            numbers.iter().map(|number| words(&self.cases.case(self, *number))).collect();
+        fnv1a(all.join("\n").as_bytes())
+    }
+
+    /// The keys of all chunks.
+    pub(super) fn chunk_keys(&self) -> Result<BTreeMap<usize, u64>, StudyError> {
+        let motions = self.motion_keys()?;
+        let key = |chunk| (chunk, self.chunk_key(chunk, &motions));
+        Ok((0..self.chunk_count()).map(key).collect())
+    }
+}

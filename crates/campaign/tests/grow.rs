@@ -1,0 +1,106 @@
+//! A study that grows runs its new cases only, and has the table of one that was so from the start.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Mutex;
+
+use barrelstack_campaign::study::{Progress, RunOptions, Study, StudyError};
+
+/// Two barrels on two levels that are shaken for a moment.
+fn text(count: u32, motions: &str, intensity: &str, design: &str) -> String {
+    format!(
+        "schema = 1\ntitle = \"two barrels for a moment\"\nseed = 7\n\
+         [base.stack]\nlevels = 2\ncolumns = 2\n[base.run]\nduration = \"0.3 s\"\n\
+         [[factor]]\nname = \"friction on the ground\"\nfield = \"interface.rack-ground.friction.coefficient\"\n\
+         distribution = {{ kind = \"uniform\", from = 0.2, to = 0.6 }}\n\
+         {motions}\n{intensity}\n[design]\nkind = \"{design}\"\nchunk = 20\n{}",
+        if design == "stripes" { String::new() } else { format!("count = {count}\n") }
+    )
+}
+
+const PULSE: &str =
+    "[[motion]]\npulse = { kind = \"one-sine\", amplitude = \"1 g\", period = \"0.25 s\" }\n";
+
+fn synthetic(count: u32) -> String {
+    format!(
+        "[[motion]]\nsynthetic = {{ kind = \"clough-penzien\", duration = \"0.3 s\", rise = \"0.05 s\", decay = \"0.1 s\", count = {count} }}\n"
+    )
+}
+
+/// How many cases a run did, and the bytes of its table.
+fn run(text: &str, folder: &Path) -> (u64, [Vec<u8>; 4]) {
+    let study = Study::parse("test.toml", text).unwrap();
+    let last = Mutex::new(Progress::default());
+    let tell = |progress: &Progress| {
+        *last.lock().unwrap() = *progress;
+        ControlFlow::Continue(())
+    };
+    study.run(folder, &RunOptions::default(), &tell).unwrap();
+    let files = ["table.csv", "table.parquet", "provenance.json", "columns.csv"];
+    let now = last.lock().unwrap().now;
+    (now, files.map(|name| std::fs::read(folder.join(name)).unwrap()))
+}
+
+#[test]
+fn more_points_run_only_the_new_ones_and_give_the_table_of_a_fresh_study() {
+    let folder = tempfile::tempdir().unwrap();
+    let grown = folder.path().join("grown");
+    for (count, new) in [(320, 320), (640, 320), (1280, 640)] {
+        let text = text(count, PULSE, "", "sobol");
+        let (ran, table) = run(&text, &grown);
+        assert_eq!(ran, new, "of {count} cases");
+        let (_, fresh) = run(&text, &folder.path().join(count.to_string()));
+        assert!(table == fresh, "{count} cases: not the bytes of a fresh study");
+    }
+}
+
+#[test]
+fn more_motions_run_only_the_new_ones_and_give_the_table_of_a_fresh_study() {
+    let folder = tempfile::tempdir().unwrap();
+    let grown = folder.path().join("grown");
+    let levels = "[intensity]\nmeasure = \"pgv\"\nlevels = [\"20 cm/s\", \"40 cm/s\", \"60 cm/s\", \"80 cm/s\", \"100 cm/s\"]\n";
+    for (motions, new) in [(24, 120), (28, 20), (32, 20)] {
+        let text = text(0, &synthetic(motions), levels, "stripes");
+        let (ran, table) = run(&text, &grown);
+        assert_eq!(ran, new, "under {motions} motions");
+        let (_, fresh) = run(&text, &folder.path().join(motions.to_string()));
+        assert!(table == fresh, "{motions} motions: not the bytes of a fresh study");
+    }
+}
+
+#[test]
+fn what_every_case_depends_on_may_not_change_and_the_refusal_names_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = text(40, PULSE, "", "sobol");
+    run(&first, folder.path());
+    let refused = |text: &str| {
+        let study = Study::parse("test.toml", text).unwrap();
+        let error =
+            study.run(folder.path(), &RunOptions::default(), &|_| ControlFlow::Continue(()));
+        let Err(StudyError::Folder { reason, .. }) = error else { panic!("it ran: {text}") };
+        reason
+    };
+    for (from, to, named) in [
+        ("to = 0.6", "to = 0.7", "a [[factor]] has changed"),
+        ("levels = 2", "levels = 1", "the scenario in [base] has changed"),
+        ("chunk = 20", "chunk = 10", "[design] has changed"),
+        ("seed = 7", "seed = 8", "its seed is 7, that of this one 8"),
+        ("1 g", "2 g", "the motion"),
+    ] {
+        let reason = refused(&first.replace(from, to));
+        assert!(reason.contains(named), "{named}: {reason}");
+    }
+    // A chunk alone does not decide that the study has changed.
+    let study = Study::parse("test.toml", &first.replace("count = 40", "count = 60")).unwrap();
+    let reason = study.run_chunk(folder.path(), 2, &|| false).unwrap_err().to_string();
+    assert!(reason.contains("run it as a whole once"), "{reason}");
+    // A damaged shard heals, chunk by chunk too.
+    let study = Study::parse("test.toml", &first).unwrap();
+    let shard = std::fs::read_dir(folder.path().join("shards")).unwrap().next().unwrap().unwrap();
+    std::fs::write(shard.path(), b"no shard").unwrap();
+    let chunk = shard.file_name().to_string_lossy()[..6].parse().unwrap();
+    assert!(study.run_chunk(folder.path(), chunk, &|| false).unwrap(), "made anew");
+    assert!(!study.run_chunk(folder.path(), chunk, &|| false).unwrap(), "there");
+}

@@ -1,0 +1,212 @@
+//! Static equilibrium under gravity, before anything shakes.
+//!
+//! Equilibrium is a matter of places and sticks alone, so it is looked for in a time of its own, in which
+//! masses are chosen for speed and nothing has a speed: dampers, whatever their law, say nothing about
+//! where bodies come to rest, nor whether they do.
+
+mod refusal;
+mod relax;
+
+use crate::body::Motion;
+use crate::forces::{Scratch, evaluate};
+use crate::integrate::{Integrator, Still};
+use crate::model::Model;
+use crate::real::{Mask, Real};
+use crate::space::{Linear, Space, Twist};
+use crate::state::State;
+
+use refusal::Departure;
+pub use refusal::{Lack, SettleError};
+use relax::Relaxation;
+
+/// What settling found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settled {
+    /// Steps it took, each of one evaluation of the forces.
+    pub steps: u64,
+    /// Largest acceleration left over, as a share of gravity.
+    pub unbalanced: f64,
+    /// What friction locked in.
+    pub locked: Locked,
+}
+
+/// Friction at rest: forces that equilibrium alone does not fix, and that remain from how it was reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Locked {
+    /// Contacts whose stick holds.
+    pub holding: usize,
+    /// Contacts at the limit of their friction.
+    pub slipping: usize,
+    /// Sum of the friction forces of all contacts, as a share of that of their normal forces.
+    pub friction: f64,
+}
+
+/// Steps after which forces that do not balance never will.
+const MOST_STEPS: u64 = 40_000;
+
+/// Steps without momentum of the second try, for what its momentum has carried away in the first.
+const CALM: u64 = 4000;
+
+/// Steps between two looks for bodies that have left.
+const LOOK: u64 = 20;
+
+/// Units in the last place of a body's position that its contacts may leave unbalanced: with springs that
+/// are stiff for the weight they bear, nothing better can be written down.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Lets the bodies sink into their contacts until all forces balance.
+///
+/// Gravity acts on all bodies at once, and friction acts all the while, so forces locked in by sticking
+/// as the stack sinks remain, as they would after stacking; [`Settled::locked`] says how much that is.
+/// The way there is relaxation with momentum: every step carries on a growing share of the way of the
+/// step before, and all bodies are stopped whenever the forces have come to work against their ways.
+/// What does not come to rest so is tried once more, at first without momentum, before it is refused.
+/// The mass of a body is what the stiffness of its contacts allows in a step, and velocities are so small
+/// that dampers feel nothing, so no damping constant and no time step decides where bodies come to rest or
+/// how many steps that takes.
+///
+/// `state` is left at rest at its time; prescribed bodies stay where they are.
+///
+/// # Errors
+/// When a body leaves its place, or the forces do not balance to `tolerance` (share of gravity).
+pub fn settle<S: Space>(
+    model: &Model<S>,
+    state: &mut State<S>,
+    scratch: &mut Scratch<S>,
+    tolerance: f64,
+) -> Result<Settled, SettleError> {
+    let keeps_contacts = std::mem::replace(&mut scratch.keeps_contacts, true);
+    let start_time = state.time;
+    stop(model, state);
+    Integrator::start(model, &Still, state, scratch);
+    let start = state.clone();
+    let mut result = sink(model, state, scratch, tolerance, 0);
+    if result.as_ref().is_err_and(|error| error.lack != Lack::Support) {
+        // With momentum bodies sink somewhat deeper than they lie, which is too deep for some.
+        state.clone_from(&start);
+        evaluate(model, state, scratch);
+        result = sink(model, state, scratch, tolerance, CALM);
+    }
+    state.time = start_time;
+    stop(model, state);
+    evaluate(model, state, scratch);
+    let settled = result.map(|(steps, unbalanced)| {
+        let locked = Locked::of(state, scratch);
+        Settled { steps, unbalanced, locked }
+    });
+    scratch.keeps_contacts = keeps_contacts;
+    settled
+}
+
+/// Steps until every lane rests, the first of them without momentum; how many, and what is left unbalanced.
+fn sink<S: Space>(
+    model: &Model<S>,
+    state: &mut State<S>,
+    scratch: &mut Scratch<S>,
+    tolerance: f64,
+    calm: u64,
+) -> Result<(u64, f64), SettleError> {
+    let gravity = gravity(model).largest_lane();
+    let mut relaxation = Relaxation::new(model, calm);
+    let mut departure = Departure::new(model, state.poses.clone());
+    let mut steps = 0;
+    loop {
+        relaxation.weigh(model, state, scratch);
+        let left_over = unbalanced(model, state, scratch, &relaxation, tolerance * gravity);
+        relaxation.resting = relaxation.resting | left_over.rests;
+        if relaxation.resting.all() {
+            return Ok((steps, left_over.worst / gravity));
+        }
+        if steps % LOOK == 0 {
+            departure.watch(model, state, scratch, &relaxation.met)?;
+        }
+        if steps == MOST_STEPS {
+            let left_over = (steps, left_over.body, left_over.worst / gravity);
+            return Err(departure.unbalanced(model, state, left_over));
+        }
+        relaxation.advance(model, state, scratch);
+        steps += 1;
+    }
+}
+
+/// Takes all motion from what moves freely.
+fn stop<S: Space>(model: &Model<S>, state: &mut State<S>) {
+    for (twist, body) in state.twists.iter_mut().zip(&model.bodies) {
+        if body.motion == Motion::Free {
+            *twist = Twist::default();
+        }
+    }
+}
+
+/// What the forces leave over.
+struct LeftOver<M> {
+    /// The lanes in which it is nothing.
+    rests: M,
+    /// The body that feels it most.
+    body: usize,
+    /// Its acceleration (m/s²), rotation counted at its reach.
+    worst: f64,
+}
+
+/// The accelerations that are left, against what is allowed (m/s²) and what rounding makes of stiff
+/// contacts.
+fn unbalanced<S: Space>(
+    model: &Model<S>,
+    state: &State<S>,
+    scratch: &Scratch<S>,
+    relaxation: &Relaxation<S>,
+    allowed: f64,
+) -> LeftOver<<S::Real as Real>::Mask> {
+    let mut left = LeftOver { rests: !<S::Real as Real>::Mask::default(), body: 0, worst: 0.0 };
+    for (i, body) in model.bodies.iter().enumerate() {
+        if body.motion == Motion::Prescribed {
+            continue;
+        }
+        let length = |v: S::Vector| v.dot(v).sqrt();
+        let reach = S::Real::splat(model.reach[i]);
+        let Twist { linear, angular } = scratch.accelerations[i];
+        let acceleration = length(linear).max(S::spin_magnitude(angular) * reach);
+        let place = length(state.poses[i].position) + reach;
+        let rounding = S::Real::splat(ROUNDING) * place * relaxation.stiffness(i) / body.mass;
+        left.rests = left.rests & acceleration.lt(S::Real::splat(allowed) + rounding);
+        let worst = acceleration.largest_lane();
+        if worst > left.worst {
+            (left.body, left.worst) = (i, worst);
+        }
+    }
+    left
+}
+
+impl Locked {
+    /// Of the contacts at rest; over all lanes.
+    fn of<S: Space>(state: &State<S>, scratch: &Scratch<S>) -> Self {
+        let mut locked = Self::default();
+        let (mut friction, mut normal) = (0.0, 0.0);
+        for contact in &scratch.contacts {
+            let slipping = state.elements.sticks[contact.element].slipping;
+            let force = contact.friction_force.dot(contact.friction_force).sqrt();
+            for lane in (0..S::Real::LANES).filter(|lane| contact.touching.lane(*lane)) {
+                let slips = slipping.lane(lane);
+                locked.slipping += usize::from(slips);
+                locked.holding += usize::from(!slips && force.lane(lane) > 0.0);
+                friction += force.lane(lane);
+                normal += contact.normal_force.lane(lane);
+            }
+        }
+        if normal > 0.0 {
+            locked.friction = friction / normal;
+        }
+        locked
+    }
+}
+
+/// The magnitude of gravity (m/s²), not less than what keeps it fit to divide by.
+fn gravity<S: Space>(model: &Model<S>) -> S::Real {
+    model.gravity.dot(model.gravity).sqrt().max(S::Real::splat(1e-12))
+}
+
+/// How far a body extends from its center of mass (m); a meter where it has no boundary.
+fn extent<S: Space>(model: &Model<S>, body: usize) -> f64 {
+    let reach = model.reach[body];
+    if reach > 0.0 { reach } else { 1.0 }
+}

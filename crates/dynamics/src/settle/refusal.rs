@@ -1,0 +1,248 @@
+//! Why bodies do not come to rest: which one goes, and what it lacks.
+
+use crate::body::BodyId;
+use crate::contact::FrictionLaw;
+use crate::forces::{Contact, Scratch};
+use crate::model::Model;
+use crate::real::{Mask, Real};
+use crate::space::{Linear, Pose, Space};
+use crate::state::State;
+
+use super::{extent, gravity};
+
+/// Share of its reach that a body has moved when it is looked at for what it lacks: more than it sinks,
+/// and not so much that all is lost.
+const GOING: f64 = 0.1;
+
+/// Share of its reach by which a body that stays may stray.
+const LEFT: f64 = 0.5;
+
+/// Share of the way of the body that goes furthest from which a body goes with it.
+const WITH_IT: f64 = 0.25;
+
+/// Share of its way that is penetration where a body sinks.
+const SINKS: f64 = 0.5;
+
+/// Share of the way of its center of mass by which the boundary of a body that turns over has turned: all
+/// of it where it rolls, or tips over its corner.
+const TURNS: f64 = 0.7;
+
+/// A body that does not come to rest under gravity.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("body \"{body}\" does not come to rest under gravity (it moved {moved:.3} m): {lack}")]
+pub struct SettleError {
+    /// The lowest of the bodies that go: those above lose their hold with it.
+    pub body: String,
+    /// How far it moved (m).
+    pub moved: f64,
+    /// Why it goes.
+    pub lack: Lack,
+}
+
+/// What a body lacks to come to rest.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Lack {
+    /// Nothing was ever in touch with it.
+    #[error("nothing lies under it, and nothing holds it")]
+    Support,
+    /// What it lies on gives way under it.
+    #[error(
+        "it sinks {depth:.3} m into \"{on}\": the contacts of {interface} are too soft for what lies \
+         on them"
+    )]
+    Stiffness {
+        /// The body it lies on.
+        on: String,
+        /// The interface between the two.
+        interface: String,
+        /// The penetration (m).
+        depth: f64,
+    },
+    /// All its contacts slip.
+    #[error("it slides on \"{on}\", more than the friction of {interface} can hold")]
+    Friction {
+        /// The body it lies on.
+        on: String,
+        /// The interface between the two.
+        interface: String,
+    },
+    /// Its friction law does not hold what is at rest.
+    #[error(
+        "it creeps on \"{on}\": the regularized friction of {interface} resists motion, but holds \
+         nothing at rest"
+    )]
+    Stick {
+        /// The body it lies on.
+        on: String,
+        /// The interface between the two.
+        interface: String,
+    },
+    /// It turns over what it lies on.
+    #[error(
+        "it tips or rolls over on \"{on}\", which does not hold its weight and what it bears upright"
+    )]
+    Balance {
+        /// The body it lies on.
+        on: String,
+    },
+    /// It leaves what bore it.
+    #[error("it is pushed out of its place")]
+    Place,
+    /// The forces neither balance nor move it away.
+    #[error(
+        "after {steps} steps its forces still miss their balance, by {unbalanced:.0e} of gravity"
+    )]
+    Time {
+        /// The steps.
+        steps: u64,
+        /// The acceleration that is left, as a share of gravity.
+        unbalanced: f64,
+    },
+}
+
+/// Watches for bodies that go.
+pub(super) struct Departure<S: Space> {
+    start: Vec<Pose<S>>,
+    /// The bodies, the lowest first.
+    upward: Vec<BodyId>,
+    /// The lowest body that went when the first did, and what it lacked then.
+    first: Option<(BodyId, Lack)>,
+}
+
+impl<S: Space> Departure<S> {
+    pub(super) fn new(model: &Model<S>, start: Vec<Pose<S>>) -> Self {
+        let height = |body: BodyId| -start[body].position.dot(model.gravity).lane(0);
+        let mut upward: Vec<BodyId> = (0..start.len()).collect();
+        upward.sort_by(|a, b| height(*a).total_cmp(&height(*b)));
+        Self { start, upward, first: None }
+    }
+
+    /// How far every body has strayed (m): sideways, up, or down by more than any body below it, since what
+    /// lies on soft contacts sinks with them.
+    fn strayed(&self, model: &Model<S>, state: &State<S>) -> Vec<f64> {
+        let down = model.gravity * (S::Real::splat(1.0) / gravity(model));
+        let mut strayed = vec![0.0; self.start.len()];
+        let mut sunk = S::Real::zero();
+        for body in &self.upward {
+            let way = state.poses[*body].position - self.start[*body].position;
+            let fallen = way.dot(down);
+            let sideways = way - down * fallen;
+            let sideways = sideways.dot(sideways).sqrt();
+            let far = sideways.max(-fallen).max(fallen - sunk).largest_lane();
+            strayed[*body] = if far.is_finite() { far } else { f64::INFINITY };
+            sunk = sunk.max(fallen);
+        }
+        strayed
+    }
+
+    /// Looks for bodies that go: notes what the first lacks that strays further than sinking explains, and
+    /// says so once a body has left.
+    ///
+    /// By the time that it has left, it has met other bodies and pushed them away.
+    pub(super) fn watch(
+        &mut self,
+        model: &Model<S>,
+        state: &State<S>,
+        scratch: &Scratch<S>,
+        met: &[bool],
+    ) -> Result<(), SettleError> {
+        let strayed = self.strayed(model, state);
+        let share = |body: &BodyId| strayed[*body] / extent(model, *body);
+        let most = self.upward.iter().map(share).fold(0.0, f64::max);
+        if most < GOING {
+            return Ok(());
+        }
+        let (first, lack) = if let Some(first) = self.first.take() {
+            first
+        } else {
+            let farthest = strayed.iter().copied().fold(0.0, f64::max);
+            let going: Vec<bool> = strayed.iter().map(|way| *way >= WITH_IT * farthest).collect();
+            let lowest = self.upward.iter().copied().find(|body| going[*body]).unwrap_or_default();
+            (lowest, self.lack(lowest, model, state, scratch, met, &going))
+        };
+        if most < LEFT {
+            self.first = Some((first, lack));
+            return Ok(());
+        }
+        Err(self.refusal(model, state, first, lack))
+    }
+
+    /// Why there is no rest, though no body has left: for the body that feels most of what is left.
+    pub(super) fn unbalanced(
+        &mut self,
+        model: &Model<S>,
+        state: &State<S>,
+        (steps, body, unbalanced): (u64, BodyId, f64),
+    ) -> SettleError {
+        let (body, lack) = self.first.take().unwrap_or((body, Lack::Time { steps, unbalanced }));
+        self.refusal(model, state, body, lack)
+    }
+
+    fn refusal(&self, model: &Model<S>, state: &State<S>, body: BodyId, lack: Lack) -> SettleError {
+        let moved = self.moved(state, body);
+        SettleError { body: model.bodies[body].name.clone(), moved, lack }
+    }
+
+    /// How far a body has gone (m), in the lane where it is most.
+    fn moved(&self, state: &State<S>, body: BodyId) -> f64 {
+        let way = state.poses[body].position - self.start[body].position;
+        way.dot(way).sqrt().largest_lane()
+    }
+
+    /// What a body lacks that goes, with those others that go.
+    fn lack(
+        &self,
+        body: BodyId,
+        model: &Model<S>,
+        state: &State<S>,
+        scratch: &Scratch<S>,
+        met: &[bool],
+        going: &[bool],
+    ) -> Lack {
+        let of = |contact: &&Contact<S>| {
+            let pair = &model.pairs[contact.pair];
+            contact.touching.any() && (pair.contactor == body || pair.target == body)
+        };
+        let partner = |contact: &Contact<S>| {
+            let pair = &model.pairs[contact.pair];
+            if pair.contactor == body { pair.target } else { pair.contactor }
+        };
+        // What bears it stays; where all go, the last that bears it tells as much as any.
+        let bearing: Vec<_> = scratch.contacts.iter().filter(of).collect();
+        let staying: Vec<_> = bearing.iter().copied().filter(|c| !going[partner(c)]).collect();
+        let bearing = if staying.is_empty() { bearing } else { staying };
+        let Some(last) = bearing.first() else {
+            return if met[body] { Lack::Place } else { Lack::Support };
+        };
+        let on = model.bodies[partner(last)].name.clone();
+        let law = |contact: &Contact<S>| &model.interfaces[model.pairs[contact.pair].interface];
+        if let Some(creeping) =
+            bearing.iter().find(|c| matches!(law(c).friction, FrictionLaw::Regularized { .. }))
+        {
+            let on = model.bodies[partner(creeping)].name.clone();
+            return Lack::Stick { on, interface: law(creeping).name.clone() };
+        }
+        let depth = |contact: &Contact<S>| contact.penetration.largest_lane();
+        let deepest = bearing.iter().max_by(|a, b| depth(a).total_cmp(&depth(b)));
+        if let Some(deepest) = deepest.filter(|c| depth(c) > SINKS * self.moved(state, body)) {
+            let on = model.bodies[partner(deepest)].name.clone();
+            let (interface, depth) = (law(deepest).name.clone(), depth(deepest));
+            return Lack::Stiffness { on, interface, depth };
+        }
+        let turn = S::spin_magnitude(S::turn_between(
+            self.start[body].orientation,
+            state.poses[body].orientation,
+        ));
+        if turn.largest_lane() * model.reach[body] > TURNS * self.moved(state, body) {
+            return Lack::Balance { on };
+        }
+        let slips = |contact: &&Contact<S>| {
+            state.elements.sticks[contact.element].slipping.any()
+                || matches!(law(contact).friction, FrictionLaw::Frictionless)
+        };
+        if bearing.iter().all(slips) {
+            return Lack::Friction { on, interface: law(last).name.clone() };
+        }
+        Lack::Place
+    }
+}

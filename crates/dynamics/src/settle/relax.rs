@@ -1,0 +1,273 @@
+//! Relaxation: steps with fictitious masses, in which nothing has a speed.
+
+use crate::body::Motion;
+use crate::contact::Stick;
+use crate::forces::{self, Scratch, evaluate};
+use crate::model::Model;
+use crate::real::{Mask, Real};
+use crate::space::{Linear, Space, Twist, Wrench};
+use crate::state::State;
+
+use super::{extent, gravity};
+
+/// Fictitious mass over the stiffness that a body's contacts add up to.
+///
+/// A contact of stiffness k between two bodies, seen in their ways and turns, is at most four times k on
+/// the diagonal, and central differences with a step of 1 are stable while a mass is a quarter of the
+/// stiffness: so 1 is just stable for springs, and the rest is for friction that breaks.
+const MARGIN: f64 = 2.0;
+
+/// Share of its reach that a body falls in its first step while nothing holds it.
+const FIRST_FALL: f64 = 1e-4;
+
+/// Share of its reach that a body moves in a step at most: contacts that stiffen with penetration are soft
+/// when they are met.
+const LONGEST_WAY: f64 = 2e-3;
+
+/// Velocities (per step of relaxation) that forces see: a power of two, by which bits do not change, so
+/// small that no damper feels it and that of smooth friction laws only what holds at rest is left.
+const SLOWLY: f64 = 1.0 / (1_u128 << 100) as f64;
+
+/// A contact, seen from both of its bodies.
+struct Touch<S: Space> {
+    element: usize,
+    touching: <S::Real as Real>::Mask,
+    /// Contactor and target.
+    bodies: [usize; 2],
+    /// From their centers of mass to the contact (m), in the inertial frame.
+    arms: [S::Vector; 2],
+    /// From the frame of the target's surface to the inertial frame.
+    rotation: S::Rotation,
+    /// Out of the target, in the surface's frame.
+    normal: S::Vector,
+}
+
+/// The stiffness of all that holds a body: for its way (N/m) and for its turn (N·m).
+#[derive(Clone, Copy)]
+struct Held<R> {
+    way: R,
+    turn: R,
+}
+
+/// What relaxation carries from step to step. Lanes decide alone; a lane that rests stays as it is.
+pub(super) struct Relaxation<S: Space> {
+    /// The lanes that rest.
+    pub(super) resting: <S::Real as Real>::Mask,
+    /// The bodies that have touched something, or hung on something.
+    pub(super) met: Vec<bool>,
+    /// The ways and turns of the last step.
+    ways: Vec<Twist<S>>,
+    /// The stiffest that every body has been held: a body that leaves its contacts for a moment must not
+    /// become light while others lie on it.
+    held: Vec<Held<S::Real>>,
+    touches: Vec<Touch<S>>,
+    /// Whether every element of the list touched.
+    touched: Vec<<S::Real as Real>::Mask>,
+    /// Steps that are still to be made without momentum.
+    calm: u64,
+    /// Steps since the last stop.
+    since: S::Real,
+}
+
+impl<S: Space> Relaxation<S> {
+    /// At the start: nothing moves, and no body has been held. The first steps may go without momentum.
+    pub(super) fn new(model: &Model<S>, calm: u64) -> Self {
+        Self {
+            resting: Default::default(),
+            met: vec![false; model.bodies.len()],
+            ways: vec![Twist::default(); model.bodies.len()],
+            held: vec![Held { way: S::Real::zero(), turn: S::Real::zero() }; model.bodies.len()],
+            touches: Vec::new(),
+            touched: Vec::new(),
+            calm,
+            since: S::Real::zero(),
+        }
+    }
+
+    /// The most stiffness (N/m) that a body's contacts have added up to.
+    pub(super) fn stiffness(&self, body: usize) -> S::Real {
+        self.held[body].way
+    }
+
+    /// Looks at all that touches in the last evaluation, and at how stiff that holds each body.
+    pub(super) fn weigh(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
+        S::Real::scope(
+            #[inline(always)]
+            || self.weigh_all(model, state, scratch),
+        );
+    }
+
+    #[inline(always)]
+    fn weigh_all(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
+        let none = Held { way: S::Real::zero(), turn: S::Real::zero() };
+        let mut now = vec![none; model.bodies.len()];
+        let mut hold = |body: usize, stiffness: S::Real, arm: S::Vector| {
+            self.met[body] = true;
+            now[body].way += stiffness;
+            now[body].turn += stiffness * arm.dot(arm);
+        };
+        self.touches.clear();
+        self.touched.clear();
+        self.touched.resize(state.elements.len(), Default::default());
+        for contact in &scratch.contacts {
+            let pair = &model.pairs[contact.pair];
+            let interface = &model.interfaces[pair.interface];
+            let placed = &model.bodies[pair.target].surfaces[pair.surface];
+            let target = scratch.rotations[pair.target];
+            let rotation = S::compose(target, placed.rotation);
+            let origin = state.poses[pair.target].position + S::rotate(target, placed.offset);
+            let point = origin + S::rotate(rotation, contact.point);
+            let bodies = [pair.contactor, pair.target];
+            let arms = bodies.map(
+                #[inline(always)]
+                |body| point - state.poses[body].position,
+            );
+            let zero = S::Real::zero();
+            let weight = state.elements.weights[contact.element];
+            let weight = S::Real::select(contact.touching, weight, zero);
+            let stiffness = interface.stiffness(contact.penetration) * weight;
+            hold(bodies[0], stiffness, arms[0]);
+            hold(bodies[1], stiffness, arms[1]);
+            let (element, touching, normal) = (contact.element, contact.touching, contact.normal);
+            self.touched[element] = touching;
+            self.touches.push(Touch { element, touching, bodies, arms, rotation, normal });
+        }
+        for (strap, pull) in model.straps.iter().zip(&scratch.pulls) {
+            let taut = S::Real::zero().lt(pull.tension);
+            if taut.any() {
+                let stiffness = S::Real::select(taut, strap.stiffness, S::Real::zero());
+                for (body, point) in strap.bodies.into_iter().zip(strap.points) {
+                    hold(body, stiffness, point);
+                }
+            }
+        }
+        for (held, now) in self.held.iter_mut().zip(now) {
+            held.way = held.way.max(now.way);
+            held.turn = held.turn.max(now.turn);
+        }
+    }
+
+    /// One step: from the forces at a state to a state nearer to rest, and the forces there.
+    pub(super) fn advance(
+        &mut self,
+        model: &Model<S>,
+        state: &mut State<S>,
+        scratch: &mut Scratch<S>,
+    ) {
+        S::Real::scope(
+            #[inline(always)]
+            || {
+                self.choose_ways(model, scratch);
+                self.slide(&mut state.elements.sticks);
+                for (i, way) in self.ways.iter().enumerate() {
+                    state.poses[i] = state.poses[i].moved(*way, S::Real::splat(1.0));
+                    state.twists[i] = Twist::default().plus(*way, S::Real::splat(SLOWLY));
+                }
+            },
+        );
+        let still = S::Real::zero();
+        if let Some(origins) = state.elements.refresh(model, &state.poses, &state.twists, still) {
+            scratch.renumber(&origins);
+            let touched =
+                |origin: &Option<usize>| origin.map_or_else(Default::default, |o| self.touched[o]);
+            self.touched = origins.iter().map(touched).collect();
+        }
+        evaluate(model, state, scratch);
+        S::Real::scope(
+            #[inline(always)]
+            || self.slide_fresh(&mut state.elements.sticks, scratch),
+        );
+        let kept = self.resting.any().then(|| state.elements.sticks.clone());
+        forces::commit(model, state, scratch);
+        for (stick, kept) in state.elements.sticks.iter_mut().zip(kept.into_iter().flatten()) {
+            *stick = Stick {
+                displacement: S::choose(self.resting, kept.displacement, stick.displacement),
+                slipping: (self.resting & kept.slipping) | (!self.resting & stick.slipping),
+            };
+        }
+    }
+
+    /// The ways of the next step: a share of those of the last one, which grows until the forces work
+    /// against them, and what the forces give to the fictitious masses.
+    #[inline(always)]
+    fn choose_ways(&mut self, model: &Model<S>, scratch: &Scratch<S>) {
+        let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
+        let mut power = zero;
+        for ((body, way), forces) in model.bodies.iter().zip(&self.ways).zip(each(model, scratch)) {
+            if body.motion == Motion::Free {
+                power += forces.power(*way);
+            }
+        }
+        let against = power.lt(zero);
+        self.since = S::Real::select(against, zero, self.since) + one;
+        let carried = self.since / (self.since + S::Real::splat(3.0));
+        let calm = S::Real::splat(if self.calm > 0 { 0.0 } else { 1.0 });
+        self.calm = self.calm.saturating_sub(1);
+        let carried = S::Real::select(against | self.resting, zero, carried * calm);
+        let given = S::Real::select(self.resting, zero, S::Real::splat(1.0 / MARGIN));
+        let gravity = gravity(model);
+        for (i, forces) in each(model, scratch).enumerate() {
+            let body = &model.bodies[i];
+            if body.motion == Motion::Prescribed {
+                continue;
+            }
+            let extent = S::Real::splat(extent(model, i));
+            let (way, held) = (&mut self.ways[i], self.held[i]);
+            let falling = body.mass * gravity / (S::Real::splat(FIRST_FALL) * extent);
+            let holds = zero.lt(held.way);
+            let stiffness = S::Real::select(holds, held.way, falling);
+            // What holds a body in one point through its center of mass does not resist its turn.
+            let turning = held.turn.max(S::Real::splat(1e-3) * stiffness * extent * extent);
+            let linear = way.linear * carried + forces.force * (given / stiffness);
+            let angular = way.angular * carried + forces.moment * (given / turning);
+            let length = linear.dot(linear).sqrt().max(S::spin_magnitude(angular) * extent);
+            let longest = S::Real::splat(LONGEST_WAY) * extent;
+            let cut = longest / length.max(longest);
+            *way = Twist { linear: linear * cut, angular: angular * cut };
+        }
+    }
+
+    /// Takes every stick along with its contact.
+    #[inline(always)]
+    fn slide(&self, sticks: &mut [Stick<S>]) {
+        for touch in &self.touches {
+            let way = |of: usize| {
+                let way = self.ways[touch.bodies[of]];
+                way.linear + S::velocity_at(way.angular, touch.arms[of])
+            };
+            let slip = S::unrotate(touch.rotation, way(0) - way(1));
+            let counted = S::Real::select(touch.touching, S::Real::splat(1.0), S::Real::zero());
+            sticks[touch.element].displacement += S::tangential(slip, touch.normal) * counted;
+        }
+    }
+
+    /// Gives the sticks of contacts that have just met the share of the step for which they touched.
+    #[inline(always)]
+    fn slide_fresh(&self, sticks: &mut [Stick<S>], scratch: &Scratch<S>) {
+        let one = S::Real::splat(1.0);
+        for contact in &scratch.contacts {
+            let fresh = contact.touching & !self.touched[contact.element];
+            if fresh.any() {
+                let steps = S::Real::splat(1.0 / SLOWLY);
+                let (depth, approach) = (contact.penetration, contact.penetration_rate * steps);
+                let partly = fresh & depth.lt(approach);
+                let share = depth / S::Real::select(partly, approach, one);
+                let share =
+                    S::Real::select(partly, share, S::Real::select(fresh, one, S::Real::zero()));
+                sticks[contact.element].displacement += contact.slip_rate * (steps * share);
+            }
+        }
+    }
+}
+
+/// The force on every body with gravity, and its moment about the center of mass.
+#[inline(always)]
+fn each<'a, S: Space>(
+    model: &'a Model<S>,
+    scratch: &'a Scratch<S>,
+) -> impl Iterator<Item = Wrench<S>> + 'a {
+    model.bodies.iter().zip(&scratch.wrenches).map(
+        #[inline(always)]
+        |(body, wrench)| Wrench { force: wrench.force + model.gravity * body.mass, ..*wrench },
+    )
+}
