@@ -18,6 +18,7 @@ mod indices;
 mod json;
 mod limit;
 mod loss;
+mod matters;
 mod measures;
 mod modes;
 mod page;

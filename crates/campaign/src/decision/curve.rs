@@ -90,15 +90,14 @@ impl LimitCurve {
         let single = |case: &Case| {
             Some(stripe(case.intensities[measure]?, &[case], |case| limit.reached(case)))
         };
-        let goodness = fit.as_ref().ok().map(|fit| match cases.hunted {
-            true => goodness(&stripes, fit),
-            false => {
-                let bins: Vec<Vec<Stripe>> = groups
-                    .iter()
-                    .map(|(_, of)| of.iter().filter_map(|case| single(case)).collect())
-                    .collect();
-                goodness_in_bins(&bins, fit)
+        let goodness = fit.as_ref().ok().map(|fit| {
+            if cases.hunted {
+                return goodness(&stripes, fit);
             }
+            let of = |(_, of): &(f64, Vec<&Case>)| {
+                of.iter().filter_map(|case| single(case)).collect::<Vec<Stripe>>()
+            };
+            goodness_in_bins(&groups.iter().map(of).collect::<Vec<_>>(), fit)
         });
         let monotony = monotony(&stripes, DRAWS, || random.uniform());
         let told =

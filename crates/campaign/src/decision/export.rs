@@ -219,7 +219,7 @@ fn vulnerability(decision: &Decision, foreign: &Foreign, asset: &str, about: &st
         for (_, cases) in &groups {
             let n = cases.len() as f64;
             let mean = cases.iter().map(|case| of(case)).sum::<f64>() / n;
-            let square = cases.iter().map(|case| (of(case) - mean).powi(2)).sum::<f64>();
+            let square = cases.iter().map(|case| of(case) - mean).map(|off| off * off).sum::<f64>();
             let variance = (square / (n - 1.0).max(1.0)).min(MOST_SCATTER * mean * (1.0 - mean));
             means.push(mean);
             scatter.push(if mean > 0.0 { variance.max(0.0).sqrt() / mean } else { 0.0 });

@@ -4,7 +4,7 @@ use barrelstack_fragility::{Interval, Rate, Stripe};
 use serde_json::{Value, json};
 
 use super::curve::{BandKind, LimitCurve};
-use super::{Breakage, Decision};
+use super::{Breakage, Decision, Sensitivity};
 
 /// Everything but the page.
 pub(super) fn of(decision: &Decision) -> Value {
@@ -87,18 +87,7 @@ pub(super) fn of(decision: &Decision) -> Value {
                 "barrels_burst": loss.burst,
             })).collect::<Vec<_>>(),
         })),
-        "sobol_indices": decision.sensitivities.iter().map(|of| json!({
-            "result": of.result,
-            "blocks": of.blocks,
-            "blocks_left_out": of.left_out,
-            "inputs": of.inputs.iter().map(|(name, index)| json!({
-                "input": name,
-                "first": index.first,
-                "first_interval": bounds(index.first_interval),
-                "total": index.total,
-                "total_interval": bounds(index.total_interval),
-            })).collect::<Vec<_>>(),
-        })).collect::<Vec<_>>(),
+        "sobol_indices": decision.sensitivities.iter().map(sensitivity).collect::<Vec<_>>(),
         "effects": decision.effects.iter().map(|effect| json!({
             "factor": effect.factor,
             "groups": effect.groups.iter().map(|group| json!({
@@ -110,6 +99,21 @@ pub(super) fn of(decision: &Decision) -> Value {
         })).collect::<Vec<_>>(),
         "site": site,
         "warnings": decision.warnings,
+    })
+}
+
+fn sensitivity(of: &Sensitivity) -> Value {
+    json!({
+        "result": of.result,
+        "blocks": of.blocks,
+        "blocks_left_out": of.left_out,
+        "inputs": of.inputs.iter().map(|(name, index)| json!({
+            "input": name,
+            "first": index.first,
+            "first_interval": bounds(index.first_interval),
+            "total": index.total,
+            "total_interval": bounds(index.total_interval),
+        })).collect::<Vec<_>>(),
     })
 }
 

@@ -1,17 +1,15 @@
 //! The page of a study: the answer first, then what it rests on.
 
-use barrelstack_fragility::{Interval, clopper_pearson};
+use barrelstack_fragility::clopper_pearson;
 use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, significant};
 
 use super::cases::{Cases, Measure};
 use super::curve::{BandKind, LEVEL, LimitCurve};
 use super::hazard::Site;
-use super::indices::Sensitivity;
 use super::loss::{Breakage, Losses, WINE};
-use super::measures::MeasureRow;
 use super::modes::ModeIncidence;
 use super::words::{self, capital, count, percent};
-use super::{Decision, figures};
+use super::{Decision, figures, matters};
 use crate::study::Provenance;
 
 /// The whole page.
@@ -80,7 +78,7 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
     // Shares of a hunt are those of where it went.
     if !decision.sensitivities.is_empty() {
         blocks.push(heading("What matters"));
-        blocks.push(Block::Table(indices(&decision.sensitivities)));
+        blocks.push(Block::Table(matters::indices(&decision.sensitivities)));
         blocks.push(text(
             "The first index is the share of the variance that would go if the quantity were known, the total index the \
              share that would stay if everything else were; what the total has more than the first it does together with \
@@ -91,10 +89,10 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
         let overall = collapsed / cases.all.len() as f64;
         blocks.push(heading("What matters"));
         blocks.push(Block::Figure(figures::tornado(&decision.effects, overall)));
-        blocks.push(Block::Table(effects(decision)));
+        blocks.push(Block::Table(matters::effects(decision)));
     }
     blocks.push(heading("Which measure of shaking tells most"));
-    blocks.push(Block::Table(measures(decision)));
+    blocks.push(Block::Table(matters::measures(decision)));
     blocks.push(text(
         "Dispersion is what a measure leaves unexplained: the smaller, the fewer records are needed. Concordance is the \
          chance that of two cases, one collapsed and one standing, the collapsed one had the stronger shaking by this \
@@ -391,122 +389,6 @@ fn at_site(site: &Site, measure: &Measure) -> Vec<Block> {
              the rate is read on logarithmic scales; weaker shaking than its first row is taken to do nothing, stronger \
              than its last to do no more than that.",
         ),
-    ]
-}
-
-fn effects(decision: &Decision) -> Table {
-    let mut table = Table::new(
-        "Share of collapse at the values of every varied quantity, over all motions and levels.",
-        &[
-            ("row", ""),
-            ("quantity", ""),
-            ("value", ""),
-            ("cases", ""),
-            ("collapsed", ""),
-            ("95 % interval", ""),
-        ],
-    );
-    let rows = decision.effects.len();
-    for (row, effect) in decision.effects.iter().enumerate() {
-        for (at, group) in effect.groups.iter().enumerate() {
-            let first = |text: String| Cell::text(if at == 0 { text } else { String::new() });
-            table.rows.push(vec![
-                first((rows - row).to_string()),
-                first(effect.factor.clone()),
-                Cell::text(&group.label),
-                count(group.cases),
-                Cell::text(percent(group.share())),
-                Cell::text(format!(
-                    "{} to {}",
-                    percent(group.interval.low),
-                    percent(group.interval.high)
-                )),
-            ]);
-        }
-    }
-    table
-}
-
-/// First and total indices of everything that varies, on every result.
-fn indices(all: &[Sensitivity]) -> Table {
-    let mut table = Table::new(
-        "Sobol' indices with 95 % intervals by resampling of blocks.",
-        &[
-            ("result", ""),
-            ("quantity", ""),
-            ("first", ""),
-            ("95 % interval (first)", ""),
-            ("total", ""),
-            ("95 % interval (total)", ""),
-            ("blocks", ""),
-        ],
-    );
-    let range = |of: Interval| Cell::text(format!("{} to {}", share(of.low), share(of.high)));
-    for of in all {
-        for (at, (name, index)) in of.inputs.iter().enumerate() {
-            let result = if at == 0 { of.result.replace('_', " ") } else { String::new() };
-            table.rows.push(vec![
-                Cell::text(result),
-                Cell::text(name),
-                Cell::text(share(index.first)),
-                range(index.first_interval),
-                Cell::text(share(index.total)),
-                range(index.total_interval),
-                count(u32::try_from(of.blocks).unwrap_or(u32::MAX)),
-            ]);
-        }
-    }
-    table
-}
-
-/// A share of two digits behind the point, that may come out a hair below zero.
-fn share(value: f64) -> String {
-    let rounded = (100.0 * value).round() / 100.0 + 0.0;
-    format!("{rounded:.2}").replace('-', "−")
-}
-
-fn measures(decision: &Decision) -> Table {
-    let cases = &decision.cases;
-    let mut table = Table::new(
-        "Intensity measures against collapse and against the drift of stacks that stood, the one under which the \
-         outcomes are likeliest on top.",
-        &[
-            ("measure", ""),
-            ("median of collapse", ""),
-            ("dispersion β", ""),
-            ("concordance", ""),
-            ("ln likelihood", ""),
-            ("drift: dispersion", ""),
-            ("drift: dispersion/slope", ""),
-            ("beside", ""),
-            ("p (collapse)", ""),
-            ("p (drift)", ""),
-        ],
-    );
-    for row in &decision.measures {
-        table.rows.push(measure_row(row, &cases.measures));
-    }
-    table
-}
-
-fn measure_row(row: &MeasureRow, all: &[Measure]) -> Vec<Cell> {
-    let measure = &all[row.measure];
-    let number = |value: Option<f64>| value.map_or(Cell::Missing, |v| Cell::Number(v, 2));
-    let collapse = row.collapse.as_ref().ok();
-    vec![
-        Cell::text(&measure.label),
-        match &row.collapse {
-            Ok(found) => Cell::text(measure.words(found.fit.curve.median)),
-            Err(_) => Cell::text("no curve"),
-        },
-        number(collapse.map(|found| found.fit.curve.dispersion)),
-        number(collapse.map(|found| found.concordance)),
-        collapse.map_or(Cell::Missing, |found| Cell::Number(found.fit.ln_likelihood, 4)),
-        number(row.drift.map(|found| found.dispersion)),
-        number(row.drift.map(|found| found.proficiency).filter(|value| *value > 0.0)),
-        row.beside.map_or(Cell::Missing, |at| Cell::text(&all[at].label)),
-        number(collapse.and_then(|found| found.sufficiency)),
-        number(row.drift.and_then(|found| found.sufficiency)),
     ]
 }
 

@@ -21,7 +21,7 @@ use crate::system;
 use super::column::ColumnSpec;
 use super::design::Design;
 use super::error::StudyError;
-use super::grow::Common;
+use super::grow::{Common, difference};
 use super::motions::hash_files;
 use super::shard;
 use super::stop::{StopRule, Tally};
@@ -233,33 +233,6 @@ impl Folder {
         write_whole(&self.path.join("columns.csv"), collected.table.dictionary().as_bytes())?;
         write_whole(&self.path.join("provenance.json"), format!("{provenance}\n").as_bytes())
     }
-}
-
-/// What is different between what a folder belongs to and a study; none where they have in common what all cases
-/// depend on, so that chunks may be kept.
-fn difference(known: &Provenance, wanted: &Provenance) -> Option<String> {
-    if known.version != wanted.version {
-        return Some(format!(
-            "it was made by version {}, this is {}",
-            known.version, wanted.version
-        ));
-    }
-    if known.seed != wanted.seed {
-        return Some(format!("its seed is {}, that of this one {}", known.seed, wanted.seed));
-    }
-    // A motion that is gone or is another under its name would leave rows behind that nobody can place.
-    let changed = known.motions.iter().find(|motion| !wanted.motions.contains(motion));
-    if let Some(motion) = changed {
-        let same_name = wanted.motions.iter().any(|other| other.name == motion.name);
-        let what = if motion.hash.is_some() { "record" } else { "motion" };
-        return Some(if same_name {
-            format!("the {what} \"{}\" has changed", motion.name)
-        } else {
-            format!("it has the motion \"{}\", which this one has not", motion.name)
-        });
-    }
-    let changed = known.common.iter().find(|common| !wanted.common.contains(common));
-    changed.map(|common| format!("{} has changed", common.what))
 }
 
 /// The bytes of a file of a folder.
