@@ -189,7 +189,7 @@ impl<S: Space> Press<'_, S> {
             let center = self.frame.to_surface(round.center);
             let nearest = surface.nearest(center, slack);
             let (mut gap, against_round) = (nearest.gap, nearest.round);
-            gap.distance = gap.distance - round.radius;
+            gap.distance -= round.radius;
             if !gap.distance.lt(zero).any() {
                 continue;
             }
