@@ -159,7 +159,8 @@ pub fn run(
         // What fell has no slip to be wrong about.
         let slips = (0..assembly.parts.len()).map(|body| fates.fate(body).residual_slip.abs());
         let most = slips.fold(0.0, f64::max);
-        warnings.extend(sticks.iter().filter(|stick| stick.shows_in(most)).map(|s| s.to_string()));
+        warnings
+            .extend(sticks.iter().filter(|stick| stick.shows_in(most)).map(ToString::to_string));
     }
     let interrupted = ending == Ending::Interrupted;
     let work = Work {

@@ -77,7 +77,7 @@ impl fmt::Display for SoftStick {
             1e3 * self.yields,
             1e3 * self.swing,
             100.0 * self.error,
-            (self.error / TOLD).powi(2).ceil(),
+            ((self.error / TOLD) * (self.error / TOLD)).ceil(),
             100.0 * TOLD
         )
     }

@@ -1,5 +1,7 @@
 //! The documents name only what is there, and libraries only what is theirs.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
 use std::path::{Path, PathBuf};
 
 fn root() -> PathBuf {

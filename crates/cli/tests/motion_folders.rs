@@ -4,6 +4,7 @@
 
 mod common;
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
@@ -53,10 +54,10 @@ fn records(count: usize) -> tempfile::TempDir {
                          m/s2\n# time_step: 0.02\n# channels: E az=90, N az=0\n"
                 .to_owned();
         for (x, y) in east.iter().zip(&north) {
-            lines.push_str(&format!("{x:e} {y:e}\n"));
+            let _ = writeln!(lines, "{x:e} {y:e}");
         }
         fs::write(below.join(format!("RSN{}_made.txt", k + 1)), lines).unwrap();
-        flatfile.push_str(&format!("{},{},{},300\n", k + 1, 5.5 + 0.1 * (k % 20) as f64, 10 + k));
+        let _ = writeln!(flatfile, "{},{},{},300", k + 1, 5.5 + 0.1 * (k % 20) as f64, 10 + k);
     }
     fs::write(folder.path().join("records/README.md"), "no record\n").unwrap();
     fs::write(folder.path().join("flat.csv"), flatfile).unwrap();

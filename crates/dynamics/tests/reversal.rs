@@ -1,5 +1,8 @@
 //! What the elastic stick does to slip that goes to and fro, against rigid friction.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+#![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
+
 mod common;
 
 use std::f64::consts::TAU;

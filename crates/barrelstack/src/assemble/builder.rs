@@ -75,12 +75,11 @@ impl<'a> Builder<'a> {
     /// Adds a body, scaled; returns its id.
     pub(super) fn add(&mut self, draft: Draft) -> BodyId {
         let length = self.scale.length;
-        let (center, inertia) = match draft.inertia {
-            Some(inertia) => (Vec2::default(), inertia),
-            None => {
-                let (center, square_radius) = uniform(&draft.solids);
-                (center, draft.mass * square_radius)
-            }
+        let (center, inertia) = if let Some(inertia) = draft.inertia {
+            (Vec2::default(), inertia)
+        } else {
+            let (center, square_radius) = uniform(&draft.solids);
+            (center, draft.mass * square_radius)
         };
         let mut body = Body {
             name: draft.name.clone(),

@@ -134,19 +134,14 @@ impl Pairs<'_> {
             };
             let interface = if seat { BARREL_RACK } else { FALLEN_BARREL_RACK };
             let face = if carried.is_some() { touch.above } else { touch.below };
-            match face.filter(|_| seat) {
-                Some(face) => {
-                    let before = Counts::BeforeFace(face.face);
-                    self.push((rack, face.nodes), (barrel, 0), interface, before);
-                    let behind =
-                        [Counts::BehindFaceOfTarget(face.face), Counts::BehindFace(face.face)];
-                    self.exact((barrel, 0), (rack, solid), interface, behind);
-                }
-                None => {
-                    let always = [Counts::Everywhere; 2];
-                    self.exact((barrel, 0), (rack, solid), interface, always);
-                }
-            }
+            let counts = if let Some(face) = face.filter(|_| seat) {
+                let before = Counts::BeforeFace(face.face);
+                self.push((rack, face.nodes), (barrel, 0), interface, before);
+                [Counts::BehindFaceOfTarget(face.face), Counts::BehindFace(face.face)]
+            } else {
+                [Counts::Everywhere; 2]
+            };
+            self.exact((barrel, 0), (rack, solid), interface, counts);
         }
     }
 

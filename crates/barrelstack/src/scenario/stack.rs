@@ -377,7 +377,10 @@ fn read_override(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride, 
 /// Reads the laws of contact.
 pub(super) fn read_interfaces(reader: Reader<'_>) -> Result<StackInterfaces, ScenarioError> {
     let read = |name: &'static str| {
-        interface::read(reader.section(name)?, catalog::pair(name).map(|pair| pair.defaults()))
+        interface::read(
+            reader.section(name)?,
+            catalog::pair(name).map(catalog::CatalogPair::defaults),
+        )
     };
     let interfaces = StackInterfaces {
         rack_ground: read("rack-ground")?,

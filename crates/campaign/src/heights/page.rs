@@ -90,7 +90,7 @@ fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
 
 /// Fewest motions whose interval can end low enough, were no stack to collapse.
 fn fewest_motions() -> u32 {
-    (1..).find(|n| wilson(0, *n, 0.95).high <= LOW.1).unwrap_or(u32::MAX)
+    (1..1_000_000).find(|n| wilson(0, *n, 0.95).high <= LOW.1).unwrap_or(u32::MAX)
 }
 
 fn headline(all: &Heights) -> String {

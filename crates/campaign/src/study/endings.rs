@@ -1,5 +1,7 @@
 //! Which cases were followed until nothing moved, and what ended the others.
 
+use std::fmt::Write as _;
+
 use std::collections::BTreeSet;
 
 use serde::Serialize;
@@ -182,7 +184,8 @@ impl Following {
             ),
         };
         if let Some(after) = self.after_collapse {
-            said += &format!(
+            let _ = write!(
+                said,
                 "; a case that collapses is stopped {after} s later (run.stop_after_collapse), so that losses \
                  are not known"
             );
