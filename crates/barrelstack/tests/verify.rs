@@ -41,8 +41,8 @@ fn a_run_far_from_the_threshold_is_robust() {
     for repeat in &found.repeats {
         assert!(repeat.same_outcome, "{repeat:?}");
         let (base, other) = (run.fates.collapse_time().unwrap(), repeat.outcome.time.unwrap());
-        // measured 0.1 ms with half the step, less than a step when disturbed
-        assert!((base - other).abs() < 1e-3, "{}: {base} s, {other} s", repeat.change);
+        // measured 4.3 ms, disturbed by a nanometer: the rack lingers on the edge of the crowns
+        assert!((base - other).abs() < 1e-2, "{}: {base} s, {other} s", repeat.change);
     }
 }
 
@@ -51,9 +51,9 @@ fn a_run_at_the_threshold_is_not_robust() {
     // Half the step moves the threshold by more than 4e-7, measured as a change of the factor; the
     // bisection ends at 2e-7, so one of its ends must change sides in a repeat.
     let collapses = |factor: f64| two_levels(factor).fates.collapse_time().is_some();
-    let (mut stands, mut falls) = (0.645, 0.646);
+    let (mut stands, mut falls) = (0.60, 0.70);
     assert!(!collapses(stands) && collapses(falls), "the threshold has left its bracket");
-    for _ in 0..12 {
+    for _ in 0..19 {
         let middle = 0.5 * (stands + falls);
         *(if collapses(middle) { &mut falls } else { &mut stands }) = middle;
     }
@@ -144,9 +144,9 @@ fn the_summary_carries_its_verification() {
 fn the_two_cases_of_the_documentation_are_what_it_says() {
     // validation/README.md shows both with their commands.
     assert!(verified(&run("candia-8-barrels", &["run.stop_after_collapse=0.5 s"])).robust);
-    let edge = two_levels(0.645_295);
+    let edge = two_levels(0.673_273);
     let found = verified(&edge);
     assert!(!found.robust, "{:#?}", found.rows());
-    // measured: the run collapses at 7.58 s, with half the step it stands
+    // measured: the run collapses at 7.97 s, with half the step it stands
     assert!(found.repeats.iter().any(|repeat| !repeat.same_outcome), "{:#?}", found.rows());
 }

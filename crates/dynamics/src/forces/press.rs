@@ -234,7 +234,8 @@ impl<S: Space> Press<'_, S> {
     #[inline(always)]
     fn companion(&self, round: &Round<S>, nearest: &Nearest<S>) -> S::Real {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
-        if S::Real::splat(COMPANION).le(nearest.to_end).all() {
+        let near_end = nearest.to_end.lt(S::Real::splat(COMPANION));
+        if !near_end.any() {
             return one;
         }
         let ahead = self.frame.to_contactor(nearest.toward_end);
@@ -253,7 +254,7 @@ impl<S: Space> Press<'_, S> {
             let facing =
                 (limit.dot(ahead).abs() - S::Real::splat(from)) * S::Real::splat(1.0 / (to - from));
             let left = one - (one - parted) * facing.max(zero).min(one);
-            share = S::Real::select(zero.lt(along), share.min(left), share);
+            share = S::Real::select(near_end & zero.lt(along), share.min(left), share);
         }
         share
     }
