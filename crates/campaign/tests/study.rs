@@ -28,7 +28,7 @@ stop_after_collapse = \"0.01 s\"
 const PULSE: &str = "\
 [[motion]]
 name = \"pulse\"
-pulse = { kind = \"one-sine\", amplitude = \"1 g\", period = \"0.3 s\" }
+pulse = { kind = \"one-sine\", amplitude = \"1 g\", period = \"0.8 s\" }
 ";
 
 fn study(rest: &str) -> Study {

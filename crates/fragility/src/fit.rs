@@ -194,7 +194,14 @@ pub(crate) fn top_free(evidence: &[Evidence]) -> Result<Top<2>, FitError> {
     let start = [-middle(evidence), 1.0];
     // Started from a shape that is too narrow for nobody: β = 1 about the middle.
     let top = free_likelihood(evidence).top(start).ok_or(FitError::NotConverged)?;
-    if top.parameters[1] > 0.0 { Ok(top) } else { Err(FitError::NotIncreasing) }
+    let [intercept, slope] = top.parameters;
+    // A slope so slight that the median is beyond all numbers is none.
+    let median = exp(-intercept / slope);
+    if slope > 0.0 && median > 0.0 && median.is_finite() {
+        Ok(top)
+    } else {
+        Err(FitError::NotIncreasing)
+    }
 }
 
 /// Likelihood over `(a, b)`: `z = a + b ln x`.

@@ -67,26 +67,26 @@ fn what_needs_the_papers_record_is_not_compared_without_it() {
 fn the_benchmarks_agree() {
     for quantity in [
         "eight barrels: collapse",
-        "eight barrels: first barrel falls",
+        "eight barrels: second barrel falls",
         "eight barrels: drift of the top",
         "eight barrels: stress amplification",
         "half scale at t* against full scale at √2 t*",
+        "the test at half scale: top level gone after",
         "along the barrels: collapse",
     ] {
         assert_eq!(row(quantity).verdict, Verdict::Agrees, "{:?}", row(quantity));
     }
-    // measured 3.60 s, one fifth less than published
+    // measured 4.43 s
     let along = row("along the barrels: stands for");
     assert!(matches!(along.verdict, Verdict::Agrees | Verdict::InBand), "{along:?}");
 }
 
 #[test]
 fn what_differs_is_said_to_differ() {
-    // measured: levels 2 and 3 come down too; the test took 2 s where ours takes 1.42 s
-    for quantity in [
-        "eight barrels: what falls besides the top level",
-        "the test at half scale: top level gone after",
-    ] {
+    // measured: levels 2 and 3 come down too; the first barrel is 0.2 m down after 2.76 s, not 1.5 s
+    for quantity in
+        ["eight barrels: what falls besides the top level", "eight barrels: first barrel falls"]
+    {
         assert_eq!(row(quantity).verdict, Verdict::Differs, "{:?}", row(quantity));
         assert!(!row(quantity).why.is_empty());
     }

@@ -204,7 +204,6 @@ fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
 
 /// When (s) the first barrel falls in the nearest stack scenario.
 fn scenario(degrees: f64, end: f64) -> Result<Option<f64>, Failure> {
-    // Rows of ±0.37 m about crowns 0.76 m apart make one row from end to end but for 2 cm.
     let text = format!(
         r#"
 schema = 1
@@ -212,7 +211,7 @@ title = "Consensus scene, supports at ±{degrees}°"
 extends = "candia-8-barrels"
 
 [stack]
-rack = {{ base = "candia-2008", bearing_half_length = "0.37 m", cradle = {{ type = "supports", angle = "{degrees} deg" }} }}
+rack = {{ base = "candia-2008", foot_height = "0 m", clearance = "6 cm", mass = "30 kg", contact = "element", cradle = {{ type = "supports", angle = "{degrees} deg" }} }}
 
 [motion.sine]
 amplitude = "0.1016 m"
