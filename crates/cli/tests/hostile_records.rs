@@ -100,13 +100,13 @@ fn peer_files_that_are_damaged() {
     refuse(
         "wrong count",
         "a.at2",
-        &changed("NPTS=    200", "NPTS=    120"),
-        &["line 4", "120", "100"],
+        &changed("NPTS=    200", "NPTS=    240"),
+        &["line 4", "240", "200"],
     );
     refuse("no count", "a.at2", &changed("NPTS=    200", "NPTS=      x"), &["line 4", "NPTS"]);
     refuse("no step", "a.at2", &changed(".0100", "0.000"), &["step"]);
     refuse("minus step", "a.at2", &changed(".0100", "-.010"), &["step"]);
-    refuse("endless count", "a.at2", &changed("   100", "9999999999999999999"), &["line 4"]);
+    refuse("endless count", "a.at2", &changed("   200", "9999999999999999999"), &["line 4"]);
     refuse("stars", "a.at2", &changed("  1.0000000E-1", "**************"), &["line 5", "*"]);
     refuse("nan", "a.at2", &changed("  1.0000000E-1", "           NaN"), &["line 5", "NaN"]);
     refuse("word", "a.at2", &changed("  1.0000000E-1", "        banana"), &["line 5", "banana"]);
