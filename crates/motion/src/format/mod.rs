@@ -349,7 +349,8 @@ fn whole(source: &Source<'_>, line: usize, what: &str, value: f64) -> Result<usi
 }
 
 /// How many of the values found are used where a count is stated: one less or two more all are, because
-/// headers in circulation are off by that much; of more only the stated number; fewer mean a cut file.
+/// headers in circulation are off by that much; of more only the stated number; fewer mean a cut file, and
+/// twice as many another one.
 fn check_count(
     source: &Source<'_>,
     record: &mut Record,
@@ -367,7 +368,8 @@ fn check_count(
         );
         return Ok(found);
     }
-    if found > stated {
+    // Twice as many are no surplus: a comma for the point makes two numbers of each.
+    if found > stated && found < 2 * stated {
         record.warn(
             line + 1,
             format!(
