@@ -416,7 +416,6 @@ fn mistakes_are_one_error_and_nothing_is_written() {
     let table = folder.path().join("table.csv");
     fs::write(&table, "0.1,1\n0.2,1\n").unwrap();
     let table = text(&table);
-    let there = text(folder.path());
     let cases: &[(&[&str], &[&str])] = &[
         (&["convert", "missing.at2"], &["missing.at2", "there is no such file"]),
         (&["convert", columns], &["time step", "--time-step"]),
