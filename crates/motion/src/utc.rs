@@ -59,11 +59,15 @@ impl Utc {
             && (0..24).contains(&hour)
             && (0..60).contains(&minute)
             && (0.0..61.0).contains(&seconds);
+        // What a damaged header states may be too large to reckon with.
+        if !sound {
+            return None;
+        }
         let years: i64 = (1900..year).map(|year| 365 + i64::from(is_leap(year))).sum();
         // 1900 to 1969: 70 years, 17 of them leap years.
         let days = years - (70 * 365 + 17) + day - 1;
         let clock = Self { microseconds: days * DAY + (hour * 60 + minute) * 60_000_000 };
-        sound.then(|| clock.later(seconds))
+        Some(clock.later(seconds))
     }
 
     /// Seconds from `other` to this instant.
