@@ -23,11 +23,12 @@ export async function prepare(page) {
       context.drawImage(image, box.x, box.y, box.width, box.height, 0, 0, canvas.width, canvas.height);
       return canvas;
     };
-    const whole = (image) => ({ x: 0, y: 0, width: image.width, height: image.height });
 
+    // A width that is no multiple of the scale is filled up, not stretched: `compare` counts on the grid.
     window.shrink = async (url, scale) => {
       const image = await load(url);
-      return urlOf(draw(image, whole(image), image.width / scale, image.height / scale), "image/webp");
+      const [width, height] = [Math.ceil(image.width / scale), Math.ceil(image.height / scale)];
+      return urlOf(draw(image, { x: 0, y: 0, width: width * scale, height: height * scale }, width, height), "image/webp");
     };
 
     // Both pictures of a block at the kept size, slightly blurred, so that the edge of a letter or
