@@ -21,9 +21,8 @@ use barrelstack::{Run, Scenario, Summary};
 use barrelstack_dynamics::{Planar, Pose, Vec2};
 
 /// Share of the energy that went through a run, its heap at rest included, which may be missing from its
-/// books; measured 1.2e-4 to 1.4e-4 with steps of 0.25 ms to 0.3 ms, and 1e-5 with a fifth of it: the
-/// default step does not yet keep them below 1e-4.
-const ENERGY: f64 = 3e-4;
+/// books; measured 3.4e-5 with steps of 0.25 ms and 4e-6 with 0.1 ms.
+const ENERGY: f64 = 1e-4;
 
 fn run(name: &str, overrides: &[&str]) -> Run {
     let overrides: Vec<String> = overrides.iter().map(|o| (*o).to_owned()).collect();

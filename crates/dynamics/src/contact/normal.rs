@@ -115,14 +115,16 @@ pub struct NormalForce<R> {
 }
 
 impl<R: Real> NormalForce<R> {
-    /// The force where the contact begins or ends within a step (s) of central differences.
+    /// The force that stands for a whole step (s) of central differences.
     ///
     /// The method takes a force as constant for half a step before and after its instant.
     /// A spring met at a rate δ̇ has then pushed only for the time `δ/δ̇` of the half before, one that
-    /// is left will push only for the time `δ/|δ̇|` of the half after, with half its force in the mean:
+    /// is left will push only for the time `δ/|δ̇|` of the half after, with half its force in the mean;
+    /// and one that stiffens pushes with more than the mean of what it does along the way:
     ///
     /// ```text
-    /// elastic · ½ (1 + δ / |δ̇| Δt)   where δ < |δ̇| Δt
+    /// elastic · (½ + (½ − b) δ/w)   where δ < w = |δ̇| Δt
+    /// elastic · (1 − b (w/δ)²)      elsewhere, with the bend b = n (n − 1) / 12 of elastic ∝ δⁿ
     /// ```
     ///
     /// So a linear spring met at a steady rate takes exactly the energy that it stores, wherever in
@@ -130,16 +132,19 @@ impl<R: Real> NormalForce<R> {
     /// A step of zero leaves the force as it is.
     #[inline(always)]
     #[must_use]
-    pub fn within_step(self, depth: R, rate: R, step: R) -> Self {
+    pub fn within_step(self, bend: f64, depth: R, rate: R, step: R) -> Self {
         let way = rate.abs() * step;
         let partly = depth.lt(way);
-        if !partly.any() {
+        if bend == 0.0 && !partly.any() {
             return self;
         }
-        let missing = R::splat(0.5) - R::splat(0.5) * depth / R::select(partly, way, R::splat(1.0));
-        let missing = self.elastic * R::select(partly, missing, R::zero());
+        let (half, bend, zero) = (R::splat(0.5), R::splat(bend), R::zero());
+        let begun = depth / R::select(partly, way, R::splat(1.0));
+        let bent = way / R::select(partly, R::splat(1.0), depth);
+        let missing = R::select(partly, half - (half - bend) * begun, bend * bent * bent);
+        let missing = self.elastic * R::select(zero.lt(way), missing, zero);
         Self {
-            total: (self.total - missing).max(R::zero()),
+            total: (self.total - missing).max(zero),
             elastic: self.elastic - missing,
             energy: self.energy,
         }
@@ -197,6 +202,19 @@ impl<R: Real> NormalLaw<R> {
                 let elastic = stiffness * depth * depth.sqrt();
                 NormalForce { total: elastic, elastic, energy: R::splat(0.4) * elastic * depth }
             }
+        }
+    }
+
+    /// `n (n − 1) / 12` of its elastic force `∝ δⁿ`: see [`NormalForce::within_step`].
+    #[inline(always)]
+    pub(crate) fn bend(&self) -> f64 {
+        match self {
+            Self::SpeedGap { .. }
+            | Self::KelvinVoigt { .. }
+            | Self::HuntCrossley { exponent: Exponent::Linear, .. } => 0.0,
+            Self::HuntCrossley { exponent: Exponent::Hertzian, .. }
+            | Self::Rebound { .. }
+            | Self::Hertz { .. } => 1.0 / 16.0,
         }
     }
 

@@ -99,7 +99,9 @@ fn touch_by<S: Space>(
                 #[inline(always)]
                 |index| frame.to_surface(nodes[index]),
                 #[inline(always)]
-                |index, node, gap| press.node(group.first + index, node, gap, one),
+                |index, node, gap| {
+                    press.node(group.first + index, node, gap, one);
+                },
             );
         }
         Nodes::Rounds(rounds) => press.rounds(model, rounds, group, surface),
@@ -157,11 +159,8 @@ struct Press<'a, S: Space> {
 /// where two corners lie one above the other, one contact is counted and not two or none.
 const SLACK: f64 = 1e-9;
 
-/// How far apart (m) two corners that meet face on face are two contacts in full.
+/// How far (m) from the end of a side a corner is a contact in full, whatever else is inside there.
 const COMPANION: f64 = 0.01;
-
-/// Cosines of the angle between two faces up to which, and from which on, they count as face on face.
-const PARALLEL: (f64, f64) = (0.95, 0.99);
 
 /// How far past the limits of a round piece a normal may point, on the way to another round piece.
 const LIMIT: f64 = 2e-7;
@@ -216,11 +215,15 @@ impl<S: Space> Press<'_, S> {
             }
             if (counts & gap.distance.lt(zero)).any() {
                 gap.distance = S::Real::select(counts, gap.distance, S::Real::splat(1.0));
-                let share =
-                    if first { S::Real::splat(1.0) } else { self.companion(round, &nearest) };
+                let share = self.share(round, &nearest, slack);
                 // Both bodies feel the force midway between their boundaries, whichever of them tests.
                 let inset = round.radius - gap.distance * S::Real::splat(0.5);
-                self.node(element, center - gap.normal * inset, gap, share);
+                let energy = self.node(element, center - gap.normal * inset, gap, share.value);
+                if zero.lt(share.slope).any() {
+                    let force = nearest.toward_end * (energy * share.slope);
+                    let arm = center - self.frame.contactor;
+                    self.sum.normal += Wrench { force, moment: S::moment(arm, force) };
+                }
             }
         }
     }
@@ -228,48 +231,53 @@ impl<S: Space> Press<'_, S> {
     /// The share with which a corner counts on a side, near whose end the corner of the other body may
     /// itself bear on a side of this one.
     ///
-    /// Where two faces end at one place, one of the two corners there counts, the first body's as long as
-    /// it has a side of the other before it. Where two boxes just overlap, face on face, both do: they are
-    /// one contact, which becomes two as the ends of the overlap part.
+    /// Where two faces overlap by little, both corners at the ends of the overlap are inside the other
+    /// body. They are one contact, which becomes two as they part. The corner that is nearer to the end
+    /// of the side before it, and so is the shallower of the two, counts the less the shorter its way
+    /// to that end, the other in full; so none of them begins or ends with a jump, whatever the depth.
     #[inline(always)]
-    fn companion(&self, round: &Round<S>, nearest: &Nearest<S>) -> S::Real {
+    fn share(&self, round: &Round<S>, nearest: &Nearest<S>, slack: S::Real) -> Share<S::Real> {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
-        let near_end = nearest.to_end.lt(S::Real::splat(COMPANION));
-        if !near_end.any() {
-            return one;
-        }
-        let ahead = self.frame.to_contactor(nearest.toward_end);
-        let out = self.frame.to_contactor(nearest.gap.normal);
-        // From this corner to the one at the end of the side.
-        let apart = ahead * nearest.to_end - out * nearest.core;
-        let (from, to) = PARALLEL;
-        let mut share = one;
-        for (limit, arc) in round.limits.iter().zip(&round.arc_limits) {
-            if arc.is_some() {
-                continue;
+        let to_end = nearest.to_end;
+        let near_end = to_end.lt(S::Real::splat(COMPANION));
+        let mut partly = <S::Real as Real>::Mask::default();
+        if near_end.any() {
+            // From this corner to the one at the end of the side before it.
+            let apart = nearest.toward_end * to_end - nearest.gap.normal * nearest.core;
+            let apart = self.frame.to_contactor(apart);
+            for (limit, arc) in round.limits.iter().zip(&round.arc_limits) {
+                if arc.is_none() {
+                    partly = partly | to_end.lt(apart.dot(*limit) - slack);
+                }
             }
-            // How far that corner lies along a side of this one, and whether the two sides are face on face.
-            let along = apart.dot(*limit);
-            let parted = (along * S::Real::splat(1.0 / COMPANION)).min(one);
-            let facing =
-                (limit.dot(ahead).abs() - S::Real::splat(from)) * S::Real::splat(1.0 / (to - from));
-            let left = one - (one - parted) * facing.max(zero).min(one);
-            share = S::Real::select(near_end & zero.lt(along), share.min(left), share);
+            partly = partly & near_end;
         }
-        share
+        // 3 u² − 2 u³, so that the push begins and ends at zero.
+        let u = to_end.max(zero) * S::Real::splat(1.0 / COMPANION);
+        let slope = S::Real::splat(6.0 / COMPANION) * u * (one - u);
+        Share {
+            value: S::Real::select(partly, u * u * (S::Real::splat(3.0) - u - u), one),
+            slope: S::Real::select(partly, slope, zero),
+        }
     }
 
     /// The forces of a node at `node` (m), which penetrates in at least one lane; in the frame of the
-    /// target's surface.
+    /// target's surface. Returns the energy (J) that its spring would store if its share were one.
     #[inline(always)]
-    fn node(&mut self, element: usize, node: S::Vector, mut gap: Gap<S>, share: S::Real) {
+    fn node(
+        &mut self,
+        element: usize,
+        node: S::Vector,
+        mut gap: Gap<S>,
+        share: S::Real,
+    ) -> S::Real {
         if let Some(counted) = self.counted {
             gap.distance = S::Real::select(counted, gap.distance, S::Real::splat(1.0));
         }
         if self.meeting.is_none() {
             self.meeting = Some(Meeting::new(self.frame, self.twists.0, self.twists.1));
         }
-        let Some(meeting) = &self.meeting else { return };
+        let Some(meeting) = &self.meeting else { return S::Real::zero() };
         let contact = meeting.contact(self.pair, self.elements, element, node, gap);
         let touching = contact.touching;
         let whole = self.elements.weights[element] * share;
@@ -279,7 +287,7 @@ impl<S: Space> Press<'_, S> {
         if let Some(stop) = self.stop {
             normal = stop.add(normal, depth, rate);
         }
-        let normal = normal.within_step(depth, rate, self.step);
+        let normal = normal.within_step(self.normal.bend(), depth, rate, self.step);
         let normal_force = normal.total * weight;
         let stick = self.elements.sticks[element];
         let friction = self.friction.force::<S>(stick, contact.slip_rate, normal_force, weight);
@@ -312,7 +320,16 @@ impl<S: Space> Press<'_, S> {
         if let Some(contacts) = &mut self.contacts {
             contacts.push(Contact { normal_force, friction_force: friction.force, ..contact });
         }
+        S::Real::select(touching, normal.energy * self.elements.weights[element], S::Real::zero())
     }
+}
+
+/// With which share of its energy a contact counts.
+struct Share<R> {
+    value: R,
+    /// How the share grows with the way (1/m) to the end of the side: what the energy falls by on that
+    /// way pushes toward the end.
+    slope: R,
 }
 
 /// Sums of contact forces on the contactor of a pair, in the frame of the target's surface, with their

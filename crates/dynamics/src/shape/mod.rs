@@ -151,10 +151,7 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
             Self::Polygon(shape) => shape.nearest(point, slack),
             // A cradle is concave and is touched by nodes only.
             Self::Cradle(shape) => Nearest::endless(shape.gap(point), none),
-            Self::BarrelProfile(shape) => {
-                let (gap, round) = shape.nearest(point);
-                Nearest { core: gap.distance + shape.rounding, ..Nearest::endless(gap, round) }
-            }
+            Self::BarrelProfile(shape) => shape.nearest(point),
         }
     }
 

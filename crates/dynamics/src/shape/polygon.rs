@@ -126,7 +126,9 @@ impl<R: Real> Polygon<R> {
             normal: Vec2::select(outside, nearest * (one / safe), deepest_normal),
         };
         let core = gap.distance + self.corner_radius;
-        Nearest { gap, round: outside & at_corner, to_end, toward_end, core }
+        let round = outside & at_corner;
+        let to_end = R::select(round, R::splat(f64::INFINITY), to_end);
+        Nearest { gap, round, to_end, toward_end, core }
     }
 
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::{BoundaryNode, Gap, Piece, Section, nodes_along};
+use super::{BoundaryNode, Gap, Nearest, Piece, Section, nodes_along};
 use crate::body::Round;
 use crate::math;
 use crate::real::Real;
@@ -34,12 +34,11 @@ const EDGE_STEPS: usize = 6;
 impl<R: Real> BarrelProfile<R> {
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec2<R>) -> Gap<Planar<R>> {
-        self.nearest(point).0
+        self.nearest(point).gap
     }
 
-    /// The gap, and whether a stave or a corner is nearest, and not a head.
     #[inline(always)]
-    pub(super) fn nearest(&self, point: Vec2<R>) -> (Gap<Planar<R>>, R::Mask) {
+    pub(super) fn nearest(&self, point: Vec2<R>) -> Nearest<Planar<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
         // By symmetry only the quarter of positive x and z is looked at.
         let (left, below) = (point.x.lt(zero), point.z.lt(zero));
@@ -79,7 +78,15 @@ impl<R: Real> BarrelProfile<R> {
                 R::select(below, -normal.z, normal.z),
             ),
         };
-        (gap, by_corner | !by_head)
+        let round = by_corner | !by_head;
+        let up = R::select(below, -one, one);
+        Nearest {
+            gap,
+            round,
+            to_end: R::select(round, R::splat(f64::INFINITY), self.corner_height - p.z),
+            toward_end: Vec2::new(zero, up),
+            core: gap.distance + self.rounding,
+        }
     }
 
     pub(super) fn reach(&self) -> f64 {

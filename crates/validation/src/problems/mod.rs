@@ -8,6 +8,7 @@ mod intensity;
 mod invariances;
 mod measured;
 mod ode;
+mod overlaps;
 mod pulses;
 mod regimes;
 mod restitution;

@@ -4,16 +4,15 @@
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
-use barrelstack::overlap::Boundaries;
-use barrelstack::scenario::Scenario;
-use barrelstack_dynamics::shape::Polygon;
+use barrelstack_dynamics::shape::{BarrelProfile, Polygon};
 use barrelstack_dynamics::{
     Body, ContactPair, Counts, FrictionLaw, Model, Motion, Nodes, NormalLaw, Placed, Planar, Pose,
     Scratch, Shape, State, Still, Twist, Vec2, evaluate,
 };
 
+use super::overlaps;
 use crate::problem::refine;
-use crate::scene::{DOWN, Scene, centered, disc, floor, ground_of, interface};
+use crate::scene::{self, DOWN, Scene, centered, disc, floor, ground_of, interface};
 use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance};
 
 const REBOUND: &str = "balance of energy of a spring k δ^1.5";
@@ -34,7 +33,11 @@ pub(super) fn problems() -> Vec<Problem> {
     list.push(default_step());
     list.extend([(0.25, 2.0), (0.5, 2.0), (0.75, 2.0)].map(|(share, count)| flat(share, count)));
     list.push(smooth());
-    list.push(overlaps());
+    list.extend([
+        slope("two boxes", two_boxes),
+        slope("a rail and the edge of a barrel", rail_and_barrel),
+    ]);
+    list.push(overlaps::problem());
     list
 }
 
@@ -138,12 +141,8 @@ fn default_step() -> Problem {
     }
 }
 
-/// A box with rounded corners that touches others exactly.
-fn solid(name: &str, (width, height): (f64, f64), corner: f64, pose: Pose<Planar>) -> Body<Planar> {
-    let shape = match Polygon::rectangle(width, height, corner) {
-        Ok(polygon) => Shape::Polygon(polygon),
-        Err(problem) => panic!("a box of {width} m by {height} m: {problem}"),
-    };
+/// A shape that touches others exactly.
+fn solid(name: &str, shape: Shape, pose: Pose<Planar>) -> Body<Planar> {
     let rounds = Nodes::Rounds(shape.rounds(1.0));
     Body {
         name: name.into(),
@@ -159,16 +158,38 @@ fn solid(name: &str, (width, height): (f64, f64), corner: f64, pose: Pose<Planar
     }
 }
 
-/// Two boxes that test each other both ways, the first of them the lower.
-fn boxes(upper: Pose<Planar>, swapped: bool) -> Result<(Model<Planar>, State<Planar>), Failure> {
-    let below =
-        solid("below", (1.0, 0.2), 0.01, Pose { position: Vec2::default(), orientation: 0.0 });
-    let above = solid("above", (0.6, 0.2), 0.01, upper);
-    let bodies = if swapped {
-        vec![ground_of(Vec::<Placed<Planar>>::new()), above, below]
-    } else {
-        vec![ground_of(Vec::new()), below, above]
-    };
+/// A box with corners rounded by 10 mm.
+fn rounded_box(width: f64, height: f64) -> Shape {
+    match Polygon::rectangle(width, height, 0.01) {
+        Ok(polygon) => Shape::Polygon(polygon),
+        Err(problem) => panic!("a box of {width} m by {height} m: {problem}"),
+    }
+}
+
+fn two_boxes() -> [Shape; 2] {
+    [rounded_box(1.0, 0.2), rounded_box(0.6, 0.2)]
+}
+
+/// The rail of a rack and a barrel along its axis.
+fn rail_and_barrel() -> [Shape; 2] {
+    let rail = Polygon::bar(Vec2::new(-0.48, 0.0), Vec2::new(0.48, 0.0), 0.012);
+    let barrel = BarrelProfile::new(0.95, 0.58, 0.7).and_then(|profile| profile.rounded(0.01));
+    match (rail, barrel) {
+        (Ok(rail), Some(barrel)) => [Shape::Polygon(rail), Shape::BarrelProfile(barrel)],
+        other => panic!("no shapes: {other:?}"),
+    }
+}
+
+/// Two bodies that test each other both ways, the first of them at the origin.
+fn two(
+    [below, above]: [Shape; 2],
+    upper: Pose<Planar>,
+    swapped: bool,
+) -> Result<(Model<Planar>, State<Planar>), Failure> {
+    let below = solid("below", below, Pose { position: Vec2::default(), orientation: 0.0 });
+    let above = solid("above", above, upper);
+    let ground = ground_of(Vec::<Placed<Planar>>::new());
+    let bodies = if swapped { vec![ground, above, below] } else { vec![ground, below, above] };
     let pair = |contactor, target| ContactPair {
         contactor,
         nodes: 0,
@@ -186,7 +207,7 @@ fn boxes(upper: Pose<Planar>, swapped: bool) -> Result<(Model<Planar>, State<Pla
 
 /// Forces on the upper box: horizontal, vertical (N), moment (N m), and how many contacts make them.
 fn forces_on(upper: Pose<Planar>, swapped: bool) -> Result<([f64; 3], usize), Failure> {
-    let (model, state) = boxes(upper, swapped)?;
+    let (model, state) = two(two_boxes(), upper, swapped)?;
     let mut scratch = Scratch::new(&model);
     evaluate(&model, &state, &mut scratch);
     let wrench = scratch.wrenches[if swapped { 1 } else { 2 }];
@@ -266,134 +287,60 @@ fn smooth() -> Problem {
     }
 }
 
-/// Stacks of all kinds under strong shaking, all frames until rest: how deep bodies stand in each other
-/// that are no seat of each other.
-fn overlaps() -> Problem {
+/// Forces are minus the slope of the energy that the springs store, wherever two bodies press into each
+/// other and whichever of their pieces meet: so no way around a corner gives or takes energy. The largest
+/// difference over the force, at poses all around the lower body, of all three components.
+fn slope(what: &str, shapes: fn() -> [Shape; 2]) -> Problem {
     Problem {
-        id: "solids/overlap-of-falling-stacks".into(),
-        title: "stacks of two to six levels, both planes, all racks, shaken until they fall, all frames".into(),
-        source: "bodies are solid".into(),
-        quantity: "deepest overlap but at seats",
-        unit: "m",
+        id: format!("solids/slope-of-the-energy-{}", what.replace(' ', "-")),
+        title: format!("{what}, in contact all around each other"),
+        source: "a force that has an energy is minus its slope".into(),
+        quantity: "largest difference, over the force",
+        unit: "",
         exact: 0.0,
-        tolerance: Tolerance::Absolute(0.015),
+        tolerance: Tolerance::Absolute(1e-4),
         fast: None,
-        run: Box::new(|effort| {
-            let count = if effort == Effort::Full { 300 } else { 8 };
-            let mut worst = Survey::default();
-            let mut fallen = 0;
-            for case in 0..count {
-                let scenario = random_stack(case)?;
-                let run = match barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())) {
-                    Ok(run) => run,
-                    // A rack whose rails lie too steep on the staves does not stand, and says so.
-                    Err(barrelstack::RunFailure::Settle(_)) => continue,
-                    Err(failure) => return Err(failure.into()),
-                };
-                fallen += usize::from(run.fates.collapse_time().is_some());
-                worst.look(&run);
-            }
-            if fallen * 3 < count {
-                return Err(Failure::Absent(format!("only {fallen} of {count} stacks fell")));
-            }
-            let note = format!(
-                "{fallen} of {count} stacks fell; at seats {:.1} mm, at the end {:.1} mm and at seats \
-                 {:.1} mm; books open by {:.1e} at most",
-                1e3 * worst.seat,
-                1e3 * worst.end,
-                1e3 * worst.seat_end,
-                worst.books
-            );
-            Ok(Outcome::of(worst.loose).noted(note))
-        }),
-    }
-}
-
-/// The deepest overlaps (m) seen.
-#[derive(Default)]
-struct Survey {
-    /// Of two bodies that the stack does not join.
-    loose: f64,
-    /// Of a body and what it has its seat on.
-    seat: f64,
-    /// The same in the last frame.
-    end: f64,
-    seat_end: f64,
-    /// Largest residual of the energy books.
-    books: f64,
-}
-
-impl Survey {
-    fn look(&mut self, run: &barrelstack::Run) {
-        let boundaries = Boundaries::new(&run.assembly.model);
-        let parts = &run.assembly.parts;
-        let joined = |a: usize, b: usize| {
-            parts[b].carrier == Some(a)
-                || parts[a].carrier == Some(b)
-                || parts[a].supports.contains(&b)
-                || parts[b].supports.contains(&a)
-                || (a == 0 && parts[b].supports.is_empty() && parts[b].carrier.is_none())
-        };
-        let frames = &run.recording.frames.poses;
-        for (index, frame) in frames.iter().enumerate() {
-            let poses: Vec<Pose<Planar>> = frame
-                .iter()
-                .map(|[x, z, orientation]| Pose {
-                    position: Vec2::new(*x, *z),
-                    orientation: *orientation,
-                })
-                .collect();
-            for overlap in boundaries.overlaps(&poses) {
-                let seat = joined(overlap.bodies[0], overlap.bodies[1]);
-                let last = index + 1 == frames.len();
-                let most = if seat { &mut self.seat } else { &mut self.loose };
-                *most = most.max(overlap.depth);
-                if last {
-                    let most = if seat { &mut self.seat_end } else { &mut self.end };
-                    *most = most.max(overlap.depth);
+        run: Box::new(move |effort| {
+            let wanted = if effort == Effort::Full { 20_000 } else { 1000 };
+            let (model, mut state) = two(shapes(), scene::pose(0.0, 0.0, 0.0), false)?;
+            let mut scratch = Scratch::new(&model);
+            let mut energy_and_force = |[x, z, orientation]: [f64; 3]| {
+                state.poses[2] = Pose { position: Vec2::new(x, z), orientation };
+                state.elements.make_exhaustive(&model, &state.poses);
+                evaluate(&model, &state, &mut scratch);
+                let deepest = scratch.contacts.iter().map(|c| c.penetration).fold(0.0, f64::max);
+                let wrench = scratch.wrenches[2];
+                let force = [wrench.force.x, wrench.force.z, wrench.moment];
+                (scratch.totals.elastic, force, deepest, scratch.contacts.len())
+            };
+            let (mut worst, mut seen, mut several) = (0.0_f64, 0, 0);
+            let mut at = [0.0; 3];
+            while seen < wanted {
+                // A sequence that fills the space of poses evenly.
+                for (value, step) in at.iter_mut().zip([0.819_172_5, 0.671_043_6, 0.549_700_5]) {
+                    *value = (*value + step) % 1.0;
+                }
+                let pose = [1.8 * at[0] - 0.9, 1.2 * at[1] - 0.6, 2.0 * PI * at[2]];
+                let (_, force, deepest, contacts) = energy_and_force(pose);
+                // Deeper than this the cores of the bodies may overlap, which no contact is meant to reach.
+                if deepest == 0.0 || deepest > 0.015 {
+                    continue;
+                }
+                seen += 1;
+                several += usize::from(contacts > 1);
+                let size = force[0].hypot(force[1]);
+                for k in 0..3 {
+                    let moved = |way: f64| {
+                        let mut pose = pose;
+                        pose[k] += way;
+                        pose
+                    };
+                    const WAY: f64 = 1e-8;
+                    let change = energy_and_force(moved(WAY)).0 - energy_and_force(moved(-WAY)).0;
+                    worst = worst.max((change / (2.0 * WAY) + force[k]).abs() / size);
                 }
             }
-        }
-        if let Some(energy) = &run.energy {
-            self.books = self.books.max(energy.residual_ratio());
-        }
+            Ok(Outcome::of(worst).noted(format!("{seen} poses, {several} with several contacts")))
+        }),
     }
-}
-
-/// A stack that depends on nothing but its number.
-fn random_stack(case: usize) -> Result<Scenario, Failure> {
-    let pick = |salt: usize, count: usize| {
-        // A linear congruential generator, a few turns from the number of the case.
-        let mut state = (case * 31 + salt * 7919 + 12345) as u64;
-        for _ in 0..4 {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-        }
-        (state >> 33) as usize % count
-    };
-    let view = ["transverse", "longitudinal"][pick(1, 2)];
-    let racks: &[&str] = if view == "transverse" {
-        &["two-barrel", "rack-on-rack", "candia-2008", "two-barrel-feet"]
-    } else {
-        &["two-barrel", "four-barrel", "candia-2008"]
-    };
-    let rack = racks[pick(2, racks.len())];
-    let columns = match (view, rack) {
-        ("transverse", _) | (_, "four-barrel") => 2,
-        _ => 1,
-    };
-    let text = format!(
-        "schema = 1\ntitle = \"case {case}\"\n[stack]\nview = \"{view}\"\nlevels = {}\ncolumns = {columns}\n\
-         rack = \"{rack}\"\n[interface.rack-ground.friction]\ncoefficient = {}\n\
-         [interface.barrel-rack.friction]\ncoefficient = {}\n\
-         [motion]\nbundled = \"napa-college-2014\"\ncomponent = \"horizontal-{}\"\nvertical = \"UP\"\n\
-         scale = {{ pgv = \"{} cm/s\" }}\n[record]\nframe_rate = \"50 Hz\"\n",
-        2 + pick(3, 5),
-        [0.4, 0.5, 0.65][pick(4, 3)],
-        [0.2, 0.3, 0.45][pick(5, 3)],
-        1 + pick(6, 2),
-        [80, 120, 160][pick(7, 3)],
-    );
-    Ok(Scenario::parse("random stack", &text, &[])?)
 }

@@ -1,0 +1,166 @@
+//! Nothing stands in anything: stacks that fall, looked at frame by frame.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use barrelstack::overlap::Boundaries;
+use barrelstack::scenario::{RackKind, Scenario, catalog};
+use barrelstack_dynamics::{Planar, Pose, Vec2};
+
+use crate::{Effort, Failure, Outcome, Problem, Tolerance};
+
+/// Stacks of all kinds under strong shaking, all frames until rest: how deep bodies stand in each other
+/// that are no seat of each other.
+pub(super) fn problem() -> Problem {
+    Problem {
+        id: "solids/overlap-of-falling-stacks".into(),
+        title: "stacks of two to six levels, both planes, all racks, shaken until they fall, all frames".into(),
+        source: "bodies are solid".into(),
+        quantity: "deepest overlap but at seats",
+        unit: "m",
+        exact: 0.0,
+        tolerance: Tolerance::Absolute(0.015),
+        fast: None,
+        run: Box::new(|effort| {
+            let (count, records) =
+                if effort == Effort::Full { (300, records()) } else { (8, Vec::new()) };
+            let mut worst = Survey::default();
+            let (mut fallen, mut unstable) = (0, 0);
+            for case in 0..count {
+                let scenario = random_stack(case, &records)?;
+                let run = match barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())) {
+                    Ok(run) => run,
+                    // A rack whose rails lie too steep on the staves does not stand, and says so.
+                    Err(barrelstack::RunFailure::Settle(_)) => {
+                        unstable += 1;
+                        continue;
+                    }
+                    Err(failure) => return Err(failure.into()),
+                };
+                fallen += usize::from(run.fates.collapse_time().is_some());
+                worst.look(&run);
+            }
+            if fallen * 3 < count {
+                return Err(Failure::Absent(format!("only {fallen} of {count} stacks fell")));
+            }
+            let note = format!(
+                "{fallen} of {count} stacks fell, {unstable} do not stand; {} records beside the bundled; at seats {:.1} mm, at the end {:.1} mm and at seats \
+                 {:.1} mm; books open by {:.1e} at most",
+                records.len(),
+                1e3 * worst.seat,
+                1e3 * worst.end,
+                1e3 * worst.seat_end,
+                worst.books
+            );
+            Ok(Outcome::of(worst.loose).noted(note))
+        }),
+    }
+}
+
+/// The deepest overlaps (m) seen.
+#[derive(Default)]
+struct Survey {
+    /// Of two bodies that the stack does not join.
+    loose: f64,
+    /// Of a body and what it has its seat on.
+    seat: f64,
+    /// The same in the last frame.
+    end: f64,
+    seat_end: f64,
+    /// Largest residual of the energy books.
+    books: f64,
+}
+
+impl Survey {
+    fn look(&mut self, run: &barrelstack::Run) {
+        let boundaries = Boundaries::new(&run.assembly.model);
+        let parts = &run.assembly.parts;
+        let joined = |a: usize, b: usize| {
+            parts[b].carrier == Some(a)
+                || parts[a].carrier == Some(b)
+                || parts[a].supports.contains(&b)
+                || parts[b].supports.contains(&a)
+                || (a == 0 && parts[b].supports.is_empty() && parts[b].carrier.is_none())
+        };
+        let frames = &run.recording.frames.poses;
+        for (index, frame) in frames.iter().enumerate() {
+            let poses: Vec<Pose<Planar>> = frame
+                .iter()
+                .map(|[x, z, orientation]| Pose {
+                    position: Vec2::new(*x, *z),
+                    orientation: *orientation,
+                })
+                .collect();
+            for overlap in boundaries.overlaps(&poses) {
+                let seat = joined(overlap.bodies[0], overlap.bodies[1]);
+                let last = index + 1 == frames.len();
+                let most = if seat { &mut self.seat } else { &mut self.loose };
+                *most = most.max(overlap.depth);
+                if last {
+                    let most = if seat { &mut self.seat_end } else { &mut self.end };
+                    *most = most.max(overlap.depth);
+                }
+            }
+        }
+        if let Some(energy) = &run.energy {
+            self.books = self.books.max(energy.residual_ratio());
+        }
+    }
+}
+
+/// Records of horizontal motion that may not be bundled: used where they lie beside the checkout.
+fn records() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions/peer");
+    [
+        "RSN995_NORTHR_PEL360",
+        "RSN995_NORTHR_PEL090",
+        "RSN1063_NORTHR_RRS228",
+        "RSN1503_CHICHI_TCU065-E",
+    ]
+    .into_iter()
+    .chain(["RSN6_IMPVALL.I_I-ELC180"])
+    .map(|name| folder.join(format!("{name}.AT2")))
+    .filter(|path| path.is_file())
+    .collect()
+}
+
+/// A stack that depends on nothing but its number and the records.
+fn random_stack(case: usize, records: &[PathBuf]) -> Result<Scenario, Failure> {
+    let pick = |salt: usize, count: usize| {
+        // A linear congruential generator, a few turns from the number of the case.
+        let mut state = (case * 31 + salt * 7919 + 12345) as u64;
+        for _ in 0..4 {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+        }
+        (state >> 33) as usize % count
+    };
+    let view = ["transverse", "longitudinal"][pick(1, 2)];
+    let racks = catalog::RACKS.iter();
+    let racks: Vec<_> =
+        racks.filter(|r| view == "transverse" || r.kind == RackKind::OnBarrels).collect();
+    let rack = racks[pick(2, racks.len())].name;
+    let columns = match (view, rack) {
+        ("transverse", _) | (_, "four-barrel") => 2,
+        _ => 1,
+    };
+    let motion = match records.get(pick(8, records.len() + 1)) {
+        Some(record) => format!("record = '{}'", record.display()),
+        None => format!(
+            "bundled = \"napa-college-2014\"\ncomponent = \"horizontal-{}\"\nvertical = \"UP\"",
+            1 + pick(6, 2)
+        ),
+    };
+    let text = format!(
+        "schema = 1\ntitle = \"case {case}\"\n[stack]\nview = \"{view}\"\nlevels = {}\ncolumns = {columns}\n\
+         rack = \"{rack}\"\n[interface.rack-ground.friction]\ncoefficient = {}\n\
+         [interface.barrel-rack.friction]\ncoefficient = {}\n\
+         [motion]\n{motion}\nscale = {{ pgv = \"{} cm/s\" }}\n[record]\nframe_rate = \"50 Hz\"\n",
+        2 + pick(3, 5),
+        [0.4, 0.5, 0.65][pick(4, 3)],
+        [0.2, 0.3, 0.45][pick(5, 3)],
+        [80, 120, 160][pick(7, 3)],
+    );
+    Ok(Scenario::parse("random stack", &text, &[])?)
+}
