@@ -51,8 +51,15 @@ fn random_stack(seed: u64) -> Vec<String> {
     ]);
     let view = random.pick(&["transverse", "longitudinal"]);
     let racks: &[&str] = match view {
-        "transverse" => &["two-barrel", "four-barrel", "rack-on-rack", "candia-2008"],
-        _ => &["two-barrel", "four-barrel", "candia-2008"],
+        "transverse" => &[
+            "two-barrel",
+            "two-barrel-feet",
+            "single-bar",
+            "four-barrel",
+            "rack-on-rack",
+            "candia-2008",
+        ],
+        _ => &["two-barrel", "two-barrel-feet", "single-bar", "four-barrel", "candia-2008"],
     };
     let rack = random.pick(racks);
     let pitch = diameter + 0.05;
