@@ -15,7 +15,7 @@ const SHARE: f64 = 0.1;
 
 /// Share of the time 1/γ in which dampers stop a body: beyond the whole of it, velocities predicted
 /// from the last step overshoot.
-const DAMPING_SHARE: f64 = 0.7;
+const DAMPING_SHARE: f64 = 0.33;
 
 /// Penetration (m) of full scale at which laws that stiffen with penetration are measured.
 const REFERENCE: f64 = 0.01;

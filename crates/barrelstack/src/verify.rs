@@ -188,7 +188,7 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
                 match &mut body.nodes {
                     Nodes::Spacing(spacing) => *spacing *= 0.5,
                     Nodes::Count(count) => *count *= 2,
-                    Nodes::Corners | Nodes::Rolling => continue,
+                    Nodes::Corners | Nodes::Rolling | Nodes::Exact | Nodes::At(_) => continue,
                 }
                 refined = true;
             }

@@ -95,8 +95,7 @@ impl<'a> Builder<'a> {
         };
         let add = |solid: Solid| solid.add_to(&mut body, center, length, draft.tributary);
         let touches = draft.solids.into_iter().map(add).collect();
-        let outlines =
-            body.surfaces.iter().map(|placed| outline_of(&placed.surface, placed.offset));
+        let outlines = body.surfaces.iter().map(outline_of);
         self.parts.push(Part {
             name: draft.name,
             kind: draft.kind,

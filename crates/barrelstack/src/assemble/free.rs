@@ -60,7 +60,8 @@ pub(super) fn assemble(
 
 /// Every body of the first kind against every one of the second.
 ///
-/// Between bodies of one kind both carry nodes, but for two that roll, where one says it all.
+/// Between bodies of one kind both carry nodes, but for two that roll, where one says it all. Convex
+/// boundaries without nodes test each other both ways; against a round one, its rolling node says it all.
 fn join(
     bodies: &[Body<Planar>],
     kinds: &[&str],
@@ -68,28 +69,39 @@ fn join(
     interface: usize,
     pairs: &mut Vec<ContactPair>,
 ) {
-    let rolls = |body: &Body<Planar>| matches!(body.nodes.first(), Some(Nodes::Rolling { .. }));
     let of =
         |kind: &str| -> Vec<BodyId> { (0..bodies.len()).filter(|i| kinds[*i] == kind).collect() };
+    let mut add = |contactor: BodyId, nodes: usize, target: BodyId, surface: usize| {
+        let counts = Counts::Everywhere;
+        let pair = ContactPair { contactor, nodes, target, surface, interface, counts };
+        if !pairs.contains(&pair) {
+            pairs.push(pair);
+        }
+    };
     for contactor in of(between[0]) {
         for target in of(between[1]) {
             let both_fixed = bodies[contactor].motion == Motion::Prescribed
                 && bodies[target].motion == Motion::Prescribed;
-            let said = contactor > target && rolls(&bodies[contactor]) && rolls(&bodies[target]);
-            let twice = between[0] == between[1] && said;
-            if contactor == target || both_fixed || twice {
+            if contactor == target || both_fixed {
                 continue;
             }
-            for nodes in 0..bodies[contactor].nodes.len() {
+            for (own, nodes) in bodies[contactor].nodes.iter().enumerate() {
                 for surface in 0..bodies[target].surfaces.len() {
-                    pairs.push(ContactPair {
-                        contactor,
-                        nodes,
-                        target,
-                        surface,
-                        interface,
-                        counts: Counts::Everywhere,
-                    });
+                    // Every part of a body has its nodes and its surface at one place in the lists, but
+                    // chosen nodes, which come alone.
+                    let theirs = bodies[target].nodes.get(surface);
+                    match (nodes, theirs) {
+                        (Nodes::Rounds(_), Some(Nodes::Rolling { .. })) => {
+                            add(target, surface, contactor, own);
+                        }
+                        (Nodes::Rounds(_), Some(Nodes::Rounds(_))) => {
+                            add(contactor, own, target, surface);
+                            add(target, surface, contactor, own);
+                        }
+                        (Nodes::Rolling { .. }, Some(Nodes::Rolling { .. }))
+                            if between[0] == between[1] && contactor > target => {}
+                        _ => add(contactor, own, target, surface),
+                    }
                 }
             }
         }
@@ -131,13 +143,29 @@ fn part(name: &str, kind: PartKind, size: f64) -> Part {
 fn free_body(body: &FreeBody, scale: Similitude) -> Result<(Body<Planar>, Part), AssembleError> {
     let length = scale.length;
     let vector = |v: [f64; 2]| Vec2::new(v[0], v[1]) * length;
-    let shape = shape(body, length)?;
     let center = vector(body.center_of_mass);
-    let nodes = nodes(body, &shape, center, length);
     let rotation = <Planar as Space>::rotation(body.angle);
     let mut part = part(&body.name, PartKind::Body, 0.0);
-    part.outlines = vec![outline_of(&shape, -center)];
-    part.size = part.outlines[0].points.iter().map(|p| p.length()).fold(0.0, f64::max);
+    let (mut surfaces, mut node_sets) = (Vec::new(), Vec::new());
+    for piece in body.shape.parts() {
+        let surface = shape(&body.name, &piece.shape, length)?;
+        let offset = vector(piece.offset) - center;
+        let placed = Placed { surface, offset, rotation: <Planar as Space>::rotation(piece.turn) };
+        part.outlines.push(outline_of(&placed));
+        if let Some(nodes) = nodes(&body.nodes, &placed, length) {
+            node_sets.push(nodes);
+        }
+        surfaces.push(placed);
+    }
+    if let scenario::Nodes::At(list) = &body.nodes {
+        let node = |node: &scenario::ChosenNode| Node {
+            position: vector(node.at) - center,
+            tributary_length: node.tributary_length * length,
+        };
+        node_sets.push(Nodes::Fixed(list.iter().map(node).collect()));
+    }
+    let points = part.outlines.iter().flat_map(|outline| &outline.points);
+    part.size = points.map(|p| p.length()).fold(0.0, f64::max);
     let damping = body.viscous.map(|viscous| {
         let linear = viscous.linear * scale.damping(false);
         let angular = viscous.angular * scale.damping(false) * length * length;
@@ -157,16 +185,19 @@ fn free_body(body: &FreeBody, scale: Similitude) -> Result<(Body<Planar>, Part),
             linear: Vec2::new(body.velocity[0], body.velocity[1]) * scale.time(),
             angular: body.spin / scale.time(),
         },
-        surfaces: vec![Placed { surface: shape, offset: -center, rotation: Rotation2::identity() }],
-        nodes: vec![nodes],
+        surfaces,
+        nodes: node_sets,
         faces: Vec::new(),
     };
     Ok((body, part))
 }
 
-fn shape(body: &FreeBody, length: f64) -> Result<Shape, AssembleError> {
-    let refuse = |problem: String| AssembleError::Shape { body: body.name.clone(), problem };
-    Ok(match &body.shape {
+fn shape(body: &str, shape: &scenario::Shape, length: f64) -> Result<Shape, AssembleError> {
+    let refuse = |problem: String| AssembleError::Shape { body: body.to_owned(), problem };
+    Ok(match shape {
+        scenario::Shape::Compound { .. } => {
+            return Err(refuse("a part of a compound is a compound itself".into()));
+        }
         scenario::Shape::Rectangle { width, height, corner_radius } => Shape::Polygon(
             Polygon::rectangle(width * length, height * length, corner_radius * length)
                 .map_err(|problem| refuse(problem.to_string()))?,
@@ -192,42 +223,40 @@ fn shape(body: &FreeBody, length: f64) -> Result<Shape, AssembleError> {
     })
 }
 
-fn nodes(body: &FreeBody, shape: &Shape, center: Vec2, length: f64) -> Nodes<Planar> {
-    let boundary = match (body.nodes, shape) {
-        (scenario::Nodes::Rolling, Shape::Circle(circle)) => {
-            return Nodes::Rolling {
-                center: -center,
-                radius: circle.radius,
-                tributary_length: 0.01 * length,
-            };
+/// The nodes of one part by a rule, in the body frame; none where they are chosen for the whole body.
+fn nodes(rule: &scenario::Nodes, placed: &Placed<Planar>, length: f64) -> Option<Nodes<Planar>> {
+    let shape = &placed.surface;
+    let boundary = match (rule, shape) {
+        (scenario::Nodes::At(_), _) => return None,
+        (scenario::Nodes::Exact, _) | (scenario::Nodes::Rolling, Shape::Circle(_)) => {
+            return Some(super::solid::boundary(placed, TRIBUTARY * length));
         }
         (scenario::Nodes::Corners, Shape::Polygon(polygon)) => polygon.corner_nodes(),
         (scenario::Nodes::Spacing(spacing), _) => shape.nodes(spacing * length),
         (scenario::Nodes::Count(count), Shape::Polygon(polygon)) => {
-            polygon.nodes_per_side(count as usize)
+            polygon.nodes_per_side(*count as usize)
         }
         (scenario::Nodes::Count(count), Shape::Circle(circle)) => {
             let around = std::f64::consts::TAU * circle.radius;
-            shape.nodes(around / f64::from(count.max(1)))
+            shape.nodes(around / f64::from((*count).max(1)))
         }
         // For curved shapes a count divides the whole boundary; without one, 64 parts are fine enough.
         (scenario::Nodes::Count(count), _) => {
-            shape.nodes(boundary_length(shape) / f64::from(count.max(1)))
+            shape.nodes(boundary_length(shape) / f64::from((*count).max(1)))
         }
         (scenario::Nodes::Corners | scenario::Nodes::Rolling, _) => {
             shape.nodes(boundary_length(shape) / 64.0)
         }
     };
-    Nodes::Fixed(
-        boundary
-            .into_iter()
-            .map(|node| Node {
-                position: node.position - center,
-                tributary_length: node.tributary_length,
-            })
-            .collect(),
-    )
+    let node = |node: barrelstack_dynamics::shape::BoundaryNode| Node {
+        position: placed.offset + placed.rotation.apply(node.position),
+        tributary_length: node.tributary_length,
+    };
+    Some(Nodes::Fixed(boundary.into_iter().map(node).collect()))
 }
+
+/// The length (m) of boundary that a contact without nodes stands for, at full scale.
+const TRIBUTARY: f64 = 0.01;
 
 /// The length (m) of a shape's boundary.
 fn boundary_length(shape: &Shape) -> f64 {

@@ -11,7 +11,7 @@ mod stack;
 mod straps;
 mod transverse;
 
-use barrelstack_dynamics::{BodyId, Model, ModelError, Planar, Shape, Vec2};
+use barrelstack_dynamics::{BodyId, Model, ModelError, Placed, Planar, Vec2};
 
 use crate::scenario::{Scenario, Scene, View};
 
@@ -161,9 +161,10 @@ pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
 }
 
 /// The outline of a shape that sits at an offset on a body.
-fn outline_of(shape: &Shape, offset: Vec2) -> Outline {
-    let (points, closed) = shape.outline();
-    Outline { points: points.into_iter().map(|p| p + offset).collect(), closed }
+fn outline_of(placed: &Placed<Planar>) -> Outline {
+    let (points, closed) = placed.surface.outline();
+    let at = |point| placed.offset + placed.rotation.apply(point);
+    Outline { points: points.into_iter().map(at).collect(), closed }
 }
 
 /// The line that shows the ground, longer than any picture is wide.

@@ -89,7 +89,8 @@ impl Solid {
     ) -> Touch {
         let shape = scaled(self.shape, length);
         let offset = (self.offset - center) * length;
-        let exact = add(body, boundary(&shape, offset, tributary * length));
+        let placed = Placed { surface: shape, offset, rotation: Rotation2::identity() };
+        let exact = add(body, boundary(&placed, tributary * length));
         let mut face = |nodes: &[(Vec2, f64)], outward: f64| {
             let at = |(position, tributary): &(Vec2, f64)| Node {
                 position: (*position - center) * length,
@@ -113,7 +114,7 @@ impl Solid {
             })
         };
         let (below, above) = (face(&self.below, -1.0), face(&self.above, 1.0));
-        body.surfaces.push(Placed { surface: shape, offset, rotation: Rotation2::identity() });
+        body.surfaces.push(placed);
         Touch { seat: self.seat, exact, below, above }
     }
 }
@@ -139,18 +140,23 @@ fn add(body: &mut Body<Planar>, nodes: Nodes<Planar>) -> usize {
     body.nodes.len() - 1
 }
 
-/// What tests the boundary of a shape exactly.
-pub(super) fn boundary(shape: &Shape, offset: Vec2, tributary_length: f64) -> Nodes<Planar> {
-    match shape {
+/// What tests the boundary of a part exactly.
+pub(super) fn boundary(placed: &Placed<Planar>, tributary_length: f64) -> Nodes<Planar> {
+    let Placed { surface, offset, rotation } = placed;
+    match surface {
         Shape::Circle(circle) => {
-            Nodes::Rolling { center: offset, radius: circle.radius, tributary_length }
+            Nodes::Rolling { center: *offset, radius: circle.radius, tributary_length }
         }
         Shape::HalfPlane(_) | Shape::Polygon(_) | Shape::Cradle(_) | Shape::BarrelProfile(_) => {
-            let mut rounds = shape.rounds(tributary_length);
+            let mut rounds = surface.rounds(tributary_length);
             for round in &mut rounds {
-                round.center += offset;
+                round.center = *offset + rotation.apply(round.center);
+                round.limits = round.limits.map(|limit| rotation.apply(limit));
+                round.arc_limits =
+                    round.arc_limits.map(|limit| limit.map(|limit| rotation.apply(limit)));
                 for (outward, distance) in round.sides.iter_mut().flatten() {
-                    *distance += outward.dot(offset);
+                    *outward = rotation.apply(*outward);
+                    *distance += outward.dot(*offset);
                 }
             }
             Nodes::Rounds(rounds)

@@ -9,7 +9,7 @@ use super::shape::{self, SHAPE};
 use super::tree::Table;
 use super::writer::Writer;
 
-pub use super::shape::Shape;
+pub use super::shape::{PartShape, Shape};
 
 /// The ground of a free scene: the half-plane below a line through the origin.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +21,7 @@ pub struct Ground {
 }
 
 /// Where the boundary of a body carries contact nodes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Nodes {
     /// At the corners.
     Corners,
@@ -31,6 +31,19 @@ pub enum Nodes {
     Count(u32),
     /// The one point of a circle that is deepest in the target.
     Rolling,
+    /// None: convex outlines touch each other with their deepest points, wherever those lie.
+    Exact,
+    /// At chosen places.
+    At(Vec<ChosenNode>),
+}
+
+/// A node at a chosen place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChosenNode {
+    /// Place `[x, z]` in local coordinates, from the reference point of the shape (m).
+    pub at: [f64; 2],
+    /// Length of boundary that it stands for (m).
+    pub tributary_length: f64,
 }
 
 /// Viscous drag on a body, relative to the ground at rest (Candia, de la Llera and Almazán 2008,
@@ -98,11 +111,12 @@ pub struct FreeScene {
 enum NodeRule {
     Corners,
     Rolling,
+    Exact,
 }
 
 impl Named for NodeRule {
     const NAMES: &'static [(&'static str, Self)] =
-        &[("corners", Self::Corners), ("rolling", Self::Rolling)];
+        &[("corners", Self::Corners), ("rolling", Self::Rolling), ("exact", Self::Exact)];
 }
 
 /// Most bodies of a free scene.
@@ -137,7 +151,8 @@ pub static NODES: Section = Section {
             "rule",
             Kind::Choice(names::<NodeRule>),
             Default::Nothing,
-            "At the corners, or at the one deepest point of a circle.",
+            "At the corners; at the one deepest point of a circle; or exact, where convex outlines touch \
+             each other with their deepest points and both bodies say so.",
         ),
         Field::new(
             "spacing",
@@ -154,9 +169,32 @@ pub static NODES: Section = Section {
             Default::Nothing,
             "Nodes on each side, or around a curved shape.",
         ),
+        Field::new("list", Kind::Tables(&NODE), Default::Nothing, "Nodes at chosen places."),
     ],
     variants: None,
-    exclusive: &[&["rule", "spacing", "count"]],
+    exclusive: &[&["rule", "spacing", "count", "list"]],
+};
+
+/// A node at a chosen place.
+static NODE: Section = Section {
+    name: "node",
+    help: "A contact node at a chosen place.",
+    fields: &[
+        Field::new(
+            "at",
+            Kind::Point(Dimension::LENGTH),
+            Default::Required,
+            "Place in the body, from the reference point of the shape.",
+        ),
+        Field::new(
+            "tributary_length",
+            Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE),
+            Default::Value("\"1 cm\""),
+            "Length of boundary that it stands for, for laws per meter of boundary.",
+        ),
+    ],
+    variants: None,
+    exclusive: &[],
 };
 
 /// Viscous drag.
@@ -332,22 +370,40 @@ fn read_nodes(reader: &Reader<'_>, shape: &Shape) -> Result<Nodes, ScenarioError
         return Ok(match shape {
             Shape::Circle { .. } => Nodes::Rolling,
             Shape::Rectangle { .. } | Shape::Polygon { .. } => Nodes::Corners,
-            Shape::Cradle { .. } | Shape::BarrelProfile { .. } => Nodes::Spacing(0.01),
+            Shape::Cradle { .. } | Shape::BarrelProfile { .. } | Shape::Compound { .. } => {
+                Nodes::Spacing(0.01)
+            }
         });
     };
     let rule: Option<NodeRule> = nodes.optional_choice("rule")?;
     let spacing = nodes.optional_quantity("spacing")?;
     let count = nodes.optional_integer("count")?;
+    let mut list = Vec::new();
+    for node in nodes.sections("list")? {
+        list.push(ChosenNode {
+            at: node.point("at")?,
+            tributary_length: node.quantity("tributary_length")?,
+        });
+        node.finish();
+    }
     let rule = rule
         .map(|rule| match rule {
             NodeRule::Corners => Nodes::Corners,
             NodeRule::Rolling => Nodes::Rolling,
+            NodeRule::Exact => Nodes::Exact,
         })
         .or(spacing.map(Nodes::Spacing))
         .or(count.map(Nodes::Count))
-        .ok_or_else(|| nodes.one_of(&["rule", "spacing", "count"]))?;
-    let circle = matches!(shape, Shape::Circle { .. });
+        .or((!list.is_empty()).then_some(Nodes::At(list)))
+        .ok_or_else(|| nodes.one_of(&["rule", "spacing", "count", "list"]))?;
+    let parts = shape.parts();
+    let circle = parts.iter().all(|part| matches!(part.shape, Shape::Circle { .. }));
+    let cradle = parts.iter().any(|part| matches!(part.shape, Shape::Cradle { .. }));
     match rule {
+        Nodes::Exact if cradle => {
+            let message = "a cradle is not convex; give it nodes a stated distance apart";
+            return Err(nodes.inconsistent("rule", message.to_owned()));
+        }
         Nodes::Rolling if !circle => {
             let message =
                 "only a circle rolls on one node; write `nodes = \"corners\"` or a spacing";
@@ -364,7 +420,12 @@ fn read_nodes(reader: &Reader<'_>, shape: &Shape) -> Result<Nodes, ScenarioError
             );
             return Err(nodes.inconsistent("spacing", message));
         }
-        Nodes::Rolling | Nodes::Corners | Nodes::Spacing(_) | Nodes::Count(_) => {}
+        Nodes::Rolling
+        | Nodes::Corners
+        | Nodes::Exact
+        | Nodes::Spacing(_)
+        | Nodes::Count(_)
+        | Nodes::At(_) => {}
     }
     nodes.finish();
     Ok(rule)
@@ -438,7 +499,7 @@ fn write_body(body: &FreeBody) -> Table {
     writer.quantity("spin", body.spin);
     writer.flag("fixed_to_ground", body.fixed_to_ground);
     writer.table("shape", shape::write(&body.shape));
-    writer.table("nodes", write_nodes(body.nodes));
+    writer.table("nodes", write_nodes(&body.nodes));
     match body.viscous {
         Some(viscous) => {
             let mut inner = Writer::new(&VISCOUS);
@@ -451,14 +512,24 @@ fn write_body(body: &FreeBody) -> Table {
     writer.finish()
 }
 
-fn write_nodes(nodes: Nodes) -> Table {
+fn write_nodes(nodes: &Nodes) -> Table {
     let mut writer = Writer::new(&NODES);
     match nodes {
         Nodes::Corners => writer.choice("rule", NodeRule::Corners),
         Nodes::Rolling => writer.choice("rule", NodeRule::Rolling),
-        Nodes::Spacing(spacing) => writer.quantity("spacing", spacing),
-        Nodes::Count(count) => writer.integer("count", count),
+        Nodes::Exact => writer.choice("rule", NodeRule::Exact),
+        Nodes::Spacing(spacing) => writer.quantity("spacing", *spacing),
+        Nodes::Count(count) => writer.integer("count", *count),
+        Nodes::At(list) => {
+            let node = |node: &ChosenNode| {
+                let mut writer = Writer::new(&NODE);
+                writer.point("at", node.at);
+                writer.quantity("tributary_length", node.tributary_length);
+                writer.finish()
+            };
+            writer.tables("list", list.iter().map(node).collect());
+        }
     }
-    writer.omit(&["rule", "spacing", "count"]);
+    writer.omit(&["rule", "spacing", "count", "list"]);
     writer.finish()
 }

@@ -60,7 +60,7 @@ use barrelstack_input::{merge, writer};
 
 pub use barrel::{Barrel, Fill};
 pub use error::ScenarioError;
-pub use free::{FreeBody, FreeInterface, FreeScene, Ground, Nodes, Viscous};
+pub use free::{ChosenNode, FreeBody, FreeInterface, FreeScene, Ground, Nodes, PartShape, Viscous};
 pub use interface::{Basis, Damping, Friction, Interface, NormalLaw};
 pub use motion::{
     Amplitude, Direction, MeasuredOn, MotionSource, MotionSpec, Processing, Pulse, PulseKind,

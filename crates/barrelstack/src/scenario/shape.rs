@@ -47,6 +47,22 @@ pub enum Shape {
         /// Outer diameter at the ends (m).
         head_diameter: f64,
     },
+    /// Several outlines that are one body; the reference point is the local origin.
+    Compound {
+        /// Its parts.
+        parts: Vec<PartShape>,
+    },
+}
+
+/// One outline of several that are one body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartShape {
+    /// The outline, no compound itself.
+    pub shape: Shape,
+    /// Place of its reference point `[x, z]` in the body (m).
+    pub offset: [f64; 2],
+    /// How it is turned in the body, counterclockwise (rad).
+    pub turn: f64,
 }
 
 /// Mass properties of a uniform plate, or of a uniform arc for a cradle.
@@ -59,7 +75,22 @@ pub struct Uniform {
 }
 
 impl Shape {
-    /// Mass properties of a uniform plate of this outline; of a uniform arc for a cradle.
+    /// The outlines it is made of: itself, but for a compound.
+    pub fn parts(&self) -> Vec<PartShape> {
+        match self {
+            Self::Compound { parts } => parts.clone(),
+            Self::Rectangle { .. }
+            | Self::Circle { .. }
+            | Self::Polygon { .. }
+            | Self::Cradle { .. }
+            | Self::BarrelProfile { .. } => {
+                vec![PartShape { shape: self.clone(), offset: [0.0, 0.0], turn: 0.0 }]
+            }
+        }
+    }
+
+    /// Mass properties of a uniform plate of this outline; of a uniform arc for a cradle. Where parts of a
+    /// compound overlap, matter counts twice; cradles among them, which have no area, count nothing.
     pub fn uniform(&self) -> Uniform {
         match self {
             Self::Rectangle { width, height, corner_radius } => Uniform {
@@ -78,6 +109,23 @@ impl Shape {
                 let (area, moment) = barrel_profile(*length, *bilge_diameter, *head_diameter);
                 Uniform { centroid: [0.0, 0.0], square_radius: moment / area }
             }
+            Self::Compound { parts } => compound(parts),
+        }
+    }
+
+    /// Area enclosed (m²).
+    fn area(&self) -> f64 {
+        match self {
+            Self::Rectangle { width, height, corner_radius } => {
+                width * height - (4.0 - PI) * corner_radius * corner_radius
+            }
+            Self::Circle { radius } => PI * radius * radius,
+            Self::Polygon { vertices } => area(vertices),
+            Self::Cradle { .. } => 0.0,
+            Self::BarrelProfile { length, bilge_diameter, head_diameter } => {
+                barrel_profile(*length, *bilge_diameter, *head_diameter).0
+            }
+            Self::Compound { parts } => parts.iter().map(|part| part.shape.area()).sum(),
         }
     }
 
@@ -94,8 +142,30 @@ impl Shape {
                 .sum(),
             Self::Cradle { radius, half_angle } => 2.0 * half_angle * radius,
             Self::BarrelProfile { length, bilge_diameter, .. } => 2.0 * (length + bilge_diameter),
+            Self::Compound { parts } => parts.iter().map(|part| part.shape.perimeter()).sum(),
         }
     }
+}
+
+/// Parts of one density, each about its own centroid and shifted from there.
+fn compound(parts: &[PartShape]) -> Uniform {
+    let placed = || {
+        parts.iter().map(|part| {
+            let own = part.shape.uniform();
+            let (sin, cos) = (libm::sin(part.turn), libm::cos(part.turn));
+            let [x, z] = own.centroid;
+            let place = [part.offset[0] + cos * x - sin * z, part.offset[1] + sin * x + cos * z];
+            (part.shape.area(), place, own.square_radius)
+        })
+    };
+    let area: f64 = placed().map(|(area, ..)| area).sum();
+    let mean = |axis: usize| placed().map(|(part, at, _)| part * at[axis]).sum::<f64>() / area;
+    let centroid = [mean(0), mean(1)];
+    let about = |(part, at, own): (f64, [f64; 2], f64)| {
+        let (x, z) = (at[0] - centroid[0], at[1] - centroid[1]);
+        part / area * (own + x * x + z * z)
+    };
+    Uniform { centroid, square_radius: placed().map(about).sum() }
 }
 
 /// Polar moment over area of a rectangle with rounded corners (m²).
@@ -159,6 +229,7 @@ enum ShapeName {
     Polygon,
     Cradle,
     BarrelProfile,
+    Compound,
 }
 
 impl Named for ShapeName {
@@ -168,6 +239,7 @@ impl Named for ShapeName {
         ("polygon", Self::Polygon),
         ("cradle", Self::Cradle),
         ("barrel-profile", Self::BarrelProfile),
+        ("compound", Self::Compound),
     ];
 }
 
@@ -177,76 +249,123 @@ const SIZE: Kind =
 /// Most corners of a polygon.
 const MOST_CORNERS: usize = 200;
 
+const RECTANGLE: Variant = Variant {
+    name: "rectangle",
+    help: "The reference point is the middle.",
+    fields: &[
+        Field::new("width", SIZE, Default::Required, "Along local x."),
+        Field::new("height", SIZE, Default::Required, "Along local z."),
+        Field::new(
+            "corner_radius",
+            Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 1e4)),
+            Default::Value("\"0 m\""),
+            "Radius of the rounded corners.",
+        ),
+    ],
+};
+
+const CIRCLE: Variant = Variant {
+    name: "circle",
+    help: "The reference point is the center.",
+    fields: &[Field::new("radius", SIZE, Default::Required, "Radius.")],
+};
+
+const POLYGON: Variant = Variant {
+    name: "polygon",
+    help: "The reference point is the local origin.",
+    fields: &[Field::new(
+        "vertices",
+        Kind::Points(Dimension::LENGTH),
+        Default::Required,
+        "Corners in order; sides must not cross.",
+    )],
+};
+
+const CRADLE: Variant = Variant {
+    name: "cradle",
+    help: "A circular trough open upward; the reference point is the center of the circle.",
+    fields: &[
+        Field::new("radius", SIZE, Default::Required, "Radius."),
+        Field::new(
+            "half_angle",
+            Kind::Quantity(&[Dimension::ANGLE], Range::up_to(PI)),
+            Default::Required,
+            "Half of the angle spanned, from the lowest point.",
+        ),
+    ],
+};
+
+const BARREL_PROFILE: Variant = Variant {
+    name: "barrel-profile",
+    help: "A barrel seen from the side, axis along local x; the reference point is the middle.",
+    fields: &[
+        Field::new("length", SIZE, Default::Required, "Length."),
+        Field::new("bilge_diameter", SIZE, Default::Required, "Diameter at the middle."),
+        Field::new("head_diameter", SIZE, Default::Required, "Diameter at the ends."),
+    ],
+};
+
+const TYPE: Field =
+    Field::new("type", Kind::Choice(names::<ShapeName>), Default::Required, "Form of the outline.");
+
 /// An outline.
 pub static SHAPE: Section = Section {
     name: "shape",
     help: "Outline of a body, about its reference point.",
-    fields: &[Field::new(
-        "type",
-        Kind::Choice(names::<ShapeName>),
-        Default::Required,
-        "Form of the outline.",
-    )],
+    fields: &[TYPE],
     variants: Some(Variants {
         tag: "type",
         list: &[
+            RECTANGLE,
+            CIRCLE,
+            POLYGON,
+            CRADLE,
+            BARREL_PROFILE,
             Variant {
-                name: "rectangle",
-                help: "The reference point is the middle.",
-                fields: &[
-                    Field::new("width", SIZE, Default::Required, "Along local x."),
-                    Field::new("height", SIZE, Default::Required, "Along local z."),
-                    Field::new(
-                        "corner_radius",
-                        Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 1e4)),
-                        Default::Value("\"0 m\""),
-                        "Radius of the rounded corners.",
-                    ),
-                ],
-            },
-            Variant {
-                name: "circle",
-                help: "The reference point is the center.",
-                fields: &[Field::new("radius", SIZE, Default::Required, "Radius.")],
-            },
-            Variant {
-                name: "polygon",
-                help: "The reference point is the local origin.",
+                name: "compound",
+                help: "Several outlines that are one body; the reference point is the local origin.",
                 fields: &[Field::new(
-                    "vertices",
-                    Kind::Points(Dimension::LENGTH),
+                    "parts",
+                    Kind::Tables(&PART),
                     Default::Required,
-                    "Corners in order; sides must not cross.",
+                    "The outlines; where they overlap, matter counts twice.",
                 )],
             },
-            Variant {
-                name: "cradle",
-                help: "A circular trough open upward; the reference point is the center of the circle.",
-                fields: &[
-                    Field::new("radius", SIZE, Default::Required, "Radius."),
-                    Field::new(
-                        "half_angle",
-                        Kind::Quantity(&[Dimension::ANGLE], Range::up_to(PI)),
-                        Default::Required,
-                        "Half of the angle spanned, from the lowest point.",
-                    ),
-                ],
-            },
-            Variant {
-                name: "barrel-profile",
-                help: "A barrel seen from the side, axis along local x; the reference point is the middle.",
-                fields: &[
-                    Field::new("length", SIZE, Default::Required, "Length."),
-                    Field::new(
-                        "bilge_diameter",
-                        SIZE,
-                        Default::Required,
-                        "Diameter at the middle.",
-                    ),
-                    Field::new("head_diameter", SIZE, Default::Required, "Diameter at the ends."),
-                ],
-            },
         ],
+    }),
+    exclusive: &[],
+};
+
+/// An outline of a compound.
+static PART: Section = Section {
+    name: "part",
+    help: "One outline of several that are one body.",
+    fields: &[
+        Field::new("shape", Kind::Table(&PART_SHAPE), Default::Required, "Outline."),
+        Field::new(
+            "offset",
+            Kind::Point(Dimension::LENGTH),
+            Default::Value("[\"0 m\", \"0 m\"]"),
+            "Place of its reference point in the body.",
+        ),
+        Field::new(
+            "turn",
+            Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)),
+            Default::Value("\"0 deg\""),
+            "How it is turned in the body, counterclockwise.",
+        ),
+    ],
+    variants: None,
+    exclusive: &[],
+};
+
+static PART_SHAPE: Section = Section {
+    name: "shape",
+    help: "Outline of a part, about its reference point.",
+    fields: &[TYPE],
+    variants: Some(Variants {
+        tag: "type",
+        list: &[RECTANGLE, CIRCLE, POLYGON, CRADLE, BARREL_PROFILE],
     }),
     exclusive: &[],
 };
@@ -289,9 +408,28 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Shape, ScenarioError> {
                 head_diameter,
             }
         }
+        ShapeName::Compound => Shape::Compound { parts: read_parts(&reader)? },
     };
     reader.finish();
     Ok(shape)
+}
+
+fn read_parts(reader: &Reader<'_>) -> Result<Vec<PartShape>, ScenarioError> {
+    let mut parts = Vec::new();
+    for part in reader.sections("parts")? {
+        let shape = read(part.section("shape")?)?;
+        parts.push(PartShape {
+            shape,
+            offset: part.point("offset")?,
+            turn: part.quantity("turn")?,
+        });
+        part.finish();
+    }
+    if !parts.iter().any(|part| part.shape.area() > 0.0) {
+        let message = "a compound needs a part that encloses an area".to_owned();
+        return Err(reader.inconsistent("parts", message));
+    }
+    Ok(parts)
 }
 
 /// Reads the corners and turns them counterclockwise.
@@ -341,6 +479,18 @@ fn cross_each_other((a, b): ([f64; 2], [f64; 2]), (c, d): ([f64; 2], [f64; 2])) 
 /// Writes an outline.
 pub(super) fn write(shape: &Shape) -> Table {
     match shape {
+        Shape::Compound { parts } => {
+            let mut writer = Writer::variant(&SHAPE, ShapeName::Compound);
+            let part = |part: &PartShape| {
+                let mut writer = Writer::new(&PART);
+                writer.table("shape", write(&part.shape));
+                writer.point("offset", part.offset);
+                writer.quantity("turn", part.turn);
+                writer.finish()
+            };
+            writer.tables("parts", parts.iter().map(part).collect());
+            writer.finish()
+        }
         Shape::Rectangle { width, height, corner_radius } => {
             let mut writer = Writer::variant(&SHAPE, ShapeName::Rectangle);
             writer.quantity("width", *width);

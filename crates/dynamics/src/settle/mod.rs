@@ -44,8 +44,9 @@ pub struct Locked {
 /// Steps after which forces that do not balance never will.
 const MOST_STEPS: u64 = 40_000;
 
-/// Steps without momentum of the second try, for what its momentum has carried away in the first.
-const CALM: u64 = 4000;
+/// How settling is tried, until it succeeds: with what margin of the fictitious masses, and with how many
+/// steps without momentum at first. Heavier masses go slower, and less far beyond where bodies lie.
+const TRIES: [(f64, u64); 3] = [(2.0, 0), (16.0, 0), (64.0, 4000)];
 
 /// Steps between two looks for bodies that have left.
 const LOOK: u64 = 20;
@@ -60,7 +61,7 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// as the stack sinks remain, as they would after stacking; [`Settled::locked`] says how much that is.
 /// The way there is relaxation with momentum: every step carries on a growing share of the way of the
 /// step before, and all bodies are stopped whenever the forces have come to work against their ways.
-/// What does not come to rest so is tried once more, at first without momentum, before it is refused.
+/// What does not come to rest so is tried again with heavier masses before it is refused.
 /// The mass of a body is what the stiffness of its contacts allows in a step, and velocities are so small
 /// that dampers feel nothing, so no damping constant and no time step decides where bodies come to rest or
 /// how many steps that takes.
@@ -80,12 +81,14 @@ pub fn settle<S: Space>(
     stop(model, state);
     Integrator::start(model, &Still, state, scratch);
     let start = state.clone();
-    let mut result = sink(model, state, scratch, tolerance, 0);
-    if result.as_ref().is_err_and(|error| error.lack != Lack::Support) {
+    let mut result = sink(model, state, scratch, tolerance, TRIES[0]);
+    for way in &TRIES[1..] {
         // With momentum bodies sink somewhat deeper than they lie, which is too deep for some.
-        state.clone_from(&start);
-        evaluate(model, state, scratch);
-        result = sink(model, state, scratch, tolerance, CALM);
+        if result.as_ref().is_err_and(|error| error.lack != Lack::Support) {
+            state.clone_from(&start);
+            evaluate(model, state, scratch);
+            result = sink(model, state, scratch, tolerance, *way);
+        }
     }
     state.time = start_time;
     stop(model, state);
@@ -98,16 +101,16 @@ pub fn settle<S: Space>(
     settled
 }
 
-/// Steps until every lane rests, the first of them without momentum; how many, and what is left unbalanced.
+/// Steps until every lane rests, in one way of [`TRIES`]; how many, and what is left unbalanced.
 fn sink<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,
     scratch: &mut Scratch<S>,
     tolerance: f64,
-    calm: u64,
+    (margin, calm): (f64, u64),
 ) -> Result<(u64, f64), SettleError> {
     let gravity = gravity(model).largest_lane();
-    let mut relaxation = Relaxation::new(model, calm);
+    let mut relaxation = Relaxation::new(model, margin, calm);
     let mut departure = Departure::new(model, state.poses.clone());
     let mut steps = 0;
     loop {

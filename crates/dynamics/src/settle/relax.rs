@@ -10,13 +10,6 @@ use crate::state::State;
 
 use super::{extent, gravity};
 
-/// Fictitious mass over the stiffness that a body's contacts add up to.
-///
-/// A contact of stiffness k between two bodies, seen in their ways and turns, is at most four times k on
-/// the diagonal, and central differences with a step of 1 are stable while a mass is a quarter of the
-/// stiffness: so 1 is just stable for springs, and the rest is for friction that breaks.
-const MARGIN: f64 = 2.0;
-
 /// Share of its reach that a body falls in its first step while nothing holds it.
 const FIRST_FALL: f64 = 1e-4;
 
@@ -51,6 +44,12 @@ struct Held<R> {
 
 /// What relaxation carries from step to step. Lanes decide alone; a lane that rests stays as it is.
 pub(super) struct Relaxation<S: Space> {
+    /// Fictitious mass over the stiffness that a body's contacts add up to.
+    ///
+    /// A contact of stiffness k between two bodies, seen in their ways and turns, is at most four times k
+    /// on the diagonal, and central differences with a step of 1 are stable while a mass is a quarter of
+    /// the stiffness: so 1 is just stable for springs, and the rest is for friction that breaks.
+    margin: f64,
     /// The lanes that rest.
     pub(super) resting: <S::Real as Real>::Mask,
     /// The bodies that have touched something, or hung on something.
@@ -71,8 +70,9 @@ pub(super) struct Relaxation<S: Space> {
 
 impl<S: Space> Relaxation<S> {
     /// At the start: nothing moves, and no body has been held. The first steps may go without momentum.
-    pub(super) fn new(model: &Model<S>, calm: u64) -> Self {
+    pub(super) fn new(model: &Model<S>, margin: f64, calm: u64) -> Self {
         Self {
+            margin,
             resting: Default::default(),
             met: vec![false; model.bodies.len()],
             ways: vec![Twist::default(); model.bodies.len()],
@@ -204,7 +204,7 @@ impl<S: Space> Relaxation<S> {
         let calm = S::Real::splat(if self.calm > 0 { 0.0 } else { 1.0 });
         self.calm = self.calm.saturating_sub(1);
         let carried = S::Real::select(against | self.resting, zero, carried * calm);
-        let given = S::Real::select(self.resting, zero, S::Real::splat(1.0 / MARGIN));
+        let given = S::Real::select(self.resting, zero, S::Real::splat(1.0 / self.margin));
         let gravity = gravity(model);
         for (i, forces) in each(model, scratch).enumerate() {
             let body = &model.bodies[i];

@@ -126,15 +126,12 @@ fn records() -> Vec<PathBuf> {
 
 /// A stack that depends on nothing but its number and the records.
 fn random_stack(case: usize, records: &[PathBuf]) -> Result<Scenario, Failure> {
+    // One turn of SplitMix64 for every choice.
     let pick = |salt: usize, count: usize| {
-        // A linear congruential generator, a few turns from the number of the case.
-        let mut state = (case * 31 + salt * 7919 + 12345) as u64;
-        for _ in 0..4 {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-        }
-        (state >> 33) as usize % count
+        let mut z = ((case * 64 + salt) as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 33) as usize % count
     };
     let view = ["transverse", "longitudinal"][pick(1, 2)];
     let racks = catalog::RACKS.iter();
