@@ -253,7 +253,7 @@ fn levels_of(collected: &Collected, row: usize) -> Option<u32> {
 fn recorded_runs(cases: &Cases, collected: &Collected, view: View) -> Vec<AsRecorded> {
     let intensity = |name: &str, case: &Case| {
         let at = cases.measures.iter().position(|measure| measure.name == name)?;
-        case.intensities[at]
+        case.intensity(at)
     };
     let run = |case: &Case| {
         Some(AsRecorded {
@@ -266,5 +266,5 @@ fn recorded_runs(cases: &Cases, collected: &Collected, view: View) -> Vec<AsReco
             acceleration: intensity("pga", case)?,
         })
     };
-    cases.all.iter().filter_map(run).collect()
+    cases.all.iter().filter_map(|case| run(case)).collect()
 }

@@ -88,7 +88,7 @@ impl LimitCurve {
             (Vec::new(), None, BandKind::None)
         };
         let single = |case: &Case| {
-            Some(stripe(case.intensities[measure]?, &[case], |case| limit.reached(case)))
+            Some(stripe(case.intensity(measure)?, &[case], |case| limit.reached(case)))
         };
         let goodness = fit.as_ref().ok().map(|fit| {
             if cases.hunted {
@@ -102,7 +102,7 @@ impl LimitCurve {
         let monotony = monotony(&stripes, DRAWS, || random.uniform());
         let told =
             cases.all.iter().filter(|_| !cases.sampled).filter_map(|case| {
-                Some((case.curve, case.intensities[measure]?, limit.reached(case)))
+                Some((case.curve, case.intensity(measure)?, limit.reached(case)))
             });
         let returned = returns(told);
         Self {
@@ -163,7 +163,7 @@ pub(super) fn stripe(intensity: f64, of: &[&Case], failed: impl Fn(&Case) -> boo
 /// Levels that were hunted depend on what was found below, so that counts at them would be biased: there each hunt
 /// says between which levels it first failed. Everywhere else each case says whether it failed.
 fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> {
-    let seen = cases.all.iter().filter_map(|case| Some((case, case.intensities[measure]?)));
+    let seen = cases.all.iter().filter_map(|case| Some((case, case.intensity(measure)?)));
     if !cases.hunted {
         return seen.map(|(case, x)| Evidence::case(x, limit.reached(case), case.record)).collect();
     }

@@ -44,8 +44,8 @@ fn row(cases: &Cases, measure: usize, beside: Option<usize>) -> MeasureRow {
         .all
         .iter()
         .filter_map(|case| {
-            let second = beside.map_or(Some(1.0), |at| positive(case.intensities[at]))?;
-            Some((case, positive(case.intensities[measure])?, second))
+            let second = beside.map_or(Some(1.0), |at| positive(case.intensity(at)))?;
+            Some((case, positive(case.intensity(measure))?, second))
         })
         .collect();
     let outcomes: Vec<(f64, bool)> = seen.iter().map(|(case, x, _)| (*x, case.collapsed)).collect();

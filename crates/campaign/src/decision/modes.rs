@@ -36,7 +36,7 @@ pub(super) fn of(cases: &Cases, collapse: &LimitCurve) -> Vec<ModeIncidence> {
     let failures: Vec<(f64, usize)> = cases
         .all
         .iter()
-        .filter_map(|case| Some((case.intensities[cases.main]?, number(case.mode.as_deref()?)?)))
+        .filter_map(|case| Some((case.intensity(cases.main)?, number(case.mode.as_deref()?)?)))
         .collect();
     let shares = Shares::fit(&failures, names.len());
     let groups = cases.groups(cases.main);

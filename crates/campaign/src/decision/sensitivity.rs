@@ -6,7 +6,7 @@ use barrelstack_fragility::{Interval, wilson};
 
 use super::cases::{Case, Cases, told};
 use super::curve::LEVEL;
-use crate::study::{Collected, Role, Value};
+use crate::study::{Column, Provenance, Value};
 
 /// Cases of one value of a factor, or of a third of its values.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,11 +49,9 @@ impl Effect {
 const MOST: usize = 6;
 
 /// Every factor that varies, the largest effect first.
-pub(super) fn effects(collected: &Collected, cases: &Cases) -> Vec<Effect> {
-    let table = &collected.table;
-    let factors: Vec<_> = table.of_role(Role::Factor).collect();
+pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> Vec<Effect> {
     // One at a time: a factor's cases are those in which every other stands at its base.
-    let alone = collected.provenance.design == "one-at-a-time";
+    let alone = made.design == "one-at-a-time";
     let base: Vec<Option<Value>> = factors.iter().map(|f| f.values.get(0)).collect();
     let mut found: Vec<Effect> = factors
         .iter()
@@ -68,6 +66,7 @@ pub(super) fn effects(collected: &Collected, cases: &Cases) -> Vec<Effect> {
             let seen: Vec<(Option<Value>, &Case)> = cases
                 .all
                 .iter()
+                .map(AsRef::as_ref)
                 .filter(belongs)
                 .map(|case| (factor.values.get(case.row), case))
                 .collect();
