@@ -94,8 +94,8 @@ pub struct Case {
     pub barrels: u32,
     /// Drop (m) of each barrel that fell.
     pub falls: Box<[f64]>,
-    /// Peak drift of the top over its height, while the stack stood.
-    pub drift: Option<f64>,
+    /// Peak drift of the top over its height, while the stack stood; not a number where it is not known.
+    drift: f64,
     /// Intensities (SI), one for each of [`Cases::measures`]; not a number where it has none.
     intensities: Box<[f64]>,
     /// What tells the cases of one hunt or curve from those of others: the record, and the factors that are
@@ -107,6 +107,11 @@ impl Case {
     /// Its intensity (SI) by the number of the measure.
     pub fn intensity(&self, measure: usize) -> Option<f64> {
         self.intensities.get(measure).copied().filter(|value| !value.is_nan())
+    }
+
+    /// Peak drift of the top over its height, while the stack stood.
+    pub fn drift(&self) -> Option<f64> {
+        Some(self.drift).filter(|value| !value.is_nan())
     }
 
     /// Barrels that fell.
@@ -278,7 +283,7 @@ impl Reading {
                 followed: ended[row].as_deref() == Some(Ending::Rest.name()),
                 barrels: u32::try_from(barrels[row].unwrap_or(0)).unwrap_or(0),
                 falls: falls.split(';').filter_map(|height| height.trim().parse().ok()).collect(),
-                drift: cell(drift),
+                drift: cell(drift).unwrap_or(f64::NAN),
                 intensities,
                 curve,
             }));

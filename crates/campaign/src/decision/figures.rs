@@ -158,7 +158,7 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
     for case in &cases.all {
         let key = case.curve;
         let Some(level) = case.intensity(cases.main) else { continue };
-        let demand = if case.collapsed { Some(f64::INFINITY) } else { case.drift };
+        let demand = if case.collapsed { Some(f64::INFINITY) } else { case.drift() };
         if let Some(demand) = demand {
             runs.entry(key).or_default().push((level, demand));
         }

@@ -150,7 +150,8 @@ impl Study {
         if state.interrupted {
             return Err(StudyError::Stopped);
         }
-        Ok(())
+        // What others that were killed beside this run left behind.
+        place.clean()
     }
 
     /// Runs one chunk and writes its shard; false when it was there already, or another process has made it

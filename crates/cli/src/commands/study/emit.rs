@@ -99,6 +99,14 @@ pub(super) fn emit(args: &EmitArgs) -> anyhow::Result<()> {
     })
 }
 
+/// Stands where the number of a chunk comes.
+const PLACE: &str = "\u{0}";
+
+/// A text that the shell leaves as it is inside a here-document.
+fn in_document(text: &str) -> String {
+    text.replace('\\', "\\\\").replace('$', "\\$").replace('`', "\\`")
+}
+
 fn slurm(job: &Job, args: &EmitArgs) -> String {
     let limit = args.array_limit.get();
     let time = args.walltime.as_ref().map_or_else(String::new, |t| format!(" --time={}", quoted(t)));
@@ -117,7 +125,7 @@ fn slurm(job: &Job, args: &EmitArgs) -> String {
          )\n\
          \x20   jobs=\"$jobs:${{job%%;*}}\"\n}}\n",
         job.chunks,
-        job.chunk("\\$(($first + SLURM_ARRAY_TASK_ID))")
+        in_document(&job.chunk(PLACE)).replace(PLACE, "\\$(($first + SLURM_ARRAY_TASK_ID))")
     );
     for first in (0..job.chunks).step_by(limit) {
         let last = limit.min(job.chunks - first) - 1;
