@@ -186,8 +186,7 @@ impl Gathering {
             }
             None => None,
         };
-        let warnings =
-            words::warnings(&cases, &curves, losses.as_ref().ok(), site.as_ref(), made);
+        let warnings = words::warnings(&cases, &curves, losses.as_ref().ok(), site.as_ref(), made);
         let mut decision = Decision {
             cases,
             curves,

@@ -34,7 +34,8 @@ chunk = 8
 
 /// The commands under a heading of the page, one text a block.
 fn blocks(heading: &str) -> Vec<String> {
-    let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("CLUSTER.md")).unwrap();
+    let page =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("CLUSTER.md")).unwrap();
     let part = page.split("\n## ").find(|part| part.starts_with(heading)).expect(heading);
     let fenced = part.split("```sh\n").skip(1);
     fenced.map(|block| block.split("```").next().unwrap().to_owned()).collect()
@@ -43,7 +44,8 @@ fn blocks(heading: &str) -> Vec<String> {
 /// Runs commands in a folder, with the built program in the path.
 fn shell(folder: &Path, commands: &str) {
     let program = PathBuf::from(env!("CARGO_BIN_EXE_barrelstack"));
-    let path = format!("{}:{}", program.parent().unwrap().display(), std::env::var("PATH").unwrap());
+    let path =
+        format!("{}:{}", program.parent().unwrap().display(), std::env::var("PATH").unwrap());
     let mut command = Command::new("sh");
     command.args(["-eu", "-c", commands]).current_dir(folder).env("PATH", path);
     let output = command.output().unwrap();
@@ -97,7 +99,10 @@ fn a_killed_process_leaves_its_chunk_to_the_other() {
     let (folder, table) = one_machine();
     let out = folder.path().join("both");
     let words = |out: &Path| {
-        ["study", "mine.toml", "--threads", "1", "--out"].map(PathBuf::from).into_iter().chain([out.into()])
+        ["study", "mine.toml", "--threads", "1", "--out"]
+            .map(PathBuf::from)
+            .into_iter()
+            .chain([out.into()])
     };
     for share in [1_u64, 9, 4, 16, 7, 12] {
         drop(fs::remove_dir_all(&out));

@@ -213,9 +213,11 @@ fn job_files_name_every_chunk() {
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         stdout(&output)
     };
-    for (engine, word) in
-        [("slurm", "submit 0 9 "), ("parallel", "seq 0 9 | parallel"), ("hyperqueue", "--array 0-9")]
-    {
+    for (engine, word) in [
+        ("slurm", "submit 0 9 "),
+        ("parallel", "seq 0 9 | parallel"),
+        ("hyperqueue", "--array 0-9"),
+    ] {
         let text = emit(engine, &[]);
         assert!(text.contains(word) && text.contains("run-chunk"), "{text}");
         assert!(text.contains(&file) && Path::new(&file).is_absolute(), "{text}");

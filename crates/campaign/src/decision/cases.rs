@@ -59,7 +59,7 @@ impl Measure {
     /// An interval with its unit, where the cases bound it.
     pub fn range(&self, bounds: Interval) -> String {
         match (bounds.low > 0.0, bounds.high.is_finite()) {
-            (true, true) => format!("{} to {}", self.words(bounds.low), self.words(bounds.high)),
+            (true, true) => format!("{} to {}", self.digits(bounds.low), self.words(bounds.high)),
             (true, false) => format!("{} or more", self.words(bounds.low)),
             (false, true) => format!("{} or less", self.words(bounds.high)),
             (false, false) => "anywhere".to_owned(),
@@ -68,12 +68,16 @@ impl Measure {
 
     /// An intensity with its unit, in three digits.
     pub fn words(&self, intensity: f64) -> String {
+        let number = self.digits(intensity);
+        if self.shown_unit.is_empty() { number } else { format!("{number} {}", self.shown_unit) }
+    }
+
+    /// An intensity in three digits, without its unit.
+    fn digits(&self, intensity: f64) -> String {
         let shown = self.shown(intensity);
         // A level as it was asked for: 50 and not 50.0, though 100 × 0.36 is not quite 36.
         let whole = shown >= 10.0 && (shown - shown.round()).abs() < 1e-9 * shown;
-        let number =
-            if whole { format!("{shown:.0}") } else { barrelstack_report::significant(shown, 3) };
-        if self.shown_unit.is_empty() { number } else { format!("{number} {}", self.shown_unit) }
+        if whole { format!("{shown:.0}") } else { barrelstack_report::significant(shown, 3) }
     }
 }
 
@@ -81,13 +85,13 @@ impl Measure {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
     /// Its row in the table.
-    pub row: usize,
+    pub row: u32,
     /// Number of its record among [`Cases::records`].
-    pub record: usize,
+    pub record: u32,
     /// Whether a barrel or rack lost its seat.
     pub collapsed: bool,
-    /// How it collapsed.
-    pub mode: Option<Arc<str>>,
+    /// How it collapsed: a number among [`Cases::modes`].
+    pub mode: Option<u8>,
     /// Whether it was followed until nothing moved, so that it tells what falls.
     pub followed: bool,
     /// Barrels in the stack.
@@ -100,7 +104,7 @@ pub struct Case {
     intensities: Box<[f64]>,
     /// What tells the cases of one hunt or curve from those of others: the record, and the factors that are
     /// not drawn anew for each case.
-    pub curve: usize,
+    pub curve: u32,
 }
 
 impl Case {
@@ -132,6 +136,8 @@ pub struct Cases {
     pub title: String,
     /// Names of the motions.
     pub records: Vec<String>,
+    /// Modes of collapse, in the order in which they come.
+    pub modes: Vec<String>,
     /// The measures.
     pub measures: Vec<Measure>,
     /// The measure of the study, an index of `measures`.
@@ -156,17 +162,22 @@ pub struct Cases {
 
 /// Numbers things in the order in which they come.
 #[derive(Default)]
-struct Numbering(BTreeMap<String, usize>);
+struct Numbering(BTreeMap<String, u32>);
 
 impl Numbering {
-    fn of(&mut self, name: &str) -> usize {
+    fn of(&mut self, name: &str) -> u32 {
         if let Some(known) = self.0.get(name) {
             return *known;
         }
-        let next = self.0.len();
+        let next = small(self.0.len());
         self.0.insert(name.to_owned(), next);
         next
     }
+}
+
+/// A count of cases, of which there are ten million at most.
+fn small(count: usize) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
 }
 
 /// Cases that are read part by part, so that the table need not be in memory.
@@ -174,7 +185,6 @@ pub(super) struct Reading {
     cases: Cases,
     records: Numbering,
     curves: Numbering,
-    modes: BTreeMap<String, Arc<str>>,
     /// Rows until now, and those of them that are samples of their own.
     rows: usize,
     own: usize,
@@ -202,6 +212,7 @@ impl Reading {
         let cases = Cases {
             title: made.title.clone(),
             records: Vec::new(),
+            modes: Vec::new(),
             measures,
             main,
             leveled: asked.is_some(),
@@ -220,7 +231,6 @@ impl Reading {
             cases,
             records: Numbering::default(),
             curves: Numbering::default(),
-            modes: BTreeMap::new(),
             rows: 0,
             own: 0,
             varied: made.varied.len(),
@@ -264,19 +274,24 @@ impl Reading {
                 // The level as asked for: the same number in every case of a stripe.
                 intensities[self.cases.main] = level;
             }
-            let mode = modes.and_then(|of| of[row].as_ref()).map(|mode| {
-                Arc::clone(self.modes.entry(mode.clone()).or_insert_with(|| mode.as_str().into()))
+            let mode = modes.and_then(|of| of[row].as_ref()).and_then(|mode| {
+                let known = &mut self.cases.modes;
+                let at = known.iter().position(|name| name == mode).unwrap_or_else(|| {
+                    known.push(mode.clone());
+                    known.len() - 1
+                });
+                u8::try_from(at).ok()
             });
             let falls = heights.and_then(|of| of[row].as_deref()).unwrap_or_default();
             let curve = if self.cases.sampled {
-                self.cases.all.len()
+                small(self.cases.all.len())
             } else {
                 let factors = fixed.iter().map(|f| told(f.values.get(row)));
                 let key: Vec<String> = std::iter::once(name.to_owned()).chain(factors).collect();
                 self.curves.of(&key.join("\n"))
             };
             self.cases.all.push(Arc::new(Case {
-                row: first + row,
+                row: small(first + row),
                 record: self.records.of(name),
                 collapsed,
                 mode,
@@ -300,7 +315,7 @@ impl Reading {
         cases.left_out = own - cases.all.len();
         cases.records = vec![String::new(); records.0.len()];
         for (name, number) in records.0 {
-            cases.records[number] = name;
+            cases.records[number as usize] = name;
         }
         Ok(cases)
     }
@@ -334,7 +349,7 @@ impl Cases {
 
     /// How many curves there are: motions, each with every combination of what is not drawn anew.
     pub fn curves(&self) -> usize {
-        self.all.iter().map(|case| case.curve).max().map_or(0, |last| last + 1)
+        self.all.iter().map(|case| case.curve).max().map_or(0, |last| last as usize + 1)
     }
 
     /// How many barrels fall is known: no case was ended before nothing moved, or hardly any.

@@ -100,10 +100,9 @@ impl LimitCurve {
             goodness_in_bins(&groups.iter().map(of).collect::<Vec<_>>(), fit)
         });
         let monotony = monotony(&stripes, DRAWS, || random.uniform());
-        let told =
-            cases.all.iter().filter(|_| !cases.sampled).filter_map(|case| {
-                Some((case.curve, case.intensity(measure)?, limit.reached(case)))
-            });
+        let told = cases.all.iter().filter(|_| !cases.sampled).filter_map(|case| {
+            Some((case.curve as usize, case.intensity(measure)?, limit.reached(case)))
+        });
         let returned = returns(told);
         Self {
             limit,
@@ -165,11 +164,13 @@ pub(super) fn stripe(intensity: f64, of: &[&Case], failed: impl Fn(&Case) -> boo
 fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> {
     let seen = cases.all.iter().filter_map(|case| Some((case, case.intensity(measure)?)));
     if !cases.hunted {
-        return seen.map(|(case, x)| Evidence::case(x, limit.reached(case), case.record)).collect();
+        return seen
+            .map(|(case, x)| Evidence::case(x, limit.reached(case), case.record as usize))
+            .collect();
     }
-    let mut hunts: BTreeMap<usize, (usize, Vec<(f64, bool)>)> = BTreeMap::new();
+    let mut hunts: BTreeMap<u32, (usize, Vec<(f64, bool)>)> = BTreeMap::new();
     for (case, x) in seen {
-        let hunt = hunts.entry(case.curve).or_insert_with(|| (case.record, Vec::new()));
+        let hunt = hunts.entry(case.curve).or_insert_with(|| (case.record as usize, Vec::new()));
         hunt.1.push((x, limit.reached(case)));
     }
     hunts

@@ -154,7 +154,7 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
         return None;
     }
     let measure = cases.measure();
-    let mut runs: BTreeMap<usize, Vec<(f64, f64)>> = BTreeMap::new();
+    let mut runs: BTreeMap<u32, Vec<(f64, f64)>> = BTreeMap::new();
     for case in &cases.all {
         let key = case.curve;
         let Some(level) = case.intensity(cases.main) else { continue };

@@ -84,7 +84,8 @@ pub fn read_parts(
 ) -> Result<Provenance, StudyError> {
     let mut parts = Parts::open(folder)?;
     let specs = parts.provenance.columns.clone();
-    let first = |part: &StudyTable| part.integers("case").and_then(|cases| cases.first().copied())?;
+    let first =
+        |part: &StudyTable| part.integers("case").and_then(|cases| cases.first().copied())?;
     // Rows that a chunk further on may have cases between.
     let mut open = StudyTable::empty(&specs);
     while let Some(part) = parts.read()? {

@@ -123,7 +123,8 @@ impl Study {
             (0..self.chunk_count()).rev().filter(|chunk| !done.contains_key(chunk)).collect();
         let threads = options.threads.or_else(|| std::thread::available_parallelism().ok());
         let threads = threads.map_or(1, NonZero::get).min(open.len()).max(1);
-        let state = State { open, elsewhere: Vec::new(), done, progress, failed: None, interrupted: false };
+        let state =
+            State { open, elsewhere: Vec::new(), done, progress, failed: None, interrupted: false };
         let shared = Shared {
             study: self,
             folder: &place,

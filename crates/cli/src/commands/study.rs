@@ -149,9 +149,7 @@ pub(crate) fn study(args: &StudyArgs) -> anyhow::Result<ExitCode> {
         Some(Action::Example { name, list }) => example(name.as_deref(), *list)?,
         Some(Action::Fields) => printer::text(&study::reference())?,
         Some(Action::Schema) => {
-            printer::lines([serde_json::to_string_pretty(
-                &study::json_schema(),
-            )?])?;
+            printer::lines([serde_json::to_string_pretty(&study::json_schema())?])?;
         }
     }
     Ok(ExitCode::SUCCESS)
@@ -305,9 +303,7 @@ fn example(name: Option<&str>, list: bool) -> anyhow::Result<()> {
     }
     let name = match name {
         Some(name) => name,
-        None => study::builtin_names()
-            .next()
-            .context("there is no built-in study")?,
+        None => study::builtin_names().next().context("there is no built-in study")?,
     };
     if let Some(text) = study::builtin(name) {
         return printer::text(text);

@@ -109,7 +109,8 @@ fn in_document(text: &str) -> String {
 
 fn slurm(job: &Job, args: &EmitArgs) -> String {
     let limit = args.array_limit.get();
-    let time = args.walltime.as_ref().map_or_else(String::new, |t| format!(" --time={}", quoted(t)));
+    let time =
+        args.walltime.as_ref().map_or_else(String::new, |t| format!(" --time={}", quoted(t)));
     let most = args.throttle.map_or_else(String::new, |most| format!("%{most}"));
     let mut text = format!(
         "#!/bin/sh\n\

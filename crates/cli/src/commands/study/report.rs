@@ -86,7 +86,11 @@ impl Gathered {
     /// Writes the page of a study that was run.
     ///
     /// A study without a single verdict has none, which is no reason to fail: its table says why.
-    pub(super) fn write_page(self, out: &Path, made: &Provenance) -> anyhow::Result<Option<PathBuf>> {
+    pub(super) fn write_page(
+        self,
+        out: &Path,
+        made: &Provenance,
+    ) -> anyhow::Result<Option<PathBuf>> {
         match self.decide(made, &Request::default()) {
             Ok(decision) => {
                 write(out, &decision)?;
