@@ -28,7 +28,7 @@ mod words;
 use barrelstack_report::Document;
 
 use crate::measured::TableError;
-use crate::study::Collected;
+use crate::study::{Collected, Column, Provenance, Role, StudyTable, Values};
 
 pub(crate) use figures::{bars, chance_axis};
 pub(crate) use json::bounds as interval_json;
@@ -120,49 +120,96 @@ pub enum DecisionError {
     Hazard(#[from] TableError),
 }
 
-/// Reads everything that a study says.
-///
-/// Resampling starts from the seed of the study, so that the same study gives the same page.
+/// What decisions rest on, gathered from the rows of a study part by part, so that no table of a million cases
+/// need be in memory.
+pub struct Gathering {
+    made: Provenance,
+    cases: cases::Reading,
+    /// The values of the factors.
+    factors: Vec<Column>,
+    results: indices::Results,
+}
+
+impl Gathering {
+    /// Begins with what the rows come from, and a table of them, which may be empty.
+    ///
+    /// # Errors
+    /// When the table is not one of a study.
+    pub fn new(made: &Provenance, columns: &StudyTable) -> Result<Self, DecisionError> {
+        let empty = |column: &Column| Column {
+            spec: column.spec.clone(),
+            values: Values::empty(column.spec.kind),
+        };
+        Ok(Self {
+            made: made.clone(),
+            cases: cases::Reading::new(made, columns)?,
+            factors: columns.of_role(Role::Factor).map(empty).collect(),
+            results: indices::Results::default(),
+        })
+    }
+
+    /// Reads the rows that follow, in the order of the cases.
+    ///
+    /// # Errors
+    /// When the table is not one of a study.
+    pub fn add(&mut self, table: &StudyTable) -> Result<(), DecisionError> {
+        for (factor, column) in self.factors.iter_mut().zip(table.of_role(Role::Factor)) {
+            factor.values.append(column.values.clone());
+        }
+        self.results.add(&self.made, table);
+        self.cases.add(table)
+    }
+
+    /// Everything that the study says, when all rows were read; `made` is what they come from, now that it is known
+    /// how many there are.
+    ///
+    /// Resampling starts from the seed of the study, so that the same study gives the same page.
+    ///
+    /// # Errors
+    /// When no case has a verdict, or the hazard is over a measure that the study does not have.
+    pub fn decide(self, made: &Provenance, request: &Request) -> Result<Decision, DecisionError> {
+        let cases = self.cases.finish()?;
+        let effects = sensitivity::effects(&self.factors, made, &cases);
+        drop(self.factors);
+        let sensitivities = self.results.indices(made);
+        let curves: Vec<LimitCurve> = LimitState::worth_telling(&cases)
+            .into_iter()
+            .map(|limit| LimitCurve::of(&cases, limit, cases.main))
+            .collect();
+        let modes = modes::of(&cases, &curves[0]);
+        let losses = Losses::of(&cases);
+        let measures = measures::compare(&cases);
+        let site = match &request.hazard {
+            Some(hazard) => {
+                let losses = losses.as_ref().ok();
+                Some(Site::of(&cases, &curves, hazard, request.years.unwrap_or(50.0), losses)?)
+            }
+            None => None,
+        };
+        let warnings = words::warnings(&cases, &curves, losses.as_ref().ok(), site.as_ref(), made);
+        let mut decision = Decision {
+            cases,
+            curves,
+            modes,
+            measures,
+            losses,
+            sensitivities,
+            effects,
+            site,
+            warnings,
+            document: Document::default(),
+        };
+        decision.document = page::document(&decision, made);
+        Ok(decision)
+    }
+}
+
+/// Everything that a study says whose table is in memory.
 ///
 /// # Errors
-/// When no case has a verdict, or the hazard is over a measure that the study does not have.
+/// As [`Gathering::decide`].
 pub fn decide(collected: &Collected, request: &Request) -> Result<Decision, DecisionError> {
-    let cases = Cases::read(collected)?;
-    let curves: Vec<LimitCurve> = LimitState::worth_telling(&cases)
-        .into_iter()
-        .map(|limit| LimitCurve::of(&cases, limit, cases.main))
-        .collect();
-    let modes = modes::of(&cases, &curves[0]);
-    let losses = Losses::of(&cases);
-    let measures = measures::compare(&cases);
-    let sensitivities = indices::of(collected);
-    let effects = sensitivity::effects(collected, &cases);
-    let site = match &request.hazard {
-        Some(hazard) => {
-            let losses = losses.as_ref().ok();
-            Some(Site::of(&cases, &curves, hazard, request.years.unwrap_or(50.0), losses)?)
-        }
-        None => None,
-    };
-    let warnings = words::warnings(
-        &cases,
-        &curves,
-        losses.as_ref().ok(),
-        site.as_ref(),
-        &collected.provenance,
-    );
-    let mut decision = Decision {
-        cases,
-        curves,
-        modes,
-        measures,
-        losses,
-        sensitivities,
-        effects,
-        site,
-        warnings,
-        document: Document::default(),
-    };
-    decision.document = page::document(&decision, &collected.provenance);
-    Ok(decision)
+    let mut gathering = Gathering::new(&collected.provenance, &collected.table)?;
+    gathering.add(&collected.table)?;
+    gathering.decide(&collected.provenance, request)
 }

@@ -243,8 +243,8 @@ fn height(cases: &Cases, levels: u32, view: View) -> Height {
     }
 }
 
-fn levels_of(collected: &Collected, row: usize) -> Option<u32> {
-    match collected.table.column("levels")?.values.get(row)? {
+fn levels_of(collected: &Collected, row: u32) -> Option<u32> {
+    match collected.table.column("levels")?.values.get(row as usize)? {
         Value::Integer(levels) => u32::try_from(levels).ok(),
         Value::Number(_) | Value::Text(_) => None,
     }
@@ -253,18 +253,18 @@ fn levels_of(collected: &Collected, row: usize) -> Option<u32> {
 fn recorded_runs(cases: &Cases, collected: &Collected, view: View) -> Vec<AsRecorded> {
     let intensity = |name: &str, case: &Case| {
         let at = cases.measures.iter().position(|measure| measure.name == name)?;
-        case.intensities[at]
+        case.intensity(at)
     };
     let run = |case: &Case| {
         Some(AsRecorded {
             levels: levels_of(collected, case.row)?,
             view,
-            motion: cases.records[case.record].clone(),
+            motion: cases.records[case.record as usize].clone(),
             collapsed: case.collapsed,
             fallen: case.fallen_share(),
             velocity: intensity("pgv", case)?,
             acceleration: intensity("pga", case)?,
         })
     };
-    cases.all.iter().filter_map(run).collect()
+    cases.all.iter().filter_map(|case| run(case)).collect()
 }

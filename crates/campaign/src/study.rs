@@ -23,6 +23,8 @@
 //! ```
 
 mod builtin;
+mod claim;
+mod collect;
 mod column;
 mod design;
 mod distribution;
@@ -48,6 +50,7 @@ mod table;
 use crate::scenario::template::Template;
 
 pub use builtin::{get as builtin, names as builtin_names};
+pub use collect::{Collected, Status, collect, read_parts};
 pub use column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
 pub use design::Design;
 pub use distribution::Distribution;
@@ -55,7 +58,7 @@ pub use endings::{Endings, Following};
 pub use error::StudyError;
 pub use execute::{Progress, RunOptions};
 pub use fields::STUDY;
-pub use folder::{Collected, MotionSource, Provenance, Status};
+pub use folder::{MotionSource, Provenance};
 pub use grow::Common;
 pub use ida::Hunt;
 pub use plan::Chunk;
@@ -64,7 +67,7 @@ pub use table::StudyTable;
 
 use design::Cases;
 use motions::Motion;
-use plan::Chunks;
+use plan::{Chunks, Sizes};
 use setting::Setting;
 
 /// A study: what is varied, what shakes it, and which cases are run.
@@ -84,8 +87,8 @@ pub struct Study {
     intensity: Option<Intensity>,
     /// The levels that are crossed with the rest.
     levels: Vec<Option<f64>>,
-    /// Cases of a chunk; of an incremental dynamic analysis, hunts.
-    chunk: u32,
+    /// Cases of each chunk; of an incremental dynamic analysis, hunts.
+    chunk: Sizes,
     cases: Cases,
     chunks: Chunks,
     /// Fingerprint of the study, its records and the version of the program.

@@ -207,20 +207,35 @@ fn a_folder_that_cannot_be_made_is_told_in_plain_words() {
 fn job_files_name_every_chunk() {
     let folder = tempfile::tempdir().unwrap();
     let file = study(folder.path());
+    let emit = |engine, more: &[&str]| {
+        let words = ["study", "emit", &file, "--engine", engine, "--out", "it's $HOME"];
+        let output = barrelstack(words.iter().chain(more));
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        stdout(&output)
+    };
     for (engine, word) in [
-        ("slurm", "#SBATCH --array=0-9"),
+        ("slurm", "submit 0 9 "),
         ("parallel", "seq 0 9 | parallel"),
         ("hyperqueue", "--array 0-9"),
     ] {
-        let output =
-            barrelstack(["study", "emit", &file, "--engine", engine, "--out", "it's here"]);
-        let text = stdout(&output);
+        let text = emit(engine, &[]);
         assert!(text.contains(word) && text.contains("run-chunk"), "{text}");
+        assert!(text.contains(&file) && Path::new(&file).is_absolute(), "{text}");
         // The script is one that a shell can read.
         let script = folder.path().join(engine);
         fs::write(&script, &text).unwrap();
         let check = std::process::Command::new("sh").arg("-n").arg(&script).status().unwrap();
         assert!(check.success(), "{text}");
+    }
+    for engine in ["dask", "pylauncher"] {
+        let text = emit(engine, &[]);
+        assert!(text.contains("CHUNKS = 10\n") && text.contains("run-chunk"), "{text}");
+    }
+    // No array is longer than the scheduler takes, and every chunk is in one.
+    let limits = ["--array-limit", "4", "--walltime", "00:10:00", "--throttle", "2"];
+    let text = emit("slurm", &limits);
+    for word in ["submit 0 3 ", "submit 4 3 ", "submit 8 1 ", "0-$last%2", "--time='00:10:00'"] {
+        assert!(text.contains(word), "no {word:?} in {text}");
     }
 }
 

@@ -1,12 +1,13 @@
 //! The cases of a study that have a verdict, with what shook them.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use barrelstack_fragility::Interval;
 use barrelstack_motion::STANDARD_GRAVITY;
 
 use super::DecisionError;
-use crate::study::{Collected, Endings, Role, StudyTable, Value};
+use crate::study::{Collected, Endings, Provenance, Role, StudyTable, Value};
 use crate::watch::Ending;
 
 /// An intensity measure and how it is printed.
@@ -58,7 +59,7 @@ impl Measure {
     /// An interval with its unit, where the cases bound it.
     pub fn range(&self, bounds: Interval) -> String {
         match (bounds.low > 0.0, bounds.high.is_finite()) {
-            (true, true) => format!("{} to {}", self.words(bounds.low), self.words(bounds.high)),
+            (true, true) => format!("{} to {}", self.digits(bounds.low), self.words(bounds.high)),
             (true, false) => format!("{} or more", self.words(bounds.low)),
             (false, true) => format!("{} or less", self.words(bounds.high)),
             (false, false) => "anywhere".to_owned(),
@@ -67,12 +68,16 @@ impl Measure {
 
     /// An intensity with its unit, in three digits.
     pub fn words(&self, intensity: f64) -> String {
+        let number = self.digits(intensity);
+        if self.shown_unit.is_empty() { number } else { format!("{number} {}", self.shown_unit) }
+    }
+
+    /// An intensity in three digits, without its unit.
+    fn digits(&self, intensity: f64) -> String {
         let shown = self.shown(intensity);
         // A level as it was asked for: 50 and not 50.0, though 100 × 0.36 is not quite 36.
         let whole = shown >= 10.0 && (shown - shown.round()).abs() < 1e-9 * shown;
-        let number =
-            if whole { format!("{shown:.0}") } else { barrelstack_report::significant(shown, 3) };
-        if self.shown_unit.is_empty() { number } else { format!("{number} {}", self.shown_unit) }
+        if whole { format!("{shown:.0}") } else { barrelstack_report::significant(shown, 3) }
     }
 }
 
@@ -80,29 +85,39 @@ impl Measure {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
     /// Its row in the table.
-    pub row: usize,
+    pub row: u32,
     /// Number of its record among [`Cases::records`].
-    pub record: usize,
+    pub record: u32,
     /// Whether a barrel or rack lost its seat.
     pub collapsed: bool,
-    /// How it collapsed.
-    pub mode: Option<String>,
+    /// How it collapsed: a number among [`Cases::modes`].
+    pub mode: Option<u8>,
     /// Whether it was followed until nothing moved, so that it tells what falls.
     pub followed: bool,
     /// Barrels in the stack.
     pub barrels: u32,
     /// Drop (m) of each barrel that fell.
-    pub falls: Vec<f64>,
-    /// Peak drift of the top over its height, while the stack stood.
-    pub drift: Option<f64>,
-    /// Intensities (SI), one for each of [`Cases::measures`].
-    pub intensities: Vec<Option<f64>>,
+    pub falls: Box<[f64]>,
+    /// Peak drift of the top over its height, while the stack stood; not a number where it is not known.
+    drift: f64,
+    /// Intensities (SI), one for each of [`Cases::measures`]; not a number where it has none.
+    intensities: Box<[f64]>,
     /// What tells the cases of one hunt or curve from those of others: the record, and the factors that are
     /// not drawn anew for each case.
-    pub curve: usize,
+    pub curve: u32,
 }
 
 impl Case {
+    /// Its intensity (SI) by the number of the measure.
+    pub fn intensity(&self, measure: usize) -> Option<f64> {
+        self.intensities.get(measure).copied().filter(|value| !value.is_nan())
+    }
+
+    /// Peak drift of the top over its height, while the stack stood.
+    pub fn drift(&self) -> Option<f64> {
+        Some(self.drift).filter(|value| !value.is_nan())
+    }
+
     /// Barrels that fell.
     pub fn fallen(&self) -> u32 {
         u32::try_from(self.falls.len()).unwrap_or(u32::MAX)
@@ -121,6 +136,8 @@ pub struct Cases {
     pub title: String,
     /// Names of the motions.
     pub records: Vec<String>,
+    /// Modes of collapse, in the order in which they come.
+    pub modes: Vec<String>,
     /// The measures.
     pub measures: Vec<Measure>,
     /// The measure of the study, an index of `measures`.
@@ -135,134 +152,188 @@ pub struct Cases {
     pub drawn: Vec<String>,
     /// How the cases came to their end.
     pub endings: Endings,
-    /// The cases.
-    pub all: Vec<Case>,
+    /// The cases; shared, since there may be a million and parts of them are looked at.
+    pub all: Vec<Arc<Case>>,
     /// Rows without a verdict: broken down, not judged, or could not run.
     pub left_out: usize,
     /// Seed of what is resampled.
     pub seed: u64,
 }
 
-/// A column of numbers, all `None` where there is none.
-fn numbers(table: &StudyTable, name: &str) -> Vec<Option<f64>> {
-    table.numbers(name).map_or_else(|| vec![None; table.rows()], <[_]>::to_vec)
-}
-
 /// Numbers things in the order in which they come.
 #[derive(Default)]
-struct Numbering(BTreeMap<String, usize>);
+struct Numbering(BTreeMap<String, u32>);
 
 impl Numbering {
-    fn of(&mut self, name: String) -> usize {
-        let next = self.0.len();
-        *self.0.entry(name).or_insert(next)
+    fn of(&mut self, name: &str) -> u32 {
+        if let Some(known) = self.0.get(name) {
+            return *known;
+        }
+        let next = small(self.0.len());
+        self.0.insert(name.to_owned(), next);
+        next
     }
 }
 
-impl Cases {
-    /// The cases of a table.
-    pub(crate) fn read(collected: &Collected) -> Result<Self, DecisionError> {
-        let (table, made) = (&collected.table, &collected.provenance);
-        let outcomes = table.texts("outcome").ok_or(DecisionError::Column("outcome"))?;
-        let records = table.texts("record").ok_or(DecisionError::Column("record"))?;
-        let barrels = table.integers("barrels").ok_or(DecisionError::Column("barrels"))?;
-        let ended = table.texts("ended").ok_or(DecisionError::Column("ended"))?;
-        let modes = table.texts("mode");
-        let heights = table.texts("fall_heights");
-        let (drift, level) = (numbers(table, "top_drift_ratio"), numbers(table, "level"));
-        let mut measures = Vec::new();
-        let mut columns: Vec<Vec<Option<f64>>> = Vec::new();
-        for column in table.of_role(Role::Intensity) {
-            measures.push(Measure::new(&column.spec.name, &column.spec.unit));
-            columns.push(numbers(table, &column.spec.name));
-        }
+/// A count of cases, of which there are ten million at most.
+fn small(count: usize) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
+}
+
+/// Cases that are read part by part, so that the table need not be in memory.
+pub(super) struct Reading {
+    cases: Cases,
+    records: Numbering,
+    curves: Numbering,
+    /// Rows until now, and those of them that are samples of their own.
+    rows: usize,
+    own: usize,
+    /// Quantities that a design for sensitivity exchanges.
+    varied: usize,
+}
+
+impl Reading {
+    /// Begins with a table without rows, or the first of them.
+    pub(super) fn new(made: &Provenance, columns: &StudyTable) -> Result<Self, DecisionError> {
+        let measures = columns.of_role(Role::Intensity);
+        let mut measures: Vec<Measure> =
+            measures.map(|column| Measure::new(&column.spec.name, &column.spec.unit)).collect();
         // `sa(0.5)` is the column `sa_0.5`.
         let asked = made.measure.as_deref().map(|name| name.replace('(', "_").replace(')', ""));
-        let leveled = level.iter().any(Option::is_some);
         let known = |name: &str| measures.iter().position(|measure| measure.name == name);
-        let main = match &asked {
-            Some(name) if leveled => known(name).unwrap_or_else(|| {
-                let unit = table.column("level").map_or("", |column| column.spec.unit.as_str());
+        let main = match asked.as_deref() {
+            Some(name) => known(name).unwrap_or_else(|| {
+                let unit = columns.column("level").map_or("", |column| column.spec.unit.as_str());
                 measures.push(Measure::new(name, unit));
-                columns.push(vec![None; table.rows()]);
                 measures.len() - 1
             }),
-            _ => known("pgv").ok_or(DecisionError::Column("pgv"))?,
+            None => known("pgv").ok_or(DecisionError::Column("pgv"))?,
         };
-        if leveled {
-            // The level as asked for: the same number in every case of a stripe.
-            for (place, level) in columns[main].iter_mut().zip(&level) {
-                *place = level.or(*place);
-            }
-        }
-        let (mut names, mut curves) = (Numbering::default(), Numbering::default());
-        let mut all = Vec::new();
-        // The first two cases of a block are samples of their own, the others differ from these in one thing.
-        let block = i64::try_from(made.varied.len() + 2).unwrap_or(i64::MAX);
-        let exchanged = |row: usize| match table.integers("case") {
-            Some(numbers) if !made.varied.is_empty() => {
-                numbers[row].is_some_and(|number| number % block > 1)
-            }
-            _ => false,
-        };
-        let own = (0..table.rows()).filter(|row| !exchanged(*row)).count();
-        for row in (0..table.rows()).filter(|row| !exchanged(*row)) {
-            let collapsed = match outcomes[row].as_deref() {
-                Some("collapse") => true,
-                Some("stable") => false,
-                _ => continue,
-            };
-            let name = records[row].clone().unwrap_or_default();
-            let fixed = table.of_role(Role::Factor).filter(|f| !made.drawn.contains(&f.spec.name));
-            let factors = fixed.map(|f| told(f.values.get(row)));
-            let key = std::iter::once(name.clone()).chain(factors).collect::<Vec<_>>().join("\n");
-            let cell = |of: Option<&[Option<String>]>| of.and_then(|of| of[row].clone());
-            all.push(Case {
-                row,
-                record: names.of(name),
-                collapsed,
-                mode: cell(modes),
-                followed: ended[row].as_deref() == Some(Ending::Rest.name()),
-                barrels: u32::try_from(barrels[row].unwrap_or(0)).unwrap_or(0),
-                falls: cell(heights).map_or_else(Vec::new, |text| {
-                    text.split(';').filter_map(|height| height.trim().parse().ok()).collect()
-                }),
-                drift: drift[row],
-                intensities: columns.iter().map(|column| column[row]).collect(),
-                curve: curves.of(key),
-            });
-        }
-        if all.is_empty() {
-            return Err(DecisionError::NoCases { rows: table.rows() });
-        }
-        let mut records = vec![String::new(); names.0.len()];
-        for (name, number) in names.0 {
-            records[number] = name;
-        }
-        Ok(Self {
+        let cases = Cases {
             title: made.title.clone(),
-            records,
+            records: Vec::new(),
+            modes: Vec::new(),
             measures,
             main,
-            leveled,
+            leveled: asked.is_some(),
             hunted: made.design == "ida",
             sampled: matches!(
                 made.design.as_str(),
                 "latin-hypercube" | "sobol" | "saltelli" | "monte-carlo"
             ),
             drawn: made.drawn.clone(),
-            endings: Endings::of(table),
-            left_out: own - all.len(),
-            all,
+            endings: Endings::default(),
+            all: Vec::new(),
+            left_out: 0,
             seed: made.seed,
+        };
+        Ok(Self {
+            cases,
+            records: Numbering::default(),
+            curves: Numbering::default(),
+            rows: 0,
+            own: 0,
+            varied: made.varied.len(),
         })
+    }
+
+    /// Reads the rows that follow.
+    pub(super) fn add(&mut self, table: &StudyTable) -> Result<(), DecisionError> {
+        let text = |name| table.texts(name).ok_or(DecisionError::Column(name));
+        let (outcomes, records, ended) = (text("outcome")?, text("record")?, text("ended")?);
+        let barrels = table.integers("barrels").ok_or(DecisionError::Column("barrels"))?;
+        let (modes, heights) = (table.texts("mode"), table.texts("fall_heights"));
+        let (drift, level) = (table.numbers("top_drift_ratio"), table.numbers("level"));
+        let columns: Vec<Option<&[Option<f64>]>> =
+            self.cases.measures.iter().map(|measure| table.numbers(&measure.name)).collect();
+        let drawn = &self.cases.drawn;
+        let fixed: Vec<_> =
+            table.of_role(Role::Factor).filter(|f| !drawn.contains(&f.spec.name)).collect();
+        // The first two cases of a block are samples of their own, the others differ from these in one thing.
+        let block = i64::try_from(self.varied + 2).unwrap_or(i64::MAX);
+        let numbers = table.integers("case").filter(|_| self.varied > 0);
+        let exchanged =
+            |row: usize| numbers.is_some_and(|all| all[row].is_some_and(|n| n % block > 1));
+        let first = self.rows;
+        self.rows += table.rows();
+        self.cases.endings.add(table);
+        for row in (0..table.rows()).filter(|row| !exchanged(*row)) {
+            self.own += 1;
+            let collapsed = match outcomes[row].as_deref() {
+                Some("collapse") => true,
+                Some("stable") => false,
+                _ => continue,
+            };
+            let name = records[row].as_deref().unwrap_or_default();
+            let cell = |of: Option<&'_ [Option<f64>]>| of.and_then(|of| of[row]);
+            let mut intensities: Box<[f64]> =
+                columns.iter().map(|column| cell(*column).unwrap_or(f64::NAN)).collect();
+            if self.cases.leveled
+                && let Some(level) = cell(level)
+            {
+                // The level as asked for: the same number in every case of a stripe.
+                intensities[self.cases.main] = level;
+            }
+            let mode = modes.and_then(|of| of[row].as_ref()).and_then(|mode| {
+                let known = &mut self.cases.modes;
+                let at = known.iter().position(|name| name == mode).unwrap_or_else(|| {
+                    known.push(mode.clone());
+                    known.len() - 1
+                });
+                u8::try_from(at).ok()
+            });
+            let falls = heights.and_then(|of| of[row].as_deref()).unwrap_or_default();
+            let curve = if self.cases.sampled {
+                small(self.cases.all.len())
+            } else {
+                let factors = fixed.iter().map(|f| told(f.values.get(row)));
+                let key: Vec<String> = std::iter::once(name.to_owned()).chain(factors).collect();
+                self.curves.of(&key.join("\n"))
+            };
+            self.cases.all.push(Arc::new(Case {
+                row: small(first + row),
+                record: self.records.of(name),
+                collapsed,
+                mode,
+                followed: ended[row].as_deref() == Some(Ending::Rest.name()),
+                barrels: u32::try_from(barrels[row].unwrap_or(0)).unwrap_or(0),
+                falls: falls.split(';').filter_map(|height| height.trim().parse().ok()).collect(),
+                drift: cell(drift).unwrap_or(f64::NAN),
+                intensities,
+                curve,
+            }));
+        }
+        Ok(())
+    }
+
+    /// The cases, when all rows were read.
+    pub(super) fn finish(self) -> Result<Cases, DecisionError> {
+        let Self { mut cases, records, rows, own, .. } = self;
+        if cases.all.is_empty() {
+            return Err(DecisionError::NoCases { rows });
+        }
+        cases.left_out = own - cases.all.len();
+        cases.records = vec![String::new(); records.0.len()];
+        for (name, number) in records.0 {
+            cases.records[number as usize] = name;
+        }
+        Ok(cases)
+    }
+}
+
+impl Cases {
+    /// The cases of a table.
+    pub(crate) fn read(collected: &Collected) -> Result<Self, DecisionError> {
+        let mut reading = Reading::new(&collected.provenance, &collected.table)?;
+        reading.add(&collected.table)?;
+        reading.finish()
     }
 
     /// The same with some of the cases alone.
     #[must_use]
     pub fn only(&self, keep: impl Fn(&Case) -> bool) -> Self {
         let mut fewer = self.clone();
-        fewer.all.retain(keep);
+        fewer.all.retain(|case| keep(case));
         fewer
     }
 
@@ -278,7 +349,7 @@ impl Cases {
 
     /// How many curves there are: motions, each with every combination of what is not drawn anew.
     pub fn curves(&self) -> usize {
-        self.all.iter().map(|case| case.curve).max().map_or(0, |last| last + 1)
+        self.all.iter().map(|case| case.curve).max().map_or(0, |last| last as usize + 1)
     }
 
     /// How many barrels fall is known: no case was ended before nothing moved, or hardly any.
@@ -298,8 +369,11 @@ impl Cases {
     /// Elsewhere bins of equally many neighbors, whose intensity is the geometric mean of their cases':
     /// a fraction needs a few dozen cases, and an order is best seen over a dozen bins or so.
     pub fn groups(&self, measure: usize) -> Vec<(f64, Vec<&Case>)> {
-        let mut sorted: Vec<(f64, &Case)> =
-            self.all.iter().filter_map(|case| Some((case.intensities[measure]?, case))).collect();
+        let mut sorted: Vec<(f64, &Case)> = self
+            .all
+            .iter()
+            .filter_map(|case| Some((case.intensity(measure)?, case.as_ref())))
+            .collect();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.row.cmp(&b.1.row)));
         let mut found: Vec<(f64, Vec<&Case>)> = Vec::new();
         if self.shares_levels(measure) {
@@ -326,7 +400,7 @@ impl Cases {
             return false;
         }
         let mut levels: Vec<f64> =
-            self.all.iter().filter_map(|case| case.intensities[measure]).collect();
+            self.all.iter().filter_map(|case| case.intensity(measure)).collect();
         let cases = levels.len();
         levels.sort_by(f64::total_cmp);
         levels.dedup();

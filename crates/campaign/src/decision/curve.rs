@@ -88,7 +88,7 @@ impl LimitCurve {
             (Vec::new(), None, BandKind::None)
         };
         let single = |case: &Case| {
-            Some(stripe(case.intensities[measure]?, &[case], |case| limit.reached(case)))
+            Some(stripe(case.intensity(measure)?, &[case], |case| limit.reached(case)))
         };
         let goodness = fit.as_ref().ok().map(|fit| {
             if cases.hunted {
@@ -100,10 +100,9 @@ impl LimitCurve {
             goodness_in_bins(&groups.iter().map(of).collect::<Vec<_>>(), fit)
         });
         let monotony = monotony(&stripes, DRAWS, || random.uniform());
-        let told =
-            cases.all.iter().filter(|_| !cases.sampled).filter_map(|case| {
-                Some((case.curve, case.intensities[measure]?, limit.reached(case)))
-            });
+        let told = cases.all.iter().filter(|_| !cases.sampled).filter_map(|case| {
+            Some((case.curve as usize, case.intensity(measure)?, limit.reached(case)))
+        });
         let returned = returns(told);
         Self {
             limit,
@@ -163,13 +162,15 @@ pub(super) fn stripe(intensity: f64, of: &[&Case], failed: impl Fn(&Case) -> boo
 /// Levels that were hunted depend on what was found below, so that counts at them would be biased: there each hunt
 /// says between which levels it first failed. Everywhere else each case says whether it failed.
 fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> {
-    let seen = cases.all.iter().filter_map(|case| Some((case, case.intensities[measure]?)));
+    let seen = cases.all.iter().filter_map(|case| Some((case, case.intensity(measure)?)));
     if !cases.hunted {
-        return seen.map(|(case, x)| Evidence::case(x, limit.reached(case), case.record)).collect();
+        return seen
+            .map(|(case, x)| Evidence::case(x, limit.reached(case), case.record as usize))
+            .collect();
     }
-    let mut hunts: BTreeMap<usize, (usize, Vec<(f64, bool)>)> = BTreeMap::new();
+    let mut hunts: BTreeMap<u32, (usize, Vec<(f64, bool)>)> = BTreeMap::new();
     for (case, x) in seen {
-        let hunt = hunts.entry(case.curve).or_insert_with(|| (case.record, Vec::new()));
+        let hunt = hunts.entry(case.curve).or_insert_with(|| (case.record as usize, Vec::new()));
         hunt.1.push((x, limit.reached(case)));
     }
     hunts

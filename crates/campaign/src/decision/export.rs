@@ -89,6 +89,7 @@ pub fn export(
                 }
             }
             Err(reason) => {
+                let reason = super::words::refusal(reason, |x| measure.words(x));
                 found.notes.push(format!("{} is left out: {reason}", curve.limit.words()));
             }
         }
@@ -97,7 +98,7 @@ pub fn export(
         return Err(ExportError::NoCurve(found.notes.join("; ")));
     }
     let imls: Vec<f64> = decision.curves[0].grid.iter().map(|x| foreign.scale * x).collect();
-    found.notes.extend(crossings(&limits, &imls));
+    found.notes.extend(crossings(&limits, &imls, measure.shown_unit));
     let about = provenance(decision, made);
     let fragility = fragility(&limits, &imls, &foreign, asset, &about);
     found.files.push(("openquake-fragility.xml", fragility));
@@ -114,15 +115,15 @@ pub fn export(
 }
 
 /// Where a limit state that is to be the worse one is likelier than the one before it.
-fn crossings(limits: &[(String, Lognormal)], imls: &[f64]) -> Vec<String> {
+fn crossings(limits: &[(String, Lognormal)], imls: &[f64], unit: &str) -> Vec<String> {
     let crosses = |pair: &[(String, Lognormal)]| {
         let above = |x: &&f64| pair[1].1.probability(**x) > pair[0].1.probability(**x) + 1e-6;
         let at = imls.iter().find(above)?;
         Some(format!(
-            "the curve of {} lies above that of {} at {}: programs that take limit states as nested refuse that",
+            "the curve of {} lies above that of {} at {} {unit}: programs that take limit states as nested refuse that",
             pair[1].0,
             pair[0].0,
-            plain(*at)
+            barrelstack_report::significant(*at, 3)
         ))
     };
     limits.windows(2).filter_map(crosses).collect()
@@ -144,6 +145,12 @@ fn provenance(decision: &Decision, made: &Provenance) -> String {
 
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// A name as OpenQuake takes it: up to 75 letters, digits, colons, dashes and underscores.
+fn identity(text: &str) -> String {
+    let known = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | ':');
+    text.chars().take(75).map(|c| if known(c) { c } else { '_' }).collect()
 }
 
 fn numbers(values: impl IntoIterator<Item = f64>) -> String {
@@ -175,7 +182,7 @@ fn fragility(
          <imls imt=\"{}\" noDamageLimit=\"0\" minIML=\"{}\" maxIML=\"{}\"/>\n",
         escaped(about),
         names.join(" "),
-        escaped(asset),
+        identity(asset),
         foreign.imt,
         plain(first),
         plain(last)
@@ -197,7 +204,7 @@ fn fragility(
 /// Share of the barrels of a stack that burst, by the central assumption.
 fn burst(case: &Case) -> f64 {
     let chance = |fall: &f64| Breakage::RANGE[1].probability(*fall);
-    case.falls.iter().map(chance).sum::<f64>() / f64::from(case.barrels.max(1))
+    case.falls.iter().map(chance).sum::<f64>().abs() / f64::from(case.barrels.max(1))
 }
 
 /// Of what may scatter between 0 and 1 about a mean, no more than this share does: a beta distribution has
@@ -229,7 +236,7 @@ fn vulnerability(decision: &Decision, foreign: &Foreign, asset: &str, about: &st
             text,
             "    <vulnerabilityFunction id=\"{}-{name}\" dist=\"BT\">\n      <imls imt=\"{}\">{}</imls>\n      \
              <meanLRs>{}</meanLRs>\n      <covLRs>{}</covLRs>\n    </vulnerabilityFunction>\n",
-            escaped(asset),
+            identity(asset),
             foreign.imt,
             numbers(groups.iter().map(|(x, _)| foreign.scale * x)),
             numbers(means),

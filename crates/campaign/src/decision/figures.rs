@@ -154,11 +154,11 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
         return None;
     }
     let measure = cases.measure();
-    let mut runs: BTreeMap<usize, Vec<(f64, f64)>> = BTreeMap::new();
+    let mut runs: BTreeMap<u32, Vec<(f64, f64)>> = BTreeMap::new();
     for case in &cases.all {
         let key = case.curve;
-        let Some(level) = case.intensities[cases.main] else { continue };
-        let demand = if case.collapsed { Some(f64::INFINITY) } else { case.drift };
+        let Some(level) = case.intensity(cases.main) else { continue };
+        let demand = if case.collapsed { Some(f64::INFINITY) } else { case.drift() };
         if let Some(demand) = demand {
             runs.entry(key).or_default().push((level, demand));
         }

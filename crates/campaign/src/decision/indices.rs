@@ -1,12 +1,10 @@
 //! What matters: first and total Sobol' indices of every varied quantity, on collapse and on the demands.
 
-use std::collections::BTreeMap;
-
 use barrelstack_fragility::{Index, sobol_indices};
 use barrelstack_motion::Random;
 
 use super::curve::LEVEL;
-use crate::study::{Collected, Role};
+use crate::study::{Column, Provenance, Role, StudyTable};
 
 /// Resamples of the blocks for intervals.
 const REPLICATES: usize = 400;
@@ -24,46 +22,69 @@ pub struct Sensitivity {
     pub inputs: Vec<(String, Index)>,
 }
 
-/// Indices on collapse and on every demand that varies; none but for a design made for them.
-pub(super) fn of(collected: &Collected) -> Vec<Sensitivity> {
-    let (table, made) = (&collected.table, &collected.provenance);
-    let size = made.varied.len() + 2;
-    let (Some(numbers), Some(outcomes)) = (table.integers("case"), table.texts("outcome")) else {
-        return Vec::new();
-    };
-    if made.varied.is_empty() {
-        return Vec::new();
-    }
-    let collapse: Vec<Option<f64>> = outcomes
-        .iter()
-        .map(|outcome| match outcome.as_deref() {
-            Some("collapse") => Some(1.0),
-            Some("stable") => Some(0.0),
-            _ => None,
-        })
-        .collect();
-    let mut results = vec![("collapse".to_owned(), collapse)];
-    for column in table.of_role(Role::Demand) {
-        let values = table.numbers(&column.spec.name).map(<[_]>::to_vec);
-        results.extend(values.map(|values| (column.spec.name.clone(), values)));
-    }
-    let sensitivity = |(result, values): (String, Vec<Option<f64>>)| {
-        let mut blocks: BTreeMap<usize, Vec<Option<f64>>> = BTreeMap::new();
-        for (number, value) in numbers.iter().zip(values) {
-            let number = number.and_then(|number| usize::try_from(number).ok())?;
-            blocks.entry(number / size).or_insert_with(|| vec![None; size])[number % size] = value;
+/// The results of every case of a design for sensitivity, by the number of the case.
+#[derive(Debug, Default)]
+pub(super) struct Results {
+    /// Collapse (1 or 0) and the demands, each with its name; not a number where it is not known.
+    of: Vec<(String, Vec<f64>)>,
+}
+
+impl Results {
+    /// Keeps what the rows that follow say; nothing of other designs.
+    pub(super) fn add(&mut self, made: &Provenance, table: &StudyTable) {
+        let (Some(numbers), Some(outcomes)) = (table.integers("case"), table.texts("outcome"))
+        else {
+            return;
+        };
+        if made.varied.is_empty() {
+            return;
         }
-        let all = blocks.len();
-        let whole: Vec<Vec<f64>> =
-            blocks.into_values().filter_map(|block| block.into_iter().collect()).collect();
-        let mut random = Random::new(made.seed);
-        let found = sobol_indices(&whole, REPLICATES, LEVEL, || random.uniform())?;
-        Some(Sensitivity {
-            result,
-            blocks: whole.len(),
-            left_out: all - whole.len(),
-            inputs: made.varied.iter().cloned().zip(found).collect(),
-        })
-    };
-    results.into_iter().filter_map(sensitivity).collect()
+        let collapse: Vec<Option<f64>> = outcomes
+            .iter()
+            .map(|outcome| match outcome.as_deref() {
+                Some("collapse") => Some(1.0),
+                Some("stable") => Some(0.0),
+                _ => None,
+            })
+            .collect();
+        let mut results = vec![("collapse", collapse.as_slice())];
+        let name = |column: &Column| column.spec.name.clone();
+        let names: Vec<String> = table.of_role(Role::Demand).map(name).collect();
+        results.extend(names.iter().filter_map(|name| Some((name.as_str(), table.numbers(name)?))));
+        for (at, (name, values)) in results.into_iter().enumerate() {
+            if self.of.len() <= at {
+                self.of.push((name.to_owned(), Vec::new()));
+            }
+            let kept = &mut self.of[at].1;
+            for (number, value) in numbers.iter().zip(values) {
+                let Some(number) = number.and_then(|n| usize::try_from(n).ok()) else { continue };
+                if kept.len() <= number {
+                    kept.resize(number + 1, f64::NAN);
+                }
+                kept[number] = value.unwrap_or(f64::NAN);
+            }
+        }
+    }
+
+    /// Indices on collapse and on every demand that varies; none but for a design made for them.
+    pub(super) fn indices(self, made: &Provenance) -> Vec<Sensitivity> {
+        let size = made.varied.len() + 2;
+        let sensitivity = |(result, values): (String, Vec<f64>)| {
+            let blocks = values.chunks(size);
+            let all = blocks.len();
+            let whole: Vec<Vec<f64>> = blocks
+                .filter(|block| block.len() == size && !block.iter().any(|v| v.is_nan()))
+                .map(<[f64]>::to_vec)
+                .collect();
+            let mut random = Random::new(made.seed);
+            let found = sobol_indices(&whole, REPLICATES, LEVEL, || random.uniform())?;
+            Some(Sensitivity {
+                result,
+                blocks: whole.len(),
+                left_out: all - whole.len(),
+                inputs: made.varied.iter().cloned().zip(found).collect(),
+            })
+        };
+        self.of.into_iter().filter_map(sensitivity).collect()
+    }
 }

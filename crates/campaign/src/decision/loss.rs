@@ -101,10 +101,10 @@ fn at(intensity: f64, of: &[&Case]) -> Loss {
     let count = of.len() as f64;
     let fallen = of.iter().map(|case| f64::from(case.fallen())).sum::<f64>() / count;
     let burst = Breakage::RANGE.map(|breakage| {
-        let falls = of.iter().flat_map(|case| &case.falls);
+        let falls = of.iter().flat_map(|case| case.falls.iter());
         falls.map(|fall| breakage.probability(*fall)).sum::<f64>() / count
     });
-    let mut records = std::collections::BTreeMap::<usize, (f64, f64)>::new();
+    let mut records = std::collections::BTreeMap::<u32, (f64, f64)>::new();
     for case in of {
         let record = records.entry(case.record).or_default();
         *record = (record.0 + case.fallen_share(), record.1 + 1.0);

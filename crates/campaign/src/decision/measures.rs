@@ -40,23 +40,19 @@ pub(super) fn compare(cases: &Cases) -> Vec<MeasureRow> {
 
 fn row(cases: &Cases, measure: usize, beside: Option<usize>) -> MeasureRow {
     let positive = |value: Option<f64>| value.filter(|value| *value > 0.0);
-    let seen: Vec<_> = cases
-        .all
-        .iter()
-        .filter_map(|case| {
-            let second = beside.map_or(Some(1.0), |at| positive(case.intensities[at]))?;
-            Some((case, positive(case.intensities[measure])?, second))
-        })
-        .collect();
-    let outcomes: Vec<(f64, bool)> = seen.iter().map(|(case, x, _)| (*x, case.collapsed)).collect();
-    let second: Vec<f64> = seen.iter().map(|(_, _, second)| *second).collect();
-    let stood: Vec<(f64, f64, f64)> = seen
-        .iter()
-        .filter(|(case, ..)| !case.collapsed)
-        .filter_map(|(case, x, second)| Some((*x, positive(case.drift)?, *second)))
-        .collect();
-    let demands: Vec<(f64, f64)> = stood.iter().map(|(x, drift, _)| (*x, *drift)).collect();
-    let second_stood: Vec<f64> = stood.iter().map(|(.., second)| *second).collect();
+    // There may be a million cases: nothing is kept of them but what is asked.
+    let (mut outcomes, mut second) = (Vec::new(), Vec::new());
+    let (mut demands, mut second_stood) = (Vec::new(), Vec::new());
+    for case in &cases.all {
+        let other = beside.map_or(Some(1.0), |at| positive(case.intensity(at)));
+        let (Some(other), Some(x)) = (other, positive(case.intensity(measure))) else { continue };
+        outcomes.push((x, case.collapsed));
+        second.push(other);
+        if let (false, Some(drift)) = (case.collapsed, positive(case.drift())) {
+            demands.push((x, drift));
+            second_stood.push(other);
+        }
+    }
     MeasureRow {
         measure,
         beside,

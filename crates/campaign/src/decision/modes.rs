@@ -2,7 +2,7 @@
 
 use barrelstack_fragility::{Interval, Shares, Stripe, wilson};
 
-use super::cases::Cases;
+use super::cases::{Case, Cases};
 use super::curve::{LEVEL, LimitCurve, stripe};
 
 /// One mode against the measure of the study.
@@ -19,24 +19,25 @@ pub struct ModeIncidence {
     pub fitted: Vec<f64>,
 }
 
+fn is(case: &Case, mode: usize) -> bool {
+    case.mode.map(usize::from) == Some(mode)
+}
+
 /// Every mode that occurs, the most frequent first; none of hunts, which go where collapses are.
 pub(super) fn of(cases: &Cases, collapse: &LimitCurve) -> Vec<ModeIncidence> {
-    let mut names: Vec<(usize, &str)> = Vec::new();
-    for mode in cases.all.iter().filter_map(|case| case.mode.as_deref()) {
-        match names.iter_mut().find(|(_, name)| *name == mode) {
-            Some((count, _)) => *count += 1,
-            None => names.push((1, mode)),
-        }
-    }
+    let count = |mode: usize| cases.all.iter().filter(|case| is(case, mode)).count();
+    let mut names: Vec<(usize, usize)> =
+        (0..cases.modes.len()).map(|mode| (count(mode), mode)).collect();
     if cases.hunted {
         return Vec::new();
     }
-    names.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.cmp(b.1)));
-    let number = |mode: &str| names.iter().position(|(_, name)| *name == mode);
+    let name = |mode: usize| cases.modes[mode].as_str();
+    names.sort_by(|a, b| b.0.cmp(&a.0).then(name(a.1).cmp(name(b.1))));
+    let number = |mode: u8| names.iter().position(|(_, name)| *name == usize::from(mode));
     let failures: Vec<(f64, usize)> = cases
         .all
         .iter()
-        .filter_map(|case| Some((case.intensities[cases.main]?, number(case.mode.as_deref()?)?)))
+        .filter_map(|case| Some((case.intensity(cases.main)?, number(case.mode?)?)))
         .collect();
     let shares = Shares::fit(&failures, names.len());
     let groups = cases.groups(cases.main);
@@ -47,11 +48,11 @@ pub(super) fn of(cases: &Cases, collapse: &LimitCurve) -> Vec<ModeIncidence> {
         }
         _ => Vec::new(),
     };
-    let incidence = |(index, (_, mode)): (usize, &(usize, &str))| {
-        let own = |x: f64, of: &[_]| stripe(x, of, |case| case.mode.as_deref() == Some(*mode));
+    let incidence = |(index, (_, mode)): (usize, &(usize, usize))| {
+        let own = |x: f64, of: &[_]| stripe(x, of, |case| is(case, *mode));
         let stripes: Vec<Stripe> = groups.iter().map(|(x, of)| own(*x, of)).collect();
         ModeIncidence {
-            mode: (*mode).to_owned(),
+            mode: name(*mode).to_owned(),
             intervals: stripes.iter().map(|s| wilson(s.failures, s.cases, LEVEL)).collect(),
             stripes,
             fitted: fitted(index),

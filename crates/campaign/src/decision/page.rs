@@ -398,7 +398,7 @@ fn motions(decision: &Decision, made: &Provenance) -> Table {
         &[("motion", ""), ("source", ""), ("cases", ""), ("collapsed", "")],
     );
     for (number, name) in decision.cases.records.iter().enumerate() {
-        let of = || decision.cases.all.iter().filter(|case| case.record == number);
+        let of = || decision.cases.all.iter().filter(|case| case.record as usize == number);
         let source = made.motions.iter().find(|motion| motion.name == *name);
         table.rows.push(vec![
             Cell::text(name),

@@ -6,7 +6,7 @@ use barrelstack_fragility::{Interval, wilson};
 
 use super::cases::{Case, Cases, told};
 use super::curve::LEVEL;
-use crate::study::{Collected, Role, Value};
+use crate::study::{Column, Provenance, Value};
 
 /// Cases of one value of a factor, or of a third of its values.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,11 +49,9 @@ impl Effect {
 const MOST: usize = 6;
 
 /// Every factor that varies, the largest effect first.
-pub(super) fn effects(collected: &Collected, cases: &Cases) -> Vec<Effect> {
-    let table = &collected.table;
-    let factors: Vec<_> = table.of_role(Role::Factor).collect();
+pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> Vec<Effect> {
     // One at a time: a factor's cases are those in which every other stands at its base.
-    let alone = collected.provenance.design == "one-at-a-time";
+    let alone = made.design == "one-at-a-time";
     let base: Vec<Option<Value>> = factors.iter().map(|f| f.values.get(0)).collect();
     let mut found: Vec<Effect> = factors
         .iter()
@@ -62,16 +60,16 @@ pub(super) fn effects(collected: &Collected, cases: &Cases) -> Vec<Effect> {
             let belongs = |case: &&Case| {
                 !alone
                     || factors.iter().zip(&base).enumerate().all(|(other, (column, base))| {
-                        other == at || column.values.get(case.row) == *base
+                        other == at || column.values.get(case.row as usize) == *base
                     })
             };
-            let seen: Vec<(Option<Value>, &Case)> = cases
+            let seen = cases
                 .all
                 .iter()
+                .map(AsRef::as_ref)
                 .filter(belongs)
-                .map(|case| (factor.values.get(case.row), case))
-                .collect();
-            let groups = groups(&seen, &factor.spec.unit);
+                .map(|case| (factor.values.get(case.row as usize), case));
+            let groups = groups(seen, &factor.spec.unit);
             (groups.len() > 1).then(|| Effect { factor: factor.spec.name.clone(), groups })
         })
         .collect();
@@ -85,13 +83,16 @@ fn group(label: String, of: &[&Case]) -> Group {
     Group { label, cases, collapsed, interval: wilson(collapsed, cases, LEVEL) }
 }
 
-fn groups(seen: &[(Option<Value>, &Case)], unit: &str) -> Vec<Group> {
+fn groups<'a>(
+    seen: impl Iterator<Item = (Option<Value>, &'a Case)> + Clone,
+    unit: &str,
+) -> Vec<Group> {
     let numbers: Option<Vec<(f64, &Case)>> = seen
-        .iter()
+        .clone()
         .map(|(value, case)| match value {
-            Some(Value::Number(x)) => Some((*x, *case)),
+            Some(Value::Number(x)) => Some((x, case)),
             #[expect(clippy::cast_precision_loss, reason = "counts are small")]
-            Some(Value::Integer(x)) => Some((*x as f64, *case)),
+            Some(Value::Integer(x)) => Some((x as f64, case)),
             Some(Value::Text(_)) | None => None,
         })
         .collect();
@@ -102,7 +103,7 @@ fn groups(seen: &[(Option<Value>, &Case)], unit: &str) -> Vec<Group> {
     let Some(mut numbers) = numbers else {
         let mut by_text: BTreeMap<String, Vec<&Case>> = BTreeMap::new();
         for (value, case) in seen {
-            by_text.entry(told(value.clone())).or_default().push(case);
+            by_text.entry(told(value)).or_default().push(case);
         }
         return by_text.into_iter().map(|(label, of)| group(label, &of)).collect();
     };

@@ -125,18 +125,19 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
     }
     match (&curve.fit, &curve.median) {
         (Ok(fit), Some(interval)) => {
-            let band = format!("{} with 95 % confidence", measure.range(*interval));
-            let source = if curve.violates_order() {
-                "By a fitted curve, which hides that, the"
+            let dispersion = significant(fit.curve.dispersion, 2);
+            // The headline has the median, unless it warns of the curve.
+            said.push(if curve.violates_order() {
+                format!(
+                    "By a fitted curve, which hides that, the median {} of collapse is {} ({} with 95 % confidence), \
+                     its dispersion {dispersion}.",
+                    measure.label,
+                    measure.words(fit.curve.median),
+                    measure.range(*interval)
+                )
             } else {
-                "The"
-            };
-            said.push(format!(
-                "{source} median {} of collapse is {} ({band}), its dispersion {}.",
-                measure.label,
-                measure.words(fit.curve.median),
-                significant(fit.curve.dispersion, 2)
-            ));
+                format!("The dispersion of the fitted curve is {dispersion}.")
+            });
             said.push(format!(
                 "One stack in ten collapses at {}, nine in ten at {}{}.",
                 measure.words(fit.curve.intensity(0.1)),
@@ -251,10 +252,14 @@ pub(super) fn warnings(
                 )
             };
             said.push(format!(
-                "{} of {} motions stand at a higher level than one that felled them (the first collapses at {} and \
-                 stands at {}). {why}.",
+                "{} of {} motions {} (the first collapses at {} and stands at {}). {why}.",
                 returned.len(),
                 cases.curves(),
+                if returned.len() == 1 {
+                    "leaves the stack standing at a higher level than one at which it falls"
+                } else {
+                    "leave the stack standing at a higher level than one at which it falls"
+                },
                 measure.words(first.failed),
                 measure.words(first.stood)
             ));

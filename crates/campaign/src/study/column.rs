@@ -119,6 +119,25 @@ impl Values {
         }
     }
 
+    /// Takes off the values from a row on.
+    pub(super) fn split_off(&mut self, row: usize) -> Self {
+        match self {
+            Self::Integer(values) => Self::Integer(values.split_off(row)),
+            Self::Number(values) => Self::Number(values.split_off(row)),
+            Self::Text(values) => Self::Text(values.split_off(row)),
+        }
+    }
+
+    /// Appends values of the same kind; those of another are left out.
+    pub(crate) fn append(&mut self, more: Self) {
+        match (self, more) {
+            (Self::Integer(values), Self::Integer(more)) => values.extend(more),
+            (Self::Number(values), Self::Number(more)) => values.extend(more),
+            (Self::Text(values), Self::Text(more)) => values.extend(more),
+            _ => {}
+        }
+    }
+
     /// Appends a value of the column's kind; a whole number may stand for a number.
     pub(super) fn push(&mut self, value: Option<Value>) -> Result<(), StudyError> {
         match (self, value) {

@@ -38,10 +38,16 @@ impl Endings {
     /// The endings of a table.
     pub fn of(table: &StudyTable) -> Self {
         let mut found = Self::default();
+        found.add(table);
+        found
+    }
+
+    /// Adds those of a table.
+    pub fn add(&mut self, table: &StudyTable) {
         let (Some(outcomes), Some(ended), Some(left)) =
             (table.texts("outcome"), table.texts("ended"), table.numbers("motion_left"))
         else {
-            return found;
+            return;
         };
         for ((outcome, ended), left) in outcomes.iter().zip(ended).zip(left) {
             let outcome = outcome.as_deref().unwrap_or("");
@@ -50,18 +56,17 @@ impl Endings {
             }
             let is = |ending: Ending| u64::from(ended.as_deref() == Some(ending.name()));
             let left = left.unwrap_or(0.0);
-            found.judged += 1;
-            found.followed += is(Ending::Rest);
-            found.stopped += is(Ending::AfterCollapse);
-            found.short += is(Ending::Duration);
-            found.moving += is(Ending::Patience);
+            self.judged += 1;
+            self.followed += is(Ending::Rest);
+            self.stopped += is(Ending::AfterCollapse);
+            self.short += is(Ending::Duration);
+            self.moving += is(Ending::Patience);
             if left > 0.0 && is(Ending::Duration) > 0 {
-                found.cut += 1;
-                found.open += u64::from(outcome == "stable");
-                found.longest_cut = found.longest_cut.max(left);
+                self.cut += 1;
+                self.open += u64::from(outcome == "stable");
+                self.longest_cut = self.longest_cut.max(left);
             }
         }
-        found
     }
 
     /// Largest share of cases in which something still moves when their time is over with which means over

@@ -6,14 +6,20 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use super::Study;
+use super::claim::Claim;
+use super::collect::{Collected, collect};
 use super::error::StudyError;
-use super::folder::{Collected, Folder, read_shard};
+use super::folder::{Folder, read_shard};
 use super::motions::Shelf;
 use super::prepare::Bench;
 use super::stop::{StopRule, Tally};
 use crate::ensemble::CaseResult;
+
+/// How long (s) to wait for chunks that others have claimed before looking again.
+const LOOK_AGAIN: Duration = Duration::from_millis(200);
 
 /// How a study is run.
 #[derive(Clone, Copy, Debug, Default)]
@@ -27,7 +33,7 @@ pub struct RunOptions {
 pub struct Progress {
     /// Cases in all; of an adaptive design, at most.
     pub cases: u64,
-    /// Cases of chunks that were done before this run.
+    /// Cases of chunks that others did: earlier runs, and those beside this one.
     pub before: u64,
     /// Cases that this run has done.
     pub now: u64,
@@ -56,8 +62,10 @@ struct Shared<'a> {
 
 /// What threads take turns with.
 struct State {
-    /// Chunks that nobody has taken, the next one last.
+    /// Chunks that nobody here has taken, the next one last.
     open: Vec<usize>,
+    /// Those of them that another process has claimed.
+    elsewhere: Vec<usize>,
     /// How the cases of each chunk that is done ended.
     done: BTreeMap<usize, Tally>,
     progress: Progress,
@@ -67,7 +75,23 @@ struct State {
 }
 
 impl Study {
-    /// Runs all chunks that are missing from a folder, and collects the table.
+    /// Runs all chunks that are missing from a folder, collects the table and reads it.
+    ///
+    /// # Errors
+    /// As [`Study::run_all`].
+    pub fn run(
+        &self,
+        folder: &Path,
+        options: &RunOptions,
+        tell: &(dyn Fn(&Progress) -> ControlFlow<()> + Sync),
+    ) -> Result<Collected, StudyError> {
+        self.run_all(folder, options, tell)?;
+        collect(folder, &mut |_, _| Ok(()))?;
+        Collected::read(folder)
+    }
+
+    /// Runs all chunks that are missing from a folder; other processes may do so at the same time, and each chunk
+    /// is run by one of them.
     ///
     /// `tell` hears of every case that is done, from several threads, and may stop the run; what was done until then is
     /// kept, and the next run goes on from there.
@@ -76,12 +100,12 @@ impl Study {
     /// # Errors
     /// When a motion cannot be read, the folder belongs to something else, a file cannot be written, and
     /// [`StudyError::Stopped`] when `tell` stopped it.
-    pub fn run(
+    pub fn run_all(
         &self,
         folder: &Path,
         options: &RunOptions,
         tell: &(dyn Fn(&Progress) -> ControlFlow<()> + Sync),
-    ) -> Result<Collected, StudyError> {
+    ) -> Result<(), StudyError> {
         let shelf = Shelf::default();
         // Before the folder is made: a study that cannot run leaves none behind.
         self.try_motions(&shelf)?;
@@ -99,7 +123,8 @@ impl Study {
             (0..self.chunk_count()).rev().filter(|chunk| !done.contains_key(chunk)).collect();
         let threads = options.threads.or_else(|| std::thread::available_parallelism().ok());
         let threads = threads.map_or(1, NonZero::get).min(open.len()).max(1);
-        let state = State { open, done, progress, failed: None, interrupted: false };
+        let state =
+            State { open, elsewhere: Vec::new(), done, progress, failed: None, interrupted: false };
         let shared = Shared {
             study: self,
             folder: &place,
@@ -126,12 +151,12 @@ impl Study {
         if state.interrupted {
             return Err(StudyError::Stopped);
         }
-        let collected = Collected::read(folder)?;
-        collected.write(folder)?;
-        Ok(collected)
+        // What others that were killed beside this run left behind.
+        place.clean()
     }
 
-    /// Runs one chunk and writes its shard; false when it was there already.
+    /// Runs one chunk and writes its shard; false when it was there already, or another process has made it
+    /// meanwhile.
     ///
     /// # Errors
     /// When there is no such chunk, or as [`Study::run`].
@@ -149,12 +174,17 @@ impl Study {
             )));
         }
         let place = Folder::open(folder, self, false)?;
-        if let Some(path) = place.shards()?.get(&chunk) {
-            match read_shard(path, &self.columns()) {
-                Ok(_) => return Ok(false),
-                Err(StudyError::Shard { .. }) => set_aside(path)?,
-                Err(error) => return Err(error),
+        let _claim = loop {
+            if let Some(claim) = place.claim(chunk)? {
+                break claim;
             }
+            if stop() {
+                return Err(StudyError::Stopped);
+            }
+            std::thread::sleep(LOOK_AGAIN);
+        };
+        if self.sound(&place, chunk)?.is_some() {
+            return Ok(false);
         }
         let mut bench = Bench { shelf: &Shelf::default(), tell: &mut |_| {}, stop };
         let table = self.compute(chunk, &mut bench)?.ok_or(StudyError::Stopped)?;
@@ -165,21 +195,29 @@ impl Study {
     /// How the cases of each chunk that is done ended, and how many shards are damaged: they are set aside under
     /// another name, and their chunks are not done.
     fn done(&self, folder: &Folder) -> Result<(BTreeMap<usize, Tally>, usize), StudyError> {
-        let columns = self.columns();
         let mut done = BTreeMap::new();
         let mut damaged = 0;
         let shards = folder.shards()?.into_iter();
         for (chunk, path) in shards.filter(|(chunk, _)| *chunk < self.chunk_count()) {
-            match read_shard(&path, &columns) {
-                Ok(table) => drop(done.insert(chunk, Tally::of(&table))),
-                Err(StudyError::Shard { path, .. }) => {
-                    damaged += 1;
-                    set_aside(&path)?;
-                }
-                Err(error) => return Err(error),
+            match self.tally_of(&path)? {
+                Some(tally) => drop(done.insert(chunk, tally)),
+                None => damaged += 1,
             }
         }
         Ok((done, damaged))
+    }
+
+    /// How the cases of a chunk ended; none where it has no sound shard, and a damaged one is set aside.
+    fn sound(&self, folder: &Folder, chunk: usize) -> Result<Option<Tally>, StudyError> {
+        folder.shard(chunk)?.map_or(Ok(None), |path| self.tally_of(&path))
+    }
+
+    fn tally_of(&self, shard: &Path) -> Result<Option<Tally>, StudyError> {
+        match read_shard(shard, &self.columns()) {
+            Ok(table) => Ok(Some(Tally::of(&table))),
+            Err(StudyError::Shard { path, .. }) => set_aside(&path).map(|()| None),
+            Err(error) => Err(error),
+        }
     }
 }
 
@@ -198,7 +236,7 @@ impl Shared<'_> {
     fn work(&self) {
         while !self.stop.load(Ordering::Relaxed) {
             let Some(chunk) = self.take() else { return };
-            if let Err(error) = self.chunk(chunk) {
+            if let Err(error) = self.claimed(chunk) {
                 self.stop.store(true, Ordering::Relaxed);
                 self.state().failed.get_or_insert(error);
             }
@@ -218,7 +256,35 @@ impl Shared<'_> {
                 }
             }
         }
+        if state.open.is_empty() && !state.elsewhere.is_empty() {
+            state.open = std::mem::take(&mut state.elsewhere);
+            drop(state);
+            // Their owners finish them, or die and leave them to us.
+            std::thread::sleep(LOOK_AGAIN);
+            state = self.state();
+            self.tell(&mut state);
+        }
         state.open.pop()
+    }
+
+    /// Runs a chunk, unless another process has it or has done it.
+    fn claimed(&self, chunk: usize) -> Result<(), StudyError> {
+        let Some(claim): Option<Claim> = self.folder.claim(chunk)? else {
+            self.state().elsewhere.push(chunk);
+            return Ok(());
+        };
+        if let Some(tally) = self.study.sound(self.folder, chunk)? {
+            let mut state = self.state();
+            state.progress.before += tally.cases;
+            state.progress.tally = state.progress.tally.plus(tally);
+            state.progress.chunks_done += 1;
+            state.done.insert(chunk, tally);
+            self.tell(&mut state);
+            return Ok(());
+        }
+        self.chunk(chunk)?;
+        drop(claim);
+        Ok(())
     }
 
     fn chunk(&self, chunk: usize) -> Result<(), StudyError> {
@@ -237,6 +303,10 @@ impl Shared<'_> {
         let mut state = self.state();
         state.progress.now += 1;
         state.progress.tally.add(result.outcome.as_ref().map_or("error", |outcome| outcome.kind()));
+        self.tell(&mut state);
+    }
+
+    fn tell(&self, state: &mut State) {
         if (self.tell)(&state.progress).is_break() {
             state.interrupted = true;
             self.stop.store(true, Ordering::Relaxed);

@@ -17,7 +17,7 @@ use super::error::StudyError;
 use super::fields::{DesignKind, STUDY};
 use super::ida::Hunt;
 use super::motions::{Motion, Shaking, hash_files};
-use super::plan::Chunks;
+use super::plan::{Chunks, Sizes};
 use super::setting::{Domain, Setting};
 use super::{Factor, Intensity, Levels, Study, Variation, ensembles};
 
@@ -137,7 +137,7 @@ fn read(opened: &Opened) -> Result<Study, StudyError> {
         levels,
         chunk,
         cases: Cases::Crossed,
-        chunks: Chunks::Even { count: 0, size: 1 },
+        chunks: Chunks::Even { count: 0, sizes: Sizes::Growing },
         hash: 0,
     };
     study.cases = Cases::new(&study);
@@ -395,7 +395,7 @@ fn read_design(
     reader: Reader<'_>,
     intensity: Option<Intensity>,
     factors: &[Factor],
-) -> Result<(Design, u32, Option<Intensity>), ScenarioError> {
+) -> Result<(Design, Sizes, Option<Intensity>), ScenarioError> {
     let kind: DesignKind = reader.choice("kind")?;
     let chunk = reader.optional_integer("chunk")?;
     let refuse = |message: &str| Err(reader.inconsistent("kind", message.to_owned()));
@@ -471,8 +471,8 @@ fn read_design(
         return refuse("this design crosses levels; give [intensity] `levels` or a `range`");
     }
     reader.finish();
-    let usual = if kind == DesignKind::Ida { 8 } else { 64 };
-    Ok((design, chunk.unwrap_or(usual), intensity))
+    let usual = if kind == DesignKind::Ida { Sizes::Given(8) } else { Sizes::Growing };
+    Ok((design, chunk.map_or(usual, Sizes::Given), intensity))
 }
 
 fn read_hunt(reader: &Reader<'_>, intensity: Option<&Intensity>) -> Result<Hunt, ScenarioError> {

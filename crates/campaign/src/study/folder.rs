@@ -4,6 +4,7 @@
 //! study.json                        what the shards belong to
 //! study.toml                        the study file, as it was
 //! shards/000012-<fingerprint>.parquet   one chunk; its name holds the fingerprint of its bytes
+//! shards/000013.claim               a process works on the chunk as long as it holds this file locked
 //! table.csv, table.parquet, columns.csv, provenance.json   all rows, what their columns are, and what they
 //!                                   come from, written when the study is collected
 //! ```
@@ -18,13 +19,14 @@ use serde::{Deserialize, Serialize};
 use crate::scenario::fnv1a;
 use crate::system;
 
+use super::claim::Claim;
 use super::column::ColumnSpec;
 use super::design::Design;
 use super::error::StudyError;
 use super::grow::{Common, difference};
 use super::motions::hash_files;
 use super::shard;
-use super::stop::{StopRule, Tally};
+use super::stop::StopRule;
 use super::table::StudyTable;
 use super::{Intensity, Study};
 
@@ -92,26 +94,6 @@ pub struct MotionSource {
     pub hash: Option<String>,
     /// Fingerprint of how it is made.
     pub key: String,
-}
-
-/// The rows of a study, with what they come from.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Collected {
-    /// One row a case.
-    pub table: StudyTable,
-    /// What the rows come from.
-    pub provenance: Provenance,
-}
-
-/// How far a study is.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Status {
-    /// What the folder belongs to.
-    pub provenance: Provenance,
-    /// How the cases that are done ended.
-    pub tally: Tally,
-    /// Chunks that are still to be run, ascending.
-    pub missing: Vec<usize>,
 }
 
 /// A folder that belongs to a study.
@@ -188,17 +170,36 @@ impl Folder {
         Ok(self)
     }
 
-    /// The shards by chunk; two of one chunk are told apart by their fingerprints, and either will do.
+    /// The shards by chunk.
     pub(super) fn shards(&self) -> Result<BTreeMap<usize, PathBuf>, StudyError> {
         shards(&self.path)
+    }
+
+    /// The shard of a chunk; none where it is not done.
+    pub(super) fn shard(&self, chunk: usize) -> Result<Option<PathBuf>, StudyError> {
+        let folder = self.path.join(SHARDS);
+        let failed = |error: &std::io::Error| StudyError::system("list", &folder, error);
+        for entry in fs::read_dir(&folder).map_err(|error| failed(&error))? {
+            let path = entry.map_err(|error| failed(&error))?.path();
+            if named(&path).is_some_and(|(number, _)| number == chunk) {
+                return Ok(Some(path));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Claims a chunk for this process and thread; none while another has it.
+    pub(super) fn claim(&self, chunk: usize) -> Result<Option<Claim>, StudyError> {
+        Claim::take(self.path.join(SHARDS).join(format!("{chunk:06}.claim")))
     }
 
     /// Removes what killed runs left behind.
     pub(super) fn clean(&self) -> Result<(), StudyError> {
         for folder in [self.path.clone(), self.path.join(SHARDS)] {
             for path in list(&folder)? {
-                if path.extension().is_some_and(|extension| extension == "part") {
-                    // Its run may be alive and have given it its name by now.
+                let left = path.extension().is_some_and(|end| end == "part" || end == "claim");
+                // Whoever is alive holds it locked; it may also have its own name by now, or be gone.
+                if left && File::open(&path).is_ok_and(|file| file.try_lock().is_ok()) {
                     drop(fs::remove_file(&path));
                 }
             }
@@ -219,20 +220,6 @@ impl Folder {
         let name = format!("{chunk:06}-{:016x}.parquet", fnv1a(&bytes));
         write_whole(&self.path.join(SHARDS).join(name), &bytes)
     }
-
-    /// Writes all rows and what they come from.
-    pub(super) fn write_table(&self, collected: &Collected) -> Result<(), StudyError> {
-        let provenance = serde_json::to_string_pretty(&collected.provenance)
-            .map_err(|error| StudyError::Table(error.to_string()))?;
-        write_whole(&self.path.join("table.csv"), collected.table.to_csv().as_bytes())?;
-        // The table travels alone: what it comes from goes with it.
-        let study = fs::read_to_string(self.path.join("study.toml")).unwrap_or_default();
-        let about = [("study", study), ("provenance", provenance.clone())];
-        let bytes = shard::to_bytes(&collected.table, &about).map_err(StudyError::Table)?;
-        write_whole(&self.path.join("table.parquet"), &bytes)?;
-        write_whole(&self.path.join("columns.csv"), collected.table.dictionary().as_bytes())?;
-        write_whole(&self.path.join("provenance.json"), format!("{provenance}\n").as_bytes())
-    }
 }
 
 /// The bytes of a file of a folder.
@@ -245,7 +232,7 @@ fn read_file(path: &Path) -> Result<Vec<u8>, StudyError> {
 }
 
 /// The manifest of a folder.
-fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
+pub(super) fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
     let refuse = |reason: String| StudyError::Folder { folder: folder.to_owned(), reason };
     let path = folder.join(MANIFEST);
     if !path.is_file() {
@@ -291,7 +278,8 @@ fn list(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
     Ok(paths)
 }
 
-fn shards(folder: &Path) -> Result<BTreeMap<usize, PathBuf>, StudyError> {
+/// The shards of a folder by chunk; two of one chunk differ in their fingerprints, and either will do.
+pub(super) fn shards(folder: &Path) -> Result<BTreeMap<usize, PathBuf>, StudyError> {
     let mut found = BTreeMap::new();
     for path in list(&folder.join(SHARDS))? {
         if let Some((chunk, _)) = named(&path) {
@@ -334,26 +322,50 @@ pub(super) fn read_shard(path: &Path, specs: &[ColumnSpec]) -> Result<StudyTable
 
 /// Writes a file under another name, brings it to the disk, and gives it its own.
 pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
-    let folder = path.parent().unwrap_or_else(|| Path::new("."));
-    let name =
-        path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    let part = folder.join(format!(".{name}.{}.part", std::process::id()));
     let write = || -> std::io::Result<()> {
-        let mut file = File::create(&part)?;
-        file.write_all(bytes)?;
-        file.sync_all()?;
-        fs::rename(&part, path)?;
-        sync_folder(folder)
+        let part = Part::create(path)?;
+        (&part.file).write_all(bytes)?;
+        part.name()
     };
     let mut result = write();
     // Another run that tidies the folder may have taken the file for a leftover.
-    if result.as_ref().is_err_and(|error| error.kind() == ErrorKind::NotFound) && folder.is_dir() {
+    if result.as_ref().is_err_and(|error| error.kind() == ErrorKind::NotFound) {
         result = write();
     }
-    result.map_err(|error| {
-        drop(fs::remove_file(&part));
-        StudyError::system("write", path, &error)
-    })
+    result.map_err(|error| StudyError::system("write", path, &error))
+}
+
+/// A file that is being written under another name; gone again where it never gets its own.
+pub(super) struct Part {
+    pub(super) file: File,
+    path: PathBuf,
+    whole: PathBuf,
+}
+
+impl Part {
+    /// Begins a file.
+    pub(super) fn create(whole: &Path) -> std::io::Result<Self> {
+        let name = whole.file_name().map_or_else(String::new, |name| name.to_string_lossy().into());
+        let path = whole.with_file_name(format!(".{name}.{}.part", std::process::id()));
+        let file = File::create(&path)?;
+        // Tells those who tidy the folder that its writer is alive; without locks they write once more.
+        drop(file.try_lock());
+        Ok(Self { file, path, whole: whole.to_owned() })
+    }
+
+    /// Brings it to the disk, and gives it its name.
+    pub(super) fn name(self) -> std::io::Result<()> {
+        self.file.sync_all()?;
+        fs::rename(&self.path, &self.whole)?;
+        sync_folder(self.whole.parent().unwrap_or_else(|| Path::new(".")))
+    }
+}
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        // Not there any more where it got its name.
+        drop(fs::remove_file(&self.path));
+    }
 }
 
 /// Brings the names in a folder to the disk, where the system has a way to.
@@ -431,66 +443,5 @@ impl Study {
     pub(super) fn stop_rule(&self) -> Option<StopRule> {
         let Design::MonteCarlo { half_width, least, .. } = self.design else { return None };
         half_width.map(|half_width| StopRule { half_width, least })
-    }
-}
-
-impl Collected {
-    /// Reads what is done of a study, finished or not.
-    ///
-    /// Of a Monte Carlo design the chunks count that are done without a gap, up to the one with which there are enough
-    /// cases: which of the later ones were run by chance changes nothing.
-    ///
-    /// # Errors
-    /// When the folder is that of no study, or a shard is damaged.
-    pub fn read(folder: &Path) -> Result<Self, StudyError> {
-        let mut provenance = manifest_of(folder)?;
-        let shards = shards(folder)?;
-        let ordered = provenance.design == "monte-carlo";
-        let mut parts = Vec::new();
-        let mut tally = Tally::default();
-        let mut met = false;
-        for chunk in 0..provenance.chunks {
-            let Some(path) = shards.get(&chunk) else {
-                if ordered {
-                    break;
-                }
-                continue;
-            };
-            let part = read_shard(path, &provenance.columns)?;
-            tally = tally.plus(Tally::of(&part));
-            parts.push(part);
-            met = provenance.stop.is_some_and(|rule| rule.met(tally));
-            if met {
-                break;
-            }
-        }
-        let table = StudyTable::join(&provenance.columns, &parts)?;
-        provenance.chunks_done = parts.len();
-        provenance.cases = table.rows();
-        provenance.complete = met || parts.len() == provenance.chunks;
-        Ok(Self { table, provenance })
-    }
-
-    /// Writes the rows into their folder: `table.csv`, `table.parquet` and `provenance.json`.
-    ///
-    /// # Errors
-    /// When a file cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<(), StudyError> {
-        Folder { path: folder.to_owned() }.write_table(self)
-    }
-
-    /// How far the study is.
-    ///
-    /// # Errors
-    /// As [`Collected::read`].
-    pub fn status(folder: &Path) -> Result<Status, StudyError> {
-        let Self { table, provenance } = Self::read(folder)?;
-        let done = shards(folder)?;
-        let missing = if provenance.complete {
-            Vec::new()
-        } else {
-            (0..provenance.chunks).filter(|chunk| !done.contains_key(chunk)).collect()
-        };
-        Ok(Status { tally: Tally::of(&table), provenance, missing })
     }
 }

@@ -55,7 +55,7 @@ impl Study {
             ("the scenario in [base]", base),
             ("a [[factor]]", factors.join("\n")),
             ("[intensity]", intensity.unwrap_or_default()),
-            ("[design]", format!("{design}, chunks of {}", self.chunk)),
+            ("[design]", format!("{design}, chunks of {:?}", self.chunk)),
             ("the number of motions, from which each sample takes one,", motions),
         ];
         let common = |(what, text): (&str, String)| Common {

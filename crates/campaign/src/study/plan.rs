@@ -17,6 +17,51 @@ pub struct Chunk {
     pub last: u64,
 }
 
+/// How many cases a chunk has, by its place: as the study says, or 64 and twice as many after every 512 chunks.
+///
+/// Small enough that a stop loses little and many workers find work, and so few that a million cases make some
+/// 2,500 files. What follows a chunk changes nothing about it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sizes {
+    /// All alike.
+    Given(u32),
+    /// Growing.
+    Growing,
+}
+
+/// Chunks of a size before it doubles.
+const ALIKE: u64 = 512;
+
+/// Cases of the first chunks.
+const FIRST: u64 = 64;
+
+impl Sizes {
+    /// The first case of a chunk in the order of the cases, and how many it has.
+    fn span(self, chunk: u64) -> (u64, u64) {
+        match self {
+            Self::Given(size) => (chunk * u64::from(size), u64::from(size)),
+            Self::Growing => {
+                // Ten million cases end in the ninth doubling.
+                let (doublings, rest) = ((chunk / ALIKE).min(40), chunk % ALIKE);
+                let size = FIRST << doublings;
+                (ALIKE * (size - FIRST) + rest * size, size)
+            }
+        }
+    }
+
+    /// How many chunks hold so many cases.
+    fn chunks(self, cases: u64) -> u64 {
+        match self {
+            Self::Given(size) => cases.div_ceil(u64::from(size)),
+            Self::Growing => {
+                let whole = (1..40).take_while(|k| self.span(ALIKE * k).0 <= cases).count() as u64;
+                let (first, size) = self.span(ALIKE * whole);
+                ALIKE * whole + (cases - first).div_ceil(size)
+            }
+        }
+    }
+}
+
 /// All chunks of a study.
 ///
 /// Cases of one chunk have the same bodies and contacts where the design allows, so that they can be run in lockstep.
@@ -25,19 +70,19 @@ pub struct Chunk {
 #[derive(Clone, Debug)]
 pub(super) enum Chunks {
     /// In the order of the cases.
-    Even { count: u64, size: u32 },
+    Even { count: u64, sizes: Sizes },
     /// As listed.
     Listed(Vec<Vec<u32>>),
 }
 
 impl Chunks {
     pub(super) fn of(study: &Study) -> Self {
-        let (count, size) = (study.cases.count(study), study.chunk);
+        let (count, sizes) = (study.cases.count(study), study.chunk);
         let mixed = study.factors.iter().any(|factor| factor.structural);
         // Chunks of Monte Carlo come in the order of the cases, since it stops after one of them.
         let ordered = matches!(study.design, Design::MonteCarlo { .. });
         if !mixed || ordered {
-            return Self::Even { count, size };
+            return Self::Even { count, sizes };
         }
         let mut chunks: Vec<Vec<u32>> = Vec::new();
         let mut open: Vec<(Vec<Option<Value>>, usize)> = Vec::new();
@@ -52,7 +97,7 @@ impl Chunks {
             };
             let chunk = open[at].1;
             chunks[chunk].push(number);
-            if chunks[chunk].len() >= size as usize {
+            if chunks[chunk].len() as u64 >= sizes.span(chunk as u64).1 {
                 open.swap_remove(at);
             }
         }
@@ -65,7 +110,7 @@ impl Chunks {
                 clippy::cast_possible_truncation,
                 reason = "at most the ten million cases of a study"
             )]
-            Self::Even { count, size } => count.div_ceil(u64::from(*size)) as usize,
+            Self::Even { count, sizes } => sizes.chunks(*count) as usize,
             Self::Listed(chunks) => chunks.len(),
         }
     }
@@ -73,9 +118,9 @@ impl Chunks {
     /// The numbers of the cases of a chunk, ascending.
     pub(super) fn numbers(&self, chunk: usize) -> Vec<u64> {
         match self {
-            Self::Even { count, size } => {
-                let first = chunk as u64 * u64::from(*size);
-                (first..(first + u64::from(*size)).min(*count)).collect()
+            Self::Even { count, sizes } => {
+                let (first, size) = sizes.span(chunk as u64);
+                (first..(first + size).min(*count)).collect()
             }
             Self::Listed(chunks) => {
                 chunks.get(chunk).into_iter().flatten().map(|number| u64::from(*number)).collect()
@@ -104,5 +149,27 @@ impl Study {
     fn structure(&self, case: &Case) -> Vec<Option<Value>> {
         let structural = |index: &usize| self.factors[*index].structural;
         (0..self.factors.len()).filter(structural).map(|index| self.told(case, index)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Sizes;
+
+    #[test]
+    fn growing_chunks_hold_every_case_once_and_are_few() {
+        for (cases, expected) in [(1, 1), (64, 1), (65, 2), (32_768, 512), (32_769, 513)] {
+            assert_eq!(Sizes::Growing.chunks(cases), expected, "{cases} cases");
+        }
+        let chunks = Sizes::Growing.chunks(1_000_000);
+        assert_eq!(chunks, 4 * 512 + 497);
+        assert!(Sizes::Growing.chunks(10_000_000) < 5000);
+        let mut next = 0;
+        for chunk in 0..chunks {
+            let (first, size) = Sizes::Growing.span(chunk);
+            assert_eq!(first, next);
+            next = first + size;
+        }
+        assert!(next >= 1_000_000);
     }
 }

@@ -61,33 +61,72 @@ pub(super) fn text_of(bytes: Vec<u8>, key: &str) -> Option<String> {
     pairs.iter().find(|pair| pair.key == key)?.value.clone()
 }
 
-fn write(table: &StudyTable, about: &[(&str, String)]) -> Result<Vec<u8>, ParquetError> {
-    let specs: Vec<&ColumnSpec> = table.specs().collect();
-    let described =
-        serde_json::to_string(&specs).map_err(|error| ParquetError::General(error.to_string()))?;
-    let mut metadata = vec![KeyValue::new(COLUMNS_KEY.to_owned(), described)];
-    metadata.extend(
-        about.iter().map(|(key, text)| KeyValue::new(format!("barrelstack.{key}"), text.clone())),
-    );
-    let properties = WriterProperties::builder()
-        .set_created_by(format!("barrelstack {}", env!("CARGO_PKG_VERSION")))
-        .set_key_value_metadata(Some(metadata))
-        .set_statistics_enabled(EnabledStatistics::Chunk)
-        .build();
-    let mut bytes = Vec::new();
-    let mut writer = SerializedFileWriter::new(&mut bytes, schema(table)?, Arc::new(properties))?;
-    let mut group = writer.next_row_group()?;
-    for column in table.columns() {
-        write_column(&mut group, &column.values)?;
+/// Rows of a group, which is what is held in memory while a table is written.
+const GROUP: usize = 1 << 15;
+
+/// Writes a table part by part: the same rows and texts give the same bytes, however they were parted.
+pub(super) struct Writer<W: std::io::Write + Send> {
+    file: SerializedFileWriter<W>,
+    /// Rows that make no whole group yet.
+    rows: StudyTable,
+}
+
+impl<W: std::io::Write + Send> Writer<W> {
+    pub(super) fn new(to: W, specs: &[ColumnSpec]) -> Result<Self, ParquetError> {
+        let described = serde_json::to_string(specs)
+            .map_err(|error| ParquetError::General(error.to_string()))?;
+        let metadata = vec![KeyValue::new(COLUMNS_KEY.to_owned(), described)];
+        let properties = WriterProperties::builder()
+            .set_created_by(format!("barrelstack {}", env!("CARGO_PKG_VERSION")))
+            .set_key_value_metadata(Some(metadata))
+            .set_statistics_enabled(EnabledStatistics::Chunk)
+            .build();
+        let file = SerializedFileWriter::new(to, schema(specs)?, Arc::new(properties))?;
+        Ok(Self { file, rows: StudyTable::empty(specs) })
     }
-    group.close()?;
-    writer.close()?;
+
+    pub(super) fn add(&mut self, rows: &StudyTable) -> Result<(), ParquetError> {
+        self.rows.append(rows.clone());
+        while self.rows.rows() >= GROUP {
+            let rest = self.rows.split_off(GROUP);
+            let whole = std::mem::replace(&mut self.rows, rest);
+            self.group(&whole)?;
+        }
+        Ok(())
+    }
+
+    fn group(&mut self, rows: &StudyTable) -> Result<(), ParquetError> {
+        let mut group = self.file.next_row_group()?;
+        for column in rows.columns() {
+            write_column(&mut group, &column.values)?;
+        }
+        group.close().map(drop)
+    }
+
+    /// Ends the file with what it comes from, as pairs of key and text.
+    pub(super) fn finish(mut self, about: &[(&str, String)]) -> Result<(), ParquetError> {
+        let rest = std::mem::replace(&mut self.rows, StudyTable::empty(&[]));
+        self.group(&rest)?;
+        for (key, text) in about {
+            let pair = KeyValue::new(format!("barrelstack.{key}"), text.clone());
+            self.file.append_key_value_metadata(pair);
+        }
+        self.file.close().map(drop)
+    }
+}
+
+fn write(table: &StudyTable, about: &[(&str, String)]) -> Result<Vec<u8>, ParquetError> {
+    let specs: Vec<ColumnSpec> = table.specs().cloned().collect();
+    let mut bytes = Vec::new();
+    let mut writer = Writer::new(&mut bytes, &specs)?;
+    writer.add(table)?;
+    writer.finish(about)?;
     Ok(bytes)
 }
 
-fn schema(table: &StudyTable) -> Result<TypePtr, ParquetError> {
-    let field = |(column, name): (&Column, String)| {
-        let (physical, logical) = match column.spec.kind {
+fn schema(specs: &[ColumnSpec]) -> Result<TypePtr, ParquetError> {
+    let field = |(spec, name): (&ColumnSpec, String)| {
+        let (physical, logical) = match spec.kind {
             ValueKind::Integer => (Physical::INT64, None),
             ValueKind::Number => (Physical::DOUBLE, None),
             ValueKind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
@@ -98,8 +137,8 @@ fn schema(table: &StudyTable) -> Result<TypePtr, ParquetError> {
             .build()
             .map(Arc::new)
     };
-    let names = plain_names(table.specs());
-    let fields = table.columns().iter().zip(names).map(field).collect::<Result<Vec<_>, _>>()?;
+    let names = plain_names(specs.iter());
+    let fields = specs.iter().zip(names).map(field).collect::<Result<Vec<_>, _>>()?;
     Ok(Arc::new(Type::group_type_builder("case").with_fields(fields).build()?))
 }
 

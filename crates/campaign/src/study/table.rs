@@ -138,13 +138,44 @@ impl StudyTable {
         if let Values::Text(values) = &self.column(name)?.values { Some(values) } else { None }
     }
 
+    /// How many rows stand before a case, in a table sorted by case.
+    pub(super) fn rows_before(&self, case: i64) -> usize {
+        let cases = self.integers("case").unwrap_or_default();
+        cases.partition_point(|number| number.is_some_and(|number| number < case))
+    }
+
+    /// Takes off the rows from a place on.
+    pub(super) fn split_off(&mut self, row: usize) -> Self {
+        let split = |column: &mut Column| Column {
+            spec: column.spec.clone(),
+            values: column.values.split_off(row),
+        };
+        Self { columns: self.columns.iter_mut().map(split).collect() }
+    }
+
+    /// Appends the rows of a table of the same columns.
+    pub(super) fn append(&mut self, rows: Self) {
+        for (column, more) in self.columns.iter_mut().zip(rows.columns) {
+            column.values.append(more.values);
+        }
+    }
+
     /// The table as CSV: a heading line with units, then one line a case; nothing where there is no value.
     ///
     /// Numbers have the fewest digits that read back to the same bits.
     pub fn to_csv(&self) -> String {
-        let mut text = String::new();
+        self.csv_heading() + &self.csv_rows()
+    }
+
+    /// The heading line of the table as CSV.
+    pub(super) fn csv_heading(&self) -> String {
         let headings: Vec<String> = self.specs().map(|spec| field(&spec.heading())).collect();
-        let _ = writeln!(text, "{}", headings.join(","));
+        headings.join(",") + "\n"
+    }
+
+    /// The table as CSV without its heading line.
+    pub(super) fn csv_rows(&self) -> String {
+        let mut text = String::new();
         for row in 0..self.rows() {
             for (index, column) in self.columns.iter().enumerate() {
                 if index > 0 {

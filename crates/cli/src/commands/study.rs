@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use barrelstack_campaign::study::{Collected, RunOptions, Study, StudyError};
+use barrelstack_campaign::study::{self, Collected, RunOptions, Study, StudyError};
 use clap::Subcommand;
 use serde_json::json;
 
@@ -147,11 +147,9 @@ pub(crate) fn study(args: &StudyArgs) -> anyhow::Result<ExitCode> {
         Some(Action::Export(args)) => export::export(args)?,
         Some(Action::Emit(args)) => emit::emit(args)?,
         Some(Action::Example { name, list }) => example(name.as_deref(), *list)?,
-        Some(Action::Fields) => printer::text(&barrelstack_campaign::study::reference())?,
+        Some(Action::Fields) => printer::text(&study::reference())?,
         Some(Action::Schema) => {
-            printer::lines([serde_json::to_string_pretty(
-                &barrelstack_campaign::study::json_schema(),
-            )?])?;
+            printer::lines([serde_json::to_string_pretty(&study::json_schema())?])?;
         }
     }
     Ok(ExitCode::SUCCESS)
@@ -175,8 +173,8 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let study = load(study)?;
     let live = live::Live::new(!args.quiet);
     let options = RunOptions { threads: args.threads };
-    let collected = match study.run(out, &options, &|progress| live.at(progress)) {
-        Ok(collected) => collected,
+    match study.run_all(out, &options, &|progress| live.at(progress)) {
+        Ok(()) => {}
         Err(StudyError::Stopped) => {
             drop(live);
             printer::note(&format!(
@@ -186,7 +184,7 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
             return Ok(ExitCode::from(130));
         }
         Err(error) => return Err(error.into()),
-    };
+    }
     let damaged = live.damaged();
     drop(live);
     if damaged > 0 {
@@ -196,11 +194,17 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
             out.join("shards").display()
         ));
     }
-    let page = report::write_page(out, &collected)?;
+    let (mut answer, mut gathered) = (answer::Answer::new(), report::Gathered::default());
+    let made = study::collect(out, &mut |made, rows| {
+        answer.add(rows);
+        gathered.add(made, rows);
+        Ok(())
+    })?;
+    let page = gathered.write_page(out, &made)?;
     if args.json {
-        printer::lines([answer::json(&collected)?])?;
+        printer::lines([answer::json(&answer, &made)?])?;
     } else {
-        printer::lines(answer::lines(&collected, out))?;
+        printer::lines(answer::lines(&answer, &made, out))?;
         printer::lines(page.map(|page| format!("page: {}", page.display())))?;
     }
     Ok(ExitCode::SUCCESS)
@@ -282,25 +286,26 @@ fn status(args: &FolderArgs) -> anyhow::Result<()> {
 }
 
 fn collect(args: &FolderArgs) -> anyhow::Result<()> {
-    let collected = Collected::read(&args.folder)?;
-    collected.write(&args.folder)?;
+    let mut answer = answer::Answer::new();
+    let made = study::collect(&args.folder, &mut |_, rows| {
+        answer.add(rows);
+        Ok(())
+    })?;
     if args.json {
-        return printer::lines([answer::json(&collected)?]);
+        return printer::lines([answer::json(&answer, &made)?]);
     }
-    printer::lines(answer::lines(&collected, &args.folder))
+    printer::lines(answer::lines(&answer, &made, &args.folder))
 }
 
 fn example(name: Option<&str>, list: bool) -> anyhow::Result<()> {
     if list {
-        return printer::lines(barrelstack_campaign::study::builtin_names());
+        return printer::lines(study::builtin_names());
     }
     let name = match name {
         Some(name) => name,
-        None => barrelstack_campaign::study::builtin_names()
-            .next()
-            .context("there is no built-in study")?,
+        None => study::builtin_names().next().context("there is no built-in study")?,
     };
-    if let Some(text) = barrelstack_campaign::study::builtin(name) {
+    if let Some(text) = study::builtin(name) {
         return printer::text(text);
     }
     // The error of the library names those there are.

@@ -1,8 +1,9 @@
 //! What a study says when it is done, or half done: in words and as JSON.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use barrelstack_campaign::study::{Collected, Endings, Status, StudyTable, Tally};
+use barrelstack_campaign::study::{Endings, Provenance, Status, StudyTable, Tally};
 use serde_json::{Value, json};
 
 /// A number of things, such as "1 case" and "2 cases".
@@ -17,46 +18,75 @@ fn percent((p, [low, high]): (f64, [f64; 2])) -> String {
     format!("{:.1} % ({:.1} to {:.1} %)", shown(p), shown(low), shown(high))
 }
 
-/// How many rows have each text of a column, the most frequent first.
-fn counts(table: &StudyTable, column: &str) -> Vec<(String, usize)> {
-    let mut counts: Vec<(String, usize)> = Vec::new();
-    for text in table.texts(column).unwrap_or_default().iter().flatten() {
-        match counts.iter_mut().find(|(known, _)| known == text) {
-            Some((_, count)) => *count += 1,
-            None => counts.push((text.clone(), 1)),
+/// What a study says of its cases, added up part by part.
+#[derive(Default)]
+pub(super) struct Answer {
+    tally: Tally,
+    endings: Endings,
+    modes: BTreeMap<String, usize>,
+    errors: BTreeMap<String, usize>,
+    /// Levels that cases share, with how their cases ended; none where there are too many.
+    levels: Option<Vec<(f64, Tally)>>,
+    unit: String,
+}
+
+/// Most levels that are told one by one, and most reasons that are told apart.
+const MOST: usize = 30;
+
+impl Answer {
+    pub(super) fn new() -> Self {
+        Self { levels: Some(Vec::new()), ..Self::default() }
+    }
+
+    /// Adds the rows of a table.
+    pub(super) fn add(&mut self, table: &StudyTable) {
+        self.tally = self.tally.plus(Tally::of(table));
+        self.endings.add(table);
+        for (column, counts) in [("mode", &mut self.modes), ("error", &mut self.errors)] {
+            for text in table.texts(column).unwrap_or_default().iter().flatten() {
+                let known = counts.contains_key(text) || counts.len() < MOST;
+                let text = if known { text.as_str() } else { "others" };
+                *counts.entry(text.to_owned()).or_default() += 1;
+            }
+        }
+        let (Some(values), Some(outcomes)) = (table.numbers("level"), table.texts("outcome"))
+        else {
+            return;
+        };
+        self.unit = table.column("level").map_or_else(String::new, |of| of.spec.unit.clone());
+        for (level, outcome) in values.iter().zip(outcomes) {
+            let (Some(level), Some(outcome)) = (level, outcome) else { continue };
+            let Some(levels) = &mut self.levels else { return };
+            let at = levels.iter().position(|(known, _)| known == level).unwrap_or_else(|| {
+                levels.push((*level, Tally::default()));
+                levels.len() - 1
+            });
+            levels[at].1.add(outcome);
+            if levels.len() > MOST {
+                self.levels = None;
+            }
         }
     }
-    counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+
+    /// Levels that several cases share, ascending; none where levels are drawn.
+    fn levels(&self) -> Vec<(f64, Tally)> {
+        let mut levels = self.levels.clone().unwrap_or_default();
+        levels.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let shared = levels.len() > 1 && 2 * levels.len() as u64 <= self.tally.cases;
+        if shared { levels } else { Vec::new() }
+    }
+}
+
+/// Counts, the largest first.
+fn sorted(counts: &BTreeMap<String, usize>) -> Vec<(&str, usize)> {
+    let mut counts: Vec<(&str, usize)> = counts.iter().map(|(k, n)| (k.as_str(), *n)).collect();
+    counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(b.0)));
     counts
 }
 
-/// Levels that several cases share, ascending, with how their cases ended; none where levels are drawn.
-fn levels(table: &StudyTable) -> Vec<(f64, Tally)> {
-    const MOST: usize = 30;
-    let mut levels: Vec<(f64, Tally)> = Vec::new();
-    let (Some(values), Some(outcomes)) = (table.numbers("level"), table.texts("outcome")) else {
-        return levels;
-    };
-    for (level, outcome) in values.iter().zip(outcomes) {
-        let (Some(level), Some(outcome)) = (level, outcome) else { continue };
-        let at = levels.iter().position(|(known, _)| known == level).unwrap_or_else(|| {
-            levels.push((*level, Tally::default()));
-            levels.len() - 1
-        });
-        if at >= MOST {
-            return Vec::new();
-        }
-        levels[at].1.add(outcome);
-    }
-    levels.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let shared = levels.len() > 1 && 2 * levels.len() <= table.rows();
-    if shared { levels } else { Vec::new() }
-}
-
 /// The summary for people.
-pub(super) fn lines(collected: &Collected, folder: &Path) -> Vec<String> {
-    let Collected { table, provenance } = collected;
-    let tally = Tally::of(table);
+pub(super) fn lines(answer: &Answer, provenance: &Provenance, folder: &Path) -> Vec<String> {
+    let tally = answer.tally;
     let hunted = provenance.design == "ida";
     let mut lines = vec![provenance.title.clone()];
     let state = if provenance.complete {
@@ -73,34 +103,30 @@ pub(super) fn lines(collected: &Collected, folder: &Path) -> Vec<String> {
         let share = if hunted { String::new() } else { format!(": {}", percent(collapse)) };
         lines.push(format!("  {} of {} collapse{share}", tally.collapsed, tally.judged));
     }
-    lines.extend(Endings::of(table).sentences().into_iter().map(|said| format!("  {said}")));
+    lines.extend(answer.endings.sentences().into_iter().map(|said| format!("  {said}")));
     let modes: Vec<String> =
-        counts(table, "mode").into_iter().map(|(mode, count)| format!("{mode} {count}")).collect();
+        sorted(&answer.modes).into_iter().map(|(mode, count)| format!("{mode} {count}")).collect();
     if !modes.is_empty() {
         lines.push(format!("  modes: {}", modes.join(", ")));
     }
     let other = tally.cases - tally.judged;
     if other > 0 {
-        lines.push(format!(
-            "  {} without a verdict; the column `error` says why, most often:",
-            counted(other, "case")
-        ));
-        lines.extend(
-            counts(table, "error")
-                .into_iter()
-                .take(3)
-                .map(|(why, count)| format!("    {count} × {why}")),
-        );
+        let why = if answer.errors.is_empty() {
+            ""
+        } else {
+            "; the column `error` says why, most often:"
+        };
+        lines.push(format!("  {} without a verdict{why}", counted(other, "case")));
+        let most = sorted(&answer.errors).into_iter().take(3);
+        lines.extend(most.map(|(why, count)| format!("    {count} × {why}")));
     }
-    let levels = levels(table);
-    if let Some(spec) =
-        table.column("level").map(|column| &column.spec).filter(|_| !levels.is_empty())
-    {
+    let levels = answer.levels();
+    if !levels.is_empty() {
         let measure = provenance.measure.as_deref().unwrap_or("level");
         lines.push(String::new());
         lines.push(format!(
             "  {:>14}  collapse (95 % interval)",
-            format!("{measure} ({})", spec.unit)
+            format!("{measure} ({})", answer.unit)
         ));
         lines.extend(levels.iter().filter_map(|(level, tally)| {
             let collapse = tally.collapse()?;
@@ -155,15 +181,16 @@ pub(super) fn tally(tally: &Tally) -> Value {
 }
 
 /// The summary as JSON.
-pub(super) fn json(collected: &Collected) -> anyhow::Result<String> {
-    let levels: Vec<Value> = levels(&collected.table)
+pub(super) fn json(answer: &Answer, provenance: &Provenance) -> anyhow::Result<String> {
+    let levels: Vec<Value> = answer
+        .levels()
         .iter()
         .map(|(level, found)| json!({ "level": level, "tally": tally(found) }))
         .collect();
     let document = json!({
-        "provenance": collected.provenance,
-        "tally": tally(&Tally::of(&collected.table)),
-        "notes": Endings::of(&collected.table).sentences(),
+        "provenance": provenance,
+        "tally": tally(&answer.tally),
+        "notes": answer.endings.sentences(),
         "levels": levels,
     });
     Ok(serde_json::to_string_pretty(&document)?)

@@ -1,7 +1,10 @@
-//! Job files with which Slurm, GNU parallel or `HyperQueue` run the chunks of a study.
+//! Job files with which schedulers run the chunks of a study.
 
-use std::path::PathBuf;
+use std::fmt::Write as _;
+use std::num::NonZero;
+use std::path::{Path, PathBuf};
 
+use anyhow::Context as _;
 use clap::ValueEnum;
 
 use crate::printer;
@@ -17,17 +20,30 @@ pub(super) struct EmitArgs {
     /// Folder of the results, which every worker must see.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// Longest time of a chunk as Slurm takes it, such as 02:00:00; that of the partition without.
+    #[arg(long, value_name = "TIME")]
+    walltime: Option<String>,
+    /// Most chunks that run at a time; as many as the engine has room for without.
+    #[arg(long, value_name = "NUMBER")]
+    throttle: Option<NonZero<usize>>,
+    /// Most tasks of an array job, `MaxArraySize` of Slurm's configuration.
+    #[arg(long, value_name = "NUMBER", default_value = "1001")]
+    array_limit: NonZero<usize>,
 }
 
 /// What runs the chunks.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Engine {
-    /// An array job, to be handed to sbatch.
+    /// A shell script that submits array jobs and, behind them, one that collects the table.
     Slurm,
-    /// A shell script that runs as many chunks at a time as there are cores.
+    /// A shell script that runs as many chunks at a time as there are cores, by GNU parallel.
     Parallel,
     /// A shell script that submits a task array.
     Hyperqueue,
+    /// A Python script that runs chunks as tasks of a Dask cluster.
+    Dask,
+    /// A Python script that runs chunks in one job of many nodes, by `PyLauncher`.
+    Pylauncher,
 }
 
 /// A word of a shell command, quoted.
@@ -35,37 +51,180 @@ fn quoted(word: &str) -> String {
     format!("'{}'", word.replace('\'', "'\\''"))
 }
 
+/// A path from the root, since jobs start in folders of their own.
+fn absolute(path: &Path) -> anyhow::Result<String> {
+    let whole = std::path::absolute(path)
+        .with_context(|| format!("cannot tell where {} is", path.display()))?;
+    Ok(whole.display().to_string())
+}
+
+/// What a job file is made of.
+struct Job {
+    program: String,
+    study: String,
+    out: String,
+    chunks: usize,
+}
+
+impl Job {
+    /// The shell command of a chunk, whose number is given as shell words.
+    fn chunk(&self, number: &str) -> String {
+        let [program, study, out] = [&self.program, &self.study, &self.out].map(|w| quoted(w));
+        format!("{program} study run-chunk {study} --chunk {number} --out {out}")
+    }
+
+    fn collect(&self) -> String {
+        format!("{} study collect {}", quoted(&self.program), quoted(&self.out))
+    }
+}
+
 /// Prints the job file.
 pub(super) fn emit(args: &EmitArgs) -> anyhow::Result<()> {
-    let study = super::load(&args.which.study)?;
-    let chunks = study.chunk_count();
-    let last = chunks - 1;
-    let (file, out) = (quoted(&args.which.study), quoted(&args.out.display().to_string()));
-    let command =
-        |chunk: &str| format!("barrelstack study run-chunk {file} --chunk {chunk} --out {out}");
-    let collect = format!("barrelstack study collect {out}");
-    let mut lines = vec!["#!/bin/sh".to_owned()];
-    match args.engine {
-        Engine::Slurm => lines.extend([
-            format!("#SBATCH --array=0-{last}"),
-            "#SBATCH --cpus-per-task=1".to_owned(),
-            format!("# {chunks} chunks; when all are done: {collect}"),
-            "set -eu".to_owned(),
-            command("\"$SLURM_ARRAY_TASK_ID\""),
-        ]),
-        Engine::Parallel => lines.extend([
-            "set -eu".to_owned(),
-            format!("seq 0 {last} | parallel {}", quoted(&command("{}"))),
-            collect,
-        ]),
-        Engine::Hyperqueue => lines.extend([
-            "set -eu".to_owned(),
-            format!(
-                "hq submit --wait --array 0-{last} --cpus 1 -- sh -c {}",
-                quoted(&command("\"$HQ_TASK_ID\""))
-            ),
-            collect,
-        ]),
+    let name = &args.which.study;
+    let chunks = super::load(name)?.chunk_count();
+    let file = Path::new(name);
+    let program = std::env::current_exe().context("cannot tell where this program is")?;
+    let job = Job {
+        program: program.display().to_string(),
+        study: if file.is_file() { absolute(file)? } else { name.clone() },
+        out: absolute(&args.out)?,
+        chunks,
+    };
+    printer::text(&match args.engine {
+        Engine::Slurm => slurm(&job, args),
+        Engine::Parallel => parallel(&job, args.throttle),
+        Engine::Hyperqueue => hyperqueue(&job),
+        Engine::Dask => dask(&job),
+        Engine::Pylauncher => pylauncher(&job),
+    })
+}
+
+/// Stands where the number of a chunk comes.
+const PLACE: &str = "\u{0}";
+
+/// A text that the shell leaves as it is inside a here-document.
+fn in_document(text: &str) -> String {
+    text.replace('\\', "\\\\").replace('$', "\\$").replace('`', "\\`")
+}
+
+fn slurm(job: &Job, args: &EmitArgs) -> String {
+    let limit = args.array_limit.get();
+    let time =
+        args.walltime.as_ref().map_or_else(String::new, |t| format!(" --time={}", quoted(t)));
+    let most = args.throttle.map_or_else(String::new, |most| format!("%{most}"));
+    let mut text = format!(
+        "#!/bin/sh\n\
+         # Submits {} chunks, one task each in arrays of at most {limit}, and behind them a job that collects the\n\
+         # table: sh THIS-FILE. Options for sbatch such as --partition may stand behind the name of the file.\n\
+         set -eu\njobs=\n\
+         submit() {{ # number of the first chunk, last task, options\n\
+         \x20   first=$1 last=$2; shift 2\n\
+         \x20   job=$(sbatch --parsable --requeue --cpus-per-task=1{time} --array=\"0-$last{most}\" \"$@\" <<END\n\
+         #!/bin/sh\n\
+         exec {}\n\
+         END\n\
+         )\n\
+         \x20   jobs=\"$jobs:${{job%%;*}}\"\n}}\n",
+        job.chunks,
+        in_document(&job.chunk(PLACE)).replace(PLACE, "\\$(($first + SLURM_ARRAY_TASK_ID))")
+    );
+    for first in (0..job.chunks).step_by(limit) {
+        let last = limit.min(job.chunks - first) - 1;
+        let _ = writeln!(text, "submit {first} {last} \"$@\"");
     }
-    printer::lines(lines)
+    // After any end: a table of what is there says what is missing.
+    let _ = writeln!(
+        text,
+        "sbatch --parsable --cpus-per-task=1 --dependency=\"afterany$jobs\" \"$@\" <<'END'\n\
+         #!/bin/sh\n\
+         exec {}\n\
+         END",
+        job.collect()
+    );
+    text
+}
+
+fn parallel(job: &Job, throttle: Option<NonZero<usize>>) -> String {
+    let most = throttle.map_or_else(String::new, |most| format!("--jobs {most} "));
+    format!(
+        "#!/bin/sh\nset -eu\nseq 0 {} | parallel {most}{}\n{}\n",
+        job.chunks - 1,
+        quoted(&job.chunk("{}")),
+        job.collect()
+    )
+}
+
+fn hyperqueue(job: &Job) -> String {
+    format!(
+        "#!/bin/sh\nset -eu\nhq submit --wait --array 0-{} --cpus 1 -- sh -c {}\n{}\n",
+        job.chunks - 1,
+        quoted(&job.chunk("\"$HQ_TASK_ID\"")),
+        job.collect()
+    )
+}
+
+/// A text as a literal of Python, which JSON's are.
+fn literal(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
+}
+
+/// The lines with which both Python scripts begin.
+fn constants(job: &Job) -> String {
+    let [program, study, out] = [&job.program, &job.study, &job.out].map(|text| literal(text));
+    format!("PROGRAM = {program}\nSTUDY = {study}\nOUT = {out}\nCHUNKS = {}\n", job.chunks)
+}
+
+fn dask(job: &Job) -> String {
+    format!(
+        r#"#!/usr/bin/env python3
+"""Runs the chunks of a study as tasks of a Dask cluster: python THIS-FILE [ADDRESS OF THE SCHEDULER].
+
+Without an address the cores of this machine are the cluster. For others, change the line of the client: SLURMCluster,
+PBSCluster and so on of dask-jobqueue start workers in jobs. All workers must see the folders below.
+"""
+import subprocess
+import sys
+
+from dask.distributed import Client, progress
+
+{}
+
+def run(chunk):
+    command = [PROGRAM, "study", "run-chunk", STUDY, "--chunk", str(chunk), "--out", OUT]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise RuntimeError(done.stderr.strip())
+
+
+if __name__ == "__main__":
+    client = Client(*sys.argv[1:2])
+    # A chunk whose worker died is given to another; one that failed is tried again.
+    tasks = client.map(run, range(CHUNKS), retries=3, pure=False)
+    progress(tasks, notebook=False)
+    client.gather(tasks)
+    subprocess.run([PROGRAM, "study", "collect", OUT], check=True)
+"#,
+        constants(job)
+    )
+}
+
+fn pylauncher(job: &Job) -> String {
+    format!(
+        r#"#!/usr/bin/env python3
+"""Runs the chunks of a study in one job of many cores by PyLauncher: python THIS-FILE, inside the job."""
+import shlex
+import subprocess
+
+import pylauncher
+
+{}
+if __name__ == "__main__":
+    words = [PROGRAM, "study", "run-chunk", STUDY, "--out", OUT, "--chunk"]
+    with open("barrelstack.commands", "w") as file:
+        file.writelines(f"{{shlex.join(words)}} {{chunk}}\n" for chunk in range(CHUNKS))
+    pylauncher.ClassicLauncher("barrelstack.commands", cores=1)
+    subprocess.run([PROGRAM, "study", "collect", OUT], check=True)
+"#,
+        constants(job)
+    )
 }

@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::Context as _;
-use barrelstack_campaign::decision::{Request, decide, export as exported};
-use barrelstack_campaign::study::Collected;
+use barrelstack_campaign::decision::{Request, export as exported};
 
 use crate::printer;
 
@@ -24,9 +23,8 @@ pub(super) struct ExportArgs {
 
 /// Writes the files, and says what is not in them.
 pub(super) fn export(args: &ExportArgs) -> anyhow::Result<()> {
-    let collected = Collected::read(&args.folder)?;
-    let decision = decide(&collected, &Request::default())?;
-    let found = exported(&decision, &collected.provenance, &args.asset)?;
+    let (decision, made) = super::report::decision(&args.folder, &Request::default())?;
+    let found = exported(&decision, &made, &args.asset)?;
     std::fs::create_dir_all(&args.out)
         .with_context(|| format!("cannot make {}", args.out.display()))?;
     for (name, text) in &found.files {

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
-use barrelstack_campaign::decision::{Decision, Request, SiteHazard, decide};
-use barrelstack_campaign::study::Collected;
+use barrelstack_campaign::decision::{Decision, DecisionError, Gathering, Request, SiteHazard};
+use barrelstack_campaign::study::{Provenance, StudyTable, read_parts};
 
 use crate::commands::heights::page;
 use crate::printer;
@@ -42,9 +42,8 @@ pub(super) struct ReportArgs {
 /// Reads the folder, writes the page, prints what it says.
 pub(super) fn report(args: &ReportArgs) -> anyhow::Result<()> {
     let hazard = args.hazard.as_deref().map(SiteHazard::load).transpose()?;
-    let collected = Collected::read(&args.folder)?;
     let request = Request { hazard, years: Some(f64::from(args.years)) };
-    let decision = decide(&collected, &request)?;
+    let (decision, _) = decision(&args.folder, &request)?;
     let out = args.out.as_deref().unwrap_or(&args.folder);
     write(out, &decision)?;
     if args.json {
@@ -59,18 +58,48 @@ pub(super) fn report(args: &ReportArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Writes the page of a study that was run.
-///
-/// A study without a single verdict has none, which is no reason to fail: its table says why.
-pub(super) fn write_page(out: &Path, collected: &Collected) -> anyhow::Result<Option<PathBuf>> {
-    match decide(collected, &Request::default()) {
-        Ok(decision) => {
-            write(out, &decision)?;
-            Ok(Some(out.join("index.html")))
-        }
-        Err(error) => {
-            printer::warning(&format!("no page: {error}"));
-            Ok(None)
+/// What a folder says, read part by part, and what it comes from.
+pub(super) fn decision(folder: &Path, request: &Request) -> anyhow::Result<(Decision, Provenance)> {
+    let mut gathered = Gathered::default();
+    let made = read_parts(folder, &mut |made, rows| {
+        gathered.add(made, rows);
+        Ok(())
+    })?;
+    Ok((gathered.decide(&made, request)?, made))
+}
+
+/// What decisions rest on, as far as rows were read.
+#[derive(Default)]
+pub(super) struct Gathered(Option<Result<Gathering, DecisionError>>);
+
+impl Gathered {
+    /// Reads the rows that follow.
+    pub(super) fn add(&mut self, made: &Provenance, rows: &StudyTable) {
+        let gathering = self.0.take().unwrap_or_else(|| Gathering::new(made, rows));
+        self.0 = Some(gathering.and_then(|mut all| all.add(rows).map(|()| all)));
+    }
+
+    fn decide(self, made: &Provenance, request: &Request) -> Result<Decision, DecisionError> {
+        self.0.unwrap_or(Err(DecisionError::NoCases { rows: 0 }))?.decide(made, request)
+    }
+
+    /// Writes the page of a study that was run.
+    ///
+    /// A study without a single verdict has none, which is no reason to fail: its table says why.
+    pub(super) fn write_page(
+        self,
+        out: &Path,
+        made: &Provenance,
+    ) -> anyhow::Result<Option<PathBuf>> {
+        match self.decide(made, &Request::default()) {
+            Ok(decision) => {
+                write(out, &decision)?;
+                Ok(Some(out.join("index.html")))
+            }
+            Err(error) => {
+                printer::warning(&format!("no page: {error}"));
+                Ok(None)
+            }
         }
     }
 }

@@ -1,0 +1,183 @@
+//! From the shards of a folder to its rows, part by part: memory does not grow with the number of cases.
+
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::fs;
+use std::io::{BufWriter, Write as _};
+use std::path::{Path, PathBuf};
+
+use super::error::StudyError;
+use super::folder::{Part, Provenance, manifest_of, read_shard, shards, write_whole};
+use super::shard;
+use super::stop::Tally;
+use super::table::StudyTable;
+
+/// The rows of a study, with what they come from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Collected {
+    /// One row a case.
+    pub table: StudyTable,
+    /// What the rows come from.
+    pub provenance: Provenance,
+}
+
+/// How far a study is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Status {
+    /// What the folder belongs to.
+    pub provenance: Provenance,
+    /// How the cases that are done ended.
+    pub tally: Tally,
+    /// Chunks that are still to be run, ascending.
+    pub missing: Vec<usize>,
+}
+
+/// The shards that count, in the order of their first cases.
+///
+/// Of a Monte Carlo design the chunks count that are done without a gap, up to the one with which there are enough
+/// cases: which of the later ones were run by chance changes nothing.
+struct Parts {
+    provenance: Provenance,
+    paths: BTreeMap<usize, PathBuf>,
+    next: usize,
+    tally: Tally,
+}
+
+impl Parts {
+    fn open(folder: &Path) -> Result<Self, StudyError> {
+        let provenance = manifest_of(folder)?;
+        Ok(Self { provenance, paths: shards(folder)?, next: 0, tally: Tally::default() })
+    }
+
+    fn read(&mut self) -> Result<Option<StudyTable>, StudyError> {
+        let ordered = self.provenance.design == "monte-carlo";
+        while self.next < self.provenance.chunks && !self.provenance.complete {
+            let path = self.paths.get(&self.next);
+            self.next += 1;
+            let Some(path) = path else {
+                if ordered {
+                    return Ok(None);
+                }
+                continue;
+            };
+            let part = read_shard(path, &self.provenance.columns)?;
+            self.tally = self.tally.plus(Tally::of(&part));
+            let made = &mut self.provenance;
+            made.cases += part.rows();
+            made.chunks_done += 1;
+            made.complete = made.chunks_done == made.chunks
+                || made.stop.is_some_and(|rule| rule.met(self.tally));
+            return Ok(Some(part));
+        }
+        Ok(None)
+    }
+}
+
+/// Reads what is done of a study, finished or not: `visit` is given all rows in the order of the cases, in tables
+/// of some chunks each, with what the folder belongs to.
+///
+/// # Errors
+/// When the folder is that of no study, or a shard is damaged.
+pub fn read_parts(
+    folder: &Path,
+    visit: &mut dyn FnMut(&Provenance, &StudyTable) -> Result<(), StudyError>,
+) -> Result<Provenance, StudyError> {
+    let mut parts = Parts::open(folder)?;
+    let specs = parts.provenance.columns.clone();
+    let first =
+        |part: &StudyTable| part.integers("case").and_then(|cases| cases.first().copied())?;
+    // Rows that a chunk further on may have cases between.
+    let mut open = StudyTable::empty(&specs);
+    while let Some(part) = parts.read()? {
+        // Chunks are opened in the order of the cases, so nothing that follows is before the first of this one.
+        if let Some(first) = first(&part) {
+            let later = open.split_off(open.rows_before(first));
+            let ready = std::mem::replace(&mut open, later);
+            if ready.rows() > 0 {
+                visit(&parts.provenance, &ready)?;
+            }
+        }
+        open = if open.rows() == 0 { part } else { StudyTable::join(&specs, &[open, part])? };
+    }
+    if open.rows() > 0 {
+        visit(&parts.provenance, &open)?;
+    }
+    Ok(parts.provenance)
+}
+
+/// Writes the rows of a study into its folder: `table.csv`, `table.parquet`, `columns.csv` and `provenance.json`;
+/// `visit` is given them on the way, as by [`read_parts`].
+///
+/// # Errors
+/// As [`read_parts`], and when a file cannot be written.
+pub fn collect(
+    folder: &Path,
+    visit: &mut dyn FnMut(&Provenance, &StudyTable) -> Result<(), StudyError>,
+) -> Result<Provenance, StudyError> {
+    let specs = manifest_of(folder)?.columns;
+    let empty = StudyTable::empty(&specs);
+    let path = folder.join("table.csv");
+    let failed = |error: &std::io::Error| StudyError::system("write", &path, error);
+    let part = Part::create(&path).map_err(|error| failed(&error))?;
+    let mut csv = BufWriter::new(&part.file);
+    csv.write_all(empty.csv_heading().as_bytes()).map_err(|error| failed(&error))?;
+    let columns = folder.join("table.parquet");
+    let encode = |error: &dyn Display| StudyError::System {
+        doing: "write",
+        path: columns.clone(),
+        reason: error.to_string(),
+    };
+    let stored = Part::create(&columns).map_err(|error| encode(&error))?;
+    let mut parquet =
+        shard::Writer::new(BufWriter::new(&stored.file), &specs).map_err(|error| encode(&error))?;
+    let made = read_parts(folder, &mut |made, rows| {
+        csv.write_all(rows.csv_rows().as_bytes()).map_err(|error| failed(&error))?;
+        parquet.add(rows).map_err(|error| encode(&error))?;
+        visit(made, rows)
+    })?;
+    csv.flush().map_err(|error| failed(&error))?;
+    drop(csv);
+    let provenance = serde_json::to_string_pretty(&made)
+        .map_err(|error| StudyError::Table(error.to_string()))?;
+    // The table travels alone: what it comes from goes with it.
+    let study = fs::read_to_string(folder.join("study.toml")).unwrap_or_default();
+    let about = [("study", study), ("provenance", provenance.clone())];
+    parquet.finish(&about).map_err(|error| encode(&error))?;
+    part.name().map_err(|error| failed(&error))?;
+    stored.name().map_err(|error| encode(&error))?;
+    write_whole(&folder.join("columns.csv"), empty.dictionary().as_bytes())?;
+    write_whole(&folder.join("provenance.json"), format!("{provenance}\n").as_bytes())?;
+    Ok(made)
+}
+
+impl Collected {
+    /// Reads what is done of a study, finished or not, all at once.
+    ///
+    /// # Errors
+    /// As [`read_parts`].
+    pub fn read(folder: &Path) -> Result<Self, StudyError> {
+        let mut parts = Vec::new();
+        let provenance = read_parts(folder, &mut |_, rows| {
+            parts.push(rows.clone());
+            Ok(())
+        })?;
+        let table = StudyTable::join(&provenance.columns, &parts)?;
+        Ok(Self { table, provenance })
+    }
+
+    /// How far the study is.
+    ///
+    /// # Errors
+    /// As [`read_parts`].
+    pub fn status(folder: &Path) -> Result<Status, StudyError> {
+        let mut parts = Parts::open(folder)?;
+        while parts.read()?.is_some() {}
+        let Parts { provenance, paths, tally, .. } = parts;
+        let missing = if provenance.complete {
+            Vec::new()
+        } else {
+            (0..provenance.chunks).filter(|chunk| !paths.contains_key(chunk)).collect()
+        };
+        Ok(Status { provenance, tally, missing })
+    }
+}
