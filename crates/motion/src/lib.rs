@@ -67,6 +67,7 @@ mod horizontals;
 mod instrument;
 mod intensity;
 mod join;
+mod layers;
 mod matched;
 mod matching;
 mod math;
