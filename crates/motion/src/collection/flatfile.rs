@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::error::MotionError;
+use crate::format::shorten;
 
 /// What a flatfile says of one record.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -56,7 +57,8 @@ impl Flatfile {
         let column = |names: &[&str]| names.iter().find_map(|n| head.iter().position(|h| h == n));
         let Some(number) = column(NUMBER) else {
             let expected = "a column \"Record Sequence Number\" or \"RSN\"";
-            return Err(MotionError::parameter(file, expected, head.join(", ")));
+            let found = format!("{} others ({})", head.len(), shorten(&head.join(", ")));
+            return Err(MotionError::parameter(file, expected, found));
         };
         let texts = [column(EVENT), column(STATION)];
         let numbers = [MAGNITUDE, RUPTURE, SURFACE, VS30, STRIKE].map(column);
@@ -65,8 +67,8 @@ impl Flatfile {
             let cell = |at: Option<usize>| at.and_then(|at| cells.get(at)).map_or("", |c| c.trim());
             let refuse = |at: Option<usize>, expected: &str| {
                 let name = at.and_then(|at| head.get(at)).map_or("", String::as_str);
-                let what = format!("{file}, line {line}, column \"{name}\"");
-                MotionError::parameter(what, expected, format!("\"{}\"", cell(at)))
+                let what = format!("{file}, line {line}, column \"{}\"", shorten(name));
+                MotionError::parameter(what, expected, format!("\"{}\"", shorten(cell(at))))
             };
             let value = |at: Option<usize>| -> Result<Option<f64>, MotionError> {
                 match cell(at) {

@@ -36,7 +36,8 @@ use crate::instrument::Instrument;
 use crate::math::STANDARD_GRAVITY;
 use crate::record::{Quantity, Record};
 use crate::units::AccelerationUnit;
-use source::{LARGEST_ACCELERATION, Place, Source, parse_number, shorten};
+pub(crate) use source::shorten;
+use source::{LARGEST_ACCELERATION, Place, Source, parse_number};
 
 /// What the caller knows and a file may not say.
 ///

@@ -61,6 +61,9 @@ impl<'a> Source<'a> {
             text = rest;
         }
         let separator = if text.contains(&b'\n') { b'\n' } else { b'\r' };
+        while let [rest @ .., b'\n' | b'\r'] = text {
+            text = rest;
+        }
         // Counted first: growing by doubling would hold three times what a file of short lines needs.
         let count = text.split(|&byte| byte == separator).count();
         let mut lines: Vec<&[u8]> = Vec::with_capacity(count);
