@@ -3,7 +3,7 @@
 
 use super::ReadOptions;
 use super::even::{Timed, even_steps};
-use super::source::{Columns, LARGEST_ACCELERATION, Source, latin1};
+use super::source::{Columns, LARGEST_ACCELERATION, Source, latin1, quoted};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::math::{self, STANDARD_GRAVITY};
@@ -44,11 +44,10 @@ fn read_block(
     first: usize,
 ) -> Result<usize, ReadError> {
     if !source.has(first, "UNCORRECTED ACCELEROGRAM") {
-        return Err(source.error(
+        return Err(source.damaged(
             first,
-            Refusal::Damaged,
             "\"UNCORRECTED ACCELEROGRAM DATA\" at the start of a channel",
-            format!("\"{}\"", super::source::shorten(&source.text(first))),
+            quoted(&source.text(first)),
             "lines are missing or in excess before this one; get the file again from its source",
         ));
     }
@@ -104,11 +103,10 @@ fn read_block(
             if source.has(next, "UNCORRECTED ACCELEROGRAM") {
                 return Ok(next);
             }
-            return Err(source.error(
+            return Err(source.damaged(
                 next,
-                Refusal::Damaged,
                 "the end of the channel, \"/&\"",
-                format!("\"{}\"", super::source::shorten(&source.text(next))),
+                quoted(&source.text(next)),
                 "the header states another number of points than the file holds; get the file \
                  again from its source",
             ));
@@ -157,13 +155,7 @@ pub(crate) fn format_in(source: &Source<'_>, line: usize) -> Option<Columns> {
 }
 
 fn missing(source: &Source<'_>, line: usize, what: &str) -> ReadError {
-    source.error(
-        line,
-        Refusal::Damaged,
-        what,
-        format!("\"{}\"", super::source::shorten(&source.text(line))),
-        "restore the header from the original file",
-    )
+    source.header(line, what, quoted(&source.text(line)))
 }
 
 /// The name in columns 1 to 40; behind it stand network and kind of data.
@@ -231,7 +223,7 @@ fn unit(
             line,
             Refusal::Missing,
             "a unit of acceleration",
-            format!("\"{}\"", super::source::shorten(&source.text(line))),
+            quoted(&source.text(line)),
             "state the unit (g, g/10, cm/s2)",
         )
     })

@@ -35,7 +35,7 @@ pub(super) fn is_numpy(source: &Source<'_>) -> bool {
 
 fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let damaged = |expected: &str, found: String| {
-        source.error((), Refusal::Damaged, expected, found, "write the archive again")
+        source.damaged((), expected, found, "write the archive again")
     };
     let mut arrays = BTreeMap::new();
     let entries = zip::entries(source.bytes).map_err(|found| damaged("a NumPy archive", found))?;

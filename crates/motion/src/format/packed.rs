@@ -41,9 +41,8 @@ pub(super) fn unpack(source: &Source<'_>) -> Result<Option<(Vec<u8>, String)>, R
 }
 
 fn damaged(source: &Source<'_>, found: &str) -> ReadError {
-    source.error(
+    source.damaged(
         (),
-        Refusal::Damaged,
         "a file that can be unpacked",
         found,
         "unpack it by itself, or get it again from its source",
@@ -55,9 +54,8 @@ fn all(source: &Source<'_>, inside: impl Read) -> Result<Vec<u8>, ReadError> {
     let read = inside.take(LARGEST + 1).read_to_end(&mut bytes);
     read.map_err(|error| damaged(source, &error.to_string()))?;
     if bytes.len() as u64 > LARGEST {
-        return Err(source.error(
+        return Err(source.damaged(
             (),
-            Refusal::Damaged,
             format!("at most {} MB when unpacked", LARGEST >> 20),
             "more",
             "unpack it by itself and give that file",

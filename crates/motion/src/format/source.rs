@@ -120,6 +120,27 @@ impl<'a> Source<'a> {
             .map(|(value, text)| Printed { value, resolution: resolution(&text) })
     }
 
+    /// The error that the file is damaged.
+    pub(crate) fn damaged(
+        &self,
+        place: impl Into<Place>,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> ReadError {
+        self.error(place, Refusal::Damaged, expected, found, remedy)
+    }
+
+    /// The error that the header is damaged.
+    pub(crate) fn header(
+        &self,
+        place: impl Into<Place>,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+    ) -> ReadError {
+        self.damaged(place, expected, found, "restore the header from the original file")
+    }
+
     pub(crate) fn error(
         &self,
         place: impl Into<Place>,
@@ -152,13 +173,13 @@ impl<'a> Source<'a> {
             ("blanks".to_owned(), "the file is damaged; get it again from its source")
         } else if text.contains('*') {
             (
-                format!("\"{}\"", shorten(&text)),
+                quoted(&text),
                 "the value overflowed its column when the file was written; get the file again \
                  in a wider format",
             )
         } else {
             (
-                format!("\"{}\"", shorten(&text)),
+                quoted(&text),
                 "the file is damaged or has another layout; get it again from its source",
             )
         };
@@ -300,7 +321,7 @@ impl<'a> Source<'a> {
                 (line, end),
                 Refusal::Damaged,
                 format!("the end of {wanted} numbers"),
-                format!("\"{}\"", shorten(&latin1(raw[end..].trim_ascii()))),
+                quoted(&latin1(raw[end..].trim_ascii())),
                 "the header states fewer numbers than the file holds or other columns; get the \
                  file again from its source",
             ));
@@ -435,6 +456,11 @@ pub(crate) fn shorten(text: &str) -> String {
     } else {
         text.chars().take(37).chain("...".chars()).collect()
     }
+}
+
+/// As [`shorten`], between quotation marks.
+pub(crate) fn quoted(text: &str) -> String {
+    format!("\"{}\"", shorten(text))
 }
 
 fn is_separator(byte: u8) -> bool {
