@@ -65,22 +65,18 @@ impl Display for Pulse {
                      {phase} rad"
                 )
             }
-            Self::CycloidC { velocity, period, cycles } => write!(
-                f,
-                "cycloidal pulse C of {} m/s and period {} s with {} main cycles",
-                Short(velocity),
-                Short(period),
-                cycles
-            ),
-            Self::MavroeidisPapageorgiou { velocity, period, gamma, phase } => write!(
-                f,
-                "pulse of Mavroeidis and Papageorgiou of {} m/s, period {} s, \
-                 oscillatory character {} and phase {} rad",
-                Short(velocity),
-                Short(period),
-                Short(gamma),
-                Short(phase)
-            ),
+            Self::CycloidC { velocity, period, cycles } => {
+                of_period(f, "cycloidal pulse C", velocity, "m/s", period)?;
+                write!(f, " with {cycles} main cycles")
+            }
+            Self::MavroeidisPapageorgiou { velocity, period, gamma, phase } => {
+                let [velocity, period, gamma, phase] = [velocity, period, gamma, phase].map(Short);
+                write!(
+                    f,
+                    "pulse of Mavroeidis and Papageorgiou of {velocity} m/s, period {period} s, \
+                     oscillatory character {gamma} and phase {phase} rad"
+                )
+            }
         }
     }
 }
@@ -97,12 +93,8 @@ impl Display for Envelope {
                 Short(decay)
             ),
             Self::SaragoniHart { peak, exponent } => {
-                write!(
-                    f,
-                    "with its peak at {} s and exponent {} (Saragoni and Hart)",
-                    Short(peak),
-                    Short(exponent)
-                )
+                let [peak, exponent] = [peak, exponent].map(Short);
+                write!(f, "with its peak at {peak} s and exponent {exponent} (Saragoni and Hart)")
             }
         }
     }

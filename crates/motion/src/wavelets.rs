@@ -149,8 +149,12 @@ fn corrected(work: &Work<'_>, a: &[f64], periods: &[f64], watching: bool) -> Vec
         let peak = demand(extrema, k, oscillator, work.time_step, &mut demands);
         wavelets.push(Wavelet::new(oscillator.period, work, peak.sample, a.len()));
     }
-    let amplitudes = solve(work, &oscillators, &wavelets, &demands);
-    added(a, &wavelets, &amplitudes)
+    let rows = rows(work, &oscillators, &wavelets, &demands);
+    let mut system = System::new(wavelets.len());
+    for (demand, row) in demands.iter().zip(rows.chunks_exact(wavelets.len())) {
+        system.add(row, demand.weight * demand.change);
+    }
+    added(a, &wavelets, &system.solve())
 }
 
 fn oscillators(work: &Work<'_>, periods: &[f64]) -> Vec<Oscillator> {
@@ -217,22 +221,6 @@ fn bounded(work: &Work<'_>, a: &[f64], periods: &[f64], band: f64) -> Vec<f64> {
         }
     }
     added(a, &wavelets, &amplitudes)
-}
-
-/// Least-squares amplitudes of the wavelets for the demands, which are in order of period.
-fn solve(
-    work: &Work<'_>,
-    oscillators: &[Oscillator],
-    wavelets: &[Wavelet],
-    demands: &[Demand],
-) -> Vec<f64> {
-    let count = wavelets.len();
-    let rows = rows(work, oscillators, wavelets, demands);
-    let mut system = System::new(count);
-    for (demand, row) in demands.iter().zip(rows.chunks_exact(count)) {
-        system.add(row, demand.weight * demand.change);
-    }
-    system.solve()
 }
 
 /// Weighted responses at every demand to every wavelet of amplitude 1, row by row.

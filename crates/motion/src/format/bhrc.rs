@@ -71,7 +71,7 @@ fn read_component(
         ));
     }
     let unit = AccelerationUnit::TenthG;
-    let (mut values, mut next) = source.counted(
+    let (mut values, next) = source.counted(
         record,
         first + HEADER_LINES,
         count,
@@ -95,19 +95,7 @@ fn read_component(
     let elevation = source.number_after(first + 7, "Altitude");
     channel.site = Site { elevation, ..Site::default() }.at(position(&about));
     record.channels.push(channel);
-    if next < source.lines.len() {
-        if !source.text(next).starts_with("/&") {
-            return Err(source.damaged(
-                next,
-                "the end of the component, \"/&\"",
-                quoted(&source.text(next)),
-                "the header states another number of points than the file holds; get the file \
-                 again from its source",
-            ));
-        }
-        next += 1;
-    }
-    Ok(next)
+    source.end_of_channel(next, "VOL1DS FILE")
 }
 
 /// `Azimuth L 50    T 140`: either may be missing.

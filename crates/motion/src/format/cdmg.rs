@@ -67,7 +67,7 @@ fn read_block(
     let equal = source.has(data, "points");
     let unit = unit(source, if equal { data } else { first + 11 }, options)?;
     let limit = LARGEST_ACCELERATION / unit.factor();
-    let (time_step, mut values, mut next) = if equal {
+    let (time_step, mut values, next) = if equal {
         read_equal(source, record, data, limit)?
     } else {
         let count = source
@@ -95,25 +95,7 @@ fn read_block(
         channel.peaks.push(peak);
     }
     record.channels.push(channel);
-    while next < source.lines.len() && source.raw(next).trim_ascii().is_empty() {
-        next += 1;
-    }
-    if next < source.lines.len() {
-        if !source.text(next).starts_with("/&") && !source.has(next, "END OF DATA") {
-            if source.has(next, "UNCORRECTED ACCELEROGRAM") {
-                return Ok(next);
-            }
-            return Err(source.damaged(
-                next,
-                "the end of the channel, \"/&\"",
-                quoted(&source.text(next)),
-                "the header states another number of points than the file holds; get the file \
-                 again from its source",
-            ));
-        }
-        next += 1;
-    }
-    Ok(next)
+    source.end_of_channel(next, "UNCORRECTED ACCELEROGRAM")
 }
 
 /// `31932 Accelerogram points at 100 pts/sec in units of g. Format: (8f9.6)` or

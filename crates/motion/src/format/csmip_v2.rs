@@ -132,22 +132,7 @@ fn read_channel(
         channel.initial_velocity = 0.01 * velocity;
     }
     record.channels.push(channel);
-    while next < source.lines.len() && source.raw(next).trim_ascii().is_empty() {
-        next += 1;
-    }
-    if next < source.lines.len() && !source.has(next, "CORRECTED ACCELEROGRAM") {
-        if !source.text(next).starts_with("/&") && !source.has(next, "end of data") {
-            return Err(source.damaged(
-                next,
-                "the end of the channel, \"/&\"",
-                quoted(&source.text(next)),
-                "a data line states another number of points than the file holds; get the file \
-                 again from its source",
-            ));
-        }
-        next += 1;
-    }
-    Ok(next)
+    source.end_of_channel(next, "CORRECTED ACCELEROGRAM")
 }
 
 /// One block of `key` (acc, vel, dis) if its data line stands here.

@@ -120,6 +120,26 @@ impl<'a> Source<'a> {
             .map(|(value, text)| Printed { value, resolution: resolution(&text) })
     }
 
+    /// The line behind the end of a channel, "/&" or "end of data", which blank lines may precede; the
+    /// mark may be left out where the next channel begins as told.
+    pub(crate) fn end_of_channel(&self, line: usize, next: &str) -> Result<usize, ReadError> {
+        let blank = |line: &usize| !self.raw(*line).trim_ascii().is_empty();
+        let Some(line) = (line..self.lines.len()).find(blank) else { return Ok(self.lines.len()) };
+        if self.text(line).starts_with("/&") || self.has(line, "END OF DATA") {
+            return Ok(line + 1);
+        }
+        if self.has(line, next) {
+            return Ok(line);
+        }
+        Err(self.damaged(
+            line,
+            "the end of the channel, \"/&\"",
+            quoted(&self.text(line)),
+            "the header states another number of points than the file holds; get the file again \
+             from its source",
+        ))
+    }
+
     /// The error that the file is damaged.
     pub(crate) fn damaged(
         &self,

@@ -19,6 +19,7 @@ pub(crate) use text::TITLE;
 pub use text::text;
 
 use crate::error::MotionError;
+use crate::join::require_step;
 use crate::record::{Channel, Record};
 
 /// Most lines of provenance in a header; readers look for numbers in the first lines of a file only.
@@ -30,15 +31,7 @@ fn common(record: &Record) -> Result<(f64, usize), MotionError> {
         return Err(MotionError::parameter("channels to write", "at least 1", 0));
     };
     for other in &record.channels[1..] {
-        if (first.time_step / other.time_step - 1.0).abs() > 1e-9 {
-            return Err(MotionError::Mismatch {
-                what: format!(
-                    "channel {} has a step of {} s, channel {} of {} s",
-                    first.name, first.time_step, other.name, other.time_step
-                ),
-                remedy: "write one component at a time".to_owned(),
-            });
-        }
+        require_step(first, other, "write one component at a time")?;
     }
     let rows = record.channels.iter().map(|channel| channel.acceleration.len()).min().unwrap_or(0);
     Ok((first.time_step, rows))
