@@ -126,8 +126,9 @@ fn a_set_meets_a_published_target_in_mean_and_spread() {
         println!("median {median:.4}, deviation {deviation:.4}, rounds {}", found.rounds);
         median < 0.05 && deviation < 0.1
     };
+    // Measured: 1.3 % and 2.6 %.
     assert!(near(&found));
-    // Whatever the seed, and from a fifth of the records.
+    // Whatever the seed, and from a fifth of the records: measured 2.0 % and 4.1 % at most.
     for seed in 2..6 {
         let choosing = Choosing { seed, ..choosing(40) };
         assert!(near(&select(&target, &library[..400], &choosing).unwrap()));
@@ -153,7 +154,7 @@ fn a_set_meets_a_target_without_condition_and_a_spectrum_without_spread() {
     let found = select(&free, &library, &choosing(40)).unwrap();
     let (median, deviation) = (found.median_error(&free), found.deviation_error(&free));
     println!("free: median {median:.4}, deviation {deviation:.4}");
-    // Measured: 1 % and 3 %.
+    // Measured: 1.5 % and 2.7 %.
     assert!(median < 0.05 && deviation < 0.1);
     let table = TargetSpectrum::Table {
         points: MODEL.iter().map(|row| (row.0, STANDARD_GRAVITY * row.1)).collect(),

@@ -9,8 +9,8 @@ use barrelstack_motion::{Channel, Direction, ReadOptions, Record, Stage, read};
 fn hostile(channels: Vec<Channel>) -> Record {
     let example = include_bytes!("data/barrelstack/example.txt");
     let mut record = read(example, "a, b (c).csv", &ReadOptions::default()).unwrap();
-    record.event = "NPTS= 3, DT= 9 SEC (spectrum), units of cm/s\nvelocity".to_owned();
-    record.station = "# unit: g, \u{3b1} displacement; 1 2 3".to_owned();
+    record.event = String::from("NPTS= 3, DT= 9 SEC (spectrum), units of cm/s\nvelocity");
+    record.station = String::from("# unit: g, \u{3b1} displacement; 1 2 3");
     record.channels = channels;
     record.notes = vec![
         "processing: response spectrum in units of g, NPTS, DT".to_owned(),

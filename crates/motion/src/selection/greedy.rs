@@ -80,9 +80,7 @@ impl Selection {
             (false, _) => worst.max(ours.abs()),
         })
     }
-}
 
-impl Selection {
     /// What sets are compared by: an error of the median counts as one of the standard deviation twice
     /// as large.
     fn worst(&self, target: &SelectionTarget) -> f64 {

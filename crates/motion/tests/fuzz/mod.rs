@@ -161,7 +161,7 @@ fn record_holds(result: &Result<Record, ReadError>) -> bool {
 }
 
 /// The samples that lie in the folder of a reader.
-pub(crate) fn samples_of<'a>(reader: Reader, samples: &'a [Sample]) -> Vec<&'a Sample> {
+pub(crate) fn samples_of(reader: Reader, samples: &[Sample]) -> Vec<&Sample> {
     let folder = format!("{}/", reader.name());
     samples.iter().filter(|sample| sample.name.starts_with(&folder)).collect()
 }

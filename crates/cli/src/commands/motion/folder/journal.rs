@@ -38,6 +38,15 @@ struct Inner {
     lines: BTreeMap<String, Line>,
 }
 
+impl Inner {
+    fn append(&mut self, text: &str) -> anyhow::Result<()> {
+        self.file.seek(SeekFrom::Start(self.length)).map_err(input::plain)?;
+        self.file.write_all(text.as_bytes()).map_err(input::plain)?;
+        self.length += text.len() as u64;
+        Ok(())
+    }
+}
+
 /// The last line of a record.
 #[derive(Clone, Copy)]
 struct Line {
@@ -56,14 +65,15 @@ impl Journal {
         let names: Vec<String> = specs.iter().map(ColumnSpec::heading).collect();
         let version = env!("CARGO_PKG_VERSION");
         let head = json!({ "barrelstack": version, "settings": settings, "columns": names });
-        let mut file = File::options()
+        let file = File::options()
             .read(true)
-            .append(true)
+            .write(true)
             .create(true)
+            .truncate(false)
             .open(&path)
             .map_err(input::plain)
             .with_context(|| cannot("write"))?;
-        let (mut at, mut whole, mut lines) = (0, 0, BTreeMap::new());
+        let (mut at, mut lines) = (0, BTreeMap::new());
         let mut reader = BufReader::new(&file);
         let mut line = Vec::new();
         loop {
@@ -89,18 +99,14 @@ impl Journal {
                 lines.insert(entry.record, Line { hash: entry.hash, measured, at });
             }
             at += read;
-            whole = at;
         }
-        file.set_len(whole).map_err(input::plain).with_context(|| cannot("write"))?;
-        if whole == 0 {
-            let text = format!("{head}\n");
-            file.write_all(text.as_bytes())
-                .map_err(input::plain)
-                .with_context(|| cannot("write"))?;
-            whole = text.len() as u64;
+        file.set_len(at).map_err(input::plain).with_context(|| cannot("write"))?;
+        let specs = specs.to_vec();
+        let mut inner = Inner { file, length: at, lines };
+        if at == 0 {
+            inner.append(&format!("{head}\n")).with_context(|| cannot("write"))?;
         }
-        let inner = Mutex::new(Inner { file, length: whole, lines });
-        Ok(Self { path, specs: specs.to_vec(), inner })
+        Ok(Self { path, specs, inner: Mutex::new(inner) })
     }
 
     /// Whether a record is noted whose files are still the same, and was measured.
@@ -113,13 +119,8 @@ impl Journal {
     pub(super) fn note(&self, entry: &Entry) -> anyhow::Result<()> {
         let text = format!("{}\n", entry.line());
         let Ok(mut inner) = self.inner.lock() else { bail!("another thread failed to write") };
-        inner
-            .file
-            .write_all(text.as_bytes())
-            .map_err(input::plain)
-            .with_context(|| format!("cannot write {}", self.path.display()))?;
         let line = Line { hash: entry.hash, measured: entry.row.is_some(), at: inner.length };
-        inner.length += text.len() as u64;
+        inner.append(&text).with_context(|| format!("cannot write {}", self.path.display()))?;
         inner.lines.insert(entry.record.clone(), line);
         Ok(())
     }
