@@ -71,6 +71,7 @@ mod layers;
 mod matched;
 mod matching;
 mod math;
+mod normal_equations;
 mod process;
 mod pulse;
 mod pulse_class;

@@ -3,6 +3,7 @@
 use crate::error::MotionError;
 use crate::matching::{Best, GOOD_ENOUGH, Matching, PATIENCE, Work, matched_periods};
 use crate::math::{self, TAU};
+use crate::normal_equations::System;
 use crate::response::{Bank, Step, TOGETHER};
 
 /// Share of the misfit taken out in one round; more makes peaks jump to other times.
@@ -12,8 +13,6 @@ const RELAXATION: f64 = 0.6;
 const WATCHED: f64 = 0.85;
 /// Weight of a watched extremum that is not too high.
 const WATCHED_WEIGHT: f64 = 0.4;
-/// Ridge relative to the largest diagonal entry, which keeps neighbors from fighting.
-const RIDGE: f64 = 1e-2;
 
 /// Times a correction is solved again so that it lifts no other extremum above its goal.
 const BOUNDING: usize = 5;
@@ -452,54 +451,5 @@ impl FreeVibration {
         }
         let (s, c) = math::sin_cos(self.frequency * t);
         math::exp(-self.decay * t) * (u * c + (v + self.decay * u) / self.frequency * s)
-    }
-}
-
-/// Normal equations `(CᵀC + λI) b = Cᵀ r` of many demands on few wavelets, solved by Cholesky
-/// factors.
-struct System {
-    size: usize,
-    normal: Vec<f64>,
-    right: Vec<f64>,
-}
-
-impl System {
-    fn new(size: usize) -> Self {
-        Self { size, normal: vec![0.0; size * size], right: vec![0.0; size] }
-    }
-
-    fn add(&mut self, row: &[f64], value: f64) {
-        for j in 0..self.size {
-            self.right[j] += row[j] * value;
-            let sums = &mut self.normal[j * self.size..][..=j];
-            for k in 0..sums.len() {
-                sums[k] += row[j] * row[k];
-            }
-        }
-    }
-
-    fn solve(mut self) -> Vec<f64> {
-        let n = self.size;
-        let m = &mut self.normal;
-        let largest = (0..n).map(|k| m[k * n + k]).fold(0.0, f64::max);
-        for k in 0..n {
-            m[k * n + k] += RIDGE * RIDGE * largest;
-        }
-        for j in 0..n {
-            for k in 0..=j {
-                let sum = (0..k).fold(m[j * n + k], |sum, i| sum - m[j * n + i] * m[k * n + i]);
-                m[j * n + k] = if j == k { sum.max(1e-300).sqrt() } else { sum / m[k * n + k] };
-            }
-        }
-        let mut b = self.right;
-        for j in 0..n {
-            let sum = (0..j).fold(b[j], |sum, k| sum - m[j * n + k] * b[k]);
-            b[j] = sum / m[j * n + j];
-        }
-        for j in (0..n).rev() {
-            let sum = (j + 1..n).fold(b[j], |sum, k| sum - m[k * n + j] * b[k]);
-            b[j] = sum / m[j * n + j];
-        }
-        b
     }
 }
