@@ -133,3 +133,115 @@ fn a_code_without_a_damping_correction_says_so() {
     let error = refused(&["match", text(&file), "--to", to, "-o", text(&out)]);
     assert!(error.contains("for 5 % of damping"), "{error}");
 }
+
+#[test]
+fn horizontals_are_turned_to_a_fault_and_to_the_fastest_direction() {
+    let folder = tempfile::tempdir().unwrap();
+    // The ground moves along azimuth 40 only.
+    let mut rows = String::from("# acceleration (m/s2)\ntime (s),0,90,UP\n");
+    let (sine, cosine) = 40.0_f64.to_radians().sin_cos();
+    for k in 0..1600 {
+        let t = 0.005 * f64::from(k);
+        let a = 2.0 * (9.0 * t).sin() * (-0.3 * t).exp();
+        writeln!(rows, "{t:.3},{:.9},{:.9},{:.9}", cosine * a, sine * a, 0.1 * a).unwrap();
+    }
+    let file = folder.path().join("along-40.csv");
+    fs::write(&file, rows).unwrap();
+    let turned = |axes: &str| -> Vec<(String, f64, f64)> {
+        let out = folder.path().join(format!("{}.txt", axes.replace(':', "-")));
+        let all = ["process", text(&file), "--chain", "none", "--rotate", axes, "-o", text(&out)];
+        assert!(told(&all).contains("turned to"), "{axes}");
+        let told = told(&["info", "--json", text(&out)]);
+        let document: Value = serde_json::from_str(&told).unwrap();
+        let channel = |channel: &Value| {
+            let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+            let name = channel["name"].as_str().unwrap().to_owned();
+            (name, number(&channel["azimuth"]), number(&channel["measures"]["pga"]["value"]))
+        };
+        document["records"][0]["channels"].as_array().unwrap().iter().map(channel).collect()
+    };
+    // The largest of the wave, 2 sin(9 t) exp(-0.3 t), is 1.898 m/s2.
+    let near = |value: f64, expected: f64| (value - expected).abs() < 2e-3 * 1.898;
+    for (axes, along, across) in [("strike:40", 1, 0), ("strike:400", 1, 0), ("strike:130", 0, 1)] {
+        let channels = turned(axes);
+        assert_eq!(channels.len(), 3, "{axes}");
+        assert_eq!((channels[0].0.as_str(), channels[1].0.as_str()), ("FN", "FP"));
+        // The sign of a direction is that of the strike.
+        assert_eq!(channels[along].1 % 180.0, 40.0, "{axes}: {channels:?}");
+        assert!(near(channels[along].2, 1.898), "{axes}: {channels:?}");
+        assert!(channels[across].2 < 1e-8, "{axes}: {channels:?}");
+    }
+    let fastest = turned("vmax");
+    assert_eq!((fastest[0].0.as_str(), fastest[1].0.as_str()), ("VMAX", "VMAX-90"));
+    assert!((fastest[0].1 % 180.0 - 40.0).abs() <= 1.0, "{fastest:?}");
+    assert!(near(fastest[0].2, 1.898) && fastest[1].2 < 0.02 * 1.898, "{fastest:?}");
+
+    let out = folder.path().join("out.txt");
+    let says = |axes: &str, file: &Path| {
+        refused(&["process", text(file), "--rotate", axes, "-o", text(&out)])
+    };
+    for axes in ["strike", "strike:", "strike:nan", "strike:north", "122", "VMAX2"] {
+        assert!(says(axes, &file).contains("such as strike:122, or vmax"), "{axes}");
+    }
+    for (head, found) in [("time (s),90", "\"90\""), ("time (s),H1,H2", "\"H1\", \"H2\"")] {
+        let lone = folder.path().join("lone.csv");
+        let mut rows = format!("# acceleration (m/s2)\n{head}\n");
+        for k in 0..200 {
+            let a = (0.1 * f64::from(k)).sin();
+            let more = if head.ends_with("H2") { ",0.5" } else { "" };
+            writeln!(rows, "{:.2},{a:.5}{more}", 0.01 * f64::from(k)).unwrap();
+        }
+        fs::write(&lone, rows).unwrap();
+        let said = says("vmax", &lone);
+        assert!(said.contains("two horizontals of known azimuth"), "{found}: {said}");
+    }
+    assert!(!out.exists());
+}
+
+#[test]
+fn components_of_two_stations_are_taken_together_only_where_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, station: &str, azimuth: u32, phase: f64| {
+        let mut rows = format!(
+            "# barrelstack motion 1\n# station: {station}\n# stage: corrected\n# unit: m/s2\n\
+             # time_step: 0.01\n# channels: {azimuth} az={azimuth}\n"
+        );
+        for k in 0..800 {
+            let t = 0.01 * f64::from(k);
+            writeln!(rows, "{:e}", (7.0 * t + phase).sin() * (-0.4 * t).exp()).unwrap();
+        }
+        let path = folder.path().join(name);
+        fs::write(&path, rows).unwrap();
+        path
+    };
+    let (here, there) = (file("a.txt", "Here", 0, 0.0), file("b.txt", "There", 90, 1.0));
+    let beside = file("c.txt", "Here", 90, 1.0);
+    let spectrum = |other: &Path, more: &[&str]| {
+        [&["spectrum", text(&here), text(other), "--rotd"][..], more]
+            .concat()
+            .into_iter()
+            .map(str::to_owned)
+            .collect::<Vec<String>>()
+    };
+    let as_words = |all: &[String]| all.iter().map(String::as_str).collect::<Vec<_>>().join(" ");
+    let say = |all: &[String]| told(&all.iter().map(String::as_str).collect::<Vec<_>>());
+    let same = say(&spectrum(&beside, &[]));
+    let all = spectrum(&there, &[]);
+    let said = refused(&all.iter().map(String::as_str).collect::<Vec<_>>());
+    for words in ["station \"Here\" and station \"There\"", "or add --allow-mixed"] {
+        assert!(said.contains(words), "{}: {said}", as_words(&all));
+    }
+    // The same numbers, since the motions are the same.
+    let rows = |text: &str| -> Vec<String> {
+        let digit = |line: &&str| line.trim_start().starts_with(|c: char| c.is_ascii_digit());
+        text.lines().filter(digit).map(str::to_owned).collect()
+    };
+    let mixed = say(&spectrum(&there, &["--allow-mixed"]));
+    assert!(!rows(&same).is_empty());
+    assert_eq!(rows(&mixed), rows(&same));
+    // One direction twice makes no pair, told or not.
+    let twin = file("d.txt", "There", 0, 1.0);
+    let all = spectrum(&twin, &["--allow-mixed"]);
+    let said = refused(&all.iter().map(String::as_str).collect::<Vec<_>>());
+    assert!(said.contains("not perpendicular") || said.contains("two horizontal"), "{said}");
+}

@@ -20,15 +20,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use barrelstack_motion::{FORMATS, Format, Random, read};
-use fuzz::{Sample, must_hold, mutate, options, samples, samples_of};
+use barrelstack_motion::{Random, read};
+use fuzz::{Reader, Sample, must_hold, mutate, options, samples, samples_of};
 use peak_alloc::PeakAlloc;
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
 /// Most memory that one execution may take (MB).
-const MOST_MEGABYTES: f64 = 100.0;
+const MOST_MEGABYTES: f64 = 256.0;
 /// Longest that one execution may take (s); a hang is far above, a busy machine far below.
 const LONGEST: f64 = 10.0;
 /// Damaged copies of each file of one megabyte.
@@ -64,11 +64,11 @@ fn main() {
             }
         }
     }
-    let formats: Vec<&Format> = FORMATS
-        .iter()
-        .filter(|format| only.as_ref().is_none_or(|name| name == format.name))
+    let readers: Vec<Reader> = Reader::all()
+        .into_iter()
+        .filter(|reader| only.as_ref().is_none_or(|name| name == reader.name()))
         .collect();
-    if formats.is_empty() {
+    if readers.is_empty() {
         eprintln!("there is no reader {}", only.unwrap_or_default());
         std::process::exit(2);
     }
@@ -79,15 +79,15 @@ fn main() {
     let samples = samples();
     println!("reader       executions       read  rate (1/s)  slowest (ms)  most memory (MB)");
     let mut faults = Vec::new();
-    for format in formats {
+    for reader in readers {
         let began = Instant::now();
         let mut seen = Seen::default();
-        faults.extend(small(format, &samples, first, executions, &mut seen, start).err());
-        report(format.name, &seen, began.elapsed());
+        faults.extend(small(reader, &samples, first, executions, &mut seen, start).err());
+        report(reader.name(), &seen, began.elapsed());
         if first == 0 {
             let began = Instant::now();
             let mut seen = Seen::default();
-            faults.extend(large(format, &samples, &mut seen, start).err());
+            faults.extend(large(reader, &samples, &mut seen, start).err());
             report("  at 1 MB", &seen, began.elapsed());
         }
     }
@@ -111,46 +111,46 @@ fn report(name: &str, seen: &Seen, time: Duration) {
 }
 
 /// The seed of one execution.
-fn seed(format: &Format, k: u64) -> u64 {
-    let name = format.name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+fn seed(reader: Reader, k: u64) -> u64 {
+    let name = reader.name().bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
     });
     name ^ k.wrapping_mul(0x9E37_79B9_7F4A_7C15)
 }
 
 fn small(
-    format: &Format,
+    reader: Reader,
     samples: &[Sample],
     first: u64,
     count: u64,
     seen: &mut Seen,
     start: Instant,
 ) -> Result<(), String> {
-    let own = samples_of(format, samples);
+    let own = samples_of(reader, samples);
     for k in first..first + count {
-        let mut random = Random::new(seed(format, k));
+        let mut random = Random::new(seed(reader, k));
         let sample = own[usize::try_from(random.bits() % own.len() as u64).unwrap()];
         let bytes = mutate(&sample.bytes, samples, &mut random);
-        execute(format, k, &bytes, &mut random, seen, start)?;
+        execute(reader, k, &bytes, &mut random, seen, start)?;
     }
     Ok(())
 }
 
 fn large(
-    format: &Format,
+    reader: Reader,
     samples: &[Sample],
     seen: &mut Seen,
     start: Instant,
 ) -> Result<(), String> {
     let mut k = 0;
-    for sample in samples_of(format, samples) {
+    for sample in samples_of(reader, samples) {
         for bytes in large::files(&sample.bytes) {
-            let mut random = Random::new(seed(format, k));
-            execute(format, k, &bytes, &mut random, seen, start)?;
+            let mut random = Random::new(seed(reader, k));
+            execute(reader, k, &bytes, &mut random, seen, start)?;
             for _ in 0..DAMAGED {
                 let mut damaged = mutate(&bytes, samples, &mut random);
                 damaged.truncate(large::SIZE);
-                execute(format, k, &damaged, &mut random, seen, start)?;
+                execute(reader, k, &damaged, &mut random, seen, start)?;
             }
             k += 1;
         }
@@ -162,7 +162,7 @@ fn large(
 ///
 /// A fault comes back as a sentence that says where its input is.
 fn execute(
-    format: &Format,
+    reader: Reader,
     k: u64,
     bytes: &[u8],
     random: &mut Random,
@@ -176,12 +176,11 @@ fn execute(
     SINCE.store(u64::try_from((began - start).as_millis()).unwrap(), Ordering::Relaxed);
     NOW.store(k, Ordering::Relaxed);
     let outcome = catch_unwind(AssertUnwindSafe(|| {
-        let result = format.read(bytes, "fuzz", &given);
-        must_hold(&result);
+        let taken = reader.take(bytes, &given);
         if k.is_multiple_of(8) {
             must_hold(&read(bytes, "fuzz", &given));
         }
-        result.is_ok()
+        taken
     }));
     NOW.store(u64::MAX, Ordering::Relaxed);
     let time = began.elapsed().as_secs_f64();
@@ -204,11 +203,11 @@ fn execute(
             return Ok(());
         }
     };
-    let file = std::env::temp_dir().join(format!("fuzz-{}-{k}", format.name));
+    let file = std::env::temp_dir().join(format!("fuzz-{}-{k}", reader.name()));
     std::fs::write(&file, bytes).unwrap();
     Err(format!(
         "{}, execution {k}, {given:?}: {fault}; the input is in {}",
-        format.name,
+        reader.name(),
         file.display()
     ))
 }

@@ -42,7 +42,7 @@ impl Record {
                     channel.name =
                         format!("{} {}", crate::format::file_stem(&record.file), channel.name);
                 }
-                require_step(&gathered.channels[0], &channel)?;
+                require_step(&gathered.channels[0], &channel, ONE_STEP)?;
                 gathered.channels.push(channel);
             }
             if record.stage != gathered.stage && first.unlike(record).is_none() {
@@ -132,14 +132,21 @@ fn require_kin(one: &Record, other: &Record) -> Result<(), MotionError> {
     }
 }
 
-fn require_step(one: &Channel, other: &Channel) -> Result<(), MotionError> {
+const ONE_STEP: &str = "give files of one step";
+
+/// That two channels have one step; else what is to be done.
+pub(crate) fn require_step(
+    one: &Channel,
+    other: &Channel,
+    remedy: &str,
+) -> Result<(), MotionError> {
     if (one.time_step / other.time_step - 1.0).abs() > 1e-9 {
         return Err(MotionError::Mismatch {
             what: format!(
                 "channel {} has a step of {} s, channel {} of {} s",
                 one.name, one.time_step, other.name, other.time_step
             ),
-            remedy: "give files of one step".to_owned(),
+            remedy: remedy.to_owned(),
         });
     }
     Ok(())
@@ -166,7 +173,7 @@ fn join_pair(joined: &mut Record, part: &Record) -> Result<(), MotionError> {
         let Some(theirs) = theirs else {
             return Err(refuse(format!("{} has no channel {name}", part.file)));
         };
-        require_step(mine, theirs)?;
+        require_step(mine, theirs, ONE_STEP)?;
         let found = match overlap {
             Some(samples) => samples,
             None => find_overlap(mine, theirs).ok_or_else(|| {

@@ -4,6 +4,7 @@ use crate::error::MotionError;
 use crate::fourier::{apply_gain, forward_real, inverse};
 use crate::ground_motion::GroundMotion;
 use crate::history::History;
+use crate::layers::Layers;
 use crate::matched::{Matched, Missed};
 use crate::math;
 use crate::process::{Pads, Processing};
@@ -58,8 +59,11 @@ impl Default for Matching {
     }
 }
 
-/// Exponent of target over spectrum in one round of the frequency domain.
-const AMPLITUDE_STEP: f64 = 0.7;
+/// Exponents of target over spectrum in the frequency domain: one for a match, the next where it stalls.
+const AMPLITUDE_STEPS: [f64; 4] = [0.7, 0.5, 0.9, 0.3];
+/// Samples of the motion times rounds after which no further match is begun: a motion of 35,000 samples has
+/// 400 rounds, which take some 6 s.
+const MOST_SAMPLES: usize = 14_000_000;
 
 /// Steps to the shortest matched period: a peak between two samples is then missed by 1.2 % at most; with
 /// ten steps it would be 5 %, as much as a match may be off.
@@ -166,8 +170,8 @@ impl GroundMotion {
             });
         }
         let start: Vec<f64> = given.iter().map(|a| a * factor).collect();
-        let (Best { acceleration, misfit, round: rounds }, first) =
-            work.alternate(&start, settings)?;
+        let start = work.steady(&start)?;
+        let (Best { acceleration, misfit, rounds }, first) = work.alternate(&start, settings)?;
         let missed = work.missed(&acceleration, settings.tolerance);
         let horizontal = History::Sampled(Sampled::new(time_step, acceleration)?);
         let vertical = self.vertical.as_ref().map(|history| history.scaled(factor));
@@ -273,7 +277,7 @@ pub(crate) struct Work<'a> {
     checked: Vec<f64>,
     checked_goal: Vec<f64>,
     pub(crate) damping: f64,
-    pub(crate) chain: Processing,
+    chain: Processing,
 }
 
 impl Work<'_> {
@@ -282,9 +286,20 @@ impl Work<'_> {
         pseudo_accelerations(self.time_step, acceleration, periods, self.damping)
     }
 
-    /// Largest relative misfit at the judged periods, which are few enough for every round.
+    /// The motion for oscillators of up to the longest matched period.
+    pub(crate) fn layers(&self, acceleration: &[f64]) -> Layers {
+        let longest = self.checked.last().copied().unwrap_or(0.0);
+        Layers::new(self.time_step, acceleration, longest)
+    }
+
+    /// Pseudo-accelerations at ascending periods, near enough to search by.
+    fn nearly(&self, periods: &[f64], acceleration: &[f64]) -> Vec<f64> {
+        self.layers(acceleration).pseudo_accelerations(periods, self.damping)
+    }
+
+    /// Largest relative misfit at the judged periods, which are few enough for every round; nearly.
     pub(crate) fn judged_misfit(&self, acceleration: &[f64]) -> f64 {
-        misfit_of(&self.judged_goal, &self.spectrum(&self.judged, acceleration))
+        misfit_of(&self.judged_goal, &self.nearly(&self.judged, acceleration))
     }
 
     /// Largest relative misfit at all periods that are checked.
@@ -317,11 +332,11 @@ impl Work<'_> {
         ranges
     }
 
-    /// How the spectrum lies about its target at every second period that is checked.
+    /// How the spectrum lies about its target at every second period that is checked, nearly.
     pub(crate) fn fit(&self, acceleration: &[f64]) -> Fit {
         let half = |all: &[f64]| all.iter().copied().step_by(2).collect::<Vec<f64>>();
         let (periods, goal) = (half(&self.checked), half(&self.checked_goal));
-        let now = self.spectrum(&periods, acceleration);
+        let now = self.nearly(&periods, acceleration);
         let misfits: Vec<f64> = goal.iter().zip(&now).map(|(g, n)| (n / g - 1.0).abs()).collect();
         let powers = misfits.iter().map(|misfit| {
             let square = misfit * misfit;
@@ -340,7 +355,14 @@ impl Work<'_> {
         }
     }
 
+    /// With ends that are at rest; wavelets bring no drift that a filter would have to take out.
     pub(crate) fn close(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
+        let ends = Processing { high_pass: None, ..self.chain.clone() };
+        Ok(ends.apply(self.time_step, acceleration, 0.0)?.acceleration)
+    }
+
+    /// Without drift, and with ends that are at rest.
+    fn steady(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
         Ok(self.chain.apply(self.time_step, acceleration, 0.0)?.acceleration)
     }
 
@@ -351,67 +373,62 @@ impl Work<'_> {
         start: &[f64],
         settings: &Matching,
     ) -> Result<(Best, MatchMethod), MotionError> {
-        use MatchMethod::{Frequency, Time};
         let mut best = Best::new(start);
-        let mut rounds = 0;
-        if settings.method == Time {
-            rounds = self.take_turns(&[Time], start, settings, rounds, &mut best)?;
+        if settings.method == MatchMethod::Time {
+            self.wavelets(start, settings, &mut best)?;
             if best.misfit <= settings.tolerance {
-                return Ok((best, Time));
+                return Ok((best, MatchMethod::Time));
             }
         }
         let stalled = best.misfit;
-        self.take_turns(&[Frequency, Time, Frequency, Time], start, settings, rounds, &mut best)?;
-        let first = if best.misfit < stalled { Frequency } else { settings.method };
-        Ok((best, first))
+        let most = MOST_SAMPLES / start.len();
+        for step in AMPLITUDE_STEPS {
+            if best.misfit <= CLEAR * settings.tolerance || best.rounds > most {
+                break;
+            }
+            let near = self.in_frequency(start, settings, step, &mut best)?;
+            self.wavelets(&near, settings, &mut best)?;
+        }
+        let began = best.misfit < stalled;
+        Ok((best, if began { MatchMethod::Frequency } else { settings.method }))
     }
 
-    /// Each method on what the one before it left, polished by wavelets, until the tolerance is met;
-    /// gives all rounds done so far.
-    fn take_turns(
+    /// Wavelets in rounds, and polished where they do not meet the tolerance.
+    fn wavelets(
         &self,
-        turns: &[MatchMethod],
         start: &[f64],
         settings: &Matching,
-        mut rounds: usize,
         best: &mut Best,
-    ) -> Result<usize, MotionError> {
-        let mut a = start.to_vec();
-        for method in turns {
-            let (next, more) = match method {
-                MatchMethod::Frequency => self.in_frequency(&a, settings)?,
-                MatchMethod::Time => wavelets::match_in_time(self, &a, settings)?,
-            };
-            rounds += more;
-            best.offer(&next, self.misfit(&next), rounds);
-            if best.misfit <= CLEAR * settings.tolerance {
-                break;
+    ) -> Result<(), MotionError> {
+        if best.misfit > CLEAR * settings.tolerance {
+            let near = wavelets::match_in_time(self, start, settings, best)?;
+            if best.misfit > CLEAR * settings.tolerance {
+                wavelets::polish(self, near, settings, best)?;
             }
-            let (polished, more) = wavelets::polish(self, &next, settings)?;
-            rounds += more;
-            best.offer(&polished, self.misfit(&polished), rounds);
-            if best.misfit <= CLEAR * settings.tolerance {
-                break;
-            }
-            a = polished;
         }
-        Ok(rounds)
+        Ok(())
     }
 
+    /// The motion with its Fourier amplitudes changed round by round; `step` is the exponent of target over
+    /// spectrum.
     fn in_frequency(
         &self,
         start: &[f64],
         settings: &Matching,
-    ) -> Result<(Vec<f64>, usize), MotionError> {
-        let length = (2 * start.len()).next_power_of_two();
-        let mut a = self.close(start)?;
-        let mut best = Best::new(&a);
+        step: f64,
+        all: &mut Best,
+    ) -> Result<Vec<f64>, MotionError> {
+        let length = (start.len() + start.len() / 4).next_power_of_two();
+        let mut a = start.to_vec();
+        let (mut best, mut gained) = (Best::new(&a), 0);
         // Ratios over the logarithm of frequency, from long periods to short ones.
         let ln_f: Vec<f64> = self.judged.iter().rev().map(|t| -math::ln(*t)).collect();
         for round in 1..=settings.rounds {
-            let now = self.spectrum(&self.judged, &a);
-            best.offer(&a, misfit_of(&self.judged_goal, &now), round);
-            if best.misfit <= GOOD_ENOUGH * settings.tolerance || round > best.round + PATIENCE {
+            let now = self.nearly(&self.judged, &a);
+            if best.offer(&a, misfit_of(&self.judged_goal, &now)) {
+                gained = round;
+            }
+            if best.misfit <= GOOD_ENOUGH * settings.tolerance || round > gained + PATIENCE {
                 break;
             }
             let ratio: Vec<f64> = self
@@ -419,7 +436,7 @@ impl Work<'_> {
                 .iter()
                 .zip(&now)
                 .rev()
-                .map(|(g, n)| math::powf(g / n, AMPLITUDE_STEP).clamp(0.5, 2.0))
+                .map(|(g, n)| math::powf(g / n, step).clamp(0.5, 2.0))
                 .collect();
             let mut spectrum = forward_real(&a, length);
             apply_gain(&mut spectrum, self.time_step, |f| {
@@ -427,9 +444,11 @@ impl Work<'_> {
             });
             inverse(&mut spectrum);
             let changed: Vec<f64> = spectrum[..a.len()].iter().map(|x| x.re).collect();
-            a = self.close(&changed)?;
+            a = self.steady(&changed)?;
+            all.rounds += 1;
         }
-        Ok((best.acceleration, best.round))
+        all.offer(&best.acceleration, self.misfit(&best.acceleration));
+        Ok(best.acceleration)
     }
 }
 
@@ -447,18 +466,22 @@ pub(crate) struct Fit {
 pub(crate) struct Best {
     pub(crate) acceleration: Vec<f64>,
     pub(crate) misfit: f64,
-    pub(crate) round: usize,
+    /// Rounds done in all.
+    pub(crate) rounds: usize,
 }
 
 impl Best {
     pub(crate) fn new(acceleration: &[f64]) -> Self {
-        Self { acceleration: acceleration.to_vec(), misfit: f64::INFINITY, round: 0 }
+        Self { acceleration: acceleration.to_vec(), misfit: f64::INFINITY, rounds: 0 }
     }
 
-    /// Keeps a better motion.
-    pub(crate) fn offer(&mut self, acceleration: &[f64], misfit: f64, round: usize) {
-        if misfit < self.misfit {
-            *self = Self { acceleration: acceleration.to_vec(), misfit, round };
+    /// Keeps a better motion; tells whether it is one.
+    pub(crate) fn offer(&mut self, acceleration: &[f64], misfit: f64) -> bool {
+        let better = misfit < self.misfit;
+        if better {
+            self.acceleration = acceleration.to_vec();
+            self.misfit = misfit;
         }
+        better
     }
 }

@@ -143,9 +143,8 @@ impl Pulse {
         }
     }
 
-    /// The shortest time over which the pulse changes appreciably (s): its period or length.
-    pub fn time_scale(&self) -> f64 {
-        match *self {
+    fn time_scale_mut(&mut self) -> &mut f64 {
+        match self {
             Self::Sine { period, .. }
             | Self::OneSine { period, .. }
             | Self::OneCosine { period, .. }
@@ -157,6 +156,11 @@ impl Pulse {
             | Self::MavroeidisPapageorgiou { period, .. } => period,
             Self::HalfSine { duration, .. } | Self::Rectangular { duration, .. } => duration,
         }
+    }
+
+    /// The shortest time over which the pulse changes appreciably (s): its period or length.
+    pub fn time_scale(&self) -> f64 {
+        *self.clone().time_scale_mut()
     }
 
     /// The motion at time `t` (s).
@@ -250,20 +254,7 @@ impl Pulse {
             Amplitude::Velocity => factor * time,
             Amplitude::Displacement => factor * time * time,
         };
-        match &mut pulse {
-            Self::Sine { period, .. }
-            | Self::OneSine { period, .. }
-            | Self::OneCosine { period, .. }
-            | Self::CycloidA { period, .. }
-            | Self::CycloidB { period, .. }
-            | Self::CycloidC { period, .. }
-            | Self::Ricker { period, .. }
-            | Self::Gabor { period, .. }
-            | Self::MavroeidisPapageorgiou { period, .. } => *period *= time,
-            Self::HalfSine { duration, .. } | Self::Rectangular { duration, .. } => {
-                *duration *= time;
-            }
-        }
+        *pulse.time_scale_mut() *= time;
         pulse
     }
 

@@ -91,6 +91,17 @@ pub struct Channel {
 }
 
 impl Channel {
+    /// Notes the peak acceleration that a header states, and its resolution, both in a unit of `factor`
+    /// m/s², beside the one that was read.
+    pub(crate) fn state_peak(&mut self, stated: f64, resolution: f64, factor: f64) {
+        self.peaks.push(StatedPeak {
+            quantity: Quantity::Acceleration,
+            stated: stated.abs() * factor,
+            resolution: resolution * factor,
+            measured: math::peak(&self.acceleration),
+        });
+    }
+
     /// A channel without stated peaks, starting from rest.
     pub fn new(
         name: impl Into<String>,

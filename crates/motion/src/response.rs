@@ -183,7 +183,7 @@ pub(crate) struct Bank {
     displacement: [[f64; TOGETHER]; 4],
     velocity: [[f64; TOGETHER]; 4],
     pub(crate) u: [f64; TOGETHER],
-    v: [f64; TOGETHER],
+    pub(crate) v: [f64; TOGETHER],
 }
 
 impl Bank {
@@ -211,10 +211,12 @@ impl Bank {
             self.v[k] = r[0][k] * u + r[1][k] * v + r[2][k] * load + r[3][k] * next;
         }
     }
+}
 
-    pub(crate) fn rates(&self) -> [f64; TOGETHER] {
-        self.v
-    }
+/// The larger in size; plain, so that it can be done for several side by side.
+#[inline]
+pub(crate) fn larger(peak: f64, value: f64) -> f64 {
+    if value.abs() > peak { value.abs() } else { peak }
 }
 
 /// Pseudo-accelerations (m/s²) at periods above zero, bit for bit those of [`response`].
@@ -231,10 +233,7 @@ pub(crate) fn pseudo_accelerations(
         let mut peaks = [0.0_f64; TOGETHER];
         for pair in acceleration.windows(2) {
             bank.advance(-pair[0], -pair[1]);
-            for (peak, u) in peaks.iter_mut().zip(&bank.u) {
-                let size = u.abs();
-                *peak = if size > *peak { size } else { *peak };
-            }
+            peaks = std::array::from_fn(|k| larger(peaks[k], bank.u[k]));
         }
         out.extend(some.iter().zip(peaks).map(|(period, peak)| {
             let w = TAU / period;

@@ -14,6 +14,10 @@ impl Display for Short {
     }
 }
 
+fn of_period(f: &mut Formatter<'_>, what: &str, amplitude: f64, unit: &str, period: f64) -> Result {
+    write!(f, "{what} of {} {unit} and period {} s", Short(amplitude), Short(period))
+}
+
 impl Display for Pulse {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match *self {
@@ -35,73 +39,44 @@ impl Display for Pulse {
                 write!(f, "half a sine of {} m/s2 over {} s", Short(acceleration), Short(duration))
             }
             Self::OneSine { acceleration, period } => {
-                write!(f, "one sine of {} m/s2 and period {} s", Short(acceleration), Short(period))
+                of_period(f, "one sine", acceleration, "m/s2", period)
             }
             Self::OneCosine { acceleration, period } => {
-                write!(
-                    f,
-                    "one cosine of {} m/s2 and period {} s",
-                    Short(acceleration),
-                    Short(period)
-                )
-            }
-            Self::Rectangular { acceleration, duration } => {
-                write!(
-                    f,
-                    "constant acceleration of {} m/s2 over {} s",
-                    Short(acceleration),
-                    Short(duration)
-                )
+                of_period(f, "one cosine", acceleration, "m/s2", period)
             }
             Self::Ricker { acceleration, period } => {
-                write!(
-                    f,
-                    "Ricker wavelet of {} m/s2 and period {} s",
-                    Short(acceleration),
-                    Short(period)
-                )
+                of_period(f, "Ricker wavelet", acceleration, "m/s2", period)
             }
-            Self::Gabor { velocity, period, gamma, phase } => write!(
-                f,
-                "Gabor wavelet of {} m/s, period {} s, width {} and phase {} \
-                 rad",
-                Short(velocity),
-                Short(period),
-                Short(gamma),
-                Short(phase)
-            ),
             Self::CycloidA { velocity, period } => {
-                write!(
-                    f,
-                    "cycloidal pulse A of {} m/s and period {} s",
-                    Short(velocity),
-                    Short(period)
-                )
+                of_period(f, "cycloidal pulse A", velocity, "m/s", period)
             }
             Self::CycloidB { velocity, period } => {
+                of_period(f, "cycloidal pulse B", velocity, "m/s", period)
+            }
+            Self::Rectangular { acceleration, duration } => {
+                let (acceleration, duration) = (Short(acceleration), Short(duration));
+                write!(f, "constant acceleration of {acceleration} m/s2 over {duration} s")
+            }
+            Self::Gabor { velocity, period, gamma, phase } => {
+                let [velocity, period, gamma, phase] = [velocity, period, gamma, phase].map(Short);
                 write!(
                     f,
-                    "cycloidal pulse B of {} m/s and period {} s",
-                    Short(velocity),
-                    Short(period)
+                    "Gabor wavelet of {velocity} m/s, period {period} s, width {gamma} and phase \
+                     {phase} rad"
                 )
             }
-            Self::CycloidC { velocity, period, cycles } => write!(
-                f,
-                "cycloidal pulse C of {} m/s and period {} s with {} main cycles",
-                Short(velocity),
-                Short(period),
-                cycles
-            ),
-            Self::MavroeidisPapageorgiou { velocity, period, gamma, phase } => write!(
-                f,
-                "pulse of Mavroeidis and Papageorgiou of {} m/s, period {} s, \
-                 oscillatory character {} and phase {} rad",
-                Short(velocity),
-                Short(period),
-                Short(gamma),
-                Short(phase)
-            ),
+            Self::CycloidC { velocity, period, cycles } => {
+                of_period(f, "cycloidal pulse C", velocity, "m/s", period)?;
+                write!(f, " with {cycles} main cycles")
+            }
+            Self::MavroeidisPapageorgiou { velocity, period, gamma, phase } => {
+                let [velocity, period, gamma, phase] = [velocity, period, gamma, phase].map(Short);
+                write!(
+                    f,
+                    "pulse of Mavroeidis and Papageorgiou of {velocity} m/s, period {period} s, \
+                     oscillatory character {gamma} and phase {phase} rad"
+                )
+            }
         }
     }
 }
@@ -118,12 +93,8 @@ impl Display for Envelope {
                 Short(decay)
             ),
             Self::SaragoniHart { peak, exponent } => {
-                write!(
-                    f,
-                    "with its peak at {} s and exponent {} (Saragoni and Hart)",
-                    Short(peak),
-                    Short(exponent)
-                )
+                let [peak, exponent] = [peak, exponent].map(Short);
+                write!(f, "with its peak at {peak} s and exponent {exponent} (Saragoni and Hart)")
             }
         }
     }

@@ -3,6 +3,7 @@
 use crate::error::MotionError;
 use crate::matching::{Best, GOOD_ENOUGH, Matching, PATIENCE, Work, matched_periods};
 use crate::math::{self, TAU};
+use crate::normal_equations::System;
 use crate::response::{Bank, Step, TOGETHER};
 
 /// Share of the misfit taken out in one round; more makes peaks jump to other times.
@@ -12,8 +13,6 @@ const RELAXATION: f64 = 0.6;
 const WATCHED: f64 = 0.85;
 /// Weight of a watched extremum that is not too high.
 const WATCHED_WEIGHT: f64 = 0.4;
-/// Ridge relative to the largest diagonal entry, which keeps neighbors from fighting.
-const RIDGE: f64 = 1e-2;
 
 /// Times a correction is solved again so that it lifts no other extremum above its goal.
 const BOUNDING: usize = 5;
@@ -25,6 +24,10 @@ const POLISHED: f64 = 0.95;
 /// Share of the tolerance within which polishing leaves a peak as it is: the less is asked for, the less
 /// is disturbed.
 const BAND: f64 = 0.6;
+/// Least number of lines to a period of a wavelet when oscillators answer to it.
+const STEPS_A_PERIOD: f64 = 40.0;
+/// Logarithm of the decay after which a free vibration counts as over.
+const FORGOTTEN: f64 = 7.0;
 /// Ratio of two periods that are too near each other for wavelets of their own.
 const NEIGHBOR: f64 = 1.006;
 
@@ -41,7 +44,6 @@ struct Oscillator {
     period: f64,
     /// Target pseudo-acceleration (m/s²).
     goal: f64,
-    step: Step,
 }
 
 /// One equation: the response of an oscillator at `sample` shall change by `change`.
@@ -57,36 +59,44 @@ pub(crate) fn match_in_time(
     work: &Work<'_>,
     start: &[f64],
     settings: &Matching,
-) -> Result<(Vec<f64>, usize), MotionError> {
-    let mut a = work.close(start)?;
-    let mut best = Best::new(&a);
+    all: &mut Best,
+) -> Result<Vec<f64>, MotionError> {
+    let mut a = start.to_vec();
+    let (mut best, mut gained) = (Best::new(&a), 0);
+    // Far from the target the peaks alone lead on fastest.
+    let alone = 2 * settings.rounds / 3;
     for round in 1..=settings.rounds {
-        // Far from the target the peaks alone lead on fastest.
-        let watching = round > 2 * settings.rounds / 3;
-        if round == 2 * settings.rounds / 3 + 1 && best.round > 0 {
+        let watching = round > alone;
+        if round == alone + 1 && gained > 0 {
             a.clone_from(&best.acceleration);
         }
-        best.offer(&a, work.judged_misfit(&a), round);
-        let stalled = watching && round > best.round.max(2 * settings.rounds / 3) + PATIENCE;
+        if best.offer(&a, work.judged_misfit(&a)) {
+            gained = round;
+        }
+        let stalled = watching && round > gained.max(alone) + PATIENCE;
         if best.misfit <= GOOD_ENOUGH * settings.tolerance || stalled {
             break;
         }
         a = work.close(&corrected(work, &a, &matched_periods(settings, round), watching))?;
+        all.rounds += 1;
     }
-    Ok((best.acceleration, best.round))
+    all.offer(&best.acceleration, work.misfit(&best.acceleration));
+    Ok(best.acceleration)
 }
 
 /// Rounds that go from the best motion every time, by as much of the correction as makes it better;
 /// gives up after [`PATIENCE`] rounds that did not.
 pub(crate) fn polish(
     work: &Work<'_>,
-    start: &[f64],
+    mut best: Vec<f64>,
     settings: &Matching,
-) -> Result<(Vec<f64>, usize), MotionError> {
-    let mut best = start.to_vec();
-    let mut fit = work.fit(start);
+    all: &mut Best,
+) -> Result<(), MotionError> {
+    let mut fit = work.fit(&best);
     let (mut gained, mut share) = (0, LARGEST_SHARE);
     let target = POLISHED * settings.tolerance;
+    // Below it the exact misfit, which costs more, may be low enough.
+    let mut promising = target;
     for round in 1..=settings.rounds {
         // Every third round asks for all, lest the rest wander to the edge of the band.
         let band = if round % 3 == 0 { 0.0 } else { BAND * settings.tolerance };
@@ -100,25 +110,31 @@ pub(crate) fn polish(
         periods.sort_by(f64::total_cmp);
         periods.dedup_by(|b, a| *b < NEIGHBOR * *a);
         let full = work.close(&bounded(work, &best, &periods, band))?;
+        all.rounds += 1;
         for _ in 0..2 {
             let tried: Vec<f64> =
                 best.iter().zip(&full).map(|(a, b)| a + share * (b - a)).collect();
             let now = work.fit(&tried);
             if now.roughness < fit.roughness {
                 (best, fit, gained) = (tried, now, round);
-                if fit.misfit <= target && work.misfit(&best) <= target {
-                    return Ok((best, round));
-                }
                 share = (2.0 * share).min(LARGEST_SHARE);
                 break;
             }
             share = (0.5 * share).max(SMALLEST_SHARE);
         }
+        if fit.misfit <= promising {
+            let exact = work.misfit(&best);
+            if exact <= target {
+                break;
+            }
+            promising = fit.misfit - (exact - target);
+        }
         if round > gained + PATIENCE {
             break;
         }
     }
-    Ok((best, gained))
+    all.offer(&best, work.misfit(&best));
+    Ok(())
 }
 
 /// The motion with the wavelets of one round added.
@@ -126,22 +142,22 @@ fn corrected(work: &Work<'_>, a: &[f64], periods: &[f64], watching: bool) -> Vec
     let oscillators = oscillators(work, periods);
     let mut wavelets = Vec::with_capacity(oscillators.len());
     let mut demands = Vec::new();
-    for (k, oscillator) in oscillators.iter().enumerate() {
-        let threshold = if watching { WATCHED * oscillator.goal } else { f64::INFINITY };
-        let extrema = extrema(a, oscillator, threshold);
-        let peak = demand(&extrema, k, oscillator, work.time_step, &mut demands);
+    let share = if watching { WATCHED } else { f64::INFINITY };
+    let extrema = extrema(work, a, &oscillators, share);
+    for (k, (oscillator, extrema)) in oscillators.iter().zip(&extrema).enumerate() {
+        let peak = demand(extrema, k, oscillator, work.time_step, &mut demands);
         wavelets.push(Wavelet::new(oscillator.period, work, peak.sample, a.len()));
     }
-    let amplitudes = solve(work, &oscillators, &wavelets, &demands);
-    added(a, &wavelets, &amplitudes)
+    let rows = rows(work, &oscillators, &wavelets, &demands);
+    let mut system = System::new(wavelets.len());
+    for (demand, row) in demands.iter().zip(rows.chunks_exact(wavelets.len())) {
+        system.add(row, demand.weight * demand.change);
+    }
+    added(a, &wavelets, &system.solve())
 }
 
 fn oscillators(work: &Work<'_>, periods: &[f64]) -> Vec<Oscillator> {
-    let oscillator = |&period: &f64| Oscillator {
-        period,
-        goal: work.target.acceleration(period),
-        step: Step::new(period, work.damping, work.time_step),
-    };
+    let oscillator = |&period: &f64| Oscillator { period, goal: work.target.acceleration(period) };
     periods.iter().map(oscillator).collect()
 }
 
@@ -161,8 +177,8 @@ fn bounded(work: &Work<'_>, a: &[f64], periods: &[f64], band: f64) -> Vec<f64> {
     let oscillators = oscillators(work, periods);
     let (mut wavelets, mut demands, mut values) = (Vec::new(), Vec::new(), Vec::new());
     let mut active = Vec::new();
-    for (k, oscillator) in oscillators.iter().enumerate() {
-        let extrema = extrema(a, oscillator, WATCHED * oscillator.goal);
+    let extrema = extrema(work, a, &oscillators, WATCHED);
+    for (k, (oscillator, extrema)) in oscillators.iter().zip(extrema).enumerate() {
         let mut peak = extrema[0];
         for extremum in &extrema {
             if extremum.value.abs() > peak.value.abs() {
@@ -206,22 +222,6 @@ fn bounded(work: &Work<'_>, a: &[f64], periods: &[f64], band: f64) -> Vec<f64> {
     added(a, &wavelets, &amplitudes)
 }
 
-/// Least-squares amplitudes of the wavelets for the demands, which are in order of period.
-fn solve(
-    work: &Work<'_>,
-    oscillators: &[Oscillator],
-    wavelets: &[Wavelet],
-    demands: &[Demand],
-) -> Vec<f64> {
-    let count = wavelets.len();
-    let rows = rows(work, oscillators, wavelets, demands);
-    let mut system = System::new(count);
-    for (demand, row) in demands.iter().zip(rows.chunks_exact(count)) {
-        system.add(row, demand.weight * demand.change);
-    }
-    system.solve()
-}
-
 /// Weighted responses at every demand to every wavelet of amplitude 1, row by row.
 fn rows(
     work: &Work<'_>,
@@ -238,35 +238,68 @@ fn rows(
         // What is asked of these oscillators, in order of time.
         let mut asked: Vec<usize> = (first..last).collect();
         asked.sort_by_key(|&row| demands[row].sample);
-        let steps: Vec<Step> = some.iter().map(|oscillator| oscillator.step).collect();
-        let free: Vec<FreeVibration> = some
-            .iter()
-            .map(|oscillator| FreeVibration::new(oscillator.period, work.damping, work.time_step))
-            .collect();
+        let group = Group::new(work, some, wavelets);
         for (j, wavelet) in wavelets.iter().enumerate() {
-            let mut bank = Bank::new(&steps);
-            let (mut at, end) = (wavelet.first, wavelet.first + wavelet.values.len());
-            let value = |k: usize| wavelet.values.get(k - wavelet.first).copied().unwrap_or(0.0);
+            let mut bank = group.bank(wavelet.stride);
+            let mut at = 0;
             for &row in &asked {
                 let demand = &demands[row];
-                if demand.sample <= wavelet.first {
-                    continue;
-                }
-                while at < demand.sample.min(end) {
-                    bank.advance(-value(at), -value(at + 1));
+                let Some(since) = demand.sample.checked_sub(wavelet.first) else { continue };
+                let k = demand.oscillator % TOGETHER;
+                let whole = (since / wavelet.stride).min(wavelet.coarse());
+                while at < whole {
+                    bank.advance(-wavelet.at(at), -wavelet.at(at + 1));
                     at += 1;
                 }
-                let k = demand.oscillator % TOGETHER;
-                let u = match demand.sample.checked_sub(end) {
-                    None | Some(0) => bank.u[k],
-                    Some(after) => free[k].displacement((bank.u[k], bank.rates()[k]), after),
-                };
-                rows[row * count + j] = demand.weight * free[k].stiffness * u;
+                let u = group.on(k, &bank, wavelet, whole, since);
+                rows[row * count + j] = demand.weight * group.free[k].stiffness * u;
             }
         }
         first = last;
     }
     rows
+}
+
+/// Oscillators that answer to wavelets together.
+struct Group {
+    /// Of each, the steps of 1, 2, 3, ... samples.
+    steps: Vec<Vec<Step>>,
+    free: Vec<FreeVibration>,
+}
+
+impl Group {
+    fn new(work: &Work<'_>, oscillators: &[Oscillator], wavelets: &[Wavelet]) -> Self {
+        let longest = wavelets.iter().map(|wavelet| wavelet.stride).max().unwrap_or(1);
+        let of =
+            |o: &Oscillator, n: usize| Step::new(o.period, work.damping, n as f64 * work.time_step);
+        let steps = |o: &Oscillator| (1..=longest).map(|n| of(o, n)).collect();
+        let free = |o: &Oscillator| FreeVibration::new(o.period, work.damping, work.time_step);
+        Self {
+            steps: oscillators.iter().map(steps).collect(),
+            free: oscillators.iter().map(free).collect(),
+        }
+    }
+
+    fn bank(&self, stride: usize) -> Bank {
+        let steps: Vec<Step> = self.steps.iter().map(|steps| steps[stride - 1]).collect();
+        Bank::new(&steps)
+    }
+
+    /// Displacement of oscillator `k`, `since` samples after a wavelet began, from the bank's state after
+    /// `whole` of the wavelet's strides.
+    fn on(&self, k: usize, bank: &Bank, wavelet: &Wavelet, whole: usize, since: usize) -> f64 {
+        let (u, v) = (bank.u[k], bank.v[k]);
+        let left = since - whole * wavelet.stride;
+        if whole == wavelet.coarse() {
+            return self.free[k].displacement((u, v), left);
+        }
+        if left == 0 {
+            return u;
+        }
+        let (load, next) = (-wavelet.at(whole), -wavelet.at(whole + 1));
+        let end = load + (next - load) * left as f64 / wavelet.stride as f64;
+        self.steps[k][left - 1].advance(u, v, load, end).0
+    }
 }
 
 /// Adds the demands of one oscillator and returns its peak.
@@ -300,37 +333,51 @@ fn demand(
     peak
 }
 
-/// Local extrema of the response above `threshold`, and the largest in any case.
-fn extrema(a: &[f64], oscillator: &Oscillator, threshold: f64) -> Vec<Extremum> {
-    let w = TAU / oscillator.period;
-    let (mut u, mut v) = (0.0_f64, 0.0_f64);
-    let mut found = Vec::new();
-    let mut largest = Extremum { sample: 1, value: 0.0 };
-    let (mut before, mut here) = (0.0_f64, 0.0_f64);
-    for (k, pair) in a.windows(2).enumerate() {
-        (u, v) = oscillator.step.advance(u, v, -pair[0], -pair[1]);
-        let after = w * w * u;
-        // `here` belongs to sample k.
-        if here.abs() >= before.abs() && here.abs() > after.abs() && here.abs() > threshold {
-            found.push(Extremum { sample: k, value: here });
+/// Local extrema of every oscillator's response above a share of its goal, and the largest in any case.
+fn extrema(
+    work: &Work<'_>,
+    a: &[f64],
+    oscillators: &[Oscillator],
+    share: f64,
+) -> Vec<Vec<Extremum>> {
+    let layers = work.layers(a);
+    let mut all = Vec::with_capacity(oscillators.len());
+    for some in oscillators.chunks(TOGETHER) {
+        let periods: Vec<f64> = some.iter().map(|oscillator| oscillator.period).collect();
+        let threshold: [f64; TOGETHER] =
+            std::array::from_fn(|k| some.get(k).map_or(f64::INFINITY, |o| share * o.goal));
+        let mut found: Vec<Vec<Extremum>> = vec![Vec::new(); some.len()];
+        let mut largest = [Extremum { sample: 1, value: 0.0 }; TOGETHER];
+        let (mut before, mut here, mut at) = ([0.0_f64; TOGETHER], [0.0_f64; TOGETHER], 0);
+        layers.follow(&periods, work.damping, |sample, after| {
+            for k in 0..TOGETHER {
+                let size = here[k].abs();
+                if size > threshold[k] && size >= before[k].abs() && size > after[k].abs() {
+                    found[k].push(Extremum { sample: at, value: here[k] });
+                }
+                if after[k].abs() > largest[k].value.abs() {
+                    largest[k] = Extremum { sample, value: after[k] };
+                }
+            }
+            (before, here, at) = (here, *after, sample);
+        });
+        for (found, largest) in found.iter_mut().zip(largest) {
+            if found.iter().all(|extremum| extremum.sample != largest.sample) {
+                found.push(largest);
+                found.sort_by_key(|extremum| extremum.sample);
+            }
         }
-        if after.abs() > largest.value.abs() {
-            largest = Extremum { sample: k + 1, value: after };
-        }
-        before = here;
-        here = after;
+        all.append(&mut found);
     }
-    if found.iter().all(|extremum| extremum.sample != largest.sample) {
-        found.push(largest);
-        found.sort_by_key(|extremum| extremum.sample);
-    }
-    found
+    all
 }
 
 /// A tapered cosine whose oscillator answers with a peak at a given sample.
 struct Wavelet {
     first: usize,
     values: Vec<f64>,
+    /// Samples that a line may span when oscillators answer to it.
+    stride: usize,
 }
 
 impl Wavelet {
@@ -351,14 +398,34 @@ impl Wavelet {
         )]
         let index = |t: f64| (t / time_step).clamp(0.0, (n - 1) as f64) as usize;
         let (first, last) = (index(center - reach), index(center + reach));
-        let values = (first..=last)
-            .map(|k| {
-                let s = k as f64 * time_step - center;
-                let x = s / gamma;
-                math::cos(w * s) * math::exp(-x * x)
-            })
-            .collect();
-        Self { first, values }
+        // Cosine and bell go from sample to sample by products.
+        let (turn_s, turn_c) = math::sin_cos(w * time_step);
+        let from = first as f64 * time_step - center;
+        let (mut s, mut c) = math::sin_cos(w * from);
+        let width = time_step / gamma;
+        let x = from / gamma;
+        let mut bell = math::exp(-x * x);
+        let mut ratio = math::exp(-width * (2.0 * x + width));
+        let squared = math::exp(-2.0 * width * width);
+        let mut values = Vec::with_capacity(last + 1 - first);
+        for _ in first..=last {
+            values.push(c * bell);
+            (s, c) = (s * turn_c + c * turn_s, c * turn_c - s * turn_s);
+            (bell, ratio) = (bell * ratio, ratio * squared);
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1000")]
+        let stride = (period / (STEPS_A_PERIOD * time_step)).clamp(1.0, 1000.0) as usize;
+        Self { first, values, stride }
+    }
+
+    /// Its whole strides; past the last one it is nothing.
+    fn coarse(&self) -> usize {
+        self.values.len().div_ceil(self.stride)
+    }
+
+    /// Its value after a number of strides.
+    fn at(&self, strides: usize) -> f64 {
+        self.values.get(strides * self.stride).copied().unwrap_or(0.0)
     }
 }
 
@@ -379,55 +446,10 @@ impl FreeVibration {
 
     fn displacement(&self, (u, v): (f64, f64), steps: usize) -> f64 {
         let t = self.time_step * steps as f64;
+        if self.decay * t > FORGOTTEN {
+            return 0.0;
+        }
         let (s, c) = math::sin_cos(self.frequency * t);
         math::exp(-self.decay * t) * (u * c + (v + self.decay * u) / self.frequency * s)
-    }
-}
-
-/// Normal equations `(CᵀC + λI) b = Cᵀ r` of many demands on few wavelets, solved by Cholesky
-/// factors.
-struct System {
-    size: usize,
-    normal: Vec<f64>,
-    right: Vec<f64>,
-}
-
-impl System {
-    fn new(size: usize) -> Self {
-        Self { size, normal: vec![0.0; size * size], right: vec![0.0; size] }
-    }
-
-    fn add(&mut self, row: &[f64], value: f64) {
-        for j in 0..self.size {
-            self.right[j] += row[j] * value;
-            for k in 0..=j {
-                self.normal[j * self.size + k] += row[j] * row[k];
-            }
-        }
-    }
-
-    fn solve(mut self) -> Vec<f64> {
-        let n = self.size;
-        let m = &mut self.normal;
-        let largest = (0..n).map(|k| m[k * n + k]).fold(0.0, f64::max);
-        for k in 0..n {
-            m[k * n + k] += RIDGE * RIDGE * largest;
-        }
-        for j in 0..n {
-            for k in 0..=j {
-                let sum = (0..k).fold(m[j * n + k], |sum, i| sum - m[j * n + i] * m[k * n + i]);
-                m[j * n + k] = if j == k { sum.max(1e-300).sqrt() } else { sum / m[k * n + k] };
-            }
-        }
-        let mut b = self.right;
-        for j in 0..n {
-            let sum = (0..j).fold(b[j], |sum, k| sum - m[j * n + k] * b[k]);
-            b[j] = sum / m[j * n + j];
-        }
-        for j in (0..n).rev() {
-            let sum = (j + 1..n).fold(b[j], |sum, k| sum - m[k * n + j] * b[k]);
-            b[j] = sum / m[j * n + j];
-        }
-        b
     }
 }

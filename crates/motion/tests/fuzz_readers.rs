@@ -18,16 +18,22 @@ use barrelstack_motion::{
     AccelerationUnit, Component, Direction, FORMATS, Horizontals, IntensityMeasure, Random,
     ReadOptions, read,
 };
-use fuzz::{must_hold, mutate, options, samples, samples_of};
+use fuzz::{Reader, must_hold, mutate, options, samples, samples_of};
 
 /// Mutated files to a sample.
 const MUTATIONS: u32 = 400;
 
 #[test]
-fn every_format_has_a_sample_to_be_damaged() {
+fn every_reader_has_a_sample_to_be_damaged() {
     let samples = samples();
-    for format in FORMATS {
-        assert!(!samples_of(format, &samples).is_empty(), "{} has no sample", format.name);
+    for reader in Reader::all() {
+        let own = samples_of(reader, &samples);
+        assert!(!own.is_empty(), "{} has no sample", reader.name());
+    }
+    for reader in [Reader::Packed, Reader::StationXml, Reader::Flatfile] {
+        for sample in samples_of(reader, &samples) {
+            assert!(reader.take(&sample.bytes, &ReadOptions::default()), "{}", sample.name);
+        }
     }
 }
 
@@ -57,7 +63,7 @@ fn samples_grow_to_large_files_that_their_readers_take() {
     };
     for name in growing {
         let format = FORMATS.iter().find(|format| format.name == name).unwrap();
-        let most = samples_of(format, &samples)
+        let most = samples_of(Reader::Format(format), &samples)
             .iter()
             .flat_map(|sample| large::sound(&sample.bytes))
             .filter_map(|bytes| format.read(&bytes, "large", &given).ok())
@@ -75,7 +81,7 @@ fn mutated_files_never_panic_a_reader() {
     let (mut done, mut refused) = (0, 0);
     for sample in &samples {
         let folder = sample.name.split('/').next().unwrap();
-        let format = FORMATS.iter().find(|format| format.name == folder);
+        let reader = Reader::all().into_iter().find(|reader| reader.name() == folder);
         for _ in 0..MUTATIONS {
             let mutated = mutate(&sample.bytes, &samples, &mut random);
             let options = options(&mut random);
@@ -86,8 +92,8 @@ fn mutated_files_never_panic_a_reader() {
             } else {
                 refused += 1;
             }
-            if let Some(format) = format {
-                must_hold(&format.read(&mutated, &sample.name, &options));
+            if let Some(reader) = reader {
+                reader.take(&mutated, &options);
             }
         }
     }

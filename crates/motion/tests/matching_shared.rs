@@ -28,6 +28,7 @@ const RECORDS: [&str; 8] = [
 ];
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "sixteen matches take a minute; run in release")]
 fn real_records_meet_codes_in_the_frequency_domain() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions/peer");
     if !folder.is_dir() {
@@ -67,6 +68,7 @@ fn real_records_meet_codes_in_the_frequency_domain() {
             }
         }
     }
+    // Measured: 15, at 3.8 to 4.7 %; PEL360 to EN 1998-1 stalls at 5.7 %.
     println!("{met} of 16");
     assert!(met >= 15, "{met}");
 }

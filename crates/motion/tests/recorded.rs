@@ -294,25 +294,7 @@ fn measures_of_both_horizontals_need_directions_that_are_known_and_perpendicular
     assert!(pair("N", "UP").unwrap_err().contains("two horizontal components"));
 }
 
-const STATION_XML: &str = r#"<?xml version="1.0"?>
-<FDSNStationXML xmlns="http://www.fdsn.org/xml/station/1">
- <Network code="ZZ"><Station code="XXXX">
-  <Channel code="HNE" locationCode="00" startDate="1990-01-01T00:00:00" endDate="2000-01-01T00:00:00">
-   <Response><InstrumentSensitivity><Value>1</Value>
-    <InputUnits><Name>M/S**2</Name></InputUnits></InstrumentSensitivity></Response>
-  </Channel>
-  <Channel locationCode="00" code="HNE" startDate="2000-01-01T00:00:00">
-   <Latitude>38.5</Latitude><Longitude>-120.5</Longitude><Elevation>697</Elevation>
-   <Azimuth>85.5</Azimuth><Dip>0</Dip>
-   <Response><InstrumentSensitivity><Value>2000</Value>
-    <InputUnits><Name>m/s**2</Name></InputUnits></InstrumentSensitivity></Response>
-  </Channel>
-  <Channel locationCode="00" code="HHE" startDate="2000-01-01T00:00:00">
-   <Response><InstrumentSensitivity><Value>500</Value>
-    <InputUnits><Name>M/S</Name></InputUnits></InstrumentSensitivity></Response>
-  </Channel>
- </Station></Network>
-</FDSNStationXML>"#;
+const STATION_XML: &str = include_str!("data/stationxml/example.xml");
 
 #[test]
 fn station_xml_gives_each_channel_its_sensitivity_direction_and_place() {

@@ -7,8 +7,8 @@
 )]
 
 use barrelstack_motion::{
-    Candidate, Choosing, Condition, Random, STANDARD_GRAVITY, SelectionTarget, TargetSpectrum,
-    select, spectral_correlation,
+    Candidate, Choosing, Condition, Random, STANDARD_GRAVITY, Selection, SelectionTarget,
+    TargetSpectrum, select, spectral_correlation,
 };
 
 /// Median (g) and standard deviation of ln Sa of Campbell and Bozorgnia (2008) for M 7 at 10 km, Vs30
@@ -121,10 +121,18 @@ fn a_set_meets_a_published_target_in_mean_and_spread() {
     let target = target(Some(2.0));
     let library = library(2000);
     let found = select(&target, &library, &choosing(40)).unwrap();
-    let (median, deviation) = (found.median_error(&target), found.deviation_error(&target));
-    println!("median {median:.4}, deviation {deviation:.4}, rounds {}", found.rounds);
-    // Measured: 2 % and 4 %.
-    assert!(median < 0.05 && deviation < 0.1);
+    let near = |found: &Selection| {
+        let (median, deviation) = (found.median_error(&target), found.deviation_error(&target));
+        println!("median {median:.4}, deviation {deviation:.4}, rounds {}", found.rounds);
+        median < 0.05 && deviation < 0.1
+    };
+    // Measured: 1.3 % and 2.6 %.
+    assert!(near(&found));
+    // Whatever the seed, and from a fifth of the records: measured 2.0 % and 4.1 % at most.
+    for seed in 2..6 {
+        let choosing = Choosing { seed, ..choosing(40) };
+        assert!(near(&select(&target, &library[..400], &choosing).unwrap()));
+    }
     let (at, given) = target.condition().unwrap();
     for chosen in &found.chosen {
         let sa = chosen.scale * library[chosen.candidate].spectrum[at];
@@ -146,7 +154,7 @@ fn a_set_meets_a_target_without_condition_and_a_spectrum_without_spread() {
     let found = select(&free, &library, &choosing(40)).unwrap();
     let (median, deviation) = (found.median_error(&free), found.deviation_error(&free));
     println!("free: median {median:.4}, deviation {deviation:.4}");
-    // Measured: 1 % and 3 %.
+    // Measured: 1.5 % and 2.7 %.
     assert!(median < 0.05 && deviation < 0.1);
     let table = TargetSpectrum::Table {
         points: MODEL.iter().map(|row| (row.0, STANDARD_GRAVITY * row.1)).collect(),

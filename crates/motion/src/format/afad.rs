@@ -5,9 +5,8 @@
 use super::source::{LARGEST_ACCELERATION, Source, latin1, leading_number, resolution, shorten};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
-use crate::error::{ReadError, Refusal};
-use crate::math;
-use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::error::ReadError;
+use crate::record::{Channel, Record, Stage};
 use crate::site::{Site, position};
 use crate::utc::{DateOrder, Utc};
 
@@ -37,12 +36,10 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             leading_number(text.as_bytes()).map(|(value, _)| (*line, value))
         });
         value.ok_or_else(|| {
-            source.error(
+            source.header(
                 found.as_ref().map(|(line, _)| *line),
-                Refusal::Damaged,
                 format!("a number for \"{key}\""),
                 found.as_ref().map_or("none".to_owned(), |(_, text)| format!("\"{text}\"")),
-                "restore the header from the original file",
             )
         })
     };
@@ -56,15 +53,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     record.station = format!("{station} {place}");
     let names_line = (0..MOST_HEADER_LINES)
         .find(|&line| !source.has(line, ":") && source.has(line, "N-S") && source.has(line, "E-W"))
-        .ok_or_else(|| {
-            source.error(
-                (),
-                Refusal::Damaged,
-                "a line of column names, N-S, E-W and U-D",
-                "none",
-                "restore the header from the original file",
-            )
-        })?;
+        .ok_or_else(|| source.header((), "a line of column names, N-S, E-W and U-D", "none"))?;
     let text = source.text(names_line);
     let names: Vec<&str> = text.split_whitespace().collect();
     let limit = LARGEST_ACCELERATION / GAL;
@@ -80,12 +69,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             .split_once(&format!("({name})"))
             .and_then(|(_, rest)| leading_number(rest.as_bytes()));
         if let Some((value, digits)) = stated {
-            channel.peaks.push(StatedPeak {
-                quantity: Quantity::Acceleration,
-                stated: value.abs() * GAL,
-                resolution: resolution(&digits) * GAL,
-                measured: math::peak(&channel.acceleration),
-            });
+            channel.state_peak(value, resolution(&digits), GAL);
         }
         record.channels.push(channel);
     }

@@ -3,7 +3,7 @@
 //! Spec: header lines of files from the Iran Strong Motion Network (Building and Housing Research
 //! Center); the layout descends from CDMG volume 1 with equally spaced values.
 
-use super::source::{Columns, LARGEST_ACCELERATION, Source, shorten};
+use super::source::{Columns, LARGEST_ACCELERATION, Source, quoted};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
@@ -40,11 +40,10 @@ fn read_component(
     first: usize,
 ) -> Result<usize, ReadError> {
     if !source.has(first, "VOL1DS FILE") {
-        return Err(source.error(
+        return Err(source.damaged(
             first,
-            Refusal::Damaged,
             "\"* VOL1DS FILE\" at the start of a component",
-            format!("\"{}\"", shorten(&source.text(first))),
+            quoted(&source.text(first)),
             "lines are missing or in excess before this one; get the file again from its source",
         ));
     }
@@ -53,12 +52,10 @@ fn read_component(
         .number_after(count_line, "POINTS")
         .zip(source.number_after(count_line, "DURATION"))
         .ok_or_else(|| {
-            source.error(
+            source.header(
                 count_line.min(source.lines.len().saturating_sub(1)),
-                Refusal::Damaged,
                 "number of points and duration",
-                format!("\"{}\"", shorten(&source.text(count_line))),
-                "restore the header from the original file",
+                quoted(&source.text(count_line)),
             )
         })?;
     let count = super::whole(source, count_line, "a number of points", stated.0)?;
@@ -69,12 +66,12 @@ fn read_component(
             first + 11,
             Refusal::NotAcceleration,
             "\"UNITS ARE SECONDS AND G/10\"",
-            format!("\"{}\"", shorten(&source.text(first + 11))),
+            quoted(&source.text(first + 11)),
             "give the volume 1 acceleration file",
         ));
     }
     let unit = AccelerationUnit::TenthG;
-    let (mut values, mut next) = source.counted(
+    let (mut values, next) = source.counted(
         record,
         first + HEADER_LINES,
         count,
@@ -98,20 +95,7 @@ fn read_component(
     let elevation = source.number_after(first + 7, "Altitude");
     channel.site = Site { elevation, ..Site::default() }.at(position(&about));
     record.channels.push(channel);
-    if next < source.lines.len() {
-        if !source.text(next).starts_with("/&") {
-            return Err(source.error(
-                next,
-                Refusal::Damaged,
-                "the end of the component, \"/&\"",
-                format!("\"{}\"", shorten(&source.text(next))),
-                "the header states another number of points than the file holds; get the file \
-                 again from its source",
-            ));
-        }
-        next += 1;
-    }
-    Ok(next)
+    source.end_of_channel(next, "VOL1DS FILE")
 }
 
 /// `Azimuth L 50    T 140`: either may be missing.

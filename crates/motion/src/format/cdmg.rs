@@ -3,7 +3,7 @@
 
 use super::ReadOptions;
 use super::even::{Timed, even_steps};
-use super::source::{Columns, LARGEST_ACCELERATION, Source, latin1};
+use super::source::{Columns, LARGEST_ACCELERATION, Source, latin1, quoted};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::math::{self, STANDARD_GRAVITY};
@@ -44,11 +44,10 @@ fn read_block(
     first: usize,
 ) -> Result<usize, ReadError> {
     if !source.has(first, "UNCORRECTED ACCELEROGRAM") {
-        return Err(source.error(
+        return Err(source.damaged(
             first,
-            Refusal::Damaged,
             "\"UNCORRECTED ACCELEROGRAM DATA\" at the start of a channel",
-            format!("\"{}\"", super::source::shorten(&source.text(first))),
+            quoted(&source.text(first)),
             "lines are missing or in excess before this one; get the file again from its source",
         ));
     }
@@ -68,7 +67,7 @@ fn read_block(
     let equal = source.has(data, "points");
     let unit = unit(source, if equal { data } else { first + 11 }, options)?;
     let limit = LARGEST_ACCELERATION / unit.factor();
-    let (time_step, mut values, mut next) = if equal {
+    let (time_step, mut values, next) = if equal {
         read_equal(source, record, data, limit)?
     } else {
         let count = source
@@ -96,26 +95,7 @@ fn read_block(
         channel.peaks.push(peak);
     }
     record.channels.push(channel);
-    while next < source.lines.len() && source.raw(next).trim_ascii().is_empty() {
-        next += 1;
-    }
-    if next < source.lines.len() {
-        if !source.text(next).starts_with("/&") && !source.has(next, "END OF DATA") {
-            if source.has(next, "UNCORRECTED ACCELEROGRAM") {
-                return Ok(next);
-            }
-            return Err(source.error(
-                next,
-                Refusal::Damaged,
-                "the end of the channel, \"/&\"",
-                format!("\"{}\"", super::source::shorten(&source.text(next))),
-                "the header states another number of points than the file holds; get the file \
-                 again from its source",
-            ));
-        }
-        next += 1;
-    }
-    Ok(next)
+    source.end_of_channel(next, "UNCORRECTED ACCELEROGRAM")
 }
 
 /// `31932 Accelerogram points at 100 pts/sec in units of g. Format: (8f9.6)` or
@@ -157,13 +137,7 @@ pub(crate) fn format_in(source: &Source<'_>, line: usize) -> Option<Columns> {
 }
 
 fn missing(source: &Source<'_>, line: usize, what: &str) -> ReadError {
-    source.error(
-        line,
-        Refusal::Damaged,
-        what,
-        format!("\"{}\"", super::source::shorten(&source.text(line))),
-        "restore the header from the original file",
-    )
+    source.header(line, what, quoted(&source.text(line)))
 }
 
 /// The name in columns 1 to 40; behind it stand network and kind of data.
@@ -231,7 +205,7 @@ fn unit(
             line,
             Refusal::Missing,
             "a unit of acceleration",
-            format!("\"{}\"", super::source::shorten(&source.text(line))),
+            quoted(&source.text(line)),
             "state the unit (g, g/10, cm/s2)",
         )
     })

@@ -3,7 +3,7 @@
 //! Neither unit nor step is ever guessed: both come from header words, a time column, or the caller.
 
 use super::even::{Timed, even_steps};
-use super::source::{Source, latin1, shorten};
+use super::source::{Source, latin1, quoted};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
@@ -143,7 +143,7 @@ fn refuse_other_quantities(source: &Source<'_>, first: usize) -> Result<(), Read
                     line,
                     Refusal::NotAcceleration,
                     "accelerations",
-                    format!("\"{}\"", shorten(&text)),
+                    quoted(&text),
                     "give the acceleration history",
                 ));
             }
@@ -200,9 +200,8 @@ fn table(source: &Source<'_>, first: usize, end: usize) -> Result<Vec<Vec<f64>>,
             if line + 1 == end && row.len() < width && !is_time(&columns[0]) {
                 continue;
             }
-            return Err(source.error(
+            return Err(source.damaged(
                 (line, source.end_of(line)),
-                Refusal::Damaged,
                 format!("{width} numbers"),
                 format!("{} numbers", row.len()),
                 "the file is cut or a line was lost; get it again from its source",

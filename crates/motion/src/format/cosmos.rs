@@ -3,12 +3,14 @@
 //! Every count and Fortran format is read from the line that states it.
 //! Spec: Strong-Motion Data Format of the COSMOS Board, version 1.20 (2001), tables 2 to 6.
 
-use super::source::{Columns, LARGEST_ACCELERATION, Source, latin1, leading_number, shorten};
+use super::source::{
+    Columns, LARGEST_ACCELERATION, Source, latin1, leading_number, quoted, shorten,
+};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::math::{self, STANDARD_GRAVITY};
-use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
 use crate::utc::Utc;
 
@@ -81,11 +83,10 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
 }
 
 fn damaged(source: &Source<'_>, line: usize, expected: &str) -> ReadError {
-    source.error(
+    source.damaged(
         line.min(source.lines.len().saturating_sub(1)),
-        Refusal::Damaged,
         expected,
-        format!("\"{}\"", shorten(&source.text(line))),
+        quoted(&source.text(line)),
         "lines are missing or in excess; get the file again from its source",
     )
 }
@@ -177,7 +178,7 @@ fn read_channel(
         return Ok((Err(refuse(format!("quantity {} ({text})", quantity.unwrap_or(0)))), next));
     }
     if text.contains("velocity") || text.contains("displacement") {
-        return Ok((Err(refuse(format!("\"{}\"", shorten(&text)))), next));
+        return Ok((Err(refuse(quoted(&text))), next));
     }
     let factor = match unit {
         Some(UNIT_G) => STANDARD_GRAVITY,
@@ -214,12 +215,7 @@ fn read_channel(
     channel.start = start(header);
     channel.site = site(source, first, header);
     if let Some(peak) = header.real(64) {
-        channel.peaks.push(StatedPeak {
-            quantity: Quantity::Acceleration,
-            stated: peak.abs() * factor,
-            resolution: 1e-6 * factor,
-            measured: math::peak(&channel.acceleration),
-        });
+        channel.state_peak(peak, 1e-6, factor);
     }
     if unit == Some(UNIT_COUNTS) {
         let offset = math::mean(&channel.acceleration);

@@ -4,7 +4,7 @@
 //! Spec: Shakal, Huang and Rojahn 1985, CSMIP report OSMS 85-03.
 
 use super::cdmg::{channel_name, format_in, start, station_name};
-use super::source::{Columns, LARGEST_ACCELERATION, Source, latin1, leading_number, shorten};
+use super::source::{Columns, LARGEST_ACCELERATION, Source, latin1, leading_number, quoted};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
@@ -55,11 +55,10 @@ fn read_channel(
     first: usize,
 ) -> Result<usize, ReadError> {
     if !source.has(first, "CORRECTED ACCELEROGRAM") {
-        return Err(source.error(
+        return Err(source.damaged(
             first,
-            Refusal::Damaged,
             "\"Corrected accelerogram\" at the start of a channel",
-            format!("\"{}\"", shorten(&source.text(first))),
+            quoted(&source.text(first)),
             "lines are missing or in excess before this one; get the file again from its source",
         ));
     }
@@ -90,7 +89,7 @@ fn read_channel(
                     first + HEADER_LINES,
                     Refusal::NotAcceleration,
                     "a line such as \"7500 points of accel data equally spaced at .010 sec\"",
-                    format!("\"{}\"", shorten(&source.text(first + HEADER_LINES))),
+                    quoted(&source.text(first + HEADER_LINES)),
                     "give the file that holds the accelerations",
                 )
             })?;
@@ -133,23 +132,7 @@ fn read_channel(
         channel.initial_velocity = 0.01 * velocity;
     }
     record.channels.push(channel);
-    while next < source.lines.len() && source.raw(next).trim_ascii().is_empty() {
-        next += 1;
-    }
-    if next < source.lines.len() && !source.has(next, "CORRECTED ACCELEROGRAM") {
-        if !source.text(next).starts_with("/&") && !source.has(next, "end of data") {
-            return Err(source.error(
-                next,
-                Refusal::Damaged,
-                "the end of the channel, \"/&\"",
-                format!("\"{}\"", shorten(&source.text(next))),
-                "a data line states another number of points than the file holds; get the file \
-                 again from its source",
-            ));
-        }
-        next += 1;
-    }
-    Ok(next)
+    source.end_of_channel(next, "CORRECTED ACCELEROGRAM")
 }
 
 /// One block of `key` (acc, vel, dis) if its data line stands here.
@@ -191,7 +174,7 @@ fn unit(
             line,
             Refusal::Missing,
             "a unit of acceleration on the data line",
-            format!("\"{}\"", shorten(&source.text(line))),
+            quoted(&source.text(line)),
             "state the unit (cm/s2 by the rules of this format)",
         )
     })
@@ -204,11 +187,10 @@ fn time_step(source: &Source<'_>, first: usize, data: usize) -> Result<f64, Read
         .or_else(|| source.printed_after(data, "at"))
         .filter(|printed| printed.value > 0.0)
         .ok_or_else(|| {
-            source.error(
+            source.damaged(
                 data,
-                Refusal::Damaged,
                 "the step, such as \"equally spaced at .010 sec\"",
-                format!("\"{}\"", shorten(&source.text(data))),
+                quoted(&source.text(data)),
                 "restore the line from the original file",
             )
         })?;

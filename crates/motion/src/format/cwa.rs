@@ -4,12 +4,11 @@
 //! the columns stands in `#DataSequence`.
 
 use super::even::{Timed, even_steps};
-use super::source::{Columns, LARGEST_ACCELERATION, Source, leading_number, resolution, shorten};
+use super::source::{Columns, LARGEST_ACCELERATION, Source, leading_number, quoted, resolution};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
-use crate::math;
-use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
 use crate::utc::{DateOrder, Utc};
 
@@ -33,15 +32,8 @@ fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
 #[expect(clippy::too_many_lines, reason = "one header, read from top to bottom")]
 fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let need = |key: &str| {
-        field(source, key).ok_or_else(|| {
-            source.error(
-                (),
-                Refusal::Damaged,
-                format!("a header line \"{key}\""),
-                "none",
-                "restore the header from the original file",
-            )
-        })
+        field(source, key)
+            .ok_or_else(|| source.header((), format!("a header line \"{key}\""), "none"))
     };
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
     let (unit_line, unit) = need("#AmplitudeUnit:")?;
@@ -50,20 +42,14 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             unit_line,
             Refusal::NotAcceleration,
             "gal as unit",
-            format!("\"{}\"", shorten(&unit)),
+            quoted(&unit),
             "give the acceleration file of the same station",
         ));
     }
     // "#Data:" with its colon; "#DataSequence:" is another line.
     let (format_line, format) = need("#Data:")?;
     let columns = Columns::parse(&format).ok_or_else(|| {
-        source.error(
-            format_line,
-            Refusal::Damaged,
-            "a Fortran format such as 4F10.3",
-            format!("\"{}\"", shorten(&format)),
-            "restore the header from the original file",
-        )
+        source.header(format_line, "a Fortran format such as 4F10.3", quoted(&format))
     })?;
     let (sequence_line, sequence) = need("#DataSequence:")?;
     let names: Vec<String> = sequence
@@ -73,15 +59,13 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         .filter(|part| !part.is_empty())
         .collect();
     if names.len() + 1 != columns.per_line {
-        return Err(source.error(
+        return Err(source.header(
             sequence_line,
-            Refusal::Damaged,
             format!(
                 "{} components, as {format} has time and one column each",
                 columns.per_line - 1
             ),
-            format!("\"{}\"", shorten(&sequence)),
-            "restore the header from the original file",
+            quoted(&sequence),
         ));
     }
     let limit = LARGEST_ACCELERATION / GAL;
@@ -144,12 +128,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             // Both extremes are stated: "0.658~   -0.837".
             let extremes = text.split('~').filter_map(|part| leading_number(part.as_bytes()));
             if let Some((value, digits)) = extremes.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs())) {
-                channel.peaks.push(StatedPeak {
-                    quantity: Quantity::Acceleration,
-                    stated: value.abs() * GAL,
-                    resolution: resolution(&digits) * GAL,
-                    measured: math::peak(&channel.acceleration),
-                });
+                channel.state_peak(value, resolution(&digits), GAL);
             }
         }
         record.channels.push(channel);

@@ -2,12 +2,11 @@
 //!
 //! Spec: Luzi et al. 2016, "Engineering Strong-Motion database, format DYNA 1.2" (INGV).
 
-use super::source::{LARGEST_ACCELERATION, Source, leading_number, resolution, shorten};
+use super::source::{LARGEST_ACCELERATION, Source, leading_number, quoted, resolution};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
-use crate::math;
-use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
 use crate::units::AccelerationUnit;
 use crate::utc::Utc;
@@ -51,28 +50,16 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         .find(|&line| super::source::parse_number(source.raw(line)).is_some())
         .ok_or_else(|| source.cut("values after the header", "none"))?;
     let need = |key: &str| {
-        field(source, end, key).filter(|(_, value)| !value.is_empty()).ok_or_else(|| {
-            source.error(
-                (),
-                Refusal::Damaged,
-                format!("a value for {key}"),
-                "none",
-                "restore the header from the original file",
-            )
-        })
+        field(source, end, key)
+            .filter(|(_, value)| !value.is_empty())
+            .ok_or_else(|| source.header((), format!("a value for {key}"), "none"))
     };
     let number = |key: &str| {
         let (line, text) = need(key)?;
         let value = leading_number(text.as_bytes()).map(|(value, _)| value);
-        value.map(|value| (line, value)).ok_or_else(|| {
-            source.error(
-                line,
-                Refusal::Damaged,
-                format!("a number for {key}"),
-                format!("\"{}\"", shorten(&text)),
-                "restore the header from the original file",
-            )
-        })
+        value
+            .map(|value| (line, value))
+            .ok_or_else(|| source.header(line, format!("a number for {key}"), quoted(&text)))
     };
     let (line, data_type) = need("DATA_TYPE")?;
     if !data_type.eq_ignore_ascii_case("ACCELERATION") {
@@ -80,7 +67,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             line,
             Refusal::NotAcceleration,
             "DATA_TYPE: ACCELERATION",
-            format!("\"{}\"", shorten(&data_type)),
+            quoted(&data_type),
             "give the .ACC.ASC file of the same component",
         ));
     }
@@ -90,7 +77,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             line,
             Refusal::NotAcceleration,
             "a unit of acceleration, such as cm/s^2",
-            format!("\"{}\"", shorten(&text)),
+            quoted(&text),
             "give the .ACC.ASC file of the same component",
         )
     })?;
@@ -129,12 +116,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     }
     .at(number("STATION_LATITUDE_DEGREE").zip(number("STATION_LONGITUDE_DEGREE")));
     if let Some((value, digits)) = leading_number(text("PGA_CM/S^2").as_bytes()) {
-        channel.peaks.push(StatedPeak {
-            quantity: Quantity::Acceleration,
-            stated: value.abs() * 0.01,
-            resolution: resolution(&digits) * 0.01,
-            measured: math::peak(&channel.acceleration),
-        });
+        channel.state_peak(value, resolution(&digits), 0.01);
     }
     if text("LATE/NORMAL_TRIGGERED").eq_ignore_ascii_case("LT") {
         record.warn(None, "late-triggered record: its beginning is missing");

@@ -1,7 +1,7 @@
 //! A step from a time column: even times give it, uneven ones are interpolated, neither is assumed.
 
 use super::source::Source;
-use crate::error::{ReadError, Refusal};
+use crate::error::ReadError;
 use crate::math;
 use crate::record::Record;
 
@@ -38,9 +38,8 @@ pub(crate) fn even_steps(
     let back = (1..time.len()).find(|&row| !(time[row] >= time[row - 1]));
     let stuck = (time.len() > 2 && time[time.len() - 1] <= time[0]).then_some(1);
     if let Some(row) = back.or(stuck) {
-        return Err(source.error(
+        return Err(source.damaged(
             line_of(row),
-            Refusal::Damaged,
             format!("a time after {} s", time[row - 1]),
             format!("{} s", time[row]),
             "rows are repeated, lost or out of order; get the file again from its source",
@@ -76,9 +75,8 @@ pub(crate) fn even_steps(
         }
     }
     if longest > 20.0 * mean {
-        return Err(source.error(
+        return Err(source.damaged(
             line_of(hole),
-            Refusal::Damaged,
             format!("a step near {mean:.4} s"),
             format!("a gap of {longest:.4} s"),
             "rows were lost; get the file again from its source",
@@ -89,9 +87,8 @@ pub(crate) fn even_steps(
     let step = step.unwrap_or(0.5 * mean);
     let count = ((last - first) / step + 1e-9).floor();
     if !(count < 1e8) {
-        return Err(source.error(
+        return Err(source.damaged(
             first_line,
-            Refusal::Damaged,
             "usable times",
             format!("{first} to {last} s with a mean step of {mean} s"),
             "the time column is damaged; get the file again from its source",

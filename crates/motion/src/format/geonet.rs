@@ -4,10 +4,10 @@
 //! its filter pads in the file.
 //! Spec: GeoNet, "Strong motion data, file formats" (GNS Science).
 
-use super::source::{Columns, LARGEST_ACCELERATION, Source, shorten};
+use super::source::{Columns, LARGEST_ACCELERATION, Source, quoted};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
-use crate::error::{ReadError, Refusal};
+use crate::error::ReadError;
 use crate::math;
 use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
 use crate::site::{Site, position};
@@ -45,11 +45,9 @@ fn read_component(
     first: usize,
 ) -> Result<usize, ReadError> {
     if !source.has(first, "corrected accelerogram") {
-        return Err(source.error(
-            first,
-            Refusal::Damaged,
+        return Err(source.damaged(first,
             "\"Corrected accelerogram\" or \"Uncorrected accelerogram\" at the start of a component",
-            format!("\"{}\"", shorten(&source.text(first))),
+            quoted(&source.text(first)),
             "a header states another number of points than the file holds; get the file again \
              from its source",
         ));

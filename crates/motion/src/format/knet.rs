@@ -4,12 +4,12 @@
 //! stated after its removal.
 //! Spec: NIED, "K-NET ASCII format" (knetform).
 
-use super::source::{Columns, LARGEST_ACCELERATION, Source, latin1, leading_number, shorten};
+use super::source::{Columns, LARGEST_ACCELERATION, Source, latin1, leading_number, quoted};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
-use crate::error::{ReadError, Refusal};
+use crate::error::ReadError;
 use crate::math;
-use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
 use crate::utc::{DateOrder, Utc};
 
@@ -37,25 +37,11 @@ fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
 fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
     let need = |key: &str| {
-        field(source, key).ok_or_else(|| {
-            source.error(
-                (),
-                Refusal::Damaged,
-                format!("a header line \"{key}\""),
-                "none",
-                "restore the header from the original file",
-            )
-        })
+        field(source, key)
+            .ok_or_else(|| source.header((), format!("a header line \"{key}\""), "none"))
     };
-    let bad = |line: usize, expected: &str, text: &str| {
-        source.error(
-            (line, 18),
-            Refusal::Damaged,
-            expected,
-            format!("\"{}\"", shorten(text)),
-            "restore the header from the original file",
-        )
-    };
+    let bad =
+        |line: usize, expected: &str, text: &str| source.header((line, 18), expected, quoted(text));
     record.event = format!("{} (Japan time)", need("Origin Time")?.1);
     record.station = need("Station Code")?.1;
     let (line, text) = need("Sampling Freq")?;
@@ -123,12 +109,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         && let Some((value, digits)) = leading_number(text.as_bytes())
     {
         let _ = line;
-        channel.peaks.push(StatedPeak {
-            quantity: Quantity::Acceleration,
-            stated: value.abs() * GAL,
-            resolution: super::source::resolution(&digits) * GAL,
-            measured: math::peak(&channel.acceleration),
-        });
+        channel.state_peak(value, super::source::resolution(&digits), GAL);
     }
     record.channels.push(channel);
     Ok(record)

@@ -121,13 +121,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
 }
 
 fn damaged(source: &Source<'_>, expected: &str, found: String) -> ReadError {
-    source.error(
-        (),
-        Refusal::Damaged,
-        expected,
-        found,
-        "the file is cut or damaged; get it again from its source",
-    )
+    source.damaged((), expected, found, "the file is cut or damaged; get it again from its source")
 }
 
 fn two(bytes: &[u8], at: usize, big: bool) -> u16 {

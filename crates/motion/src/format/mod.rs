@@ -36,7 +36,8 @@ use crate::instrument::Instrument;
 use crate::math::STANDARD_GRAVITY;
 use crate::record::{Quantity, Record};
 use crate::units::AccelerationUnit;
-use source::{LARGEST_ACCELERATION, Place, Source, parse_number, shorten};
+use source::{LARGEST_ACCELERATION, Place, Source, parse_number};
+pub(crate) use source::{quoted, shorten};
 
 /// What the caller knows and a file may not say.
 ///
@@ -194,7 +195,7 @@ fn check_bytes(source: &Source<'_>) -> Result<(), ReadError> {
     } else {
         return Ok(());
     };
-    Err(source.error((), Refusal::Damaged, expected, found, remedy))
+    Err(source.damaged((), expected, found, remedy))
 }
 
 /// Velocities (m/s) at the first samples, as a header line of our own states them in `text`.
@@ -210,11 +211,10 @@ fn initial_velocities(
     velocities
         .filter(|v| v.len() == channels && v.iter().all(|v| v.abs() <= LARGEST_ACCELERATION))
         .ok_or_else(|| {
-            source.error(
+            source.damaged(
                 line,
-                Refusal::Damaged,
                 format!("{channels} velocities (m/s), one to a channel"),
-                format!("\"{}\"", shorten(text)),
+                quoted(text),
                 "correct the header line",
             )
         })
@@ -266,18 +266,16 @@ fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
         let channel = &mut record.channels[index];
         let label = channel.name.clone();
         if !(channel.time_step.is_finite() && channel.time_step > 0.0) {
-            return Err(source.error(
+            return Err(source.damaged(
                 (),
-                Refusal::Damaged,
                 format!("a time step above 0 for channel {label}"),
                 channel.time_step.to_string(),
                 "the header is damaged; get the file again from its source",
             ));
         }
         if channel.acceleration.len() < 2 {
-            return Err(source.error(
+            return Err(source.damaged(
                 (),
-                Refusal::Damaged,
                 format!("at least 2 samples in channel {label}"),
                 channel.acceleration.len().to_string(),
                 "the file is cut; get it again from its source",
@@ -285,9 +283,8 @@ fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
         }
         let pga = channel.pga();
         if !(pga <= LARGEST_ACCELERATION) {
-            return Err(source.error(
+            return Err(source.damaged(
                 (),
-                Refusal::Damaged,
                 format!("accelerations below {LARGEST_ACCELERATION} m/s2 in channel {label}"),
                 format!("{pga:e} m/s2"),
                 "check the unit, or get the file again from its source",
@@ -323,9 +320,8 @@ fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
         }
     }
     record.align_each_site().map_err(|error| {
-        source.error(
+        source.damaged(
             (),
-            Refusal::Damaged,
             "channels of one station and sensor that were recorded at one time",
             error.to_string(),
             "split the file by time",
@@ -339,13 +335,7 @@ fn whole(source: &Source<'_>, line: usize, what: &str, value: f64) -> Result<usi
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 1e9")]
         return Ok(value as usize);
     }
-    Err(source.error(
-        line,
-        Refusal::Damaged,
-        format!("{what}, 1 or more"),
-        value.to_string(),
-        "restore the header from the original file",
-    ))
+    Err(source.header(line, format!("{what}, 1 or more"), value.to_string()))
 }
 
 /// How many of the values found are used where a count is stated: one less or two more all are, because
@@ -380,9 +370,8 @@ fn check_count(
         return Ok(stated);
     }
     let column = source.find(line, &stated.to_string());
-    Err(source.error(
+    Err(source.damaged(
         column.map_or(Place::from(line), |column| Place::from((line, column))),
-        Refusal::Damaged,
         format!("{stated} values as stated here"),
         format!("{found}"),
         "the file is cut or its header belongs to another; get it again from its source",
@@ -409,9 +398,8 @@ fn rows(
         row.clear();
         source.tokens(line, limit, &mut row)?;
         if row.len() != width {
-            return Err(source.error(
+            return Err(source.damaged(
                 (line, source.end_of(line)),
-                Refusal::Damaged,
                 format!("{width} numbers"),
                 format!("{} numbers", row.len()),
                 "the file is cut or a line was lost; get it again from its source",

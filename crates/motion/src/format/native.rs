@@ -16,7 +16,7 @@
 //! `start 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, elevation 12, vs30 330, sensor
 //! surface, station Napa`; what is not known is left out. Other `#` lines are comments. Spec: this file; written by [`crate::write::text`].
 
-use super::source::{LARGEST_ACCELERATION, Source, parse_number, shorten};
+use super::source::{LARGEST_ACCELERATION, Source, parse_number, quoted};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
@@ -64,13 +64,7 @@ pub(super) fn described(
     columns: impl FnOnce(&[&str], f64) -> Result<Vec<Vec<f64>>, ReadError>,
 ) -> Result<Record, ReadError> {
     let refuse = |line: usize, expected: &str, found: &str| {
-        source.error(
-            line,
-            Refusal::Damaged,
-            expected,
-            format!("\"{}\"", shorten(found)),
-            "correct the header line",
-        )
+        source.damaged(line, expected, quoted(found), "correct the header line")
     };
     if written(source, 0) != TITLE {
         return Err(refuse(0, &format!("\"{TITLE}\""), &written(source, 0)));
@@ -160,11 +154,10 @@ fn places(
         let text = written(source, line);
         let Some(words) = text.strip_prefix("# recorded:") else { continue };
         found.push(place(words).ok_or_else(|| {
-            source.error(
+            source.damaged(
                 line,
-                Refusal::Damaged,
                 "start, latitude, longitude, elevation, vs30, sensor or station between commas",
-                format!("\"{}\"", shorten(words)),
+                quoted(words),
                 "correct the header line",
             )
         })?);

@@ -35,7 +35,7 @@ pub(super) fn is_numpy(source: &Source<'_>) -> bool {
 
 fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let damaged = |expected: &str, found: String| {
-        source.error((), Refusal::Damaged, expected, found, "write the archive again")
+        source.damaged((), expected, found, "write the archive again")
     };
     let mut arrays = BTreeMap::new();
     let entries = zip::entries(source.bytes).map_err(|found| damaged("a NumPy archive", found))?;
@@ -45,18 +45,25 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         let bytes = entry.unpack(room).map_err(|found| damaged("an array", found))?;
         room -= bytes.len() as u64;
         let array = array(&bytes).ok_or_else(|| {
-            let found = shorten(&latin1(bytes.get(10..90).unwrap_or(&[])));
+            let found = match bytes.get(10..90) {
+                Some(head) => shorten(&latin1(head)),
+                None => format!("{} bytes", bytes.len()),
+            };
             damaged(&format!("numbers or strings in a row as array {name}"), found)
         })?;
         arrays.insert(name, array);
     }
     if !matches!(arrays.get("channels"), Some(Array::Words(_))) {
         let names: Vec<&str> = arrays.keys().map(String::as_str).collect();
+        let found = match names.as_slice() {
+            [] => "no arrays".to_owned(),
+            names => shorten(&names.join(", ")),
+        };
         return Err(source.error(
             (),
             Refusal::Unrecognized,
             "an array of strings named channels, as this program writes it",
-            shorten(&names.join(", ")),
+            found,
             "save the accelerations as plain columns and state their unit and step",
         ));
     }

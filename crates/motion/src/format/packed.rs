@@ -6,8 +6,9 @@ use super::source::{Source, shorten};
 use super::zip;
 use crate::error::{ReadError, Refusal};
 
-/// Most bytes that are unpacked; the longest strong-motion files have less than half of it.
-const LARGEST: u64 = 64 << 20;
+/// Most bytes that are unpacked, lest a few packed bytes take all memory; an hour of one component at
+/// 100 Hz has a quarter of it as text.
+const LARGEST: u64 = 12 << 20;
 
 /// The bytes of the one file inside, and its name; nothing where the file is not packed.
 pub(super) fn unpack(source: &Source<'_>) -> Result<Option<(Vec<u8>, String)>, ReadError> {
@@ -40,9 +41,8 @@ pub(super) fn unpack(source: &Source<'_>) -> Result<Option<(Vec<u8>, String)>, R
 }
 
 fn damaged(source: &Source<'_>, found: &str) -> ReadError {
-    source.error(
+    source.damaged(
         (),
-        Refusal::Damaged,
         "a file that can be unpacked",
         found,
         "unpack it by itself, or get it again from its source",
@@ -54,12 +54,11 @@ fn all(source: &Source<'_>, inside: impl Read) -> Result<Vec<u8>, ReadError> {
     let read = inside.take(LARGEST + 1).read_to_end(&mut bytes);
     read.map_err(|error| damaged(source, &error.to_string()))?;
     if bytes.len() as u64 > LARGEST {
-        return Err(source.error(
+        return Err(source.damaged(
             (),
-            Refusal::Damaged,
-            "at most 64 MB when unpacked",
+            format!("at most {} MB when unpacked", LARGEST >> 20),
             "more",
-            "no strong-motion file is that long; cut it to one record",
+            "unpack it by itself and give that file",
         ));
     }
     Ok(bytes)

@@ -6,7 +6,7 @@
 //! 24:23-44; Ancheta et al. 2014, Earthquake Spectra 30:989-1005); spellings surveyed over 2416
 //! files.
 
-use super::source::{LARGEST_ACCELERATION, Source, leading_number};
+use super::source::{LARGEST_ACCELERATION, Source, leading_number, quoted};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
@@ -132,23 +132,15 @@ fn find_counts(source: &Source<'_>) -> Result<Counts, ReadError> {
         leading_number(&source.raw(line)[rest..]).map(|(step, _)| (count, step))
     });
     let (count, time_step) = after.or(before).ok_or_else(|| {
-        source.error(
+        source.header(
             line,
-            Refusal::Damaged,
             "count and step, such as \"NPTS= 2000, DT= .0200 SEC\"",
-            format!("\"{}\"", super::source::shorten(&source.text(line))),
-            "restore the header from the original file",
+            quoted(&source.text(line)),
         )
     })?;
     let count = super::whole(source, line, "a number of points", count)?;
     if !(time_step > 0.0) {
-        return Err(source.error(
-            line,
-            Refusal::Damaged,
-            "a step above 0",
-            time_step.to_string(),
-            "restore the header from the original file",
-        ));
+        return Err(source.header(line, "a step above 0", time_step.to_string()));
     }
     Ok(Counts { line, count, time_step })
 }
@@ -167,7 +159,7 @@ fn find_unit(
                 line,
                 Refusal::NotAcceleration,
                 "an acceleration history",
-                format!("\"{}\"", super::source::shorten(&source.text(line))),
+                quoted(&source.text(line)),
                 "give the .AT2 file of the same component",
             ));
         }

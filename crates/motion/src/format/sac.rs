@@ -69,9 +69,8 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
         )
     })?;
     let damaged = |expected: &str, found: String| {
-        source.error(
+        source.damaged(
             (),
-            Refusal::Damaged,
             expected,
             found,
             "the file is cut or damaged; get it again from its source",

@@ -5,12 +5,11 @@
 //! Brady 1992, USGS Open-File Report 92-296A.
 
 use super::even::{Timed, even_steps};
-use super::source::{Columns, LARGEST_ACCELERATION, Printed, Source, latin1, shorten};
+use super::source::{Columns, LARGEST_ACCELERATION, Printed, Source, latin1, quoted};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
-use crate::math;
-use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
 use crate::utc::Utc;
 
@@ -41,7 +40,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             0,
             Refusal::NotAcceleration,
             "an accelerogram",
-            format!("\"{}\"", shorten(&title)),
+            quoted(&title),
             "give the acceleration file of the same record",
         ));
     }
@@ -110,12 +109,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         .printed_after(6, "pk acc")
         .or_else(|| source.find(6, "pk").and_then(|_| source.printed_after(6, "pk     ")))
     {
-        channel.peaks.push(StatedPeak {
-            quantity: Quantity::Acceleration,
-            stated: value.abs() * GAL,
-            resolution: resolution * GAL,
-            measured: math::peak(&channel.acceleration),
-        });
+        channel.state_peak(value, resolution, GAL);
     }
     record.channels.push(channel);
     for line in 0..TEXT_LINES {
@@ -127,13 +121,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
 }
 
 fn missing(source: &Source<'_>, line: usize, what: &str) -> ReadError {
-    source.error(
-        line.min(source.lines.len().saturating_sub(1)),
-        Refusal::Damaged,
-        what,
-        format!("\"{}\"", shorten(&source.text(line))),
-        "restore the header from the original file",
-    )
+    source.header(line.min(source.lines.len().saturating_sub(1)), what, quoted(&source.text(line)))
 }
 
 /// `component= 360` at column 42 of line 6.

@@ -61,6 +61,9 @@ impl<'a> Source<'a> {
             text = rest;
         }
         let separator = if text.contains(&b'\n') { b'\n' } else { b'\r' };
+        while let [rest @ .., b'\n' | b'\r'] = text {
+            text = rest;
+        }
         // Counted first: growing by doubling would hold three times what a file of short lines needs.
         let count = text.split(|&byte| byte == separator).count();
         let mut lines: Vec<&[u8]> = Vec::with_capacity(count);
@@ -117,6 +120,47 @@ impl<'a> Source<'a> {
             .map(|(value, text)| Printed { value, resolution: resolution(&text) })
     }
 
+    /// The line behind the end of a channel, "/&" or "end of data", which blank lines may precede; the
+    /// mark may be left out where the next channel begins as told.
+    pub(crate) fn end_of_channel(&self, line: usize, next: &str) -> Result<usize, ReadError> {
+        let blank = |line: &usize| !self.raw(*line).trim_ascii().is_empty();
+        let Some(line) = (line..self.lines.len()).find(blank) else { return Ok(self.lines.len()) };
+        if self.text(line).starts_with("/&") || self.has(line, "END OF DATA") {
+            return Ok(line + 1);
+        }
+        if self.has(line, next) {
+            return Ok(line);
+        }
+        Err(self.damaged(
+            line,
+            "the end of the channel, \"/&\"",
+            quoted(&self.text(line)),
+            "the header states another number of points than the file holds; get the file again \
+             from its source",
+        ))
+    }
+
+    /// The error that the file is damaged.
+    pub(crate) fn damaged(
+        &self,
+        place: impl Into<Place>,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> ReadError {
+        self.error(place, Refusal::Damaged, expected, found, remedy)
+    }
+
+    /// The error that the header is damaged.
+    pub(crate) fn header(
+        &self,
+        place: impl Into<Place>,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+    ) -> ReadError {
+        self.damaged(place, expected, found, "restore the header from the original file")
+    }
+
     pub(crate) fn error(
         &self,
         place: impl Into<Place>,
@@ -149,13 +193,13 @@ impl<'a> Source<'a> {
             ("blanks".to_owned(), "the file is damaged; get it again from its source")
         } else if text.contains('*') {
             (
-                format!("\"{}\"", shorten(&text)),
+                quoted(&text),
                 "the value overflowed its column when the file was written; get the file again \
                  in a wider format",
             )
         } else {
             (
-                format!("\"{}\"", shorten(&text)),
+                quoted(&text),
                 "the file is damaged or has another layout; get it again from its source",
             )
         };
@@ -297,7 +341,7 @@ impl<'a> Source<'a> {
                 (line, end),
                 Refusal::Damaged,
                 format!("the end of {wanted} numbers"),
-                format!("\"{}\"", shorten(&latin1(raw[end..].trim_ascii()))),
+                quoted(&latin1(raw[end..].trim_ascii())),
                 "the header states fewer numbers than the file holds or other columns; get the \
                  file again from its source",
             ));
@@ -432,6 +476,11 @@ pub(crate) fn shorten(text: &str) -> String {
     } else {
         text.chars().take(37).chain("...".chars()).collect()
     }
+}
+
+/// As [`shorten`], between quotation marks.
+pub(crate) fn quoted(text: &str) -> String {
+    format!("\"{}\"", shorten(text))
 }
 
 fn is_separator(byte: u8) -> bool {

@@ -4,12 +4,11 @@
 //! `ORIENTACION C1-C6`.
 //! Spec: Sociedad Mexicana de Ingeniería Sísmica, formato estándar de aceleración, version 2.0.
 
-use super::source::{Columns, LARGEST_ACCELERATION, Source, leading_number, resolution, shorten};
+use super::source::{Columns, LARGEST_ACCELERATION, Source, leading_number, quoted, resolution};
 use super::{Format, ReadOptions};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
-use crate::math;
-use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
 use crate::utc::{DateOrder, Utc};
 
@@ -45,15 +44,9 @@ fn list(text: &str) -> Vec<String> {
 
 fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let need = |key: &str| {
-        field(source, key).filter(|(_, value)| !value.is_empty()).ok_or_else(|| {
-            source.error(
-                (),
-                Refusal::Damaged,
-                format!("a value for \"{key}\""),
-                "none",
-                "restore the header from the original file",
-            )
-        })
+        field(source, key)
+            .filter(|(_, value)| !value.is_empty())
+            .ok_or_else(|| source.header((), format!("a value for \"{key}\""), "none"))
     };
     let numbers = |key: &str| -> Result<(usize, Vec<f64>), ReadError> {
         let (line, text) = need(key)?;
@@ -62,13 +55,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             .map(|part| leading_number(part.as_bytes()).map(|(value, _)| value))
             .collect();
         values.map(|values| (line, values)).ok_or_else(|| {
-            source.error(
-                line,
-                Refusal::Damaged,
-                format!("numbers between slashes for \"{key}\""),
-                format!("\"{}\"", shorten(&text)),
-                "restore the header from the original file",
-            )
+            source.header(line, format!("numbers between slashes for \"{key}\""), quoted(&text))
         })
     };
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
@@ -78,7 +65,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             unit_line,
             Refusal::NotAcceleration,
             "Gal (cm/s/s) as unit",
-            format!("\"{}\"", shorten(&unit)),
+            quoted(&unit),
             "give the acceleration file of the same station",
         ));
     }
@@ -89,9 +76,8 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         return Err(source.cut("steps and counts", "none"));
     };
     if steps.iter().any(|step| *step != time_step) {
-        return Err(source.error(
+        return Err(source.damaged(
             step_line,
-            Refusal::Damaged,
             "one step for all channels",
             format!("{steps:?}"),
             "split the file by channel",
@@ -134,12 +120,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         let mut channel = Channel::new(name.clone(), Direction::parse(name), time_step, values);
         if let Some((value, digits)) = peaks.get(k).and_then(|text| leading_number(text.as_bytes()))
         {
-            channel.peaks.push(StatedPeak {
-                quantity: Quantity::Acceleration,
-                stated: value.abs() * GAL,
-                resolution: resolution(&digits) * GAL,
-                measured: math::peak(&channel.acceleration),
-            });
+            channel.state_peak(value, resolution(&digits), GAL);
         }
         record.channels.push(channel);
     }
@@ -184,9 +165,8 @@ fn data_line(source: &Source<'_>) -> Result<usize, ReadError> {
             rulers.nth(1).map(|line| line + 1)
         })
         .ok_or_else(|| {
-            source.error(
+            source.damaged(
                 (),
-                Refusal::Damaged,
                 "\"DATOS DE ACELERACION\" with two rulers before the data",
                 "none",
                 "the file is cut; get it again from its source",

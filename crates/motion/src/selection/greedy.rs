@@ -7,7 +7,7 @@ use crate::random::Random;
 use super::target::SelectionTarget;
 
 /// Sets of simulated spectra, from each of which a set of records is made; the best is taken.
-const TRIALS: usize = 20;
+const TRIALS: usize = 5;
 /// Weight of the error of the standard deviation beside that of the mean, which has 1.
 const SPREAD_WEIGHT: f64 = 2.0;
 /// The same for a target without spread, which nearness to its mean alone can not bring about.
@@ -80,9 +80,7 @@ impl Selection {
             (false, _) => worst.max(ours.abs()),
         })
     }
-}
 
-impl Selection {
     /// What sets are compared by: an error of the median counts as one of the standard deviation twice
     /// as large.
     fn worst(&self, target: &SelectionTarget) -> f64 {
@@ -123,7 +121,11 @@ pub fn select(
                 .ok_or_else(|| too_few(&pool, candidates.len(), set.members.len(), choosing))?;
             set.add(&pool, nearest, level);
         }
-        let rounds = set.improve(&pool);
+        let mut rounds = set.improve(&pool);
+        if set.weight == SPREAD_WEIGHT {
+            set.largest = true;
+            rounds += set.improve(&pool);
+        }
         let found = set.selection(&pool, rounds);
         if best.as_ref().is_none_or(|best| found.worst(target) < best.worst(target)) {
             best = Some(found);
@@ -260,6 +262,8 @@ struct Set<'a> {
     squares: Vec<f64>,
     /// Weight of the error of the standard deviation.
     weight: f64,
+    /// Whether the largest error counts rather than the sum of all squares.
+    largest: bool,
 }
 
 impl<'a> Set<'a> {
@@ -268,7 +272,7 @@ impl<'a> Set<'a> {
         let spread = target.deviation().iter().any(|s| *s > 0.0);
         let weight = if spread { SPREAD_WEIGHT } else { NO_SPREAD_WEIGHT };
         let (sums, squares) = (vec![0.0; n], vec![0.0; n]);
-        Self { target, members: Vec::new(), size: 0, sums, squares, weight }
+        Self { target, members: Vec::new(), size: 0, sums, squares, weight, largest: false }
     }
 
     fn add(&mut self, pool: &Pool, row: usize, level: f64) {
@@ -301,7 +305,8 @@ impl<'a> Set<'a> {
         same < pool.most
     }
 
-    /// Weighted sum of the squared errors of mean and standard deviation.
+    /// Weighted sum of the squared errors of mean and standard deviation; where the largest counts, of
+    /// their eighth powers, those of the standard deviation relative to it.
     fn error(&self) -> f64 {
         (0..self.sums.len()).map(|k| self.error_at(k, self.sums[k], self.squares[k])).sum()
     }
@@ -310,8 +315,14 @@ impl<'a> Set<'a> {
         let n = self.size as f64;
         let mean = sum / n;
         let deviation = ((squares - n * mean * mean) / (n - 1.0)).max(0.0).sqrt();
-        let apart = deviation - self.target.deviation()[k];
-        mean * mean + self.weight * apart * apart
+        let wanted = self.target.deviation()[k];
+        let apart = deviation - wanted;
+        if !self.largest {
+            return mean * mean + self.weight * apart * apart;
+        }
+        // As in [`Selection::worst`]; in hundredths, lest the powers vanish.
+        let spread = if wanted > SMALLEST { 50.0 * apart / wanted } else { 0.0 };
+        math::powi(100.0 * mean, 8) + math::powi(spread, 8)
     }
 
     /// Exchanges each member for the candidate that lowers the error most; gives the rounds made.

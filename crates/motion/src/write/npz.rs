@@ -159,15 +159,3 @@ fn npy_head(kind: &str, count: usize) -> Vec<u8> {
     bytes.extend(description.as_bytes());
     bytes
 }
-
-#[cfg(test)]
-mod tests {
-    use super::archive;
-
-    #[test]
-    fn a_name_that_occurs_twice_is_refused() {
-        let twice = [("a".to_owned(), &[1.0][..]), ("a".to_owned(), &[2.0][..])];
-        assert!(archive(&twice).is_err_and(|error| error.to_string().contains("called a")));
-        assert!(archive(&twice[1..]).is_ok());
-    }
-}

@@ -2,7 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use barrelstack_motion::{AccelerationUnit, Format, Random, ReadError, ReadOptions, Record};
+use barrelstack_motion::{
+    AccelerationUnit, FORMATS, Flatfile, Format, MotionError, Random, ReadError, ReadOptions,
+    Record, read, station_xml,
+};
 
 /// Numbers that break readers: edges of types, of formats and of sense.
 const NUMBERS: [&str; 22] = [
@@ -106,9 +109,60 @@ pub(crate) fn samples() -> Vec<Sample> {
         .collect()
 }
 
-/// The samples that lie in the folder of a format.
-pub(crate) fn samples_of<'a>(format: &Format, samples: &'a [Sample]) -> Vec<&'a Sample> {
-    let folder = format!("{}/", format.name);
+/// Something that takes bytes from outside.
+#[derive(Clone, Copy)]
+pub(crate) enum Reader {
+    Format(&'static Format),
+    /// One record inside gzip or zip.
+    Packed,
+    StationXml,
+    Flatfile,
+}
+
+impl Reader {
+    pub(crate) fn all() -> Vec<Self> {
+        let others = [Self::Packed, Self::StationXml, Self::Flatfile];
+        FORMATS.iter().map(Self::Format).chain(others).collect()
+    }
+
+    /// As its folder of samples is called.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Format(format) => format.name,
+            Self::Packed => "packed",
+            Self::StationXml => "stationxml",
+            Self::Flatfile => "flatfile",
+        }
+    }
+
+    /// Reads a file; panics unless what comes of it holds. Tells whether it was taken.
+    pub(crate) fn take(self, bytes: &[u8], given: &ReadOptions) -> bool {
+        let text = || String::from_utf8_lossy(bytes);
+        match self {
+            Self::Format(format) => record_holds(&format.read(bytes, "fuzz", given)),
+            Self::Packed => record_holds(&read(bytes, "fuzz", given)),
+            Self::StationXml => told(&station_xml(&text())),
+            Self::Flatfile => told(&Flatfile::parse("fuzz", &text())),
+        }
+    }
+}
+
+fn told<T>(result: &Result<T, MotionError>) -> bool {
+    if let Err(error) = result {
+        let text = error.to_string();
+        assert!(!text.is_empty() && text.len() < 1000, "{text}");
+    }
+    result.is_ok()
+}
+
+fn record_holds(result: &Result<Record, ReadError>) -> bool {
+    must_hold(result);
+    result.is_ok()
+}
+
+/// The samples that lie in the folder of a reader.
+pub(crate) fn samples_of(reader: Reader, samples: &[Sample]) -> Vec<&Sample> {
+    let folder = format!("{}/", reader.name());
     samples.iter().filter(|sample| sample.name.starts_with(&folder)).collect()
 }
 

@@ -181,7 +181,7 @@ impl ProcessArgs {
             before.notes.push(turned.note);
         }
         let chain = self.chain(read.stage)?;
-        if chain.is_none() && self.corners.is_none() {
+        if chain.is_none() && self.corners.is_none() && self.rotate.is_none() {
             bail!(
                 "this chain does nothing: name a step, such as --high-pass \"0.1 Hz\", or use convert"
             );

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::Write as _;
-use std::path::Path;
+use std::io::{BufRead as _, BufReader, Seek as _, SeekFrom, Write as _};
+use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use anyhow::{Context as _, bail};
@@ -11,10 +11,9 @@ use barrelstack_campaign::study::{ColumnSpec, Value, ValueKind};
 use serde_json::json;
 
 use crate::commands::motion::input;
-use crate::commands::motion::output::store;
 
 /// One record: its row, or none, and the files that were refused.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Entry {
     pub(super) record: String,
     /// Fingerprint of the bytes of its files.
@@ -24,10 +23,36 @@ pub(super) struct Entry {
     pub(super) refused: Vec<(String, String)>,
 }
 
-/// The file of what was done.
+/// The file of what was done. Where the line of each record lies is kept, the lines are not: thousands of
+/// them would fill the memory.
 pub(super) struct Journal {
-    known: BTreeMap<String, Entry>,
-    file: Mutex<File>,
+    path: PathBuf,
+    specs: Vec<ColumnSpec>,
+    inner: Mutex<Inner>,
+}
+
+struct Inner {
+    file: File,
+    /// Bytes that are written.
+    length: u64,
+    lines: BTreeMap<String, Line>,
+}
+
+impl Inner {
+    fn append(&mut self, text: &str) -> anyhow::Result<()> {
+        self.file.seek(SeekFrom::Start(self.length)).map_err(input::plain)?;
+        self.file.write_all(text.as_bytes()).map_err(input::plain)?;
+        self.length += text.len() as u64;
+        Ok(())
+    }
+}
+
+/// The last line of a record.
+#[derive(Clone, Copy)]
+struct Line {
+    hash: u64,
+    measured: bool,
+    at: u64,
 }
 
 impl Journal {
@@ -36,51 +61,82 @@ impl Journal {
     /// A line that is cut, as a kill leaves it, counts as not done.
     pub(super) fn open(out: &Path, settings: &str, specs: &[ColumnSpec]) -> anyhow::Result<Self> {
         let path = out.join("rows.jsonl");
+        let cannot = |what: &str| format!("cannot {what} {}", path.display());
         let names: Vec<String> = specs.iter().map(ColumnSpec::heading).collect();
         let version = env!("CARGO_PKG_VERSION");
         let head = json!({ "barrelstack": version, "settings": settings, "columns": names });
-        let mut known = BTreeMap::new();
-        let mut text = format!("{head}\n");
-        if path.exists() {
-            let bytes = input::bytes(&path)?;
-            let whole = String::from_utf8_lossy(&bytes);
-            let mut lines = whole.lines();
-            let first = lines.next().and_then(|line| serde_json::from_str(line).ok());
-            if first.as_ref().is_some_and(|first: &serde_json::Value| *first != head) {
-                bail!(
+        let file = File::options()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .open(&path)
+            .map_err(input::plain)
+            .with_context(|| cannot("write"))?;
+        let (mut at, mut lines) = (0, BTreeMap::new());
+        let mut reader = BufReader::new(&file);
+        let mut line = Vec::new();
+        loop {
+            line.clear();
+            let read = reader.read_until(b'\n', &mut line).map_err(input::plain);
+            let read = read.with_context(|| cannot("read"))? as u64;
+            if !line.ends_with(b"\n") {
+                break;
+            }
+            let found = serde_json::from_slice::<serde_json::Value>(&line).ok();
+            match found {
+                Some(first) if at == 0 && first != head => bail!(
                     "{} holds the table of another command ({}): name another folder, or remove \
                      rows.jsonl there",
                     out.display(),
-                    first.map_or(String::new(), |first| first["settings"].to_string())
-                );
+                    first["settings"]
+                ),
+                None if at == 0 => break,
+                _ => {}
             }
-            for line in lines {
-                if let Some(entry) = Entry::read(line, specs) {
-                    text.push_str(line);
-                    text.push('\n');
-                    known.insert(entry.record.clone(), entry);
-                }
+            if let Some(entry) = found.and_then(|found| Entry::of(&found, specs)) {
+                let measured = entry.row.is_some();
+                lines.insert(entry.record, Line { hash: entry.hash, measured, at });
             }
+            at += read;
         }
-        store(&path, text.as_bytes())?;
-        let file = File::options()
-            .append(true)
-            .open(&path)
-            .map_err(input::plain)
-            .with_context(|| format!("cannot write {}", path.display()))?;
-        Ok(Self { known, file: Mutex::new(file) })
+        file.set_len(at).map_err(input::plain).with_context(|| cannot("write"))?;
+        let specs = specs.to_vec();
+        let mut inner = Inner { file, length: at, lines };
+        if at == 0 {
+            inner.append(&format!("{head}\n")).with_context(|| cannot("write"))?;
+        }
+        Ok(Self { path, specs, inner: Mutex::new(inner) })
     }
 
-    /// What was found for a record, if its files are still the same.
-    pub(super) fn known(&self, record: &str, hash: u64) -> Option<Entry> {
-        self.known.get(record).filter(|entry| entry.hash == hash).cloned()
+    /// Whether a record is noted whose files are still the same, and was measured.
+    pub(super) fn known(&self, record: &str, hash: u64) -> Option<bool> {
+        let inner = self.inner.lock().ok()?;
+        inner.lines.get(record).filter(|line| line.hash == hash).map(|line| line.measured)
     }
 
     /// Notes a record as done.
     pub(super) fn note(&self, entry: &Entry) -> anyhow::Result<()> {
-        let line = format!("{}\n", entry.line());
-        let Ok(mut file) = self.file.lock() else { bail!("another thread failed to write") };
-        file.write_all(line.as_bytes()).map_err(input::plain).context("cannot write rows.jsonl")
+        let text = format!("{}\n", entry.line());
+        let Ok(mut inner) = self.inner.lock() else { bail!("another thread failed to write") };
+        let line = Line { hash: entry.hash, measured: entry.row.is_some(), at: inner.length };
+        inner.append(&text).with_context(|| format!("cannot write {}", self.path.display()))?;
+        inner.lines.insert(entry.record.clone(), line);
+        Ok(())
+    }
+
+    /// What is noted for a record.
+    pub(super) fn entry(&self, record: &str) -> anyhow::Result<Entry> {
+        let damaged = || format!("{} was changed meanwhile: run it again", self.path.display());
+        let Ok(inner) = self.inner.lock() else { bail!(damaged()) };
+        let line = inner.lines.get(record).with_context(damaged)?;
+        let mut reader = BufReader::new(&inner.file);
+        reader.seek(SeekFrom::Start(line.at)).map_err(input::plain).with_context(damaged)?;
+        let mut text = Vec::new();
+        reader.read_until(b'\n', &mut text).map_err(input::plain).with_context(damaged)?;
+        let found = serde_json::from_slice(&text).ok();
+        let entry = found.and_then(|found| Entry::of(&found, &self.specs));
+        entry.filter(|entry| entry.record == record).with_context(damaged)
     }
 }
 
@@ -101,8 +157,7 @@ impl Entry {
         })
     }
 
-    fn read(line: &str, specs: &[ColumnSpec]) -> Option<Self> {
-        let found: serde_json::Value = serde_json::from_str(line).ok()?;
+    fn of(found: &serde_json::Value, specs: &[ColumnSpec]) -> Option<Self> {
         let row = if found["row"].is_null() {
             None
         } else {

@@ -115,6 +115,16 @@ pub(super) struct Measurements {
     out: PathBuf,
 }
 
+/// What became of one record.
+enum Done {
+    /// It stands in the journal.
+    Noted,
+    /// Refused, files and reasons, and tried again the next time.
+    Unsure(Vec<(String, String)>),
+    /// The command was stopped before.
+    Stopped,
+}
+
 /// Does `work` to every record, on all cores, and writes the table: `records.csv`,
 /// `records.parquet`, and `refused.csv` with the reasons.
 ///
@@ -144,40 +154,42 @@ pub(super) fn run(
     let bar = bar(!batch.folder.quiet, sources.len());
     let interrupt = Interrupt::listen();
     let before = AtomicUsize::new(0);
-    let one = |source: &Source| -> anyhow::Result<Option<Entry>> {
+    let one = |source: &Source| -> anyhow::Result<Done> {
         if interrupt.asked() {
-            return Ok(None);
+            return Ok(Done::Stopped);
         }
         let hash = fingerprint_of(source);
         let made = |ending: &str| source.beside(batch.out, ending).exists();
         let known = journal.known(&source.record.name, hash);
-        if let Some(entry) = known.filter(|e| e.row.is_none() || batch.ending.is_none_or(made)) {
-            before.fetch_add(usize::from(entry.row.is_some()), Ordering::Relaxed);
-            return Ok(Some(entry));
+        if let Some(measured) = known.filter(|measured| !measured || batch.ending.is_none_or(made))
+        {
+            before.fetch_add(usize::from(measured), Ordering::Relaxed);
+            return Ok(Done::Noted);
         }
         let (entry, sure) = entry(batch.input, source, hash, &periods, flatfile.as_ref(), work);
-        if sure {
-            journal.note(&entry)?;
+        if !sure {
+            return Ok(Done::Unsure(entry.refused));
         }
-        Ok(Some(entry))
+        journal.note(&entry)?;
+        Ok(Done::Noted)
     };
     let done = pool::map(&sources, one, &|done| bar.set_position(done as u64));
     bar.finish_and_clear();
-    let mut entries = Vec::new();
-    let mut stopped = false;
-    for (entry, source) in done.into_iter().zip(&sources) {
-        match entry? {
-            Some(entry) => entries.push((entry, source)),
-            None => stopped = true,
-        }
-    }
     let mut columns: Vec<Column> = specs.into_iter().map(columns::empty).collect();
-    for (entry, _) in entries.iter().filter(|(entry, _)| entry.row.is_some()) {
-        for (column, value) in columns.iter_mut().zip(entry.row.iter().flatten()) {
-            columns::push(column, value.as_ref());
+    let (mut refused, mut stopped) = (Vec::new(), false);
+    for (done, source) in done.into_iter().zip(&sources) {
+        match done? {
+            Done::Stopped => stopped = true,
+            Done::Unsure(reasons) => refused.extend(reasons),
+            Done::Noted => {
+                let entry = journal.entry(&source.record.name)?;
+                for (column, value) in columns.iter_mut().zip(entry.row.iter().flatten()) {
+                    columns::push(column, value.as_ref());
+                }
+                refused.extend(entry.refused);
+            }
         }
     }
-    let refused = entries.into_iter().flat_map(|(entry, _)| entry.refused).collect();
     let before = before.into_inner();
     let out = batch.out.to_owned();
     let found = Measurements { table: StudyTable::new(columns)?, refused, before, stopped, out };

@@ -1,0 +1,74 @@
+//! Files that belong together, and the table of an agency beside them.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by unwrap")]
+
+use barrelstack_motion::{Flatfile, group_files, record_sequence_number};
+
+fn names(files: &[&str]) -> Vec<(String, usize)> {
+    let files: Vec<String> = files.iter().map(|file| (*file).to_owned()).collect();
+    group_files(&files).into_iter().map(|r| (r.name, r.files.len())).collect()
+}
+
+#[test]
+fn components_come_together_and_nothing_else_does() {
+    let found = names(&[
+        "p/RSN1503_CHICHI_TCU065-E.AT2",
+        "p/RSN1503_CHICHI_TCU065-N.AT2",
+        "p/RSN1503_CHICHI_TCU065-V.AT2",
+        "q/RSN1503_CHICHI_TCU065-E.AT2",
+        "k/AOM0011801241951.EW",
+        "k/AOM0011801241951.NS",
+        "k/AOM0011801241951.UD",
+        "k/IBRH11.EW1",
+        "k/IBRH11.NS1",
+        "k/IBRH11.EW2",
+        "m/BK.CMB.00.HNE__2014.mseed",
+        "m/BK.CMB.00.HNN__2014.mseed",
+        "m/BK.CMB.10.HNN__2014.mseed",
+        "CE58667.V2",
+        "CE58668.V2",
+    ]);
+    let expected = [
+        ("CE58667.V2", 1),
+        ("CE58668.V2", 1),
+        ("k/AOM0011801241951", 3),
+        ("k/IBRH11.1", 2),
+        ("k/IBRH11.EW2", 1),
+        ("m/BK.CMB.00.HN?__2014.mseed", 2),
+        ("m/BK.CMB.10.HNN__2014.mseed", 1),
+        ("p/RSN1503_CHICHI_TCU065", 3),
+        ("q/RSN1503_CHICHI_TCU065-E.AT2", 1),
+    ];
+    let expected: Vec<(String, usize)> =
+        expected.iter().map(|(name, count)| ((*name).to_owned(), *count)).collect();
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn a_row_is_found_by_its_number_and_unknown_is_none() {
+    let text = "\u{feff}Record Sequence Number,Earthquake Name,\"Station Name\",Earthquake \
+                Magnitude,ClstD (km),Joyner-Boore Dist. (km),Vs30 (m/s) selected for analysis\r\n\
+                995,\"Northridge-01\",\"LA - \"\"Hollywood\"\", Stor FF\",6.69,24.03,19.73,316.46\r\n\
+                996,x,y,-999,,1,2\r\n";
+    let flatfile = Flatfile::parse("flat.csv", text).unwrap();
+    let row = flatfile.get(995).unwrap();
+    assert_eq!(row.station, "LA - \"Hollywood\", Stor FF");
+    assert_eq!(row.magnitude, Some(6.69));
+    assert_eq!((flatfile.len(), flatfile.get(996).unwrap().magnitude), (2, None));
+    assert_eq!(record_sequence_number("a/RSN995_NORTHR_PEL360.AT2"), Some(995));
+    assert_eq!(record_sequence_number("a/RSNX.AT2"), None);
+}
+
+#[test]
+fn what_is_wrong_is_told_with_its_line_and_column() {
+    let told = |text: &str| Flatfile::parse("flat.csv", text).unwrap_err().to_string();
+    assert_eq!(
+        told("RSN,vs30\n1,300\n2,soft\n"),
+        "flat.csv, line 3, column \"vs30\": expected a number, found \"soft\""
+    );
+    assert_eq!(
+        told("RSN\n1\n1\n"),
+        "flat.csv, line 3, column \"rsn\": expected each sequence number once, found \"1\""
+    );
+    assert!(told("a,b\n").contains("a column \"Record Sequence Number\""));
+}
