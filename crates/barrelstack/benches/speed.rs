@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use barrelstack::assemble::{Assembly, assemble};
-use barrelstack::ground::{Ground, ground};
+use barrelstack::ground::Ground;
 use barrelstack::scenario::Scene;
 use barrelstack::step::default_step;
 use barrelstack::watch::{End, Thresholds, Watch};
@@ -42,7 +42,7 @@ fn whole_run() -> Result<(), Failure> {
     let mut seconds = Vec::new();
     for _ in 0..REPEATS {
         let start = Instant::now();
-        let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(()))?;
+        let run = scenario.run()?;
         seconds.push(start.elapsed().as_secs_f64());
         end_time = run.end_time;
     }
@@ -84,7 +84,7 @@ fn whole_run() -> Result<(), Failure> {
 fn report() -> Result<(), Failure> {
     let changes = ["stack.levels=6", "run.duration=60 s", "motion.scale.factor=0.6"];
     let scenario = Scenario::builtin("demo-napa", &changes.map(str::to_owned))?;
-    let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(()))?;
+    let run = scenario.run()?;
     let summary = Summary::of(&run, None);
     let (mut seconds, mut bytes) = (Vec::new(), 0);
     for _ in 0..REPEATS {
@@ -145,7 +145,7 @@ struct Cost {
 impl Stage {
     fn new(scenario: &Scenario) -> Result<Self, Failure> {
         let assembly = assemble(scenario)?;
-        let ground = ground(scenario)?;
+        let ground = scenario.ground()?;
         let step = default_step(&assembly, 1.0);
         let mut state = State::initial(&assembly.model);
         let mut scratch = Scratch::new(&assembly.model);

@@ -25,9 +25,23 @@ pub struct Ground {
 }
 
 impl Ground {
+    /// Scales and stretches its motion as a scenario says.
+    fn rescale(&mut self, spec: &MotionSpec, similitude: f64) -> Result<(), MotionError> {
+        if let Some(motion) = self.motion.take() {
+            self.motion = Some(scaled(motion, spec, similitude)?);
+        }
+        Ok(())
+    }
+
     /// When (s) it is still: the end of its motion.
     pub fn end(&self) -> f64 {
         self.motion.as_ref().map_or(0.0, |motion| motion.duration)
+    }
+}
+
+impl From<GroundMotion> for Ground {
+    fn from(motion: GroundMotion) -> Self {
+        Self { motion: Some(motion), warnings: Vec::new() }
     }
 }
 
@@ -87,28 +101,59 @@ pub enum GroundError {
 /// Largest record (bytes) that is read; the longest strong-motion files have a tenth of it.
 pub const RECORD_LIMIT: usize = 256 << 20;
 
-/// Reads or makes the motion of a scenario, scaled as it says.
-///
-/// # Errors
-/// When a record cannot be read, lacks the component asked for, or cannot be scaled.
-pub fn ground(scenario: &Scenario) -> Result<Ground, GroundError> {
-    of_spec(&scenario.motion, scenario.run.similitude)
+impl Scenario {
+    /// Reads or makes its motion, scaled as it says.
+    ///
+    /// # Errors
+    /// When a record cannot be read, lacks the component asked for, or cannot be scaled.
+    pub fn ground(&self) -> Result<Ground, GroundError> {
+        of_spec(&self.motion, self.run.similitude)
+    }
+
+    /// The ground under a record at hand, in place of its own motion.
+    ///
+    /// Components, processing and scale are those that the scenario states; where its own motion is no
+    /// record, the first horizontal component with the default processing.
+    ///
+    /// ```
+    /// use barrelstack::Scenario;
+    ///
+    /// let record = barrelstack_motion::bundled("napa-college-2014").expect("a bundled record");
+    /// let scenario =
+    ///     Scenario::builtin("candia-8-barrels", &["motion.scale.pgv=60 cm/s".to_owned()])?;
+    /// let motion = scenario.ground_of(&record)?.motion.expect("a record moves");
+    /// assert!((motion.pgv() - 0.6).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the record lacks a component asked for, or cannot be scaled.
+    pub fn ground_of(&self, record: &Record) -> Result<Ground, GroundError> {
+        let spec = match &self.motion.source {
+            MotionSource::Record(own) => own.clone(),
+            MotionSource::None | MotionSource::Sine(_) | MotionSource::Pulse(_) => {
+                RecordMotion::of(RecordSource::Bundled(record.file.clone()))
+            }
+        };
+        let mut ground = shaken_by(record, &spec, self.motion.scale)?;
+        let spec = MotionSpec { source: MotionSource::Record(spec), ..self.motion.clone() };
+        ground.rescale(&spec, self.run.similitude)?;
+        Ok(ground)
+    }
 }
 
 /// Reads or makes a motion, scaled as it says, for a stack of a length scale.
 ///
 /// # Errors
-/// As [`ground`].
+/// As [`Scenario::ground`].
 pub fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
     let mut ground = match &spec.source {
         MotionSource::None => return Ok(Ground::default()),
-        MotionSource::Record(record) => recorded(record, spec.scale)?,
-        MotionSource::Sine(sine) => Ground { motion: Some(harmonic(sine)?), ..Ground::default() },
-        MotionSource::Pulse(pulse) => Ground { motion: Some(pulsed(pulse)?), ..Ground::default() },
+        MotionSource::Record(record) => shaken_by(&read(record)?, record, spec.scale)?,
+        MotionSource::Sine(sine) => harmonic(sine)?.into(),
+        MotionSource::Pulse(pulse) => pulsed(pulse)?.into(),
     };
-    if let Some(motion) = ground.motion.take() {
-        ground.motion = Some(scaled(motion, spec, similitude)?);
-    }
+    ground.rescale(spec, similitude)?;
     Ok(ground)
 }
 
@@ -149,40 +194,49 @@ pub fn scaled(
     Ok(motion)
 }
 
-fn recorded(spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
-    let options = ReadOptions {
+/// What the readers of files should know that a scenario states.
+fn read_options(spec: &RecordMotion) -> Result<ReadOptions, GroundError> {
+    Ok(ReadOptions {
         unit: spec.unit.map(unit).transpose()?,
         time_step: spec.time_step,
         sensitivity: spec.sensitivity,
         ..ReadOptions::default()
-    };
-    let record = match &spec.source {
+    })
+}
+
+fn read(spec: &RecordMotion) -> Result<Record, GroundError> {
+    let options = read_options(spec)?;
+    match &spec.source {
         RecordSource::Bundled(name) => {
             barrelstack_motion::bundled(name).ok_or_else(|| GroundError::UnknownBundled {
                 name: name.clone(),
                 known: barrelstack_motion::BUNDLED.join(", "),
-            })?
+            })
         }
         RecordSource::File(file) => {
             let obtain = spec
                 .obtain
                 .as_ref()
                 .map_or_else(|| "; correct the path".to_owned(), |how| format!("; {how}"));
-            read_file(&file.resolve(), &options, &obtain)?
+            read_file(&file.resolve(), &options, &obtain)
         }
-    };
-    require_strong_motion(&record)?;
+    }
+}
+
+/// The components that a scenario asks for of a record, processed as it says.
+fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
+    require_strong_motion(record)?;
     let mut warnings: Vec<String> =
         record.warnings.iter().map(|w| format!("{}: {w}", record.file)).collect();
-    let horizontal = component_of(&record, spec.component.as_deref())?;
+    let horizontal = component_of(record, spec.component.as_deref())?;
     let processing = match spec.processing {
         ProcessingSpec::None => Processing::none(),
-        ProcessingSpec::Default => default_processing(&record),
+        ProcessingSpec::Default => default_processing(record),
     };
     let motion = match &spec.vertical {
         Vertical::None => record.ground_motion(&horizontal, None, &processing)?,
         Vertical::Component(name) => {
-            let vertical = component_of(&record, Some(name))?;
+            let vertical = component_of(record, Some(name))?;
             // Looked for by itself first: only the scenario knows that it can do without.
             if let Err(error) = record.component(&vertical) {
                 return Err(GroundError::Vertical { error });
@@ -190,10 +244,11 @@ fn recorded(spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
             record.ground_motion(&horizontal, Some(&vertical), &processing)?
         }
         Vertical::File(file) => {
+            let options = read_options(spec)?;
             let other = read_file(&file.resolve(), &options, "; correct motion.vertical")?;
             require_strong_motion(&other)?;
             warnings.extend(other.warnings.iter().map(|w| format!("{}: {w}", other.file)));
-            let (record, other, told) = on_one_clock(&record, &horizontal, other)?;
+            let (record, other, told) = on_one_clock(record, &horizontal, other)?;
             warnings.extend(told);
             let theirs = match spec.processing {
                 ProcessingSpec::None => Processing::none(),
@@ -209,7 +264,7 @@ fn recorded(spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
             joined
         }
     };
-    let motion = scaled_by_both(motion, &record, &processing, scale)?;
+    let motion = scaled_by_both(motion, record, &processing, scale)?;
     Ok(Ground { motion: Some(motion), warnings })
 }
 

@@ -7,7 +7,6 @@ use std::ops::ControlFlow;
 
 use barrelstack::Scenario;
 use barrelstack::assemble::{Assembly, assemble};
-use barrelstack::ground::ground;
 use barrelstack::step::default_step;
 use barrelstack_dynamics::{
     Body, EnergyLedger, FrictionLaw, Interface, Method, Model, Observer, Planar, Scratch,
@@ -137,7 +136,7 @@ fn drop_of(
 
 /// When (s) the first body falls.
 fn first_fall(scenario: &Scenario, assembly: &Assembly, rest: &State<Planar>) -> f64 {
-    let ground = ground(scenario).unwrap();
+    let ground = scenario.ground().unwrap();
     let simulation = Simulation {
         method: Method::VelocityVerlet,
         time_step: default_step(assembly, 1.0),

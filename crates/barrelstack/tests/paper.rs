@@ -10,7 +10,6 @@
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
 
 use std::io::Write as _;
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -28,7 +27,7 @@ const ENERGY: f64 = 3e-4;
 fn run(name: &str, overrides: &[&str]) -> Run {
     let overrides: Vec<String> = overrides.iter().map(|o| (*o).to_owned()).collect();
     let scenario = Scenario::builtin(name, &overrides).unwrap();
-    barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())).unwrap()
+    scenario.run().unwrap()
 }
 
 /// The benchmark, which most tests compare with; run once.

@@ -2,8 +2,6 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
 
-use std::ops::ControlFlow;
-
 use barrelstack::outcome::Outcome;
 use barrelstack::{Run, Scenario, Summary};
 
@@ -16,7 +14,7 @@ fn scenario(name: &str, changes: &[&str]) -> Scenario {
 }
 
 fn run(name: &str, changes: &[&str]) -> Run {
-    barrelstack::run(&scenario(name, changes), &mut |_| ControlFlow::Continue(())).unwrap()
+    scenario(name, changes).run().unwrap()
 }
 
 /// A stack of two levels under a small sine, with straps that tie both together.
@@ -145,7 +143,7 @@ fn along_the_barrels_both_straps_of_a_barrel_share_its_pull() {
 fn a_pretension_that_a_strap_is_too_short_for_is_refused_with_its_length() {
     let changes = ["stack.strap.levels=1", "stack.strap.stiffness=\"3 kN/m\"", PRETENSION];
     let scenario = scenario("candia-8-barrels", &changes);
-    let error = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    let error = scenario.run().unwrap_err();
     let said = error.to_string();
     println!("{said}");
     assert!(said.contains("by 1.000 m") && said.contains("less pretension"), "{said}");

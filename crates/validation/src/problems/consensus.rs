@@ -224,6 +224,6 @@ stop_after_collapse = "1 s"
 "#
     );
     let scenario = Scenario::parse("consensus.toml", &text, &[])?;
-    let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(()))?;
+    let run = scenario.run()?;
     Ok(run.fates.first_fall())
 }

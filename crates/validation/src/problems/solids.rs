@@ -284,7 +284,7 @@ fn overlaps() -> Problem {
             let mut fallen = 0;
             for case in 0..count {
                 let scenario = random_stack(case)?;
-                let run = match barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())) {
+                let run = match scenario.run() {
                     Ok(run) => run,
                     // A rack whose rails lie too steep on the staves does not stand, and says so.
                     Err(barrelstack::RunFailure::Settle(_)) => continue,

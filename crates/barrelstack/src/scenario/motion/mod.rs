@@ -61,6 +61,22 @@ pub struct RecordMotion {
     pub obtain: Option<String>,
 }
 
+impl RecordMotion {
+    /// The first horizontal component of a record, with the default processing.
+    pub fn of(source: RecordSource) -> Self {
+        Self {
+            source,
+            component: None,
+            vertical: Vertical::None,
+            time_step: None,
+            unit: None,
+            sensitivity: None,
+            processing: Processing::Default,
+            obtain: None,
+        }
+    }
+}
+
 /// What an amplitude measures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Amplitude {
