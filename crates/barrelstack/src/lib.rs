@@ -39,6 +39,7 @@ pub mod assemble;
 pub mod check;
 pub mod compare;
 pub mod demand;
+pub mod device;
 pub mod ensemble;
 pub mod export;
 pub mod ground;

@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 use barrelstack_dynamics::contact::Basis;
 use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::{
-    EnergySummary, Method, Motion, Planar, RunError, Scratch, Settled, Simulation, State, simulate,
+    Element, EnergySummary, Method, Motion, Planar, RunError, Scratch, Settled, Simulation, State,
+    simulate,
 };
 
 use crate::assemble::{AssembleError, Assembly, assemble};
@@ -17,7 +18,7 @@ use crate::scenario::{self, Scenario, Scene, Until};
 use crate::step::{critical_time_step, default_step};
 use crate::stick::SoftStick;
 use crate::summary::Summary;
-use crate::watch::{End, Ending, Fates, Recording, StrapFate, Stresses, Thresholds, Watch};
+use crate::watch::{ElementFate, End, Ending, Fates, Recording, Stresses, Thresholds, Watch};
 
 /// Everything that was seen of a run.
 #[derive(Clone, Debug)]
@@ -32,8 +33,8 @@ pub struct Run {
     pub outcome: Outcome,
     /// What became of every body.
     pub fates: Fates,
-    /// What became of every strap, in the order of the model.
-    pub straps: Vec<StrapFate>,
+    /// What became of every force element, in the order of the model.
+    pub elements: Vec<ElementFate>,
     /// Stress along every boundary.
     pub stresses: Stresses,
     /// Frames and histories.
@@ -179,7 +180,7 @@ impl Scenario {
         let simulation = Simulation { method: method(self), time_step: step, end_time };
         let thresholds = thresholds(self);
         let rates = (self.record.frame_rate / time_scale, self.record.history_rate / time_scale);
-        let (evaluations, elements) = (scratch.evaluations, scratch.contact_evaluations);
+        let (evaluations, tested) = (scratch.evaluations, scratch.contact_evaluations);
         let sticks = SoftStick::of(&assembly, &scratch, ground.motion.as_ref());
         let mut told = |time| observer(Progress { time, end_time });
         let mut watch = Watch::new(
@@ -193,7 +194,7 @@ impl Scenario {
             &mut told,
         );
         let result = simulate(model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
-        let Watch { recording, stresses, fates, straps, ending, .. } = watch;
+        let Watch { recording, stresses, fates, elements, ending, .. } = watch;
         let ending = ending.unwrap_or(Ending::of_time(self));
         let ended = result.map(|totals| Ended::of(&totals));
         let Verdict { outcome, energy, steps, mut warnings, ending } =
@@ -210,14 +211,14 @@ impl Scenario {
         let work = Work {
             steps,
             evaluations: scratch.evaluations - evaluations,
-            contact_evaluations: scratch.contact_evaluations - elements,
+            contact_evaluations: scratch.contact_evaluations - tested,
         };
         let end_time = state.time;
         Ok(Run {
             scenario: self.clone(),
             outcome,
             fates,
-            straps: straps.0,
+            elements: elements.0,
             stresses,
             recording,
             energy,
@@ -262,9 +263,10 @@ pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunF
         barrelstack_dynamics::evaluate(&assembly.model, &state, &mut scratch);
         None
     };
-    assembly.strap(&mut state).map_err(AssembleError::from)?;
-    if scenario.run.settle && assembly.model.straps().iter().any(|s| s.length < s.span(&state)) {
-        // Straps that pull from the start press the stack together.
+    assembly.fasten(&mut state).map_err(AssembleError::from)?;
+    let strained = |element: &Element<Planar>| element.elongation(&state) > 0.0;
+    if scenario.run.settle && assembly.model.elements().iter().any(strained) {
+        // Elements that pull from the start press the stack together.
         at_rest(&assembly, &mut state, &mut scratch)?;
     }
     if matches!(scenario.scene, Scene::Free(_)) {

@@ -5,7 +5,8 @@ use barrelstack_dynamics::{Interface, Model, Planar, Vec2};
 
 use super::builder::Builder;
 use super::interfaces::interface;
-use super::{AssembleError, Assembly, Similitude, longitudinal, pairs, straps, transverse};
+use super::{AssembleError, Assembly, Similitude, longitudinal, pairs, transverse};
+use crate::device::Site;
 use crate::scenario::{self, StackSpec, View};
 
 /// Lever (m) of the resistance of barrels on hoops against rolling on floors, racks and each other: an
@@ -29,7 +30,15 @@ pub(super) fn assemble(
     if spec.mirror {
         builder.mirror();
     }
-    let loose = straps::straps(spec, scale, &builder.parts, &builder.bodies)?;
+    let site = Site {
+        view: spec.view,
+        levels: spec.levels,
+        mirror: spec.mirror,
+        scale,
+        parts: &builder.parts,
+        bodies: &builder.bodies,
+    };
+    let loose = spec.devices.place(&site).map_err(AssembleError::Stack)?;
     let pairs = pairs::pairs(&builder);
     let interfaces = laws(spec, scale);
     let model = Model::new(builder.bodies, interfaces, pairs, Vec2::new(0.0, -gravity))?;
@@ -37,6 +46,7 @@ pub(super) fn assemble(
         model,
         parts: builder.parts,
         loose,
+        devices: Vec::new(),
         height: height * scale.length,
         levels: spec.levels,
         view: Some(spec.view),

@@ -48,7 +48,6 @@ pub mod run;
 pub mod schema;
 pub mod shape;
 pub mod stack;
-pub mod strap;
 pub mod template;
 
 pub use barrelstack_input::{
@@ -71,7 +70,6 @@ pub use root::ROOT;
 pub use run::{Method, OutcomeSpec, RecordSpec, RunSpec, Until};
 pub use shape::{Shape, Uniform};
 pub use stack::{BodyOverride, StackBody, StackInterfaces, StackSpec, View};
-pub use strap::{Straps, Ties};
 
 /// What can be wrong with a scenario, where, and what to do about it.
 pub mod error {

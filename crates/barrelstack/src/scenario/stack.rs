@@ -1,6 +1,6 @@
 //! A stack of barrels on racks.
 
-use barrelstack_input::declared::Declared as _;
+use crate::device::{self, Devices};
 
 use super::barrel::{self, BARREL, Barrel, Fill};
 use super::catalog;
@@ -11,7 +11,6 @@ use super::interface::{self, IMPACT, INTERFACE, Interface};
 use super::quantity::rounded;
 use super::rack::{self, RACK, Rack};
 use super::reader::Reader;
-use super::strap::{self, STRAP, Straps};
 use super::tree::Table;
 use super::writer::Writer;
 
@@ -41,8 +40,8 @@ pub struct StackSpec {
     pub mirror: bool,
     /// Free distance between racks side by side (m).
     pub gap: f64,
-    /// Straps on the highest levels.
-    pub straps: Straps,
+    /// Devices that protect it.
+    pub devices: Devices,
     /// Bodies that differ, in the order of the file.
     pub overrides: Vec<BodyOverride>,
     /// Laws of contact.
@@ -142,56 +141,78 @@ impl Named for StackBody {
 const LEVELS: Kind = Kind::Integer(1, 12);
 const COLUMNS: Kind = Kind::Integer(1, 40);
 
+/// The fields of a stack of its own.
+const OWN: [Field; 7] = [
+    Field::new(
+        "view",
+        Kind::Choice(names::<View>),
+        Default::Value("\"transverse\""),
+        "Plane of the model: across the barrels or along them.",
+    ),
+    Field::new("levels", LEVELS, Default::Required, "Levels of barrels."),
+    Field::new(
+        "columns",
+        COLUMNS,
+        Default::Required,
+        "Barrels per level in this view, a multiple of those that one rack carries.",
+    ),
+    Field::new(
+        "barrel",
+        Kind::ChoiceOrTable(catalog::barrel_names, "base", &BARREL),
+        Default::Derived("bordeaux-225"),
+        "The barrel.",
+    ),
+    Field::new(
+        "rack",
+        Kind::ChoiceOrTable(catalog::rack_names, "base", &RACK),
+        Default::Derived("two-barrel"),
+        "The rack.",
+    ),
+    Field::new(
+        "mirror",
+        Kind::Flag,
+        Default::Value("false"),
+        "Whether left and right change places.",
+    ),
+    Field::new(
+        "gap",
+        Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)),
+        Default::Value("\"0.05 m\""),
+        "Free distance between racks side by side.",
+    ),
+];
+
+const OVERRIDES: Field = Field::new(
+    "override",
+    Kind::Tables(&OVERRIDE),
+    Default::Nothing,
+    "Bodies that differ from the others.",
+);
+
+/// Lists of fields one after the other.
+const fn joined<const ALL: usize>(lists: [&[Field]; 3]) -> [Field; ALL] {
+    let mut all = [OVERRIDES; ALL];
+    let (mut list, mut next) = (0, 0);
+    while list < lists.len() {
+        let mut at = 0;
+        while at < lists[list].len() {
+            all[next] = lists[list][at];
+            (at, next) = (at + 1, next + 1);
+        }
+        list += 1;
+    }
+    all
+}
+
 /// A stack.
 pub static STACK: Section = Section {
     name: "stack",
     help: "A stack of barrels on racks.",
-    fields: &[
-        Field::new(
-            "view",
-            Kind::Choice(names::<View>),
-            Default::Value("\"transverse\""),
-            "Plane of the model: across the barrels or along them.",
-        ),
-        Field::new("levels", LEVELS, Default::Required, "Levels of barrels."),
-        Field::new(
-            "columns",
-            COLUMNS,
-            Default::Required,
-            "Barrels per level in this view, a multiple of those that one rack carries.",
-        ),
-        Field::new(
-            "barrel",
-            Kind::ChoiceOrTable(catalog::barrel_names, "base", &BARREL),
-            Default::Derived("bordeaux-225"),
-            "The barrel.",
-        ),
-        Field::new(
-            "rack",
-            Kind::ChoiceOrTable(catalog::rack_names, "base", &RACK),
-            Default::Derived("two-barrel"),
-            "The rack.",
-        ),
-        Field::new(
-            "mirror",
-            Kind::Flag,
-            Default::Value("false"),
-            "Whether left and right change places.",
-        ),
-        Field::new(
-            "gap",
-            Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)),
-            Default::Value("\"0.05 m\""),
-            "Free distance between racks side by side.",
-        ),
-        Field::new("strap", Kind::Table(&STRAP), Default::Nothing, "Straps on the highest levels."),
-        Field::new(
-            "override",
-            Kind::Tables(&OVERRIDE),
-            Default::Nothing,
-            "Bodies that differ from the others.",
-        ),
-    ],
+    fields: &joined::<{ OWN.len() + device::FIELDS.len() + 1 }>([
+        &OWN,
+        &device::FIELDS,
+        &[OVERRIDES],
+    ]),
     variants: None,
     exclusive: &[],
 };
@@ -282,7 +303,7 @@ pub(super) fn read(
         rack,
         mirror: reader.flag("mirror")?,
         gap: reader.quantity("gap")?,
-        straps: strap::read(reader.section("strap")?, levels)?,
+        devices: Devices::read(&reader, levels)?,
         overrides: Vec::new(),
         interfaces,
     };
@@ -406,7 +427,7 @@ pub(super) fn write(stack: &StackSpec) -> Table {
     writer.quantity("gap", stack.gap);
     writer.table("barrel", barrel::write(&stack.barrel));
     writer.table("rack", rack::write(&stack.rack));
-    writer.table("strap", stack.straps.write());
+    stack.devices.write(&mut writer);
     writer.tables("override", stack.overrides.iter().map(write_override).collect());
     writer.finish()
 }

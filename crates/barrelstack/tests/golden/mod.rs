@@ -249,8 +249,8 @@ impl Hash {
         let lost = [energy.damped, energy.friction, energy.viscous];
         let rest = [energy.ground_work, energy.residual, energy.throughput];
         stored.into_iter().chain(lost).chain(rest).for_each(|value| self.number(value));
-        for strap in &run.straps {
-            self.known(strap.torn_at);
+        for element in &run.elements {
+            self.known(element.broken_at);
         }
     }
 
