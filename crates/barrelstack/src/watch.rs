@@ -9,7 +9,7 @@ mod stress;
 use std::ops::ControlFlow;
 
 use barrelstack_dynamics::real::Real;
-use barrelstack_dynamics::{EnergyLedger, Model, Observer, Planar, Scratch, State};
+use barrelstack_dynamics::{EnergyLedger, Model, Observer, Planar, Scratch, State, lanewise};
 
 use crate::assemble::Assembly;
 use crate::ground::Ground;
@@ -73,18 +73,9 @@ impl<R: Real> End<R> {
         let rest = self.rest.observe(state);
         ((fates.collapse() + self.after_collapse).le(state.time), rest)
     }
-
-    /// All lanes as one case begins.
-    pub(crate) fn in_all(single: &End) -> Self {
-        Self { rest: Rest::in_all(&single.rest), after_collapse: R::splat(single.after_collapse) }
-    }
-
-    /// Puts a case into one lane.
-    pub(crate) fn put(&mut self, lane: usize, single: &End) {
-        self.rest.put(lane, &single.rest);
-        self.after_collapse = self.after_collapse.with_lane(lane, single.after_collapse);
-    }
 }
+
+lanewise!(struct End<R> { rest, after_collapse });
 
 impl End {
     /// Why a run is over at an accepted state; rest goes first, since nothing is left to see then.
