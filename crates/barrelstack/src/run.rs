@@ -264,9 +264,9 @@ pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunF
         None
     };
     assembly.fasten(&mut state).map_err(AssembleError::from)?;
-    let strained = |element: &Element<Planar>| element.elongation(&state) > 0.0;
+    let strained = |element: &Element<Planar>| element.load(&state).force != 0.0;
     if scenario.run.settle && assembly.model.elements().iter().any(strained) {
-        // Elements that pull from the start press the stack together.
+        // Elements that bear something from the start press the stack together.
         at_rest(&assembly, &mut state, &mut scratch)?;
     }
     if matches!(scenario.scene, Scene::Free(_)) {

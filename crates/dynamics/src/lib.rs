@@ -51,7 +51,7 @@ pub mod state;
 
 pub use body::{Body, BodyId, Face, Motion, Node, Nodes, Placed, Round};
 pub use contact::{Basis, FrictionLaw, Interface, NormalLaw};
-pub use element::{Element, Link, Load, Memory, Strap};
+pub use element::*;
 pub use energy::{EnergyLedger, EnergySummary};
 pub use forces::{Contact, Scratch, evaluate};
 pub use integrate::{Drive, Method, Still};

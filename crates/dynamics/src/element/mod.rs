@@ -89,12 +89,6 @@ macro_rules! kinds {
                 match self { $(Self::$kind(element) => element.length = length),* }
             }
 
-            /// How much longer (m) it is at a state than at rest.
-            pub fn elongation(&self, state: &State<S>) -> S::Real {
-                let length = match self { $(Self::$kind(element) => element.length),* };
-                self.link().span(state) - length
-            }
-
             /// What is wrong with its constants.
             fn flaw(&self) -> Option<&'static str> {
                 match self { $(Self::$kind(element) => element.flaw()),* }
@@ -123,6 +117,12 @@ impl<S: Space> Element<S> {
     /// What is wrong with it in a model of a number of bodies.
     pub(crate) fn problem(&self, bodies: usize) -> Option<&'static str> {
         self.link().flaw(bodies).or_else(|| self.flaw())
+    }
+
+    /// What it bears at a state, unbroken.
+    pub fn load(&self, state: &State<S>) -> Load<S::Real> {
+        let rotations: Vec<_> = state.poses.iter().map(|p| S::rotation(p.orientation)).collect();
+        self.act(state, &rotations, Memory::default()).load
     }
 
     /// The bodies that it joins, each with the point (m) in its frame.
