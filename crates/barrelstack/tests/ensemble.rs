@@ -2,30 +2,16 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![expect(clippy::print_stdout, reason = "what was compared, and in which lanes")]
 
+mod common;
+
 use barrelstack::Scenario;
 use barrelstack::ensemble::{Audience, CaseResult, Prepared, simulate_in};
 use barrelstack::outcome::Outcome;
 use barrelstack_dynamics::lanes::Width;
+use common::Random;
 
 /// How many random cases: all of them with optimization, a share of them without.
 const CASES: u64 = if cfg!(debug_assertions) { 64 } else { 1000 };
-
-/// Numbers between 0 and 1, the same on every machine (`SplitMix64`).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        (z ^ (z >> 31)) as f64 / 2.0_f64.powi(64)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-}
 
 /// A stack of two to four levels with random friction and, one in five, straps that may tear, under a
 /// random sine that topples about half of them.

@@ -58,6 +58,6 @@ pub use integrate::{Drive, Method, Still};
 pub use model::{ContactPair, Counts, InterfaceId, Model, ModelError};
 pub use settle::{Lack, SettleError, Settled, settle};
 pub use shape::Shape;
-pub use simulate::{Finish, Observer, RunError, Simulation, simulate};
+pub use simulate::{Finish, Observer, RunError, Simulation, look, simulate};
 pub use space::{Linear, Planar, Pose, Space, Twist, Vec2};
 pub use state::State;

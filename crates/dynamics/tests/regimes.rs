@@ -1,16 +1,17 @@
 //! How a block on shaking ground begins to move, and how far it slides.
+#![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
 mod common;
 
 use std::ops::ControlFlow;
 
 use barrelstack_dynamics::contact::restitution;
-use barrelstack_dynamics::{Drive, Method, NormalLaw, Planar};
-use common::exact::{
+use barrelstack_dynamics::{Drive, NormalLaw, Planar};
+use barrelstack_scenes::drive::Shake;
+use barrelstack_scenes::theory::{
     least_friction_for_rocking, slide_in_half_sine, slide_in_rectangular_pulse,
     steady_slide_amplitude,
 };
-use common::motion::{half_sine_pulse, harmonic, ramped, rectangular_pulse};
 use common::{DOWN, GRAVITY, Scene, assert_close, block, coulomb, floor, interface, pose};
 
 const MASS: f64 = 100.0;
@@ -31,7 +32,7 @@ enum Start {
 fn standing(width: f64, height: f64, friction: f64, stiffness: f64) -> Scene {
     let sunk = MASS * GRAVITY / (2.0 * stiffness);
     let damping = restitution::damping(stiffness, 0.7, 0.5 * MASS);
-    let body = block("block", (width, height), MASS, None, pose(0.0, 0.5 * height - sunk, 0.0));
+    let body = block("block", (width, height), MASS, pose(0.0, 0.5 * height - sunk, 0.0));
     Scene::new(
         vec![floor(), body],
         interface(
@@ -40,6 +41,7 @@ fn standing(width: f64, height: f64, friction: f64, stiffness: f64) -> Scene {
         ),
         DOWN,
     )
+    .unwrap()
 }
 
 /// The start of a block of height 2 m and slenderness `s = b/h` under a base acceleration `β g`.
@@ -49,8 +51,8 @@ fn start(s: f64, beta: f64, friction: f64) -> Start {
     // The acceleration comes slowly for the contact (ω = 14 000 /s) and at once for the block
     // (p = 2.6 /s).
     let ramp = 0.004;
-    let drive = ramped(beta * GRAVITY, ramp);
-    scene.run(&drive, Method::VelocityVerlet, 5e-6, ramp + 0.02);
+    let drive = Shake::Ramped { acceleration: beta * GRAVITY, ramp };
+    scene.run(&drive, 5e-6, ramp + 0.02).unwrap();
     let moved = |point: [f64; 2]| {
         let pose = scene.state.poses[1];
         let (sin, cos) = (libm::sin(pose.orientation), libm::cos(pose.orientation));
@@ -129,7 +131,7 @@ fn the_friction_that_prevents_sliding_while_rocking_is_the_exact_one() {
 /// A flat block, too low to rock, after a ride on the ground.
 fn slide(friction: f64, drive: &impl Drive<Planar>, end: f64) -> Scene {
     let mut scene = standing(2.0, 0.2, friction, 1e9);
-    scene.run(drive, Method::VelocityVerlet, 2e-5, end);
+    scene.run(drive, 2e-5, end).unwrap();
     scene
 }
 
@@ -141,7 +143,7 @@ fn relative(scene: &Scene) -> f64 {
 fn a_block_slides_through_a_rectangular_pulse_as_newmark_says() {
     let exact = slide_in_rectangular_pulse(0.5, 0.2, 0.4);
     assert!((exact - 0.5886 * GRAVITY / TABLE_GRAVITY).abs() < 6e-5);
-    let scene = slide(0.2, &rectangular_pulse(0.5 * GRAVITY, 0.4), 3.0);
+    let scene = slide(0.2, &Shake::Rectangular { acceleration: 0.5 * GRAVITY, duration: 0.4 }, 3.0);
     assert_close("slide", -relative(&scene), exact, 2e-4); // measured 1.2e-4: the elastic stick
 }
 
@@ -149,13 +151,13 @@ fn a_block_slides_through_a_rectangular_pulse_as_newmark_says() {
 fn a_block_slides_through_a_half_sine_as_integration_says() {
     let exact = slide_in_half_sine(0.5, 0.2, 0.4);
     assert!((exact - 0.179_80 * GRAVITY / TABLE_GRAVITY).abs() < 6e-6);
-    let scene = slide(0.2, &half_sine_pulse(0.5 * GRAVITY, 0.4), 3.0);
+    let scene = slide(0.2, &Shake::half_sine(0.5 * GRAVITY, 0.4), 3.0);
     assert_close("slide", -relative(&scene), exact, 4e-5); // measured 1.3e-5
 }
 
 #[test]
 fn below_its_yield_a_block_rides_along() {
-    let scene = slide(0.2, &half_sine_pulse(0.19 * GRAVITY, 0.4), 2.0);
+    let scene = slide(0.2, &Shake::half_sine(0.19 * GRAVITY, 0.4), 2.0);
     // The stretch of its sticks, let go.
     assert!(relative(&scene).abs() < 1e-9, "{:e}", relative(&scene)); // measured 1.2e-12
 }
@@ -167,13 +169,15 @@ fn a_block_on_shaking_ground_slides_to_and_fro_by_the_exact_amplitude() {
     assert!((exact - 0.096_66 * GRAVITY / TABLE_GRAVITY).abs() < 6e-6);
     let mut scene = standing(2.0, 0.2, n, 1e9);
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    scene.watch(&harmonic(a * GRAVITY, omega), Method::VelocityVerlet, 2e-5, 9.0, |state, _, _| {
-        if state.time > 8.0 {
-            let place = state.poses[1].position.x - state.poses[0].position.x;
-            (low, high) = (low.min(place), high.max(place));
-        }
-        ControlFlow::Continue(())
-    });
+    scene
+        .watch(&Shake::Harmonic { acceleration: a * GRAVITY, omega }, 2e-5, 9.0, |state, _, _| {
+            if state.time > 8.0 {
+                let place = state.poses[1].position.x - state.poses[0].position.x;
+                (low, high) = (low.min(place), high.max(place));
+            }
+            ControlFlow::Continue(())
+        })
+        .unwrap();
     // Sticks must unload at every turn, so the error falls with 1/√k.
     assert_close("amplitude", 0.5 * (high - low), exact, 1e-3); // measured 4.8e-4
 }

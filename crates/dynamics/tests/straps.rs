@@ -61,12 +61,15 @@ fn a_mass_on_a_taut_strap_swings_as_on_a_spring() {
         let mut scene = hanging(hung(), 0.0);
         let start = scene.state.poses[1].position.z;
         let mut worst = 0.0_f64;
-        scene.watch(&Still, method, 1e-4, 1.0, |state, _, _| {
-            let sunk = start - state.poses[1].position.z;
-            let exact = still * (1.0 - libm::cos(omega * state.time));
-            worst = worst.max((sunk - exact).abs() / still);
-            ControlFlow::Continue(())
-        });
+        scene
+            .by(method)
+            .watch(&Still, 1e-4, 1.0, |state, _, _| {
+                let sunk = start - state.poses[1].position.z;
+                let exact = still * (1.0 - libm::cos(omega * state.time));
+                worst = worst.max((sunk - exact).abs() / still);
+                ControlFlow::Continue(())
+            })
+            .unwrap();
         println!("{}: {worst:e}", method.name());
         // measured as listed
         assert!(worst < 2.0 * measured, "{}: {worst:e}", method.name());
@@ -79,13 +82,16 @@ fn a_falling_mass_is_caught_and_thrown_back_to_where_it_came_from() {
     let mut scene = hanging(hung(), slack);
     let start = scene.state.poses[1].position.z;
     let (mut most, mut highest_after) = (0.0_f64, f64::NEG_INFINITY);
-    scene.watch(&Still, Method::RungeKutta4, 1e-5, 0.6, |state, scratch, _| {
-        most = most.max(scratch.loads[0].force);
-        if state.time > 0.3 {
-            highest_after = highest_after.max(state.poses[1].position.z);
-        }
-        ControlFlow::Continue(())
-    });
+    scene
+        .by(Method::RungeKutta4)
+        .watch(&Still, 1e-5, 0.6, |state, scratch, _| {
+            most = most.max(scratch.loads[0].force);
+            if state.time > 0.3 {
+                highest_after = highest_after.max(state.poses[1].position.z);
+            }
+            ControlFlow::Continue(())
+        })
+        .unwrap();
     let exact = STIFFNESS * stretch(slack);
     println!("tension {most} N, exact {exact} N; returns to {:e} m", start - highest_after);
     assert!((most / exact - 1.0).abs() < 1e-7); // measured 6.5e-9
@@ -98,7 +104,8 @@ fn a_damper_pulls_only_while_the_strap_is_taut_and_never_pushes() {
     let mut scene = hanging(Strap { damping: 2e4, ..hung() }, 0.2);
     let (mut least, mut slack) = (f64::INFINITY, 0);
     let energy = scene
-        .watch(&Still, Method::VelocityVerlet, 1e-5, 2.0, |state, scratch, _| {
+        .by(Method::VelocityVerlet)
+        .watch(&Still, 1e-5, 2.0, |state, scratch, _| {
             let distance = HOOK.z - state.poses[1].position.z - 0.3;
             least = least.min(scratch.loads[0].force);
             if distance < 1.0 {
@@ -107,6 +114,7 @@ fn a_damper_pulls_only_while_the_strap_is_taut_and_never_pushes() {
             }
             ControlFlow::Continue(())
         })
+        .unwrap()
         .energy
         .summary(0);
     println!("slack in {slack} steps; {energy:?}");
@@ -127,13 +135,15 @@ fn a_strap_tears_above_its_strength_and_the_books_close() {
     let mut scene = hanging(Strap { strength, ..hung() }, slack);
     let (mut most, mut torn_at) = (0.0_f64, None);
     let energy = scene
-        .watch(&Still, Method::VelocityVerlet, 1e-5, 0.5, |state, scratch, _| {
+        .by(Method::VelocityVerlet)
+        .watch(&Still, 1e-5, 0.5, |state, scratch, _| {
             most = most.max(scratch.loads[0].force);
             if state.memory[0].broken && torn_at.is_none() {
                 torn_at = Some((state.time, state.twists[1].linear.z));
             }
             ControlFlow::Continue(())
         })
+        .unwrap()
         .energy
         .summary(0);
     let (time, speed) = torn_at.unwrap();
@@ -186,10 +196,12 @@ fn two_bodies_on_a_strap_keep_momentum_spin_and_energy() {
     let before = momenta(&scene);
     let mut most = 0.0_f64;
     let energy = scene
-        .watch(&Still, Method::VelocityVerlet, 1e-4, 1.5, |_, scratch, _| {
+        .by(Method::VelocityVerlet)
+        .watch(&Still, 1e-4, 1.5, |_, scratch, _| {
             most = most.max(scratch.loads[0].force);
             ControlFlow::Continue(())
         })
+        .unwrap()
         .energy
         .summary(0);
     let after = momenta(&scene);

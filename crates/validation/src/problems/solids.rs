@@ -51,7 +51,7 @@ fn drop(mass: f64, height: f64, step: f64) -> Result<(f64, f64), Failure> {
     let mut scene =
         Scene::new(vec![floor(), body], interface(law(), FrictionLaw::Frictionless), DOWN)?;
     let (mut deepest, mut left) = (0.0_f64, None);
-    scene.watch(&Still, step, 0.2, |state, _| {
+    scene.watch(&Still, step, 0.2, |state, _, _| {
         let depth = radius - state.poses[1].position.z;
         deepest = deepest.max(depth);
         if depth <= 0.0 && state.twists[1].linear.z > 0.0 {
@@ -334,18 +334,11 @@ impl Survey {
                 || parts[b].supports.contains(&a)
                 || (a == 0 && parts[b].supports.is_empty() && parts[b].carrier.is_none())
         };
-        let frames = &run.recording.frames.poses;
-        for (index, frame) in frames.iter().enumerate() {
-            let poses: Vec<Pose<Planar>> = frame
-                .iter()
-                .map(|[x, z, orientation]| Pose {
-                    position: Vec2::new(*x, *z),
-                    orientation: *orientation,
-                })
-                .collect();
+        let frames = &run.recording.frames;
+        for (index, poses) in frames.all_poses().enumerate() {
             for overlap in boundaries.overlaps(&poses) {
                 let seat = joined(overlap.bodies[0], overlap.bodies[1]);
-                let last = index + 1 == frames.len();
+                let last = index + 1 == frames.times.len();
                 let most = if seat { &mut self.seat } else { &mut self.loose };
                 *most = most.max(overlap.depth);
                 if last {
