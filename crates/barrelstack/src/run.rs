@@ -5,8 +5,7 @@ use std::ops::ControlFlow;
 use barrelstack_dynamics::contact::Basis;
 use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::{
-    Element, EnergySummary, Method, Motion, Planar, RunError, Scratch, Settled, Simulation, State,
-    simulate,
+    Element, EnergySummary, Method, Planar, RunError, Scratch, Settled, Simulation, State, simulate,
 };
 
 use crate::assemble::{AssembleError, Assembly, assemble};
@@ -476,11 +475,6 @@ impl Run {
     /// Its result as numbers and words; the time that it took is not known here.
     pub fn summary(&self) -> Summary {
         Summary::of(self, None)
-    }
-
-    /// How many bodies move freely.
-    pub fn free_bodies(&self) -> usize {
-        self.assembly.model.bodies().iter().filter(|b| b.motion == Motion::Free).count()
     }
 
     /// What the constants of the interfaces are stated for, such as "node"; "mixed" when they differ.

@@ -7,7 +7,7 @@ use super::catalog;
 use super::dimension::Dimension;
 use super::error::ScenarioError;
 use super::field::{Default, Field, Kind, Named, Range, Section, names};
-use super::interface::{self, IMPACT, INTERFACE, Interface};
+use super::pair::StackInterfaces;
 use super::quantity::rounded;
 use super::rack::{self, RACK, Rack};
 use super::reader::Reader;
@@ -88,43 +88,6 @@ pub struct BodyOverride {
     pub fill: Option<Fill>,
     /// Displacement from the regular place, positive to the right before any mirroring (m).
     pub offset_x: f64,
-}
-
-/// The law of each kind of contact in a stack.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StackInterfaces {
-    /// Bottom rack on the ground.
-    pub rack_ground: Interface,
-    /// Barrel in its cradle, and the rack above on the barrel.
-    pub barrel_rack: Interface,
-    /// Rack that stands on the rack below.
-    pub rack_rack: Interface,
-    /// Barrel against barrel.
-    pub barrel_barrel: Interface,
-    /// Barrel on the ground.
-    pub barrel_ground: Interface,
-    /// Barrel against a rack on which it has no seat, or beside its seat.
-    pub fallen_barrel_rack: Interface,
-    /// Rack on the ground that has its seat elsewhere.
-    pub fallen_rack_ground: Interface,
-    /// Rack against a rack on which it does not stand.
-    pub fallen_rack_rack: Interface,
-}
-
-impl StackInterfaces {
-    /// Every law with its name in files, in the order of [`INTERFACES`].
-    pub fn named(&self) -> [(&'static str, &Interface); 8] {
-        [
-            ("rack-ground", &self.rack_ground),
-            ("barrel-rack", &self.barrel_rack),
-            ("rack-rack", &self.rack_rack),
-            ("barrel-barrel", &self.barrel_barrel),
-            ("barrel-ground", &self.barrel_ground),
-            ("fallen-barrel-rack", &self.fallen_barrel_rack),
-            ("fallen-rack-ground", &self.fallen_rack_ground),
-            ("fallen-rack-rack", &self.fallen_rack_rack),
-        ]
-    }
 }
 
 impl Named for View {
@@ -258,35 +221,6 @@ pub static OVERRIDE: Section = Section {
     exclusive: &[],
 };
 
-const fn seat(name: &'static str, help: &'static str) -> Field {
-    Field::new(name, Kind::Table(&INTERFACE), Default::Nothing, help)
-}
-
-const fn impact(name: &'static str, help: &'static str) -> Field {
-    Field::new(name, Kind::Table(&IMPACT), Default::Nothing, help)
-}
-
-/// The laws of contact of a stack.
-pub static INTERFACES: Section = Section {
-    name: "interfaces",
-    help: "Laws of contact in a stack, by pair.",
-    fields: &[
-        seat("rack-ground", "Bottom rack on the ground."),
-        seat("barrel-rack", "Barrel in its cradle, and the rack above on the barrel."),
-        seat("rack-rack", "Rack that stands on the rack below."),
-        impact("barrel-barrel", "Barrel against barrel."),
-        impact("barrel-ground", "Barrel on the ground."),
-        impact(
-            "fallen-barrel-rack",
-            "Barrel against a rack on which it has no seat, or beside its seat.",
-        ),
-        impact("fallen-rack-ground", "Rack on the ground that has its seat elsewhere."),
-        impact("fallen-rack-rack", "Rack against a rack on which it does not stand."),
-    ],
-    variants: None,
-    exclusive: &[],
-};
-
 /// Reads a stack.
 pub(super) fn read(
     reader: Reader<'_>,
@@ -395,28 +329,6 @@ fn read_override(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride, 
     Ok(BodyOverride { body, level, column, mass, fill, offset_x })
 }
 
-/// Reads the laws of contact.
-pub(super) fn read_interfaces(reader: Reader<'_>) -> Result<StackInterfaces, ScenarioError> {
-    let read = |name: &'static str| {
-        interface::read(
-            reader.section(name)?,
-            catalog::pair(name).map(catalog::CatalogPair::defaults),
-        )
-    };
-    let interfaces = StackInterfaces {
-        rack_ground: read("rack-ground")?,
-        barrel_rack: read("barrel-rack")?,
-        rack_rack: read("rack-rack")?,
-        barrel_barrel: read("barrel-barrel")?,
-        barrel_ground: read("barrel-ground")?,
-        fallen_barrel_rack: read("fallen-barrel-rack")?,
-        fallen_rack_ground: read("fallen-rack-ground")?,
-        fallen_rack_rack: read("fallen-rack-rack")?,
-    };
-    reader.finish();
-    Ok(interfaces)
-}
-
 /// Writes a stack.
 pub(super) fn write(stack: &StackSpec) -> Table {
     let mut writer = Writer::new(&STACK);
@@ -443,15 +355,5 @@ fn write_override(body: &BodyOverride) -> Table {
     writer.optional_quantity("mass", body.mass);
     writer.optional_text("fill", body.fill.map(Named::name));
     writer.quantity("offset_x", body.offset_x);
-    writer.finish()
-}
-
-/// Writes the laws of contact.
-pub(super) fn write_interfaces(interfaces: &StackInterfaces) -> Table {
-    let mut writer = Writer::new(&INTERFACES);
-    for (name, law) in interfaces.named() {
-        let seat = ["rack-ground", "barrel-rack", "rack-rack"].contains(&name);
-        writer.table(name, interface::write(if seat { &INTERFACE } else { &IMPACT }, law));
-    }
     writer.finish()
 }

@@ -222,33 +222,3 @@ pub struct MotionSpec {
     /// accelerations unchanged.
     pub similitude: f64,
 }
-
-impl RecordMotion {
-    /// Checks that the files of the record exist.
-    ///
-    /// # Errors
-    ///
-    /// A sentence that names the missing file, says where to get it when the scenario knows, and
-    /// how to name another.
-    pub fn check_files(&self) -> Result<(), String> {
-        let mut files: Vec<(&str, &FileRef)> = Vec::new();
-        if let RecordSource::File(file) = &self.source {
-            files.push(("motion.record", file));
-        }
-        if let Vertical::File(file) = &self.vertical {
-            files.push(("motion.vertical_record", file));
-        }
-        for (field, file) in files {
-            let path = file.resolve();
-            if !path.is_file() {
-                let obtain = self.obtain.as_ref().map_or_else(String::new, |o| format!("; {o}"));
-                return Err(format!(
-                    "there is no record `{}`{obtain}; put the file there, or name another as \
-                     `{field}`",
-                    path.display()
-                ));
-            }
-        }
-        Ok(())
-    }
-}
