@@ -25,7 +25,7 @@ impl Checked {
 /// Does everything that comes before the shaking.
 ///
 /// # Errors
-/// As [`crate::run()`].
+/// As [`Scenario::run`].
 pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
     let mut lines = vec![scenario.title.clone()];
     let assembly = assemble(scenario)?;

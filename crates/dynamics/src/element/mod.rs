@@ -1,7 +1,7 @@
 //! Force elements: what pushes or pulls two bodies without a contact.
 //!
 //! An element is of one of the kinds in the list below, each a file beside this one that says what it
-//! does at a state ([`Element::act`]) and what it can bear ([`Element::strength`]).
+//! does at a state (its load) and what it can bear ([`Element::strength`]).
 //! All else is the same for all: they are fastened to a model, remember whether they are broken, enter
 //! the forces and the energy books, and march in lanes.
 
