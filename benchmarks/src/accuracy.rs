@@ -2,9 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use barrelstack_dynamics::{
-    EnergyLedger, Method, Model, Observer, Planar, Scratch, Simulation, State, simulate,
-};
+use barrelstack_dynamics::{Method, Planar, Scratch, Simulation, State, look, simulate};
 
 use crate::scene::Scene;
 use crate::{Failure, time};
@@ -70,8 +68,7 @@ fn cost(scene: &Scene, method: Method, step: f64, end_time: f64) -> f64 {
     time::least(|| {
         let (mut state, mut scratch) = (scene.rest.clone(), Scratch::new(&scene.model));
         let ground = Scene::ground(1.0);
-        let ended =
-            simulate(&scene.model, &ground, &mut state, &mut scratch, &simulation, &mut Blind);
+        let ended = simulate(&scene.model, &ground, &mut state, &mut scratch, &simulation, &mut ());
         assert!(ended.is_ok(), "the run breaks down");
     })
 }
@@ -103,47 +100,25 @@ impl Seen {
 
 fn watched(scene: &Scene, method: Method, step: f64) -> Result<Seen, Failure> {
     let (mut state, mut scratch) = (scene.rest.clone(), Scratch::new(&scene.model));
-    let rest = state.poses.iter().map(|pose| pose.position.z).collect();
-    let mut seen = Seen { rest, ways: Vec::new(), fall: None };
-    let simulation = Simulation { method, time_step: step, end_time: 3.0 };
-    simulate(&scene.model, &Scene::ground(1.0), &mut state, &mut scratch, &simulation, &mut seen)?;
-    Ok(seen)
-}
-
-impl Observer<Planar> for Seen {
-    fn observe(
-        &mut self,
-        _: &Model<Planar>,
-        state: &State<Planar>,
-        _: &Scratch<Planar>,
-        _: &EnergyLedger<Planar>,
-    ) -> ControlFlow<()> {
+    let rest: Vec<f64> = state.poses.iter().map(|pose| pose.position.z).collect();
+    let (mut ways, mut fall) = (Vec::new(), None);
+    let mut observer = look(|state: &State<Planar>, _, _| {
         // Samples fall on steps: all steps compared divide the sampling time.
-        if state.time > (self.ways.len() as f64 - 1e-6) * SAMPLE {
+        if state.time > (ways.len() as f64 - 1e-6) * SAMPLE {
             let ground = state.poses[0].position.x;
-            self.ways.push(state.poses.iter().map(|pose| pose.position.x - ground).collect());
+            ways.push(state.poses.iter().map(|pose| pose.position.x - ground).collect());
         }
         let fallen =
-            state.poses.iter().zip(&self.rest).any(|(pose, rest)| rest - pose.position.z > DROP);
+            state.poses.iter().zip(&rest).any(|(pose, rest)| rest - pose.position.z > DROP);
         if fallen {
-            self.fall = Some(state.time);
+            fall = Some(state.time);
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
-    }
-}
-
-/// Watches nothing.
-pub(crate) struct Blind;
-
-impl Observer<Planar> for Blind {
-    fn observe(
-        &mut self,
-        _: &Model<Planar>,
-        _: &State<Planar>,
-        _: &Scratch<Planar>,
-        _: &EnergyLedger<Planar>,
-    ) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
+    });
+    let simulation = Simulation { method, time_step: step, end_time: 3.0 };
+    let ground = Scene::ground(1.0);
+    simulate(&scene.model, &ground, &mut state, &mut scratch, &simulation, &mut observer)?;
+    drop(observer);
+    Ok(Seen { rest, ways, fall })
 }

@@ -2,7 +2,7 @@
 
 use barrelstack::Scenario;
 use barrelstack::assemble::assemble;
-use barrelstack::ground::{Ground, ground};
+use barrelstack::ground::Ground;
 use barrelstack::step::default_step;
 use barrelstack_dynamics::lanes::{Case, Crew, End, Task, Width, march};
 use barrelstack_dynamics::real::Real;
@@ -58,7 +58,7 @@ impl Stage {
         let step = default_step(&assembly, 1.0);
         let mut rest = State::initial(&assembly.model);
         settle(&assembly.model, &mut rest, &mut Scratch::new(&assembly.model), 1e-9)?;
-        Ok(Self { model: assembly.model, rest, ground: ground(&scenario)?, step })
+        Ok(Self { model: assembly.model, rest, ground: scenario.ground()?, step })
     }
 
     /// Contacts that touch in a step, in the mean.

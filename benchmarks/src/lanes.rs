@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use barrelstack::Scenario;
 use barrelstack::ensemble::{Audience, Prepared, simulate_in};
-use barrelstack::ground::ground;
 use barrelstack_dynamics::lanes::{Case, Crew, End, Task, Width, march};
 use barrelstack_dynamics::real::Real;
 use barrelstack_dynamics::{Method, Planar, Scratch, State};
@@ -76,7 +75,7 @@ pub(crate) fn scenario() -> Result<(), Failure> {
             let setting = format!("interface.rack-ground.friction.coefficient={friction}");
             let settings = [setting, "run.step=\"0.5 ms\"".into()];
             let scenario = Scenario::builtin("candia-8-barrels", &settings)?;
-            let ground = Arc::new(ground(&scenario)?);
+            let ground = Arc::new(scenario.ground()?);
             Ok(Prepared { scenario: Arc::new(scenario), ground })
         })
         .collect();

@@ -7,13 +7,13 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use barrelstack::assemble::{Assembly, assemble};
-use barrelstack::ground::{Ground, ground};
+use barrelstack::ground::Ground;
 use barrelstack::scenario::Scene;
 use barrelstack::step::default_step;
 use barrelstack::watch::{End, Thresholds, Watch};
 use barrelstack::{Scenario, Summary};
 use barrelstack_dynamics::{
-    EnergyLedger, Method, Model, Observer, Planar, Scratch, Simulation, State, settle, simulate,
+    Method, Observer, Planar, Scratch, Simulation, State, look, settle, simulate,
 };
 
 /// How often each figure is measured; the median is printed.
@@ -42,7 +42,7 @@ fn whole_run() -> Result<(), Failure> {
     let mut seconds = Vec::new();
     for _ in 0..REPEATS {
         let start = Instant::now();
-        let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(()))?;
+        let run = scenario.run()?;
         seconds.push(start.elapsed().as_secs_f64());
         end_time = run.end_time;
     }
@@ -52,10 +52,8 @@ fn whole_run() -> Result<(), Failure> {
     let after = scenario.run.stop_after_collapse;
     let watched = stage.measure(|stage, state, scratch| stage.watched(state, scratch, after));
     let blind =
-        stage.measure(|stage, state, scratch| stage.shaken(state, scratch, end_time, &mut Blind));
-    let mut counting = Counting(0);
-    let (mut state, mut scratch) = (stage.state.clone(), stage.scratch.clone());
-    stage.shaken(&mut state, &mut scratch, end_time, &mut counting);
+        stage.measure(|stage, state, scratch| stage.shaken(state, scratch, end_time, &mut ()));
+    let touched = stage.touched(end_time);
 
     println!("candia-8-barrels, one run on one core, median of {REPEATS}");
     println!("  time step                      {:10.1} µs", 1e6 * stage.step);
@@ -75,7 +73,7 @@ fn whole_run() -> Result<(), Failure> {
     );
     println!(
         "  contacts that touch            {:10.1} million/s",
-        1e-6 * counting.0 as f64 / watched.seconds
+        1e-6 * touched / watched.seconds
     );
     Ok(())
 }
@@ -84,7 +82,7 @@ fn whole_run() -> Result<(), Failure> {
 fn report() -> Result<(), Failure> {
     let changes = ["stack.levels=6", "run.duration=60 s", "motion.scale.factor=0.6"];
     let scenario = Scenario::builtin("demo-napa", &changes.map(str::to_owned))?;
-    let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(()))?;
+    let run = scenario.run()?;
     let summary = Summary::of(&run, None);
     let (mut seconds, mut bytes) = (Vec::new(), 0);
     for _ in 0..REPEATS {
@@ -107,12 +105,9 @@ fn growth(what: &str, values: impl IntoIterator<Item = u32>) -> Result<(), Failu
     for value in values {
         let scenario = Scenario::builtin("candia-8-barrels", &[format!("stack.{what}={value}")])?;
         let stage = Stage::new(&scenario)?;
-        let cost = stage
-            .measure(|stage, state, scratch| stage.shaken(state, scratch, STANDING, &mut Blind));
-        let mut counting = Counting(0);
-        let (mut state, mut scratch) = (stage.state.clone(), stage.scratch.clone());
-        stage.shaken(&mut state, &mut scratch, STANDING, &mut counting);
-        let touching = counting.0 as f64 / cost.steps;
+        let cost =
+            stage.measure(|stage, state, scratch| stage.shaken(state, scratch, STANDING, &mut ()));
+        let touching = stage.touched(STANDING) / cost.steps;
         println!(
             "  {value:8} {:8} {:8.1} {touching:10.1} {:9.3} {:21.1}",
             stage.assembly.parts.len() - 1,
@@ -145,7 +140,7 @@ struct Cost {
 impl Stage {
     fn new(scenario: &Scenario) -> Result<Self, Failure> {
         let assembly = assemble(scenario)?;
-        let ground = ground(scenario)?;
+        let ground = scenario.ground()?;
         let step = default_step(&assembly, 1.0);
         let mut state = State::initial(&assembly.model);
         let mut scratch = Scratch::new(&assembly.model);
@@ -184,6 +179,19 @@ impl Stage {
             .map_or(0, |totals| totals.steps)
     }
 
+    /// How many contacts touch until `end_time` (s), over all steps.
+    fn touched(&self, end_time: f64) -> f64 {
+        let (mut state, mut scratch) = (self.state.clone(), self.scratch.clone());
+        let mut count = 0;
+        let mut counting = look(|_: &State<Planar>, scratch, _| {
+            count += scratch.contacts.len();
+            ControlFlow::Continue(())
+        });
+        self.shaken(&mut state, &mut scratch, end_time, &mut counting);
+        drop(counting);
+        count as f64
+    }
+
     /// Shakes as a run does, with all its watching, until `after` (s) from the collapse.
     fn watched(
         &self,
@@ -208,37 +216,6 @@ impl Stage {
         );
         let end_time = self.scenario.run.duration.unwrap_or(12.0);
         self.shaken(state, scratch, end_time, &mut watch)
-    }
-}
-
-/// Watches nothing.
-struct Blind;
-
-impl Observer<Planar> for Blind {
-    fn observe(
-        &mut self,
-        _: &Model<Planar>,
-        _: &State<Planar>,
-        _: &Scratch<Planar>,
-        _: &EnergyLedger<Planar>,
-    ) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-}
-
-/// Counts the contacts that touch.
-struct Counting(u64);
-
-impl Observer<Planar> for Counting {
-    fn observe(
-        &mut self,
-        _: &Model<Planar>,
-        _: &State<Planar>,
-        scratch: &Scratch<Planar>,
-        _: &EnergyLedger<Planar>,
-    ) -> ControlFlow<()> {
-        self.0 += scratch.contacts.len() as u64;
-        ControlFlow::Continue(())
     }
 }
 

@@ -3,7 +3,6 @@
 use barrelstack_dynamics::{Scratch, State};
 
 use crate::assemble::{PartKind, assemble};
-use crate::ground::ground;
 use crate::overlap::check_overlap;
 use crate::rest::at_rest;
 use crate::run::{RunFailure, time_step};
@@ -26,7 +25,7 @@ impl Checked {
 /// Does everything that comes before the shaking.
 ///
 /// # Errors
-/// As [`crate::run()`].
+/// As [`Scenario::run`].
 pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
     let mut lines = vec![scenario.title.clone()];
     let assembly = assemble(scenario)?;
@@ -76,7 +75,7 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
             locked.slipping
         ));
     }
-    let ground = ground(scenario)?;
+    let ground = scenario.ground()?;
     if let Some(motion) = &ground.motion {
         lines.push(format!(
             "  motion        {}: {:.2} s, PGA {:.3} g, PGV {:.1} cm/s, PGD {:.1} cm",

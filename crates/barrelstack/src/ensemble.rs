@@ -9,11 +9,14 @@ mod alone;
 mod case;
 mod crew;
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use barrelstack_dynamics::Method;
 use barrelstack_dynamics::lanes::{Topology, Width};
 
+use crate::pool;
 use crate::run::{RunFailure, Standing, check_length, end_time, method, stand};
 use crate::scenario::Scenario;
 use crate::watch::End;
@@ -28,6 +31,9 @@ pub const VERSION: u32 = 5;
 /// single runs, however few of its lanes are used.
 const FEWEST: usize = 3;
 
+/// Cases that a thread takes at once: enough to fill lanes, few enough that all threads have some.
+const BATCH: usize = 32;
+
 /// Who hears of the cases of an ensemble, and may stop it.
 pub struct Audience<'a> {
     /// Hears of each case that is done, in any order.
@@ -36,7 +42,57 @@ pub struct Audience<'a> {
     pub stop: &'a dyn Fn() -> bool,
 }
 
-/// Runs cases and gives what became of each, in their order; none when asked to stop.
+/// Cases that are run together, on all cores.
+///
+/// ```
+/// use barrelstack::ensemble::{Ensemble, Prepared};
+/// use barrelstack::Scenario;
+///
+/// let mut cases = Vec::new();
+/// for friction in [0.2, 0.4, 0.6] {
+///     let change = format!("interface.block-ground.friction.coefficient={friction}");
+///     cases.push(Prepared::new(Scenario::builtin("sliding-block", &[change])?)?);
+/// }
+/// let results = Ensemble { cases }.run();
+/// assert!(results.iter().all(|result| result.outcome.is_ok()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Ensemble {
+    /// The cases; those of one stack or one motion share it.
+    pub cases: Vec<Prepared>,
+}
+
+impl Ensemble {
+    /// Runs all cases; what became of each, in their order.
+    pub fn run(&self) -> Vec<CaseResult> {
+        // Nobody stops it, so every case has its result.
+        self.run_watched(&|_| ControlFlow::Continue(())).unwrap_or_default()
+    }
+
+    /// As [`Ensemble::run`], before an observer, who hears of every case that is done, in any order and
+    /// from several threads, and may stop them all; then there are no results.
+    pub fn run_watched(
+        &self,
+        observer: &(dyn Fn(&CaseResult) -> ControlFlow<()> + Sync),
+    ) -> Option<Vec<CaseResult>> {
+        let stopped = AtomicBool::new(false);
+        let together = |cases: &&[Prepared]| {
+            let mut tell = |result: &CaseResult| {
+                if observer(result).is_break() {
+                    stopped.store(true, Ordering::Relaxed);
+                }
+            };
+            let stop = || stopped.load(Ordering::Relaxed);
+            simulate(cases, &mut Audience { tell: &mut tell, stop: &stop })
+        };
+        let batches: Vec<&[Prepared]> = self.cases.chunks(BATCH).collect();
+        let done: Option<Vec<_>> = pool::map(&batches, together, &|_| ()).into_iter().collect();
+        done.map(|results| results.concat())
+    }
+}
+
+/// Runs cases on one core and gives what became of each, in their order; none when asked to stop.
 ///
 /// Which cases stand together changes nothing about any of them.
 pub fn simulate(cases: &[Prepared], audience: &mut Audience<'_>) -> Option<Vec<CaseResult>> {

@@ -1,17 +1,18 @@
 //! The ground motion of a scenario: read or made, scaled, and ready to drive.
 
+mod formula;
+
 use std::path::PathBuf;
 
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
-    AccelerationUnit, Channel, Component, GroundMotion, History, Horizontals, IntensityMeasure,
-    MotionError, Processing, Pulse as MotionPulse, ReadError, ReadFailure, ReadOptions, Record,
-    Refusal,
+    AccelerationUnit, Channel, Component, GroundMotion, Horizontals, IntensityMeasure, MotionError,
+    Processing, ReadError, ReadFailure, ReadOptions, Record, Refusal,
 };
 
 use crate::scenario::{
-    Amplitude, Direction, MeasuredOn, MotionSource, MotionSpec, Processing as ProcessingSpec,
-    Pulse, PulseKind, RecordMotion, RecordSource, Scale, Scenario, Sine, Vertical,
+    MeasuredOn, MotionSource, MotionSpec, Processing as ProcessingSpec, RecordMotion, RecordSource,
+    Scale, Scenario, Vertical,
 };
 use crate::system;
 
@@ -25,9 +26,23 @@ pub struct Ground {
 }
 
 impl Ground {
+    /// Scales and stretches its motion as a scenario says.
+    fn rescale(&mut self, spec: &MotionSpec, similitude: f64) -> Result<(), MotionError> {
+        if let Some(motion) = self.motion.take() {
+            self.motion = Some(scaled(motion, spec, similitude)?);
+        }
+        Ok(())
+    }
+
     /// When (s) it is still: the end of its motion.
     pub fn end(&self) -> f64 {
         self.motion.as_ref().map_or(0.0, |motion| motion.duration)
+    }
+}
+
+impl From<GroundMotion> for Ground {
+    fn from(motion: GroundMotion) -> Self {
+        Self { motion: Some(motion), warnings: Vec::new() }
     }
 }
 
@@ -87,28 +102,59 @@ pub enum GroundError {
 /// Largest record (bytes) that is read; the longest strong-motion files have a tenth of it.
 pub const RECORD_LIMIT: usize = 256 << 20;
 
-/// Reads or makes the motion of a scenario, scaled as it says.
-///
-/// # Errors
-/// When a record cannot be read, lacks the component asked for, or cannot be scaled.
-pub fn ground(scenario: &Scenario) -> Result<Ground, GroundError> {
-    of_spec(&scenario.motion, scenario.run.similitude)
+impl Scenario {
+    /// Reads or makes its motion, scaled as it says.
+    ///
+    /// # Errors
+    /// When a record cannot be read, lacks the component asked for, or cannot be scaled.
+    pub fn ground(&self) -> Result<Ground, GroundError> {
+        of_spec(&self.motion, self.run.similitude)
+    }
+
+    /// The ground under a record at hand, in place of its own motion.
+    ///
+    /// Components, processing and scale are those that the scenario states; where its own motion is no
+    /// record, the first horizontal component with the default processing.
+    ///
+    /// ```
+    /// use barrelstack::Scenario;
+    ///
+    /// let record = barrelstack_motion::bundled("napa-college-2014").expect("a bundled record");
+    /// let scenario =
+    ///     Scenario::builtin("candia-8-barrels", &["motion.scale.pgv=60 cm/s".to_owned()])?;
+    /// let motion = scenario.ground_of(&record)?.motion.expect("a record moves");
+    /// assert!((motion.pgv() - 0.6).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the record lacks a component asked for, or cannot be scaled.
+    pub fn ground_of(&self, record: &Record) -> Result<Ground, GroundError> {
+        let spec = match &self.motion.source {
+            MotionSource::Record(own) => own.clone(),
+            MotionSource::None | MotionSource::Sine(_) | MotionSource::Pulse(_) => {
+                RecordMotion::of(RecordSource::Bundled(record.file.clone()))
+            }
+        };
+        let mut ground = shaken_by(record, &spec, self.motion.scale)?;
+        let spec = MotionSpec { source: MotionSource::Record(spec), ..self.motion.clone() };
+        ground.rescale(&spec, self.run.similitude)?;
+        Ok(ground)
+    }
 }
 
 /// Reads or makes a motion, scaled as it says, for a stack of a length scale.
 ///
 /// # Errors
-/// As [`ground`].
+/// As [`Scenario::ground`].
 pub fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
     let mut ground = match &spec.source {
         MotionSource::None => return Ok(Ground::default()),
-        MotionSource::Record(record) => recorded(record, spec.scale)?,
-        MotionSource::Sine(sine) => Ground { motion: Some(harmonic(sine)?), ..Ground::default() },
-        MotionSource::Pulse(pulse) => Ground { motion: Some(pulsed(pulse)?), ..Ground::default() },
+        MotionSource::Record(record) => shaken_by(&read(record)?, record, spec.scale)?,
+        MotionSource::Sine(sine) => formula::harmonic(sine)?.into(),
+        MotionSource::Pulse(pulse) => formula::pulsed(pulse)?.into(),
     };
-    if let Some(motion) = ground.motion.take() {
-        ground.motion = Some(scaled(motion, spec, similitude)?);
-    }
+    ground.rescale(spec, similitude)?;
     Ok(ground)
 }
 
@@ -149,40 +195,49 @@ pub fn scaled(
     Ok(motion)
 }
 
-fn recorded(spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
-    let options = ReadOptions {
+/// What the readers of files should know that a scenario states.
+fn read_options(spec: &RecordMotion) -> Result<ReadOptions, GroundError> {
+    Ok(ReadOptions {
         unit: spec.unit.map(unit).transpose()?,
         time_step: spec.time_step,
         sensitivity: spec.sensitivity,
         ..ReadOptions::default()
-    };
-    let record = match &spec.source {
+    })
+}
+
+fn read(spec: &RecordMotion) -> Result<Record, GroundError> {
+    let options = read_options(spec)?;
+    match &spec.source {
         RecordSource::Bundled(name) => {
             barrelstack_motion::bundled(name).ok_or_else(|| GroundError::UnknownBundled {
                 name: name.clone(),
                 known: barrelstack_motion::BUNDLED.join(", "),
-            })?
+            })
         }
         RecordSource::File(file) => {
             let obtain = spec
                 .obtain
                 .as_ref()
                 .map_or_else(|| "; correct the path".to_owned(), |how| format!("; {how}"));
-            read_file(&file.resolve(), &options, &obtain)?
+            read_file(&file.resolve(), &options, &obtain)
         }
-    };
-    require_strong_motion(&record)?;
+    }
+}
+
+/// The components that a scenario asks for of a record, processed as it says.
+fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
+    require_strong_motion(record)?;
     let mut warnings: Vec<String> =
         record.warnings.iter().map(|w| format!("{}: {w}", record.file)).collect();
-    let horizontal = component_of(&record, spec.component.as_deref())?;
+    let horizontal = component_of(record, spec.component.as_deref())?;
     let processing = match spec.processing {
         ProcessingSpec::None => Processing::none(),
-        ProcessingSpec::Default => default_processing(&record),
+        ProcessingSpec::Default => default_processing(record),
     };
     let motion = match &spec.vertical {
         Vertical::None => record.ground_motion(&horizontal, None, &processing)?,
         Vertical::Component(name) => {
-            let vertical = component_of(&record, Some(name))?;
+            let vertical = component_of(record, Some(name))?;
             // Looked for by itself first: only the scenario knows that it can do without.
             if let Err(error) = record.component(&vertical) {
                 return Err(GroundError::Vertical { error });
@@ -190,10 +245,11 @@ fn recorded(spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
             record.ground_motion(&horizontal, Some(&vertical), &processing)?
         }
         Vertical::File(file) => {
+            let options = read_options(spec)?;
             let other = read_file(&file.resolve(), &options, "; correct motion.vertical")?;
             require_strong_motion(&other)?;
             warnings.extend(other.warnings.iter().map(|w| format!("{}: {w}", other.file)));
-            let (record, other, told) = on_one_clock(&record, &horizontal, other)?;
+            let (record, other, told) = on_one_clock(record, &horizontal, other)?;
             warnings.extend(told);
             let theirs = match spec.processing {
                 ProcessingSpec::None => Processing::none(),
@@ -209,7 +265,7 @@ fn recorded(spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
             joined
         }
     };
-    let motion = scaled_by_both(motion, &record, &processing, scale)?;
+    let motion = scaled_by_both(motion, record, &processing, scale)?;
     Ok(Ground { motion: Some(motion), warnings })
 }
 
@@ -341,113 +397,4 @@ fn component_of(record: &Record, name: Option<&str>) -> Result<Component, Motion
         _ if name.eq_ignore_ascii_case("up") => Ok(Component::Vertical),
         _ => name.parse(),
     }
-}
-
-fn harmonic(sine: &Sine) -> Result<GroundMotion, MotionError> {
-    let frequency = std::f64::consts::TAU / sine.period;
-    let amplitude = match sine.amplitude {
-        Amplitude::Displacement(d) => d,
-        Amplitude::Velocity(v) => v / frequency,
-        Amplitude::Acceleration(a) => a / (frequency * frequency),
-    };
-    let pulse = MotionPulse::Sine {
-        amplitude,
-        period: sine.period,
-        cycles: sine.cycles,
-        ramp_cycles: sine.ramp_cycles,
-    };
-    Ok(directed(GroundMotion::from_pulse("sine", pulse)?, sine.direction, 0.0))
-}
-
-/// A pulse whose peak is what the scenario says.
-///
-/// Each form has an amplitude of its own, of acceleration or of velocity; where the scenario states
-/// the other one, the pulse is scaled to it.
-fn pulsed(pulse: &Pulse) -> Result<GroundMotion, MotionError> {
-    let period = pulse.period;
-    let unit = 1.0;
-    let (name, natural, made) = match pulse.kind {
-        PulseKind::Ricker => (
-            "Ricker pulse",
-            Natural::Acceleration,
-            MotionPulse::Ricker { acceleration: unit, period },
-        ),
-        PulseKind::HalfSine => (
-            "half sine",
-            Natural::Acceleration,
-            MotionPulse::HalfSine { acceleration: unit, duration: 0.5 * period },
-        ),
-        PulseKind::OneSine => {
-            ("one sine", Natural::Acceleration, MotionPulse::OneSine { acceleration: unit, period })
-        }
-        PulseKind::OneCosine => (
-            "one cosine",
-            Natural::Acceleration,
-            MotionPulse::OneCosine { acceleration: unit, period },
-        ),
-        PulseKind::Rectangular => (
-            "rectangular pulse",
-            Natural::Acceleration,
-            MotionPulse::Rectangular { acceleration: unit, duration: period },
-        ),
-        PulseKind::Gabor { gamma, phase } => (
-            "Gabor pulse",
-            Natural::Velocity,
-            MotionPulse::Gabor { velocity: unit, period, gamma, phase },
-        ),
-        PulseKind::CycloidA => {
-            ("cycloid A", Natural::Velocity, MotionPulse::CycloidA { velocity: unit, period })
-        }
-        PulseKind::CycloidB => {
-            ("cycloid B", Natural::Velocity, MotionPulse::CycloidB { velocity: unit, period })
-        }
-        PulseKind::CycloidC { cycles } => (
-            "cycloid C",
-            Natural::Velocity,
-            MotionPulse::CycloidC { velocity: unit, period, cycles },
-        ),
-        PulseKind::MavroeidisPapageorgiou { gamma, phase } => (
-            "Mavroeidis–Papageorgiou pulse",
-            Natural::Velocity,
-            MotionPulse::MavroeidisPapageorgiou { velocity: unit, period, gamma, phase },
-        ),
-    };
-    let base = GroundMotion::from_pulse(name, made)?;
-    let sized = match (pulse.amplitude, natural) {
-        (Amplitude::Acceleration(a), Natural::Acceleration) => base.scaled(a),
-        (Amplitude::Velocity(v), Natural::Velocity) => base.scaled(v),
-        (Amplitude::Acceleration(a), Natural::Velocity) => {
-            base.scale_to(IntensityMeasure::Pga, a)?
-        }
-        (Amplitude::Velocity(v), Natural::Acceleration) => {
-            base.scale_to(IntensityMeasure::Pgv, v)?
-        }
-        (Amplitude::Displacement(d), _) => base.scale_to(IntensityMeasure::Pgd, d)?,
-    };
-    Ok(directed(sized, pulse.direction, pulse.start))
-}
-
-/// What the amplitude of a pulse's formula is.
-#[derive(Clone, Copy)]
-enum Natural {
-    Acceleration,
-    Velocity,
-}
-
-/// A horizontal motion, turned to its direction and delayed.
-fn directed(motion: GroundMotion, direction: Direction, start: f64) -> GroundMotion {
-    let history = if start == 0.0 {
-        motion.horizontal
-    } else {
-        let delayed = barrelstack_motion::Delayed { delay: start, history: motion.horizontal };
-        History::Sum(vec![delayed])
-    };
-    let mut made = match direction {
-        Direction::Horizontal => GroundMotion::new(motion.name, history, None),
-        Direction::Vertical => {
-            GroundMotion::new(motion.name, History::Sum(Vec::new()), Some(history))
-        }
-    };
-    made.provenance = motion.provenance;
-    made
 }

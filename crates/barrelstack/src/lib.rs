@@ -8,6 +8,29 @@
 //!                                               │
 //!                     Summary (JSON) · files · report (HTML, Markdown)
 //! ```
+//!
+//! ```
+//! use barrelstack::{Run, Scenario};
+//!
+//! let text = r#"
+//!     schema = 1
+//!     [stack]
+//!     levels = 2
+//!     columns = 2
+//!     [motion.sine]
+//!     amplitude = "10 cm"
+//!     period = "1 s"
+//!     cycles = 2
+//! "#;
+//! let run: Run = Scenario::from_str(text)?.run()?;
+//! println!("{}", run.summary().to_json());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A [`Scenario`] comes from text, a file or the ones shipped with the program; it runs under its own
+//! motion ([`Scenario::run`]) or on any [`Ground`] ([`Scenario::run_on`]).
+//! Many cases run together as an [`Ensemble`]; studies of them are in `barrelstack-campaign`.
+//! `examples/` has a stack, a record, a free scene and an ensemble in about ten lines each.
 
 // Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
@@ -16,6 +39,7 @@ pub mod assemble;
 pub mod check;
 pub mod compare;
 pub mod demand;
+pub mod device;
 pub mod ensemble;
 pub mod export;
 pub mod ground;
@@ -37,7 +61,9 @@ pub mod watch;
 use barrelstack_input::system;
 
 pub use check::check;
+pub use ensemble::Ensemble;
+pub use ground::Ground;
 pub use rest::Restless;
-pub use run::{Progress, Run, RunFailure, run};
+pub use run::{Progress, Run, RunFailure};
 pub use scenario::Scenario;
 pub use summary::Summary;

@@ -103,9 +103,7 @@ pub fn judge(assembly: &Assembly, fates: &Fates) -> Outcome {
             CollapseMode::Ejection
         }
     };
-    let to_level = match (mode, part.kind) {
-        (CollapseMode::Ejection, PartKind::Barrel) => from_level,
-        _ => assembly.levels,
-    };
+    let barrel_alone = mode == CollapseMode::Ejection && part.kind == PartKind::Barrel;
+    let to_level = if barrel_alone { from_level } else { assembly.levels };
     Outcome::Collapse { mode, time, first: part.name.clone(), from_level, to_level }
 }

@@ -5,18 +5,19 @@ use std::ops::ControlFlow;
 use barrelstack_dynamics::contact::Basis;
 use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::{
-    EnergySummary, Method, Motion, Planar, RunError, Scratch, Settled, Simulation, State, simulate,
+    Element, EnergySummary, Method, Planar, RunError, Scratch, Settled, Simulation, State, simulate,
 };
 
 use crate::assemble::{AssembleError, Assembly, assemble};
-use crate::ground::{Ground, GroundError, ground};
+use crate::ground::{Ground, GroundError};
 use crate::outcome::{Outcome, judge};
 use crate::overlap::check_overlap;
 use crate::rest::{Restless, at_rest};
 use crate::scenario::{self, Scenario, Scene, Until};
 use crate::step::{critical_time_step, default_step};
 use crate::stick::SoftStick;
-use crate::watch::{End, Ending, Fates, Recording, StrapFate, Stresses, Thresholds, Watch};
+use crate::summary::Summary;
+use crate::watch::{ElementFate, End, Ending, Fates, Recording, Stresses, Thresholds, Watch};
 
 /// Everything that was seen of a run.
 #[derive(Clone, Debug)]
@@ -31,8 +32,8 @@ pub struct Run {
     pub outcome: Outcome,
     /// What became of every body.
     pub fates: Fates,
-    /// What became of every strap, in the order of the model.
-    pub straps: Vec<StrapFate>,
+    /// What became of every force element, in the order of the model.
+    pub elements: Vec<ElementFate>,
     /// Stress along every boundary.
     pub stresses: Stresses,
     /// Frames and histories.
@@ -113,80 +114,124 @@ pub const CUT: f64 = 0.01;
 /// Most steps of a run; a stack takes some 10⁵ steps a second.
 const MOST_STEPS: f64 = 1e9;
 
-/// Runs a scenario.
-///
-/// `progress` is told how far the run is every 0.05 s of simulated time and may stop it; what was seen
-/// until then is returned.
-/// A breakdown of the numbers, or of the energy books, is not an error but an outcome:
-/// [`Outcome::Invalid`].
-///
-/// # Errors
-/// When the motion cannot be read, the stack cannot be built, or it does not stand.
-pub fn run(
-    scenario: &Scenario,
-    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-) -> Result<Run, RunFailure> {
-    let ground = ground(scenario)?;
-    let time_scale = scenario.run.similitude.sqrt();
-    let end_time = end_time(scenario, &ground, time_scale)?;
-    let Standing { assembly, mut state, mut scratch, settled, step } = stand(scenario, end_time)?;
-    let model = &assembly.model;
-
-    let simulation = Simulation { method: method(scenario), time_step: step, end_time };
-    let thresholds = thresholds(scenario);
-    let rates =
-        (scenario.record.frame_rate / time_scale, scenario.record.history_rate / time_scale);
-    let (evaluations, elements) = (scratch.evaluations, scratch.contact_evaluations);
-    let sticks = SoftStick::of(&assembly, &scratch, ground.motion.as_ref());
-    let mut told = |time| progress(Progress { time, end_time });
-    let mut watch = Watch::new(
-        &assembly,
-        &ground,
-        &state,
-        &scratch,
-        thresholds,
-        rates,
-        End::new(scenario, &assembly, &ground),
-        &mut told,
-    );
-    let result = simulate(model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
-    let Watch { recording, stresses, fates, straps, ending, .. } = watch;
-    let ending = ending.unwrap_or(Ending::of_time(scenario));
-    let ended = result.map(|totals| Ended::of(&totals));
-    let Verdict { outcome, energy, steps, mut warnings, ending } =
-        conclude(&assembly, &ground, &fates, ended, state.time, ending);
-    if outcome == Outcome::Stable {
-        // What fell has no slip to be wrong about.
-        let slips = (0..assembly.parts.len()).map(|body| fates.fate(body).residual_slip.abs());
-        let most = slips.fold(0.0, f64::max);
-        warnings
-            .extend(sticks.iter().filter(|stick| stick.shows_in(most)).map(ToString::to_string));
+impl Scenario {
+    /// Runs it.
+    ///
+    /// A breakdown of the numbers, or of the energy books, is not an error but an outcome:
+    /// [`Outcome::Invalid`].
+    ///
+    /// ```
+    /// use barrelstack::{Run, Scenario};
+    ///
+    /// let run: Run = Scenario::builtin("sliding-block", &[])?.run()?;
+    /// println!("{} after {:.1} s", run.outcome.kind(), run.end_time);
+    /// assert!(run.energy.is_some_and(|energy| energy.residual_ratio() < 1e-3));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the motion cannot be read, the stack cannot be built, or it does not stand.
+    pub fn run(&self) -> Result<Run, RunFailure> {
+        self.run_watched(&mut |_| ControlFlow::Continue(()))
     }
-    let interrupted = ending == Ending::Interrupted;
-    let work = Work {
-        steps,
-        evaluations: scratch.evaluations - evaluations,
-        contact_evaluations: scratch.contact_evaluations - elements,
-    };
-    let end_time = state.time;
-    Ok(Run {
-        scenario: scenario.clone(),
-        outcome,
-        fates,
-        straps: straps.0,
-        stresses,
-        recording,
-        energy,
-        settled,
-        simulation,
-        work,
-        end_time,
-        ending,
-        interrupted,
-        warnings,
-        ground,
-        assembly,
-    })
+
+    /// Runs it before an observer, who is told how far the run is every 0.05 s of simulated time and may
+    /// stop it; what was seen until then is returned.
+    ///
+    /// # Errors
+    /// As [`Scenario::run`].
+    pub fn run_watched(
+        &self,
+        observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Run, RunFailure> {
+        self.run_on(self.ground()?, observer)
+    }
+
+    /// Runs it on a given ground before an observer; the motion of the scenario is not looked at.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    ///
+    /// use barrelstack::{Ground, Scenario};
+    /// use barrelstack_motion::GroundMotion;
+    ///
+    /// // Acceleration (m/s²) at steps of 0.01 s: half a second at 2 m/s², then back.
+    /// let samples: Vec<f64> = (0..100).map(|at| if at < 50 { 2.0 } else { -2.0 }).collect();
+    /// let ground = Ground::from(GroundMotion::from_acceleration("push", 0.01, samples)?);
+    /// let scenario = Scenario::builtin("rocking-block", &["run.duration=2 s".to_owned()])?;
+    /// let run = scenario.run_on(ground, &mut |_| ControlFlow::Continue(()))?;
+    /// assert_eq!(run.end_time, 2.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the stack cannot be built, or does not stand.
+    pub fn run_on(
+        &self,
+        ground: Ground,
+        observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Run, RunFailure> {
+        let time_scale = self.run.similitude.sqrt();
+        let end_time = end_time(self, &ground, time_scale)?;
+        let Standing { assembly, mut state, mut scratch, settled, step } = stand(self, end_time)?;
+        let model = &assembly.model;
+
+        let simulation = Simulation { method: method(self), time_step: step, end_time };
+        let thresholds = thresholds(self);
+        let rates = (self.record.frame_rate / time_scale, self.record.history_rate / time_scale);
+        let (evaluations, tested) = (scratch.evaluations, scratch.contact_evaluations);
+        let sticks = SoftStick::of(&assembly, &scratch, ground.motion.as_ref());
+        let mut told = |time| observer(Progress { time, end_time });
+        let mut watch = Watch::new(
+            &assembly,
+            &ground,
+            &state,
+            &scratch,
+            thresholds,
+            rates,
+            End::new(self, &assembly, &ground),
+            &mut told,
+        );
+        let result = simulate(model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
+        let Watch { recording, stresses, fates, elements, ending, .. } = watch;
+        let ending = ending.unwrap_or(Ending::of_time(self));
+        let ended = result.map(|totals| Ended::of(&totals));
+        let Verdict { outcome, energy, steps, mut warnings, ending } =
+            conclude(&assembly, &ground, &fates, ended, state.time, ending);
+        if outcome == Outcome::Stable {
+            // What fell has no slip to be wrong about.
+            let slips = (0..assembly.parts.len()).map(|body| fates.fate(body).residual_slip.abs());
+            let most = slips.fold(0.0, f64::max);
+            warnings.extend(
+                sticks.iter().filter(|stick| stick.shows_in(most)).map(ToString::to_string),
+            );
+        }
+        let interrupted = ending == Ending::Interrupted;
+        let work = Work {
+            steps,
+            evaluations: scratch.evaluations - evaluations,
+            contact_evaluations: scratch.contact_evaluations - tested,
+        };
+        let end_time = state.time;
+        Ok(Run {
+            scenario: self.clone(),
+            outcome,
+            fates,
+            elements: elements.0,
+            stresses,
+            recording,
+            energy,
+            settled,
+            simulation,
+            work,
+            end_time,
+            ending,
+            interrupted,
+            warnings,
+            ground,
+            assembly,
+        })
+    }
 }
 
 /// A stack that stands at rest, ready to be shaken.
@@ -217,9 +262,10 @@ pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunF
         barrelstack_dynamics::evaluate(&assembly.model, &state, &mut scratch);
         None
     };
-    assembly.strap(&mut state).map_err(AssembleError::from)?;
-    if scenario.run.settle && assembly.model.straps().iter().any(|s| s.length < s.span(&state)) {
-        // Straps that pull from the start press the stack together.
+    assembly.fasten(&mut state).map_err(AssembleError::from)?;
+    let strained = |element: &Element<Planar>| element.load(&state).force != 0.0;
+    if scenario.run.settle && assembly.model.elements().iter().any(strained) {
+        // Elements that bear something from the start press the stack together.
         at_rest(&assembly, &mut state, &mut scratch)?;
     }
     if matches!(scenario.scene, Scene::Free(_)) {
@@ -426,9 +472,9 @@ fn creep_warning(assembly: &Assembly) -> Vec<String> {
 }
 
 impl Run {
-    /// How many bodies move freely.
-    pub fn free_bodies(&self) -> usize {
-        self.assembly.model.bodies().iter().filter(|b| b.motion == Motion::Free).count()
+    /// Its result as numbers and words; the time that it took is not known here.
+    pub fn summary(&self) -> Summary {
+        Summary::of(self, None)
     }
 
     /// What the constants of the interfaces are stated for, such as "node"; "mixed" when they differ.

@@ -2,7 +2,7 @@
 
 use barrelstack_dynamics::body::Motion;
 use barrelstack_dynamics::{
-    Basis, Body, ContactPair, Linear as _, Model, Nodes, NormalLaw, Planar, Shape, Strap, math,
+    Basis, Body, ContactPair, Element, Linear as _, Model, Nodes, NormalLaw, Planar, Shape, math,
 };
 
 use crate::assemble::Assembly;
@@ -30,7 +30,7 @@ pub fn default_step(assembly: &Assembly, time_scale: f64) -> f64 {
     let depth = REFERENCE * time_scale * time_scale;
     let damping =
         fastest(&assembly.model, |model, pair, body| damping_rate(model, pair, body, depth))
-            + of_straps(assembly, |strap| strap.damping);
+            + of_elements(assembly, Element::damping);
     let seats = critical(assembly, depth, |law| !matches!(law, NormalLaw::Rebound { .. }));
     let step = (SHARE * seats)
         .min(IMPACT_SHARE * critical_time_step(assembly, time_scale))
@@ -43,7 +43,7 @@ pub fn default_step(assembly: &Assembly, time_scale: f64) -> f64 {
 /// The critical time step (s) of what was built; infinite when nothing can touch.
 ///
 /// For an explicit method it is 2/ω, with ω² = Σk/m for the stiffest body: the springs of all nodes of
-/// one of its boundaries that face one target, over its mass, and those of its straps.
+/// one of its boundaries that face one target, over its mass, and those of its force elements.
 /// Laws that stiffen count with a penetration of 1 cm at full scale; `time_scale` is that of similitude.
 pub fn critical_time_step(assembly: &Assembly, time_scale: f64) -> f64 {
     critical(assembly, REFERENCE * time_scale * time_scale, |_| true)
@@ -55,17 +55,18 @@ fn critical(assembly: &Assembly, depth: f64, of: fn(&NormalLaw) -> bool) -> f64 
         let law = &model.interfaces()[pair.interface].normal;
         if of(law) { stiffness_rate(model, pair, body, depth) } else { 0.0 }
     });
-    2.0 / (contacts + of_straps(assembly, |strap| strap.stiffness)).sqrt()
+    2.0 / (contacts + of_elements(assembly, Element::stiffness)).sqrt()
 }
 
-/// The largest rate that the straps of any body give it: the sum of a constant of theirs over its mass,
+/// The largest rate that the force elements of any body give it: the sum of a constant of theirs over its mass,
 /// and over its inertia by the square of the arm.
-fn of_straps(assembly: &Assembly, constant: fn(&Strap<Planar>) -> f64) -> f64 {
+fn of_elements(assembly: &Assembly, constant: fn(&Element<Planar>) -> f64) -> f64 {
     let mut rates = vec![0.0; assembly.parts.len()];
-    for strap in assembly.loose.iter().map(|loose| &loose.strap).chain(assembly.model.straps()) {
-        for (id, point) in strap.bodies.into_iter().zip(strap.points) {
+    let loose = assembly.loose.iter().map(|loose| &loose.element);
+    for element in loose.chain(assembly.model.elements()) {
+        for (id, point) in element.ends() {
             let body = &assembly.model.bodies()[id];
-            rates[id] += constant(strap) * (1.0 / body.mass + point.dot(point) / body.inertia);
+            rates[id] += constant(element) * (1.0 / body.mass + point.dot(point) / body.inertia);
         }
     }
     rates.into_iter().fold(0.0, f64::max)

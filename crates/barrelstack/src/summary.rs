@@ -1,5 +1,7 @@
 //! The summary of a run: one JSON document, the same numbers in print.
 
+mod devices;
+
 use barrelstack_dynamics::EnergySummary;
 use serde::Serialize;
 
@@ -8,6 +10,8 @@ use crate::demand::Demands;
 use crate::outcome::Outcome;
 use crate::run::Run;
 use crate::watch::StressEnvelope;
+
+pub use devices::{Device, Devices, ElementSummary};
 
 /// Version of the summary's layout.
 pub const SUMMARY_SCHEMA: u32 = 1;
@@ -28,8 +32,9 @@ pub struct Summary {
     pub demands: Demands,
     /// Forces between bodies.
     pub interfaces: Vec<JointSummary>,
-    /// Straps, where there are any.
-    pub straps: Vec<StrapSummary>,
+    /// The force elements of every device, where there are any.
+    #[serde(flatten)]
+    pub devices: Devices,
     /// The energy books; null where numbers were lost.
     pub energy: Option<EnergyBooks>,
     /// What shook it.
@@ -126,19 +131,6 @@ pub struct JointSummary {
     pub peak_horizontal_at: f64,
 }
 
-/// One strap.
-#[derive(Clone, Debug, Serialize)]
-pub struct StrapSummary {
-    /// Such as "B5.1-R5 left".
-    pub name: String,
-    /// Largest tension.
-    pub peak_tension: f64,
-    /// When.
-    pub peak_tension_at: f64,
-    /// When it tore.
-    pub torn_at: Option<f64>,
-}
-
 /// The energy books at the end (J), relative to the start.
 #[derive(Clone, Debug, Serialize)]
 pub struct EnergyBooks {
@@ -146,11 +138,11 @@ pub struct EnergyBooks {
     pub kinetic: f64,
     /// Potential energy in gravity.
     pub potential: f64,
-    /// In contact springs and straps.
+    /// In contact springs and force elements.
     pub elastic: f64,
     /// In sticks.
     pub stick: f64,
-    /// Lost in the dampers of contacts and straps, and with straps that tore.
+    /// Lost in the dampers of contacts and elements, and with elements that broke.
     pub damped: f64,
     /// Lost to friction.
     pub friction: f64,
@@ -258,7 +250,7 @@ impl Summary {
                 Demands::of(&run.assembly, &run.fates, Some(&run.stresses))
             },
             interfaces: joints(run),
-            straps: straps(run),
+            devices: Devices::of(run),
             energy: run.energy.as_ref().map(EnergyBooks::of),
             motion: run.ground.motion.as_ref().map(|motion| MotionSummary {
                 name: motion.name.clone(),
@@ -362,18 +354,6 @@ fn bodies(run: &Run) -> Vec<BodySummary> {
                 stress_amplification: stress.and_then(StressEnvelope::amplification),
                 mean_stress_amplification: stress.and_then(StressEnvelope::mean_amplification),
             }
-        })
-        .collect()
-}
-
-fn straps(run: &Run) -> Vec<StrapSummary> {
-    let straps = run.assembly.model.straps().iter().zip(&run.straps);
-    straps
-        .map(|(strap, fate)| StrapSummary {
-            name: strap.name.clone(),
-            peak_tension: fate.peak.0,
-            peak_tension_at: fate.peak.1,
-            torn_at: fate.torn_at,
         })
         .collect()
 }

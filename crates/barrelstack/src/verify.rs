@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::assemble::PartKind;
 use crate::pool;
-use crate::run::{Progress, Run, RunFailure, run};
+use crate::run::{Progress, Run, RunFailure};
 use crate::scenario::{
     Basis, BodyOverride, Method, Nodes, Scenario, Scene, StackBody, StackSpec, View,
 };
@@ -135,7 +135,7 @@ fn repeat_all(
             // Another repeat has panicked; this one is of no use any more.
             Err(_) => ControlFlow::Break(()),
         };
-        let run = run(scenario, &mut told)?;
+        let run = scenario.run_watched(&mut told)?;
         Ok((!run.interrupted).then(|| compare(base, &run, change)))
     };
     let tasks: Vec<(usize, &(String, Scenario))> = changes.iter().enumerate().collect();

@@ -1,24 +1,24 @@
 //! What is seen of a run while it goes on: frames, histories, envelopes, and the fate of every body.
 
+mod elements;
 mod fate;
 mod recording;
 mod rest;
-mod straps;
 mod stress;
 
 use std::ops::ControlFlow;
 
 use barrelstack_dynamics::real::Real;
-use barrelstack_dynamics::{EnergyLedger, Model, Observer, Planar, Scratch, State};
+use barrelstack_dynamics::{EnergyLedger, Model, Observer, Planar, Scratch, State, lanewise};
 
 use crate::assemble::Assembly;
 use crate::ground::Ground;
 use crate::scenario::Scenario;
 
+pub use elements::{ElementFate, ElementFates};
 pub use fate::{Fate, Fates, Loss, Thresholds};
 pub use recording::{Channel, Frames, JointForces, Recording};
 pub use rest::{Ending, Rest};
-pub use straps::{StrapFate, StrapFates};
 pub use stress::{BoundaryPoint, StressEnvelope, Stresses};
 
 /// Everything that watches a run, together.
@@ -29,8 +29,8 @@ pub struct Watch<'a> {
     pub stresses: Stresses,
     /// Seats, falls, slips and tilts.
     pub fates: Fates,
-    /// What straps bore.
-    pub straps: StrapFates,
+    /// What force elements bore.
+    pub elements: ElementFates,
     ground: &'a Ground,
     assembly: &'a Assembly,
     end: End,
@@ -73,18 +73,9 @@ impl<R: Real> End<R> {
         let rest = self.rest.observe(state);
         ((fates.collapse() + self.after_collapse).le(state.time), rest)
     }
-
-    /// All lanes as one case begins.
-    pub(crate) fn in_all(single: &End) -> Self {
-        Self { rest: Rest::in_all(&single.rest), after_collapse: R::splat(single.after_collapse) }
-    }
-
-    /// Puts a case into one lane.
-    pub(crate) fn put(&mut self, lane: usize, single: &End) {
-        self.rest.put(lane, &single.rest);
-        self.after_collapse = self.after_collapse.with_lane(lane, single.after_collapse);
-    }
 }
+
+lanewise!(struct End<R> { rest, after_collapse });
 
 impl End {
     /// Why a run is over at an accepted state; rest goes first, since nothing is left to see then.
@@ -114,7 +105,7 @@ impl<'a> Watch<'a> {
             recording: Recording::new(assembly, state, rates),
             stresses: Stresses::new(assembly, scratch),
             fates: Fates::new(assembly, state, thresholds),
-            straps: StrapFates::default(),
+            elements: ElementFates::default(),
             ground,
             assembly,
             end,
@@ -137,7 +128,7 @@ impl Observer<Planar> for Watch<'_> {
         energy: &EnergyLedger<Planar>,
     ) -> ControlFlow<()> {
         self.fates.observe(state, scratch);
-        self.straps.observe(state, scratch);
+        self.elements.observe(state, scratch);
         // Envelopes are those of the standing stack: what falling barrels do to each other is another
         // question.
         if self.fates.collapse_time().is_none() {

@@ -2,8 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
-use std::ops::ControlFlow;
-
 use barrelstack::compare::{self, CompareError, Side, differences};
 use barrelstack::scenario::Source;
 use barrelstack::{Scenario, Summary};
@@ -17,7 +15,7 @@ fn scenario(name: &str, changes: &[&str]) -> Scenario {
 }
 
 fn side(name: &str, scenario: &Scenario) -> Side {
-    let run = barrelstack::run(scenario, &mut |_| ControlFlow::Continue(())).unwrap();
+    let run = scenario.run().unwrap();
     let summary = Summary::of(&run, None);
     Side { name: name.into(), run, summary }
 }

@@ -2,38 +2,20 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![expect(clippy::print_stdout, reason = "what was compared, and in which lanes")]
 
-use std::ops::ControlFlow;
-use std::sync::Arc;
+mod common;
 
 use barrelstack::Scenario;
 use barrelstack::ensemble::{Audience, CaseResult, Prepared, simulate_in};
-use barrelstack::ground::ground;
 use barrelstack::outcome::Outcome;
 use barrelstack_dynamics::lanes::Width;
+use common::Random;
 
 /// How many random cases: all of them with optimization, a share of them without.
 const CASES: u64 = if cfg!(debug_assertions) { 64 } else { 1000 };
 
-/// Numbers between 0 and 1, the same on every machine (`SplitMix64`).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        (z ^ (z >> 31)) as f64 / 2.0_f64.powi(64)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-}
-
 /// A stack of two to four levels with random friction and, one in five, straps that may tear, under a
 /// random sine that topples about half of them.
-fn random_case(seed: u64) -> Scenario {
+fn random_case(seed: u64) -> Prepared {
     let mut random = Random(seed);
     let levels = 2 + seed % 3;
     let strapped = if seed.is_multiple_of(5) { 2 } else { 0 };
@@ -49,12 +31,7 @@ fn random_case(seed: u64) -> Scenario {
         "run.duration=\"1.6 s\"".to_owned(),
         "run.stop_after_collapse=\"0.2 s\"".to_owned(),
     ];
-    Scenario::builtin("candia-8-barrels", &settings).unwrap()
-}
-
-fn prepared(scenario: Scenario) -> Prepared {
-    let ground = Arc::new(ground(&scenario).unwrap());
-    Prepared { scenario: Arc::new(scenario), ground }
+    Prepared::new(Scenario::builtin("candia-8-barrels", &settings).unwrap()).unwrap()
 }
 
 fn results(width: Width, cases: &[Prepared]) -> Vec<CaseResult> {
@@ -68,7 +45,7 @@ fn results(width: Width, cases: &[Prepared]) -> Vec<CaseResult> {
 
 #[test]
 fn cases_in_lanes_come_to_the_bits_of_single_runs_collapses_included() {
-    let cases: Vec<Prepared> = (0..CASES).map(|seed| prepared(random_case(seed))).collect();
+    let cases: Vec<Prepared> = (0..CASES).map(random_case).collect();
     let alone: Vec<String> =
         cases.chunks(1).map(|case| format!("{:?}", results(Width::Scalar, case)[0])).collect();
     let collapses = alone.iter().filter(|result| result.contains("Collapse")).count();
@@ -93,9 +70,9 @@ fn cases_in_lanes_come_to_the_bits_of_single_runs_collapses_included() {
 #[test]
 fn a_case_of_an_ensemble_is_a_run() {
     for seed in 0..12 {
-        let scenario = random_case(seed);
-        let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())).unwrap();
-        let result = &results(Width::widest(), &[prepared(scenario)])[0];
+        let case = random_case(seed);
+        let run = case.scenario.run().unwrap();
+        let result = &results(Width::widest(), &[case])[0];
         assert_eq!(result.outcome, Ok(run.outcome.clone()), "case {seed}");
         assert_eq!(result.first_fall, run.fates.first_fall(), "case {seed}");
         assert_eq!(result.end_time, Some(run.end_time), "case {seed}");
@@ -107,7 +84,7 @@ fn a_case_of_an_ensemble_is_a_run() {
 
 #[test]
 fn what_stands_beside_a_case_changes_nothing_about_it() {
-    let cases: Vec<Prepared> = (0..24).map(|seed| prepared(random_case(seed))).collect();
+    let cases: Vec<Prepared> = (0..24).map(random_case).collect();
     let all = results(Width::widest(), &cases);
     let mut reversed = cases;
     reversed.reverse();
@@ -118,14 +95,14 @@ fn what_stands_beside_a_case_changes_nothing_about_it() {
 
 #[test]
 fn a_broken_case_is_told_and_leaves_its_neighbors_alone() {
-    let mut cases: Vec<Prepared> = (0..20).map(|seed| prepared(random_case(3 * seed))).collect();
+    let mut cases: Vec<Prepared> = (0..20).map(|seed| random_case(3 * seed)).collect();
     let sound = results(Width::widest(), &cases);
     // So long a step that the numbers are lost, and a stack that cannot stand.
     let broken = Scenario::builtin(
         "candia-8-barrels",
         &["stack.levels=2".into(), "run.duration=\"1.6 s\"".into(), "run.step=\"2.4 ms\"".into()],
     );
-    cases.insert(7, prepared(broken.unwrap()));
+    cases.insert(7, Prepared::new(broken.unwrap()).unwrap());
     let mut with = results(Width::widest(), &cases);
     let broken = with.remove(7);
     println!("{:?}", broken.outcome);
@@ -142,7 +119,7 @@ fn a_motion_too_long_to_run_is_told_whatever_shares_its_stack() {
              [motion.sine]\namplitude = \"40 cm\"\nperiod = \"0.8 s\"\nramp_cycles = 0\ncycles = {cycles}\n\
              [run]\nstep = \"3.5 us\"\nstop_after_collapse = \"0 s\"\n"
         );
-        prepared(Scenario::parse("shaken.toml", &text, &[]).unwrap())
+        Prepared::new(Scenario::from_str(&text).unwrap()).unwrap()
     };
     let short = shaken(2);
     let long = Prepared { ground: shaken(4500).ground, ..short.clone() };
@@ -156,7 +133,7 @@ fn a_motion_too_long_to_run_is_told_whatever_shares_its_stack() {
 
 #[test]
 fn an_ensemble_stops_when_asked() {
-    let cases: Vec<Prepared> = (0..12).map(|seed| prepared(random_case(seed))).collect();
+    let cases: Vec<Prepared> = (0..12).map(random_case).collect();
     let asked = std::cell::Cell::new(0);
     let stop = || {
         asked.set(asked.get() + 1);

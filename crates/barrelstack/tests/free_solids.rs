@@ -1,8 +1,6 @@
 //! Free scenes of solid bodies: several parts, exact boundaries, nodes at chosen places.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 
-use std::ops::ControlFlow;
-
 use barrelstack::scenario::Scene;
 use barrelstack::{Run, Scenario};
 
@@ -19,7 +17,7 @@ fn scene(bodies: &str, between: [&str; 2]) -> Scenario {
 }
 
 fn run(scenario: &Scenario) -> Run {
-    barrelstack::run(scenario, &mut |_| ControlFlow::Continue(())).unwrap()
+    scenario.run().unwrap()
 }
 
 fn last(run: &Run) -> Vec<[f64; 3]> {

@@ -7,11 +7,10 @@ use std::ops::ControlFlow;
 
 use barrelstack::Scenario;
 use barrelstack::assemble::{Assembly, assemble};
-use barrelstack::ground::ground;
 use barrelstack::step::default_step;
 use barrelstack_dynamics::{
-    Body, EnergyLedger, FrictionLaw, Interface, Method, Model, Observer, Planar, Scratch,
-    Simulation, State, Still, settle, simulate,
+    Body, FrictionLaw, Interface, Method, Model, Planar, Scratch, Simulation, State, Still, look,
+    settle, simulate,
 };
 
 /// A way to come to rest.
@@ -86,46 +85,13 @@ fn settled(assembly: &Assembly, way: Way) -> (State<Planar>, Scratch<Planar>) {
                 end_time: 10.0,
             };
             let mut scratch = Scratch::new(&model);
-            simulate(&model, &Still, &mut state, &mut scratch, &simulation, &mut Whole).unwrap();
+            simulate(&model, &Still, &mut state, &mut scratch, &simulation, &mut ()).unwrap();
             state.time = 0.0;
         }
         Way::Smooth => part(&changed(assembly, same, false, 1.0)),
     }
     settle(model, &mut state, &mut scratch, 1e-9).unwrap();
     (state, scratch)
-}
-
-struct Whole;
-
-impl Observer<Planar> for Whole {
-    fn observe(
-        &mut self,
-        _: &Model<Planar>,
-        _: &State<Planar>,
-        _: &Scratch<Planar>,
-        _: &EnergyLedger<Planar>,
-    ) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-}
-
-/// Ends a run when a body has fallen 0.2 m.
-struct FirstFall(State<Planar>);
-
-impl Observer<Planar> for FirstFall {
-    fn observe(
-        &mut self,
-        _: &Model<Planar>,
-        state: &State<Planar>,
-        _: &Scratch<Planar>,
-        _: &EnergyLedger<Planar>,
-    ) -> ControlFlow<()> {
-        let falls = |(from, to): (&_, &_)| drop_of(from, to) > 0.2;
-        if self.0.poses.iter().zip(&state.poses).any(falls) {
-            return ControlFlow::Break(());
-        }
-        ControlFlow::Continue(())
-    }
 }
 
 fn drop_of(
@@ -137,15 +103,20 @@ fn drop_of(
 
 /// When (s) the first body falls.
 fn first_fall(scenario: &Scenario, assembly: &Assembly, rest: &State<Planar>) -> f64 {
-    let ground = ground(scenario).unwrap();
+    let ground = scenario.ground().unwrap();
     let simulation = Simulation {
         method: Method::VelocityVerlet,
         time_step: default_step(assembly, 1.0),
         end_time: 15.0,
     };
     let (mut state, mut scratch) = (rest.clone(), Scratch::new(&assembly.model));
-    let mut fall = FirstFall(rest.clone());
-    simulate(&assembly.model, &ground, &mut state, &mut scratch, &simulation, &mut fall).unwrap();
+    let falls = |(from, to): (&_, &_)| drop_of(from, to) > 0.2;
+    let mut first_fall = look(|state: &State<Planar>, _, _| {
+        let fallen = rest.poses.iter().zip(&state.poses).any(falls);
+        if fallen { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    let (model, observer) = (&assembly.model, &mut first_fall);
+    simulate(model, &ground, &mut state, &mut scratch, &simulation, observer).unwrap();
     state.time
 }
 

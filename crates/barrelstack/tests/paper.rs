@@ -10,7 +10,6 @@
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
 
 use std::io::Write as _;
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -18,7 +17,6 @@ use barrelstack::assemble::PartKind;
 use barrelstack::outcome::{CollapseMode, Outcome};
 use barrelstack::overlap::{Boundaries, Overlap};
 use barrelstack::{Run, Scenario, Summary};
-use barrelstack_dynamics::{Planar, Pose, Vec2};
 
 /// Share of the energy that went through a run, its heap at rest included, which may be missing from its
 /// books; measured 3.4e-5 with steps of 0.25 ms and 4e-6 with 0.1 ms.
@@ -27,7 +25,7 @@ const ENERGY: f64 = 1e-4;
 fn run(name: &str, overrides: &[&str]) -> Run {
     let overrides: Vec<String> = overrides.iter().map(|o| (*o).to_owned()).collect();
     let scenario = Scenario::builtin(name, &overrides).unwrap();
-    barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())).unwrap()
+    scenario.run().unwrap()
 }
 
 /// The benchmark, which most tests compare with; run once.
@@ -238,15 +236,8 @@ fn nothing_stands_in_anything_while_it_falls() {
     let parts = &run.assembly.parts;
     let boundaries = Boundaries::new(&run.assembly.model);
     let (mut deepest, mut at_end) = (0.0_f64, 0.0_f64);
-    let frames = &run.recording.frames.poses;
-    for (index, frame) in frames.iter().enumerate() {
-        let poses: Vec<Pose<Planar>> = frame
-            .iter()
-            .map(|[x, z, orientation]| Pose {
-                position: Vec2::new(*x, *z),
-                orientation: *orientation,
-            })
-            .collect();
+    let frames = &run.recording.frames;
+    for (index, poses) in frames.all_poses().enumerate() {
         for Overlap { bodies: [a, b], depth } in boundaries.overlaps(&poses) {
             // A foot sinks into its crown and a barrel into its cradle, as soft as the paper has them.
             let seat = parts[b].carrier == Some(a)
@@ -254,7 +245,7 @@ fn nothing_stands_in_anything_while_it_falls() {
                 || (a == 0 && parts[b].kind == PartKind::Rack && parts[b].supports.is_empty());
             if !seat {
                 deepest = deepest.max(depth);
-                if index + 1 == frames.len() {
+                if index + 1 == frames.times.len() {
                     at_end = at_end.max(depth);
                 }
             }

@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
 use std::f64::consts::TAU;
-use std::ops::ControlFlow;
 
 use barrelstack::Scenario;
 use barrelstack::assemble::assemble;
@@ -64,7 +63,7 @@ fn small_swings_beside_a_large_one_are_left_out_and_an_unfinished_one_is_none() 
 #[test]
 fn a_block_rocks_freely_with_the_period_of_housner_at_every_amplitude() {
     let scenario = Scenario::builtin("rocking-block", &[]).unwrap();
-    let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())).unwrap();
+    let run = scenario.run().unwrap();
     let recording = &run.recording;
     let tilt = &recording.channel("block rotation").unwrap().values;
     // The pulse ends at 1 s; afterwards the block rocks freely.
@@ -84,7 +83,7 @@ fn a_block_rocks_freely_with_the_period_of_housner_at_every_amplitude() {
 fn the_drift_of_a_stack_has_swings_while_it_stood_and_a_free_scene_has_no_drift() {
     let run = |name: &str, changes: &[String]| {
         let scenario = Scenario::builtin(name, changes).unwrap();
-        barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())).unwrap()
+        scenario.run().unwrap()
     };
     let stack = run("candia-8-barrels", &["run.stop_after_collapse=0.1 s".to_owned()]);
     let found = drift(&stack).unwrap();

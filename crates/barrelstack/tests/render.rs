@@ -10,7 +10,7 @@ use barrelstack_report::{Characters, Format};
 
 fn rocking_block() -> (Run, Summary) {
     let scenario = Scenario::builtin("rocking-block", &["run.duration=1 s".to_owned()]).unwrap();
-    let run = barrelstack::run(&scenario, &mut |_| std::ops::ControlFlow::Continue(())).unwrap();
+    let run = scenario.run().unwrap();
     let summary = Summary::of(&run, None);
     (run, summary)
 }
@@ -202,7 +202,7 @@ fn a_report_on_paper_is_not_overwritten_in_silence() {
 fn a_collapsed_stack_and_its_drift_fit_a_terminal() {
     let change = ["run.stop_after_collapse=1 s".to_owned()];
     let scenario = Scenario::builtin("candia-8-barrels", &change).unwrap();
-    let run = barrelstack::run(&scenario, &mut |_| std::ops::ControlFlow::Continue(())).unwrap();
+    let run = scenario.run().unwrap();
     for characters in [Characters::Unicode, Characters::Ascii] {
         let picture = final_picture(&run, characters);
         assert!((4..=16).contains(&picture.len()), "{picture:#?}");

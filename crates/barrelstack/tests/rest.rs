@@ -2,19 +2,14 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![expect(clippy::print_stdout, reason = "how long cases ran, and how many barrels fell")]
 
-use std::sync::Arc;
-
 use barrelstack::Scenario;
 use barrelstack::ensemble::{Audience, CaseResult, Prepared, simulate_in};
-use barrelstack::ground::ground;
 use barrelstack::watch::Ending;
 use barrelstack_dynamics::lanes::Width;
 
 fn prepared(name: &str, changes: &[&str]) -> Prepared {
     let changes: Vec<String> = changes.iter().map(|change| (*change).to_owned()).collect();
-    let scenario = Scenario::builtin(name, &changes).unwrap();
-    let ground = Arc::new(ground(&scenario).unwrap());
-    Prepared { scenario: Arc::new(scenario), ground }
+    Prepared::new(Scenario::builtin(name, &changes).unwrap()).unwrap()
 }
 
 fn results(width: Width, cases: &[Prepared]) -> Vec<CaseResult> {

@@ -134,7 +134,7 @@ fn a_file_extends_a_file_that_extends_a_builtin_scenario() {
     let RecordSource::File(file) = &record.source else { panic!() };
     // Relative to the file that names the record, not to the one that extends it.
     assert_eq!(file.resolve(), inner.join("records/a.at2"));
-    assert!(record.check_files().unwrap_err().contains("a.at2"));
+    assert!(scenario.ground().unwrap_err().to_string().contains("a.at2"));
 
     fs::write(
         inner.join("base.toml"),

@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![expect(clippy::print_stdout, reason = "what was tried, and what it cost")]
 
+mod common;
+
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -10,33 +12,10 @@ use barrelstack::assemble::{Assembly, assemble};
 use barrelstack::step::default_step;
 use barrelstack_dynamics::forces::contact_force;
 use barrelstack_dynamics::{
-    Body, Contact, EnergyLedger, FrictionLaw, Method, Model, Motion, NormalLaw, Observer, Planar,
-    Pose, Scratch, SettleError, Settled, Simulation, State, Still, Vec2, evaluate, settle,
-    simulate,
+    Body, Contact, FrictionLaw, Method, Model, Motion, NormalLaw, Planar, Pose, Scratch,
+    SettleError, Settled, Simulation, State, Still, Vec2, evaluate, look, settle, simulate,
 };
-
-/// Numbers between 0 and 1, the same on every machine (`SplitMix64`).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        (z ^ (z >> 31)) as f64 / 2.0_f64.powi(64)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-
-    fn pick<T: Copy>(&mut self, of: &[T]) -> T {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index")]
-        let index = (self.next() * of.len() as f64) as usize;
-        of[index]
-    }
-}
+use common::Random;
 
 /// A stack of 2 to 12 levels of any barrels on any racks in either view, with stiffnesses of a tenth to
 /// ten times the paper's, dampings up to ten times or restitutions of 0.05 to 0.95, and any friction.
@@ -147,25 +126,6 @@ fn out_of_balance(tried: &Tried) -> f64 {
     .fold(0.0, f64::max)
 }
 
-/// Ends a run once a body has strayed 0.2 m.
-struct Gone(Vec<Pose<Planar>>);
-
-impl Observer<Planar> for Gone {
-    fn observe(
-        &mut self,
-        _: &Model<Planar>,
-        state: &State<Planar>,
-        _: &Scratch<Planar>,
-        _: &EnergyLedger<Planar>,
-    ) -> ControlFlow<()> {
-        if strayed(&self.0, state) > 0.2 {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    }
-}
-
 /// How far (m) any body goes sideways, or sinks beyond those of lower number, which lie below it.
 fn strayed(start: &[Pose<Planar>], state: &State<Planar>) -> f64 {
     let (mut most, mut sunk) = (0.0_f64, 0.0_f64);
@@ -212,7 +172,14 @@ fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push
     let simulation = Simulation { method: Method::VelocityVerlet, time_step, end_time: time };
     scratch.keeps_contacts = false;
     let start = state.poses.clone();
-    let mut gone = Gone(start.clone());
+    // Ends once a body has strayed 0.2 m.
+    let mut gone = look(|state: &State<Planar>, _, _| {
+        if strayed(&start, state) > 0.2 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    });
     simulate(&model, &Still, &mut state, &mut scratch, &simulation, &mut gone).unwrap();
     strayed(&start, &state)
 }

@@ -1,14 +1,12 @@
 //! Froude similitude by a power of four changes exponents only, so runs agree bit for bit.
 
-use std::ops::ControlFlow;
-
-use barrelstack::{Run, Scenario, run};
+use barrelstack::{Run, Scenario};
 
 #[expect(clippy::unwrap_used, reason = "a built-in scenario runs")]
 fn run_of(name: &str, overrides: &[&str]) -> Run {
     let overrides: Vec<String> = overrides.iter().map(|o| (*o).to_owned()).collect();
     let scenario = Scenario::builtin(name, &overrides).unwrap();
-    run(&scenario, &mut |_| ControlFlow::Continue(())).unwrap()
+    scenario.run().unwrap()
 }
 
 /// Lengths times 4, times times 2, and not a bit more: every factor is a power of two.

@@ -2,9 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
 
-use std::ops::ControlFlow;
-
 use barrelstack::outcome::Outcome;
+use barrelstack::summary::ElementSummary;
 use barrelstack::{Run, Scenario, Summary};
 
 const TOGETHER: &str = "stack.strap.ties=\"levels-together\"";
@@ -16,7 +15,12 @@ fn scenario(name: &str, changes: &[&str]) -> Scenario {
 }
 
 fn run(name: &str, changes: &[&str]) -> Run {
-    barrelstack::run(&scenario(name, changes), &mut |_| ControlFlow::Continue(())).unwrap()
+    scenario(name, changes).run().unwrap()
+}
+
+/// What every strap bore.
+fn straps(run: &Run) -> Vec<ElementSummary> {
+    run.summary().devices.named("straps").to_vec()
 }
 
 /// A stack of two levels under a small sine, with straps that tie both together.
@@ -38,8 +42,8 @@ fn a_stack_that_falls_stands_when_all_its_levels_are_strapped_together() {
     assert_eq!(held.outcome, Outcome::Stable);
     let summary = Summary::of(&held, None);
     // Ten barrels and the eight racks above the first level, each at both ends.
-    assert_eq!(summary.straps.len(), 36);
-    let most = summary.straps.iter().map(|strap| strap.peak_tension).fold(0.0, f64::max);
+    assert_eq!(summary.devices.named("straps").len(), 36);
+    let most = summary.devices.named("straps").iter().map(|strap| strap.peak).fold(0.0, f64::max);
     let residual = summary.energy.unwrap().residual_ratio;
     println!("largest tension {most} N, residual {residual:e}");
     assert!((3e3..6e3).contains(&most)); // measured 3795 N
@@ -72,9 +76,9 @@ fn straps_without_slack_bear_nothing_at_rest_and_leave_the_weight_where_it_is() 
             "run.duration=\"0.1 s\"",
         ],
     );
-    for strap in &Summary::of(&still, None).straps {
-        println!("{}: {} N", strap.name, strap.peak_tension);
-        assert!((1500.0..3000.0).contains(&strap.peak_tension), "{strap:?}");
+    for strap in straps(&still) {
+        println!("{}: {} N", strap.name, strap.peak);
+        assert!((1500.0..3000.0).contains(&strap.peak), "{strap:?}");
     }
 }
 
@@ -85,9 +89,8 @@ fn a_mirrored_stack_has_the_same_tensions_on_the_other_side() {
     let straight = run("candia-8-barrels", &changes);
     let turned = [&changes[..], &["stack.mirror=true", "motion.scale.factor=-1"]].concat();
     let mirrored = run("candia-8-barrels", &turned);
-    let straps = |run: &Run| Summary::of(run, None).straps;
     let (straight_straps, mirrored_straps) = (straps(&straight), straps(&mirrored));
-    let torn = straight_straps.iter().filter(|strap| strap.torn_at.is_some()).count();
+    let torn = straight_straps.iter().filter(|strap| strap.broken_at.is_some()).count();
     assert!(torn > 1, "{torn} tear");
     let said = barrelstack::report::sentences(&straight, &Summary::of(&straight, None));
     let words = format!("{torn} of {} straps tear, the first after", straight_straps.len());
@@ -99,10 +102,7 @@ fn a_mirrored_stack_has_the_same_tensions_on_the_other_side() {
             a.name.replace("right", "left")
         };
         assert_eq!(swapped, b.name);
-        assert_eq!(
-            (a.peak_tension, a.peak_tension_at, a.torn_at),
-            (b.peak_tension, b.peak_tension_at, b.torn_at)
-        );
+        assert_eq!((a.peak, a.peak_at, a.broken_at), (b.peak, b.peak_at, b.broken_at));
     }
     assert_eq!(straight.outcome, mirrored.outcome);
 }
@@ -110,11 +110,11 @@ fn a_mirrored_stack_has_the_same_tensions_on_the_other_side() {
 #[test]
 fn half_scale_straps_are_full_scale_straps_in_another_unit() {
     let changes = [PRETENSION, "run.step=\"0.2 ms\""];
-    let full = Summary::of(&small(&changes), None).straps;
-    let half = Summary::of(&small(&[&changes[..], &["run.similitude=0.5"]].concat()), None).straps;
+    let full = straps(&small(&changes));
+    let half = straps(&small(&[&changes[..], &["run.similitude=0.5"]].concat()));
     for (a, b) in full.iter().zip(&half) {
-        let apart = (b.peak_tension / (a.peak_tension / 8.0) - 1.0).abs();
-        println!("{}: {} N and {} N, {apart:e}", a.name, a.peak_tension, b.peak_tension);
+        let apart = (b.peak / (a.peak / 8.0) - 1.0).abs();
+        println!("{}: {} N and {} N, {apart:e}", a.name, a.peak, b.peak);
         assert!(apart < 1e-6);
     }
 }
@@ -122,8 +122,8 @@ fn half_scale_straps_are_full_scale_straps_in_another_unit() {
 #[test]
 fn the_result_does_not_hang_on_the_step() {
     let peak = |step: &str| {
-        let straps = Summary::of(&small(&[PRETENSION, step]), None).straps;
-        straps.iter().map(|strap| strap.peak_tension).fold(0.0, f64::max)
+        let all = straps(&small(&[PRETENSION, step]));
+        all.iter().map(|strap| strap.peak).fold(0.0, f64::max)
     };
     let (whole, half) = (peak("run.step=\"0.2 ms\""), peak("run.step=\"0.1 ms\""));
     println!("{whole} N, {half} N");
@@ -133,19 +133,19 @@ fn the_result_does_not_hang_on_the_step() {
 #[test]
 fn along_the_barrels_both_straps_of_a_barrel_share_its_pull() {
     let changes = ["stack.strap.levels=2", "stack.strap.slack=\"2 mm\"", "run.duration=\"4 s\""];
-    let straps = Summary::of(&run("candia-8-barrels-longitudinal", &changes), None).straps;
-    for pair in straps.chunks(2) {
+    let all = straps(&run("candia-8-barrels-longitudinal", &changes));
+    for pair in all.chunks(2) {
         assert!(pair[0].name.ends_with("front") && pair[1].name.ends_with("back"), "{pair:?}");
-        assert_eq!(pair[0].peak_tension, pair[1].peak_tension);
+        assert_eq!(pair[0].peak, pair[1].peak);
     }
-    assert!(!straps.is_empty());
+    assert!(!all.is_empty());
 }
 
 #[test]
 fn a_pretension_that_a_strap_is_too_short_for_is_refused_with_its_length() {
     let changes = ["stack.strap.levels=1", "stack.strap.stiffness=\"3 kN/m\"", PRETENSION];
     let scenario = scenario("candia-8-barrels", &changes);
-    let error = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    let error = scenario.run().unwrap_err();
     let said = error.to_string();
     println!("{said}");
     assert!(said.contains("by 1.000 m") && said.contains("less pretension"), "{said}");

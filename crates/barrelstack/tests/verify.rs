@@ -25,7 +25,7 @@ fn two_levels(factor: f64) -> Run {
 fn run(name: &str, overrides: &[&str]) -> Run {
     let overrides: Vec<String> = overrides.iter().map(|o| (*o).to_owned()).collect();
     let scenario = Scenario::builtin(name, &overrides).unwrap();
-    barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())).unwrap()
+    scenario.run().unwrap()
 }
 
 fn verified(run: &Run) -> Verification {
@@ -111,7 +111,7 @@ fn constants_per_length_are_repeated_with_finer_nodes() {
         duration = "0.2 s"
     "#;
     let scenario = Scenario::parse("block.toml", block, &[]).unwrap();
-    let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())).unwrap();
+    let run = scenario.run().unwrap();
     let found = verified(&run);
     assert!(found.skipped.is_empty(), "{:?}", found.skipped);
     assert!(found.repeats.iter().any(|repeat| repeat.change == "nodes at half the spacing"));

@@ -8,7 +8,7 @@ mod sampler;
 use std::sync::Arc;
 
 use barrelstack::ensemble::Prepared;
-use barrelstack::ground::{Ground, ground};
+use barrelstack::ground::Ground;
 use barrelstack::run::RunFailure;
 use barrelstack::scenario::Scenario;
 use barrelstack_dynamics::math;
@@ -148,7 +148,7 @@ pub fn collapse(
                 trials.iter().map(built).collect::<Vec<_>>()
             })
             .collect();
-        let seen = simulate(&batch, &|done| tell(before + done, of.max(before + done)));
+        let seen = simulate(batch, &|done| tell(before + done, of.max(before + done)));
         let logs = seen
             .chunks_exact(trials.len())
             .map(|tests| {
@@ -246,7 +246,7 @@ fn trials<'a>(
             }
         }
         check(at, observed, &scenario)?;
-        let ground = Arc::new(ground(&scenario).map_err(RunFailure::from)?);
+        let ground = Arc::new(scenario.ground().map_err(RunFailure::from)?);
         let scatter = settings.placement / scale;
         trials.push(Trial { observed, tunable, scenario, ground, scatter });
     }
@@ -257,7 +257,7 @@ fn trials<'a>(
 fn check(at: usize, observed: &Observed, scenario: &Scenario) -> Result<(), CalibrateError> {
     let mut short = scenario.clone();
     short.run.duration = Some(1e-3);
-    let run = barrelstack::run::run(&short, &mut |_| std::ops::ControlFlow::Continue(()))?;
+    let run = short.run()?;
     let barrels: Vec<&str> = run
         .assembly
         .of_kind(barrelstack::assemble::PartKind::Barrel)

@@ -4,7 +4,6 @@
 #![allow(clippy::print_stdout, reason = "the coverage is shown")]
 
 use std::fmt::Write as _;
-use std::ops::ControlFlow;
 
 use barrelstack::scenario::Scenario;
 use barrelstack_calibration::collapse::{Observations, Settings, collapse};
@@ -229,7 +228,7 @@ const CHANNELS: [&str; 3] = ["R1 displacement x", "B1.1 displacement x", "B1.2 d
 fn recorded(scenario: &Scenario) -> (Vec<f64>, Vec<Vec<f64>>) {
     let mut scenario = scenario.clone();
     scenario.record.history_rate = 200.0;
-    let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())).unwrap();
+    let run = scenario.run().unwrap();
     let channel = |name: &&str| run.recording.channel(name).unwrap().values.clone();
     (run.recording.times.clone(), CHANNELS.iter().map(channel).collect())
 }
@@ -326,7 +325,7 @@ fn filmed(scenarios: &[Scenario], values: &[(&str, &str)]) -> String {
             truth = truth.replace(from, to);
         }
         let truth = Scenario::parse("truth.toml", &truth, &[]).unwrap();
-        let run = barrelstack::run(&truth, &mut |_| ControlFlow::Continue(())).unwrap();
+        let run = truth.run().unwrap();
         let summary = barrelstack::Summary::of(&run, None);
         write!(lines, "\n{},2.6", summary.outcome.mode.unwrap_or("stands")).unwrap();
         for body in summary.bodies.iter().filter(|body| body.kind == "barrel") {

@@ -14,5 +14,5 @@ pub mod heights;
 pub mod study;
 
 // The domain's rooms, by the names that they have there.
-use barrelstack::{ensemble, ground, outcome, run, scenario, watch};
+use barrelstack::{ensemble, ground, outcome, pool, run, scenario, watch};
 use barrelstack_input::{measured, system};

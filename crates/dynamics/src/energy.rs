@@ -1,11 +1,12 @@
 //! The energy ledger: what came in, what is stored, what was lost, and what does not balance.
 
 use crate::body::Motion;
+use crate::element::Memory;
 use crate::forces::{Losses, Scratch};
-use crate::lanes::{Lanewise, put_masks};
+use crate::lanewise;
 use crate::model::Model;
 use crate::real::Real;
-use crate::space::{Linear, Planar, Pose, Space, Wrench};
+use crate::space::{Linear, Pose, Space, Wrench};
 use crate::state::State;
 
 /// Energies and works at one time (J), since the start of the run.
@@ -15,11 +16,11 @@ pub struct EnergySummary {
     pub kinetic: f64,
     /// Potential energy in gravity, relative to the start.
     pub potential: f64,
-    /// Stored in normal springs and in straps.
+    /// Stored in normal springs and in force elements.
     pub elastic: f64,
     /// Stored in sticks.
     pub stick: f64,
-    /// Lost in the dampers of contacts and straps, and with straps that tore.
+    /// Lost in the dampers of contacts and elements, and with elements that broke.
     pub damped: f64,
     /// Lost to friction (sliding and the damping of sticks).
     pub friction: f64,
@@ -68,8 +69,8 @@ pub struct EnergyLedger<S: Space> {
     losses: Vec<Losses<S>>,
     /// Contact forces on the bodies at the last entry.
     wrenches: Vec<Wrench<S>>,
-    /// Which straps were torn then.
-    torn: Vec<<S::Real as Real>::Mask>,
+    /// What the force elements remembered then.
+    memory: Vec<Memory<S>>,
     stored: Stored<S::Real>,
     /// Absolute work of the ground plus the largest drop of potential energy.
     ground_flow: S::Real,
@@ -106,7 +107,7 @@ impl<S: Space> EnergyLedger<S> {
             poses: state.poses.clone(),
             losses: scratch.losses.clone(),
             wrenches: scratch.wrenches.clone(),
-            torn: state.torn.clone(),
+            memory: state.memory.clone(),
             stored,
             ground_flow: S::Real::zero(),
             deepest: stored.potential,
@@ -137,8 +138,9 @@ impl<S: Space> EnergyLedger<S> {
                 step.ground -= self.wrenches[i].plus(scratch.wrenches[i]).power(way) * half;
             }
         }
-        for ((before, now), pull) in self.torn.iter_mut().zip(&state.torn).zip(&scratch.pulls) {
-            step.damped += S::Real::select(*now & !*before, pull.energy, S::Real::zero());
+        for ((before, now), load) in self.memory.iter_mut().zip(&state.memory).zip(&scratch.loads) {
+            let breaks = now.broken & !before.broken;
+            step.damped += S::Real::select(breaks, load.energy, S::Real::zero());
             *before = *now;
         }
         self.works.damped += step.damped;
@@ -182,30 +184,11 @@ impl<S: Space> EnergyLedger<S> {
     }
 }
 
-impl<R: Real> EnergyLedger<Planar<R>> {
-    /// Puts the ledger of a case that begins into one lane.
-    pub(crate) fn put(&mut self, lane: usize, single: &EnergyLedger<Planar>) {
-        self.initial.put(lane, &single.initial);
-        self.potential_start.put(lane, &single.potential_start);
-        self.stick_start.put(lane, &single.stick_start);
-        let (works, from) = (&mut self.works, &single.works);
-        works.damped.put(lane, &from.damped);
-        works.friction.put(lane, &from.friction);
-        works.viscous.put(lane, &from.viscous);
-        works.ground.put(lane, &from.ground);
-        self.poses.put(lane, &single.poses);
-        self.losses.put(lane, &single.losses);
-        self.wrenches.put(lane, &single.wrenches);
-        let (stored, from) = (&mut self.stored, &single.stored);
-        stored.kinetic.put(lane, &from.kinetic);
-        stored.potential.put(lane, &from.potential);
-        stored.elastic.put(lane, &from.elastic);
-        stored.stick.put(lane, &from.stick);
-        self.ground_flow.put(lane, &single.ground_flow);
-        self.deepest.put(lane, &single.deepest);
-        put_masks(&mut self.torn, lane, &single.torn);
-    }
-}
+lanewise!(struct Works<R> { damped, friction, viscous, ground });
+lanewise!(struct Stored<R> { kinetic, potential, elastic, stick });
+lanewise!(struct EnergyLedger<Planar<R>> {
+    initial, potential_start, stick_start, works, poses, losses, wrenches, memory, stored, ground_flow, deepest
+});
 
 #[inline(always)]
 fn stored<S: Space>(model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) -> Stored<S::Real> {
@@ -220,8 +203,8 @@ fn stored<S: Space>(model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) ->
         stored.potential -= body.mass * model.gravity.dot(state.poses[i].position);
     }
     stored.elastic = scratch.totals.elastic;
-    for (torn, pull) in state.torn.iter().zip(&scratch.pulls) {
-        stored.elastic += S::Real::select(*torn, S::Real::zero(), pull.energy);
+    for (memory, load) in state.memory.iter().zip(&scratch.loads) {
+        stored.elastic += S::Real::select(memory.broken, S::Real::zero(), load.energy);
     }
     stored.stick = scratch.totals.stick;
     stored

@@ -11,7 +11,7 @@
 //! 3. The normal law turns penetration and its rate into a compressive force.
 //! 4. The friction law turns slip rate and stick into a tangential force.
 //! 5. Both bodies feel the force at one point, the companion point on the target.
-//! 6. Contact, straps, gravity and viscous damping are summed: accelerations ([`evaluate`]).
+//! 6. Contact, force elements, gravity and viscous damping are summed: accelerations ([`evaluate`]).
 //! 7. The integrator repeats 1 to 6 as its method asks and advances poses, twists and sticks.
 //! 8. Once the step is accepted, every stick is cut back to what friction can hold.
 //! 9. The energy ledger and the observers look at the accepted state.
@@ -34,6 +34,7 @@
 
 pub mod body;
 pub mod contact;
+pub mod element;
 pub mod elements;
 pub mod energy;
 pub mod forces;
@@ -47,17 +48,16 @@ pub mod shape;
 pub mod simulate;
 pub mod space;
 pub mod state;
-pub mod strap;
 
 pub use body::{Body, BodyId, Face, Motion, Node, Nodes, Placed, Round};
 pub use contact::{Basis, FrictionLaw, Interface, NormalLaw};
+pub use element::*;
 pub use energy::{EnergyLedger, EnergySummary};
 pub use forces::{Contact, Scratch, evaluate};
 pub use integrate::{Drive, Method, Still};
 pub use model::{ContactPair, Counts, InterfaceId, Model, ModelError};
 pub use settle::{Lack, SettleError, Settled, settle};
 pub use shape::Shape;
-pub use simulate::{Finish, Observer, RunError, Simulation, simulate};
+pub use simulate::{Finish, Observer, RunError, Simulation, look, simulate};
 pub use space::{Linear, Planar, Pose, Space, Twist, Vec2};
 pub use state::State;
-pub use strap::{Pull, Strap};

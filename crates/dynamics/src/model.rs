@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use crate::body::{Body, BodyId, Motion, Nodes};
 use crate::contact::Interface;
+use crate::element::Element;
 use crate::real::Real;
 use crate::space::Space;
-use crate::strap::Strap;
 
 /// Index of an interface in its model.
 pub type InterfaceId = usize;
@@ -60,7 +60,7 @@ pub struct Model<S: Space> {
     pub(crate) pairs: Vec<ContactPair>,
     /// The pairs, two bodies at a time.
     pub(crate) couples: Vec<Couple>,
-    pub(crate) straps: Vec<Strap<S>>,
+    pub(crate) elements: Vec<Element<S>>,
     pub(crate) gravity: S::Vector,
     pub(crate) reach: Vec<f64>,
 }
@@ -99,10 +99,10 @@ pub enum ModelError {
         /// The body.
         name: String,
     },
-    /// A strap that is none.
-    #[error("strap \"{name}\": {problem}")]
-    Strap {
-        /// The strap.
+    /// A force element that is none.
+    #[error("element \"{name}\": {problem}")]
+    Element {
+        /// The element.
         name: String,
         /// What is wrong with it.
         problem: &'static str,
@@ -192,22 +192,22 @@ impl<S: Space> Model<S> {
             }
         }
         let reach = bodies.iter().map(Body::reach).collect();
-        Ok(Self { bodies, interfaces, pairs, couples, straps: Vec::new(), gravity, reach })
+        Ok(Self { bodies, interfaces, pairs, couples, elements: Vec::new(), gravity, reach })
     }
 
-    /// Puts straps between the bodies, in place of those before, in the order in which their forces
-    /// are summed. A state of the model must have one entry of `torn` for each.
+    /// Puts force elements between the bodies, in place of those before, in the order in which their
+    /// forces are summed. A state of the model must have one entry of `memory` for each.
     ///
     /// # Errors
-    /// When a strap ties a body to itself or to one that is not there, or a constant is not a number
+    /// When an element ties a body to itself or to one that is not there, or a constant is not a number
     /// that it can be.
-    pub fn fasten(&mut self, straps: Vec<Strap<S>>) -> Result<(), ModelError> {
-        for strap in &straps {
-            if let Some(problem) = strap.problem(self.bodies.len()) {
-                return Err(ModelError::Strap { name: strap.name.clone(), problem });
+    pub fn fasten(&mut self, elements: Vec<Element<S>>) -> Result<(), ModelError> {
+        for element in &elements {
+            if let Some(problem) = element.problem(self.bodies.len()) {
+                return Err(ModelError::Element { name: element.link().name.clone(), problem });
             }
         }
-        self.straps = straps;
+        self.elements = elements;
         Ok(())
     }
 
@@ -226,9 +226,9 @@ impl<S: Space> Model<S> {
         &self.pairs
     }
 
-    /// The straps, in the order of [`Scratch::pulls`](crate::Scratch::pulls).
-    pub fn straps(&self) -> &[Strap<S>] {
-        &self.straps
+    /// The force elements, in the order of [`Scratch::loads`](crate::Scratch::loads).
+    pub fn elements(&self) -> &[Element<S>] {
+        &self.elements
     }
 
     /// Acceleration of free fall (m/s²).

@@ -22,6 +22,44 @@ pub trait Observer<S: Space> {
     ) -> ControlFlow<()>;
 }
 
+/// Looks at nothing.
+impl<S: Space> Observer<S> for () {
+    fn observe(
+        &mut self,
+        _: &Model<S>,
+        _: &State<S>,
+        _: &Scratch<S>,
+        _: &EnergyLedger<S>,
+    ) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+/// An observer made of a function.
+pub fn look<S: Space>(
+    look: impl FnMut(&State<S>, &Scratch<S>, &EnergyLedger<S>) -> ControlFlow<()>,
+) -> impl Observer<S> {
+    Look(look)
+}
+
+struct Look<F>(F);
+
+impl<S, F> Observer<S> for Look<F>
+where
+    S: Space,
+    F: FnMut(&State<S>, &Scratch<S>, &EnergyLedger<S>) -> ControlFlow<()>,
+{
+    fn observe(
+        &mut self,
+        _: &Model<S>,
+        state: &State<S>,
+        scratch: &Scratch<S>,
+        energy: &EnergyLedger<S>,
+    ) -> ControlFlow<()> {
+        (self.0)(state, scratch, energy)
+    }
+}
+
 /// How a run is integrated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Simulation {

@@ -1,5 +1,6 @@
 //! All that must be saved to continue a run.
 
+use crate::element::Memory;
 use crate::elements::Elements;
 use crate::model::Model;
 use crate::real::Real;
@@ -16,8 +17,8 @@ pub struct State<S: Space> {
     pub twists: Vec<Twist<S>>,
     /// The contact elements within reach, with the memory of their sticks.
     pub elements: Elements<S>,
-    /// Which straps are torn.
-    pub torn: Vec<<S::Real as Real>::Mask>,
+    /// What the force elements remember.
+    pub memory: Vec<Memory<S>>,
 }
 
 impl<S: Space> State<S> {
@@ -28,7 +29,7 @@ impl<S: Space> State<S> {
             poses: model.bodies.iter().map(|b| b.pose).collect(),
             twists: model.bodies.iter().map(|b| b.twist).collect(),
             elements: Elements::default(),
-            torn: vec![Default::default(); model.straps.len()],
+            memory: vec![Memory::default(); model.elements.len()],
         };
         state.elements.rebuild(model, &state.poses, &state.twists);
         state

@@ -1,4 +1,5 @@
 //! Every normal law: signs, continuity, stored energy, limits, and the restitution it shows.
+#![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
 mod common;
 
@@ -6,7 +7,7 @@ use std::ops::ControlFlow;
 
 use barrelstack_dynamics::contact::{Exponent, restitution};
 use barrelstack_dynamics::{FrictionLaw, Method, NormalLaw, Still, Twist, Vec2};
-use common::exact::{contact_phase, rebound_under_gravity};
+use barrelstack_scenes::theory::{contact_phase, rebound_under_gravity};
 use common::{DOWN, Scene, assert_close, disc, floor, interface};
 use proptest::prelude::*;
 
@@ -222,25 +223,29 @@ fn bounce(law: NormalLaw, speed: f64, gravity: Vec2, time_step: f64, end: f64) -
     let mut ball = disc("ball", radius, MASS, 0.5 * radius * radius, start);
     ball.twist = Twist { linear: Vec2::new(0.0, -speed), angular: 0.0 };
     let mut scene =
-        Scene::new(vec![floor(), ball], interface(law, FrictionLaw::Frictionless), gravity);
+        Scene::new(vec![floor(), ball], interface(law, FrictionLaw::Frictionless), gravity)
+            .unwrap();
     let mut found = Bounce { restitution: None, deepest: 0.0, duration: f64::NAN };
     let mut before = (0.0, 0.0);
-    scene.watch(&Still, Method::RungeKutta4, time_step, end, |state, scratch, _| {
-        let depth = radius - state.poses[1].position.z;
-        found.deepest = found.deepest.max(depth);
-        let parted = state.time > 0.0 && scratch.contacts.is_empty();
-        if parted {
-            // Free flight keeps v²/2 + g z: the speed at parting is found from any later state.
-            let v = state.twists[1].linear.z;
-            let rise = (v * v + 2.0 * gravity.z * depth).max(0.0).sqrt();
-            found.restitution = Some(rise / speed);
-            let share = before.1 / (before.1 - depth);
-            found.duration = before.0 + share * (state.time - before.0);
-            return ControlFlow::Break(());
-        }
-        before = (state.time, depth);
-        ControlFlow::Continue(())
-    });
+    scene
+        .by(Method::RungeKutta4)
+        .watch(&Still, time_step, end, |state, scratch, _| {
+            let depth = radius - state.poses[1].position.z;
+            found.deepest = found.deepest.max(depth);
+            let parted = state.time > 0.0 && scratch.contacts.is_empty();
+            if parted {
+                // Free flight keeps v²/2 + g z: the speed at parting is found from any later state.
+                let v = state.twists[1].linear.z;
+                let rise = (v * v + 2.0 * gravity.z * depth).max(0.0).sqrt();
+                found.restitution = Some(rise / speed);
+                let share = before.1 / (before.1 - depth);
+                found.duration = before.0 + share * (state.time - before.0);
+                return ControlFlow::Break(());
+            }
+            before = (state.time, depth);
+            ControlFlow::Continue(())
+        })
+        .unwrap();
     found
 }
 

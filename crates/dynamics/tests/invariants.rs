@@ -13,15 +13,16 @@ use barrelstack_dynamics::{
     Body, ContactPair, Drive, FrictionLaw, Interface, Method, Model, Nodes, NormalLaw, Planar,
     Shape, State, Still, Twist, Vec2,
 };
-use common::motion::{Along, cruise, harmonic};
-use common::tumble::{Random, bodies, rough};
+use barrelstack_scenes::drive::Shake;
+use barrelstack_scenes::tumble::{Random, bodies, rough};
 use common::{
-    DOWN, Scene, all_pairs, bits, block, centered, disc, floor, ground_of, interface, numbers, pose,
+    DOWN, Scene, all_pairs, bits, centered, disc, finely_noded_block, floor, ground_of, interface,
+    numbers, pose,
 };
 use proptest::prelude::*;
 
 fn tumbling(seed: u64) -> Scene {
-    Scene::new(bodies(seed, 6), rough(), DOWN)
+    Scene::new(bodies(seed, 6), rough(), DOWN).unwrap()
 }
 
 /// What a moment about the origin of the inertial frame is.
@@ -46,8 +47,8 @@ proptest! {
     fn contact_forces_balance_and_stay_in_their_cones(seed in any::<u64>()) {
         let mut scene = tumbling(seed);
         let (model, mut touched) = (scene.model.clone(), 0);
-        let drive = harmonic(3.0, 9.0);
-        scene.watch(&drive, Method::VelocityVerlet, 2e-4, 0.6, |state, scratch, _| {
+        let drive = Shake::Harmonic { acceleration: 3.0, omega: 9.0 };
+        scene.by(Method::VelocityVerlet).watch(&drive, 2e-4, 0.6, |state, scratch, _| {
             let (mut force, mut turn, mut size) = (Vec2::default(), 0.0, 1.0_f64);
             for (wrench, pose) in scratch.wrenches.iter().zip(&state.poses) {
                 force += wrench.force;
@@ -80,16 +81,16 @@ proptest! {
                 assert!((wrench.moment - turn).abs() < 1e-12 * size);
             }
             ControlFlow::Continue(())
-        });
+        }).unwrap();
         prop_assert!(touched > 500, "only {touched} contacts");
     }
 
     #[test]
     fn the_energy_books_close(seed in any::<u64>()) {
-        let drive = harmonic(3.0, 9.0);
+        let drive = Shake::Harmonic { acceleration: 3.0, omega: 9.0 };
         let ratio = |step: f64| {
             let mut scene = tumbling(seed);
-            let totals = scene.run(&drive, Method::VelocityVerlet, step, 1.0);
+            let totals = scene.by(Method::VelocityVerlet).run(&drive, step, 1.0).unwrap();
             let summary = totals.energy.summary(0);
             assert!(summary.damped >= 0.0 && summary.friction >= 0.0 && summary.viscous == 0.0);
             assert!(summary.damped + summary.friction > 10.0, "nothing was lost: {summary:?}");
@@ -121,9 +122,9 @@ proptest! {
         let here = bodies(seed, 6);
         let there = here.iter().map(mirrored).collect();
         let (mut here, mut there) =
-            (Scene::new(here, rough(), DOWN), Scene::new(there, rough(), DOWN));
-        here.run(&harmonic(3.0, 9.0), Method::VelocityVerlet, 2e-4, 0.5);
-        there.run(&harmonic(-3.0, 9.0), Method::VelocityVerlet, 2e-4, 0.5);
+            (Scene::new(here, rough(), DOWN).unwrap(), Scene::new(there, rough(), DOWN).unwrap());
+        here.by(Method::VelocityVerlet).run(&Shake::Harmonic { acceleration: 3.0, omega: 9.0 }, 2e-4, 0.5).unwrap();
+        there.by(Method::VelocityVerlet).run(&Shake::Harmonic { acceleration: -3.0, omega: 9.0 }, 2e-4, 0.5).unwrap();
         for (i, pose) in here.state.poses.iter().enumerate() {
             let (this, other) = (
                 numbers(pose, &here.state.twists[i]),
@@ -142,24 +143,21 @@ proptest! {
     fn a_scene_four_times_as_large_moves_alike_bit_for_bit(seed in any::<u64>()) {
         // Time ×2, mass ×64, forces ×64, gravity as it is; all factors are powers of two.
         // The margin of the near list is in meters and does not scale: it must not touch a bit.
-        let ground = |t: f64| (0.03 * libm::sin(9.0 * t), 0.27 * libm::cos(9.0 * t));
-        let larger_ground = move |t: f64| {
-            let (displacement, velocity) = ground(0.5 * t);
-            (4.0 * displacement, 2.0 * velocity)
-        };
+        let ground = Shake::Swing { amplitude: 0.03, omega: 9.0 };
+        let larger_ground = Shake::Swing { amplitude: 4.0 * 0.03, omega: 4.5 };
         for method in [Method::SemiImplicitEuler, Method::VelocityVerlet, Method::RungeKutta4] {
             for law in [rough(), crossley()] {
                 let (mut small, mut large) = (
-                    Scene::new(bodies(seed, 6), law.clone(), DOWN),
+                    Scene::new(bodies(seed, 6), law.clone(), DOWN).unwrap(),
                     Scene::new(
                         bodies(seed, 6).iter().map(four_times).collect(),
                         stiffer(&law),
                         DOWN,
-                    ),
+                    ).unwrap(),
                 );
                 let steps = 3000.0;
-                small.run(&Along(ground), method, 2e-4, steps * 2e-4);
-                large.run(&Along(larger_ground), method, 4e-4, steps * 4e-4);
+                small.by(method).run(&ground, 2e-4, steps * 2e-4).unwrap();
+                large.by(method).run(&larger_ground, 4e-4, steps * 4e-4).unwrap();
                 prop_assert!(small.scratch.contact_evaluations > 3000);
                 for i in 0..small.state.poses.len() {
                     let this = numbers(&small.state.poses[i], &small.state.twists[i]);
@@ -188,11 +186,11 @@ proptest! {
             NormalLaw::SpeedGap { stiffness: factor * 2.0e5, damping: factor * 600.0 },
             common::coulomb(0.4, factor * 1.5e5, factor * 300.0),
         );
-        let mut light = Scene::new(bodies(seed, 6), law(1.0), DOWN);
-        let mut heavy = Scene::new(bodies(seed, 6).iter().map(heavier).collect(), law(1024.0), DOWN);
-        light.run(&Still, Method::VelocityVerlet, 2e-4, 0.6);
-        heavy.run(&Still, Method::VelocityVerlet, 2e-4, 0.6);
-        prop_assert_eq!(light.bits(), heavy.bits());
+        let mut light = Scene::new(bodies(seed, 6), law(1.0), DOWN).unwrap();
+        let mut heavy = Scene::new(bodies(seed, 6).iter().map(heavier).collect(), law(1024.0), DOWN).unwrap();
+        light.by(Method::VelocityVerlet).run(&Still, 2e-4, 0.6).unwrap();
+        heavy.by(Method::VelocityVerlet).run(&Still, 2e-4, 0.6).unwrap();
+        prop_assert_eq!(bits(&light.state), bits(&heavy.state));
     }
 
     #[test]
@@ -204,8 +202,8 @@ proptest! {
         for twist in &mut riding.state.twists {
             twist.linear.x += speed;
         }
-        rest.run(&Still, Method::VelocityVerlet, 2e-4, end);
-        riding.run(&cruise(speed), Method::VelocityVerlet, 2e-4, end);
+        rest.by(Method::VelocityVerlet).run(&Still, 2e-4, end).unwrap();
+        riding.by(Method::VelocityVerlet).run(&Shake::Cruise(speed), 2e-4, end).unwrap();
         for (pose, twist) in riding.state.poses.iter_mut().zip(&mut riding.state.twists) {
             pose.position.x -= speed * end;
             twist.linear.x -= speed;
@@ -243,10 +241,10 @@ proptest! {
             .into_iter()
             .map(|p| ContactPair { contactor: place(p.contactor), target: place(p.target), ..p })
             .collect();
-        let mut here = Scene::new(bodies, rough(), DOWN);
+        let mut here = Scene::new(bodies, rough(), DOWN).unwrap();
         let mut there = Scene::of(Model::new(shuffled, vec![rough()], pairs, DOWN).unwrap());
-        here.run(&Still, Method::VelocityVerlet, 2e-4, 0.5);
-        there.run(&Still, Method::VelocityVerlet, 2e-4, 0.5);
+        here.by(Method::VelocityVerlet).run(&Still, 2e-4, 0.5).unwrap();
+        there.by(Method::VelocityVerlet).run(&Still, 2e-4, 0.5).unwrap();
         let mut back = there.state.clone();
         for (k, &i) in order.iter().enumerate() {
             back.poses[i] = there.state.poses[k];
@@ -265,13 +263,13 @@ proptest! {
                 scene.state.elements.make_exhaustive(&scene.model, &poses);
             }
             let mut history = vec![];
-            scene.watch(&harmonic(3.0, 9.0), method, 2e-4, 1.0, |state, scratch, energy| {
+            scene.by(method).watch(&Shake::Harmonic { acceleration: 3.0, omega: 9.0 }, 2e-4, 1.0, |state, scratch, energy| {
                 let poses = state.poses.iter().zip(&state.twists);
                 history.extend(poses.flat_map(|(p, t)| numbers(p, t)).map(f64::to_bits));
                 history.push(energy.summary(0).residual.to_bits());
                 history.push(scratch.contacts.len() as u64);
                 ControlFlow::Continue(())
-            });
+            }).unwrap();
             (history, scene.scratch.contact_evaluations)
         };
         for method in [Method::VelocityVerlet, Method::BogackiShampine { tolerance: 1e-5 }] {
@@ -291,10 +289,13 @@ fn near_list_is_plain(scene: impl Fn() -> Scene, drive: &impl Drive<Planar>, end
             scene.state.elements.make_exhaustive(&scene.model, &poses);
         }
         let mut touched = 0;
-        scene.watch(drive, Method::VelocityVerlet, 1e-3, end, |_, scratch, _| {
-            touched += scratch.contacts.len();
-            ControlFlow::Continue(())
-        });
+        scene
+            .by(Method::VelocityVerlet)
+            .watch(drive, 1e-3, end, |_, scratch, _| {
+                touched += scratch.contacts.len();
+                ControlFlow::Continue(())
+            })
+            .unwrap();
         (bits(&scene.state)[..=6 * scene.state.poses.len()].to_vec(), touched)
     };
     let (near, plain) = (run(false), run(true));
@@ -305,10 +306,10 @@ fn near_list_is_plain(scene: impl Fn() -> Scene, drive: &impl Drive<Planar>, end
 fn the_near_list_sees_a_bar_that_turns_on_the_spot() {
     // Its center stays and its tip sweeps onto a disc that the first list does not hold.
     let scene = || {
-        let mut bar = block("bar", (2.0, 0.1), 40.0, Some(0.1), pose(0.0, 0.0, 0.0));
+        let mut bar = finely_noded_block("bar", (2.0, 0.1), 40.0, 0.1, pose(0.0, 0.0, 0.0));
         bar.twist.angular = 0.5;
         let ball = disc("ball", 0.1, 20.0, 0.005, Vec2::new(0.6, 0.7));
-        Scene::new(vec![bar, ball], rough(), Vec2::default())
+        Scene::new(vec![bar, ball], rough(), Vec2::default()).unwrap()
     };
     assert!(near_list_is_plain(scene, &Still, 3.0));
 }
@@ -318,9 +319,9 @@ fn the_near_list_sees_ground_that_comes_to_a_body_at_rest() {
     let scene = || {
         let wall = Shape::Polygon(Polygon::rectangle(0.2, 2.0, 0.0).unwrap());
         let ball = disc("ball", 0.1, 20.0, 0.005, Vec2::new(1.0, 0.0));
-        Scene::new(vec![ground_of(vec![centered(wall)]), ball], rough(), Vec2::default())
+        Scene::new(vec![ground_of(vec![centered(wall)]), ball], rough(), Vec2::default()).unwrap()
     };
-    assert!(near_list_is_plain(scene, &cruise(0.5), 3.0));
+    assert!(near_list_is_plain(scene, &Shake::Cruise(0.5), 3.0));
 }
 
 fn crossley() -> Interface<Planar> {
@@ -407,8 +408,8 @@ fn viscous_damping_brings_a_flying_body_to_its_terminal_speed() {
     let mut body = disc("disc", 0.2, 10.0, 0.02, Vec2::new(0.0, 50.0));
     body.twist = Twist { linear: Vec2::new(3.0, 0.0), angular: 5.0 };
     body.damping = Some([[20.0, 0.0, 0.0], [0.0, 40.0, 0.0], [0.0, 0.0, 0.4]]);
-    let mut scene = Scene::new(vec![floor(), body], rough(), DOWN);
-    let totals = scene.run(&Still, Method::RungeKutta4, 1e-3, 2.0);
+    let mut scene = Scene::new(vec![floor(), body], rough(), DOWN).unwrap();
+    let totals = scene.by(Method::RungeKutta4).run(&Still, 1e-3, 2.0).unwrap();
     let twist = scene.state.twists[1];
     let (fall, mass) = (-10.0 * 9.80665 / 40.0, 10.0);
     // v = v∞ + (v₀ − v∞) e^{−c t/m} for each velocity.
@@ -425,11 +426,11 @@ fn viscous_damping_brings_a_flying_body_to_its_terminal_speed() {
 
 #[test]
 fn bodies_that_collide_in_space_keep_momentum_and_angular_momentum() {
-    let mut left = block("left", (0.3, 0.2), 30.0, Some(0.1), pose(-0.5, 0.05, 0.3));
+    let mut left = finely_noded_block("left", (0.3, 0.2), 30.0, 0.1, pose(-0.5, 0.05, 0.3));
     let mut right = disc("right", 0.2, 50.0, 0.02, Vec2::new(0.3, -0.1));
     left.twist = Twist { linear: Vec2::new(3.0, 0.2), angular: 2.0 };
     right.twist = Twist { linear: Vec2::new(-2.0, 0.0), angular: -1.0 };
-    let mut scene = Scene::new(vec![left, right], rough(), Vec2::default());
+    let mut scene = Scene::new(vec![left, right], rough(), Vec2::default()).unwrap();
     let momenta = |scene: &Scene| {
         let (mut linear, mut angular) = (Vec2::default(), 0.0);
         for (i, body) in scene.model.bodies().iter().enumerate() {
@@ -441,7 +442,7 @@ fn bodies_that_collide_in_space_keep_momentum_and_angular_momentum() {
         (linear, angular)
     };
     let (linear, angular) = momenta(&scene);
-    scene.run(&Still, Method::VelocityVerlet, 1e-4, 0.6);
+    scene.by(Method::VelocityVerlet).run(&Still, 1e-4, 0.6).unwrap();
     assert!((scene.state.twists[0].linear.x - 3.0).abs() > 1.0, "they must have collided");
     let (linear_after, angular_after) = momenta(&scene);
     assert!((linear_after - linear).length() < 4e-12); // measured 9.1e-14
@@ -454,8 +455,8 @@ fn constants_per_length_do_not_depend_on_the_spacing_of_nodes() {
     let sunk = |spacing: f64| {
         let mut law = rough();
         law.basis = barrelstack_dynamics::Basis::Length;
-        let body = block("block", (0.6, 0.3), 40.0, Some(spacing), pose(0.0, 0.15, 0.0));
-        let scene = Scene::new(vec![floor(), body], law, DOWN).settled(1e-10);
+        let body = finely_noded_block("block", (0.6, 0.3), 40.0, spacing, pose(0.0, 0.15, 0.0));
+        let scene = Scene::new(vec![floor(), body], law, DOWN).unwrap().settled(1e-10).unwrap();
         0.15 - scene.state.poses[1].position.z
     };
     // The corners stand for half of the short sides too, whatever the spacing: take that away.
@@ -475,12 +476,12 @@ fn a_drive_is_the_derivative_of_its_displacement() {
             assert!((slope - drive.at(t).1.x).abs() < 1e-6, "at {t}");
         }
     }
-    check(&harmonic(3.0, 9.0));
-    check(&cruise(2.0));
-    check(&common::motion::constant(2.0));
-    check(&common::motion::ramped(2.0, 0.3));
-    check(&common::motion::rectangular_pulse(2.0, 0.3));
-    check(&common::motion::half_sine_pulse(2.0, 0.3));
+    check(&Shake::Harmonic { acceleration: 3.0, omega: 9.0 });
+    check(&Shake::Cruise(2.0));
+    check(&Shake::constant(2.0));
+    check(&Shake::Ramped { acceleration: 2.0, ramp: 0.3 });
+    check(&Shake::Rectangular { acceleration: 2.0, duration: 0.3 });
+    check(&Shake::half_sine(2.0, 0.3));
 }
 
 #[test]

@@ -7,7 +7,7 @@ mod common;
 
 use std::f64::consts::TAU;
 
-use barrelstack_dynamics::{Drive, Method, NormalLaw, Planar, Vec2};
+use barrelstack_dynamics::{Drive, NormalLaw, Planar, Vec2};
 use common::{GRAVITY, Scene, block, coulomb, floor, gravity_on_slope, interface, pose};
 
 const MASS: f64 = 50.0;
@@ -69,12 +69,12 @@ fn elastic_slip(drive: &Swing, stiffness: f64, damped: f64) -> f64 {
     let sunk = -MASS * gravity.z / 2e7;
     let damping = damped * 2.0 * (stiffness * MASS).sqrt();
     let friction = coulomb(FRICTION, 0.5 * stiffness, 0.5 * damping);
-    let body = block("block", (0.6, 0.02), MASS, None, pose(0.0, 0.01 - sunk, 0.0));
-    let mut scene = Scene::new(vec![floor(), body], interface(normal, friction), gravity);
+    let body = block("block", (0.6, 0.02), MASS, pose(0.0, 0.01 - sunk, 0.0));
+    let mut scene = Scene::new(vec![floor(), body], interface(normal, friction), gravity).unwrap();
     let step = (0.05 * (MASS / stiffness).sqrt()).min(2e-5);
     scene.settle(1e-9).unwrap();
     let start = scene.state.poses[1].position.x;
-    scene.run(drive, Method::VelocityVerlet, step, CYCLES * PERIOD + 1.0);
+    scene.run(drive, step, CYCLES * PERIOD + 1.0).unwrap();
     scene.state.poses[1].position.x - start
 }
 

@@ -12,7 +12,7 @@ use barrelstack_dynamics::shape::{
     BarrelProfile, Circle, Cradle, Gap, HalfPlane, Polygon, PolygonError, Surface,
 };
 use barrelstack_dynamics::space::{Linear, Planar};
-use common::tumble::Random;
+use barrelstack_scenes::tumble::Random;
 use proptest::prelude::*;
 
 /// A shape and its boundary as a fine chain of points, made here without the shape's own code.

@@ -10,7 +10,7 @@ mod common;
 use std::ops::ControlFlow;
 
 use barrelstack_dynamics::{
-    Body, FrictionLaw, Method, Model, NormalLaw, Planar, Still, Strap, Twist, Vec2,
+    Body, Element, FrictionLaw, Link, Method, Model, NormalLaw, Planar, Still, Strap, Twist, Vec2,
 };
 use common::{DOWN, GRAVITY, Scene, disc, every_method, floor, interface};
 
@@ -23,9 +23,7 @@ const HOOK: Vec2 = Vec2::new(0.0, 5.0);
 /// A strap of one meter from the ground to the top of a disc.
 fn hung() -> Strap<Planar> {
     Strap {
-        name: "strap".into(),
-        bodies: [0, 1],
-        points: [HOOK, Vec2::new(0.0, 0.3)],
+        link: Link { name: "strap".into(), bodies: [0, 1], points: [HOOK, Vec2::new(0.0, 0.3)] },
         length: 1.0,
         stiffness: STIFFNESS,
         damping: 0.0,
@@ -38,7 +36,7 @@ fn scene(bodies: Vec<Body<Planar>>, straps: Vec<Strap<Planar>>, gravity: Vec2) -
     let interface = interface(law, FrictionLaw::Frictionless);
     let pairs = common::all_pairs(&bodies);
     let mut model = Model::new(bodies, vec![interface], pairs, gravity).unwrap();
-    model.fasten(straps).unwrap();
+    model.fasten(straps.into_iter().map(Element::from).collect()).unwrap();
     Scene::of(model)
 }
 
@@ -63,12 +61,15 @@ fn a_mass_on_a_taut_strap_swings_as_on_a_spring() {
         let mut scene = hanging(hung(), 0.0);
         let start = scene.state.poses[1].position.z;
         let mut worst = 0.0_f64;
-        scene.watch(&Still, method, 1e-4, 1.0, |state, _, _| {
-            let sunk = start - state.poses[1].position.z;
-            let exact = still * (1.0 - libm::cos(omega * state.time));
-            worst = worst.max((sunk - exact).abs() / still);
-            ControlFlow::Continue(())
-        });
+        scene
+            .by(method)
+            .watch(&Still, 1e-4, 1.0, |state, _, _| {
+                let sunk = start - state.poses[1].position.z;
+                let exact = still * (1.0 - libm::cos(omega * state.time));
+                worst = worst.max((sunk - exact).abs() / still);
+                ControlFlow::Continue(())
+            })
+            .unwrap();
         println!("{}: {worst:e}", method.name());
         // measured as listed
         assert!(worst < 2.0 * measured, "{}: {worst:e}", method.name());
@@ -81,13 +82,16 @@ fn a_falling_mass_is_caught_and_thrown_back_to_where_it_came_from() {
     let mut scene = hanging(hung(), slack);
     let start = scene.state.poses[1].position.z;
     let (mut most, mut highest_after) = (0.0_f64, f64::NEG_INFINITY);
-    scene.watch(&Still, Method::RungeKutta4, 1e-5, 0.6, |state, scratch, _| {
-        most = most.max(scratch.pulls[0].tension);
-        if state.time > 0.3 {
-            highest_after = highest_after.max(state.poses[1].position.z);
-        }
-        ControlFlow::Continue(())
-    });
+    scene
+        .by(Method::RungeKutta4)
+        .watch(&Still, 1e-5, 0.6, |state, scratch, _| {
+            most = most.max(scratch.loads[0].force);
+            if state.time > 0.3 {
+                highest_after = highest_after.max(state.poses[1].position.z);
+            }
+            ControlFlow::Continue(())
+        })
+        .unwrap();
     let exact = STIFFNESS * stretch(slack);
     println!("tension {most} N, exact {exact} N; returns to {:e} m", start - highest_after);
     assert!((most / exact - 1.0).abs() < 1e-7); // measured 6.5e-9
@@ -100,15 +104,17 @@ fn a_damper_pulls_only_while_the_strap_is_taut_and_never_pushes() {
     let mut scene = hanging(Strap { damping: 2e4, ..hung() }, 0.2);
     let (mut least, mut slack) = (f64::INFINITY, 0);
     let energy = scene
-        .watch(&Still, Method::VelocityVerlet, 1e-5, 2.0, |state, scratch, _| {
+        .by(Method::VelocityVerlet)
+        .watch(&Still, 1e-5, 2.0, |state, scratch, _| {
             let distance = HOOK.z - state.poses[1].position.z - 0.3;
-            least = least.min(scratch.pulls[0].tension);
+            least = least.min(scratch.loads[0].force);
             if distance < 1.0 {
                 slack += 1;
-                assert_eq!(scratch.pulls[0].tension, 0.0);
+                assert_eq!(scratch.loads[0].force, 0.0);
             }
             ControlFlow::Continue(())
         })
+        .unwrap()
         .energy
         .summary(0);
     println!("slack in {slack} steps; {energy:?}");
@@ -129,13 +135,15 @@ fn a_strap_tears_above_its_strength_and_the_books_close() {
     let mut scene = hanging(Strap { strength, ..hung() }, slack);
     let (mut most, mut torn_at) = (0.0_f64, None);
     let energy = scene
-        .watch(&Still, Method::VelocityVerlet, 1e-5, 0.5, |state, scratch, _| {
-            most = most.max(scratch.pulls[0].tension);
-            if state.torn[0] && torn_at.is_none() {
+        .by(Method::VelocityVerlet)
+        .watch(&Still, 1e-5, 0.5, |state, scratch, _| {
+            most = most.max(scratch.loads[0].force);
+            if state.memory[0].broken && torn_at.is_none() {
                 torn_at = Some((state.time, state.twists[1].linear.z));
             }
             ControlFlow::Continue(())
         })
+        .unwrap()
         .energy
         .summary(0);
     let (time, speed) = torn_at.unwrap();
@@ -151,7 +159,7 @@ fn a_strap_tears_above_its_strength_and_the_books_close() {
     assert!(energy.residual_ratio() < 1e-4, "{:e}", energy.residual_ratio()); // measured 3.0e-5
     // Once torn, it never pulls again, however far.
     assert!(scene.state.poses[1].position.z < HOOK.z - 2.0);
-    assert_eq!(scene.scratch.pulls[0].tension, 0.0);
+    assert_eq!(scene.scratch.loads[0].force, 0.0);
 }
 
 #[test]
@@ -166,8 +174,11 @@ fn two_bodies_on_a_strap_keep_momentum_spin_and_energy() {
         flying("right", 0.6, Vec2::new(0.5, -1.0), -1.0),
     ];
     let tie = Strap {
-        bodies: [1, 2],
-        points: [Vec2::new(0.1, 0.2), Vec2::new(-0.2, 0.1)],
+        link: Link {
+            bodies: [1, 2],
+            points: [Vec2::new(0.1, 0.2), Vec2::new(-0.2, 0.1)],
+            ..hung().link
+        },
         length: 1.0,
         ..hung()
     };
@@ -185,10 +196,12 @@ fn two_bodies_on_a_strap_keep_momentum_spin_and_energy() {
     let before = momenta(&scene);
     let mut most = 0.0_f64;
     let energy = scene
-        .watch(&Still, Method::VelocityVerlet, 1e-4, 1.5, |_, scratch, _| {
-            most = most.max(scratch.pulls[0].tension);
+        .by(Method::VelocityVerlet)
+        .watch(&Still, 1e-4, 1.5, |_, scratch, _| {
+            most = most.max(scratch.loads[0].force);
             ControlFlow::Continue(())
         })
+        .unwrap()
         .energy
         .summary(0);
     let after = momenta(&scene);
@@ -206,8 +219,8 @@ fn two_bodies_on_a_strap_keep_momentum_spin_and_energy() {
 #[test]
 fn what_is_no_strap_is_refused_with_its_name() {
     let wrong = [
-        (Strap { bodies: [1, 1], ..hung() }, "itself"),
-        (Strap { bodies: [0, 7], ..hung() }, "not there"),
+        (Strap { link: Link { bodies: [1, 1], ..hung().link }, ..hung() }, "itself"),
+        (Strap { link: Link { bodies: [0, 7], ..hung().link }, ..hung() }, "not there"),
         (Strap { stiffness: 0.0, ..hung() }, "stiffness"),
         (Strap { stiffness: f64::NAN, ..hung() }, "stiffness"),
         (Strap { damping: -1.0, ..hung() }, "damping"),
@@ -216,7 +229,7 @@ fn what_is_no_strap_is_refused_with_its_name() {
     ];
     for (strap, word) in wrong {
         let mut model = hanging(hung(), 0.0).model;
-        let message = model.fasten(vec![strap]).unwrap_err().to_string();
+        let message = model.fasten(vec![strap.into()]).unwrap_err().to_string();
         assert!(message.contains("strap") && message.contains(word), "{message}");
     }
 }

@@ -271,21 +271,3 @@ fn quote(text: &str) -> String {
     quoted.push('"');
     quoted
 }
-
-/// The table as JSON.
-pub fn to_json(table: &Table) -> serde_json::Value {
-    let entries = table.entries.iter().map(|entry| (entry.key.clone(), json(&entry.node.value)));
-    serde_json::Value::Object(entries.collect())
-}
-
-fn json(value: &Value) -> serde_json::Value {
-    match value {
-        Value::Text(text) => text.clone().into(),
-        Value::Integer(value) => (*value).into(),
-        Value::Float(value) => (*value).into(),
-        Value::Flag(value) => (*value).into(),
-        Value::Date => serde_json::Value::Null,
-        Value::Array(items) => items.iter().map(|item| json(&item.value)).collect(),
-        Value::Table(table) => to_json(table),
-    }
-}

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use barrelstack::ground::ground;
 use barrelstack::scenario::{Scale, Scenario};
 use barrelstack_motion::STANDARD_GRAVITY;
 
@@ -110,7 +109,7 @@ fn record_of(path: &Path) -> String {
 pub fn recognize(path: &Path) -> Result<Motion, ReproduceError> {
     let mut unscaled = Scenario::builtin("candia-6-barrels", &[record_of(path)])?;
     unscaled.motion.scale = Scale::Factor(1.0);
-    let pga = ground(&unscaled)?.motion.map_or(0.0, |motion| motion.pga());
+    let pga = unscaled.ground()?.motion.map_or(0.0, |motion| motion.pga());
     let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     Ok(if (pga / STANDARD_GRAVITY - PEL360_PGA).abs() < PGA_TOLERANCE {
         Motion::Paper { file }

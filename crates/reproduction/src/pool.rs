@@ -1,9 +1,7 @@
 //! Many runs on all cores, with results in the order of the jobs.
 
-use std::ops::ControlFlow;
-
 use barrelstack::pool;
-use barrelstack::run::{Run, run};
+use barrelstack::run::Run;
 use barrelstack::scenario::Scenario;
 use barrelstack::summary::Summary;
 
@@ -36,8 +34,9 @@ pub(super) fn run_all(
 }
 
 fn run_one(job: &Job) -> Result<Done, ReproduceError> {
-    let run = run(&job.scenario, &mut |_| ControlFlow::Continue(())).map_err(|source| {
-        ReproduceError::Run { case: job.label.clone(), source: Box::new(source) }
+    let run = job.scenario.run().map_err(|source| ReproduceError::Run {
+        case: job.label.clone(),
+        source: Box::new(source),
     })?;
     let summary = Summary::of(&run, None);
     Ok(Done { summary, run: job.keep.then(|| Box::new(run)) })

@@ -15,7 +15,6 @@
 //! ```
 
 use std::fmt;
-use std::ops::ControlFlow;
 
 use barrelstack::{Run, Scenario};
 use serde::Deserialize;
@@ -166,7 +165,7 @@ pub fn read(name: &str, text: &str) -> Result<Problem, CaseError> {
 fn answer_of(file: &str, scene: &str, expect: &Expect, effort: Effort) -> Result<f64, Failure> {
     let run = |overrides: &[String]| -> Result<(Run, usize), Failure> {
         let scenario = Scenario::parse(file, scene, overrides)?;
-        let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(()))?;
+        let run = scenario.run()?;
         let body = run
             .assembly
             .model

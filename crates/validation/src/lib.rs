@@ -21,7 +21,6 @@
 
 pub mod cases;
 pub mod counting;
-pub mod drive;
 pub mod execute;
 pub mod ode;
 pub mod oracle;
@@ -29,12 +28,9 @@ pub mod page;
 pub mod problem;
 pub mod problems;
 pub mod rocking;
-pub mod scene;
-pub mod theory;
 
 pub use execute::{Row, execute};
 pub use problem::{Effort, Failure, Outcome, Problem, Tolerance};
 pub use problems::all;
 
-/// Standard gravity (m/s²).
-pub const GRAVITY: f64 = 9.806_65;
+pub use barrelstack_scenes::{GRAVITY, drive, scene, theory};

@@ -123,7 +123,7 @@ impl RockingBlock {
         };
         // Rigid-block theory knows no sliding, whatever the push.
         let laws = interface(normal, coulomb(20.0, stiffness, tangential));
-        Scene::new(vec![floor(), body], laws, DOWN)
+        Ok(Scene::new(vec![floor(), body], laws, DOWN)?)
     }
 
     /// p times the time from a lean of `share · α` to upright.
@@ -171,7 +171,7 @@ impl RockingBlock {
         let slack = 1e-3 * self.alpha;
         let mut side = 1.0;
         let mut crossing = f64::NAN;
-        scene.watch(&Still, self.step(), patience, |state, _| {
+        scene.watch(&Still, self.step(), patience, |state, _, _| {
             let lean = -state.poses[1].orientation;
             if before.1 * lean < 0.0 {
                 crossing = before.0 + before.1 / (before.1 - lean) * (state.time - before.0);
@@ -266,7 +266,7 @@ impl RockingBlock {
         let (mut fell, mut side) = (false, 0.0);
         // What the corners sway before uplift.
         let slack = 0.01 * self.alpha;
-        scene.watch(drive, self.step(), acceleration_end + 15.0, |state, _| {
+        scene.watch(drive, self.step(), acceleration_end + 15.0, |state, _, _| {
             let lean = state.poses[1].orientation;
             if side == 0.0 && lean.abs() > slack {
                 side = lean.signum();
@@ -292,7 +292,7 @@ impl RockingBlock {
         let rate = self.rate();
         let (mut fell, mut peak, mut last) = (false, 0.0_f64, 0.0_f64);
         let until = acceleration_end + patience;
-        scene.watch(drive, self.step(), until, |state, _| {
+        scene.watch(drive, self.step(), until, |state, _, _| {
             let (lean, spin) = (state.poses[1].orientation, state.twists[1].angular);
             last = lean.abs();
             peak = peak.max(last);

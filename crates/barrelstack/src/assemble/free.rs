@@ -51,6 +51,7 @@ pub(super) fn assemble(
         model,
         parts,
         loose: Vec::new(),
+        devices: Vec::new(),
         height: 0.0,
         levels: 0,
         view: None,

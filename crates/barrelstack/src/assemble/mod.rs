@@ -8,11 +8,11 @@ mod pairs;
 mod similitude;
 mod solid;
 mod stack;
-mod straps;
 mod transverse;
 
 use barrelstack_dynamics::{BodyId, Model, ModelError, Placed, Planar, Vec2};
 
+use crate::device::{Loose, Words};
 use crate::scenario::{Scenario, Scene, View};
 
 pub use similitude::Similitude;
@@ -79,8 +79,10 @@ pub struct Assembly {
     pub model: Model<Planar>,
     /// One part for every body, in the same order.
     pub parts: Vec<Part>,
-    /// Straps that are put on once the stack stands.
-    pub(crate) loose: Vec<straps::Loose>,
+    /// Elements of devices that are put on once the stack stands.
+    pub(crate) loose: Vec<Loose>,
+    /// The device that every force element of the model belongs to.
+    pub devices: Vec<&'static Words>,
     /// Height (m) of the stack from the ground to the top of the highest barrel; zero for a free scene.
     pub height: f64,
     /// Number of levels; zero for a free scene.

@@ -13,17 +13,7 @@ use barrelstack_dynamics::{BodyId, ContactPair, Counts, Nodes};
 use super::builder::Builder;
 use super::solid::{Seat, Touch};
 use super::{Assembly, PartKind};
-
-// The interfaces of a stack, in the order of their ids and of `StackInterfaces::named`; seats first.
-
-const RACK_GROUND: usize = 0;
-const BARREL_RACK: usize = 1;
-const RACK_RACK: usize = 2;
-const BARREL_BARREL: usize = 3;
-const BARREL_GROUND: usize = 4;
-const FALLEN_BARREL_RACK: usize = 5;
-const FALLEN_RACK_GROUND: usize = 6;
-const FALLEN_RACK_RACK: usize = 7;
+use crate::scenario::StackPair;
 
 /// All boundaries that can ever meet, each with its interface.
 pub(super) fn pairs(builder: &Builder<'_>) -> Vec<ContactPair> {
@@ -37,7 +27,7 @@ pub(super) fn pairs(builder: &Builder<'_>) -> Vec<ContactPair> {
                 (PartKind::Rack, PartKind::Barrel) => pairs.rack_and_barrel(a, b),
                 (PartKind::Barrel, PartKind::Rack) => pairs.rack_and_barrel(b, a),
                 (PartKind::Barrel, PartKind::Barrel) => {
-                    pairs.exact((a, 0), (b, 0), BARREL_BARREL, [Counts::Everywhere; 2]);
+                    pairs.exact((a, 0), (b, 0), StackPair::BarrelBarrel, [Counts::Everywhere; 2]);
                 }
                 (PartKind::Ground | PartKind::Body, _) | (_, PartKind::Ground | PartKind::Body) => {
                     unreachable!("a stack is made of barrels and racks on one ground")
@@ -67,9 +57,10 @@ impl Pairs<'_> {
         &mut self,
         (contactor, nodes): (BodyId, usize),
         (target, surface): (BodyId, usize),
-        interface: usize,
+        pair: StackPair,
         counts: Counts,
     ) {
+        let interface = pair as usize;
         self.list.push(ContactPair { contactor, nodes, target, surface, interface, counts });
     }
 
@@ -79,17 +70,17 @@ impl Pairs<'_> {
         &mut self,
         (a, solid_a): (BodyId, usize),
         (b, solid_b): (BodyId, usize),
-        interface: usize,
+        pair: StackPair,
         counts: [Counts; 2],
     ) {
         let sets = [(a, self.touch(a, solid_a).exact), (b, self.touch(b, solid_b).exact)];
         let rolls = sets
             .map(|(id, set)| matches!(self.builder.bodies[id].nodes[set], Nodes::Rolling { .. }));
         if rolls[0] || !rolls[1] {
-            self.push(sets[0], (b, solid_b), interface, counts[0]);
+            self.push(sets[0], (b, solid_b), pair, counts[0]);
         }
         if !rolls[0] {
-            self.push(sets[1], (a, solid_a), interface, counts[1]);
+            self.push(sets[1], (a, solid_a), pair, counts[1]);
         }
     }
 
@@ -102,9 +93,11 @@ impl Pairs<'_> {
             let ground = (Assembly::GROUND, 0);
             let seat = stands && touch.seat.stands();
             let interface = match (kind, seat) {
-                (PartKind::Rack, true) => RACK_GROUND,
-                (PartKind::Rack, false) => FALLEN_RACK_GROUND,
-                (PartKind::Barrel | PartKind::Ground | PartKind::Body, _) => BARREL_GROUND,
+                (PartKind::Rack, true) => StackPair::RackGround,
+                (PartKind::Rack, false) => StackPair::FallenRackGround,
+                (PartKind::Barrel | PartKind::Ground | PartKind::Body, _) => {
+                    StackPair::BarrelGround
+                }
             };
             match touch.below.filter(|_| seat) {
                 Some(face) => {
@@ -132,7 +125,7 @@ impl Pairs<'_> {
                 Seat::Along(column) => carried == Some(column) || support == Some(column),
                 Seat::None | Seat::Rack => false,
             };
-            let interface = if seat { BARREL_RACK } else { FALLEN_BARREL_RACK };
+            let interface = if seat { StackPair::BarrelRack } else { StackPair::FallenBarrelRack };
             let face = if carried.is_some() { touch.above } else { touch.below };
             let counts = if let Some(face) = face.filter(|_| seat) {
                 let before = Counts::BeforeFace(face.face);
@@ -152,7 +145,7 @@ impl Pairs<'_> {
                 let seat = stands
                     && self.touch(lower, below).seat == Seat::Rack
                     && self.touch(upper, above).seat == Seat::OnSupports;
-                let interface = if seat { RACK_RACK } else { FALLEN_RACK_RACK };
+                let interface = if seat { StackPair::RackRack } else { StackPair::FallenRackRack };
                 self.exact((lower, below), (upper, above), interface, [Counts::Everywhere; 2]);
             }
         }

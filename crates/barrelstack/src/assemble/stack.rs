@@ -5,8 +5,9 @@ use barrelstack_dynamics::{Interface, Model, Planar, Vec2};
 
 use super::builder::Builder;
 use super::interfaces::interface;
-use super::{AssembleError, Assembly, Similitude, longitudinal, pairs, straps, transverse};
-use crate::scenario::{self, StackSpec, View};
+use super::{AssembleError, Assembly, Similitude, longitudinal, pairs, transverse};
+use crate::device::Site;
+use crate::scenario::{self, StackPair, StackSpec, View};
 
 /// Lever (m) of the resistance of barrels on hoops against rolling on floors, racks and each other: an
 /// assumption.
@@ -29,7 +30,15 @@ pub(super) fn assemble(
     if spec.mirror {
         builder.mirror();
     }
-    let loose = straps::straps(spec, scale, &builder.parts, &builder.bodies)?;
+    let site = Site {
+        view: spec.view,
+        levels: spec.levels,
+        mirror: spec.mirror,
+        scale,
+        parts: &builder.parts,
+        bodies: &builder.bodies,
+    };
+    let loose = spec.devices.place(&site).map_err(AssembleError::Stack)?;
     let pairs = pairs::pairs(&builder);
     let interfaces = laws(spec, scale);
     let model = Model::new(builder.bodies, interfaces, pairs, Vec2::new(0.0, -gravity))?;
@@ -37,6 +46,7 @@ pub(super) fn assemble(
         model,
         parts: builder.parts,
         loose,
+        devices: Vec::new(),
         height: height * scale.length,
         levels: spec.levels,
         view: Some(spec.view),
@@ -44,7 +54,7 @@ pub(super) fn assemble(
     })
 }
 
-/// The laws of contact, each at the place of its id. Across the barrels a seat may stand for several
+/// The laws of contact, each at the place of its pair. Across the barrels a seat may stand for several
 /// elements one behind the other.
 fn laws(spec: &StackSpec, scale: Similitude) -> Vec<Interface<Planar>> {
     let behind = match spec.view {
@@ -53,26 +63,32 @@ fn laws(spec: &StackSpec, scale: Similitude) -> Vec<Interface<Planar>> {
     };
     let stroke = spec.rack.seat_stroke * scale.length;
     let impact = |law: &scenario::Interface| interface("stop", law, 1.0, scale).normal;
-    // What a seat meets at the end of its stroke is what the same bodies meet elsewhere.
-    let stops = [
-        &spec.interfaces.fallen_rack_ground,
-        &spec.interfaces.fallen_barrel_rack,
-        &spec.interfaces.fallen_rack_rack,
-    ];
-    let named = spec.interfaces.named().into_iter().enumerate();
-    let law = |(id, (name, law))| match stops.get(id) {
-        Some(&stop) => Interface {
+    let laws = &spec.interfaces;
+    let law = |pair: &StackPair| {
+        // What a seat meets at the end of its stroke is what the same bodies meet elsewhere.
+        let stop = match pair {
+            StackPair::RackGround => &laws.fallen_rack_ground,
+            StackPair::BarrelRack => &laws.fallen_barrel_rack,
+            StackPair::RackRack => &laws.fallen_rack_rack,
+            StackPair::BarrelBarrel
+            | StackPair::BarrelGround
+            | StackPair::FallenBarrelRack
+            | StackPair::FallenRackGround
+            | StackPair::FallenRackRack => {
+                return Interface {
+                    // What has fallen does not roll for ever.
+                    rolling: Some(Rolling {
+                        lever: ROLLING_LEVER * scale.length,
+                        spin: ROLLING_SPIN / scale.time(),
+                    }),
+                    ..interface(pair.name(), laws.of(*pair), 1.0, scale)
+                };
+            }
+        };
+        Interface {
             stop: Some(Stop { depth: stroke, law: impact(stop) }),
-            ..interface(name, law, behind, scale)
-        },
-        // What has fallen does not roll for ever.
-        None => Interface {
-            rolling: Some(Rolling {
-                lever: ROLLING_LEVER * scale.length,
-                spin: ROLLING_SPIN / scale.time(),
-            }),
-            ..interface(name, law, 1.0, scale)
-        },
+            ..interface(pair.name(), laws.of(*pair), behind, scale)
+        }
     };
-    named.map(law).collect()
+    StackPair::ALL.iter().map(law).collect()
 }

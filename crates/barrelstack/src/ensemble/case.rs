@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::assemble::{Assembly, PartKind};
 use crate::demand::Demands;
-use crate::ground::Ground;
+use crate::ground::{Ground, GroundError};
 use crate::outcome::Outcome;
 use crate::run::{CUT, Verdict};
 use crate::scenario::Scenario;
@@ -17,6 +17,17 @@ pub struct Prepared {
     pub scenario: Arc<Scenario>,
     /// What shakes it, shared by all cases of one motion and level.
     pub ground: Arc<Ground>,
+}
+
+impl Prepared {
+    /// A scenario under its own motion.
+    ///
+    /// # Errors
+    /// When the motion cannot be read.
+    pub fn new(scenario: Scenario) -> Result<Self, GroundError> {
+        let ground = Arc::new(scenario.ground()?);
+        Ok(Self { scenario: Arc::new(scenario), ground })
+    }
 }
 
 /// What became of a case.

@@ -1,6 +1,6 @@
 //! Runs in lanes: who loads them, watches them, and writes down what became of them.
 
-use barrelstack_dynamics::lanes::{self, Case, End, Task, Width, march};
+use barrelstack_dynamics::lanes::{self, Case, End, Lanewise as _, Task, Width, march};
 use barrelstack_dynamics::real::{Mask, Real};
 use barrelstack_dynamics::{Finish, Method, Planar, Scratch, State};
 

@@ -89,12 +89,12 @@ fn body(assembly: &Assembly, index: usize) -> SceneBody {
 }
 
 fn ties(run: &Run) -> Vec<Tie> {
-    let straps = run.assembly.model.straps().iter().zip(&run.straps);
-    straps
-        .map(|(strap, fate)| Tie {
-            bodies: strap.bodies,
-            points: strap.points.map(|point| [point.x, point.z]),
-            torn_at: fate.torn_at,
+    let elements = run.assembly.model.elements().iter().zip(&run.elements);
+    elements
+        .map(|(element, fate)| Tie {
+            bodies: element.link().bodies,
+            points: element.link().points.map(|point| [point.x, point.z]),
+            torn_at: fate.broken_at,
         })
         .collect()
 }
@@ -121,10 +121,12 @@ fn events(run: &Run) -> Vec<Event> {
             events.push(Event { time, body: Some(i), kind: EventKind::Fall, text });
         }
     }
-    for (strap, fate) in run.assembly.model.straps().iter().zip(&run.straps) {
-        if let Some(time) = fate.torn_at {
-            let text = format!("the strap {} tears", strap.name);
-            let body = Some(strap.bodies[0]);
+    let elements = run.assembly.model.elements().iter().zip(&run.assembly.devices);
+    for ((element, device), fate) in elements.zip(&run.elements) {
+        if let Some(time) = fate.broken_at {
+            let link = element.link();
+            let text = format!("the {} {} {}", device.one, link.name, device.breaks);
+            let body = Some(link.bodies[0]);
             events.push(Event { time, body, kind: EventKind::Note, text });
         }
     }

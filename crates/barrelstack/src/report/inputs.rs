@@ -64,11 +64,11 @@ pub(super) fn inputs(run: &Run) -> Vec<Block> {
 /// Where the dimensions of the catalog come from.
 fn dimensions(run: &Run) -> Option<Block> {
     let stack = run.scenario.stack()?;
-    let barrel = catalog::BARRELS.iter().find(|known| known.name == stack.barrel.base);
-    let rack = catalog::RACKS.iter().find(|known| known.name == stack.rack.base);
+    let barrel = catalog::barrel(&stack.barrel.base);
+    let rack = catalog::rack(stack.rack.base);
     let mut sources = Vec::new();
     sources.extend(barrel.map(|known| format!("Barrel {}: {}.", known.name, known.source)));
-    sources.extend(rack.map(|known| format!("Rack {}: {}.", known.name, known.source)));
+    sources.extend(rack.map(|known| format!("Rack {}: {}.", known.rack.base, known.source)));
     (!sources.is_empty()).then_some(Block::List(sources))
 }
 

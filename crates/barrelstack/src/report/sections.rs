@@ -8,11 +8,11 @@ use barrelstack_report::{
     Series, Strip, Table, Trace, significant,
 };
 
-use super::{drawing, inputs, spectrum, trust};
+use super::{drawing, inputs, spectrum, trust, words};
 use crate::assemble::PartKind;
 use crate::demand::DEMANDS;
 use crate::run::Run;
-use crate::summary::Summary;
+use crate::summary::{Device, Summary};
 use crate::verify::Verification;
 use crate::watch::{BoundaryPoint, StressEnvelope};
 
@@ -34,7 +34,9 @@ pub(super) fn all(
     section(&mut blocks, "Demands", shown);
     section(&mut blocks, "Normal stress on barrels and racks", stresses(run));
     section(&mut blocks, "Forces between bodies", forces(run, summary));
-    section(&mut blocks, "Straps", straps(summary));
+    for one in &summary.devices.0 {
+        section(&mut blocks, &words::capital(one.words.many), device(one));
+    }
     section(&mut blocks, "Ground motion", motion(run));
     section(&mut blocks, "Energy books", energy(run, summary));
     section(&mut blocks, "Inputs", inputs::inputs(run));
@@ -271,18 +273,22 @@ pub fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
     }
 }
 
-fn straps(summary: &Summary) -> Vec<Block> {
+fn device(Device { words, elements }: &Device) -> Vec<Block> {
+    let largest = format!("{}, largest", words.force);
     let mut table = Table::new(
-        "Largest tension of every strap in the whole run. Left and right are those of the picture.",
-        &[("strap", ""), ("tension, largest", "kN"), ("at", "s"), ("torn", "s")],
+        format!(
+            "Largest {} of every {} in the whole run. Left and right are those of the picture.",
+            words.force, words.one
+        ),
+        &[(words.one, ""), (&largest, "kN"), ("at", "s"), (words.broken, "s")],
     );
-    for strap in &summary.straps {
-        let at = (strap.peak_tension > 0.0).then_some(strap.peak_tension_at);
+    for element in elements {
+        let at = (element.peak != 0.0).then_some(element.peak_at);
         table.rows.push(vec![
-            Cell::text(&strap.name),
-            number(1e-3 * strap.peak_tension),
+            Cell::text(&element.name),
+            number(1e-3 * element.peak),
             at.map_or(Cell::Missing, number),
-            strap.torn_at.map_or(Cell::Missing, number),
+            element.broken_at.map_or(Cell::Missing, number),
         ]);
     }
     if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] }

@@ -6,7 +6,7 @@ use barrelstack_report::significant;
 use crate::assemble::PartKind;
 use crate::outcome::{CollapseMode, Outcome};
 use crate::run::Run;
-use crate::summary::{MotionSummary, StrapSummary, Summary};
+use crate::summary::{Device, MotionSummary, Summary};
 use crate::verify::Verification;
 
 /// The answer in one sentence.
@@ -72,19 +72,18 @@ fn course(run: &Run, mode: CollapseMode, first: &str, part: &str) -> String {
     }
 }
 
-/// What the straps bore; none where there are none.
-fn straps(straps: &[StrapSummary]) -> Option<String> {
-    let strained = straps.iter().max_by(|a, b| a.peak_tension.total_cmp(&b.peak_tension))?;
-    let kilonewtons = significant(1e-3 * strained.peak_tension, 2);
-    let torn = straps.iter().filter_map(|strap| strap.torn_at);
-    let first = torn.clone().reduce(f64::min);
-    Some(match (torn.count(), first) {
-        (0, _) | (_, None) => {
-            format!("All {} straps hold; one bears up to {kilonewtons} kN.", straps.len())
-        }
-        (1, Some(time)) => format!("One of {} straps tears, after {time:.1} s.", straps.len()),
+/// What a device bore; none where it is not there.
+fn device(Device { words, elements }: &Device) -> Option<String> {
+    let strained = elements.iter().max_by(|a, b| a.peak.abs().total_cmp(&b.peak.abs()))?;
+    let kilonewtons = significant(1e-3 * strained.peak.abs(), 2);
+    let broken = elements.iter().filter_map(|element| element.broken_at);
+    let first = broken.clone().reduce(f64::min);
+    let all = format!("{} {}", elements.len(), words.many);
+    Some(match (broken.count(), first) {
+        (0, _) | (_, None) => format!("All {all} hold; one bears up to {kilonewtons} kN."),
+        (1, Some(time)) => format!("One of {all} {}, after {time:.1} s.", words.breaks),
         (count, Some(time)) => {
-            format!("{count} of {} straps tear, the first after {time:.1} s.", straps.len())
+            format!("{count} of {all} {}, the first after {time:.1} s.", words.break_all)
         }
     })
 }
@@ -134,7 +133,7 @@ pub(super) fn details(
         Outcome::NotJudged => {}
         Outcome::Invalid { reason } => sentences.push(format!("{}.", capital(reason))),
     }
-    sentences.extend(straps(&summary.straps));
+    sentences.extend(summary.devices.0.iter().filter_map(device));
     sentences.extend(summary.motion.as_ref().map(shaking));
     let judged = matches!(run.outcome, Outcome::Stable | Outcome::Collapse { .. });
     if let Some(found) = verification {
@@ -149,7 +148,7 @@ pub(super) fn details(
     sentences
 }
 
-fn capital(text: &str) -> String {
+pub(super) fn capital(text: &str) -> String {
     let mut chars = text.chars();
     chars
         .next()

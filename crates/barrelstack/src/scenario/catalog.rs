@@ -4,8 +4,7 @@
 
 use std::f64::consts::PI;
 
-use super::interface::PairDefaults;
-use super::rack::{Cradle, Posts, RackKind, SeatContact};
+use super::rack::{Cradle, Posts, Rack, RackKind, SeatContact};
 
 /// Density of wine (kg/m³).
 pub const WINE_DENSITY: f64 = 990.0;
@@ -78,52 +77,18 @@ pub const BARRELS: &[CatalogBarrel] = &[
 ];
 
 /// A rack of the catalog.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct CatalogRack {
-    /// Name.
-    pub name: &'static str,
-    /// How the rack stands on what is below.
-    pub kind: RackKind,
-    /// Mass (kg).
-    pub mass: f64,
-    /// Barrels side by side.
-    pub barrels: u32,
-    /// Barrels end to end.
-    pub barrels_deep: u32,
-    /// Distance between the axes of neighboring barrels (m).
-    pub pitch: f64,
-    /// Overall width across the barrels (m).
-    pub width: f64,
-    /// Distance of each rail from the middle of a barrel along its axis (m).
-    pub rail_half_spacing: f64,
-    /// Width of one rail along the barrel axis (m).
-    pub rail_width: f64,
-    /// Height of the lowest point of a carried barrel above the underside (m).
-    pub clearance: f64,
-    /// Height of the beams (m).
-    pub beam_height: f64,
-    /// Height of the feet under the beams (m); zero for a rack without.
-    pub foot_height: f64,
-    /// How the rack holds a barrel.
-    pub cradle: Cradle,
-    /// Half of the length of a foot (m).
-    pub foot_half_length: f64,
-    /// How a seat is divided into contact elements.
-    pub contact: SeatContact,
-    /// Penetration of a seat (m) beyond which the solids themselves meet.
-    pub seat_stroke: f64,
-    /// Distance between contact nodes (m).
-    pub node_spacing: f64,
-    /// Posts, if any.
-    pub posts: Option<Posts>,
+    /// The rack.
+    pub rack: Rack,
     /// Where the numbers come from.
     pub source: &'static str,
 }
 
 /// Two barrels side by side on two rails: racks of type 2 across the barrels and of type 1 along
 /// them.
-const TWO_BARREL: CatalogRack = CatalogRack {
-    name: "two-barrel",
+const TWO_BARREL: Rack = Rack {
+    base: "two-barrel",
     kind: RackKind::OnBarrels,
     mass: 40.0,
     barrels: 2,
@@ -141,145 +106,64 @@ const TWO_BARREL: CatalogRack = CatalogRack {
     seat_stroke: 0.02,
     node_spacing: 0.01,
     posts: None,
-    source: "portable steel rack for two barrels on a footprint of 38 in by 58 in, which makes pitch and width (Wines & \
-             Vines 2016); clearance for the 7 in between the bilges of neighboring levels that make six levels 18 ft \
-             high (UC Berkeley 2000); straight tubes without feet; mass, rails, tubes and cradle are assumptions",
 };
 
 /// The racks.
 pub const RACKS: &[CatalogRack] = &[
-    TWO_BARREL,
     CatalogRack {
-        name: "two-barrel-feet",
-        foot_height: 0.06,
+        rack: TWO_BARREL,
+        source: "portable steel rack for two barrels on a footprint of 38 in by 58 in, which makes pitch and width (Wines & \
+             Vines 2016); clearance for the 7 in between the bilges of neighboring levels that make six levels 18 ft \
+             high (UC Berkeley 2000); straight tubes without feet; mass, rails, tubes and cradle are assumptions",
+    },
+    CatalogRack {
+        rack: Rack { base: "two-barrel-feet", foot_height: 0.06, ..TWO_BARREL },
         source: "`two-barrel` with a foot over each barrel below, as wide as that of the reconstructed `candia-2008`: \
                  an assumption",
-        ..TWO_BARREL
     },
     CatalogRack {
-        name: "single-bar",
-        mass: 35.0,
-        contact: SeatContact::Element,
+        rack: Rack { base: "single-bar", mass: 35.0, contact: SeatContact::Element, ..TWO_BARREL },
         source: "single-bar version of the rack for two barrels (Wines & Vines 2016); the numbers are those of \
                  `two-barrel`, the mass is an assumption",
-        ..TWO_BARREL
     },
     CatalogRack {
-        name: "four-barrel",
-        mass: 80.0,
-        barrels_deep: 2,
+        rack: Rack { base: "four-barrel", mass: 80.0, barrels_deep: 2, ..TWO_BARREL },
         source: "two racks for two barrels end to end (Wines & Vines 2016); the numbers of one are those of \
                  `two-barrel`, the mass is an assumption",
-        ..TWO_BARREL
     },
     CatalogRack {
-        name: "rack-on-rack",
-        kind: RackKind::OnRacks,
-        mass: 60.0,
-        width: 1.60,
-        posts: Some(Posts { height: 0.89, half_spacing: 0.77, spigot: 0.03 }),
+        rack: Rack {
+            base: "rack-on-rack",
+            kind: RackKind::OnRacks,
+            mass: 60.0,
+            width: 1.60,
+            posts: Some(Posts { height: 0.89, half_spacing: 0.77, spigot: 0.03 }),
+            ..TWO_BARREL
+        },
         source: "racks that carry load on posts (Wines & Vines 2014, 2016); every number is an assumption, the post \
                  height makes the usual level pitch, and the posts stand clear of the barrels",
-        ..TWO_BARREL
     },
     CatalogRack {
-        name: "candia-2008",
-        mass: 40.0,
-        pitch: 0.76,
-        width: 1.50,
-        rail_half_spacing: 0.24,
-        rail_width: 0.06,
-        clearance: 0.16,
-        beam_height: 0.04,
-        foot_height: 0.06,
-        foot_half_length: 0.065,
-        cradle: Cradle::Supports { angle: 31.0 * PI / 180.0 },
-        contact: SeatContact::Nodes,
-        seat_stroke: 0.03,
+        rack: Rack {
+            base: "candia-2008",
+            mass: 40.0,
+            pitch: 0.76,
+            width: 1.50,
+            rail_half_spacing: 0.24,
+            rail_width: 0.06,
+            clearance: 0.16,
+            beam_height: 0.04,
+            foot_height: 0.06,
+            foot_half_length: 0.065,
+            cradle: Cradle::Supports { angle: 31.0 * PI / 180.0 },
+            contact: SeatContact::Nodes,
+            seat_stroke: 0.03,
+            ..TWO_BARREL
+        },
         source: "rack of Candia, de la Llera and Almazán (2008), whose text gives no dimensions: a solid beam on feet, \
                  reconstructed so that one geometry shows the paper's modes, times, drift and stress amplification",
-        ..TWO_BARREL
     },
 ];
-
-/// Stiffness of one contact node in a stack (N/m), calibrated by Candia, de la Llera and Almazán
-/// (2008).
-const STIFFNESS: f64 = 980_000.0;
-
-/// Damping of one contact node in a stack (N·s/m), calibrated by Candia, de la Llera and Almazán
-/// (2008).
-const DAMPING: f64 = 2200.0;
-
-/// Stiffness of an impact (N/m^1.5): a full barrel of 270 kg that falls from the top of six levels
-/// (9.3 m/s) is stopped within 15 mm. An assumption: nobody has measured it; cellars saw barrels bounce
-/// clearly, burst and lose their bungs.
-const IMPACT_STIFFNESS: f64 = 1.2e9;
-
-/// The same between racks and from a rack to the ground (N/m^1.5): a rack alone that falls as far is
-/// stopped within 10 mm, and under a barrel that lands on it its several contacts share the load.
-const LIGHT_IMPACT_STIFFNESS: f64 = 5e8;
-
-/// A pair of bodies in a stack with the friction it takes when a scenario leaves it out.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CatalogPair {
-    /// Name.
-    pub name: &'static str,
-    /// Coefficient of friction.
-    pub coefficient: f64,
-    /// Where the number comes from.
-    pub source: &'static str,
-}
-
-/// The pairs.
-pub const PAIRS: [CatalogPair; 8] = [
-    CatalogPair {
-        name: "rack-ground",
-        coefficient: 0.4,
-        source: "six-barrel example of Candia, de la Llera and Almazán (2008)",
-    },
-    CatalogPair {
-        name: "barrel-rack",
-        coefficient: 0.22,
-        source: "calibrated by Candia, de la Llera and Almazán (2008)",
-    },
-    CatalogPair { name: "rack-rack", coefficient: 0.3, source: "steel on steel, assumption" },
-    CatalogPair { name: "barrel-barrel", coefficient: 0.4, source: "wood on wood, assumption" },
-    CatalogPair { name: "barrel-ground", coefficient: 0.4, source: "wood on concrete, assumption" },
-    CatalogPair {
-        name: "fallen-barrel-rack",
-        coefficient: 0.22,
-        source: "as barrel on rack, calibrated by Candia, de la Llera and Almazán (2008)",
-    },
-    CatalogPair {
-        name: "fallen-rack-ground",
-        coefficient: 0.4,
-        source: "as rack on ground in the six-barrel example of Candia, de la Llera and Almazán (2008)",
-    },
-    CatalogPair {
-        name: "fallen-rack-rack",
-        coefficient: 0.3,
-        source: "steel on steel, assumption",
-    },
-];
-
-/// The pair of a name.
-pub(super) fn pair(name: &str) -> Option<&'static CatalogPair> {
-    PAIRS.iter().find(|pair| pair.name == name)
-}
-
-impl CatalogPair {
-    pub(super) fn defaults(&self) -> PairDefaults {
-        PairDefaults {
-            stiffness: STIFFNESS,
-            damping: DAMPING,
-            rebound_stiffness: match self.name {
-                "fallen-rack-ground" | "fallen-rack-rack" => LIGHT_IMPACT_STIFFNESS,
-                _ => IMPACT_STIFFNESS,
-            },
-            coefficient: self.coefficient,
-        }
-    }
-}
 
 /// Records shipped with the program.
 pub const RECORDS: &[(&str, &str)] = &[(
@@ -292,7 +176,7 @@ pub(super) fn barrel_names() -> Vec<&'static str> {
 }
 
 pub(super) fn rack_names() -> Vec<&'static str> {
-    RACKS.iter().map(|rack| rack.name).collect()
+    RACKS.iter().map(|known| known.rack.base).collect()
 }
 
 /// Names of the records shipped with the program.
@@ -307,5 +191,5 @@ pub fn barrel(name: &str) -> Option<&'static CatalogBarrel> {
 
 /// A rack of the catalog.
 pub fn rack(name: &str) -> Option<&'static CatalogRack> {
-    RACKS.iter().find(|rack| rack.name == name)
+    RACKS.iter().find(|known| known.rack.base == name)
 }

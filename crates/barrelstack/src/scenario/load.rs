@@ -1,6 +1,7 @@
 //! From a file and overrides to a checked scenario.
 
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use super::error::{Place, Problem, ScenarioError};
 use super::reader::{Reader, nearest};
@@ -27,6 +28,33 @@ pub(crate) enum Access {
 }
 
 impl Scenario {
+    /// Reads a scenario from text; [`Scenario::parse`] takes changes as well, and a name for errors.
+    ///
+    /// ```
+    /// use barrelstack::Scenario;
+    ///
+    /// let run = Scenario::from_str("schema = 1\nextends = \"sliding-block\"")?.run()?;
+    /// assert_eq!(run.outcome.kind(), "not-judged");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`Scenario::parse`].
+    #[expect(clippy::should_implement_trait, reason = "it does; this needs no import")]
+    pub fn from_str(text: &str) -> Result<Self, ScenarioError> {
+        Self::parse("scenario", text, &[])
+    }
+
+    /// Reads a scenario file and the files it extends; [`Scenario::load`] takes changes as well.
+    ///
+    /// # Errors
+    ///
+    /// As [`Scenario::load`].
+    pub fn from_path(path: impl AsRef<Path>) -> Result<Self, ScenarioError> {
+        Self::load(path.as_ref(), &[])
+    }
+
     /// Reads a scenario from text, without touching the file system.
     ///
     /// `source_name` is the path shown in errors; relative paths in the scenario are relative to
@@ -92,6 +120,14 @@ impl Scenario {
             return Err(ScenarioError::new(unknown_builtin("scenario", name), place));
         };
         Self::parse(&format!("{name}.toml"), text, overrides)
+    }
+}
+
+impl FromStr for Scenario {
+    type Err = ScenarioError;
+
+    fn from_str(text: &str) -> Result<Self, ScenarioError> {
+        Self::from_str(text)
     }
 }
 

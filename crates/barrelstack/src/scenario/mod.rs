@@ -41,6 +41,7 @@ pub mod free;
 pub mod interface;
 mod load;
 pub mod motion;
+pub mod pair;
 pub mod rack;
 pub mod reference;
 mod root;
@@ -48,7 +49,6 @@ pub mod run;
 pub mod schema;
 pub mod shape;
 pub mod stack;
-pub mod strap;
 pub mod template;
 
 pub use barrelstack_input::{
@@ -66,12 +66,12 @@ pub use motion::{
     Amplitude, Direction, MeasuredOn, MotionSource, MotionSpec, Processing, Pulse, PulseKind,
     RecordMotion, RecordSource, Scale, Sine, Vertical,
 };
+pub use pair::{StackInterfaces, StackPair};
 pub use rack::{Cradle, Posts, Rack, RackKind, SeatContact};
 pub use root::ROOT;
 pub use run::{Method, OutcomeSpec, RecordSpec, RunSpec, Until};
 pub use shape::{Shape, Uniform};
-pub use stack::{BodyOverride, StackBody, StackInterfaces, StackSpec, View};
-pub use strap::{Straps, Ties};
+pub use stack::{BodyOverride, StackBody, StackSpec, View};
 
 /// What can be wrong with a scenario, where, and what to do about it.
 pub mod error {
@@ -120,11 +120,6 @@ impl Scenario {
     /// The scenario as text that reads back equal: every default written out, every quantity in SI. Paths are kept as written.
     pub fn to_resolved_toml(&self) -> String {
         writer::to_toml(&root::write(self))
-    }
-
-    /// As [`Scenario::to_resolved_toml`], in JSON.
-    pub fn to_resolved_json(&self) -> serde_json::Value {
-        writer::to_json(&root::write(self))
     }
 
     /// Fingerprint of everything but the title: FNV-1a, 64 bits, of the resolved text.

@@ -1,6 +1,6 @@
 //! A rack: what carries the barrels of one level, in both views.
 
-use super::catalog::{self, CatalogRack};
+use super::catalog;
 use super::dimension::Dimension;
 use super::error::ScenarioError;
 use super::field::{Default, Field, Kind, Named, Range, Section, Variant, Variants, names};
@@ -77,7 +77,7 @@ pub struct Posts {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rack {
     /// Catalog name the rack was made from.
-    pub base: String,
+    pub base: &'static str,
     /// How the rack stands on what is below.
     pub kind: RackKind,
     /// Mass (kg).
@@ -350,7 +350,9 @@ pub static RACK: Section = Section {
 /// Reads a rack.
 pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
     let base: Base = reader.choice("base")?;
-    let Some(known) = catalog::rack(base.name()) else { return Err(reader.missing("base")) };
+    let Some(catalog::CatalogRack { rack: known, .. }) = catalog::rack(base.name()) else {
+        return Err(reader.missing("base"));
+    };
     let or = |name, regular| Ok(reader.optional_quantity(name)?.unwrap_or(regular));
     let cradle = match reader.optional_section("cradle")? {
         Some(cradle) => read_cradle(cradle, known)?,
@@ -373,7 +375,7 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
         ) => None,
     };
     let rack = Rack {
-        base: known.name.to_owned(),
+        base: known.base,
         kind: known.kind,
         mass: or("mass", known.mass)?,
         barrels: reader.optional_integer("barrels")?.unwrap_or(known.barrels),
@@ -415,7 +417,7 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
     Ok(rack)
 }
 
-fn read_cradle(reader: Reader<'_>, known: &CatalogRack) -> Result<Cradle, ScenarioError> {
+fn read_cradle(reader: Reader<'_>, known: &Rack) -> Result<Cradle, ScenarioError> {
     let cradle = match reader.choice::<CradleKind>("type")? {
         CradleKind::Supports => {
             let angle = match (reader.optional_quantity("angle")?, known.cradle) {

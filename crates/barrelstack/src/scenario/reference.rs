@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use barrelstack_input::reference as of;
 
 use super::catalog;
+use super::pair::StackPair;
 use super::quantity::plain;
 use super::root::ROOT;
 
@@ -44,11 +45,11 @@ fn catalog_tables(text: &mut String) {
         "| name | mass (kg) | barrels | pitch (m) | width (m) | rails ± (m) | clearance (m) | source |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
-    for r in catalog::RACKS {
+    for catalog::CatalogRack { rack: r, source } in catalog::RACKS {
         let _ = writeln!(
             text,
             "| `{}` | {} | {} by {} | {} | {} | {} | {} | {} |",
-            r.name,
+            r.base,
             r.mass,
             r.barrels,
             r.barrels_deep,
@@ -56,14 +57,14 @@ fn catalog_tables(text: &mut String) {
             r.width,
             r.rail_half_spacing,
             r.clearance,
-            r.source
+            source
         );
     }
     text.push_str(
         "\n## Friction of the catalog\n\n| pair | coefficient | source |\n|---|---|---|\n",
     );
-    for p in &catalog::PAIRS {
-        let _ = writeln!(text, "| `{}` | {} | {} |", p.name, p.coefficient, p.source);
+    for p in StackPair::ALL {
+        let _ = writeln!(text, "| `{}` | {} | {} |", p.name(), p.coefficient(), p.source());
     }
     text.push_str("\n## Records shipped with the program\n\n| name | record |\n|---|---|\n");
     for (name, help) in catalog::RECORDS {

@@ -8,7 +8,7 @@ use super::reader::Reader;
 use super::run::Until;
 use super::tree::Table;
 use super::writer::Writer;
-use super::{OutcomeSpec, RecordSpec, Scenario, Scene, free, interface, motion, run, stack};
+use super::{OutcomeSpec, RecordSpec, Scenario, Scene, free, interface, motion, pair, run, stack};
 
 /// Version of the scenario language.
 pub(super) const SCHEMA: u32 = 1;
@@ -71,7 +71,7 @@ pub static ROOT: Section = Section {
                     ),
                     Field::new(
                         "interface",
-                        Kind::Table(&stack::INTERFACES),
+                        Kind::Table(&pair::INTERFACES),
                         Default::Nothing,
                         "Laws of contact by pair.",
                     ),
@@ -125,7 +125,7 @@ pub(super) fn read(reader: Reader<'_>, fallback_title: &str) -> Result<Scenario,
     let record = RecordSpec::read(reader.section("record")?)?;
     let scene = match kind {
         SceneKind::Stack => {
-            let interfaces = stack::read_interfaces(reader.section("interface")?)?;
+            let interfaces = pair::read_interfaces(reader.section("interface")?)?;
             let stack = stack::read(reader.section("stack")?, interfaces)?;
             let outcome = OutcomeSpec::read(reader.section("outcome")?)?;
             Scene::Stack { stack, outcome }
@@ -154,7 +154,7 @@ pub(super) fn write(scenario: &Scenario) -> Table {
     match &scenario.scene {
         Scene::Stack { stack, outcome } => {
             writer.table("stack", stack::write(stack));
-            writer.table("interface", stack::write_interfaces(&stack.interfaces));
+            writer.table("interface", pair::write_interfaces(&stack.interfaces));
             writer.table("motion", motion::write(&scenario.motion));
             writer.table("run", run::write_run(&scenario.run));
             writer.table("record", scenario.record.write());

@@ -1,17 +1,16 @@
 //! A stack of barrels on racks.
 
-use barrelstack_input::declared::Declared as _;
+use crate::device::{self, Devices};
 
 use super::barrel::{self, BARREL, Barrel, Fill};
 use super::catalog;
 use super::dimension::Dimension;
 use super::error::ScenarioError;
 use super::field::{Default, Field, Kind, Named, Range, Section, names};
-use super::interface::{self, IMPACT, INTERFACE, Interface};
+use super::pair::StackInterfaces;
 use super::quantity::rounded;
 use super::rack::{self, RACK, Rack};
 use super::reader::Reader;
-use super::strap::{self, STRAP, Straps};
 use super::tree::Table;
 use super::writer::Writer;
 
@@ -41,8 +40,8 @@ pub struct StackSpec {
     pub mirror: bool,
     /// Free distance between racks side by side (m).
     pub gap: f64,
-    /// Straps on the highest levels.
-    pub straps: Straps,
+    /// Devices that protect it.
+    pub devices: Devices,
     /// Bodies that differ, in the order of the file.
     pub overrides: Vec<BodyOverride>,
     /// Laws of contact.
@@ -91,43 +90,6 @@ pub struct BodyOverride {
     pub offset_x: f64,
 }
 
-/// The law of each kind of contact in a stack.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StackInterfaces {
-    /// Bottom rack on the ground.
-    pub rack_ground: Interface,
-    /// Barrel in its cradle, and the rack above on the barrel.
-    pub barrel_rack: Interface,
-    /// Rack that stands on the rack below.
-    pub rack_rack: Interface,
-    /// Barrel against barrel.
-    pub barrel_barrel: Interface,
-    /// Barrel on the ground.
-    pub barrel_ground: Interface,
-    /// Barrel against a rack on which it has no seat, or beside its seat.
-    pub fallen_barrel_rack: Interface,
-    /// Rack on the ground that has its seat elsewhere.
-    pub fallen_rack_ground: Interface,
-    /// Rack against a rack on which it does not stand.
-    pub fallen_rack_rack: Interface,
-}
-
-impl StackInterfaces {
-    /// Every law with its name in files, in the order of [`INTERFACES`].
-    pub fn named(&self) -> [(&'static str, &Interface); 8] {
-        [
-            ("rack-ground", &self.rack_ground),
-            ("barrel-rack", &self.barrel_rack),
-            ("rack-rack", &self.rack_rack),
-            ("barrel-barrel", &self.barrel_barrel),
-            ("barrel-ground", &self.barrel_ground),
-            ("fallen-barrel-rack", &self.fallen_barrel_rack),
-            ("fallen-rack-ground", &self.fallen_rack_ground),
-            ("fallen-rack-rack", &self.fallen_rack_rack),
-        ]
-    }
-}
-
 impl Named for View {
     const NAMES: &'static [(&'static str, Self)] =
         &[("transverse", Self::Transverse), ("longitudinal", Self::Longitudinal)];
@@ -142,56 +104,78 @@ impl Named for StackBody {
 const LEVELS: Kind = Kind::Integer(1, 12);
 const COLUMNS: Kind = Kind::Integer(1, 40);
 
+/// The fields of a stack of its own.
+const OWN: [Field; 7] = [
+    Field::new(
+        "view",
+        Kind::Choice(names::<View>),
+        Default::Value("\"transverse\""),
+        "Plane of the model: across the barrels or along them.",
+    ),
+    Field::new("levels", LEVELS, Default::Required, "Levels of barrels."),
+    Field::new(
+        "columns",
+        COLUMNS,
+        Default::Required,
+        "Barrels per level in this view, a multiple of those that one rack carries.",
+    ),
+    Field::new(
+        "barrel",
+        Kind::ChoiceOrTable(catalog::barrel_names, "base", &BARREL),
+        Default::Derived("bordeaux-225"),
+        "The barrel.",
+    ),
+    Field::new(
+        "rack",
+        Kind::ChoiceOrTable(catalog::rack_names, "base", &RACK),
+        Default::Derived("two-barrel"),
+        "The rack.",
+    ),
+    Field::new(
+        "mirror",
+        Kind::Flag,
+        Default::Value("false"),
+        "Whether left and right change places.",
+    ),
+    Field::new(
+        "gap",
+        Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)),
+        Default::Value("\"0.05 m\""),
+        "Free distance between racks side by side.",
+    ),
+];
+
+const OVERRIDES: Field = Field::new(
+    "override",
+    Kind::Tables(&OVERRIDE),
+    Default::Nothing,
+    "Bodies that differ from the others.",
+);
+
+/// Lists of fields one after the other.
+const fn joined<const ALL: usize>(lists: [&[Field]; 3]) -> [Field; ALL] {
+    let mut all = [OVERRIDES; ALL];
+    let (mut list, mut next) = (0, 0);
+    while list < lists.len() {
+        let mut at = 0;
+        while at < lists[list].len() {
+            all[next] = lists[list][at];
+            (at, next) = (at + 1, next + 1);
+        }
+        list += 1;
+    }
+    all
+}
+
 /// A stack.
 pub static STACK: Section = Section {
     name: "stack",
     help: "A stack of barrels on racks.",
-    fields: &[
-        Field::new(
-            "view",
-            Kind::Choice(names::<View>),
-            Default::Value("\"transverse\""),
-            "Plane of the model: across the barrels or along them.",
-        ),
-        Field::new("levels", LEVELS, Default::Required, "Levels of barrels."),
-        Field::new(
-            "columns",
-            COLUMNS,
-            Default::Required,
-            "Barrels per level in this view, a multiple of those that one rack carries.",
-        ),
-        Field::new(
-            "barrel",
-            Kind::ChoiceOrTable(catalog::barrel_names, "base", &BARREL),
-            Default::Derived("bordeaux-225"),
-            "The barrel.",
-        ),
-        Field::new(
-            "rack",
-            Kind::ChoiceOrTable(catalog::rack_names, "base", &RACK),
-            Default::Derived("two-barrel"),
-            "The rack.",
-        ),
-        Field::new(
-            "mirror",
-            Kind::Flag,
-            Default::Value("false"),
-            "Whether left and right change places.",
-        ),
-        Field::new(
-            "gap",
-            Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)),
-            Default::Value("\"0.05 m\""),
-            "Free distance between racks side by side.",
-        ),
-        Field::new("strap", Kind::Table(&STRAP), Default::Nothing, "Straps on the highest levels."),
-        Field::new(
-            "override",
-            Kind::Tables(&OVERRIDE),
-            Default::Nothing,
-            "Bodies that differ from the others.",
-        ),
-    ],
+    fields: &joined::<{ OWN.len() + device::FIELDS.len() + 1 }>([
+        &OWN,
+        &device::FIELDS,
+        &[OVERRIDES],
+    ]),
     variants: None,
     exclusive: &[],
 };
@@ -237,35 +221,6 @@ pub static OVERRIDE: Section = Section {
     exclusive: &[],
 };
 
-const fn seat(name: &'static str, help: &'static str) -> Field {
-    Field::new(name, Kind::Table(&INTERFACE), Default::Nothing, help)
-}
-
-const fn impact(name: &'static str, help: &'static str) -> Field {
-    Field::new(name, Kind::Table(&IMPACT), Default::Nothing, help)
-}
-
-/// The laws of contact of a stack.
-pub static INTERFACES: Section = Section {
-    name: "interfaces",
-    help: "Laws of contact in a stack, by pair.",
-    fields: &[
-        seat("rack-ground", "Bottom rack on the ground."),
-        seat("barrel-rack", "Barrel in its cradle, and the rack above on the barrel."),
-        seat("rack-rack", "Rack that stands on the rack below."),
-        impact("barrel-barrel", "Barrel against barrel."),
-        impact("barrel-ground", "Barrel on the ground."),
-        impact(
-            "fallen-barrel-rack",
-            "Barrel against a rack on which it has no seat, or beside its seat.",
-        ),
-        impact("fallen-rack-ground", "Rack on the ground that has its seat elsewhere."),
-        impact("fallen-rack-rack", "Rack against a rack on which it does not stand."),
-    ],
-    variants: None,
-    exclusive: &[],
-};
-
 /// Reads a stack.
 pub(super) fn read(
     reader: Reader<'_>,
@@ -282,7 +237,7 @@ pub(super) fn read(
         rack,
         mirror: reader.flag("mirror")?,
         gap: reader.quantity("gap")?,
-        straps: strap::read(reader.section("strap")?, levels)?,
+        devices: Devices::read(&reader, levels)?,
         overrides: Vec::new(),
         interfaces,
     };
@@ -374,28 +329,6 @@ fn read_override(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride, 
     Ok(BodyOverride { body, level, column, mass, fill, offset_x })
 }
 
-/// Reads the laws of contact.
-pub(super) fn read_interfaces(reader: Reader<'_>) -> Result<StackInterfaces, ScenarioError> {
-    let read = |name: &'static str| {
-        interface::read(
-            reader.section(name)?,
-            catalog::pair(name).map(catalog::CatalogPair::defaults),
-        )
-    };
-    let interfaces = StackInterfaces {
-        rack_ground: read("rack-ground")?,
-        barrel_rack: read("barrel-rack")?,
-        rack_rack: read("rack-rack")?,
-        barrel_barrel: read("barrel-barrel")?,
-        barrel_ground: read("barrel-ground")?,
-        fallen_barrel_rack: read("fallen-barrel-rack")?,
-        fallen_rack_ground: read("fallen-rack-ground")?,
-        fallen_rack_rack: read("fallen-rack-rack")?,
-    };
-    reader.finish();
-    Ok(interfaces)
-}
-
 /// Writes a stack.
 pub(super) fn write(stack: &StackSpec) -> Table {
     let mut writer = Writer::new(&STACK);
@@ -406,7 +339,7 @@ pub(super) fn write(stack: &StackSpec) -> Table {
     writer.quantity("gap", stack.gap);
     writer.table("barrel", barrel::write(&stack.barrel));
     writer.table("rack", rack::write(&stack.rack));
-    writer.table("strap", stack.straps.write());
+    stack.devices.write(&mut writer);
     writer.tables("override", stack.overrides.iter().map(write_override).collect());
     writer.finish()
 }
@@ -422,15 +355,5 @@ fn write_override(body: &BodyOverride) -> Table {
     writer.optional_quantity("mass", body.mass);
     writer.optional_text("fill", body.fill.map(Named::name));
     writer.quantity("offset_x", body.offset_x);
-    writer.finish()
-}
-
-/// Writes the laws of contact.
-pub(super) fn write_interfaces(interfaces: &StackInterfaces) -> Table {
-    let mut writer = Writer::new(&INTERFACES);
-    for (name, law) in interfaces.named() {
-        let seat = ["rack-ground", "barrel-rack", "rack-rack"].contains(&name);
-        writer.table(name, interface::write(if seat { &INTERFACE } else { &IMPACT }, law));
-    }
     writer.finish()
 }

@@ -1,7 +1,8 @@
 //! The fate of every body: whether it kept its seat, when it left it, how far it fell.
 
+use barrelstack_dynamics::lanes::PerLane;
 use barrelstack_dynamics::real::{Mask, Real};
-use barrelstack_dynamics::{BodyId, Linear, Planar, Scratch, State, Vec2};
+use barrelstack_dynamics::{BodyId, Linear, Planar, Scratch, State, Vec2, lanewise};
 
 use crate::assemble::{Assembly, Part, PartKind};
 use crate::scenario::OutcomeSpec;
@@ -87,20 +88,34 @@ pub struct Fates<R: Real = f64> {
     bodies: Vec<Followed<R>>,
     /// When (s) the first body left its seat; infinite while none has.
     collapse: R,
-    /// Which body that was, lane by lane.
-    first: Vec<Option<BodyId>>,
+    /// Which body that was.
+    first: PerLane<Option<BodyId>>,
     /// When (s) the first barrel had fallen; infinite while none has.
     first_fall: R,
 }
 
-/// A body, its limits, and what became of it until now.
+/// What a body is and what it stands on, the same in all lanes.
 #[derive(Clone, Debug)]
-struct Followed<R: Real> {
+struct Place {
     kind: PartKind,
     carrier: Option<BodyId>,
     supports: Vec<BodyId>,
     /// The rack below, against which a rack's tilt is measured.
     below: Option<BodyId>,
+}
+
+lanewise!(same Place);
+lanewise!(struct Followed<R> {
+    place, rest, most_slip, most_tilt, left_seat, loss, fell_at, landed_at, landing_speed, drop,
+    peak_displacement, residual_displacement, displacement_at_collapse, peak_slip, residual_slip,
+    peak_tilt, peak_uplift
+});
+lanewise!(struct Fates<R> { fall_drop, bodies, collapse, first, first_fall });
+
+/// A body, its limits, and what became of it until now.
+#[derive(Clone, Debug)]
+struct Followed<R: Real> {
+    place: Place,
     /// Position at rest (m), relative to the ground.
     rest: Vec2<R>,
     /// How far (m) it may go on what it stands on.
@@ -109,8 +124,8 @@ struct Followed<R: Real> {
     most_tilt: R,
     /// When (s) it left its seat; infinite while it has not.
     left_seat: R,
-    /// How, lane by lane.
-    loss: Vec<Loss>,
+    /// How.
+    loss: PerLane<Loss>,
     /// When (s) it had fallen; infinite while it has not.
     fell_at: R,
     /// When (s) it landed; infinite while it has not.
@@ -142,15 +157,17 @@ impl Fates {
             let most_tilt =
                 if foot { thresholds.overturning_angle } else { thresholds.rocking_angle };
             Followed {
-                kind: part.kind,
-                carrier: part.carrier,
-                supports: part.supports.clone(),
-                below: below.map(|body| assembly.parts[body].carrier.unwrap_or(body)),
+                place: Place {
+                    kind: part.kind,
+                    carrier: part.carrier,
+                    supports: part.supports.clone(),
+                    below: below.map(|body| assembly.parts[body].carrier.unwrap_or(body)),
+                },
                 rest: state.poses[i].position - ground,
                 most_slip,
                 most_tilt,
                 left_seat: f64::INFINITY,
-                loss: vec![Loss::Dropped],
+                loss: PerLane::single(Loss::Dropped),
                 fell_at: f64::INFINITY,
                 landed_at: f64::INFINITY,
                 landing_speed: 0.0,
@@ -168,7 +185,7 @@ impl Fates {
             fall_drop: thresholds.fall_drop,
             bodies: assembly.parts.iter().enumerate().map(follow).collect(),
             collapse: f64::INFINITY,
-            first: vec![None],
+            first: PerLane::single(None),
             first_fall: f64::INFINITY,
         }
     }
@@ -231,7 +248,7 @@ impl<R: Real> Fates<R> {
         let ground = state.poses[Assembly::GROUND].position;
         let standing = !self.collapse.lt(R::splat(f64::INFINITY));
         for i in 0..self.bodies.len() {
-            if self.bodies[i].kind == PartKind::Ground {
+            if self.bodies[i].place.kind == PartKind::Ground {
                 continue;
             }
             let moved = state.poses[i].position - ground - self.bodies[i].rest;
@@ -246,7 +263,7 @@ impl<R: Real> Fates<R> {
                 raise(&mut body.peak_displacement, seen(standing, moved.x.abs()));
                 raise(&mut body.peak_slip, seen(standing, slip.x.abs()));
                 raise(&mut body.peak_uplift, seen(standing, moved.z));
-                if body.kind == PartKind::Rack {
+                if body.place.kind == PartKind::Rack {
                     raise(&mut body.peak_tilt, seen(standing, state.poses[i].orientation.abs()));
                 }
             }
@@ -254,7 +271,7 @@ impl<R: Real> Fates<R> {
             if fallen.any() {
                 let first = fallen & !body.fell_at.lt(R::splat(f64::INFINITY));
                 body.fell_at = R::select(first, state.time, body.fell_at);
-                if body.kind == PartKind::Barrel {
+                if body.place.kind == PartKind::Barrel {
                     let first = first & !self.first_fall.lt(R::splat(f64::INFINITY));
                     self.first_fall = R::select(first, state.time, self.first_fall);
                 }
@@ -280,13 +297,14 @@ impl<R: Real> Fates<R> {
         let never = R::splat(f64::INFINITY);
         let body = &self.bodies[i];
         let fell = body.fell_at.lt(never);
-        let (slid, tilted) = match body.kind {
+        let (slid, tilted) = match body.place.kind {
             PartKind::Ground | PartKind::Body => return,
             PartKind::Barrel => {
                 ((body.most_slip * body.most_slip).lt(slip.dot(slip)), R::Mask::default())
             }
             PartKind::Rack => {
-                let below = body.below.map_or(R::zero(), |rack| state.poses[rack].orientation);
+                let below =
+                    body.place.below.map_or(R::zero(), |rack| state.poses[rack].orientation);
                 let tilt = (state.poses[i].orientation - below).abs();
                 (body.most_slip.lt(slip.x.abs()), body.most_tilt.lt(tilt))
             }
@@ -299,7 +317,7 @@ impl<R: Real> Fates<R> {
         for lane in (0..R::LANES).filter(|lane| left.lane(*lane)) {
             let body = &mut self.bodies[i];
             body.loss[lane] = match (slid.lane(lane), tilted.lane(lane)) {
-                (true, _) if body.kind == PartKind::Barrel => Loss::Displaced,
+                (true, _) if body.place.kind == PartKind::Barrel => Loss::Displaced,
                 (true, _) => Loss::Slid,
                 (false, true) => Loss::Tilted,
                 (false, false) => Loss::Dropped,
@@ -320,58 +338,21 @@ impl<R: Real> Fates<R> {
     fn slip(&self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>, i: BodyId) -> Vec2<R> {
         let body = &self.bodies[i];
         let here = state.poses[i].position;
-        if let Some(rack) = body.carrier {
+        if let Some(rack) = body.place.carrier {
             let place = scratch.rotations[rack].unapply(here - state.poses[rack].position);
             return place - (body.rest - self.bodies[rack].rest);
         }
-        if body.supports.is_empty() {
+        if body.place.supports.is_empty() {
             return here - state.poses[Assembly::GROUND].position - body.rest;
         }
-        let share = R::splat(1.0 / body.supports.len() as f64);
+        let share = R::splat(1.0 / body.place.supports.len() as f64);
         let mut below = Vec2::default();
         let mut below_rest = Vec2::default();
-        for support in &body.supports {
+        for support in &body.place.supports {
             below += state.poses[*support].position * share;
             below_rest += self.bodies[*support].rest * share;
         }
         (here - below) - (body.rest - below_rest)
-    }
-
-    /// All lanes as one case begins.
-    pub(crate) fn in_all(single: &Fates) -> Self {
-        let mut fates = Self {
-            fall_drop: R::splat(single.fall_drop),
-            bodies: single.bodies.iter().map(Followed::in_all).collect(),
-            collapse: R::zero(),
-            first: vec![None; R::LANES],
-            first_fall: R::zero(),
-        };
-        for lane in 0..R::LANES {
-            fates.put(lane, single);
-        }
-        fates
-    }
-
-    /// Puts a case into one lane.
-    pub(crate) fn put(&mut self, lane: usize, single: &Fates) {
-        self.fall_drop = self.fall_drop.with_lane(lane, single.fall_drop);
-        self.collapse = self.collapse.with_lane(lane, single.collapse);
-        self.first[lane] = single.first[0];
-        self.first_fall = self.first_fall.with_lane(lane, single.first_fall);
-        for (body, single) in self.bodies.iter_mut().zip(&single.bodies) {
-            body.put(lane, single);
-        }
-    }
-
-    /// The case in one lane.
-    pub(crate) fn of_lane(&self, lane: usize) -> Fates {
-        Fates {
-            fall_drop: self.fall_drop.lane(lane),
-            bodies: self.bodies.iter().map(|body| body.of_lane(lane)).collect(),
-            collapse: self.collapse.lane(lane),
-            first: vec![self.first[lane]],
-            first_fall: self.first_fall.lane(lane),
-        }
     }
 }
 
@@ -387,86 +368,4 @@ fn raise<R: Real>(peak: &mut R, value: R) {
 #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
 fn seen<R: Real>(standing: R::Mask, value: R) -> R {
     R::select(standing, value, R::zero())
-}
-
-impl<R: Real> Followed<R> {
-    /// The numbers of a body, with those of a body of a single run.
-    fn numbers<'a>(&'a mut self, single: &Followed<f64>) -> [(&'a mut R, f64); 16] {
-        [
-            (&mut self.rest.x, single.rest.x),
-            (&mut self.rest.z, single.rest.z),
-            (&mut self.most_slip, single.most_slip),
-            (&mut self.most_tilt, single.most_tilt),
-            (&mut self.left_seat, single.left_seat),
-            (&mut self.fell_at, single.fell_at),
-            (&mut self.landed_at, single.landed_at),
-            (&mut self.landing_speed, single.landing_speed),
-            (&mut self.drop, single.drop),
-            (&mut self.peak_displacement, single.peak_displacement),
-            (&mut self.residual_displacement, single.residual_displacement),
-            (&mut self.displacement_at_collapse, single.displacement_at_collapse),
-            (&mut self.peak_slip, single.peak_slip),
-            (&mut self.residual_slip, single.residual_slip),
-            (&mut self.peak_tilt, single.peak_tilt),
-            (&mut self.peak_uplift, single.peak_uplift),
-        ]
-    }
-
-    fn in_all(single: &Followed<f64>) -> Self {
-        let zero = R::zero();
-        Self {
-            kind: single.kind,
-            carrier: single.carrier,
-            supports: single.supports.clone(),
-            below: single.below,
-            rest: Vec2::default(),
-            most_slip: zero,
-            most_tilt: zero,
-            left_seat: zero,
-            loss: vec![Loss::Dropped; R::LANES],
-            fell_at: zero,
-            landed_at: zero,
-            landing_speed: zero,
-            drop: zero,
-            peak_displacement: zero,
-            residual_displacement: zero,
-            displacement_at_collapse: zero,
-            peak_slip: zero,
-            residual_slip: zero,
-            peak_tilt: zero,
-            peak_uplift: zero,
-        }
-    }
-
-    fn put(&mut self, lane: usize, single: &Followed<f64>) {
-        self.loss[lane] = single.loss[0];
-        for (bundle, number) in self.numbers(single) {
-            *bundle = bundle.with_lane(lane, number);
-        }
-    }
-
-    fn of_lane(&self, lane: usize) -> Followed<f64> {
-        Followed {
-            kind: self.kind,
-            carrier: self.carrier,
-            supports: self.supports.clone(),
-            below: self.below,
-            rest: Vec2::new(self.rest.x.lane(lane), self.rest.z.lane(lane)),
-            most_slip: self.most_slip.lane(lane),
-            most_tilt: self.most_tilt.lane(lane),
-            left_seat: self.left_seat.lane(lane),
-            loss: vec![self.loss[lane]],
-            fell_at: self.fell_at.lane(lane),
-            landed_at: self.landed_at.lane(lane),
-            landing_speed: self.landing_speed.lane(lane),
-            drop: self.drop.lane(lane),
-            peak_displacement: self.peak_displacement.lane(lane),
-            residual_displacement: self.residual_displacement.lane(lane),
-            displacement_at_collapse: self.displacement_at_collapse.lane(lane),
-            peak_slip: self.peak_slip.lane(lane),
-            residual_slip: self.residual_slip.lane(lane),
-            peak_tilt: self.peak_tilt.lane(lane),
-            peak_uplift: self.peak_uplift.lane(lane),
-        }
-    }
 }

@@ -1,6 +1,6 @@
 //! Frames of the motion and histories of displacements, forces and energies, thinned to stated rates.
 
-use barrelstack_dynamics::{BodyId, EnergyLedger, Model, Planar, Scratch, State, Vec2};
+use barrelstack_dynamics::{BodyId, EnergyLedger, Model, Planar, Pose, Scratch, State, Vec2};
 
 use crate::assemble::{Assembly, PartKind};
 use crate::ground::Ground;
@@ -25,6 +25,17 @@ pub struct Frames {
     pub poses: Vec<Vec<[f64; 3]>>,
     /// For every frame, contact forces as `x` (m), `z` (m), and the force (N) on the contactor.
     pub forces: Vec<Vec<[f64; 4]>>,
+}
+
+impl Frames {
+    /// The poses of all bodies, frame by frame.
+    pub fn all_poses(&self) -> impl Iterator<Item = Vec<Pose<Planar>>> {
+        let pose = |[x, z, orientation]: &[f64; 3]| Pose {
+            position: Vec2::new(*x, *z),
+            orientation: *orientation,
+        };
+        self.poses.iter().map(move |frame| frame.iter().map(pose).collect())
+    }
 }
 
 /// Two bodies of a stack that lean on each other by design, and the force between them.

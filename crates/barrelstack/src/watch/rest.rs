@@ -1,7 +1,7 @@
 //! Rest: the ground is still, and nothing moves fast enough to change what became of the stack.
 
 use barrelstack_dynamics::real::{Mask, Real};
-use barrelstack_dynamics::{BodyId, Linear, Motion, Planar, State};
+use barrelstack_dynamics::{BodyId, Linear, Motion, Planar, State, lanewise};
 
 use crate::assemble::{Assembly, PartKind};
 use crate::ground::Ground;
@@ -87,6 +87,9 @@ struct Mover<R: Real> {
     floor: R,
 }
 
+lanewise!(struct Mover<R> { body, inertia, floor });
+lanewise!(struct Rest<R> { still_from, slow, hold, bodies, moved });
+
 impl Rest {
     /// What a scenario asks for, on its ground; nothing rests before it has been observed.
     pub(crate) fn new(scenario: &Scenario, assembly: &Assembly, ground: &Ground) -> Self {
@@ -159,37 +162,5 @@ impl<R: Real> Rest<R> {
             away = away & R::zero().le(apart * parting);
         }
         away
-    }
-
-    /// All lanes as one case begins.
-    pub(crate) fn in_all(single: &Rest) -> Self {
-        let mover = |mover: &Mover<f64>| Mover {
-            body: mover.body,
-            inertia: R::splat(mover.inertia),
-            floor: R::splat(mover.floor),
-        };
-        Self {
-            still_from: R::splat(single.still_from),
-            slow: R::splat(single.slow),
-            hold: R::splat(single.hold),
-            bodies: single.bodies.iter().map(mover).collect(),
-            moved: R::splat(single.moved),
-        }
-    }
-
-    /// Puts a case into one lane.
-    pub(crate) fn put(&mut self, lane: usize, single: &Rest) {
-        for (bundle, number) in [
-            (&mut self.still_from, single.still_from),
-            (&mut self.slow, single.slow),
-            (&mut self.hold, single.hold),
-            (&mut self.moved, single.moved),
-        ] {
-            *bundle = bundle.with_lane(lane, number);
-        }
-        for (body, single) in self.bodies.iter_mut().zip(&single.bodies) {
-            body.inertia = body.inertia.with_lane(lane, single.inertia);
-            body.floor = body.floor.with_lane(lane, single.floor);
-        }
     }
 }

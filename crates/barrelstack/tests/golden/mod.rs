@@ -1,12 +1,9 @@
 //! What a few cases come to, to the last bit, and how much work they are.
 
 use std::fmt;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use barrelstack::ensemble::{Audience, CaseResult, Prepared, VERSION, simulate_in};
-use barrelstack::ground::ground;
 use barrelstack::outcome::Outcome;
 use barrelstack::run::Work;
 use barrelstack::{Run, Scenario};
@@ -177,14 +174,13 @@ fn small_case(at: u32) -> Prepared {
         "run.stop_after_collapse='0.2 s'".to_owned(),
     ];
     let scenario = Scenario::builtin("candia-8-barrels", &settings).expect("a case is sound");
-    let ground = Arc::new(ground(&scenario).expect("its motion is a formula"));
-    Prepared { scenario: Arc::new(scenario), ground }
+    Prepared::new(scenario).expect("its motion is a formula")
 }
 
 fn of_run(name: &str, scenario: &str, changes: &[&str]) -> Line {
     let changes: Vec<String> = changes.iter().map(|change| change.replace('\'', "\"")).collect();
     let scenario = Scenario::builtin(scenario, &changes).expect("a case is sound");
-    let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())).expect("a case runs");
+    let run = scenario.run().expect("a case runs");
     let mut hash = Hash::default();
     hash.run(&run);
     Line { name: name.to_owned(), hash: hash.0, work: run.work }
@@ -253,8 +249,8 @@ impl Hash {
         let lost = [energy.damped, energy.friction, energy.viscous];
         let rest = [energy.ground_work, energy.residual, energy.throughput];
         stored.into_iter().chain(lost).chain(rest).for_each(|value| self.number(value));
-        for strap in &run.straps {
-            self.known(strap.torn_at);
+        for element in &run.elements {
+            self.known(element.broken_at);
         }
     }
 

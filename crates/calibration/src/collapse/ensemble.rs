@@ -1,17 +1,14 @@
 //! Many collapses simulated, and what an observer would have seen of each.
 
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use barrelstack::ensemble::{self, Audience, CaseResult, Prepared};
+use barrelstack::ensemble::{CaseResult, Ensemble, Prepared};
 use barrelstack::outcome::Outcome;
-use barrelstack::pool;
 use barrelstack::scenario::{BodyOverride, Scenario, Scene, StackBody};
 use barrelstack_motion::Random;
 
 use super::observed::{Mode, Time};
-
-/// Cases that a thread takes at once: enough to fill lanes, few enough that all threads have some.
-const BATCH: usize = 32;
 
 /// What an observer would have seen of a case.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,17 +52,15 @@ impl Seen {
 /// Simulates all cases on all cores, in their order; none where one cannot be simulated.
 ///
 /// `done` hears how many cases are done.
-pub(super) fn simulate(cases: &[Prepared], done: &(dyn Fn(usize) + Sync)) -> Vec<Option<Seen>> {
+pub(super) fn simulate(cases: Vec<Prepared>, done: &(dyn Fn(usize) + Sync)) -> Vec<Option<Seen>> {
     let finished = AtomicUsize::new(0);
-    let together = |cases: &&[Prepared]| -> Vec<Option<Seen>> {
-        let mut tell = |_: &CaseResult| done(finished.fetch_add(1, Ordering::Relaxed) + 1);
-        let mut audience = Audience { tell: &mut tell, stop: &|| false };
-        // Nobody stops it, so every case has its result.
-        let results = ensemble::simulate(cases, &mut audience).unwrap_or_default();
-        results.iter().map(Seen::of).collect()
+    let observer = |_: &CaseResult| {
+        done(finished.fetch_add(1, Ordering::Relaxed) + 1);
+        ControlFlow::Continue(())
     };
-    let batches: Vec<&[Prepared]> = cases.chunks(BATCH).collect();
-    pool::map(&batches, together, &|_| ()).into_iter().flatten().collect()
+    // Nobody stops it, so every case has its result.
+    let results = Ensemble { cases }.run_watched(&observer).unwrap_or_default();
+    results.iter().map(Seen::of).collect()
 }
 
 /// A scenario with every rack and every barrel set down a little beside its place, by normal deviates

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use barrelstack::ground::{Ground, ground};
+use barrelstack::ground::Ground;
 use barrelstack::scenario::Scenario;
 use barrelstack_motion::Random;
 
@@ -50,7 +50,7 @@ fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
         })
         .collect();
     let grounds: Vec<Arc<Ground>> =
-        scenarios.iter().map(|scenario| Arc::new(ground(scenario).unwrap())).collect();
+        scenarios.iter().map(|scenario| Arc::new(scenario.ground().unwrap())).collect();
     let tunable = Tunable::new(&scenarios[0], &ALL).unwrap();
     let mut random = Random::new(2008);
     let draws: Vec<Draw> = (0..TABLE + 100)
@@ -71,7 +71,7 @@ fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
             scenarios.iter().zip(&grounds).map(built).collect::<Vec<_>>()
         })
         .collect();
-    let seen: Vec<Seen> = simulate(&batch, &|_| ()).into_iter().map(Option::unwrap).collect();
+    let seen: Vec<Seen> = simulate(batch, &|_| ()).into_iter().map(Option::unwrap).collect();
     let collapsed = seen.iter().filter(|seen| seen.mode != Mode::Stands).count();
     let courses: Vec<&[Seen]> = seen.chunks_exact(TESTS).collect();
     let (table, truths) = courses.split_at(TABLE);

@@ -1,12 +1,11 @@
 //! A scenario with changed constants, simulated at the times of a recording.
 
-use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use barrelstack::assemble::assemble;
 use barrelstack::outcome::Outcome;
 use barrelstack::pool;
-use barrelstack::run::{Run, run, time_step};
+use barrelstack::run::{Run, time_step};
 use barrelstack::scenario::{Dimension, Scenario};
 
 use crate::parameters::{Parameter, Tunable};
@@ -137,7 +136,7 @@ impl<'a> Simulator<'a> {
 
     fn run(&self, point: &[f64]) -> Result<Run, barrelstack::run::RunFailure> {
         self.count.fetch_add(1, Ordering::Relaxed);
-        run(&self.tunable.at(&self.scenario, point), &mut |_| ControlFlow::Continue(()))
+        self.tunable.at(&self.scenario, point).run()
     }
 
     /// All channels at the recorded times; none where the stack cannot be simulated.

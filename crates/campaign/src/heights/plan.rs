@@ -48,16 +48,16 @@ pub(super) fn name(view: View, recorded: bool) -> String {
 
 /// The text of a study: every height under every motion at every level, or under the bundled record as it is.
 pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<String, HeightsError> {
-    let rack = catalog::rack(&request.rack).ok_or_else(|| {
-        let known: Vec<&str> = catalog::RACKS.iter().map(|rack| rack.name).collect();
+    let catalog::CatalogRack { rack, .. } = catalog::rack(&request.rack).ok_or_else(|| {
+        let known: Vec<&str> = catalog::RACKS.iter().map(|known| known.rack.base).collect();
         HeightsError::Rack(request.rack.clone(), known.join(", "))
     })?;
     // Along the barrels one rack is one column, and a rail that touches a bulged stave at its inner edge only needs
     // closer nodes.
     let (columns, rack) = match view {
-        View::Transverse => (rack.barrels, format!("\"{}\"", rack.name)),
+        View::Transverse => (rack.barrels, format!("\"{}\"", rack.base)),
         View::Longitudinal => {
-            (1, format!("{{ base = \"{}\", node_spacing = \"5 mm\" }}", rack.name))
+            (1, format!("{{ base = \"{}\", node_spacing = \"5 mm\" }}", rack.base))
         }
     };
     let levels: Vec<String> = HEIGHTS.iter().map(u32::to_string).collect();

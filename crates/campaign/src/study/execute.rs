@@ -16,7 +16,9 @@ use super::folder::{Folder, read_shard};
 use super::motions::Shelf;
 use super::prepare::Bench;
 use super::stop::{StopRule, Tally};
+use super::table::StudyTable;
 use crate::ensemble::CaseResult;
+use crate::pool;
 
 /// How long (s) to wait for chunks that others have claimed before looking again.
 const LOOK_AGAIN: Duration = Duration::from_millis(200);
@@ -153,6 +155,57 @@ impl Study {
         }
         // What others that were killed beside this run left behind.
         place.clean()
+    }
+
+    /// Runs all its cases and keeps their table in memory.
+    ///
+    /// ```
+    /// use barrelstack_campaign::study::Study;
+    ///
+    /// let study = Study::parse(
+    ///     "friction.toml",
+    ///     r#"
+    ///     schema = 1
+    ///     [base]
+    ///     extends = "sliding-block"
+    ///     [[factor]]
+    ///     field = "interface.block-ground.friction.coefficient"
+    ///     values = [0.2, 0.4]
+    ///     [design]
+    ///     kind = "full-factorial"
+    ///     "#,
+    /// )?;
+    /// let table = study.table()?;
+    /// println!("{}", table.to_csv());
+    /// assert_eq!(table.rows(), 2);
+    /// # Ok::<(), barrelstack_campaign::study::StudyError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When a motion cannot be read.
+    pub fn table(&self) -> Result<StudyTable, StudyError> {
+        let shelf = Shelf::default();
+        self.try_motions(&shelf)?;
+        let chunks: Vec<usize> = (0..self.chunk_count()).collect();
+        let compute = |chunk: &usize| {
+            let mut bench = Bench { shelf: &shelf, tell: &mut |_| {}, stop: &|| false };
+            self.compute(*chunk, &mut bench)?.ok_or(StudyError::Stopped)
+        };
+        let rule = self.stop_rule();
+        // Without a rule all at once; with one, no chunk is begun that may not be needed.
+        let together = if rule.is_some() { 1 } else { chunks.len().max(1) };
+        let (mut parts, mut tally) = (Vec::new(), Tally::default());
+        for chunks in chunks.chunks(together) {
+            for part in pool::map(chunks, compute, &|_| ()) {
+                let part = part?;
+                tally = tally.plus(Tally::of(&part));
+                parts.push(part);
+            }
+            if rule.is_some_and(|rule| rule.met(tally)) {
+                break;
+            }
+        }
+        StudyTable::join(&self.columns(), &parts)
     }
 
     /// Runs one chunk and writes its shard; false when it was there already, or another process has made it

@@ -91,8 +91,7 @@ impl Shaking {
                     scale: synthetic.scale,
                     similitude: 1.0,
                 };
-                let motion = ground::scaled(synthetic.motion()?, &spec, similitude)?;
-                Ok(Ground { motion: Some(motion), warnings: Vec::new() })
+                Ok(ground::scaled(synthetic.motion()?, &spec, similitude)?.into())
             }
         }
     }

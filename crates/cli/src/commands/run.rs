@@ -52,7 +52,7 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
 pub(super) fn watched(scenario: &Scenario, show: bool) -> Result<(Run, Summary), RunFailure> {
     let start = Instant::now();
     let mut progress = Progress::new(show);
-    let run = barrelstack::run(scenario, &mut |reached| progress.at(reached))?;
+    let run = scenario.run_watched(&mut |reached| progress.at(reached))?;
     let summary = Summary::of(&run, Some(start.elapsed().as_secs_f64()));
     Ok((run, summary))
 }

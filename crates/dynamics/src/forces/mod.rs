@@ -4,12 +4,12 @@ mod press;
 
 use crate::body::{Motion, Nodes};
 use crate::contact::{FrictionLaw, Stick};
+use crate::element::{self, Load};
 use crate::elements::Elements;
 use crate::model::{ContactPair, Model};
 use crate::real::Real;
 use crate::space::{Space, Twist, Wrench};
 use crate::state::State;
-use crate::strap::{self, Pull};
 
 use press::touch;
 
@@ -54,7 +54,7 @@ pub struct ContactTotals<R> {
 /// The energy ledger multiplies them by the motion of the body.
 #[derive(Clone, Copy, Debug)]
 pub struct Losses<S: Space> {
-    /// Of the dampers of contacts and straps.
+    /// Of the dampers of contacts and elements.
     pub damped: Wrench<S>,
     /// Of friction, sticks included.
     pub friction: Wrench<S>,
@@ -91,9 +91,9 @@ pub struct Scratch<S: Space> {
     pub pair_forces: Vec<PairForce<S>>,
     /// Their energies.
     pub totals: ContactTotals<S::Real>,
-    /// What the straps do, in their order.
-    pub pulls: Vec<Pull<S::Real>>,
-    /// Forces of contacts and straps on every body, and their moments about its center of mass.
+    /// What the force elements bear, in their order.
+    pub loads: Vec<Load<S::Real>>,
+    /// Forces of contacts and elements on every body, and their moments about its center of mass.
     pub wrenches: Vec<Wrench<S>>,
     /// What of the forces on every body takes energy away.
     pub losses: Vec<Losses<S>>,
@@ -136,7 +136,7 @@ impl<S: Space> Scratch<S> {
             keeps_contacts: true,
             pair_forces: Vec::new(),
             totals: ContactTotals::default(),
-            pulls: vec![Pull::default(); model.straps.len()],
+            loads: vec![Load::default(); model.elements.len()],
             wrenches: vec![Wrench::default(); count],
             losses: vec![Losses::default(); count],
             accelerations: vec![Twist::default(); count],
@@ -202,24 +202,24 @@ pub(crate) fn evaluate_within<S: Space>(
     S::Real::scope(
         #[inline(always)]
         || {
-            pull(model, state, scratch);
+            act(model, state, scratch);
             accelerate(model, state, scratch);
         },
     );
 }
 
-/// The straps.
+/// The force elements.
 #[inline(always)]
-fn pull<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
-    let Scratch { wrenches, losses, rotations, pulls, .. } = scratch;
-    pulls.clear();
-    for (strap, torn) in model.straps.iter().zip(&state.torn) {
-        let taut = strap.taut(state, rotations, *torn);
-        for (body, (whole, damped)) in strap.bodies.into_iter().zip(taut.on_bodies()) {
+fn act<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
+    let Scratch { wrenches, losses, rotations, loads, .. } = scratch;
+    loads.clear();
+    for (element, memory) in model.elements.iter().zip(&state.memory) {
+        let action = element.act(state, rotations, *memory);
+        for (body, (whole, damped)) in element.link().bodies.into_iter().zip(action.wrenches) {
             wrenches[body] += whole;
             losses[body].damped += damped;
         }
-        pulls.push(taut.pull);
+        loads.push(action.load);
     }
 }
 
@@ -270,13 +270,13 @@ fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratc
 }
 
 /// Accepts the state that `scratch` was evaluated at: the memory of every stick is cut back to what
-/// friction can hold, elements that do not touch forget, and straps that cannot hold tear.
+/// friction can hold, contact elements that do not touch forget, and force elements that cannot hold break.
 pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
     S::Real::scope(
         #[inline(always)]
         || {
             commit_all(model, &mut state.elements, scratch);
-            strap::tear(model, &mut state.torn, &scratch.pulls);
+            element::commit(model, &mut state.memory, &scratch.loads);
         },
     );
 }

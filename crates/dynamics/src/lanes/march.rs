@@ -10,7 +10,7 @@ use crate::simulate::{Finish, RunError, lost_body};
 use crate::space::{Planar, Twist, Vec2};
 use crate::state::State;
 
-use super::{Lanewise, put_masks};
+use super::{Lanewise, MOST_LANES};
 
 /// A case that is ready to run: its model, the state it starts from, its ground, and how long.
 pub struct Case<'a, D> {
@@ -110,9 +110,6 @@ struct Lanes<R: Real, D> {
     end_time: R,
 }
 
-/// No bundle has more lanes.
-const MOST_LANES: usize = 16;
-
 /// The ground of every lane; still where it has no case.
 struct Drives<D>(Vec<Option<D>>);
 
@@ -185,10 +182,9 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         self.drives.0[lane] = None;
         self.time_step.put(lane, &0.0);
         let Some(other) = (0..R::LANES).find(|l| self.busy.lane(*l)) else { return };
-        for (pose, twist) in self.state.poses.iter_mut().zip(&mut self.state.twists) {
-            let Vec2 { x, z } = pose.position;
-            pose.position.put(lane, &Vec2::new(x.lane(other), z.lane(other)));
-            pose.orientation.put(lane, &pose.orientation.lane(other));
+        let poses = self.state.poses.of_lane(other);
+        self.state.poses.put(lane, &poses);
+        for twist in &mut self.state.twists {
             twist.put(lane, &Twist::default());
         }
         for stick in &mut self.state.elements.sticks {
@@ -213,7 +209,7 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         self.state.time.put(lane, &state.time);
         self.state.poses.put(lane, &state.poses);
         self.state.twists.put(lane, &state.twists);
-        put_masks(&mut self.state.torn, lane, &state.torn);
+        self.state.memory.put(lane, &state.memory);
         self.scratch.accelerations.put(lane, &scratch.accelerations);
         let origins =
             self.state.elements.rebuild(&self.model, &self.state.poses, &self.state.twists);

@@ -6,7 +6,7 @@
 //!
 //! - `Bundle`: eight numbers of one vector unit.
 //! - [`Topology`]: what cases must share to march in one bundle.
-//! - `Lanewise`: how a single thing is put into a lane.
+//! - [`Lanewise`]: how a single thing is put into a lane, and taken out of it.
 //! - [`march`]: the run loop of all lanes, which refills the lane of a case that has ended.
 
 mod bundle;
@@ -16,9 +16,14 @@ mod topology;
 
 use crate::real::Real;
 
-pub(crate) use lanewise::{Lanewise, put_masks};
+#[doc(hidden)]
+pub use lanewise::{ALIKE, put_truth};
+pub use lanewise::{Lanewise, PerLane};
 pub use march::{Case, Crew, End, march};
 pub use topology::Topology;
+
+/// No bundle has more lanes.
+const MOST_LANES: usize = 16;
 
 /// How numbers are bundled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

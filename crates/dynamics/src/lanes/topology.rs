@@ -4,6 +4,7 @@ use std::mem::{Discriminant, discriminant};
 
 use crate::body::{Body, BodyId, Motion, Nodes};
 use crate::contact::{Basis, Exponent, FrictionLaw, Interface, NormalLaw};
+use crate::element::Element;
 use crate::model::{ContactPair, Model};
 use crate::shape::Shape;
 use crate::space::Planar;
@@ -15,8 +16,8 @@ pub struct Topology {
     bodies: Vec<BodyKind>,
     interfaces: Vec<InterfaceKind>,
     pairs: Vec<ContactPair>,
-    /// The bodies that straps tie.
-    straps: Vec<[BodyId; 2]>,
+    /// Kind of every force element, and the bodies that it joins.
+    elements: Vec<(Discriminant<Element<Planar>>, [BodyId; 2])>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -46,7 +47,7 @@ impl Topology {
             bodies: model.bodies.iter().map(BodyKind::of).collect(),
             interfaces: model.interfaces.iter().map(InterfaceKind::of).collect(),
             pairs: model.pairs.clone(),
-            straps: model.straps.iter().map(|strap| strap.bodies).collect(),
+            elements: model.elements.iter().map(|e| (discriminant(e), e.link().bodies)).collect(),
         }
     }
 }

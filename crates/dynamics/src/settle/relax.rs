@@ -132,11 +132,11 @@ impl<S: Space> Relaxation<S> {
             self.touched[element] = touching;
             self.touches.push(Touch { element, touching, bodies, arms, rotation, normal });
         }
-        for (strap, pull) in model.straps.iter().zip(&scratch.pulls) {
-            let taut = S::Real::zero().lt(pull.tension);
-            if taut.any() {
-                let stiffness = S::Real::select(taut, strap.stiffness, S::Real::zero());
-                for (body, point) in strap.bodies.into_iter().zip(strap.points) {
+        for (element, load) in model.elements.iter().zip(&scratch.loads) {
+            let bears = S::Real::zero().lt(load.force.abs());
+            if bears.any() {
+                let stiffness = S::Real::select(bears, element.stiffness(), S::Real::zero());
+                for (body, point) in element.ends() {
                     hold(body, stiffness, point);
                 }
             }

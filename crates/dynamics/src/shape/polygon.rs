@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::{BoundaryNode, Gap, Nearest, Piece, Section, nodes_along};
 use crate::body::Round;
-use crate::lanes::Lanewise;
+use crate::lanewise;
 use crate::math;
 use crate::real::Real;
 use crate::space::{Linear, Planar, Vec2};
@@ -147,39 +147,8 @@ impl<R: Real> Polygon<R> {
     }
 }
 
-impl<R: Real> Lanewise for Polygon<R> {
-    type Single = Polygon;
-    fn in_all(single: &Polygon) -> Self {
-        Self {
-            sides: Lanewise::in_all(&single.sides),
-            corner_radius: Lanewise::in_all(&single.corner_radius),
-        }
-    }
-    fn put(&mut self, lane: usize, single: &Polygon) {
-        self.sides.put(lane, &single.sides);
-        self.corner_radius.put(lane, &single.corner_radius);
-    }
-}
-
-impl<R: Real> Lanewise for Side<R> {
-    type Single = Side<f64>;
-    fn in_all(single: &Side<f64>) -> Self {
-        Self {
-            start: Lanewise::in_all(&single.start),
-            middle: Lanewise::in_all(&single.middle),
-            along: Lanewise::in_all(&single.along),
-            outward: Lanewise::in_all(&single.outward),
-            half_length: Lanewise::in_all(&single.half_length),
-        }
-    }
-    fn put(&mut self, lane: usize, single: &Side<f64>) {
-        self.start.put(lane, &single.start);
-        self.middle.put(lane, &single.middle);
-        self.along.put(lane, &single.along);
-        self.outward.put(lane, &single.outward);
-        self.half_length.put(lane, &single.half_length);
-    }
-}
+lanewise!(struct Polygon<R> { sides, corner_radius });
+lanewise!(struct Side<R> { start, middle, along, outward, half_length });
 
 impl Polygon {
     /// How many sides it has.

@@ -187,7 +187,7 @@ fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
     let rest: Vec<f64> = scene.state.poses.iter().map(|p| p.position.z).collect();
     let drive = Shake::Swing { amplitude: 0.1016, omega: TAU / 1.0748 };
     let mut fallen = [None; 2];
-    scene.watch(&drive, step, end, |state, _| {
+    scene.watch(&drive, step, end, |state, _, _| {
         let dropped = |i: usize| {
             if is_rack(i) { 0.0 } else { rest[i] - state.poses[i].position.z }
         };
@@ -224,6 +224,6 @@ stop_after_collapse = "1 s"
 "#
     );
     let scenario = Scenario::parse("consensus.toml", &text, &[])?;
-    let run = barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(()))?;
+    let run = scenario.run()?;
     Ok(run.fates.first_fall())
 }

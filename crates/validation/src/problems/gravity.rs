@@ -48,7 +48,7 @@ fn column(count: u32) -> Result<Scene, Failure> {
         let place = (0.0, 0.1 + 0.2 * f64::from(i));
         bodies.push(brick(&format!("brick {i}"), (0.5, 0.2), MASS, place));
     }
-    Scene::new(bodies, interface(firm(), rough()), DOWN)?.settled(1e-9)
+    Ok(Scene::new(bodies, interface(firm(), rough()), DOWN)?.settled(1e-9)?)
 }
 
 /// The problems of this theory.
@@ -152,7 +152,7 @@ fn rest() -> Problem {
             let start: Vec<Vec2> = scene.state.poses.iter().map(|p| p.position).collect();
             let mut drift = 0.0_f64;
             let end = if effort == Effort::Full { 60.0 } else { 6.0 };
-            scene.watch(&Still, 2e-4, end, |state, _| {
+            scene.watch(&Still, 2e-4, end, |state, _, _| {
                 for (pose, start) in state.poses.iter().zip(&start) {
                     drift = drift.max((pose.position - *start).length());
                 }

@@ -1,13 +1,10 @@
 //! Nothing stands in anything: stacks that fall, looked at frame by frame.
 
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use crate::{Effort, Failure, Outcome, Problem, Tolerance};
 use barrelstack::overlap::Boundaries;
 use barrelstack::scenario::{RackKind, Scenario, catalog};
-use barrelstack_dynamics::{Planar, Pose, Vec2};
-
-use crate::{Effort, Failure, Outcome, Problem, Tolerance};
 
 /// Stacks of all kinds under strong shaking, all frames until rest: how deep bodies stand in each other
 /// that are no seat of each other.
@@ -28,7 +25,7 @@ pub(super) fn problem() -> Problem {
             let (mut fallen, mut unstable) = (0, 0);
             for case in 0..count {
                 let scenario = random_stack(case, &records)?;
-                let run = match barrelstack::run(&scenario, &mut |_| ControlFlow::Continue(())) {
+                let run = match scenario.run() {
                     Ok(run) => run,
                     // A rack whose rails lie too steep on the staves does not stand, and says so.
                     Err(barrelstack::RunFailure::Settle(_)) => {
@@ -82,18 +79,11 @@ impl Survey {
                 || parts[b].supports.contains(&a)
                 || (a == 0 && parts[b].supports.is_empty() && parts[b].carrier.is_none())
         };
-        let frames = &run.recording.frames.poses;
-        for (index, frame) in frames.iter().enumerate() {
-            let poses: Vec<Pose<Planar>> = frame
-                .iter()
-                .map(|[x, z, orientation]| Pose {
-                    position: Vec2::new(*x, *z),
-                    orientation: *orientation,
-                })
-                .collect();
+        let frames = &run.recording.frames;
+        for (index, poses) in frames.all_poses().enumerate() {
             for overlap in boundaries.overlaps(&poses) {
                 let seat = joined(overlap.bodies[0], overlap.bodies[1]);
-                let last = index + 1 == frames.len();
+                let last = index + 1 == frames.times.len();
                 let most = if seat { &mut self.seat } else { &mut self.loose };
                 *most = most.max(overlap.depth);
                 if last {
@@ -136,8 +126,8 @@ fn random_stack(case: usize, records: &[PathBuf]) -> Result<Scenario, Failure> {
     let view = ["transverse", "longitudinal"][pick(1, 2)];
     let racks = catalog::RACKS.iter();
     let racks: Vec<_> =
-        racks.filter(|r| view == "transverse" || r.kind == RackKind::OnBarrels).collect();
-    let rack = racks[pick(2, racks.len())].name;
+        racks.filter(|r| view == "transverse" || r.rack.kind == RackKind::OnBarrels).collect();
+    let rack = &racks[pick(2, racks.len())].rack.base;
     let columns = match (view, rack) {
         ("transverse", _) | (_, "four-barrel") => 2,
         _ => 1,

@@ -26,7 +26,7 @@ pub(super) fn standing(
         NormalLaw::KelvinVoigt { stiffness, damping },
         coulomb(friction, stiffness, damping),
     );
-    Scene::new(vec![floor(), body], laws, DOWN)
+    Ok(Scene::new(vec![floor(), body], laws, DOWN)?)
 }
 
 /// How a block of height 2 m and slenderness `s` has begun to move: whether it slid, whether it

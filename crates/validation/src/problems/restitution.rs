@@ -91,14 +91,14 @@ fn striking(law: Corner, zeta: f64, speed: f64, gravity: Vec2) -> Result<Scene, 
     };
     let mut body = disc("mass", RADIUS, 1.0, 0.01, Vec2::new(0.0, RADIUS));
     body.twist = Twist { linear: Vec2::new(0.0, -speed), angular: 0.0 };
-    Scene::new(vec![floor(), body], interface(normal, FrictionLaw::Frictionless), gravity)
+    Ok(Scene::new(vec![floor(), body], interface(normal, FrictionLaw::Frictionless), gravity)?)
 }
 
 /// When (s) and how fast (m/s) a mass leaves the floor again; none when it stays for `patience` (s).
 fn leaving(scene: &mut Scene, step: f64, patience: f64) -> Result<Option<(f64, f64)>, Failure> {
     let mut before = (0.0, 0.0);
     let mut left = None;
-    scene.watch(&Still, step, patience, |state, _| {
+    scene.watch(&Still, step, patience, |state, _, _| {
         let gap = state.poses[1].position.z - RADIUS;
         if gap >= 0.0 && before.1 < 0.0 {
             let part = -before.1 / (gap - before.1);
@@ -192,7 +192,7 @@ fn inverted(e: f64, published: f64) -> Problem {
 }
 
 fn under_gravity(zeta: f64, gamma: f64) -> Problem {
-    let exact = theory::rebound_under_gravity(zeta, gamma).unwrap_or(f64::NAN);
+    let exact = theory::rebound_under_gravity(zeta, gamma).0.unwrap_or(f64::NAN);
     Problem {
         id: format!("restitution/gravity-{zeta}-{gamma}"),
         title: format!("mass on one speed-gap node, ζ = {zeta}, Γ = g/ωv = {gamma}"),
@@ -253,7 +253,7 @@ fn stability(zeta: f64) -> Problem {
                 let sunk = GRAVITY / (OMEGA * OMEGA);
                 scene.state.poses[1].position.z = RADIUS - sunk * (1.0 + 1e-6);
                 let mut swing = 0.0_f64;
-                scene.watch(&Still, step / OMEGA, 3000.0 * step / OMEGA, |state, _| {
+                scene.watch(&Still, step / OMEGA, 3000.0 * step / OMEGA, |state, _, _| {
                     swing = swing.max((state.poses[1].position.z - RADIUS + sunk).abs());
                     ControlFlow::Continue(())
                 })?;

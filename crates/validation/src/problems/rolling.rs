@@ -49,7 +49,7 @@ fn roller(ratio: f64, friction: f64, gravity: Vec2, level: i32) -> Result<Scene,
     let sunk = -MASS * gravity.z / stiffness(level);
     let center = Vec2::new(0.0, RADIUS - sunk);
     let body = disc("roller", RADIUS, MASS, ratio * RADIUS * RADIUS, center);
-    Scene::new(vec![floor(), body], interface(firm(level), stick(friction, level)), gravity)
+    Ok(Scene::new(vec![floor(), body], interface(firm(level), stick(friction, level)), gravity)?)
 }
 
 /// Mean acceleration (m/s²) of the center between 0.5 s and 1 s.
@@ -211,7 +211,7 @@ fn swing(ratio: f64) -> Problem {
                 let laws = interface(firm(level), stick(0.9, level));
                 let mut scene = Scene::new(vec![cradle, body], laws, DOWN)?;
                 let (mut crossings, mut before) = (vec![], (0.0, angle));
-                scene.watch(&Still, step(level), 8.0, |state, _| {
+                scene.watch(&Still, step(level), 8.0, |state, _, _| {
                     let x = state.poses[1].position.x;
                     if x < 0.0 && before.1 >= 0.0 {
                         let part = before.1 / (before.1 - x);
@@ -238,7 +238,7 @@ fn two_points(angle: f64, friction: FrictionLaw) -> Result<Scene, Failure> {
     ground.nodes = vec![points(&[point(-1.0), point(1.0)])];
     let mut body = disc("barrel", RADIUS, MASS, 0.5 * RADIUS * RADIUS, Vec2::default());
     body.nodes = vec![];
-    Scene::new(vec![ground, body], interface(firm(0), friction), DOWN)?.settled(1e-9)
+    Ok(Scene::new(vec![ground, body], interface(firm(0), friction), DOWN)?.settled(1e-9)?)
 }
 
 fn leaves(angle: f64) -> Problem {
@@ -254,7 +254,7 @@ fn leaves(angle: f64) -> Problem {
                 let mut scene = two_points(angle, FrictionLaw::Frictionless)?;
                 let drive = Shake::Ramped { acceleration: push * GRAVITY, ramp: 0.5 };
                 let mut left = false;
-                scene.watch(&drive, step(0), 2.0, |state, _| {
+                scene.watch(&drive, step(0), 2.0, |state, _, _| {
                     let place = state.poses[1].position.x - state.poses[0].position.x;
                     left = place.abs() > 1e-3;
                     if left { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }

@@ -102,7 +102,7 @@ fn steady() -> Problem {
                 let mut scene = standing((2.0, 0.2), n, 1e9 * finer * finer)?;
                 let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
                 let drive = Shake::Harmonic { acceleration: a * GRAVITY, omega };
-                scene.watch(&drive, 2e-5 / finer, 9.0, |state, _| {
+                scene.watch(&drive, 2e-5 / finer, 9.0, |state, _, _| {
                     if state.time > 8.0 {
                         let place = state.poses[1].position.x - state.poses[0].position.x;
                         (low, high) = (low.min(place), high.max(place));
@@ -123,7 +123,7 @@ fn sledge(friction: FrictionLaw, slope: f64, speed: f64) -> Result<Scene, Failur
     body.twist = Twist { linear: Vec2::new(speed, 0.0), angular: 0.0 };
     // Damped both ways, so that starts die out.
     let normal = NormalLaw::KelvinVoigt { stiffness: STIFFNESS, damping: 1e4 };
-    Scene::new(vec![floor(), body], interface(normal, friction), gravity)
+    Ok(Scene::new(vec![floor(), body], interface(normal, friction), gravity)?)
 }
 
 fn no_creep() -> Problem {
@@ -201,7 +201,7 @@ fn thrown() -> Problem {
         run: Box::new(|_| {
             let mut scene = sledge(coulomb(0.3, STIFFNESS, 1e4), 0.0, 1.0)?;
             let mut farthest = 0.0_f64;
-            scene.watch(&Still, 2e-4, 3.0, |state, _| {
+            scene.watch(&Still, 2e-4, 3.0, |state, _, _| {
                 farthest = farthest.max(state.poses[1].position.x);
                 ControlFlow::Continue(())
             })?;

@@ -54,7 +54,7 @@ fn drop(mass: f64, height: f64, step: f64) -> Result<(f64, f64), Failure> {
     let mut scene =
         Scene::new(vec![floor(), body], interface(law(), FrictionLaw::Frictionless), DOWN)?;
     let (mut deepest, mut left) = (0.0_f64, None);
-    scene.watch(&Still, step, 0.2, |state, _| {
+    scene.watch(&Still, step, 0.2, |state, _, _| {
         let depth = radius - state.poses[1].position.z;
         deepest = deepest.max(depth);
         if depth <= 0.0 && state.twists[1].linear.z > 0.0 {

@@ -39,7 +39,7 @@ fn tower(sizes: &[(f64, f64)], frictions: (f64, f64)) -> Result<Scene, Failure> 
         .into_iter()
         .map(|pair| ContactPair { interface: usize::from(!on_ground(&pair)), ..pair })
         .collect();
-    Scene::of(Model::new(bodies, laws.to_vec(), pairs, DOWN)?).settled(1e-6)
+    Ok(Scene::of(Model::new(bodies, laws.to_vec(), pairs, DOWN)?).settled(1e-6)?)
 }
 
 /// Time step (s).
@@ -178,7 +178,7 @@ fn patterns() -> Problem {
                 let drive =
                     Shake::Sine { acceleration: strength * GRAVITY, omega, half_waves: 2.0 };
                 let step = if effort == Effort::Full { STEP } else { 1.5 * STEP };
-                scene.watch(&drive, step, 2.0, |state, _| {
+                scene.watch(&drive, step, 2.0, |state, _, _| {
                     let (lower, upper) = (state.poses[1].orientation, state.poses[2].orientation);
                     if let Some(at) = pattern(lower, upper) {
                         times[at] += step;

@@ -61,6 +61,22 @@ pub struct RecordMotion {
     pub obtain: Option<String>,
 }
 
+impl RecordMotion {
+    /// The first horizontal component of a record, with the default processing.
+    pub fn of(source: RecordSource) -> Self {
+        Self {
+            source,
+            component: None,
+            vertical: Vertical::None,
+            time_step: None,
+            unit: None,
+            sensitivity: None,
+            processing: Processing::Default,
+            obtain: None,
+        }
+    }
+}
+
 /// What an amplitude measures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Amplitude {
@@ -205,34 +221,4 @@ pub struct MotionSpec {
     /// Length scale `λ` of Froude similitude applied to the motion alone: time by `√λ`,
     /// accelerations unchanged.
     pub similitude: f64,
-}
-
-impl RecordMotion {
-    /// Checks that the files of the record exist.
-    ///
-    /// # Errors
-    ///
-    /// A sentence that names the missing file, says where to get it when the scenario knows, and
-    /// how to name another.
-    pub fn check_files(&self) -> Result<(), String> {
-        let mut files: Vec<(&str, &FileRef)> = Vec::new();
-        if let RecordSource::File(file) = &self.source {
-            files.push(("motion.record", file));
-        }
-        if let Vertical::File(file) = &self.vertical {
-            files.push(("motion.vertical_record", file));
-        }
-        for (field, file) in files {
-            let path = file.resolve();
-            if !path.is_file() {
-                let obtain = self.obtain.as_ref().map_or_else(String::new, |o| format!("; {o}"));
-                return Err(format!(
-                    "there is no record `{}`{obtain}; put the file there, or name another as \
-                     `{field}`",
-                    path.display()
-                ));
-            }
-        }
-        Ok(())
-    }
 }

@@ -2,7 +2,7 @@
 
 use barrelstack_dynamics::{Body, Interface, NormalLaw, Planar, Twist, Vec2};
 
-use super::{block, coulomb, disc, floor, interface, pose};
+use crate::scene::{coulomb, disc, finely_noded_block, floor, interface, pose};
 
 /// A small generator (splitmix64), so that a seed gives the same scene on every machine.
 pub struct Random(pub u64);
@@ -33,7 +33,7 @@ pub fn bodies(seed: u64, count: usize) -> Vec<Body<Planar>> {
             disc(&name, radius, mass, 0.5 * radius * radius, Vec2::new(x, z))
         } else {
             let size = (random.within(0.15, 0.3), random.within(0.1, 0.25));
-            block(&name, size, mass, Some(0.1), pose(x, z, random.within(-1.0, 1.0)))
+            finely_noded_block(&name, size, mass, 0.1, pose(x, z, random.within(-1.0, 1.0)))
         };
         body.twist = Twist {
             linear: Vec2::new(random.within(-1.0, 1.0), random.within(-1.0, 0.0)),

@@ -6,12 +6,12 @@ use barrelstack_dynamics::shape::{BoundaryNode, Circle, HalfPlane, Polygon};
 use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::space::Rotation2;
 use barrelstack_dynamics::{
-    Basis, Body, ContactPair, Counts, Drive, EnergyLedger, FrictionLaw, Interface, Method, Model,
-    Motion, Node, Nodes, NormalLaw, Observer, Placed, Planar, Pose, Scratch, Shape, Simulation,
-    State, Twist, Vec2, math, settle, simulate,
+    Basis, Body, BodyId, ContactPair, Counts, Drive, EnergyLedger, FrictionLaw, Interface, Method,
+    Model, ModelError, Motion, Node, Nodes, NormalLaw, Placed, Planar, Pose, RunError, Scratch,
+    SettleError, Settled, Shape, Simulation, State, Twist, Vec2, look, math, settle, simulate,
 };
 
-use crate::{Failure, GRAVITY};
+use crate::GRAVITY;
 
 /// Free fall straight down (m/s²).
 pub const DOWN: Vec2 = Vec2::new(0.0, -GRAVITY);
@@ -87,13 +87,30 @@ pub fn rectangle(width: f64, height: f64) -> Polygon {
 }
 
 /// A free rectangular block with sharp corners; nodes are its corners.
-pub fn block(
+pub fn block(name: &str, size: (f64, f64), mass: f64, pose: Pose<Planar>) -> Body<Planar> {
+    let nodes = fixed(&rectangle(size.0, size.1).corner_nodes());
+    noded_block(name, size, mass, nodes, pose)
+}
+
+/// The same with nodes along its whole boundary, no further apart than `spacing` (m).
+pub fn finely_noded_block(
+    name: &str,
+    size: (f64, f64),
+    mass: f64,
+    spacing: f64,
+    pose: Pose<Planar>,
+) -> Body<Planar> {
+    let nodes = fixed(&Shape::Polygon(rectangle(size.0, size.1)).nodes(spacing));
+    noded_block(name, size, mass, nodes, pose)
+}
+
+fn noded_block(
     name: &str,
     (width, height): (f64, f64),
     mass: f64,
+    nodes: Nodes<Planar>,
     pose: Pose<Planar>,
 ) -> Body<Planar> {
-    let rectangle = rectangle(width, height);
     Body {
         name: name.into(),
         motion: Motion::Free,
@@ -102,9 +119,9 @@ pub fn block(
         damping: None,
         pose,
         twist: Twist::default(),
-        nodes: vec![fixed(&rectangle.corner_nodes())],
+        nodes: vec![nodes],
         faces: Vec::new(),
-        surfaces: vec![centered(Shape::Polygon(rectangle))],
+        surfaces: vec![centered(Shape::Polygon(rectangle(width, height)))],
     }
 }
 
@@ -146,6 +163,18 @@ pub fn coulomb(
     }
 }
 
+/// The first node set of one body against the first surface of another, with interface 0.
+pub fn pair(contactor: BodyId, target: BodyId) -> ContactPair {
+    ContactPair {
+        contactor,
+        nodes: 0,
+        target,
+        surface: 0,
+        interface: 0,
+        counts: Counts::Everywhere,
+    }
+}
+
 /// Every body with nodes against every other body's first surface; two discs meet once.
 pub fn all_pairs(bodies: &[Body<Planar>]) -> Vec<ContactPair> {
     let round = |i: usize| matches!(bodies[i].nodes.first(), Some(Nodes::Rolling { .. }));
@@ -158,14 +187,7 @@ pub fn all_pairs(bodies: &[Body<Planar>]) -> Vec<ContactPair> {
                 && !bodies[target].surfaces.is_empty()
                 && !meets_twice
             {
-                pairs.push(ContactPair {
-                    contactor,
-                    nodes: 0,
-                    target,
-                    surface: 0,
-                    interface: 0,
-                    counts: Counts::Everywhere,
-                });
+                pairs.push(pair(contactor, target));
             }
         }
     }
@@ -193,7 +215,7 @@ impl Scene {
         bodies: Vec<Body<Planar>>,
         interface: Interface<Planar>,
         gravity: Vec2,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, ModelError> {
         let pairs = all_pairs(&bodies);
         Ok(Self::of(Model::new(bodies, vec![interface], pairs, gravity)?))
     }
@@ -209,9 +231,23 @@ impl Scene {
     ///
     /// # Errors
     /// When it does not stand.
-    pub fn settled(mut self, tolerance: f64) -> Result<Self, Failure> {
-        settle(&self.model, &mut self.state, &mut self.scratch, tolerance)?;
+    pub fn settled(mut self, tolerance: f64) -> Result<Self, SettleError> {
+        self.settle(tolerance)?;
         Ok(self)
+    }
+
+    /// Settles, and says how.
+    ///
+    /// # Errors
+    /// When it does not stand.
+    pub fn settle(&mut self, tolerance: f64) -> Result<Settled, SettleError> {
+        settle(&self.model, &mut self.state, &mut self.scratch, tolerance)
+    }
+
+    /// The scene with another method.
+    pub fn by(&mut self, method: Method) -> &mut Self {
+        self.method = method;
+        self
     }
 
     /// Runs to a time (s).
@@ -223,11 +259,11 @@ impl Scene {
         drive: &impl Drive<Planar>,
         time_step: f64,
         end_time: f64,
-    ) -> Result<RunTotals<Planar>, Failure> {
-        self.watch(drive, time_step, end_time, |_, _| ControlFlow::Continue(()))
+    ) -> Result<RunTotals<Planar>, RunError> {
+        self.watch(drive, time_step, end_time, |_, _, _| ControlFlow::Continue(()))
     }
 
-    /// Runs to a time (s) while `look` sees every accepted step.
+    /// Runs to a time (s) while `seen` sees every accepted step.
     ///
     /// # Errors
     /// When the numbers break down.
@@ -236,33 +272,15 @@ impl Scene {
         drive: &impl Drive<Planar>,
         time_step: f64,
         end_time: f64,
-        look: impl FnMut(&State<Planar>, &Scratch<Planar>) -> ControlFlow<()>,
-    ) -> Result<RunTotals<Planar>, Failure> {
+        seen: impl FnMut(&State<Planar>, &Scratch<Planar>, &EnergyLedger<Planar>) -> ControlFlow<()>,
+    ) -> Result<RunTotals<Planar>, RunError> {
         let simulation = Simulation { method: self.method, time_step, end_time };
         let Self { model, state, scratch, .. } = self;
-        Ok(simulate(model, drive, state, scratch, &simulation, &mut Watch(look))?)
+        simulate(model, drive, state, scratch, &simulation, &mut look(seen))
     }
 
     /// Place of a body along `x` (m) relative to body 0, the ground.
     pub fn relative(&self, body: usize) -> f64 {
         self.state.poses[body].position.x - self.state.poses[0].position.x
-    }
-}
-
-/// An observer made of a function.
-struct Watch<F>(F);
-
-impl<F> Observer<Planar> for Watch<F>
-where
-    F: FnMut(&State<Planar>, &Scratch<Planar>) -> ControlFlow<()>,
-{
-    fn observe(
-        &mut self,
-        _model: &Model<Planar>,
-        state: &State<Planar>,
-        scratch: &Scratch<Planar>,
-        _energy: &EnergyLedger<Planar>,
-    ) -> ControlFlow<()> {
-        (self.0)(state, scratch)
     }
 }

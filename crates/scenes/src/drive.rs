@@ -57,6 +57,16 @@ pub enum Shake {
 }
 
 impl Shake {
+    /// Constant acceleration (m/s²) for ever.
+    pub fn constant(acceleration: f64) -> Self {
+        Self::Rectangular { acceleration, duration: f64::INFINITY }
+    }
+
+    /// One half-wave of a sine of acceleration (m/s²) that takes a duration (s), then constant velocity.
+    pub fn half_sine(acceleration: f64, duration: f64) -> Self {
+        Self::Sine { acceleration, omega: PI / duration, half_waves: 1.0 }
+    }
+
     /// When (s) the acceleration has ended for good; infinity for motions that go on.
     pub fn end(&self) -> f64 {
         match *self {

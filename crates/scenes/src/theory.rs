@@ -114,11 +114,12 @@ pub fn steady_slide_amplitude(a: f64, n: f64, omega: f64) -> f64 {
     a * GRAVITY / (omega * omega) * (1.0 - share * share).sqrt()
 }
 
-/// Restitution under gravity of a node with a damper on approach only; none when the mass stays.
+/// Restitution under gravity of a node with a damper on approach only, none when the mass stays; and
+/// its deepest penetration in units of v₀/ω.
 ///
 /// `gravity_number` is Γ = g/(ωv₀). Approach is damped motion about the sunken rest position Γ (in
 /// units of v₀/ω), the way out undamped: e = √(x² − 2Γx) with x the deepest penetration.
-pub fn rebound_under_gravity(damping_ratio: f64, gravity_number: f64) -> Option<f64> {
+pub fn rebound_under_gravity(damping_ratio: f64, gravity_number: f64) -> (Option<f64>, f64) {
     let (zeta, gamma) = (damping_ratio, gravity_number);
     let omega = (1.0 - zeta * zeta).sqrt();
     // x = Γ + e^{−ζt} (−Γ cos ωt + B sin ωt), with x(0) = 0 and x'(0) = 1.
@@ -126,7 +127,7 @@ pub fn rebound_under_gravity(damping_ratio: f64, gravity_number: f64) -> Option<
     let t = atan2(zeta * gamma + b * omega, -(gamma * omega - zeta * b)) / omega;
     let deepest = gamma + exp(-zeta * t) * (b * sin(omega * t) - gamma * cos(omega * t));
     let square = deepest * deepest - 2.0 * gamma * deepest;
-    (square > 0.0).then(|| square.sqrt())
+    ((square > 0.0).then(|| square.sqrt()), deepest)
 }
 
 /// Γ from which a mass stays down.
@@ -134,7 +135,7 @@ pub fn lift_off_lost(damping_ratio: f64) -> f64 {
     let (mut low, mut high) = (0.0, 10.0);
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
-        if rebound_under_gravity(damping_ratio, middle).is_some() {
+        if rebound_under_gravity(damping_ratio, middle).0.is_some() {
             low = middle;
         } else {
             high = middle;

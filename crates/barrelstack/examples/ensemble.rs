@@ -1,0 +1,19 @@
+//! Many cases together: how often a stack comes down, against the friction under its racks.
+#![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
+
+use barrelstack::ensemble::{Ensemble, Prepared};
+use barrelstack::{Scenario, outcome::Outcome};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut cases = Vec::new();
+    for friction in 1..=16 {
+        let friction = 0.05 * f64::from(friction);
+        let change = format!("interface.rack-ground.friction.coefficient={friction:.2}");
+        cases.push(Prepared::new(Scenario::builtin("candia-8-barrels", &[change])?)?);
+    }
+    let results = Ensemble { cases }.run();
+    let fell = |result: &_| matches!(result, Ok(Outcome::Collapse { .. }));
+    let fallen = results.iter().filter(|result| fell(&result.outcome)).count();
+    println!("{fallen} of {} came down", results.len());
+    Ok(())
+}

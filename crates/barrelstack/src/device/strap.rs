@@ -1,0 +1,166 @@
+//! Straps that hold the top of a stack.
+//!
+//! A strap over a barrel lies on its round without slipping: so it is made fast where it leaves the
+//! barrel, at the ends of its horizontal diameter, and from there runs straight down to the rack.
+//! Along the barrels both of its ends are seen in one line, through the middle of the barrel.
+
+use barrelstack_dynamics::{BodyId, Link, Strap, Vec2};
+use barrelstack_input::declared::Declared as _;
+use barrelstack_input::field::{Default, Kind, Named, Range, names};
+use barrelstack_input::reader::Reader;
+use barrelstack_input::{Dimension, InputError, section};
+
+use super::{Loose, Site, Words};
+use crate::assemble::PartKind;
+use crate::scenario::View;
+
+pub(super) static WORDS: Words = Words {
+    one: "strap",
+    many: "straps",
+    force: "tension",
+    breaks: "tears",
+    break_all: "tear",
+    broken: "torn",
+};
+
+/// What straps tie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ties {
+    /// Every barrel to its own rack, down both of its sides.
+    BarrelsToRacks,
+    /// The same, and every rack to the rack below it, so that the levels become one block.
+    LevelsTogether,
+}
+
+impl Named for Ties {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("barrels-to-racks", Self::BarrelsToRacks), ("levels-together", Self::LevelsTogether)];
+}
+
+section! {
+    /// Straps on the highest levels of a stack.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Straps;
+    /// Straps on the highest levels: they pull, never push, and have no mass.
+    pub static SECTION = "strap";
+    /// How many of the highest levels are strapped; 0 for no straps.
+    levels: u32 = Kind::Integer(0, 12), Default::Value("0");
+    /// Every barrel to its rack, or besides every rack to the one below.
+    ties: Ties = Kind::Choice(names::<Ties>), Default::Value("\"barrels-to-racks\"");
+    /// Force per elongation of one strap; that of a polyester strap is its strength over some 5 to 7 % of its length.
+    stiffness: f64 =
+        Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"100 kN/m\"");
+    /// Force per rate of elongation of one strap, while it is taut.
+    damping: f64 =
+        Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
+    /// How far one strap gives, on the stack at rest, before it pulls.
+    slack: f64 =
+        Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 1.0)), Default::Value("\"0 m\"");
+    /// Force in one strap as it is put on; the stack gives under it, and a part of it is lost.
+    pretension: f64 =
+        Kind::Quantity(&[Dimension::FORCE], Range::NOT_NEGATIVE), Default::Value("\"0 N\"");
+    /// Force above which one strap tears, for good; without it none does.
+    strength: Option<f64> =
+        Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
+}
+
+/// Reads straps on a stack of a number of levels.
+pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError> {
+    let straps = Straps::read_fields(&reader)?;
+    if straps.slack > 0.0 && straps.pretension > 0.0 {
+        let message = "a strap with pretension has no slack; leave one of the two out".to_owned();
+        return Err(reader.inconsistent("pretension", message));
+    }
+    if let Some(strength) = straps.strength.filter(|strength| *strength <= straps.pretension) {
+        let message = format!(
+            "`{}` of {} N is not below the strength of {strength} N",
+            reader.path_of("pretension"),
+            straps.pretension
+        );
+        return Err(reader.inconsistent("pretension", message));
+    }
+    let refused = |message: String| Err(reader.inconsistent("levels", message));
+    let path = reader.path_of("levels");
+    if straps.levels > levels {
+        return refused(format!("`{path}` is {}, but the stack has only {levels}", straps.levels));
+    }
+    if straps.levels == 1 && straps.ties == Ties::LevelsTogether {
+        return refused(format!(
+            "`{path}` is 1, but \"levels-together\" ties at least 2; take 2, or \"barrels-to-racks\""
+        ));
+    }
+    reader.finish();
+    Ok(straps)
+}
+
+impl Straps {
+    /// The straps of a stack: from the ground up, those on the left first.
+    ///
+    /// # Errors
+    /// When the pretension would stretch a strap over more than its whole way.
+    pub(super) fn place(&self, site: &Site<'_>) -> Result<Vec<Loose>, String> {
+        let Self { levels, ties, stiffness, damping, slack, pretension, strength } = *self;
+        let Site { parts, bodies, scale, .. } = *site;
+        let lowest = site.levels - levels + 1;
+        let give = (slack - pretension / stiffness) * scale.length;
+        // Every strap is plumb on the stack as drawn.
+        let strap = |upper: BodyId, lower: BodyId, side: &str, from: f64| {
+            let apart = bodies[upper].pose.position - bodies[lower].pose.position;
+            let name = format!("{}-{} {side}", parts[upper].name, parts[lower].name);
+            if apart.z + give <= 0.0 {
+                return Err(format!(
+                    "the pretension of {pretension} N stretches a strap of {stiffness} N/m by {:.3} m, but the strap \
+                     {name} is only {:.3} m long: take a stiffer strap, or less pretension",
+                    pretension / stiffness,
+                    apart.z / scale.length
+                ));
+            }
+            let points = [Vec2::new(from, 0.0), Vec2::new(from + apart.x, 0.0)];
+            let strap = Strap {
+                link: Link { name, bodies: [upper, lower], points },
+                length: apart.z + give,
+                stiffness: stiffness * scale.stiffness(1.0, false),
+                damping: damping * scale.damping(false),
+                strength: strength.map_or(f64::INFINITY, |force| force * scale.force()),
+            };
+            Ok(Loose { element: strap.into(), give, words: &WORDS })
+        };
+        // In the mirror left and right change places, in the order of sums, too.
+        let mut sides = [("left", -1.0), ("right", 1.0)];
+        if site.mirror {
+            sides.reverse();
+        }
+        let mut all = Vec::new();
+        for (body, part) in parts.iter().enumerate() {
+            match part.kind {
+                PartKind::Barrel => {
+                    let strapped = part.level.is_some_and(|level| level >= lowest);
+                    let Some(rack) = part.carrier.filter(|_| strapped) else { continue };
+                    for (side, sign) in sides {
+                        let (side, from) = match site.view {
+                            View::Transverse => (side, sign * part.size),
+                            View::Longitudinal if sign < 0.0 => ("front", 0.0),
+                            View::Longitudinal => ("back", 0.0),
+                        };
+                        all.push(strap(body, rack, side, from)?);
+                    }
+                }
+                PartKind::Rack => {
+                    // The lowest of the strapped levels is tied to nothing below it.
+                    let tied = ties == Ties::LevelsTogether && part.level > Some(lowest);
+                    let below = parts.iter().position(|other| {
+                        other.kind == PartKind::Rack
+                            && other.column == part.column
+                            && other.level.map(|level| level + 1) == part.level
+                    });
+                    let Some(below) = below.filter(|_| tied) else { continue };
+                    for (side, sign) in sides {
+                        all.push(strap(body, below, side, sign * part.size)?);
+                    }
+                }
+                PartKind::Ground | PartKind::Body => {}
+            }
+        }
+        Ok(all)
+    }
+}

@@ -1,0 +1,141 @@
+//! Which kinds of bodies meet in a stack, and by which laws: each pair declared once.
+
+use super::error::ScenarioError;
+use super::field::{Default, Field, Kind, Section};
+use super::interface::{self, IMPACT, INTERFACE, Interface, PairDefaults};
+use super::reader::Reader;
+use super::tree::Table;
+use super::writer::Writer;
+
+/// Stiffness of one contact node in a stack (N/m), calibrated by Candia, de la Llera and Almazán
+/// (2008).
+const STIFFNESS: f64 = 980_000.0;
+
+/// Damping of one contact node in a stack (N·s/m), calibrated by Candia, de la Llera and Almazán
+/// (2008).
+const DAMPING: f64 = 2200.0;
+
+/// Stiffness of an impact (N/m^1.5): a full barrel of 270 kg that falls from the top of six levels
+/// (9.3 m/s) is stopped within 15 mm. An assumption: nobody has measured it; cellars saw barrels bounce
+/// clearly, burst and lose their bungs.
+const HEAVY: f64 = 1.2e9;
+
+/// The same between racks and from a rack to the ground (N/m^1.5): a rack alone that falls as far is
+/// stopped within 10 mm, and under a barrel that lands on it its several contacts share the load.
+const LIGHT: f64 = 5e8;
+
+/// Declares the pairs: what meets, as a variant, a field and a name in files; its table, the stiffness of
+/// its impacts, its coefficient of friction where a scenario leaves that out, and the source of the
+/// coefficient.
+macro_rules! pairs {
+    ($(
+        $(#[doc = $help:literal])+
+        $pair:ident $field:ident $name:literal = $table:ident, $impact:ident, $coefficient:literal, $source:literal;
+    )*) => {
+        /// Two kinds of bodies that meet in a stack.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum StackPair {
+            $($(#[doc = $help])+ $pair),*
+        }
+
+        impl StackPair {
+            /// All of them, each at the place of its number.
+            pub const ALL: &[Self] = &[$(Self::$pair),*];
+
+            /// The name in files.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$pair => $name),* }
+            }
+
+            /// The coefficient of friction where a scenario leaves it out.
+            pub fn coefficient(self) -> f64 {
+                match self { $(Self::$pair => $coefficient),* }
+            }
+
+            /// Where that comes from.
+            pub fn source(self) -> &'static str {
+                match self { $(Self::$pair => $source),* }
+            }
+
+            fn table(self) -> &'static Section {
+                match self { $(Self::$pair => &$table),* }
+            }
+
+            fn defaults(self) -> PairDefaults {
+                let rebound_stiffness = match self { $(Self::$pair => $impact),* };
+                let coefficient = self.coefficient();
+                PairDefaults { stiffness: STIFFNESS, damping: DAMPING, rebound_stiffness, coefficient }
+            }
+        }
+
+        /// The law of each pair of a stack.
+        #[derive(Debug, Clone, PartialEq)]
+        pub struct StackInterfaces {
+            $($(#[doc = $help])+ pub $field: Interface),*
+        }
+
+        impl StackInterfaces {
+            /// The law of a pair.
+            pub fn of(&self, pair: StackPair) -> &Interface {
+                match pair { $(StackPair::$pair => &self.$field),* }
+            }
+        }
+
+        /// The laws of contact of a stack.
+        pub static INTERFACES: Section = Section {
+            name: "interfaces",
+            help: "Laws of contact in a stack, by pair.",
+            fields: &[$(Field::new(
+                $name,
+                Kind::Table(&$table),
+                Default::Nothing,
+                concat!($($help),+).trim_ascii(),
+            )),*],
+            variants: None,
+            exclusive: &[],
+        };
+
+        /// Reads the laws of contact.
+        pub(super) fn read_interfaces(reader: Reader<'_>) -> Result<StackInterfaces, ScenarioError> {
+            let read = |pair: StackPair| {
+                interface::read(reader.section(pair.name())?, Some(pair.defaults()))
+            };
+            let interfaces = StackInterfaces { $($field: read(StackPair::$pair)?),* };
+            reader.finish();
+            Ok(interfaces)
+        }
+    };
+}
+
+pairs! {
+    /// Bottom rack on the ground.
+    RackGround rack_ground "rack-ground" = INTERFACE, HEAVY, 0.4,
+        "six-barrel example of Candia, de la Llera and Almazán (2008)";
+    /// Barrel in its cradle, and the rack above on the barrel.
+    BarrelRack barrel_rack "barrel-rack" = INTERFACE, HEAVY, 0.22,
+        "calibrated by Candia, de la Llera and Almazán (2008)";
+    /// Rack that stands on the rack below.
+    RackRack rack_rack "rack-rack" = INTERFACE, HEAVY, 0.3, "steel on steel, assumption";
+    /// Barrel against barrel.
+    BarrelBarrel barrel_barrel "barrel-barrel" = IMPACT, HEAVY, 0.4, "wood on wood, assumption";
+    /// Barrel on the ground.
+    BarrelGround barrel_ground "barrel-ground" = IMPACT, HEAVY, 0.4, "wood on concrete, assumption";
+    /// Barrel against a rack on which it has no seat, or beside its seat.
+    FallenBarrelRack fallen_barrel_rack "fallen-barrel-rack" = IMPACT, HEAVY, 0.22,
+        "as barrel on rack, calibrated by Candia, de la Llera and Almazán (2008)";
+    /// Rack on the ground that has its seat elsewhere.
+    FallenRackGround fallen_rack_ground "fallen-rack-ground" = IMPACT, LIGHT, 0.4,
+        "as rack on ground in the six-barrel example of Candia, de la Llera and Almazán (2008)";
+    /// Rack against a rack on which it does not stand.
+    FallenRackRack fallen_rack_rack "fallen-rack-rack" = IMPACT, LIGHT, 0.3,
+        "steel on steel, assumption";
+}
+
+/// Writes the laws of contact.
+pub(super) fn write_interfaces(interfaces: &StackInterfaces) -> Table {
+    let mut writer = Writer::new(&INTERFACES);
+    for pair in StackPair::ALL {
+        writer.table(pair.name(), interface::write(pair.table(), interfaces.of(*pair)));
+    }
+    writer.finish()
+}

@@ -1,0 +1,77 @@
+//! What every device bore, told in its own words.
+
+use serde::{Serialize, Serializer, ser::SerializeMap};
+
+use crate::device::{DEVICES, Words};
+use crate::run::Run;
+
+/// Every device with its force elements; a device that is not there has none.
+#[derive(Clone, Debug)]
+pub struct Devices(pub Vec<Device>);
+
+/// A device.
+#[derive(Clone, Debug)]
+pub struct Device {
+    /// Its words.
+    pub words: &'static Words,
+    /// Its elements.
+    pub elements: Vec<ElementSummary>,
+}
+
+/// One force element.
+#[derive(Clone, Debug)]
+pub struct ElementSummary {
+    words: &'static Words,
+    /// Such as "B5.1-R5 left".
+    pub name: String,
+    /// The force (N) that is largest in size.
+    pub peak: f64,
+    /// When (s).
+    pub peak_at: f64,
+    /// When it broke (s).
+    pub broken_at: Option<f64>,
+}
+
+impl Devices {
+    /// The devices of a run.
+    pub(super) fn of(run: &Run) -> Self {
+        let assembly = &run.assembly;
+        let all = || assembly.model.elements().iter().zip(&assembly.devices).zip(&run.elements);
+        let device = |words: &&'static Words| {
+            let own = all().filter(|((_, device), _)| device == &words);
+            let element = |((element, _), fate): ((&barrelstack_dynamics::Element<_>, _), &_)| {
+                let crate::watch::ElementFate { peak, broken_at } = *fate;
+                let name = element.link().name.clone();
+                ElementSummary { words, name, peak: peak.0, peak_at: peak.1, broken_at }
+            };
+            Device { words, elements: own.map(element).collect() }
+        };
+        Self(DEVICES.iter().map(device).collect())
+    }
+
+    /// The elements of a device by its word for more than one; none where there is no such device.
+    pub fn named(&self, many: &str) -> &[ElementSummary] {
+        let device = self.0.iter().find(|device| device.words.many == many);
+        device.map_or(&[], |device| &device.elements)
+    }
+}
+
+/// A list for every device, by its word for more than one.
+impl Serialize for Devices {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|device| (device.words.many, &device.elements)))
+    }
+}
+
+/// Its numbers by the words of its device.
+impl Serialize for ElementSummary {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Words { force, broken, .. } = self.words;
+        let mut map = serializer.serialize_map(Some(4))?;
+        map.serialize_entry("name", &self.name)?;
+        map.serialize_entry(&format!("peak_{force}"), &self.peak)?;
+        map.serialize_entry(&format!("peak_{force}_at"), &self.peak_at)?;
+        map.serialize_entry(&format!("{broken}_at"), &self.broken_at)?;
+        map.end()
+    }
+}

@@ -1,0 +1,31 @@
+//! What force elements bore, and when they broke.
+
+use barrelstack_dynamics::{Planar, Scratch, State};
+
+/// What became of one force element.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ElementFate {
+    /// The force (N) that is largest in size, and when it was borne (s).
+    pub peak: (f64, f64),
+    /// When it broke (s).
+    pub broken_at: Option<f64>,
+}
+
+/// What became of every force element, in the order of the model.
+#[derive(Clone, Debug, Default)]
+pub struct ElementFates(pub Vec<ElementFate>);
+
+impl ElementFates {
+    /// Looks at an accepted step.
+    pub(super) fn observe(&mut self, state: &State<Planar>, scratch: &Scratch<Planar>) {
+        self.0.resize(scratch.loads.len(), ElementFate::default());
+        for ((fate, load), memory) in self.0.iter_mut().zip(&scratch.loads).zip(&state.memory) {
+            if load.force.abs() > fate.peak.0.abs() {
+                fate.peak = (load.force, state.time);
+            }
+            if memory.broken && fate.broken_at.is_none() {
+                fate.broken_at = Some(state.time);
+            }
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! A link: the straight line between a point of one body and a point of another.
+
+use crate::body::BodyId;
+use crate::lanewise;
+use crate::real::Real;
+use crate::space::{Linear, Space, Wrench};
+use crate::state::State;
+
+/// What is joined, where, and under which name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Link<S: Space> {
+    /// The name in results.
+    pub name: String,
+    /// The bodies it joins.
+    pub bodies: [BodyId; 2],
+    /// Where it is made fast (m), each in the frame of its body.
+    pub points: [S::Vector; 2],
+}
+
+lanewise!(struct Link<Planar<R>> { name, bodies, points });
+
+/// A link as it lies at a state.
+pub(super) struct Line<S: Space> {
+    bodies: [BodyId; 2],
+    /// From the centers of mass to the points (m), in the inertial frame.
+    arms: [S::Vector; 2],
+    /// From the first point to the second (m).
+    apart: S::Vector,
+    /// Its length (m).
+    pub(super) distance: S::Real,
+}
+
+impl<S: Space> Link<S> {
+    pub(super) fn flaw(&self, bodies: usize) -> Option<&'static str> {
+        let [first, second] = self.bodies;
+        if first == second {
+            Some("it ties a body to itself")
+        } else if first.max(second) >= bodies {
+            Some("it ties a body that is not there")
+        } else {
+            None
+        }
+    }
+
+    /// The distance of its points (m).
+    pub fn span(&self, state: &State<S>) -> S::Real {
+        let [first, second] = [0, 1].map(|at| {
+            let pose = state.poses[self.bodies[at]];
+            pose.position + S::rotate(S::rotation(pose.orientation), self.points[at])
+        });
+        let apart = second - first;
+        apart.dot(apart).sqrt()
+    }
+
+    #[inline(always)]
+    pub(super) fn line(&self, state: &State<S>, rotations: &[S::Rotation]) -> Line<S> {
+        let [first, second] = self.bodies;
+        let arms = [
+            S::rotate(rotations[first], self.points[0]),
+            S::rotate(rotations[second], self.points[1]),
+        ];
+        let apart =
+            state.poses[second].position + arms[1] - (state.poses[first].position + arms[0]);
+        Line { bodies: self.bodies, arms, apart, distance: apart.dot(apart).sqrt() }
+    }
+}
+
+impl<S: Space> Line<S> {
+    /// The unit vector from its first point to its second, in lanes where it has a length that counts.
+    #[inline(always)]
+    pub(super) fn along(&self, counts: <S::Real as Real>::Mask) -> S::Vector {
+        let one = S::Real::splat(1.0);
+        self.apart * (one / S::Real::select(counts, self.distance, one))
+    }
+
+    /// How fast it grows (m/s).
+    #[inline(always)]
+    pub(super) fn rate(&self, state: &State<S>, along: S::Vector) -> S::Real {
+        let velocity = |body: usize, arm| {
+            let twist = state.twists[body];
+            twist.linear + S::velocity_at(twist.angular, arm)
+        };
+        let [first, second] = self.bodies;
+        (velocity(second, self.arms[1]) - velocity(first, self.arms[0])).dot(along)
+    }
+
+    /// What a force (N) along it that pulls does to each of its bodies, and of that the part of a damper (N).
+    #[inline(always)]
+    pub(super) fn pull(
+        &self,
+        along: S::Vector,
+        force: S::Real,
+        damped: S::Real,
+    ) -> [(Wrench<S>, Wrench<S>); 2] {
+        [(self.arms[0], along), (self.arms[1], -along)].map(
+            #[inline(always)]
+            |(arm, toward)| {
+                let lever = S::moment(arm, toward);
+                let by = |size: S::Real| Wrench { force: toward * size, moment: lever * size };
+                (by(force), by(damped))
+            },
+        )
+    }
+}

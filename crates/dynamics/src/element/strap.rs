@@ -1,0 +1,79 @@
+//! Straps: they pull two bodies together, and never push them apart.
+
+use super::{Action, Link, Load, Memory, all};
+use crate::lanewise;
+use crate::real::Real;
+use crate::space::Space;
+use crate::state::State;
+
+/// A strap between a point of one body and a point of another.
+///
+/// Tension is the force that it pulls with: `T = max(0, k e + c ė)` while its elongation `e` (m), the
+/// distance of the two points less `length`, is positive, and zero while it is slack.
+/// It has no mass, and nothing touches it on its way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strap<S: Space> {
+    /// What it ties.
+    pub link: Link<S>,
+    /// Distance of the points (m) from which on it pulls.
+    pub length: S::Real,
+    /// Stiffness k (N/m).
+    pub stiffness: S::Real,
+    /// Damping c (N·s/m).
+    pub damping: S::Real,
+    /// Tension (N) above which it tears, for good; infinite if it never does.
+    pub strength: S::Real,
+}
+
+lanewise!(struct Strap<Planar<R>> { link, length, stiffness, damping, strength });
+
+impl<S: Space> Strap<S> {
+    pub(super) fn stiffness(&self) -> S::Real {
+        self.stiffness
+    }
+
+    pub(super) fn damping(&self) -> S::Real {
+        self.damping
+    }
+
+    #[inline(always)]
+    pub(super) fn strength(&self) -> S::Real {
+        self.strength
+    }
+
+    pub(super) fn flaw(&self) -> Option<&'static str> {
+        if !all(self.stiffness, |k| k > 0.0 && k.is_finite()) {
+            Some("its stiffness must be positive and finite")
+        } else if !all(self.damping, |c| c >= 0.0 && c.is_finite()) {
+            Some("its damping must not be negative")
+        } else if !all(self.length, |l| l >= 0.0 && l.is_finite()) {
+            Some("its length must not be negative")
+        } else if !all(self.strength, |t| t > 0.0) {
+            Some("its strength must be positive")
+        } else {
+            None
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn act(
+        &self,
+        state: &State<S>,
+        rotations: &[S::Rotation],
+        memory: Memory<S>,
+    ) -> Action<S> {
+        let zero = S::Real::zero();
+        let line = self.link.line(state, rotations);
+        let taut = self.length.lt(line.distance) & zero.lt(line.distance) & !memory.broken;
+        let along = line.along(taut);
+        let elongation = S::Real::select(taut, line.distance - self.length, zero);
+        let elastic = self.stiffness * elongation;
+        let tension = (elastic + self.damping * line.rate(state, along)).max(zero);
+        let tension = S::Real::select(taut, tension, zero);
+        let energy = S::Real::splat(0.5) * elastic * elongation;
+        Action {
+            load: Load { force: tension, energy },
+            wrenches: line.pull(along, tension, tension - elastic),
+        }
+    }
+}

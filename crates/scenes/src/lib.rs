@@ -1,0 +1,10 @@
+//! Scenes, ground motions and closed forms, each once: for the tests of the dynamics and for the
+//! validation.
+
+pub mod drive;
+pub mod scene;
+pub mod theory;
+pub mod tumble;
+
+/// Standard gravity (m/s²).
+pub const GRAVITY: f64 = 9.806_65;
