@@ -127,7 +127,7 @@ fn random_stack(case: usize, records: &[PathBuf]) -> Result<Scenario, Failure> {
     let racks = catalog::RACKS.iter();
     let racks: Vec<_> =
         racks.filter(|r| view == "transverse" || r.rack.kind == RackKind::OnBarrels).collect();
-    let rack = racks[pick(2, racks.len())].rack.base.as_str();
+    let rack = racks[pick(2, racks.len())].rack.base;
     let columns = match (view, rack) {
         ("transverse", _) | (_, "four-barrel") => 2,
         _ => 1,
