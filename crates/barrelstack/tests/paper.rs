@@ -74,10 +74,10 @@ fn eight_barrels_lose_their_top_level_first_by_ejection() {
     println!("eight barrels: {mode:?} of level {level} at {time:.3} s, falls {:?}", falls(run, 4));
     assert_eq!(mode, CollapseMode::Ejection);
     assert_eq!(level, 4);
-    // The paper: first barrel at 1.5 s, second at 2.5 s. The rack of the top level leaves its seat at
-    // 1.4 s; its barrels are 0.2 m below their places at 2.8 s.
+    // The paper: first barrel at 1.5 s, second at 2.5 s; measured 1.59 s and 2.63 s.
     within("loss of seat", time, 1.0, 2.0);
-    within("first fall", run.fates.first_fall().unwrap(), 1.5, 3.5);
+    within("first fall", run.fates.first_fall().unwrap(), 1.3, 1.8);
+    within("second fall", falls(run, 4)[1], 2.2, 2.9);
     assert_eq!(run.fates.first_fall(), falls(run, 4).first().copied());
 }
 
@@ -149,9 +149,8 @@ fn half_the_step_gives_the_same_collapse() {
     let (a, b) = (whole.fates.first_fall().unwrap(), fine.fates.first_fall().unwrap());
     println!("half step: {mode:?} at {time} s; first falls {a} s and {b} s");
     assert_eq!((mode, level), (collapse(whole).0, collapse(whole).2));
-    within("loss of seat moved", (time - collapse(whole).1).abs(), 0.0, 0.010);
-    // The top rack lingers on the edge of the crowns: measured 0.027 s.
-    within("first fall moved", (a - b).abs(), 0.0, 0.060);
+    within("loss of seat moved", (time - collapse(whole).1).abs(), 0.0, 0.003); // measured 0.1 ms
+    within("first fall moved", (a - b).abs(), 0.0, 0.003); // measured 0.3 ms
 }
 
 #[test]
@@ -209,12 +208,12 @@ fn six_barrels_rock_off_above_the_first_level() {
     assert!(falls(&run, 1).is_empty());
     // The paper: after 10 s of the motion, 2.9 times the stress at rest, and 2 cm.
     for fell in fallen {
-        within("fall", fell, 8.5, 12.5);
+        within("fall", fell, 9.5, 12.5);
     }
-    // The beam comes down on the crown beside its foot before the seat is lost: one place bears 7.4 times
+    // The beam comes down on the crown beside its foot before the seat is lost: one place bears 7.5 times
     // its stress at rest (paper: 2.9 on average), while the whole seat of barrel 1 bears 2.5 times.
     within("amplification", amplification, 2.5, 9.0);
-    within("residual slip", slip.abs(), 0.0, 0.10);
+    within("residual slip", slip.abs(), 0.0, 0.05);
     books_close(&run);
 }
 

@@ -84,8 +84,12 @@ fn straps_without_slack_bear_nothing_at_rest_and_leave_the_weight_where_it_is() 
 
 #[test]
 fn a_mirrored_stack_has_the_same_tensions_on_the_other_side() {
-    let changes =
-        ["stack.strap.levels=3", TOGETHER, "stack.strap.strength=\"3 kN\"", "run.duration=\"4 s\""];
+    let changes = [
+        "stack.strap.levels=3",
+        TOGETHER,
+        "stack.strap.strength=\"2.2 kN\"",
+        "run.duration=\"4 s\"",
+    ];
     let straight = run("candia-8-barrels", &changes);
     let turned = [&changes[..], &["stack.mirror=true", "motion.scale.factor=-1"]].concat();
     let mirrored = run("candia-8-barrels", &turned);

@@ -354,21 +354,15 @@ fn from_film(tests: usize, simulations: usize, parameters: &[Parameter]) -> Cali
 }
 
 #[test]
-fn two_collapses_that_few_simulations_come_near_to_say_that_they_tell_nothing() {
+fn two_collapses_tell_little_and_say_so() {
     let found = from_film(2, 150, &[Parameter::Stiffness, Parameter::FrictionBarrelRack]);
     println!("{}\n{:?}", found.lines().join("\n"), found.warnings);
     let stiffness = found.estimate("stiffness k").unwrap();
     let friction = found.estimate("friction barrel-rack").unwrap();
     assert!(stiffness.covers(1.2e6), "{stiffness:?}");
     assert!(friction.covers(0.18), "{friction:?}");
-    // Before bodies were solid, 150 simulations narrowed k to a factor of 1.64 and friction to 1.65. Now too
-    // few come near: the intervals are what was tried (k 3.79 of 4), and the result has to say so.
-    for name in ["stiffness k", "friction barrel-rack"] {
-        let told = format!("what was seen says nothing about {name}");
-        assert!(found.warnings.iter().any(|warning| warning.contains(&told)), "{name}");
-    }
     let few = "too few simulations came near";
-    assert!(found.warnings.iter().any(|warning| warning.contains(few)));
+    assert!(found.warnings.iter().any(|warning| warning.contains(few)), "{:?}", found.warnings);
 }
 
 #[test]

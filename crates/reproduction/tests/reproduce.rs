@@ -67,6 +67,7 @@ fn what_needs_the_papers_record_is_not_compared_without_it() {
 fn the_benchmarks_agree() {
     for quantity in [
         "eight barrels: collapse",
+        "eight barrels: first barrel falls",
         "eight barrels: second barrel falls",
         "eight barrels: drift of the top",
         "eight barrels: stress amplification",
@@ -76,16 +77,16 @@ fn the_benchmarks_agree() {
     ] {
         assert_eq!(row(quantity).verdict, Verdict::Agrees, "{:?}", row(quantity));
     }
-    // measured 4.43 s
+    // measured 4.78 s
     let along = row("along the barrels: stands for");
     assert!(matches!(along.verdict, Verdict::Agrees | Verdict::InBand), "{along:?}");
 }
 
 #[test]
 fn what_differs_is_said_to_differ() {
-    // measured: levels 2 and 3 come down too; the first barrel is 0.2 m down after 2.76 s, not 1.5 s
+    // measured: levels 2 and 3 come down too, and both top barrels to the same side
     for quantity in
-        ["eight barrels: what falls besides the top level", "eight barrels: first barrel falls"]
+        ["eight barrels: what falls besides the top level", "eight barrels: the top barrels go"]
     {
         assert_eq!(row(quantity).verdict, Verdict::Differs, "{:?}", row(quantity));
         assert!(!row(quantity).why.is_empty());

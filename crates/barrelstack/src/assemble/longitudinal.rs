@@ -105,9 +105,8 @@ fn add_rack(
         let at = Vec2::new(x, 0.5 * rack.clearance);
         let mut rail = Solid::exact(Shape::Polygon(tube.clone()), at, Seat::Along(barrel));
         if rack.contact == SeatContact::Nodes {
-            let half = 0.5 * rack.rail_width - corner_of(rack);
-            rail.below = row(rack.node_spacing, x, half, 0.0);
-            rail.above = row(rack.node_spacing, x, half, rack.clearance);
+            rail.below = noded_face(rack, x, 0.0, -1.0);
+            rail.above = noded_face(rack, x, rack.clearance, 1.0);
         }
         rail
     };
@@ -160,12 +159,25 @@ fn add_rack(
     Ok(barrels)
 }
 
-/// Radius (m) of the corners of a rail; nodes stand for sharp ones.
+/// Nodes of the lower or upper face of a rail about `x` (m) at height `z` (m): along its flat part, and one
+/// amid the round of each end.
+fn noded_face(rack: &Rack, x: f64, z: f64, outward: f64) -> Vec<(Vec2, f64)> {
+    let corner = corner_of(rack);
+    let half = 0.5 * rack.rail_width - corner;
+    let amid = corner * std::f64::consts::FRAC_1_SQRT_2;
+    let end = |side: f64| {
+        let place = Vec2::new(x + side * (half + amid), z - outward * (corner - amid));
+        (place, std::f64::consts::FRAC_PI_2 * corner)
+    };
+    // The first node says where the face lies.
+    let mut nodes = row(rack.node_spacing, x, half, z);
+    nodes.extend([-1.0, 1.0].map(end));
+    nodes
+}
+
+/// Radius (m) of the corners of a rail.
 fn corner_of(rack: &Rack) -> f64 {
-    match rack.contact {
-        SeatContact::Nodes => 0.0,
-        SeatContact::Element | SeatContact::Rails => TUBE_CORNER.min(0.25 * rack.rail_width),
-    }
+    TUBE_CORNER.min(0.25 * rack.rail_width)
 }
 
 /// Height (m) of a barrel's axis above the level of the rails that carry it: staves slope, so a rail

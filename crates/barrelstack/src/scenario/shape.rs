@@ -360,7 +360,7 @@ static PART: Section = Section {
 };
 
 static PART_SHAPE: Section = Section {
-    name: "shape",
+    name: "part-shape",
     help: "Outline of a part, about its reference point.",
     fields: &[TYPE],
     variants: Some(Variants {

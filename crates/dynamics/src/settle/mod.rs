@@ -83,11 +83,12 @@ pub fn settle<S: Space>(
     let start = state.clone();
     let mut result = sink(model, state, scratch, tolerance, TRIES[0]);
     for way in &TRIES[1..] {
-        // With momentum bodies sink somewhat deeper than they lie, which is too deep for some.
+        // With momentum bodies sink somewhat deeper than they lie, which is too deep for some. What goes all
+        // the same is what went first.
         if result.as_ref().is_err_and(|error| error.lack != Lack::Support) {
             state.clone_from(&start);
             evaluate(model, state, scratch);
-            result = sink(model, state, scratch, tolerance, *way);
+            result = sink(model, state, scratch, tolerance, *way).or(result);
         }
     }
     state.time = start_time;
