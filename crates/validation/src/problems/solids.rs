@@ -287,6 +287,9 @@ fn smooth() -> Problem {
     }
 }
 
+/// Way (m, rad) to either side over which a slope is taken.
+const WAY: f64 = 1e-8;
+
 /// Forces are minus the slope of the energy that the springs store, wherever two bodies press into each
 /// other and whichever of their pieces meet: so no way around a corner gives or takes energy. The largest
 /// difference over the force, at poses all around the lower body, of all three components.
@@ -335,7 +338,6 @@ fn slope(what: &str, shapes: fn() -> [Shape; 2]) -> Problem {
                         pose[k] += way;
                         pose
                     };
-                    const WAY: f64 = 1e-8;
                     let change = energy_and_force(moved(WAY)).0 - energy_and_force(moved(-WAY)).0;
                     worst = worst.max((change / (2.0 * WAY) + force[k]).abs() / size);
                 }
