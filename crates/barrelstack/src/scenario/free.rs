@@ -2,13 +2,15 @@
 
 use super::dimension::Dimension;
 use super::error::ScenarioError;
-use super::field::{Default, Field, Kind, Named, Range, Section, names};
+use super::field::{Default, Field, Kind, Range, Section, names};
 use super::interface::{self, Interface};
+use super::nodes::{self, NodeRule};
 use super::reader::Reader;
 use super::shape::{self, SHAPE};
 use super::tree::Table;
 use super::writer::Writer;
 
+pub use super::nodes::{ChosenNode, Nodes};
 pub use super::shape::{PartShape, Shape};
 
 /// The ground of a free scene: the half-plane below a line through the origin.
@@ -18,32 +20,6 @@ pub struct Ground {
     pub slope: f64,
     /// Label used by interfaces.
     pub kind: String,
-}
-
-/// Where the boundary of a body carries contact nodes.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Nodes {
-    /// At the corners.
-    Corners,
-    /// Along the boundary at most this far apart, corners included (m).
-    Spacing(f64),
-    /// This many on each side, or around a curved shape.
-    Count(u32),
-    /// The one point of a circle that is deepest in the target.
-    Rolling,
-    /// None: convex outlines touch each other with their deepest points, wherever those lie.
-    Exact,
-    /// At chosen places.
-    At(Vec<ChosenNode>),
-}
-
-/// A node at a chosen place.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ChosenNode {
-    /// Place `[x, z]` in local coordinates, from the reference point of the shape (m).
-    pub at: [f64; 2],
-    /// Length of boundary that it stands for (m).
-    pub tributary_length: f64,
 }
 
 /// Viscous drag on a body, relative to the ground at rest (Candia, de la Llera and Almazán 2008,
@@ -107,23 +83,8 @@ pub struct FreeScene {
     pub interfaces: Vec<FreeInterface>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum NodeRule {
-    Corners,
-    Rolling,
-    Exact,
-}
-
-impl Named for NodeRule {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("corners", Self::Corners), ("rolling", Self::Rolling), ("exact", Self::Exact)];
-}
-
 /// Most bodies of a free scene.
 const MOST_BODIES: usize = 500;
-
-/// Most contact nodes of one body.
-const MOST_NODES: f64 = 20_000.0;
 
 /// The ground.
 pub static GROUND: Section = Section {
@@ -137,61 +98,6 @@ pub static GROUND: Section = Section {
             "Slope, positive when it rises to the right.",
         ),
         Field::new("kind", Kind::Text, Default::Value("\"ground\""), "Label used by interfaces."),
-    ],
-    variants: None,
-    exclusive: &[],
-};
-
-/// Contact nodes.
-pub static NODES: Section = Section {
-    name: "nodes",
-    help: "Where the boundary carries contact nodes: one of the fields.",
-    fields: &[
-        Field::new(
-            "rule",
-            Kind::Choice(names::<NodeRule>),
-            Default::Nothing,
-            "At the corners; at the one deepest point of a circle; or exact, where convex outlines touch \
-             each other with their deepest points and both bodies say so.",
-        ),
-        Field::new(
-            "spacing",
-            Kind::Quantity(
-                &[Dimension::LENGTH],
-                Range { least: 1e-4, above: false, greatest: 1e3 },
-            ),
-            Default::Nothing,
-            "Greatest distance between nodes along the boundary.",
-        ),
-        Field::new(
-            "count",
-            Kind::Integer(1, 2000),
-            Default::Nothing,
-            "Nodes on each side, or around a curved shape.",
-        ),
-        Field::new("list", Kind::Tables(&NODE), Default::Nothing, "Nodes at chosen places."),
-    ],
-    variants: None,
-    exclusive: &[&["rule", "spacing", "count", "list"]],
-};
-
-/// A node at a chosen place.
-static NODE: Section = Section {
-    name: "node",
-    help: "A contact node at a chosen place.",
-    fields: &[
-        Field::new(
-            "at",
-            Kind::Point(Dimension::LENGTH),
-            Default::Required,
-            "Place in the body, from the reference point of the shape.",
-        ),
-        Field::new(
-            "tributary_length",
-            Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE),
-            Default::Value("\"1 cm\""),
-            "Length of boundary that it stands for, for laws per meter of boundary.",
-        ),
     ],
     variants: None,
     exclusive: &[],
@@ -271,7 +177,7 @@ pub static BODY: Section = Section {
         ),
         Field::new(
             "nodes",
-            Kind::ChoiceOrTable(names::<NodeRule>, "rule", &NODES),
+            Kind::ChoiceOrTable(names::<NodeRule>, "rule", &nodes::NODES),
             Default::Derived(
                 "rolling for a circle, corners for straight sides, 1 cm apart otherwise",
             ),
@@ -320,7 +226,7 @@ fn read_ground(reader: Reader<'_>) -> Result<Ground, ScenarioError> {
 
 fn read_body(reader: Reader<'_>, name: String) -> Result<FreeBody, ScenarioError> {
     let shape = shape::read(reader.section("shape")?)?;
-    let nodes = read_nodes(&reader, &shape)?;
+    let nodes = nodes::read(&reader, &shape)?;
     let mass = reader.quantity("mass")?;
     let uniform = shape.uniform();
     let center_of_mass = reader.optional_point("center_of_mass")?;
@@ -363,72 +269,6 @@ fn read_viscous(reader: Reader<'_>) -> Result<Viscous, ScenarioError> {
         Viscous { linear: reader.quantity("linear")?, angular: reader.quantity("angular")? };
     reader.finish();
     Ok(viscous)
-}
-
-fn read_nodes(reader: &Reader<'_>, shape: &Shape) -> Result<Nodes, ScenarioError> {
-    let Some(nodes) = reader.optional_section("nodes")? else {
-        return Ok(match shape {
-            Shape::Circle { .. } => Nodes::Rolling,
-            Shape::Rectangle { .. } | Shape::Polygon { .. } => Nodes::Corners,
-            Shape::Cradle { .. } | Shape::BarrelProfile { .. } | Shape::Compound { .. } => {
-                Nodes::Spacing(0.01)
-            }
-        });
-    };
-    let rule: Option<NodeRule> = nodes.optional_choice("rule")?;
-    let spacing = nodes.optional_quantity("spacing")?;
-    let count = nodes.optional_integer("count")?;
-    let mut list = Vec::new();
-    for node in nodes.sections("list")? {
-        list.push(ChosenNode {
-            at: node.point("at")?,
-            tributary_length: node.quantity("tributary_length")?,
-        });
-        node.finish();
-    }
-    let rule = rule
-        .map(|rule| match rule {
-            NodeRule::Corners => Nodes::Corners,
-            NodeRule::Rolling => Nodes::Rolling,
-            NodeRule::Exact => Nodes::Exact,
-        })
-        .or(spacing.map(Nodes::Spacing))
-        .or(count.map(Nodes::Count))
-        .or((!list.is_empty()).then_some(Nodes::At(list)))
-        .ok_or_else(|| nodes.one_of(&["rule", "spacing", "count", "list"]))?;
-    let parts = shape.parts();
-    let circle = parts.iter().all(|part| matches!(part.shape, Shape::Circle { .. }));
-    let cradle = parts.iter().any(|part| matches!(part.shape, Shape::Cradle { .. }));
-    match rule {
-        Nodes::Exact if cradle => {
-            let message = "a cradle is not convex; give it nodes a stated distance apart";
-            return Err(nodes.inconsistent("rule", message.to_owned()));
-        }
-        Nodes::Rolling if !circle => {
-            let message =
-                "only a circle rolls on one node; write `nodes = \"corners\"` or a spacing";
-            return Err(nodes.inconsistent("rule", message.to_owned()));
-        }
-        Nodes::Corners if circle => {
-            let message = "a circle has no corners; write `nodes = \"rolling\"` or a spacing";
-            return Err(nodes.inconsistent("rule", message.to_owned()));
-        }
-        Nodes::Spacing(spacing) if shape.perimeter() / spacing > MOST_NODES => {
-            let message = format!(
-                "a spacing of {spacing} m puts more than {MOST_NODES} nodes on a boundary of {} m; take a wider one",
-                shape.perimeter()
-            );
-            return Err(nodes.inconsistent("spacing", message));
-        }
-        Nodes::Rolling
-        | Nodes::Corners
-        | Nodes::Exact
-        | Nodes::Spacing(_)
-        | Nodes::Count(_)
-        | Nodes::At(_) => {}
-    }
-    nodes.finish();
-    Ok(rule)
 }
 
 fn read_interfaces(
@@ -499,7 +339,7 @@ fn write_body(body: &FreeBody) -> Table {
     writer.quantity("spin", body.spin);
     writer.flag("fixed_to_ground", body.fixed_to_ground);
     writer.table("shape", shape::write(&body.shape));
-    writer.table("nodes", write_nodes(&body.nodes));
+    writer.table("nodes", nodes::write(&body.nodes));
     match body.viscous {
         Some(viscous) => {
             let mut inner = Writer::new(&VISCOUS);
@@ -509,27 +349,5 @@ fn write_body(body: &FreeBody) -> Table {
         }
         None => writer.omit(&["viscous"]),
     }
-    writer.finish()
-}
-
-fn write_nodes(nodes: &Nodes) -> Table {
-    let mut writer = Writer::new(&NODES);
-    match nodes {
-        Nodes::Corners => writer.choice("rule", NodeRule::Corners),
-        Nodes::Rolling => writer.choice("rule", NodeRule::Rolling),
-        Nodes::Exact => writer.choice("rule", NodeRule::Exact),
-        Nodes::Spacing(spacing) => writer.quantity("spacing", *spacing),
-        Nodes::Count(count) => writer.integer("count", *count),
-        Nodes::At(list) => {
-            let node = |node: &ChosenNode| {
-                let mut writer = Writer::new(&NODE);
-                writer.point("at", node.at);
-                writer.quantity("tributary_length", node.tributary_length);
-                writer.finish()
-            };
-            writer.tables("list", list.iter().map(node).collect());
-        }
-    }
-    writer.omit(&["rule", "spacing", "count", "list"]);
     writer.finish()
 }

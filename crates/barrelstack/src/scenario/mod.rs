@@ -41,6 +41,7 @@ pub mod free;
 pub mod interface;
 mod load;
 pub mod motion;
+pub mod nodes;
 pub mod pair;
 pub mod rack;
 pub mod reference;
@@ -50,6 +51,7 @@ pub mod schema;
 pub mod shape;
 pub mod stack;
 pub mod template;
+pub mod uniform;
 
 pub use barrelstack_input::{
     Dimension, FileRef, Place, Problem, Quantity, QuantityError, Setting, Source, dimension, field,
@@ -70,8 +72,9 @@ pub use pair::{StackInterfaces, StackPair};
 pub use rack::{Cradle, Posts, Rack, RackKind, SeatContact};
 pub use root::ROOT;
 pub use run::{Method, OutcomeSpec, RecordSpec, RunSpec, Until};
-pub use shape::{Shape, Uniform};
+pub use shape::Shape;
 pub use stack::{BodyOverride, StackBody, StackSpec, View};
+pub use uniform::Uniform;
 
 /// What can be wrong with a scenario, where, and what to do about it.
 pub mod error {
