@@ -1,5 +1,6 @@
 //! Free scenes of solid bodies: several parts, exact boundaries, nodes at chosen places.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
+#![allow(clippy::print_stdout, reason = "what was refused")]
 
 use barrelstack::scenario::Scene;
 use barrelstack::{Run, Scenario};
@@ -116,4 +117,14 @@ fn a_cradle_is_not_convex() {
     let whole = format!("schema = 1\ntitle = \"solids\"\nkind = \"free\"\n{text}");
     let error = Scenario::parse("solids", &whole, &[]).unwrap_err().to_string();
     assert!(error.contains("a cradle is not convex"), "{error}");
+}
+
+#[test]
+fn a_part_is_no_compound_itself() {
+    let nested = format!("{{ type = \"compound\", parts = [ {{ shape = {HALVES} }} ] }}");
+    let text = body("one", &nested.replace('\n', " "), "\"exact\"", [0.0, 0.3], 0.0);
+    let whole = format!("schema = 1\ntitle = \"solids\"\nkind = \"free\"\n{text}");
+    let error = Scenario::parse("solids", &whole, &[]).unwrap_err().to_string();
+    println!("{error}");
+    assert!(error.contains("compound") && error.contains("rectangle"), "{error}");
 }

@@ -87,6 +87,13 @@ impl Named for ShapeName {
     ];
 }
 
+/// What a part of a compound may be.
+fn part_names() -> Vec<&'static str> {
+    let mut all = names::<ShapeName>();
+    all.retain(|name| *name != "compound");
+    all
+}
+
 const SIZE: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e4 });
 
@@ -206,7 +213,12 @@ static PART: Section = Section {
 static PART_SHAPE: Section = Section {
     name: "part-shape",
     help: "Outline of a part, about its reference point.",
-    fields: &[TYPE],
+    fields: &[Field::new(
+        "type",
+        Kind::Choice(part_names),
+        Default::Required,
+        "Form of the outline, no compound itself.",
+    )],
     variants: Some(Variants {
         tag: "type",
         list: &[RECTANGLE, CIRCLE, POLYGON, CRADLE, BARREL_PROFILE],
