@@ -238,5 +238,11 @@ function fitStages(panes, figure) {
   const opens = above < 0.5 * window.innerHeight;
   const room = (opens ? window.innerHeight - above - rest - 8 : 0.6 * window.innerHeight) / rows;
   const least = rows > 1 ? 210 : 320;
-  for (const { stage } of panes) stage.resize(Math.max(room, least));
+  for (const { stage } of panes) {
+    stage.most = Infinity;
+    stage.resize(Math.max(room, least));
+  }
+  // Panes may differ by the width of a border.
+  const common = Math.min(...panes.map(({ stage }) => stage.viewAt(0).scale));
+  for (const { stage } of panes) stage.most = common;
 }

@@ -31,6 +31,8 @@ function makeStage(data, canvas) {
   const [left, bottom, right, top] = data.view;
   const stage = {
     camera: "fixed", names: true, forces: false, traces: true,
+    // The largest scale (px/m) that may be drawn to: panes side by side are drawn to one.
+    most: Infinity,
     strong: strongForce(data), canvas, draw, resize, retheme, viewAt,
   };
   let paint = {};
@@ -55,7 +57,7 @@ function makeStage(data, canvas) {
 
   // Meters to pixels: scale and the world point at the middle of the foot of the canvas.
   function viewAt(frame) {
-    const scale = Math.min(width / (right - left), (height - FOOT - HEAD) / (top - bottom));
+    const scale = Math.min(width / (right - left), (height - FOOT - HEAD) / (top - bottom), stage.most);
     let x = 0.5 * (left + right), z = bottom;
     const pose = (body, k) => [data.poses[3 * body][k], data.poses[3 * body + 1][k]];
     if (stage.camera === "ground" && ground >= 0) {
