@@ -349,8 +349,8 @@ fn moving(scene: &Scene) -> impl Iterator<Item = usize> {
 }
 
 /// Highest share of the larger side of the first frame by which a window grows to the left and
-/// the right, and upward: what falls over lies within its height.
-const REACH: [f64; 2] = [1.0, 0.15];
+/// the right, and upward: what falls over lies within its height, and rolls on from there.
+const REACH: [f64; 2] = [1.75, 0.15];
 
 /// The window that shows `frames`: the place of the first frame and what stays or lands near it.
 ///
