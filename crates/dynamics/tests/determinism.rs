@@ -18,7 +18,7 @@ use common::{
 };
 
 fn tumbling() -> Scene {
-    Scene::new(bodies(2008, 8), rough(), DOWN).unwrap()
+    Scene::new(bodies(2008, 8, 0.1), rough(1.0, 1.0), DOWN).unwrap()
 }
 
 /// A number that differs when any bit does (FNV-1a).
@@ -59,17 +59,19 @@ fn a_run_stopped_and_continued_gives_the_bits_of_one_run() {
     let mut resumed = Scene::of(parts.model.clone());
     resumed.state = parts.state.clone();
     resumed.by(Method::RungeKutta4).run(&drive, step, end).unwrap();
-    assert_eq!(hash(&bits(&whole.state)[..40]), hash(&bits(&resumed.state)[..40]));
+    // Time, places and velocities of all bodies; what sticks remember shows in them at the next step.
+    let all = 1 + 6 * whole.state.poses.len();
+    assert_eq!(bits(&whole.state)[..all], bits(&resumed.state)[..all]);
 }
 
 #[test]
 fn the_order_in_which_pairs_are_given_does_not_matter() {
-    let bodies = bodies(2008, 8);
+    let bodies = bodies(2008, 8, 0.1);
     let mut pairs = all_pairs(&bodies);
-    let model = Model::new(bodies.clone(), vec![rough()], pairs.clone(), DOWN).unwrap();
+    let model = Model::new(bodies.clone(), vec![rough(1.0, 1.0)], pairs.clone(), DOWN).unwrap();
     pairs.reverse();
     pairs.push(pairs[3]);
-    let other = Model::new(bodies, vec![rough()], pairs, DOWN).unwrap();
+    let other = Model::new(bodies, vec![rough(1.0, 1.0)], pairs, DOWN).unwrap();
     assert_eq!(model.pairs(), other.pairs());
     let (mut here, mut there) = (Scene::of(model), Scene::of(other));
     here.by(Method::VelocityVerlet).run(&Still, 2e-4, 0.5).unwrap();
@@ -164,7 +166,7 @@ fn a_body_that_starts_without_a_number_is_named() {
 
 #[test]
 fn what_is_no_model_is_refused_with_its_name() {
-    let law = || vec![rough()];
+    let law = || vec![rough(1.0, 1.0)];
     let ball = |name: &str| disc(name, 0.2, 5.0, 0.02, Vec2::new(0.0, 1.0));
     let model = |bodies, pairs| Model::new(bodies, law(), pairs, DOWN).map(|_| ()).unwrap_err();
 
@@ -195,7 +197,7 @@ fn a_free_body_needs_a_moment_of_inertia() {
     for inertia in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let mut thin = disc("thin", 0.2, 5.0, 0.02, Vec2::new(0.0, 1.0));
         thin.inertia = inertia;
-        let found = Model::new(vec![floor(), thin], vec![rough()], vec![], DOWN);
+        let found = Model::new(vec![floor(), thin], vec![rough(1.0, 1.0)], vec![], DOWN);
         assert!(found.is_err(), "inertia {inertia} makes a model");
     }
 }

@@ -22,7 +22,7 @@ use common::{
 use proptest::prelude::*;
 
 fn tumbling(seed: u64) -> Scene {
-    Scene::new(bodies(seed, 6), rough(), DOWN).unwrap()
+    Scene::new(bodies(seed, 6, 0.1), rough(1.0, 1.0), DOWN).unwrap()
 }
 
 /// What a moment about the origin of the inertial frame is.
@@ -119,10 +119,10 @@ proptest! {
             }
             body
         };
-        let here = bodies(seed, 6);
+        let here = bodies(seed, 6, 0.1);
         let there = here.iter().map(mirrored).collect();
         let (mut here, mut there) =
-            (Scene::new(here, rough(), DOWN).unwrap(), Scene::new(there, rough(), DOWN).unwrap());
+            (Scene::new(here, rough(1.0, 1.0), DOWN).unwrap(), Scene::new(there, rough(1.0, 1.0), DOWN).unwrap());
         here.by(Method::VelocityVerlet).run(&Shake::Harmonic { acceleration: 3.0, omega: 9.0 }, 2e-4, 0.5).unwrap();
         there.by(Method::VelocityVerlet).run(&Shake::Harmonic { acceleration: -3.0, omega: 9.0 }, 2e-4, 0.5).unwrap();
         for (i, pose) in here.state.poses.iter().enumerate() {
@@ -146,11 +146,11 @@ proptest! {
         let ground = Shake::Swing { amplitude: 0.03, omega: 9.0 };
         let larger_ground = Shake::Swing { amplitude: 4.0 * 0.03, omega: 4.5 };
         for method in [Method::SemiImplicitEuler, Method::VelocityVerlet, Method::RungeKutta4] {
-            for law in [rough(), crossley()] {
+            for law in [rough(1.0, 1.0), crossley()] {
                 let (mut small, mut large) = (
-                    Scene::new(bodies(seed, 6), law.clone(), DOWN).unwrap(),
+                    Scene::new(bodies(seed, 6, 0.1), law.clone(), DOWN).unwrap(),
                     Scene::new(
-                        bodies(seed, 6).iter().map(four_times).collect(),
+                        bodies(seed, 6, 0.1).iter().map(four_times).collect(),
                         stiffer(&law),
                         DOWN,
                     ).unwrap(),
@@ -186,8 +186,8 @@ proptest! {
             NormalLaw::SpeedGap { stiffness: factor * 2.0e5, damping: factor * 600.0 },
             common::coulomb(0.4, factor * 1.5e5, factor * 300.0),
         );
-        let mut light = Scene::new(bodies(seed, 6), law(1.0), DOWN).unwrap();
-        let mut heavy = Scene::new(bodies(seed, 6).iter().map(heavier).collect(), law(1024.0), DOWN).unwrap();
+        let mut light = Scene::new(bodies(seed, 6, 0.1), law(1.0), DOWN).unwrap();
+        let mut heavy = Scene::new(bodies(seed, 6, 0.1).iter().map(heavier).collect(), law(1024.0), DOWN).unwrap();
         light.by(Method::VelocityVerlet).run(&Still, 2e-4, 0.6).unwrap();
         heavy.by(Method::VelocityVerlet).run(&Still, 2e-4, 0.6).unwrap();
         prop_assert_eq!(bits(&light.state), bits(&heavy.state));
@@ -215,7 +215,7 @@ proptest! {
 
     #[test]
     fn the_order_of_bodies_and_nodes_decides_no_more_than_rounding(seed in any::<u64>()) {
-        let bodies = bodies(seed, 6);
+        let bodies = bodies(seed, 6, 0.1);
         let mut order: Vec<usize> = (1..bodies.len()).collect();
         let mut random = Random(seed);
         for i in (1..order.len()).rev() {
@@ -241,8 +241,8 @@ proptest! {
             .into_iter()
             .map(|p| ContactPair { contactor: place(p.contactor), target: place(p.target), ..p })
             .collect();
-        let mut here = Scene::new(bodies, rough(), DOWN).unwrap();
-        let mut there = Scene::of(Model::new(shuffled, vec![rough()], pairs, DOWN).unwrap());
+        let mut here = Scene::new(bodies, rough(1.0, 1.0), DOWN).unwrap();
+        let mut there = Scene::of(Model::new(shuffled, vec![rough(1.0, 1.0)], pairs, DOWN).unwrap());
         here.by(Method::VelocityVerlet).run(&Still, 2e-4, 0.5).unwrap();
         there.by(Method::VelocityVerlet).run(&Still, 2e-4, 0.5).unwrap();
         let mut back = there.state.clone();
@@ -309,7 +309,7 @@ fn the_near_list_sees_a_bar_that_turns_on_the_spot() {
         let mut bar = finely_noded_block("bar", (2.0, 0.1), 40.0, 0.1, pose(0.0, 0.0, 0.0));
         bar.twist.angular = 0.5;
         let ball = disc("ball", 0.1, 20.0, 0.005, Vec2::new(0.6, 0.7));
-        Scene::new(vec![bar, ball], rough(), Vec2::default()).unwrap()
+        Scene::new(vec![bar, ball], rough(1.0, 1.0), Vec2::default()).unwrap()
     };
     assert!(near_list_is_plain(scene, &Still, 3.0));
 }
@@ -319,7 +319,8 @@ fn the_near_list_sees_ground_that_comes_to_a_body_at_rest() {
     let scene = || {
         let wall = Shape::Polygon(Polygon::rectangle(0.2, 2.0, 0.0).unwrap());
         let ball = disc("ball", 0.1, 20.0, 0.005, Vec2::new(1.0, 0.0));
-        Scene::new(vec![ground_of(vec![centered(wall)]), ball], rough(), Vec2::default()).unwrap()
+        Scene::new(vec![ground_of(vec![centered(wall)]), ball], rough(1.0, 1.0), Vec2::default())
+            .unwrap()
     };
     assert!(near_list_is_plain(scene, &Shake::Cruise(0.5), 3.0));
 }
@@ -408,7 +409,7 @@ fn viscous_damping_brings_a_flying_body_to_its_terminal_speed() {
     let mut body = disc("disc", 0.2, 10.0, 0.02, Vec2::new(0.0, 50.0));
     body.twist = Twist { linear: Vec2::new(3.0, 0.0), angular: 5.0 };
     body.damping = Some([[20.0, 0.0, 0.0], [0.0, 40.0, 0.0], [0.0, 0.0, 0.4]]);
-    let mut scene = Scene::new(vec![floor(), body], rough(), DOWN).unwrap();
+    let mut scene = Scene::new(vec![floor(), body], rough(1.0, 1.0), DOWN).unwrap();
     let totals = scene.by(Method::RungeKutta4).run(&Still, 1e-3, 2.0).unwrap();
     let twist = scene.state.twists[1];
     let (fall, mass) = (-10.0 * 9.80665 / 40.0, 10.0);
@@ -430,7 +431,7 @@ fn bodies_that_collide_in_space_keep_momentum_and_angular_momentum() {
     let mut right = disc("right", 0.2, 50.0, 0.02, Vec2::new(0.3, -0.1));
     left.twist = Twist { linear: Vec2::new(3.0, 0.2), angular: 2.0 };
     right.twist = Twist { linear: Vec2::new(-2.0, 0.0), angular: -1.0 };
-    let mut scene = Scene::new(vec![left, right], rough(), Vec2::default()).unwrap();
+    let mut scene = Scene::new(vec![left, right], rough(1.0, 1.0), Vec2::default()).unwrap();
     let momenta = |scene: &Scene| {
         let (mut linear, mut angular) = (Vec2::default(), 0.0);
         for (i, body) in scene.model.bodies().iter().enumerate() {
@@ -453,7 +454,7 @@ fn bodies_that_collide_in_space_keep_momentum_and_angular_momentum() {
 #[test]
 fn constants_per_length_do_not_depend_on_the_spacing_of_nodes() {
     let sunk = |spacing: f64| {
-        let mut law = rough();
+        let mut law = rough(1.0, 1.0);
         law.basis = barrelstack_dynamics::Basis::Length;
         let body = finely_noded_block("block", (0.6, 0.3), 40.0, spacing, pose(0.0, 0.15, 0.0));
         let scene = Scene::new(vec![floor(), body], law, DOWN).unwrap().settled(1e-10).unwrap();

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use barrelstack_dynamics::shape::{BoundaryNode, Circle, HalfPlane, Polygon};
+use barrelstack_dynamics::shape::{BoundaryNode, Circle, Polygon};
 use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::space::Rotation2;
 use barrelstack_dynamics::{
@@ -29,23 +29,12 @@ pub fn centered(shape: Shape) -> Placed<Planar> {
 
 /// The ground with what is fixed to it.
 pub fn ground_of(surfaces: Vec<Placed<Planar>>) -> Body<Planar> {
-    Body {
-        name: "ground".into(),
-        motion: Motion::Prescribed,
-        mass: 1.0,
-        inertia: 1.0,
-        damping: None,
-        pose: pose(0.0, 0.0, 0.0),
-        twist: Twist::default(),
-        surfaces,
-        nodes: vec![],
-        faces: Vec::new(),
-    }
+    Body { surfaces, ..floor() }
 }
 
 /// A level floor at `z = 0`.
 pub fn floor() -> Body<Planar> {
-    ground_of(vec![centered(Shape::HalfPlane(HalfPlane))])
+    Body::ground(0.0)
 }
 
 /// A pose from a position (m) and an angle (rad).
@@ -88,29 +77,18 @@ pub fn rectangle(width: f64, height: f64) -> Polygon {
 
 /// A free rectangular block with sharp corners; nodes are its corners.
 pub fn block(name: &str, size: (f64, f64), mass: f64, pose: Pose<Planar>) -> Body<Planar> {
-    let nodes = fixed(&rectangle(size.0, size.1).corner_nodes());
-    noded_block(name, size, mass, nodes, pose)
+    finely_noded_block(name, size, mass, f64::INFINITY, pose)
 }
 
 /// The same with nodes along its whole boundary, no further apart than `spacing` (m).
 pub fn finely_noded_block(
     name: &str,
-    size: (f64, f64),
+    (width, height): (f64, f64),
     mass: f64,
     spacing: f64,
     pose: Pose<Planar>,
 ) -> Body<Planar> {
-    let nodes = fixed(&Shape::Polygon(rectangle(size.0, size.1)).nodes(spacing));
-    noded_block(name, size, mass, nodes, pose)
-}
-
-fn noded_block(
-    name: &str,
-    (width, height): (f64, f64),
-    mass: f64,
-    nodes: Nodes<Planar>,
-    pose: Pose<Planar>,
-) -> Body<Planar> {
+    let shape = Shape::Polygon(rectangle(width, height));
     Body {
         name: name.into(),
         motion: Motion::Free,
@@ -119,9 +97,9 @@ fn noded_block(
         damping: None,
         pose,
         twist: Twist::default(),
-        nodes: vec![nodes],
+        nodes: vec![fixed(&shape.nodes(spacing))],
         faces: Vec::new(),
-        surfaces: vec![centered(Shape::Polygon(rectangle(width, height)))],
+        surfaces: vec![centered(shape)],
     }
 }
 

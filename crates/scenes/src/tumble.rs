@@ -18,8 +18,9 @@ impl Random {
     }
 }
 
-/// A floor, discs and blocks above it, in a loose heap that falls, turns and collides.
-pub fn bodies(seed: u64, count: usize) -> Vec<Body<Planar>> {
+/// A floor, discs and blocks above it, in a loose heap that falls, turns and collides; blocks with nodes no
+/// further apart than `spacing` (m), at their corners alone where that is infinite.
+pub fn bodies(seed: u64, count: usize, spacing: f64) -> Vec<Body<Planar>> {
     let mut random = Random(seed);
     let mut bodies = vec![floor()];
     for i in 0..count {
@@ -33,7 +34,7 @@ pub fn bodies(seed: u64, count: usize) -> Vec<Body<Planar>> {
             disc(&name, radius, mass, 0.5 * radius * radius, Vec2::new(x, z))
         } else {
             let size = (random.within(0.15, 0.3), random.within(0.1, 0.25));
-            finely_noded_block(&name, size, mass, 0.1, pose(x, z, random.within(-1.0, 1.0)))
+            finely_noded_block(&name, size, mass, spacing, pose(x, z, random.within(-1.0, 1.0)))
         };
         body.twist = Twist {
             linear: Vec2::new(random.within(-1.0, 1.0), random.within(-1.0, 0.0)),
@@ -44,7 +45,11 @@ pub fn bodies(seed: u64, count: usize) -> Vec<Body<Planar>> {
     bodies
 }
 
-/// A speed-gap law and Coulomb friction that go with these bodies.
-pub fn rough() -> Interface<Planar> {
-    interface(NormalLaw::SpeedGap { stiffness: 2.0e5, damping: 600.0 }, coulomb(0.4, 1.5e5, 300.0))
+/// A speed-gap law and Coulomb friction that go with these bodies; `factor` multiplies stiffness, `damping`
+/// the dampers.
+pub fn rough(factor: f64, damping: f64) -> Interface<Planar> {
+    interface(
+        NormalLaw::SpeedGap { stiffness: 2.0e5 * factor, damping: 600.0 * damping },
+        coulomb(0.4, 1.5e5 * factor, 300.0 * damping),
+    )
 }

@@ -6,7 +6,7 @@ use barrelstack_fragility::{
     Dispersion, Fit, Hazard, Interval, Lognormal, Stripe, evidence, fit, profile_band, simulate,
 };
 
-use super::invariances::Random;
+use crate::tumble::Random;
 use crate::{Effort, Failure, Outcome, Problem, Tolerance};
 
 const BAKER: &str = "Baker 2015, eqs. 8 to 11; validation.md 4.11";

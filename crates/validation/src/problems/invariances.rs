@@ -1,11 +1,12 @@
 //! What must hold in every scene: symmetry, similitude, invariance, and books that close.
 
 use barrelstack_dynamics::{
-    Body, ContactPair, Interface, Model, Nodes, NormalLaw, Planar, Shape, State, Still, Twist, Vec2,
+    Body, ContactPair, Model, Nodes, NormalLaw, Planar, Shape, State, Still, Twist, Vec2,
 };
 
 use crate::drive::Shake;
-use crate::scene::{DOWN, Scene, all_pairs, block, coulomb, disc, floor, interface, points, pose};
+use crate::scene::{DOWN, Scene, all_pairs, coulomb, disc, floor, interface, points};
+use crate::tumble::{self, rough};
 use crate::{Effort, Failure, Outcome, Problem, Tolerance};
 
 const SOURCE: &str = "symmetry of mechanics; validation.md 4.9";
@@ -19,52 +20,8 @@ fn seeds(effort: Effort) -> u64 {
     }
 }
 
-/// A small generator (splitmix64), so that a seed gives the same scene on every machine.
-pub(super) struct Random(pub(super) u64);
-
-impl Random {
-    /// A number in a range.
-    pub(super) fn within(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        low + (high - low) * ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
-/// A floor, discs and blocks above it, in a loose heap that falls, turns and collides.
 fn heap(seed: u64) -> Vec<Body<Planar>> {
-    let mut random = Random(seed);
-    let mut bodies = vec![floor()];
-    for i in 0..6 {
-        let (column, row) = (f64::from(i % 3), f64::from(i / 3));
-        let x = 0.55 * (column - 1.0) + random.within(-0.1, 0.1);
-        let z = 0.45 + 0.6 * row + random.within(-0.05, 0.05);
-        let mass = random.within(20.0, 80.0);
-        let name = format!("body {i}");
-        let mut body = if random.within(0.0, 1.0) < 0.5 {
-            let radius = random.within(0.12, 0.2);
-            disc(&name, radius, mass, 0.5 * radius * radius, Vec2::new(x, z))
-        } else {
-            let size = (random.within(0.15, 0.3), random.within(0.1, 0.25));
-            block(&name, size, mass, pose(x, z, random.within(-1.0, 1.0)))
-        };
-        body.twist = Twist {
-            linear: Vec2::new(random.within(-1.0, 1.0), random.within(-1.0, 0.0)),
-            angular: random.within(-2.0, 2.0),
-        };
-        bodies.push(body);
-    }
-    bodies
-}
-
-/// Contact and friction of a heap; `factor` multiplies stiffness, `damping` the dampers.
-fn rough(factor: f64, damping: f64) -> Interface<Planar> {
-    interface(
-        NormalLaw::SpeedGap { stiffness: 2.0e5 * factor, damping: 600.0 * damping },
-        coulomb(0.4, 1.5e5 * factor, 300.0 * damping),
-    )
+    tumble::bodies(seed, 6, f64::INFINITY)
 }
 
 fn shaken(acceleration: f64) -> Shake {

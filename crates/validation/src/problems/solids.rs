@@ -6,8 +6,8 @@ use std::ops::ControlFlow;
 
 use barrelstack_dynamics::shape::{BarrelProfile, Polygon};
 use barrelstack_dynamics::{
-    Body, ContactPair, Counts, FrictionLaw, Model, Motion, Nodes, NormalLaw, Placed, Planar, Pose,
-    Scratch, Shape, State, Still, Twist, Vec2, evaluate,
+    Body, FrictionLaw, Model, Motion, Nodes, NormalLaw, Planar, Pose, Scratch, Shape, State, Still,
+    Twist, Vec2, evaluate,
 };
 
 use super::overlaps;
@@ -188,19 +188,11 @@ fn two(
 ) -> Result<(Model<Planar>, State<Planar>), Failure> {
     let below = solid("below", below, Pose { position: Vec2::default(), orientation: 0.0 });
     let above = solid("above", above, upper);
-    let ground = ground_of(Vec::<Placed<Planar>>::new());
+    let ground = ground_of(vec![]);
     let bodies = if swapped { vec![ground, above, below] } else { vec![ground, below, above] };
-    let pair = |contactor, target| ContactPair {
-        contactor,
-        nodes: 0,
-        target,
-        surface: 0,
-        interface: 0,
-        counts: Counts::Everywhere,
-    };
     let law = NormalLaw::SpeedGap { stiffness: 1e6, damping: 0.0 };
     let laws = vec![interface(law, FrictionLaw::Frictionless)];
-    let model = Model::new(bodies, laws, vec![pair(1, 2), pair(2, 1)], DOWN)?;
+    let model = Model::new(bodies, laws, vec![scene::pair(1, 2), scene::pair(2, 1)], DOWN)?;
     let state = State::initial(&model);
     Ok((model, state))
 }

@@ -9,10 +9,10 @@ use barrelstack_dynamics::math::{cos, exp};
 use crate::drive::Sampled;
 use crate::oracle::Rocker;
 use crate::rocking::RockingBlock;
+use crate::tumble::Random;
 use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
 
 use super::housner::firm;
-use super::invariances::Random;
 
 const SOURCE: &str = "ensembles of maxima, as Bachmann et al. 2018; validation.md 4.8";
 const ALPHA: f64 = 0.25;
