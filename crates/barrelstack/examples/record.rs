@@ -1,4 +1,4 @@
-//! A stack under a record, scaled, with a look at every tenth of a second and its report as a page.
+//! A stack under a record, scaled, with a look at every twentieth of a second and its report as a page.
 #![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
 
 use std::ops::ControlFlow;

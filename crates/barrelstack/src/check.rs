@@ -1,11 +1,7 @@
 //! Is a scenario sound, and does its stack stand before it is shaken?
 
-use barrelstack_dynamics::{Scratch, State};
-
-use crate::assemble::{PartKind, assemble};
-use crate::overlap::check_overlap;
-use crate::rest::at_rest;
-use crate::run::{RunFailure, time_step};
+use crate::assemble::PartKind;
+use crate::run::{RunFailure, Standing, end_time, stand};
 use crate::scenario::Scenario;
 use crate::stick::SoftStick;
 
@@ -28,7 +24,9 @@ impl Checked {
 /// As [`Scenario::run`].
 pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
     let mut lines = vec![scenario.title.clone()];
-    let assembly = assemble(scenario)?;
+    let ground = scenario.ground()?;
+    let end_time = end_time(scenario, &ground, scenario.run.similitude.sqrt())?;
+    let Standing { assembly, state, scratch, settled, step } = stand(scenario, end_time)?;
     let count = |kind| assembly.of_kind(kind).count();
     let counts = [
         (count(PartKind::Barrel), "barrel"),
@@ -45,20 +43,11 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
         })
         .collect();
     lines.push(format!("  bodies        {}", counts.join(", ")));
-    let mut scratch = Scratch::new(&assembly.model);
-    let mut state = State::initial(&assembly.model);
-    check_overlap(&assembly, &state, scenario.run.similitude)?;
-    let step = time_step(scenario, &assembly)?;
     lines.push(format!("  time step     {:.3} ms", 1e3 * step));
-    if scenario.run.settle {
-        let start = state.poses.clone();
-        let settled = at_rest(&assembly, &mut state, &mut scratch)?;
-        let deepest = state
-            .poses
-            .iter()
-            .zip(&start)
-            .map(|(now, before)| before.position.z - now.position.z)
-            .fold(0.0, f64::max);
+    if let Some(settled) = settled {
+        let sunk = assembly.model.bodies().iter().zip(&state.poses);
+        let deepest =
+            sunk.map(|(body, now)| body.pose.position.z - now.position.z).fold(0.0, f64::max);
         lines.push(format!(
             "  at rest       after {} steps, deepest sinking {:.1} mm, forces balanced to {:.0e} of \
              gravity",
@@ -75,7 +64,6 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
             locked.slipping
         ));
     }
-    let ground = scenario.ground()?;
     if let Some(motion) = &ground.motion {
         lines.push(format!(
             "  motion        {}: {:.2} s, PGA {:.3} g, PGV {:.1} cm/s, PGD {:.1} cm",

@@ -105,7 +105,7 @@ pub enum RunFailure {
 
 /// Share of the energy that went through, missing from the books, above which a run is invalid.
 ///
-/// A hundred times what leads to a warning, and a thousand times what a sound step leaves open.
+/// A hundred times what leads to a warning, and two thousand times what a sound step leaves open.
 const BOOKS_BROKEN: f64 = 0.1;
 
 /// Time (s) of a motion that is left at the end of a run which counts as cut short.
@@ -256,7 +256,7 @@ pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunF
     check_overlap(&assembly, &state, scenario.run.similitude)?;
     let step = time_step(scenario, &assembly)?;
     check_length(end_time, step)?;
-    let settled = if scenario.run.settle {
+    let mut settled = if scenario.run.settle {
         Some(at_rest(&assembly, &mut state, &mut scratch)?)
     } else {
         barrelstack_dynamics::evaluate(&assembly.model, &state, &mut scratch);
@@ -266,7 +266,9 @@ pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunF
     let strained = |element: &Element<Planar>| element.load(&state).force != 0.0;
     if scenario.run.settle && assembly.model.elements().iter().any(strained) {
         // Elements that bear something from the start press the stack together.
-        at_rest(&assembly, &mut state, &mut scratch)?;
+        let before = settled.map_or(0, |settled| settled.steps);
+        let again = at_rest(&assembly, &mut state, &mut scratch)?;
+        settled = Some(Settled { steps: before + again.steps, ..again });
     }
     if matches!(scenario.scene, Scene::Free(_)) {
         // Equilibrium is that of the places; what the scenario sets in motion starts from there.

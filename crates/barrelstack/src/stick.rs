@@ -8,7 +8,7 @@
 use std::fmt;
 
 use barrelstack_dynamics::forces::tributary_length;
-use barrelstack_dynamics::{Basis, FrictionLaw, Interface, Planar, Scratch};
+use barrelstack_dynamics::{FrictionLaw, Interface, Planar, Scratch};
 use barrelstack_motion::GroundMotion;
 
 use crate::assemble::Assembly;
@@ -41,10 +41,8 @@ impl SoftStick {
         for contact in &rest.contacts {
             let pair = &model.pairs()[contact.pair];
             let interface = &model.interfaces()[pair.interface];
-            let weight = match interface.basis {
-                Basis::Node => 1.0,
-                Basis::Length => tributary_length(model, pair, contact.node as usize),
-            };
+            let length = tributary_length(model, pair, contact.node as usize);
+            let weight = interface.basis.weight(length);
             let stiffness = interface.friction.stick_stiffness() * weight;
             if let FrictionLaw::Coulomb { static_coefficient, .. } = interface.friction {
                 sums[pair.interface].0 += static_coefficient * contact.normal_force;

@@ -14,7 +14,7 @@ use crate::assemble::PartKind;
 use crate::pool;
 use crate::run::{Progress, Run, RunFailure};
 use crate::scenario::{
-    Basis, BodyOverride, Method, Nodes, Scenario, Scene, StackBody, StackSpec, View,
+    Basis, BodyOverride, Method, Nodes, Scenario, Scene, SeatContact, StackBody, StackSpec, View,
 };
 use crate::summary::{OutcomeSummary, Summary};
 
@@ -159,16 +159,12 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
     let mut finer = scenario.clone();
     match &mut finer.scene {
         Scene::Stack { stack, .. } => {
-            let laws = &stack.interfaces;
-            let all = [
-                laws.rack_ground,
-                laws.barrel_rack,
-                laws.barrel_barrel,
-                laws.barrel_ground,
-                laws.rack_rack,
-            ];
-            if all.iter().any(|interface| interface.basis == Basis::Node) {
+            let seats = [stack.interfaces.rack_ground, stack.interfaces.barrel_rack];
+            if seats.iter().any(|interface| interface.basis == Basis::Node) {
                 return Err(PER_NODE.into());
+            }
+            if stack.rack.contact != SeatContact::Nodes {
+                return Err("no rack carries nodes along its faces".into());
             }
             if stack.view == View::Transverse {
                 return Err(

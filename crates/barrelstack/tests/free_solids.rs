@@ -128,3 +128,26 @@ fn a_part_is_no_compound_itself() {
     println!("{error}");
     assert!(error.contains("compound") && error.contains("rectangle"), "{error}");
 }
+
+#[test]
+fn a_restitution_holds_for_its_speed_under_the_law_of_hunt_and_crossley() {
+    let speed = (2.0 * 9.80665_f64 * 1.0).sqrt();
+    let text = format!(
+        "schema = 1\ntitle = \"bounce\"\nkind = \"free\"\n\
+         [[body]]\nname = \"disc\"\nshape = {{ type = \"circle\", radius = \"0.35 m\" }}\nmass = \"270 kg\"\n\
+         position = [\"0 m\", \"1.35 m\"]\nnodes = \"rolling\"\n\
+         [[interface]]\nbetween = [\"disc\", \"ground\"]\nlaw = \"hunt-crossley\"\n\
+         stiffness = \"500000 MN/m^1.5\"\nrestitution = 0.4\nreference_speed = \"{speed} m/s\"\n\
+         friction = {{ law = \"none\" }}\n[run]\nduration = \"0.8 s\"\nsettle = false\n\
+         [record]\nframe_rate = \"2 kHz\"\n"
+    );
+    let run = run(&Scenario::parse("bounce", &text, &[]).unwrap());
+    // It falls from 1 m and rises to e² of that.
+    let struck = (2.0 / 9.80665_f64).sqrt();
+    let frames = &run.recording.frames;
+    let risen =
+        frames.times.iter().zip(frames.all_poses()).filter(|(time, _)| **time > struck + 0.05);
+    let top = risen.map(|(_, poses)| poses[1].position.z - 0.35).fold(0.0, f64::max);
+    println!("rises to {top} m");
+    assert!((top / 0.16 - 1.0).abs() < 5e-3, "{top}");
+}

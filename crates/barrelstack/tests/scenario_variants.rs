@@ -55,7 +55,7 @@ fn normal_laws() {
             Basis::Node,
             NormalLaw::SpeedGap {
                 stiffness: 980e3,
-                damping: Damping::Restitution { restitution: 0.8, reference_mass: 136.077_711 },
+                damping: Damping::Restitution { restitution: 0.8, reference: 136.077_711 },
             }
         )
     );
@@ -65,17 +65,31 @@ fn normal_laws() {
             Basis::Length,
             NormalLaw::SpeedGap {
                 stiffness: 98e6,
-                damping: Damping::Restitution { restitution: 1.0, reference_mass: 500.0 },
+                damping: Damping::Restitution { restitution: 1.0, reference: 500.0 },
             }
         )
     );
     assert_eq!(
         normal(&["law=hunt-crossley", "stiffness=1 MN/m^1.5", "damping=0.5 s/m"]),
-        (Basis::Node, NormalLaw::HuntCrossley { stiffness: 1e6, exponent: 1.5, damping: 0.5 })
+        (Basis::Node, NormalLaw::HuntCrossley { stiffness: 1e6, exponent: 1.5, damping: c(0.5) })
+    );
+    assert_eq!(
+        normal(&[
+            "law=hunt-crossley",
+            "stiffness=1 MN/m^1.5",
+            "restitution=0.4",
+            "reference_speed=3 m/s"
+        ])
+        .1,
+        NormalLaw::HuntCrossley {
+            stiffness: 1e6,
+            exponent: 1.5,
+            damping: Damping::Restitution { restitution: 0.4, reference: 3.0 }
+        }
     );
     assert_eq!(
         normal(&["law=hunt-crossley", "exponent=1", "stiffness=1 MN/m", "damping=0.5 s/m"]),
-        (Basis::Node, NormalLaw::HuntCrossley { stiffness: 1e6, exponent: 1.0, damping: 0.5 })
+        (Basis::Node, NormalLaw::HuntCrossley { stiffness: 1e6, exponent: 1.0, damping: c(0.5) })
     );
     assert_eq!(
         normal(&["law=hertz", "basis=length", "stiffness=1 MN/m^2.5"]),

@@ -1,8 +1,8 @@
 //! A rigid body: mass, surfaces that can be touched, and nodes that touch.
 
 use crate::real::Real;
-use crate::shape::Surface;
-use crate::space::{Pose, Space, Twist};
+use crate::shape::{HalfPlane, Shape, Surface};
+use crate::space::{Planar, Pose, Rotation2, Space, Twist, Vec2};
 
 /// Index of a body in its model.
 pub type BodyId = usize;
@@ -70,13 +70,17 @@ pub struct Round<S: Space> {
 /// A flat piece of boundary that carries nodes, as a plane in the body frame.
 ///
 /// Where nodes and the exact test would both see a contact, the plane decides: against a round body
-/// whose center lies before it the nodes count, against one behind it the exact test.
+/// whose center lies before it the nodes count, against one behind it the exact test. Against a body that is
+/// not round, whose edges may reach beside the face, the direction of a contact decides as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face<S: Space> {
     /// A point of it (m), from the center of mass.
     pub point: S::Vector,
     /// Unit normal out of the body.
     pub outward: S::Vector,
+    /// Cosine of the angle from `outward` up to which a contact's normal out of the body is one of the face;
+    /// below -1 where every direction is.
+    pub widest: S::Real,
 }
 
 /// What of a boundary touches others.
@@ -96,6 +100,17 @@ pub enum Nodes<S: Space> {
         /// Length of boundary (m) that the node stands for.
         tributary_length: S::Real,
     },
+}
+
+impl<S: Space> Nodes<S> {
+    /// How many nodes there are.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Fixed(nodes) => nodes.len(),
+            Self::Rounds(rounds) => rounds.len(),
+            Self::Rolling { .. } => 1,
+        }
+    }
 }
 
 /// A rigid body.
@@ -121,6 +136,30 @@ pub struct Body<S: Space> {
     pub nodes: Vec<Nodes<S>>,
     /// Flat pieces that carry nodes where others are tested exactly.
     pub faces: Vec<Face<S>>,
+}
+
+impl Body<Planar> {
+    /// The ground: a half-plane below its origin, turned by an angle (rad).
+    pub fn ground(orientation: f64) -> Self {
+        let floor = Placed {
+            surface: Shape::HalfPlane(HalfPlane),
+            offset: Vec2::default(),
+            rotation: Rotation2::identity(),
+        };
+        Self {
+            name: "ground".into(),
+            motion: Motion::Prescribed,
+            // No force moves it.
+            mass: 1.0,
+            inertia: 1.0,
+            damping: None,
+            pose: Pose { position: Vec2::default(), orientation },
+            twist: Twist::default(),
+            surfaces: vec![floor],
+            nodes: Vec::new(),
+            faces: Vec::new(),
+        }
+    }
 }
 
 impl<S: Space> Body<S> {

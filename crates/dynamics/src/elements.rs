@@ -7,7 +7,7 @@
 //! in the same order, with the same bits.
 
 use crate::body::{Body, Motion, Nodes};
-use crate::contact::{Basis, Stick};
+use crate::contact::Stick;
 use crate::lanes::Lanewise;
 use crate::model::{ContactPair, Counts, Model};
 use crate::real::{Mask, Real};
@@ -254,7 +254,10 @@ impl<S: Space> Elements<S> {
         let undecided = frame.before(model, pair).is_none_or(|before| {
             let margin = S::Real::splat(margin);
             match pair.counts {
-                Counts::BehindFace(_) | Counts::BehindFaceOfTarget(_) => before.lt(margin).any(),
+                Counts::BehindFace(_) | Counts::BehindFaceOfTarget(_) => {
+                    before.lt(margin).any()
+                        || !frame.at_face(model, pair).is_some_and(|f| f.never())
+                }
                 Counts::Everywhere | Counts::BeforeFace(_) => (-margin).lt(before).any(),
             }
         });
@@ -262,10 +265,6 @@ impl<S: Space> Elements<S> {
             return;
         }
         let basis = model.interfaces[pair.interface].basis;
-        let weight = |tributary_length| match basis {
-            Basis::Node => S::Real::splat(1.0),
-            Basis::Length => tributary_length,
-        };
         match model.pair_nodes(pair) {
             Nodes::Fixed(nodes) => {
                 let reach = S::Real::splat(model.reach[pair.contactor]);
@@ -277,7 +276,7 @@ impl<S: Space> Elements<S> {
                     {
                         self.nodes.push(u32::try_from(index).unwrap_or(u32::MAX));
                         self.positions.push(node.position);
-                        self.weights.push(weight(node.tributary_length));
+                        self.weights.push(basis.weight(node.tributary_length));
                     }
                 }
             }
@@ -286,7 +285,7 @@ impl<S: Space> Elements<S> {
                     if self.near(surface, frame.to_surface(round.center), round.radius, margin) {
                         self.nodes.push(u32::try_from(index).unwrap_or(u32::MAX));
                         self.positions.push(round.center);
-                        self.weights.push(weight(round.tributary_length));
+                        self.weights.push(basis.weight(round.tributary_length));
                     }
                 }
             }
@@ -294,7 +293,7 @@ impl<S: Space> Elements<S> {
                 if self.near(surface, frame.to_surface(*center), *radius, margin) {
                     self.nodes.push(0);
                     self.positions.push(*center);
-                    self.weights.push(weight(*tributary_length));
+                    self.weights.push(basis.weight(*tributary_length));
                 }
             }
         }
@@ -382,6 +381,34 @@ pub(crate) struct PairFrame<S: Space> {
     placed: S::Rotation,
 }
 
+/// Whether a contact belongs to a face that carries nodes, and whether this pair is the one of its nodes.
+#[derive(Clone, Copy)]
+pub(crate) struct AtFace<S: Space> {
+    /// The other body lies before the face.
+    before: <S::Real as Real>::Mask,
+    /// The face's outward normal as a contact's normal in the frame of the target's surface.
+    out: S::Vector,
+    /// [`Face::widest`](crate::body::Face::widest).
+    widest: S::Real,
+    of_nodes: bool,
+}
+
+impl<S: Space> AtFace<S> {
+    /// Whether no contact can count.
+    #[inline(always)]
+    pub(crate) fn never(&self) -> bool {
+        let all = S::Real::splat(-1.0);
+        if self.of_nodes { !self.before.any() } else { (self.before & self.widest.lt(all)).all() }
+    }
+
+    /// Where a contact with this normal counts.
+    #[inline(always)]
+    pub(crate) fn counts(&self, normal: S::Vector) -> <S::Real as Real>::Mask {
+        let of_face = self.before & self.widest.le(normal.dot(self.out));
+        if self.of_nodes { of_face } else { !of_face }
+    }
+}
+
 impl<S: Space> PairFrame<S> {
     #[inline(always)]
     pub(crate) fn new(
@@ -419,6 +446,26 @@ impl<S: Space> PairFrame<S> {
             }
         };
         Some((other - face.point).dot(face.outward))
+    }
+
+    /// Where the contacts of a pair count by the face that decides; none where they count everywhere.
+    #[inline(always)]
+    pub(crate) fn at_face(&self, model: &Model<S>, pair: &ContactPair) -> Option<AtFace<S>> {
+        let before = S::Real::zero().lt(self.before(model, pair)?);
+        let (face, out, of_nodes) = match pair.counts {
+            Counts::Everywhere => return None,
+            Counts::BeforeFace(face) | Counts::BehindFace(face) => {
+                let face = &model.bodies[pair.contactor].faces[face];
+                // What points out of the contactor points into the target.
+                let out = -S::rotate(self.relative, face.outward);
+                (face, out, matches!(pair.counts, Counts::BeforeFace(_)))
+            }
+            Counts::BehindFaceOfTarget(face) => {
+                let face = &model.bodies[pair.target].faces[face];
+                (face, S::unrotate(self.placed, face.outward), false)
+            }
+        };
+        Some(AtFace { before, out, widest: face.widest, of_nodes })
     }
 
     /// A direction of the surface's frame, in the contactor's body frame.

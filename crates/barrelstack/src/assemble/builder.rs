@@ -1,10 +1,8 @@
 //! The parts list of a stack: bodies in order, each a compound of convex solids, scaled.
 
-use barrelstack_dynamics::shape::HalfPlane;
-use barrelstack_dynamics::space::Rotation2;
-use barrelstack_dynamics::{Body, BodyId, Motion, Nodes, Placed, Planar, Pose, Shape, Twist, Vec2};
+use barrelstack_dynamics::{Body, BodyId, Motion, Nodes, Planar, Pose, Shape, Twist, Vec2};
 
-use super::solid::{Solid, Touch, uniform};
+use super::solid::{Seat, Solid, Touch, uniform};
 use super::{Part, PartKind, Similitude, outline_of};
 use crate::scenario::{BodyOverride, StackBody, StackSpec};
 
@@ -34,8 +32,6 @@ pub(super) struct Draft {
     /// A length that tells its size (m).
     pub(super) size: f64,
     pub(super) solids: Vec<Solid>,
-    /// Length of boundary (m) that an exact contact stands for.
-    pub(super) tributary: f64,
     pub(super) carrier: Option<BodyId>,
     pub(super) supports: Vec<BodyId>,
 }
@@ -43,33 +39,8 @@ pub(super) struct Draft {
 impl<'a> Builder<'a> {
     /// A stack of nothing but the ground.
     pub(super) fn new(spec: &'a StackSpec, scale: Similitude) -> Self {
-        let ground = Body {
-            name: "ground".into(),
-            motion: Motion::Prescribed,
-            mass: 1.0,
-            inertia: 1.0,
-            damping: None,
-            pose: Pose { position: Vec2::default(), orientation: 0.0 },
-            twist: Twist::default(),
-            surfaces: vec![Placed {
-                surface: Shape::HalfPlane(HalfPlane),
-                offset: Vec2::default(),
-                rotation: Rotation2::identity(),
-            }],
-            nodes: Vec::new(),
-            faces: Vec::new(),
-        };
-        let part = Part {
-            name: "ground".into(),
-            kind: PartKind::Ground,
-            level: None,
-            column: None,
-            carrier: None,
-            supports: Vec::new(),
-            size: 0.0,
-            outlines: vec![super::floor()],
-        };
-        Self { spec, scale, bodies: vec![ground], parts: vec![part], touches: vec![Vec::new()] }
+        let (bodies, parts) = (vec![Body::ground(0.0)], vec![Part::ground()]);
+        Self { spec, scale, bodies, parts, touches: vec![Vec::new()] }
     }
 
     /// Adds a body, scaled; returns its id.
@@ -93,7 +64,7 @@ impl<'a> Builder<'a> {
             nodes: Vec::new(),
             faces: Vec::new(),
         };
-        let add = |solid: Solid| solid.add_to(&mut body, center, length, draft.tributary);
+        let add = |solid: Solid| solid.add_to(&mut body, center, length);
         let touches = draft.solids.into_iter().map(add).collect();
         let outlines = body.surfaces.iter().map(outline_of);
         self.parts.push(Part {
@@ -111,8 +82,60 @@ impl<'a> Builder<'a> {
         self.bodies.len() - 1
     }
 
+    /// Name, mass (kg) and offset (m) of a rack with what the scenario changes of it.
+    pub(super) fn rack_at(&self, level: u32, column: u32) -> (String, f64, f64) {
+        let mut mass = self.spec.rack.mass;
+        let mut offset = 0.0;
+        for change in self.overrides(StackBody::Rack, level, column) {
+            mass = change.mass.unwrap_or(mass);
+            offset += change.offset_x;
+        }
+        let name = if self.spec.racks_per_level() == 1 {
+            format!("R{level}")
+        } else {
+            format!("R{level}.{column}")
+        };
+        (name, mass, offset)
+    }
+
+    /// Adds the barrels of one shape and size (m) that the rack of a column carries at places along it (m),
+    /// counted from `origin` (m); returns their ids.
+    pub(super) fn add_barrels(
+        &mut self,
+        carrier: BodyId,
+        (level, column): (u32, u32),
+        (origin, places): (Vec2, &[f64]),
+        (shape, size): (&Shape, f64),
+    ) -> Vec<BodyId> {
+        let spec = self.spec;
+        let first = (column - 1) * u32::try_from(places.len()).unwrap_or(0) + 1;
+        let mut barrels = Vec::new();
+        for (column, place) in (first..).zip(places) {
+            let mut barrel = spec.barrel.clone();
+            let mut offset = 0.0;
+            for change in self.overrides(StackBody::Barrel, level, column) {
+                barrel = barrel.altered(change.mass, change.fill);
+                offset += change.offset_x;
+            }
+            barrels.push(self.add(Draft {
+                name: format!("B{level}.{column}"),
+                kind: PartKind::Barrel,
+                level,
+                column,
+                mass: barrel.mass,
+                inertia: Some(barrel.inertia(spec.view)),
+                position: Vec2::new(origin.x + place + offset, origin.z),
+                size,
+                solids: vec![Solid::exact(shape.clone(), Vec2::default(), Seat::None)],
+                carrier: Some(carrier),
+                supports: Vec::new(),
+            }));
+        }
+        barrels
+    }
+
     /// What the scenario changes at one place, later entries last.
-    pub(super) fn overrides(
+    fn overrides(
         &self,
         body: StackBody,
         level: u32,

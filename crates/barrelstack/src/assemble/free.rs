@@ -1,7 +1,7 @@
 //! A free scene: any planar bodies on a ground.
 
-use barrelstack_dynamics::shape::{BarrelProfile, Circle, Cradle, HalfPlane, Polygon};
-use barrelstack_dynamics::space::{Rotation2, Space};
+use barrelstack_dynamics::shape::{BarrelProfile, Circle, Cradle, Polygon};
+use barrelstack_dynamics::space::Space;
 use barrelstack_dynamics::{
     Body, BodyId, ContactPair, Counts, Model, Motion, Node, Nodes, Placed, Planar, Pose, Shape,
     Twist, Vec2,
@@ -17,9 +17,8 @@ pub(super) fn assemble(
     gravity: f64,
     scale: Similitude,
 ) -> Result<Assembly, AssembleError> {
-    let mut bodies = vec![ground(scene)];
-    let mut parts = vec![part("ground", PartKind::Ground, 0.0)];
-    parts[0].outlines = vec![super::floor()];
+    let mut bodies = vec![Body::ground(scene.ground.slope)];
+    let mut parts = vec![Part::ground()];
     let mut kinds = vec![scene.ground.kind.as_str()];
     for body in &scene.bodies {
         let (body_of_model, part) = free_body(body, scale)?;
@@ -31,17 +30,6 @@ pub(super) fn assemble(
     let mut interfaces = Vec::new();
     for (index, law) in scene.interfaces.iter().enumerate() {
         let [contactor_kind, target_kind] = &law.between;
-        for kind in [contactor_kind, target_kind] {
-            if !kinds.contains(&kind.as_str()) {
-                let mut known: Vec<&str> = kinds.clone();
-                known.dedup();
-                return Err(AssembleError::UnknownKind {
-                    index: index + 1,
-                    kind: kind.clone(),
-                    kinds: known.join(", "),
-                });
-            }
-        }
         join(&bodies, &kinds, [contactor_kind.as_str(), target_kind.as_str()], index, &mut pairs);
         let name = format!("{contactor_kind}-{target_kind}");
         interfaces.push(interface(&name, &law.law, 1.0, scale));
@@ -74,10 +62,7 @@ fn join(
         |kind: &str| -> Vec<BodyId> { (0..bodies.len()).filter(|i| kinds[*i] == kind).collect() };
     let mut add = |contactor: BodyId, nodes: usize, target: BodyId, surface: usize| {
         let counts = Counts::Everywhere;
-        let pair = ContactPair { contactor, nodes, target, surface, interface, counts };
-        if !pairs.contains(&pair) {
-            pairs.push(pair);
-        }
+        pairs.push(ContactPair { contactor, nodes, target, surface, interface, counts });
     };
     for contactor in of(between[0]) {
         for target in of(between[1]) {
@@ -109,44 +94,12 @@ fn join(
     }
 }
 
-fn ground(scene: &FreeScene) -> Body<Planar> {
-    Body {
-        name: "ground".into(),
-        motion: Motion::Prescribed,
-        mass: 1.0,
-        inertia: 1.0,
-        damping: None,
-        pose: Pose { position: Vec2::default(), orientation: scene.ground.slope },
-        twist: Twist::default(),
-        surfaces: vec![Placed {
-            surface: Shape::HalfPlane(HalfPlane),
-            offset: Vec2::default(),
-            rotation: Rotation2::identity(),
-        }],
-        nodes: Vec::new(),
-        faces: Vec::new(),
-    }
-}
-
-fn part(name: &str, kind: PartKind, size: f64) -> Part {
-    Part {
-        name: name.to_owned(),
-        kind,
-        level: None,
-        column: None,
-        carrier: None,
-        supports: Vec::new(),
-        size,
-        outlines: Vec::new(),
-    }
-}
-
 fn free_body(body: &FreeBody, scale: Similitude) -> Result<(Body<Planar>, Part), AssembleError> {
     let length = scale.length;
     let vector = |v: [f64; 2]| Vec2::new(v[0], v[1]) * length;
     let center = vector(body.center_of_mass);
     let rotation = <Planar as Space>::rotation(body.angle);
-    let mut part = part(&body.name, PartKind::Body, 0.0);
+    let mut part = Part::alone(&body.name, PartKind::Body);
     let (mut surfaces, mut node_sets) = (Vec::new(), Vec::new());
     for piece in body.shape.parts() {
         let surface = shape(&body.name, &piece.shape, length)?;
@@ -230,7 +183,7 @@ fn nodes(rule: &scenario::Nodes, placed: &Placed<Planar>, length: f64) -> Option
     let boundary = match (rule, shape) {
         (scenario::Nodes::At(_), _) => return None,
         (scenario::Nodes::Exact, _) | (scenario::Nodes::Rolling, Shape::Circle(_)) => {
-            return Some(super::solid::boundary(placed, TRIBUTARY * length));
+            return Some(super::solid::boundary(placed, length));
         }
         (scenario::Nodes::Corners, Shape::Polygon(polygon)) => polygon.corner_nodes(),
         (scenario::Nodes::Spacing(spacing), _) => shape.nodes(spacing * length),
@@ -255,9 +208,6 @@ fn nodes(rule: &scenario::Nodes, placed: &Placed<Planar>, length: f64) -> Option
     };
     Some(Nodes::Fixed(boundary.into_iter().map(node).collect()))
 }
-
-/// The length (m) of boundary that a contact without nodes stands for, at full scale.
-const TRIBUTARY: f64 = 0.01;
 
 /// The length (m) of a shape's boundary.
 fn boundary_length(shape: &Shape) -> f64 {

@@ -56,10 +56,10 @@ fn normal(law: &scenario::NormalLaw, basis: Basis, scale: Similitude) -> NormalL
     let damp = |k: f64, damping: &scenario::Damping, invert: fn(f64) -> Option<f64>| {
         let full = match *damping {
             scenario::Damping::Coefficient(c) => c,
-            scenario::Damping::Restitution { restitution: e, reference_mass } => {
+            scenario::Damping::Restitution { restitution: e, reference: mass } => {
                 // A restitution of exactly 1 has no damping; the scenario admits only (0, 1].
                 let ratio = invert(e).unwrap_or(0.0);
-                restitution::damping(k, ratio, reference_mass)
+                restitution::damping(k, ratio, mass)
             }
         };
         full * scale.damping(per_length)
@@ -74,9 +74,15 @@ fn normal(law: &scenario::NormalLaw, basis: Basis, scale: Similitude) -> NormalL
             damping: damp(*stiffness, damping, restitution::kelvin_voigt_damping_ratio),
         },
         scenario::NormalLaw::HuntCrossley { stiffness, exponent, damping } => {
+            let full = match *damping {
+                scenario::Damping::Coefficient(d) => d,
+                scenario::Damping::Restitution { restitution: e, reference: speed } => {
+                    restitution::hunt_crossley_dissipation(e, speed).unwrap_or(0.0)
+                }
+            };
             NormalLaw::HuntCrossley {
                 stiffness: stiff(*stiffness, *exponent),
-                dissipation: damping / scale.time(),
+                dissipation: full / scale.time(),
                 exponent: if *exponent == 1.0 { Exponent::Linear } else { Exponent::Hertzian },
             }
         }

@@ -12,10 +12,14 @@ use super::builder::{Builder, Draft};
 use super::solid::{Seat, Solid, row};
 use super::transverse::TUBE_CORNER;
 use super::{AssembleError, PartKind};
-use crate::scenario::{Rack, RackKind, SeatContact, StackBody, View};
+use crate::scenario::{Rack, RackKind, SeatContact};
 
 /// Radius (m) of the round of a barrel's chime: an assumption.
 const CHIME_RADIUS: f64 = 0.01;
+
+/// Cosine of the angle (73°) to a rail's seat up to which the nodes of the seat bear; what touches the rail
+/// more from the side, as the chime of a barrel that has slid off does, is tested exactly.
+const WIDEST: f64 = 0.3;
 
 /// Builds all levels; returns the height of the stack and the reach of a rack on its barrels (m).
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
@@ -85,19 +89,9 @@ fn add_rack(
     let places: Vec<f64> =
         (0..deep).map(|i| (f64::from(i) - 0.5 * f64::from(deep - 1)) * pitch).collect();
 
-    let mut mass = rack.mass;
-    let mut offset = 0.0;
-    for change in builder.overrides(StackBody::Rack, level, column) {
-        mass = change.mass.unwrap_or(mass);
-        offset += change.offset_x;
-    }
+    let (name, mass, offset) = builder.rack_at(level, column);
     let mass = mass / f64::from(rack.barrels);
     let half_width = places.last().copied().unwrap_or(0.0) + rack.rail_half_spacing;
-    let name = if spec.racks_per_level() == 1 {
-        format!("R{level}")
-    } else {
-        format!("R{level}.{column}")
-    };
     let tube = Polygon::rectangle(rack.rail_width, rack.clearance, corner_of(rack)).map_err(
         |problem| AssembleError::Shape { body: name.clone(), problem: problem.to_string() },
     )?;
@@ -105,6 +99,7 @@ fn add_rack(
         let at = Vec2::new(x, 0.5 * rack.clearance);
         let mut rail = Solid::exact(Shape::Polygon(tube.clone()), at, Seat::Along(barrel));
         if rack.contact == SeatContact::Nodes {
+            rail.widest = WIDEST;
             rail.below = noded_face(rack, x, 0.0, -1.0);
             rail.above = noded_face(rack, x, rack.clearance, 1.0);
         }
@@ -123,40 +118,14 @@ fn add_rack(
         position: Vec2::new(underside.x + offset, underside.z),
         size: half_width,
         solids: rails.map(rail).collect(),
-        tributary: rack.node_spacing,
         carrier: None,
         supports,
     });
 
-    let mut barrels = Vec::new();
-    for (i, place) in places.iter().enumerate() {
-        let barrel_column = (column - 1) * deep + u32::try_from(i).unwrap_or(0) + 1;
-        let mut barrel = spec.barrel.clone();
-        let mut offset_x = 0.0;
-        for change in builder.overrides(StackBody::Barrel, level, barrel_column) {
-            barrel = barrel.altered(change.mass, change.fill);
-            offset_x += change.offset_x;
-        }
-        let shape = Shape::BarrelProfile(*profile);
-        barrels.push(builder.add(Draft {
-            name: format!("B{level}.{barrel_column}"),
-            kind: PartKind::Barrel,
-            level,
-            column: barrel_column,
-            mass: barrel.mass,
-            inertia: Some(barrel.inertia(View::Longitudinal)),
-            position: Vec2::new(
-                underside.x + offset + place + offset_x,
-                underside.z + rack.clearance + seat,
-            ),
-            size: profile.bilge_radius,
-            solids: vec![Solid::exact(shape, Vec2::default(), Seat::None)],
-            tributary: rack.node_spacing,
-            carrier: Some(rack_id),
-            supports: Vec::new(),
-        }));
-    }
-    Ok(barrels)
+    let origin = Vec2::new(underside.x + offset, underside.z + rack.clearance + seat);
+    let shape = Shape::BarrelProfile(*profile);
+    let at = (level, column);
+    Ok(builder.add_barrels(rack_id, at, (origin, &places), (&shape, profile.bilge_radius)))
 }
 
 /// Nodes of the lower or upper face of a rail about `x` (m) at height `z` (m): along its flat part, and one

@@ -72,6 +72,29 @@ pub struct Part {
     pub outlines: Vec<Outline>,
 }
 
+impl Part {
+    /// What belongs to no stack.
+    fn alone(name: &str, kind: PartKind) -> Self {
+        Self {
+            name: name.to_owned(),
+            kind,
+            level: None,
+            column: None,
+            carrier: None,
+            supports: Vec::new(),
+            size: 0.0,
+            outlines: Vec::new(),
+        }
+    }
+
+    /// The ground, drawn as a line longer than any picture is wide.
+    fn ground() -> Self {
+        let points = vec![Vec2::new(-100.0, 0.0), Vec2::new(100.0, 0.0)];
+        let outlines = vec![Outline { points, closed: false }];
+        Self { outlines, ..Self::alone("ground", PartKind::Ground) }
+    }
+}
+
 /// A model and the meaning of its bodies.
 #[derive(Clone, Debug)]
 pub struct Assembly {
@@ -132,19 +155,6 @@ pub enum AssembleError {
         /// How deep (m).
         depth: f64,
     },
-    /// An interface between kinds that no body has.
-    #[error(
-        "interface {index} is between \"{kind}\" and another kind, but no body is of kind \
-         \"{kind}\" (kinds: {kinds})"
-    )]
-    UnknownKind {
-        /// Which interface, counted from 1.
-        index: usize,
-        /// The kind that is missing.
-        kind: String,
-        /// The kinds there are.
-        kinds: String,
-    },
     /// A stack that cannot stand as described.
     #[error("{0}")]
     Stack(String),
@@ -167,9 +177,4 @@ fn outline_of(placed: &Placed<Planar>) -> Outline {
     let (points, closed) = placed.surface.outline();
     let at = |point| placed.offset + placed.rotation.apply(point);
     Outline { points: points.into_iter().map(at).collect(), closed }
-}
-
-/// The line that shows the ground, longer than any picture is wide.
-fn floor() -> Outline {
-    Outline { points: vec![Vec2::new(-100.0, 0.0), Vec2::new(100.0, 0.0)], closed: false }
 }

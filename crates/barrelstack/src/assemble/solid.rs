@@ -16,6 +16,9 @@ pub(super) struct Solid {
     pub(super) below: Vec<(Vec2, f64)>,
     /// The same along its flat top.
     pub(super) above: Vec<(Vec2, f64)>,
+    /// Cosine of the angle to its faces with nodes up to which a contact is one of the face: see
+    /// [`Face::widest`].
+    pub(super) widest: f64,
 }
 
 /// What a solid is there to bear.
@@ -69,28 +72,24 @@ pub(super) struct NodedFace {
     pub(super) face: usize,
 }
 
+/// Below any cosine: what a face bears is round, and where its center lies says all.
+const ROUND: f64 = -2.0;
+
 /// How near (m) to a face a round piece lies that is an end of it.
 const AT_END: f64 = 1e-9;
 
 impl Solid {
     /// A solid that is tested exactly all around.
     pub(super) fn exact(shape: Shape, offset: Vec2, seat: Seat) -> Self {
-        Self { shape, offset, seat, below: Vec::new(), above: Vec::new() }
+        Self { shape, offset, seat, below: Vec::new(), above: Vec::new(), widest: ROUND }
     }
 
-    /// Adds itself to a body whose center of mass is at `center` (m) of the draft, scaled by `length`;
-    /// its contacts stand for `tributary` (m) of boundary.
-    pub(super) fn add_to(
-        self,
-        body: &mut Body<Planar>,
-        center: Vec2,
-        length: f64,
-        tributary: f64,
-    ) -> Touch {
+    /// Adds itself to a body whose center of mass is at `center` (m) of the draft, scaled by `length`.
+    pub(super) fn add_to(self, body: &mut Body<Planar>, center: Vec2, length: f64) -> Touch {
         let shape = scaled(self.shape, length);
         let offset = (self.offset - center) * length;
         let placed = Placed { surface: shape, offset, rotation: Rotation2::identity() };
-        let exact = add(body, boundary(&placed, tributary * length));
+        let exact = add(body, boundary(&placed, length));
         let mut face = |nodes: &[(Vec2, f64)], outward: f64| {
             let at = |(position, tributary): &(Vec2, f64)| Node {
                 position: (*position - center) * length,
@@ -106,7 +105,7 @@ impl Solid {
                 Nodes::Rounds(rounds) => rounds.iter().copied().filter(|r| !at_end(r)).collect(),
                 Nodes::Fixed(_) | Nodes::Rolling { .. } => Vec::new(),
             };
-            body.faces.push(Face { point, outward: Vec2::new(0.0, outward) });
+            body.faces.push(Face { point, outward: Vec2::new(0.0, outward), widest: self.widest });
             Some(NodedFace {
                 nodes: add(body, Nodes::Fixed(nodes)),
                 others: add(body, Nodes::Rounds(others)),
@@ -140,9 +139,13 @@ fn add(body: &mut Body<Planar>, nodes: Nodes<Planar>) -> usize {
     body.nodes.len() - 1
 }
 
-/// What tests the boundary of a part exactly.
-pub(super) fn boundary(placed: &Placed<Planar>, tributary_length: f64) -> Nodes<Planar> {
+/// Length (m) of boundary that a contact without nodes stands for, at full scale.
+pub(super) const TRIBUTARY: f64 = 0.01;
+
+/// What tests the boundary of a part exactly, scaled by `length`.
+pub(super) fn boundary(placed: &Placed<Planar>, length: f64) -> Nodes<Planar> {
     let Placed { surface, offset, rotation } = placed;
+    let tributary_length = TRIBUTARY * length;
     match surface {
         Shape::Circle(circle) => {
             Nodes::Rolling { center: *offset, radius: circle.radius, tributary_length }

@@ -5,9 +5,10 @@ use barrelstack_dynamics::{Interface, Model, Planar, Vec2};
 
 use super::builder::Builder;
 use super::interfaces::interface;
+use super::solid::TRIBUTARY;
 use super::{AssembleError, Assembly, Similitude, longitudinal, pairs, transverse};
 use crate::device::Site;
-use crate::scenario::{self, StackPair, StackSpec, View};
+use crate::scenario::{self, Basis, SeatContact, StackPair, StackSpec, View};
 
 /// Lever (m) of the resistance of barrels on hoops against rolling on floors, racks and each other: an
 /// assumption.
@@ -62,7 +63,19 @@ fn laws(spec: &StackSpec, scale: Similitude) -> Vec<Interface<Planar>> {
         View::Longitudinal => 1.0,
     };
     let stroke = spec.rack.seat_stroke * scale.length;
-    let impact = |law: &scenario::Interface| interface("stop", law, 1.0, scale).normal;
+    // What an element of a seat is weighed by is its length where the seat's constants hold for a meter.
+    let each = match spec.rack.contact {
+        SeatContact::Nodes => spec.rack.node_spacing,
+        SeatContact::Element | SeatContact::Rails => TRIBUTARY,
+    } * scale.length;
+    let impact = |law: &scenario::Interface, seat: Basis| {
+        let elements = match (seat, law.basis) {
+            (Basis::Length, Basis::Node) => 1.0 / each,
+            (Basis::Node, Basis::Length) => each,
+            (Basis::Node, Basis::Node) | (Basis::Length, Basis::Length) => 1.0,
+        };
+        interface("stop", law, elements, scale).normal
+    };
     let laws = &spec.interfaces;
     let law = |pair: &StackPair| {
         // What a seat meets at the end of its stroke is what the same bodies meet elsewhere.
@@ -86,7 +99,7 @@ fn laws(spec: &StackSpec, scale: Similitude) -> Vec<Interface<Planar>> {
             }
         };
         Interface {
-            stop: Some(Stop { depth: stroke, law: impact(stop) }),
+            stop: Some(Stop { depth: stroke, law: impact(stop, laws.of(*pair).basis) }),
             ..interface(pair.name(), laws.of(*pair), behind, scale)
         }
     };

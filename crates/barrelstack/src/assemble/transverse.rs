@@ -18,7 +18,7 @@ use barrelstack_dynamics::{BodyId, Shape, Vec2, math};
 use super::builder::{Builder, Draft};
 use super::solid::{Seat, Solid, row};
 use super::{AssembleError, PartKind};
-use crate::scenario::{Cradle, Friction, Posts, Rack, RackKind, SeatContact, StackBody, View};
+use crate::scenario::{Cradle, Friction, Posts, Rack, RackKind, SeatContact};
 
 /// Play (m) between the cup of a foot and the post in it: an assumption.
 const SPIGOT_PLAY: f64 = 0.005;
@@ -101,17 +101,7 @@ fn add_rack(
         .map(|i| (f64::from(i) - 0.5 * f64::from(rack.barrels - 1)) * rack.pitch)
         .collect();
 
-    let mut mass = rack.mass;
-    let mut offset = 0.0;
-    for change in builder.overrides(StackBody::Rack, level, column) {
-        mass = change.mass.unwrap_or(mass);
-        offset += change.offset_x;
-    }
-    let name = if spec.racks_per_level() == 1 {
-        format!("R{level}")
-    } else {
-        format!("R{level}.{column}")
-    };
+    let (name, mass, offset) = builder.rack_at(level, column);
     let solids = rack_solids(rack, &places, radius, level).map_err(|problem| {
         AssembleError::Shape { body: name.clone(), problem: problem.to_string() }
     })?;
@@ -125,39 +115,14 @@ fn add_rack(
         position: Vec2::new(middle + offset, underside),
         size: 0.5 * rack.width,
         solids,
-        tributary: rack.node_spacing,
         carrier: None,
         supports,
     });
 
-    let mut barrels = Vec::new();
-    for (i, place) in places.iter().enumerate() {
-        let barrel_column = (column - 1) * rack.barrels + u32::try_from(i).unwrap_or(0) + 1;
-        let mut barrel = spec.barrel.clone();
-        let mut offset_x = 0.0;
-        for change in builder.overrides(StackBody::Barrel, level, barrel_column) {
-            barrel = barrel.altered(change.mass, change.fill);
-            offset_x += change.offset_x;
-        }
-        let shape = Shape::Circle(Circle { radius });
-        barrels.push(builder.add(Draft {
-            name: format!("B{level}.{barrel_column}"),
-            kind: PartKind::Barrel,
-            level,
-            column: barrel_column,
-            mass: barrel.mass,
-            inertia: Some(barrel.inertia(View::Transverse)),
-            position: Vec2::new(
-                middle + offset + place + offset_x,
-                underside + rack.clearance + radius,
-            ),
-            size: radius,
-            solids: vec![Solid::exact(shape, Vec2::default(), Seat::None)],
-            tributary: rack.node_spacing,
-            carrier: Some(rack_id),
-            supports: Vec::new(),
-        }));
-    }
+    let origin = Vec2::new(middle + offset, underside + rack.clearance + radius);
+    let shape = Shape::Circle(Circle { radius });
+    let at = (level, column);
+    let barrels = builder.add_barrels(rack_id, at, (origin, &places), (&shape, radius));
     Ok((rack_id, barrels))
 }
 

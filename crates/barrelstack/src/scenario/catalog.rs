@@ -157,7 +157,6 @@ pub const RACKS: &[CatalogRack] = &[
             foot_half_length: 0.064,
             cradle: Cradle::Supports { angle: 32.0 * PI / 180.0 },
             contact: SeatContact::Nodes,
-            seat_stroke: 0.03,
             ..TWO_BARREL
         },
         source: "rack of Candia, de la Llera and Almazán (2008), whose text gives no dimensions: a solid beam on feet, \

@@ -308,6 +308,19 @@ fn read_interfaces(
             );
             return Err(reader.inconsistent("between", message));
         }
+        let whole = |kind: &String| {
+            let mut of_kind = bodies.iter().filter(|body| body.kind == *kind);
+            of_kind.any(|body| matches!(body.nodes, Nodes::Exact | Nodes::Rolling))
+        };
+        let turned = |known: &FreeInterface| known.between.iter().rev().eq(&between);
+        if between.iter().all(whole) && interfaces.iter().any(turned) {
+            let message = format!(
+                "bodies with exact or rolling nodes meet once, whichever comes first, and \"{}\" with \"{}\" stands \
+                 above; keep one",
+                between[1], between[0]
+            );
+            return Err(reader.inconsistent("between", message));
+        }
         let law = interface::read(reader, None)?;
         interfaces.push(FreeInterface { between, law });
     }

@@ -10,7 +10,7 @@ use crate::scenario::{Scenario, Until};
 /// Height (m) to which its kinetic energy may lift a body at rest, of full size.
 ///
 /// A tenth of what lifts a barrel out of the shallowest cradle of the catalog: 0.31 m/s.
-/// Stacks sway on their round barrels for minutes with less, since nothing here resists rolling.
+/// Stacks sway on their round barrels for minutes with less, since seats do not resist rolling.
 const CLIMB: f64 = 0.005;
 
 /// How long (s) every body stays so, at full size: longer than half a swing of the tallest stack, so
@@ -62,8 +62,8 @@ impl Ending {
 /// Follows all bodies until they rest, in a run or in as many as there are lanes.
 ///
 /// A body rests when its kinetic energy could not lift it by half a centimeter.
-/// So does a barrel that rolls away on the floor, from everything or behind what is faster: nothing
-/// stops it, and it reaches nothing any more.
+/// So does a barrel that rolls away on the floor, from everything or behind what is faster: it slows by some
+/// 0.2 m/s² and reaches nothing any more.
 #[derive(Clone, Debug)]
 pub struct Rest<R: Real = f64> {
     /// When (s) the ground is still; infinite where the run does not end by rest.

@@ -162,18 +162,13 @@ impl Stresses {
         for pair in model.pairs() {
             first_press.push(presses.len());
             let sets = &model.bodies()[pair.contactor].nodes;
-            let count = |set: &Nodes<Planar>| match set {
-                Nodes::Fixed(nodes) => nodes.len(),
-                Nodes::Rounds(rounds) => rounds.len(),
-                Nodes::Rolling { .. } => 1,
-            };
             // The points of a rack are those of its fixed nodes, set after set.
             let fixed = |set: &Nodes<Planar>| matches!(set, Nodes::Fixed(_));
             let before =
-                sets[..pair.nodes].iter().filter(|set| fixed(set)).map(count).sum::<usize>();
+                sets[..pair.nodes].iter().filter(|set| fixed(set)).map(Nodes::count).sum::<usize>();
             let rack = of_body[pair.contactor]
                 .filter(|at: &usize| fixed(&sets[pair.nodes]) && envelopes[*at].is_on_nodes());
-            presses.extend((0..count(&sets[pair.nodes])).map(|node| Press {
+            presses.extend((0..sets[pair.nodes].count()).map(|node| Press {
                 length: tributary_length(model, pair, node),
                 place: Place::Nowhere,
                 cells: 0..0,

@@ -4,7 +4,7 @@ mod friction;
 mod normal;
 pub mod restitution;
 
-use crate::real::Real as _;
+use crate::real::Real;
 use crate::space::Space;
 
 pub use friction::{Friction, FrictionLaw, Stick};
@@ -24,6 +24,15 @@ pub enum Basis {
 }
 
 impl Basis {
+    /// What the constants of a node that stands for a length of boundary (m) are multiplied by.
+    #[inline(always)]
+    pub fn weight<R: Real>(self, tributary_length: R) -> R {
+        match self {
+            Self::Node => R::splat(1.0),
+            Self::Length => tributary_length,
+        }
+    }
+
     /// The word used in files and reports.
     pub fn name(self) -> &'static str {
         match self {

@@ -77,15 +77,15 @@ pub struct Stop<R = f64> {
 }
 
 impl<R: Real> Stop<R> {
-    /// The force of the soft law, and that of the stop where it is reached.
+    /// The force of the soft law, and that of the stop where it is reached, for a step (s).
     #[inline(always)]
-    pub(crate) fn add(&self, soft: NormalForce<R>, depth: R, rate: R) -> NormalForce<R> {
+    pub(crate) fn add(&self, soft: NormalForce<R>, depth: R, rate: R, step: R) -> NormalForce<R> {
         let beyond = depth - self.depth;
         let reached = R::zero().lt(beyond);
         if !reached.any() {
             return soft;
         }
-        let hard = self.law.force(R::select(reached, beyond, R::zero()), rate);
+        let hard = self.law.force_of_step(R::select(reached, beyond, R::zero()), rate, step);
         NormalForce {
             total: soft.total + R::select(reached, hard.total, R::zero()),
             elastic: soft.elastic + R::select(reached, hard.elastic, R::zero()),
@@ -205,9 +205,15 @@ impl<R: Real> NormalLaw<R> {
         }
     }
 
+    /// The force that stands for a whole step (s): see [`NormalForce::within_step`].
+    #[inline(always)]
+    pub(crate) fn force_of_step(&self, depth: R, rate: R, step: R) -> NormalForce<R> {
+        self.force(depth, rate).within_step(self.bend(), depth, rate, step)
+    }
+
     /// `n (n − 1) / 12` of its elastic force `∝ δⁿ`: see [`NormalForce::within_step`].
     #[inline(always)]
-    pub(crate) fn bend(&self) -> f64 {
+    fn bend(&self) -> f64 {
         match self {
             Self::SpeedGap { .. }
             | Self::KelvinVoigt { .. }

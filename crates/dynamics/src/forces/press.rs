@@ -2,8 +2,8 @@
 
 use crate::body::{Nodes, Round};
 use crate::contact::{FrictionLaw, NormalLaw, Rolling, Stop};
-use crate::elements::{Elements, Group, PairFrame};
-use crate::model::{Counts, Model};
+use crate::elements::{AtFace, Elements, Group, PairFrame};
+use crate::model::Model;
 use crate::real::{Mask, Real};
 use crate::shape::{Gap, Nearest, Surface};
 use crate::space::{Linear, Space, Twist, Wrench};
@@ -60,16 +60,8 @@ fn touch_by<S: Space>(
     let pair = &model.pairs[group.pair];
     let frame = PairFrame::new(model, pair, &state.poses, &scratch.rotations);
     let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
-    let counted = match (pair.counts, frame.before(model, pair)) {
-        (_, None) => None,
-        (Counts::BehindFace(_) | Counts::BehindFaceOfTarget(_), Some(before)) => {
-            Some(before.le(S::Real::zero()))
-        }
-        (Counts::Everywhere | Counts::BeforeFace(_), Some(before)) => {
-            Some(S::Real::zero().lt(before))
-        }
-    };
-    if counted.is_some_and(|counted| !counted.any()) {
+    let counted = frame.at_face(model, pair);
+    if counted.is_some_and(|face| face.never()) {
         return;
     }
     let mut press = Press {
@@ -136,7 +128,7 @@ struct Press<'a, S: Space> {
     rolling: Option<Rolling<S::Real>>,
     stop: Option<Stop<S::Real>>,
     /// Where the contacts of the pair count; none if everywhere.
-    counted: Option<<S::Real as Real>::Mask>,
+    counted: Option<AtFace<S>>,
     normal: NormalLaw<S::Real>,
     friction: FrictionLaw<S::Real>,
     /// The step (s) that the forces stand for.
@@ -271,8 +263,9 @@ impl<S: Space> Press<'_, S> {
         mut gap: Gap<S>,
         share: S::Real,
     ) -> S::Real {
-        if let Some(counted) = self.counted {
-            gap.distance = S::Real::select(counted, gap.distance, S::Real::splat(1.0));
+        if let Some(face) = self.counted {
+            gap.distance =
+                S::Real::select(face.counts(gap.normal), gap.distance, S::Real::splat(1.0));
         }
         if self.meeting.is_none() {
             self.meeting = Some(Meeting::new(self.frame, self.twists.0, self.twists.1));
@@ -283,11 +276,10 @@ impl<S: Space> Press<'_, S> {
         let whole = self.elements.weights[element] * share;
         let weight = S::Real::select(touching, whole, S::Real::zero());
         let (depth, rate) = (contact.penetration, contact.penetration_rate);
-        let mut normal = self.normal.force(depth, rate);
+        let mut normal = self.normal.force_of_step(depth, rate, self.step);
         if let Some(stop) = self.stop {
-            normal = stop.add(normal, depth, rate);
+            normal = stop.add(normal, depth, rate, self.step);
         }
-        let normal = normal.within_step(self.normal.bend(), depth, rate, self.step);
         let normal_force = normal.total * weight;
         let stick = self.elements.sticks[element];
         let friction = self.friction.force::<S>(stick, contact.slip_rate, normal_force, weight);

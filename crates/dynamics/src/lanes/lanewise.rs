@@ -3,7 +3,7 @@
 use crate::body::{Body, Face, Motion, Node, Nodes, Placed, Round};
 use crate::contact::{Basis, Exponent, FrictionLaw, Interface, NormalLaw, Rolling, Stick, Stop};
 use crate::forces::Losses;
-use crate::model::{ContactPair, Couple, Model};
+use crate::model::Model;
 use crate::real::{Mask, Real};
 use crate::shape::{BarrelProfile, Circle, Cradle, HalfPlane, Shape};
 use crate::space::{Planar, Pose, Rotation2, Twist, Vec2, Wrench};
@@ -246,7 +246,7 @@ pub fn put_truth<M: Mask>(mask: &mut M, lane: usize, single: bool) {
     *mask = M::from_lanes(|l| if l == lane { single } else { others.lane(l) });
 }
 
-lanewise!(same bool, usize, String, Motion, Basis, Exponent, HalfPlane, ContactPair, Couple);
+lanewise!(same bool, usize, String, Motion, Basis, Exponent, HalfPlane);
 
 lanewise!(struct Vec2<R> { x, z });
 lanewise!(struct Rotation2<R> { cos, sin });
@@ -255,7 +255,7 @@ lanewise!(struct Twist<Planar<R>> { linear, angular });
 lanewise!(struct Wrench<Planar<R>> { force, moment });
 lanewise!(struct Losses<Planar<R>> { damped, friction, viscous });
 lanewise!(struct Node<Planar<R>> { position, tributary_length });
-lanewise!(struct Face<Planar<R>> { point, outward });
+lanewise!(struct Face<Planar<R>> { point, outward, widest });
 lanewise!(struct Placed<Planar<R>> { surface, offset, rotation });
 lanewise!(struct Round<Planar<R>> {
     center, radius, limits, arc_limits, sides, takes_limit, greatest_depth, tributary_length

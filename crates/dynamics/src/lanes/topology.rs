@@ -2,7 +2,7 @@
 
 use std::mem::{Discriminant, discriminant};
 
-use crate::body::{Body, BodyId, Motion, Nodes};
+use crate::body::{Body, BodyId, Motion, Nodes, Round};
 use crate::contact::{Basis, Exponent, FrictionLaw, Interface, NormalLaw};
 use crate::element::Element;
 use crate::model::{ContactPair, Model};
@@ -22,19 +22,23 @@ pub struct Topology {
 
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct BodyKind {
+    name: String,
     motion: Motion,
     damped: bool,
+    faces: usize,
     /// Kind of every surface, and how many sides it has.
     surfaces: Vec<(Discriminant<Shape>, usize)>,
     /// Kind of every node set, and how many nodes it has.
     nodes: Vec<(Discriminant<Nodes<Planar>>, usize)>,
+    /// For every round piece whether it takes its limit, and which limits and sides it has.
+    rounds: Vec<(bool, [bool; 2], [bool; 2])>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct InterfaceKind {
-    normal: Discriminant<NormalLaw>,
-    exponent: Option<Exponent>,
-    stop: Option<Discriminant<NormalLaw>>,
+    name: String,
+    normal: (Discriminant<NormalLaw>, Option<Exponent>),
+    stop: Option<(Discriminant<NormalLaw>, Option<Exponent>)>,
     rolling: bool,
     friction: Discriminant<FrictionLaw>,
     basis: Basis,
@@ -60,34 +64,43 @@ impl BodyKind {
                 0
             }
         };
-        let count = |nodes: &Nodes<Planar>| match nodes {
-            Nodes::Fixed(nodes) => nodes.len(),
-            Nodes::Rounds(rounds) => rounds.len(),
-            Nodes::Rolling { .. } => 1,
+        let rounds = body.nodes.iter().flat_map(|nodes| match nodes {
+            Nodes::Rounds(rounds) => rounds.as_slice(),
+            Nodes::Fixed(_) | Nodes::Rolling { .. } => &[],
+        });
+        let ends = |round: &Round<Planar>| {
+            let arcs = round.arc_limits.map(|limit| limit.is_some());
+            (round.takes_limit, arcs, round.sides.map(|side| side.is_some()))
         };
         let surfaces = body.surfaces.iter().map(|placed| &placed.surface);
         Self {
+            name: body.name.clone(),
             motion: body.motion,
             damped: body.damping.is_some(),
+            faces: body.faces.len(),
             surfaces: surfaces.map(|shape| (discriminant(shape), sides(shape))).collect(),
-            nodes: body.nodes.iter().map(|nodes| (discriminant(nodes), count(nodes))).collect(),
+            nodes: body.nodes.iter().map(|set| (discriminant(set), set.count())).collect(),
+            rounds: rounds.map(ends).collect(),
         }
     }
 }
 
 impl InterfaceKind {
     fn of(interface: &Interface<Planar>) -> Self {
-        let exponent = match interface.normal {
-            NormalLaw::HuntCrossley { exponent, .. } => Some(exponent),
-            NormalLaw::SpeedGap { .. }
-            | NormalLaw::KelvinVoigt { .. }
-            | NormalLaw::Hertz { .. }
-            | NormalLaw::Rebound { .. } => None,
+        let kind = |law: &NormalLaw| {
+            let exponent = match law {
+                NormalLaw::HuntCrossley { exponent, .. } => Some(*exponent),
+                NormalLaw::SpeedGap { .. }
+                | NormalLaw::KelvinVoigt { .. }
+                | NormalLaw::Hertz { .. }
+                | NormalLaw::Rebound { .. } => None,
+            };
+            (discriminant(law), exponent)
         };
         Self {
-            normal: discriminant(&interface.normal),
-            exponent,
-            stop: interface.stop.as_ref().map(|stop| discriminant(&stop.law)),
+            name: interface.name.clone(),
+            normal: kind(&interface.normal),
+            stop: interface.stop.as_ref().map(|stop| kind(&stop.law)),
             rolling: interface.rolling.is_some(),
             friction: discriminant(&interface.friction),
             basis: interface.basis,

@@ -22,7 +22,7 @@ use relax::Relaxation;
 /// What settling found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settled {
-    /// Steps it took, each of one evaluation of the forces.
+    /// Steps of the try that brought it to rest, each of one evaluation of the forces.
     pub steps: u64,
     /// Largest acceleration left over, as a share of gravity.
     pub unbalanced: f64,
@@ -41,7 +41,7 @@ pub struct Locked {
     pub friction: f64,
 }
 
-/// Steps after which forces that do not balance never will.
+/// Steps after which a try is given up.
 const MOST_STEPS: u64 = 40_000;
 
 /// How settling is tried, until it succeeds: with what margin of the fictitious masses, and with how many

@@ -91,6 +91,13 @@ const FRICTION_FIELD: Field = Field::new(
     "Tangential force.",
 );
 
+const RESTITUTION: Field = Field::new(
+    "restitution",
+    Kind::Number(Range::up_to(1.0)),
+    Default::Nothing,
+    "Ratio of normal speeds after and before an impact, in place of the damping.",
+);
+
 const LINEAR: &[Field] = &[
     Field::new(
         "damping",
@@ -98,12 +105,7 @@ const LINEAR: &[Field] = &[
         Default::Derived("22 N s/cm in a stack when the stiffness is not given either"),
         "Damping c: N s/m per node or N s/m^2 per length.",
     ),
-    Field::new(
-        "restitution",
-        Kind::Number(Range::up_to(1.0)),
-        Default::Nothing,
-        "Ratio of normal speeds after and before an impact, in place of the damping.",
-    ),
+    RESTITUTION,
     Field::new(
         "reference_mass",
         Kind::Quantity(&[Dimension::MASS, Dimension::MASS_PER_LENGTH], Range::POSITIVE),
@@ -138,8 +140,15 @@ const LAWS: Variants = Variants {
                 Field::new(
                     "damping",
                     Kind::Quantity(&[Dimension::HUNT_CROSSLEY_DAMPING], Range::NOT_NEGATIVE),
-                    Default::Required,
+                    Default::Derived("must be given, or `restitution` with `reference_speed`"),
                     "Damping d: ratio of the damping force to the elastic force, per unit of penetration rate.",
+                ),
+                RESTITUTION,
+                Field::new(
+                    "reference_speed",
+                    Kind::Quantity(&[Dimension::VELOCITY], Range::POSITIVE),
+                    Default::Derived("must be given with `restitution`"),
+                    "Speed of the impact for which the restitution holds.",
                 ),
             ],
         },
@@ -170,13 +179,17 @@ const LAWS: Variants = Variants {
     ],
 };
 
+/// Damping is stated itself, or by the restitution that it gives.
+const EXCLUSIVE: &[&[&str]] =
+    &[&["damping", "restitution"], &["damping", "reference_mass"], &["damping", "reference_speed"]];
+
 /// The law of contact of one pair in a stack.
 pub static INTERFACE: Section = Section {
     name: "interface",
     help: "The law of contact of one pair of bodies.",
     fields: &[LAW, BASIS, STIFFNESS, FRICTION_FIELD],
     variants: Some(LAWS),
-    exclusive: &[&["damping", "restitution"], &["damping", "reference_mass"]],
+    exclusive: EXCLUSIVE,
 };
 
 /// The law of contact of one pair that meets in impacts: of what has fallen, or of neighbors.
@@ -185,7 +198,7 @@ pub static IMPACT: Section = Section {
     help: "The law of contact of one pair of bodies that meets in impacts.",
     fields: &[IMPACT_LAW, BASIS, STIFFNESS, FRICTION_FIELD],
     variants: Some(LAWS),
-    exclusive: &[&["damping", "restitution"], &["damping", "reference_mass"]],
+    exclusive: EXCLUSIVE,
 };
 
 /// The law of contact between two kinds of a free scene.
@@ -205,7 +218,7 @@ pub static FREE_INTERFACE: Section = Section {
         FRICTION_FIELD,
     ],
     variants: Some(LAWS),
-    exclusive: &[&["damping", "restitution"], &["damping", "reference_mass"]],
+    exclusive: EXCLUSIVE,
 };
 
 /// Greatest coefficient of friction that makes sense.

@@ -16,17 +16,18 @@ pub enum Basis {
     Length,
 }
 
-/// Dissipation of a linear law.
+/// Dissipation of a law whose restitution depends on what strikes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damping {
-    /// `c` (N·s/m per node, or N·s/m² on the basis of length).
+    /// `c` of a linear law (N·s/m per node, or N·s/m² on the basis of length); `d` (s/m) of Hunt and Crossley's.
     Coefficient(f64),
-    /// The damping that gives this restitution to a reference mass.
+    /// The damping that gives this restitution to a reference.
     Restitution {
         /// Ratio of normal speeds after and before, in `(0, 1]`.
         restitution: f64,
-        /// Mass that strikes one node (kg), or one meter of boundary (kg/m).
-        reference_mass: f64,
+        /// Under a linear law the mass that strikes one node (kg), or one meter of boundary (kg/m); under Hunt
+        /// and Crossley's the speed (m/s).
+        reference: f64,
     },
 }
 
@@ -53,8 +54,8 @@ pub enum NormalLaw {
         stiffness: f64,
         /// `n`, either 1 or 1.5.
         exponent: f64,
-        /// `d` (s/m).
-        damping: f64,
+        /// Dissipation.
+        damping: Damping,
     },
     /// `k δ^1.5` on approach and `e²` of it on separation, joined over some `v` of speed.
     Rebound {

@@ -57,7 +57,7 @@ pub(in crate::scenario) fn read(
     };
     let normal = match law {
         Law::SpeedGap | Law::KelvinVoigt => {
-            let damping = read_damping(&reader, basis, constants)?;
+            let damping = read_damping(&reader, linear_damping(basis), constants)?;
             if law == Law::SpeedGap {
                 NormalLaw::SpeedGap { stiffness, damping }
             } else {
@@ -65,7 +65,8 @@ pub(in crate::scenario) fn read(
             }
         }
         Law::HuntCrossley => {
-            NormalLaw::HuntCrossley { stiffness, exponent, damping: reader.quantity("damping")? }
+            let damping = read_damping(&reader, HUNT_CROSSLEY, None)?;
+            NormalLaw::HuntCrossley { stiffness, exponent, damping }
         }
         Law::Hertz => NormalLaw::Hertz { stiffness },
         Law::Rebound => NormalLaw::Rebound {
@@ -82,31 +83,60 @@ pub(in crate::scenario) fn read(
     Ok(Interface { basis, normal, friction })
 }
 
+/// In what the damping of a law is stated, and the field and unit of what a restitution holds for.
+type DampingUnits = (Dimension, &'static str, Dimension);
+
+const HUNT_CROSSLEY: DampingUnits =
+    (Dimension::HUNT_CROSSLEY_DAMPING, "reference_speed", Dimension::VELOCITY);
+
+fn linear_damping(basis: Basis) -> DampingUnits {
+    match basis {
+        Basis::Node => (Dimension::DAMPING, "reference_mass", Dimension::MASS),
+        Basis::Length => {
+            (Dimension::DAMPING_PER_LENGTH, "reference_mass", Dimension::MASS_PER_LENGTH)
+        }
+    }
+}
+
 fn read_damping(
     reader: &Reader<'_>,
-    basis: Basis,
+    (damping_dimension, field, dimension): DampingUnits,
     constants: Option<PairDefaults>,
 ) -> Result<Damping, ScenarioError> {
-    let (damping_dimension, mass_dimension) = match basis {
-        Basis::Node => (Dimension::DAMPING, Dimension::MASS),
-        Basis::Length => (Dimension::DAMPING_PER_LENGTH, Dimension::MASS_PER_LENGTH),
-    };
     let damping = quantity_in(reader, "damping", damping_dimension)?;
     let restitution = reader.optional_number("restitution")?;
-    let reference_mass = quantity_in(reader, "reference_mass", mass_dimension)?;
-    match (damping, restitution, reference_mass, constants) {
+    let reference = quantity_in(reader, field, dimension)?;
+    match (damping, restitution, reference, constants) {
         (Some(damping), ..) => Ok(Damping::Coefficient(damping)),
-        (None, Some(restitution), Some(reference_mass), _) => {
-            Ok(Damping::Restitution { restitution, reference_mass })
+        (None, Some(restitution), Some(reference), _) => {
+            Ok(Damping::Restitution { restitution, reference })
         }
         (None, Some(_), None, _) => {
             // The place is that of the restitution, which may be laid over another file.
-            let problem = missing_problem(reader, "reference_mass", mass_dimension);
+            let problem = missing_problem(reader, field, dimension);
             Err(reader.error("restitution", problem))
         }
         (None, None, Some(_), _) => Err(reader.missing("restitution")),
         (None, None, None, Some(constants)) => Ok(Damping::Coefficient(constants.damping)),
         (None, None, None, None) => Err(missing_quantity(reader, "damping", damping_dimension)),
+    }
+}
+
+fn write_damping(
+    writer: &mut Writer,
+    damping: Damping,
+    (damping_dimension, field, dimension): DampingUnits,
+) {
+    match damping {
+        Damping::Coefficient(damping) => {
+            writer.quantity_in("damping", damping, damping_dimension);
+            writer.omit(&["restitution", field]);
+        }
+        Damping::Restitution { restitution, reference } => {
+            writer.number("restitution", restitution);
+            writer.quantity_in(field, reference, dimension);
+            writer.omit(&["damping"]);
+        }
     }
 }
 
@@ -220,27 +250,12 @@ fn write_fields(writer: &mut Writer, interface: &Interface) {
         NormalLaw::SpeedGap { stiffness, damping }
         | NormalLaw::KelvinVoigt { stiffness, damping } => {
             writer.quantity_in("stiffness", stiffness, stiffness_dimension(1.0, basis));
-            let per_length = basis == Basis::Length;
-            match damping {
-                Damping::Coefficient(damping) => {
-                    let dimension =
-                        if per_length { Dimension::DAMPING_PER_LENGTH } else { Dimension::DAMPING };
-                    writer.quantity_in("damping", damping, dimension);
-                    writer.omit(&["restitution", "reference_mass"]);
-                }
-                Damping::Restitution { restitution, reference_mass } => {
-                    let dimension =
-                        if per_length { Dimension::MASS_PER_LENGTH } else { Dimension::MASS };
-                    writer.number("restitution", restitution);
-                    writer.quantity_in("reference_mass", reference_mass, dimension);
-                    writer.omit(&["damping"]);
-                }
-            }
+            write_damping(writer, damping, linear_damping(basis));
         }
         NormalLaw::HuntCrossley { stiffness, exponent, damping } => {
             writer.quantity_in("stiffness", stiffness, stiffness_dimension(exponent, basis));
             writer.number("exponent", exponent);
-            writer.quantity("damping", damping);
+            write_damping(writer, damping, HUNT_CROSSLEY);
         }
         NormalLaw::Hertz { stiffness } => {
             writer.quantity_in("stiffness", stiffness, stiffness_dimension(1.5, basis));
