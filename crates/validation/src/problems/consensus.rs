@@ -23,8 +23,7 @@ use crate::scene::{
 };
 use crate::{Effort, Failure, Outcome, Problem, Tolerance};
 
-const SOURCE: &str = "MuJoCo (penalty), YADE, Drake, PyBullet (spring) and a plain penalty code; \
-                      peers.md";
+const SOURCE: &str = "MuJoCo (penalty), YADE, Drake, PyBullet (spring) and a plain penalty code";
 
 const RADIUS: f64 = 0.35;
 const PITCH: f64 = 0.76;

@@ -9,7 +9,7 @@ use barrelstack_fragility::{
 use crate::tumble::Random;
 use crate::{Effort, Failure, Outcome, Problem, Tolerance};
 
-const BAKER: &str = "Baker 2015, eqs. 8 to 11; validation.md 4.11";
+const BAKER: &str = "Baker 2015, eqs. 8 to 11";
 
 /// Eight levels of twenty cases.
 fn stripes() -> Vec<Stripe> {

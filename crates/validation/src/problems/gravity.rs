@@ -14,7 +14,7 @@ use crate::scene::{
 };
 use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
 
-const SOURCE: &str = "statics; validation.md 4.9";
+const SOURCE: &str = "statics";
 const MASS: f64 = 40.0;
 const STIFFNESS: f64 = 1e7;
 
@@ -191,7 +191,7 @@ fn overhang(n: u32) -> Problem {
             1 => "a brick of 1 m over the end of a table".into(),
             _ => format!("{n} equal bricks of 1 m over the end of a table"),
         },
-        source: "the harmonic stack; validation.md 4.9".into(),
+        source: "the harmonic stack".into(),
         quantity: "farthest overhang",
         unit: "m",
         exact,

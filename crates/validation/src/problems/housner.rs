@@ -7,7 +7,7 @@ use crate::problem::{border, refine};
 use crate::rocking::{Corner, RockingBlock, contact_frequency};
 use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
 
-const SOURCE: &str = "Housner 1963; validation.md 4.1";
+const SOURCE: &str = "Housner 1963";
 
 /// A block whose corners are damped enough to show Housner's ratio (see `restitution`).
 pub(super) fn firm(effort: Effort, radius: f64, alpha: f64) -> RockingBlock {

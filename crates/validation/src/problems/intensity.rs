@@ -7,8 +7,8 @@ use barrelstack_motion::{IntensityMeasure, STANDARD_GRAVITY, Sampled, response};
 
 use crate::{Failure, Outcome, Problem, Tolerance};
 
-const SOURCE: &str = "integrals of a harmonic; validation.md 4.10";
-const STEP: &str = "oscillator pushed by a constant force; validation.md 4.10";
+const SOURCE: &str = "integrals of a harmonic";
+const STEP: &str = "oscillator pushed by a constant force";
 
 /// Amplitude (m/s²), period (s) and cycles of the harmonic.
 const AMPLITUDE: f64 = 0.3 * STANDARD_GRAVITY;

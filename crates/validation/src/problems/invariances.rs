@@ -9,8 +9,8 @@ use crate::scene::{DOWN, Scene, all_pairs, coulomb, disc, floor, interface, poin
 use crate::tumble::{self, rough};
 use crate::{Effort, Failure, Outcome, Problem, Tolerance};
 
-const SOURCE: &str = "symmetry of mechanics; validation.md 4.9";
-const BOOKS: &str = "balance of energy; validation.md 4.6";
+const SOURCE: &str = "symmetry of mechanics";
+const BOOKS: &str = "balance of energy";
 
 /// Heaps that a problem looks at.
 fn seeds(effort: Effort) -> u64 {

@@ -1,7 +1,7 @@
 //! Blocks that were measured: the granite blocks of Peña et al. on a shaking table.
 //!
 //! Sizes and rigid-body theory are exact; the measured ratios of angular velocities are quoted from
-//! memory in `validation.md` and marked so there. What is checked is that the contact can be calibrated
+//! memory. What is checked is that the contact can be calibrated
 //! to a measured block, not the measurement.
 
 use barrelstack_dynamics::math::atan;
@@ -11,7 +11,7 @@ use crate::{Effort, Failure, Outcome, Problem, Tolerance, theory};
 
 use super::housner::firm;
 
-const SOURCE: &str = "Peña, Prieto, Lourenço et al. 2007, blocks S1 to S3; validation.md 4.8";
+const SOURCE: &str = "Peña, Prieto, Lourenço et al. 2007, blocks S1 to S3";
 
 /// Name, width (m), height (m) and measured ratio of angular velocities, where it can be shown: that of
 /// S3, 0.978, lies below Housner's 0.9787, which is the least that any damping shows.

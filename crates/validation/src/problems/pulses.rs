@@ -6,8 +6,8 @@ use crate::{Effort, GRAVITY, Outcome, Problem, Tolerance, theory};
 
 use super::housner::{firm, halvings, slender};
 
-const CLOSED: &str = "Makris and Roussos 2000, Zhang and Makris 2001; validation.md 4.2";
-const TABLE: &str = "Zhang and Makris 2001, event-driven integration; validation.md 4.2";
+const CLOSED: &str = "Makris and Roussos 2000, Zhang and Makris 2001";
+const TABLE: &str = "Zhang and Makris 2001, event-driven integration";
 
 /// p (rad/s) and α (rad) of the tabulated block.
 const RATE: f64 = 2.14;

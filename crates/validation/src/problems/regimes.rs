@@ -10,7 +10,7 @@ use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
 
 use super::housner::halvings;
 
-const SOURCE: &str = "Shao and Tung 1999, Taniguchi 2002; validation.md 4.3";
+const SOURCE: &str = "Shao and Tung 1999, Taniguchi 2002";
 const MASS: f64 = 100.0;
 
 /// A block on near rigid corners, at rest on the ground.

@@ -13,8 +13,8 @@ use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
 
 use super::housner::halvings;
 
-const SOURCE: &str = "damped oscillator on approach; validation.md 4.6";
-const ROCKING: &str = "calibration of viscous damping, as Vlachakis et al. 2021; validation.md 4.7";
+const SOURCE: &str = "damped oscillator on approach";
+const ROCKING: &str = "calibration of viscous damping, as Vlachakis et al. 2021";
 
 /// √(k/m) (rad/s) of the mass on its node.
 const OMEGA: f64 = 100.0;
@@ -54,7 +54,7 @@ fn newtons_cradle() -> Problem {
     Problem {
         id: "restitution/newtons-cradle".into(),
         title: "one disc at 1 m/s against four that touch, no damping, no friction".into(),
-        source: "balance of energy; validation.md 4.9".into(),
+        source: "balance of energy".into(),
         quantity: "kinetic energy after over before",
         unit: "",
         exact: 1.0,
@@ -240,7 +240,7 @@ fn stability(zeta: f64) -> Problem {
     Problem {
         id: format!("restitution/stable-step-{zeta}"),
         title: format!("mass that rests on a damped node, ζ = {zeta}, symplectic Euler"),
-        source: "root of the step's polynomial at −1; validation.md 4.6".into(),
+        source: "root of the step's polynomial at −1".into(),
         quantity: "ω times the longest stable step",
         unit: "",
         exact,

@@ -17,7 +17,7 @@ use crate::{Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
 
 use super::housner::halvings;
 
-const SOURCE: &str = "rigid-body dynamics of rolling; validation.md 4.5";
+const SOURCE: &str = "rigid-body dynamics of rolling";
 const MASS: f64 = 100.0;
 const RADIUS: f64 = 0.35;
 

@@ -13,9 +13,9 @@ use crate::{Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
 
 use super::regimes::{base, ridden, standing};
 
-const SOURCE: &str = "Newmark 1965; validation.md 4.4";
-const STEADY: &str = "Den Hartog 1931; validation.md 4.4";
-const COULOMB: &str = "Coulomb; validation.md 4.4";
+const SOURCE: &str = "Newmark 1965";
+const STEADY: &str = "Den Hartog 1931";
+const COULOMB: &str = "Coulomb";
 
 const MASS: f64 = 50.0;
 const STIFFNESS: f64 = 1e6;
@@ -152,7 +152,7 @@ fn creep(share: f64) -> Problem {
     Problem {
         id: format!("sliding/regularized-creep-{share}"),
         title: format!("regularized friction, slope of {share} of the friction angle"),
-        source: "equilibrium of the smooth law; validation.md 4.4".into(),
+        source: "equilibrium of the smooth law".into(),
         quantity: "creep speed",
         unit: "m/s",
         exact,

@@ -13,8 +13,8 @@ use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance};
 use super::gravity::{INSET, brick};
 use super::housner::halvings;
 
-const UPLIFT: &str = "quasi-static balance, least c/h over the joints; validation.md 4.9";
-const PATTERNS: &str = "Psycharis 1990; validation.md 4.9";
+const UPLIFT: &str = "quasi-static balance, least c/h over the joints";
+const PATTERNS: &str = "Psycharis 1990";
 const MASS: f64 = 100.0;
 
 /// Stiffness (N/m) of a joint's nodes.

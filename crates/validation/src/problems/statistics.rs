@@ -14,7 +14,7 @@ use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
 
 use super::housner::firm;
 
-const SOURCE: &str = "ensembles of maxima, as Bachmann et al. 2018; validation.md 4.8";
+const SOURCE: &str = "ensembles of maxima, as Bachmann et al. 2018";
 const ALPHA: f64 = 0.25;
 const RADIUS: f64 = 1.0;
 
