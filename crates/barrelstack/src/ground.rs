@@ -238,11 +238,17 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
         Vertical::None => record.ground_motion(&horizontal, None, &processing)?,
         Vertical::Component(name) => {
             let vertical = component_of(record, Some(name))?;
-            // Looked for by itself first: only the scenario knows that it can do without.
-            if let Err(error) = record.component(&vertical) {
-                return Err(GroundError::Vertical { error });
+            match record.component(&vertical) {
+                Ok(_) => record.ground_motion(&horizontal, Some(&vertical), &processing)?,
+                // A file of one's own, in place of the scenario's.
+                Err(_) if !record.channels.iter().any(Channel::is_vertical) => {
+                    let file = &record.file;
+                    let told = format!("{file} has no vertical component: it shakes sideways only");
+                    warnings.push(told);
+                    record.ground_motion(&horizontal, None, &processing)?
+                }
+                Err(error) => return Err(GroundError::Vertical { error }),
             }
-            record.ground_motion(&horizontal, Some(&vertical), &processing)?
         }
         Vertical::File(file) => {
             let options = read_options(spec)?;

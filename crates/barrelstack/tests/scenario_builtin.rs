@@ -91,3 +91,18 @@ fn a_missing_record_says_where_to_get_it() {
     assert!(sentence.starts_with("cannot read the record RSN995_NORTHR_PEL360.AT2"), "{sentence}");
     assert!(sentence.contains("NGA-West2"), "{sentence}");
 }
+
+#[test]
+fn a_record_without_a_vertical_shakes_sideways_and_a_wrong_name_is_refused() {
+    let demo = Scenario::builtin("demo-napa", &[]).unwrap();
+    let mut record = barrelstack_motion::bundled("napa-college-2014").unwrap();
+    let whole = demo.ground_of(&record).unwrap();
+    assert!(whole.motion.unwrap().vertical.is_some() && whole.warnings.is_empty());
+    let wrong = Scenario::builtin("demo-napa", &["motion.vertical=HNZ".to_owned()]).unwrap();
+    let refused = wrong.ground_of(&record).unwrap_err().to_string();
+    assert!(refused.contains("HNZ") && refused.contains("motion.vertical = false"), "{refused}");
+    record.channels.retain(|channel| !channel.is_vertical());
+    let flat = demo.ground_of(&record).unwrap();
+    assert!(flat.motion.unwrap().vertical.is_none());
+    assert!(flat.warnings[0].contains("has no vertical component"), "{:?}", flat.warnings);
+}

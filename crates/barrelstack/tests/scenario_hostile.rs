@@ -129,7 +129,7 @@ fn a_file_extends_a_file_that_extends_a_builtin_scenario() {
     fs::write(&top, "schema = 1\nextends = \"cellar/base.toml\"\n[stack]\nlevels = 5\n").unwrap();
     let scenario = Scenario::load(&top, &[]).unwrap();
     assert_eq!(scenario.stack().unwrap().levels, 5);
-    assert_eq!(scenario.title, "Eight barrels on four levels, 4 in sine");
+    assert_eq!(scenario.title, "Ten barrels on five levels, a.at2");
     let MotionSource::Record(record) = &scenario.motion.source else { panic!() };
     let RecordSource::File(file) = &record.source else { panic!() };
     // Relative to the file that names the record, not to the one that extends it.

@@ -357,3 +357,20 @@ fn bodies_of_free_scenes() {
         assert_eq!(scene.bodies[0].nodes, expected);
     }
 }
+
+#[test]
+fn a_title_says_what_is_run() {
+    let title = |text: &str, changes: &[&str]| {
+        let changes: Vec<String> = changes.iter().map(|change| (*change).to_owned()).collect();
+        Scenario::parse("mine.toml", text, &changes).unwrap().title
+    };
+    let own = "schema = 1\nextends = \"demo-napa\"\ntitle = \"Mine\"";
+    assert_eq!(title(own, &[]), "Mine");
+    assert_eq!(title(own, &["title=Yours", "stack.levels=4"]), "Yours");
+    assert_eq!(
+        title(own, &["stack.levels=4"]),
+        "Eight barrels on four levels, along the barrels, South Napa 2014-08-24 M6.0"
+    );
+    let inherited = "schema = 1\nextends = \"candia-8-barrels\"\n[stack]\nlevels = 3";
+    assert_eq!(title(inherited, &[]), "Six barrels on three levels, sine of 1.07 s");
+}

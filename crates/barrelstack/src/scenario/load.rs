@@ -6,7 +6,7 @@ use std::str::FromStr;
 use super::error::{Place, Problem, ScenarioError};
 use super::reader::{Reader, nearest};
 use super::tree::{Origin, SourceFile, Sources, Table, Value};
-use super::{Scenario, builtin, merge, root};
+use super::{Scenario, builtin, merge, root, title};
 use crate::system;
 
 /// Largest scenario file (bytes).
@@ -170,7 +170,20 @@ fn read(
     merge::expand_names(&mut table, &root::ROOT);
     let reader =
         Reader::open(&sources, &root::ROOT, String::new(), Some(&table), Origin::Whole(0))?;
-    root::read(reader, &stem(name))
+    let mut scenario = root::read(reader, &stem(name))?;
+    // A title of another file, or of a scenario before it was changed, may say what is no longer so.
+    let kept = |change: &String| ["run.", "record."].iter().any(|part| change.starts_with(part));
+    let unchanged = overrides.iter().all(kept);
+    let written = table.get("title").map(|title| title.node.origin);
+    let own = match written {
+        Some(Origin::File { file, .. } | Origin::Whole(file)) => file == 0 && unchanged,
+        Some(Origin::Override(_)) => true,
+        Some(Origin::Default) | None => unchanged,
+    };
+    if !own {
+        scenario.title = title::of(&scenario);
+    }
+    Ok(scenario)
 }
 
 pub(super) fn stem(name: &str) -> String {

@@ -51,6 +51,7 @@ pub mod schema;
 pub mod shape;
 pub mod stack;
 pub mod template;
+mod title;
 pub mod uniform;
 
 pub use barrelstack_input::{
