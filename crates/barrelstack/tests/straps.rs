@@ -142,7 +142,7 @@ fn along_the_barrels_both_straps_of_a_barrel_share_its_pull() {
         assert!(pair[0].name.ends_with("front") && pair[1].name.ends_with("back"), "{pair:?}");
         assert_eq!(pair[0].peak, pair[1].peak);
     }
-    assert!(!all.is_empty());
+    assert!(all.iter().any(|strap| strap.peak > 0.0));
 }
 
 #[test]

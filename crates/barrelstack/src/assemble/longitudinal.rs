@@ -36,8 +36,8 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
         .and_then(|sharp| sharp.rounded(CHIME_RADIUS))
         .ok_or_else(|| {
             AssembleError::Stack(format!(
-                "a barrel in longitudinal section needs 0 < head_diameter < bilge_diameter, found \
-                 {} m and {} m",
+                "a barrel in longitudinal section needs 0 < head_diameter < bilge_diameter and room for a \
+                 chime rounded by {CHIME_RADIUS} m, found {} m and {} m",
                 barrel.head_diameter, barrel.bilge_diameter
             ))
         })?;

@@ -101,7 +101,7 @@ impl Straps {
     pub(super) fn place(&self, site: &Site<'_>) -> Result<Vec<Loose>, String> {
         let Self { levels, ties, stiffness, damping, slack, pretension, strength } = *self;
         let Site { parts, bodies, scale, .. } = *site;
-        let lowest = site.levels - levels + 1;
+        let lowest = site.levels.saturating_sub(levels) + 1;
         let give = (slack - pretension / stiffness) * scale.length;
         // Every strap is plumb on the stack as drawn.
         let strap = |upper: BodyId, lower: BodyId, side: &str, from: f64| {

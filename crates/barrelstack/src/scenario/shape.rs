@@ -232,7 +232,7 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Shape, ScenarioError> {
         ShapeName::Rectangle => {
             let (width, height) = (reader.quantity("width")?, reader.quantity("height")?);
             let corner_radius = reader.quantity("corner_radius")?;
-            if 2.0 * corner_radius > width.min(height) {
+            if 2.0 * corner_radius >= width.min(height) {
                 let message = format!(
                     "`{}` of {corner_radius} m does not fit in {width} m by {height} m",
                     reader.path_of("corner_radius")
@@ -250,9 +250,9 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Shape, ScenarioError> {
         ShapeName::BarrelProfile => {
             let bilge_diameter = reader.quantity("bilge_diameter")?;
             let head_diameter = reader.quantity("head_diameter")?;
-            if head_diameter > bilge_diameter {
+            if head_diameter >= bilge_diameter {
                 let message = format!(
-                    "`{}` is {head_diameter} m, more than the bilge of {bilge_diameter} m; a barrel is widest at the \
+                    "`{}` is {head_diameter} m, not less than the bilge of {bilge_diameter} m; a barrel is widest at the \
                      bilge",
                     reader.path_of("head_diameter")
                 );

@@ -44,7 +44,8 @@ pub(crate) struct Action<S: Space> {
     pub(crate) wrenches: [(Wrench<S>, Wrench<S>); 2],
 }
 
-/// Declares the kinds of elements, each a struct with a `link` and the functions that are asked for here.
+/// Declares the kinds of elements, each a struct with a `link`, a `length` at rest (m), and the functions that
+/// are asked for here.
 macro_rules! kinds {
     ($($(#[$about:meta])* $kind:ident),*) => {
         /// An element of one of the kinds.

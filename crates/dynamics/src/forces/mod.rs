@@ -70,7 +70,8 @@ impl<S: Space> Default for Losses<S> {
     }
 }
 
-/// The sum of the contact forces of one pair.
+/// The sum of the contact forces of one pair, and of the push along a side by which a contact that is shared
+/// with a second one keeps its energy; so it may be more than its contacts.
 #[derive(Clone, Copy, Debug)]
 pub struct PairForce<S: Space> {
     /// Which pair of the model.
@@ -82,7 +83,8 @@ pub struct PairForce<S: Space> {
 /// What can be computed anew from a state; may be dropped at any time.
 #[derive(Clone, Debug)]
 pub struct Scratch<S: Space> {
-    /// The contacts of the last evaluation, in the order of their elements; empty where
+    /// The contacts of the last evaluation, in the order of their elements, without the push along a side of
+    /// [`PairForce`]; empty where
     /// [`Scratch::keeps_contacts`] says so.
     pub contacts: Vec<Contact<S>>,
     /// Whether `contacts` are written down. Forces do not need them, only who looks at contacts does.
