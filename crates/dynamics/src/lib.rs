@@ -34,8 +34,8 @@
 
 pub mod body;
 pub mod contact;
+pub mod contact_elements;
 pub mod element;
-pub mod elements;
 pub mod energy;
 pub mod forces;
 pub mod integrate;

@@ -1,7 +1,7 @@
 //! All that must be saved to continue a run.
 
+use crate::contact_elements::ContactElements;
 use crate::element::Memory;
-use crate::elements::Elements;
 use crate::model::Model;
 use crate::real::Real;
 use crate::space::{Pose, Space, Twist};
@@ -16,7 +16,7 @@ pub struct State<S: Space> {
     /// Twist of every body.
     pub twists: Vec<Twist<S>>,
     /// The contact elements within reach, with the memory of their sticks.
-    pub elements: Elements<S>,
+    pub contact_elements: ContactElements<S>,
     /// What the force elements remember.
     pub memory: Vec<Memory<S>>,
 }
@@ -28,10 +28,10 @@ impl<S: Space> State<S> {
             time: S::Real::zero(),
             poses: model.bodies.iter().map(|b| b.pose).collect(),
             twists: model.bodies.iter().map(|b| b.twist).collect(),
-            elements: Elements::default(),
+            contact_elements: ContactElements::default(),
             memory: vec![Memory::default(); model.elements.len()],
         };
-        state.elements.rebuild(model, &state.poses, &state.twists);
+        state.contact_elements.rebuild(model, &state.poses, &state.twists);
         state
     }
 }

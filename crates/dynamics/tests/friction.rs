@@ -38,8 +38,9 @@ fn a_stuck_block_hangs_on_its_sticks_by_its_weight_downhill() {
     let slope = libm::atan(0.3);
     let mut scene = sledge(coulomb(0.5, STIFFNESS, 1e4), slope, 0.0);
     run(&mut scene, 2.0, 5e-4);
-    let sticks: f64 =
-        (0..scene.state.elements.len()).map(|i| scene.state.elements.stick(i).displacement).sum();
+    let sticks: f64 = (0..scene.state.contact_elements.len())
+        .map(|i| scene.state.contact_elements.stick(i).displacement)
+        .sum();
     let expected = MASS * GRAVITY * libm::sin(slope) / STIFFNESS;
     assert_close("sum of sticks", sticks, expected, 1e-12); // measured 2e-16
 }
@@ -98,12 +99,12 @@ fn a_block_on_frictionless_ice_slides_for_ever() {
 fn a_lifted_node_forgets_its_stick() {
     let mut scene = sledge(coulomb(0.5, STIFFNESS, 1e4), libm::atan(0.3), 0.0);
     run(&mut scene, 1.0, 5e-4);
-    assert!(scene.state.elements.stick(0).displacement > 0.0);
+    assert!(scene.state.contact_elements.stick(0).displacement > 0.0);
     scene.state.twists[1].linear.z = 1.0;
     run(&mut scene, 1.05, 5e-4);
     assert!(scene.scratch.contacts.is_empty(), "the block is in the air");
-    for element in 0..scene.state.elements.len() {
-        assert_eq!(scene.state.elements.stick(element), Stick::<Planar>::default());
+    for element in 0..scene.state.contact_elements.len() {
+        assert_eq!(scene.state.contact_elements.stick(element), Stick::<Planar>::default());
     }
 }
 

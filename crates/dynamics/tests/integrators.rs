@@ -160,10 +160,10 @@ fn swings_on_an_undamped_stick_do_not_grow() {
         scene
             .by(method)
             .watch(&Still, 2.5e-4, 1.0, |state, _, _| {
-                if state.elements.is_empty() {
+                if state.contact_elements.is_empty() {
                     return ControlFlow::Continue(());
                 }
-                let stretch = state.elements.stick(0).displacement.abs();
+                let stretch = state.contact_elements.stick(0).displacement.abs();
                 if state.time < 0.1 {
                     early = early.max(stretch);
                 } else if state.time > 0.9 {

@@ -260,7 +260,7 @@ proptest! {
             let mut scene = tumbling(seed);
             if exhaustive {
                 let poses = scene.state.poses.clone();
-                scene.state.elements.make_exhaustive(&scene.model, &poses);
+                scene.state.contact_elements.make_exhaustive(&scene.model, &poses);
             }
             let mut history = vec![];
             scene.by(method).watch(&Shake::Harmonic { acceleration: 3.0, omega: 9.0 }, 2e-4, 1.0, |state, scratch, energy| {
@@ -286,7 +286,7 @@ fn near_list_is_plain(scene: impl Fn() -> Scene, drive: &impl Drive<Planar>, end
         let mut scene = scene();
         if exhaustive {
             let poses = scene.state.poses.clone();
-            scene.state.elements.make_exhaustive(&scene.model, &poses);
+            scene.state.contact_elements.make_exhaustive(&scene.model, &poses);
         }
         let mut touched = 0;
         scene

@@ -4,8 +4,8 @@ mod press;
 
 use crate::body::{Motion, Nodes};
 use crate::contact::{FrictionLaw, Stick};
+use crate::contact_elements::ContactElements;
 use crate::element::{self, Load};
-use crate::elements::Elements;
 use crate::model::{ContactPair, Model};
 use crate::real::Real;
 use crate::space::{Space, Twist, Wrench};
@@ -16,7 +16,7 @@ use press::touch;
 /// One contact element that touches.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact<S: Space> {
-    /// Which element of [`Elements`].
+    /// Which element of [`ContactElements`].
     pub element: usize,
     /// Which pair of the model.
     pub pair: usize,
@@ -195,7 +195,7 @@ pub(crate) fn evaluate_within<S: Space>(
         #[inline(always)]
         || clear(state, scratch),
     );
-    for group in &state.elements.groups {
+    for group in &state.contact_elements.groups {
         S::Real::scope(
             #[inline(always)]
             || touch(model, state, step, group, scratch),
@@ -238,9 +238,9 @@ fn clear<S: Space>(state: &State<S>, scratch: &mut Scratch<S>) {
     scratch.pressed.clear();
     scratch.pair_forces.clear();
     scratch.slip_rates.clear();
-    scratch.slip_rates.resize(state.elements.len(), S::Tangent::default());
+    scratch.slip_rates.resize(state.contact_elements.len(), S::Tangent::default());
     scratch.evaluations += 1;
-    scratch.contact_evaluations += state.elements.len() as u64;
+    scratch.contact_evaluations += state.contact_elements.len() as u64;
 }
 
 /// Newton's law for every free body: contact, gravity and viscous damping (eq. 2.8).
@@ -277,15 +277,15 @@ pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: 
     S::Real::scope(
         #[inline(always)]
         || {
-            commit_all(model, &mut state.elements, scratch);
+            commit_all(model, &mut state.contact_elements, scratch);
             element::commit(model, &mut state.memory, &scratch.loads);
         },
     );
 }
 
 #[inline(always)]
-fn commit_all<S: Space>(model: &Model<S>, elements: &mut Elements<S>, scratch: &Scratch<S>) {
-    let Elements { sticks, .. } = elements;
+fn commit_all<S: Space>(model: &Model<S>, elements: &mut ContactElements<S>, scratch: &Scratch<S>) {
+    let ContactElements { sticks, .. } = elements;
     let mut next = 0;
     for pressed in scratch.pressed.chunk_by(|a, b| a.pair == b.pair) {
         let interface = &model.interfaces[model.pairs[pressed[0].pair].interface];

@@ -2,7 +2,7 @@
 
 use crate::body::{Nodes, Round};
 use crate::contact::{FrictionLaw, NormalLaw, Rolling, Stop};
-use crate::elements::{AtFace, Elements, Group, PairFrame};
+use crate::contact_elements::{AtFace, ContactElements, Group, PairFrame};
 use crate::model::Model;
 use crate::real::{Mask, Real};
 use crate::shape::{Gap, Nearest, Surface};
@@ -75,7 +75,7 @@ fn touch_by<S: Space>(
         twists: (state.twists[pair.contactor], state.twists[pair.target]),
         meeting: None,
         pair: group.pair,
-        elements: &state.elements,
+        elements: &state.contact_elements,
         sum: PairWrench::default(),
         totals: scratch.totals,
         slip_rates: &mut scratch.slip_rates,
@@ -85,7 +85,7 @@ fn touch_by<S: Space>(
     let one = S::Real::splat(1.0);
     match model.pair_nodes(pair) {
         Nodes::Fixed(_) => {
-            let nodes = &state.elements.positions[group.first..group.end];
+            let nodes = &state.contact_elements.positions[group.first..group.end];
             surface.penetrated_by(
                 nodes.len(),
                 #[inline(always)]
@@ -139,7 +139,7 @@ struct Press<'a, S: Space> {
     /// How the bodies meet; asked for by the first node that presses.
     meeting: Option<Meeting<'a, S>>,
     pair: usize,
-    elements: &'a Elements<S>,
+    elements: &'a ContactElements<S>,
     sum: PairWrench<S>,
     totals: ContactTotals<S::Real>,
     slip_rates: &'a mut [S::Tangent],
@@ -367,7 +367,7 @@ impl<'a, S: Space> Meeting<'a, S> {
     fn contact(
         &self,
         pair: usize,
-        elements: &Elements<S>,
+        elements: &ContactElements<S>,
         element: usize,
         node: S::Vector,
         gap: Gap<S>,

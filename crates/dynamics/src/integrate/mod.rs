@@ -92,7 +92,7 @@ impl<S: Space> Integrator<S> {
         scratch: &mut Scratch<S>,
     ) {
         place_prescribed(model, drive, state);
-        state.elements.rebuild(model, &state.poses, &state.twists);
+        state.contact_elements.rebuild(model, &state.poses, &state.twists);
         evaluate(model, state, scratch);
     }
 
@@ -141,7 +141,7 @@ fn refresh<S: Space>(
     scratch: &mut Scratch<S>,
     dt: S::Real,
 ) {
-    if let Some(origins) = state.elements.refresh(model, &state.poses, &state.twists, dt) {
+    if let Some(origins) = state.contact_elements.refresh(model, &state.poses, &state.twists, dt) {
         scratch.renumber(&origins);
     }
 }
@@ -173,7 +173,7 @@ fn accept<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>
 /// Adds a multiple of the slip rates to the stick displacements.
 #[inline(always)]
 fn advance_sticks<S: Space>(state: &mut State<S>, slip_rates: &[S::Tangent], time: S::Real) {
-    for (stick, rate) in state.elements.sticks.iter_mut().zip(slip_rates) {
+    for (stick, rate) in state.contact_elements.sticks.iter_mut().zip(slip_rates) {
         stick.displacement += *rate * time;
     }
 }

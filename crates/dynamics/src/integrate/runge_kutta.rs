@@ -119,7 +119,7 @@ impl<S: Space> Stages<S> {
     fn begin(&mut self, state: &State<S>) {
         self.poses.clone_from(&state.poses);
         self.twists.clone_from(&state.twists);
-        self.sticks.clone_from(&state.elements.sticks);
+        self.sticks.clone_from(&state.contact_elements.sticks);
         self.rates.clear();
     }
 
@@ -127,7 +127,7 @@ impl<S: Space> Stages<S> {
         state.time = time;
         state.poses.clone_from(&self.poses);
         state.twists.clone_from(&self.twists);
-        state.elements.sticks.clone_from(&self.sticks);
+        state.contact_elements.sticks.clone_from(&self.sticks);
         // The first stage is the start itself and stays.
         self.rates.truncate(1);
     }
@@ -181,7 +181,7 @@ impl<S: Space> Stages<S> {
             state.poses[i] = self.poses[i].moved(velocity, S::Real::splat(1.0));
             state.twists[i] = twist;
         }
-        for (element, stick) in state.elements.sticks.iter_mut().enumerate() {
+        for (element, stick) in state.contact_elements.sticks.iter_mut().enumerate() {
             let mut displacement = self.sticks[element].displacement;
             for (rates, weight) in self.rates.iter().zip(weights) {
                 displacement += rates.slip_rates[element] * (S::Real::splat(*weight) * dt);

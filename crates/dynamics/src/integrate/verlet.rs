@@ -98,8 +98,12 @@ fn correct<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S
 /// Trades a share (s) of the old slip rates for the new ones.
 #[inline(always)]
 fn correct_sticks<S: Space>(state: &mut State<S>, scratch: &Scratch<S>, share: S::Real) {
-    for ((stick, new), old) in
-        state.elements.sticks.iter_mut().zip(&scratch.slip_rates).zip(&scratch.old_slip_rates)
+    for ((stick, new), old) in state
+        .contact_elements
+        .sticks
+        .iter_mut()
+        .zip(&scratch.slip_rates)
+        .zip(&scratch.old_slip_rates)
     {
         stick.displacement += (*new - *old) * share;
     }

@@ -140,7 +140,7 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         let model = Model::<Planar<R>>::in_all(case.model);
         let mut state = State::initial(&model);
         state.poses = Lanewise::in_all(&case.state.poses);
-        state.elements.rebuild(&model, &state.poses, &state.twists);
+        state.contact_elements.rebuild(&model, &state.poses, &state.twists);
         let mut scratch = Scratch::new(&model);
         scratch.keeps_contacts = false;
         crate::forces::evaluate(&model, &state, &mut scratch);
@@ -187,7 +187,7 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         for twist in &mut self.state.twists {
             twist.put(lane, &Twist::default());
         }
-        for stick in &mut self.state.elements.sticks {
+        for stick in &mut self.state.contact_elements.sticks {
             stick.put(lane, &Stick::default());
         }
         for acceleration in &mut self.scratch.accelerations {
@@ -212,10 +212,15 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         self.state.memory.put(lane, &state.memory);
         self.scratch.accelerations.put(lane, &scratch.accelerations);
         let origins =
-            self.state.elements.rebuild(&self.model, &self.state.poses, &self.state.twists);
+            self.state.contact_elements.rebuild(&self.model, &self.state.poses, &self.state.twists);
         self.scratch.renumber(&origins);
         let slip_rates = &mut self.scratch.slip_rates;
-        self.state.elements.put_memory(lane, slip_rates, &state.elements, &scratch.slip_rates);
+        self.state.contact_elements.put_memory(
+            lane,
+            slip_rates,
+            &state.contact_elements,
+            &scratch.slip_rates,
+        );
         self.energy.put(lane, &EnergyLedger::new(model, state, scratch));
     }
 

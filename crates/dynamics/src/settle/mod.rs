@@ -187,7 +187,7 @@ impl Locked {
         let mut locked = Self::default();
         let (mut friction, mut normal) = (0.0, 0.0);
         for contact in &scratch.contacts {
-            let slipping = state.elements.sticks[contact.element].slipping;
+            let slipping = state.contact_elements.sticks[contact.element].slipping;
             let force = contact.friction_force.dot(contact.friction_force).sqrt();
             for lane in (0..S::Real::LANES).filter(|lane| contact.touching.lane(*lane)) {
                 let slips = slipping.lane(lane);

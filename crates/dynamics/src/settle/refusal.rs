@@ -237,7 +237,7 @@ impl<S: Space> Departure<S> {
             return Lack::Balance { on };
         }
         let slips = |contact: &&Contact<S>| {
-            state.elements.sticks[contact.element].slipping.any()
+            state.contact_elements.sticks[contact.element].slipping.any()
                 || matches!(law(contact).friction, FrictionLaw::Frictionless)
         };
         if bearing.iter().all(slips) {

@@ -108,7 +108,7 @@ impl<S: Space> Relaxation<S> {
         };
         self.touches.clear();
         self.touched.clear();
-        self.touched.resize(state.elements.len(), Default::default());
+        self.touched.resize(state.contact_elements.len(), Default::default());
         for contact in &scratch.contacts {
             let pair = &model.pairs[contact.pair];
             let interface = &model.interfaces[pair.interface];
@@ -123,7 +123,7 @@ impl<S: Space> Relaxation<S> {
                 |body| point - state.poses[body].position,
             );
             let zero = S::Real::zero();
-            let weight = state.elements.weights[contact.element];
+            let weight = state.contact_elements.weights[contact.element];
             let weight = S::Real::select(contact.touching, weight, zero);
             let stiffness = interface.stiffness(contact.penetration) * weight;
             hold(bodies[0], stiffness, arms[0]);
@@ -158,7 +158,7 @@ impl<S: Space> Relaxation<S> {
             #[inline(always)]
             || {
                 self.choose_ways(model, scratch);
-                self.slide(&mut state.elements.sticks);
+                self.slide(&mut state.contact_elements.sticks);
                 for (i, way) in self.ways.iter().enumerate() {
                     state.poses[i] = state.poses[i].moved(*way, S::Real::splat(1.0));
                     state.twists[i] = Twist::default().plus(*way, S::Real::splat(SLOWLY));
@@ -166,7 +166,9 @@ impl<S: Space> Relaxation<S> {
             },
         );
         let still = S::Real::zero();
-        if let Some(origins) = state.elements.refresh(model, &state.poses, &state.twists, still) {
+        if let Some(origins) =
+            state.contact_elements.refresh(model, &state.poses, &state.twists, still)
+        {
             scratch.renumber(&origins);
             let touched =
                 |origin: &Option<usize>| origin.map_or_else(Default::default, |o| self.touched[o]);
@@ -175,11 +177,13 @@ impl<S: Space> Relaxation<S> {
         evaluate(model, state, scratch);
         S::Real::scope(
             #[inline(always)]
-            || self.slide_fresh(&mut state.elements.sticks, scratch),
+            || self.slide_fresh(&mut state.contact_elements.sticks, scratch),
         );
-        let kept = self.resting.any().then(|| state.elements.sticks.clone());
+        let kept = self.resting.any().then(|| state.contact_elements.sticks.clone());
         forces::commit(model, state, scratch);
-        for (stick, kept) in state.elements.sticks.iter_mut().zip(kept.into_iter().flatten()) {
+        for (stick, kept) in
+            state.contact_elements.sticks.iter_mut().zip(kept.into_iter().flatten())
+        {
             *stick = Stick {
                 displacement: S::choose(self.resting, kept.displacement, stick.displacement),
                 slipping: (self.resting & kept.slipping) | (!self.resting & stick.slipping),

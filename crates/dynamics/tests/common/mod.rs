@@ -23,7 +23,10 @@ pub fn bits(state: &State<Planar>) -> Vec<u64> {
     for (pose, twist) in state.poses.iter().zip(&state.twists) {
         bits.extend(numbers(pose, twist).map(f64::to_bits));
     }
-    bits.extend((0..state.elements.len()).map(|i| state.elements.stick(i).displacement.to_bits()));
+    bits.extend(
+        (0..state.contact_elements.len())
+            .map(|i| state.contact_elements.stick(i).displacement.to_bits()),
+    );
     bits
 }
 

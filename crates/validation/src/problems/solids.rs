@@ -301,7 +301,7 @@ fn slope(what: &str, shapes: fn() -> [Shape; 2]) -> Problem {
             let mut scratch = Scratch::new(&model);
             let mut energy_and_force = |[x, z, orientation]: [f64; 3]| {
                 state.poses[2] = Pose { position: Vec2::new(x, z), orientation };
-                state.elements.make_exhaustive(&model, &state.poses);
+                state.contact_elements.make_exhaustive(&model, &state.poses);
                 evaluate(&model, &state, &mut scratch);
                 let deepest = scratch.contacts.iter().map(|c| c.penetration).fold(0.0, f64::max);
                 let wrench = scratch.wrenches[2];

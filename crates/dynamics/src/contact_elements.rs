@@ -37,7 +37,7 @@ pub(crate) struct Group {
 
 /// The contact elements within reach, in the order in which their forces are summed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Elements<S: Space> {
+pub struct ContactElements<S: Space> {
     pub(crate) groups: Vec<Group>,
     /// Index of every element's node in its node set.
     pub(crate) nodes: Vec<u32>,
@@ -57,7 +57,7 @@ pub struct Elements<S: Space> {
     exhaustive: bool,
 }
 
-impl<S: Space> Default for Elements<S> {
+impl<S: Space> Default for ContactElements<S> {
     fn default() -> Self {
         Self {
             groups: Vec::new(),
@@ -72,7 +72,7 @@ impl<S: Space> Default for Elements<S> {
     }
 }
 
-impl<S: Space> Elements<S> {
+impl<S: Space> ContactElements<S> {
     /// How many elements are in the list.
     pub fn len(&self) -> usize {
         self.nodes.len()
@@ -96,7 +96,7 @@ impl<S: Space> Elements<S> {
     }
 
     /// Builds the list anew where a body may have moved so far, or may move so far within `dt` (s),
-    /// that an element outside the list could touch. Returns the origins of [`Elements::rebuild`] if
+    /// that an element outside the list could touch. Returns the origins of [`ContactElements::rebuild`] if
     /// it did.
     pub(crate) fn refresh(
         &mut self,
@@ -300,14 +300,14 @@ impl<S: Space> Elements<S> {
     }
 }
 
-impl<R: Real> Elements<Planar<R>> {
+impl<R: Real> ContactElements<Planar<R>> {
     /// Puts the memory of a single state's elements into one lane, and their slip rates into that of
     /// `slip_rates`; elements that the single state does not list remember nothing.
     pub(crate) fn put_memory(
         &mut self,
         lane: usize,
         slip_rates: &mut [R],
-        single: &Elements<Planar>,
+        single: &ContactElements<Planar>,
         single_slip_rates: &[f64],
     ) {
         let mut remembered = Remembered { old: single, group: 0 };
@@ -348,7 +348,7 @@ fn allowances<S: Space>(model: &Model<S>, twists: &[Twist<S>]) -> Vec<f64> {
 
 /// Walks an old list in step with a new one; both are sorted by pair and node.
 struct Remembered<'a, S: Space> {
-    old: &'a Elements<S>,
+    old: &'a ContactElements<S>,
     group: usize,
 }
 
