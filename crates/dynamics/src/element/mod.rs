@@ -137,7 +137,7 @@ fn all<R: Real>(number: R, sound: fn(f64) -> bool) -> bool {
     (0..R::LANES).all(|lane| sound(number.lane(lane)))
 }
 
-/// ContactElements that bore more than their strength in an accepted state are broken from then on.
+/// Elements that bore more than their strength in an accepted state are broken from then on.
 #[inline(always)]
 pub(crate) fn commit<S: Space>(
     model: &Model<S>,
