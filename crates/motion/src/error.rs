@@ -11,8 +11,26 @@ pub enum Refusal {
     NotAcceleration,
     /// The file contradicts itself or its format: cut, overflown, counted wrong, not a number.
     Damaged,
-    /// The format does not say something that must be known and was not given by the caller.
-    Missing,
+    /// The file does not say something that must be known and was not given by the caller.
+    Missing(Given),
+    /// The channel is of another instrument than an accelerometer; the caller may have it
+    /// differentiated.
+    OtherInstrument,
+    /// Something that the caller gave is out of its range; the file was not looked at.
+    Options,
+}
+
+/// What a caller may have to say of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Given {
+    /// The unit of acceleration.
+    Unit,
+    /// The step.
+    Step,
+    /// The sensitivity, as the file holds counts.
+    Sensitivity,
+    /// One of both, as the file may hold accelerations or counts.
+    UnitOrSensitivity,
 }
 
 /// A file that could not be read: where, what was expected, what was found and what to do.

@@ -99,9 +99,9 @@ pub use collection::{
 };
 pub use corners::{Corners, NoiseCriterion, noise_corners};
 pub use direction::{Direction, Orientation};
-pub use error::{MotionError, ReadError, ReadFailure, Refusal};
+pub use error::{Given, MotionError, ReadError, ReadFailure, Refusal};
 pub use fault_axes::Turned;
-pub use format::{FORMATS, Format, ReadOptions, read, slammer_step};
+pub use format::{FORMATS, Format, ReadOptions, read};
 pub use fourier::FourierSpectrum;
 pub use ground_motion::GroundMotion;
 pub use history::{Delayed, History};

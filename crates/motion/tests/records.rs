@@ -158,12 +158,24 @@ fn unreasonable_settings_are_refused() {
         Processing { high_pass: Some(60.0), ..Processing::none() },
         Processing { high_pass: Some(f64::NAN), ..Processing::none() },
         Processing { low_pass: Some(0.0), ..Processing::none() },
-        Processing { high_pass: Some(5.0), low_pass: Some(1.0), ..Processing::none() },
+        // Slower than one over the duration of 1 s: the pads would be longer than any memory.
+        Processing { low_pass: Some(0.99), ..Processing::none() },
+        Processing { low_pass: Some(1e-9), ..Processing::none() },
+        Processing { low_pass: Some(1e-30), ..Processing::none() },
+        Processing { high_pass: Some(5.0), low_pass: Some(2.0), ..Processing::none() },
+        // Raised to 1 Hz, where the low-pass is.
+        Processing { high_pass: Some(0.1), low_pass: Some(1.0), ..Processing::none() },
         Processing { taper: 0.7, ..Processing::none() },
         Processing { order: 0, high_pass: Some(1.0), ..Processing::none() },
     ] {
         assert!(chain.apply(0.01, &a, 0.0).is_err(), "{chain:?}");
     }
+    let chain = Processing { low_pass: Some(1e-9), ..Processing::none() };
+    let told = chain.apply(0.01, &a, 0.0).unwrap_err().to_string();
+    assert!(told.starts_with("low-pass corner (Hz): expected at least one over the duration, 1"));
+    let chain = Processing { high_pass: Some(0.1), low_pass: Some(1.0), ..Processing::none() };
+    let told = chain.apply(0.01, &a, 0.0).unwrap_err().to_string();
+    assert!(told.contains("at least one over the duration: expected below the low-pass"), "{told}");
     let whole = Processing { mean: MeanRemoval::Whole, ..Processing::none() };
     assert!(whole.apply(0.01, &a, 0.0).unwrap().acceleration.iter().all(|v| v.abs() < 1e-15));
 }

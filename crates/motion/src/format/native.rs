@@ -17,9 +17,9 @@
 //! surface, station Napa`; what is not known is left out. Other `#` lines are comments. Spec: this file; written by [`crate::write::text`].
 
 use super::source::{LARGEST_ACCELERATION, Source, parse_number, quoted};
-use super::{Format, ReadOptions};
+use super::{Format, Told};
 use crate::direction::Direction;
-use crate::error::{ReadError, Refusal};
+use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
 use crate::units::AccelerationUnit;
@@ -47,7 +47,7 @@ fn field(source: &Source<'_>, end: usize, key: &str) -> Option<(usize, String)> 
     })
 }
 
-fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let end = (0..source.lines.len())
         .find(|&line| !written(source, line).starts_with('#'))
         .ok_or_else(|| source.cut("rows of numbers after the header", "none"))?;
@@ -71,12 +71,11 @@ pub(super) fn described(
     }
     let need = |key: &str| {
         field(source, end, key).ok_or_else(|| {
-            source.error(
-                (),
-                Refusal::Missing,
-                format!("a line \"# {key}: ...\""),
+            source.damaged(
+                end.saturating_sub(1),
+                format!("a line \"# {key}: ...\" in the header, which ends here"),
                 "none",
-                "add the line to the header",
+                "add the line",
             )
         })
     };
@@ -149,10 +148,11 @@ fn places(
     end: usize,
     channels: usize,
 ) -> Result<Vec<(Option<Utc>, Site)>, ReadError> {
-    let mut found = Vec::new();
+    let (mut found, mut last) = (Vec::new(), 0);
     for line in 0..end {
         let text = written(source, line);
         let Some(words) = text.strip_prefix("# recorded:") else { continue };
+        last = line;
         found.push(place(words).ok_or_else(|| {
             source.damaged(
                 line,
@@ -162,7 +162,16 @@ fn places(
             )
         })?);
     }
-    Ok(if found.len() == 1 { vec![found.remove(0); channels] } else { found })
+    match found.len() {
+        1 => Ok(vec![found.remove(0); channels]),
+        count if count == 0 || count == channels => Ok(found),
+        count => Err(source.damaged(
+            last,
+            format!("one line \"# recorded:\" for all channels, or {channels}, one to a channel"),
+            format!("{count} such lines"),
+            "correct the header lines",
+        )),
+    }
 }
 
 /// `start 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, sensor surface`.

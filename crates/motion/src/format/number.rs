@@ -71,6 +71,11 @@ pub(crate) fn leading_number(bytes: &[u8]) -> Option<(f64, String)> {
     Some((value, latin1(&rest[..end])))
 }
 
+/// As [`leading_number`] with the resolution of the printed digits.
+pub(crate) fn leading_printed(bytes: &[u8]) -> Option<Printed> {
+    leading_number(bytes).map(|(value, text)| Printed { value, resolution: resolution(&text) })
+}
+
 /// One unit of the last digit of a printed number.
 pub(crate) fn resolution(text: &str) -> f64 {
     let lower = text.to_ascii_lowercase();
