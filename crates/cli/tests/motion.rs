@@ -8,7 +8,7 @@ use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use common::{barrelstack, names, refused, stderr, stdout};
+use common::{barrelstack, names, refused, skipped, stderr, stdout};
 use serde_json::Value;
 
 /// Runs `motion` in a way that must succeed, and gives what it printed.
@@ -487,8 +487,7 @@ fn every_real_file_is_shown_or_refused() {
     ];
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions");
     if !folder.is_dir() {
-        // Straight to stderr: the test runner swallows what a passing test prints.
-        let _ = writeln!(std::io::stderr(), "SKIPPED: {} is not there", folder.display());
+        skipped(&format!("{} is not there", folder.display()));
         return;
     }
     let mut seen = 0;

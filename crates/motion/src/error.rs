@@ -56,7 +56,7 @@ impl From<ReadFailure> for ReadError {
 
 /// The facts of a [`ReadError`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{file}{}: expected {expected}, found {found}; {remedy}", Place { line: *line, column: *column })]
+#[error("{file}{}: expected {expected}, found {found}; {remedy}", place(*line, *column))]
 pub struct ReadFailure {
     /// Name of the file as given by the caller.
     pub file: String,
@@ -74,21 +74,11 @@ pub struct ReadFailure {
     pub remedy: String,
 }
 
-struct Place {
-    line: Option<usize>,
-    column: Option<usize>,
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(line) = self.line {
-            write!(f, ", line {line}")?;
-        }
-        if let Some(column) = self.column {
-            write!(f, ", column {column}")?;
-        }
-        Ok(())
-    }
+/// `, line 5, column 3`, as far as it is known.
+fn place(line: Option<usize>, column: Option<usize>) -> String {
+    let part =
+        |what: &str, of: Option<usize>| of.map_or_else(String::new, |n| format!(", {what} {n}"));
+    part("line", line) + &part("column", column)
 }
 
 /// A request about a motion that cannot be met.

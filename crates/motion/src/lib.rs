@@ -1,4 +1,4 @@
-//! Strong ground motion: read, process, scale, synthesise and measure.
+//! Strong ground motion: read, process, scale, synthesize and measure.
 //!
 //! A file becomes a [`Record`] (as recorded, SI, with everything the header said), a record becomes a
 //! [`GroundMotion`] (processed, scaled, ready to drive a model), and a motion answers
@@ -19,7 +19,9 @@
 //!
 //! # Conventions
 //!
-//! - Every number is SI: m, m/s, m/s², s, rad. Azimuths alone are degrees clockwise from north.
+//! - Numbers are SI: m, m/s, m/s², s, rad. Three exceptions: azimuths, strikes, latitudes and longitudes
+//!   are degrees, azimuths clockwise from north; [`synthesis::BooreSource`] takes km, km/s, bar and g/cm³
+//!   as the literature does; codes and flatfiles keep their own (PGA and Sa in g, distances in km).
 //! - g is 9.80665 m/s² ([`STANDARD_GRAVITY`]).
 //! - Vertical components are positive upward; a channel that points down is turned when read.
 //! - Acceleration is linear between samples, velocity quadratic, displacement cubic.
@@ -117,9 +119,7 @@ pub use pulse_class::{ClassifiedPulse, classify_component, classify_pair};
 pub use pulse_fit::{PulseFit, dominant_pulse};
 pub use random::Random;
 pub use record::{Channel, Quantity, Record, Stage, StatedPeak, Warning};
-pub use response::{
-    ResponsePeaks, ResponseSpectrum, response, response_subdivided, standard_periods,
-};
+pub use response::{ResponsePeaks, ResponseSpectrum, response, standard_periods};
 pub use rotd::{RotatedPeak, rotated_peak, rotated_spectrum};
 pub use sampled::{Kinematics, Sampled};
 pub use select::Component;

@@ -181,7 +181,7 @@ fn code_spectra_have_their_published_ordinates() {
         let mut previous = spectrum.acceleration(0.01);
         for k in 1..4000 {
             let here = spectrum.acceleration(0.01 + 0.001 * f64::from(k));
-            assert!((here / previous - 1.0).abs() < 0.05);
+            assert!((here / previous - 1.0).abs() < 0.03); // measured 0.022, where branches meet
             previous = here;
         }
     }
@@ -205,6 +205,7 @@ fn code_spectra_have_their_published_ordinates() {
         (SiteClass::D, 1.5, 1.43),
         (SiteClass::E, 1.5, 2.21),
     ] {
+        // Measured: 0.0121, as the printed table is rounded and its formula is not.
         assert!((nzs(site, t) - shape).abs() < 0.013, "{site:?} {t}: {}", nzs(site, t));
     }
     let near_fault = |return_period: f64, t: f64| {

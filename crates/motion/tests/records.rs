@@ -69,7 +69,7 @@ fn rotation_recovers_any_azimuth_from_oblique_horizontals() {
     assert_eq!(back.acceleration, truth.channels[1].acceleration);
     let opposite = given.component(&Component::Azimuth(180.0)).unwrap();
     for (a, b) in opposite.acceleration.iter().zip(&given.channels[0].acceleration) {
-        assert!((a + b).abs() < 1e-12);
+        assert!((a + b).abs() < 1e-14); // measured 2.2e-16
     }
 }
 
@@ -250,7 +250,7 @@ fn parts_of_every_kind_are_joined_by_name_or_by_order() {
         .zip(&whole.channels[0].acceleration)
         .map(|(a, b)| (a - b).abs())
         .fold(0.0, f64::max);
-    assert!(off < 1e-12, "{off}");
+    assert!(off < 1e-15, "{off}"); // measured 2.8e-17
 }
 
 fn stem(file: &str) -> String {
@@ -274,7 +274,7 @@ fn parts_are_joined_where_they_repeat() {
     for (a, b) in joined.channels.iter().zip(&whole.channels) {
         assert_eq!(a.acceleration.len(), 3000);
         let off = a.acceleration.iter().zip(&b.acceleration).map(|(x, y)| (x - y).abs());
-        assert!(off.fold(0.0, f64::max) < 1e-12);
+        assert!(off.fold(0.0, f64::max) < 1e-14); // measured 1.1e-16
     }
     assert!(joined.notes.iter().any(|note| note.contains("5.00 s")));
     let apart = part(2000, 3000, 0.0, "parte3");
@@ -306,11 +306,11 @@ fn the_bundled_record_has_its_published_peaks_and_comes_to_rest() {
     assert_eq!(napa.stage, Stage::Raw);
     let pga: Vec<f64> = napa.channels.iter().map(|c| c.pga() / STANDARD_GRAVITY).collect();
     for (measured, stated) in pga.iter().zip([0.3728, 0.3389, 0.2152]) {
-        assert!((measured - stated).abs() < 6e-5);
+        assert!((measured - stated).abs() < 5.5e-5); // measured 3.0e-5; half a digit is 5e-5
     }
     let pgv: Vec<f64> = napa.channels.iter().map(|c| c.pgv() * 100.0).collect();
     for (measured, stated) in pgv.iter().zip([57.17, 55.52, 18.96]) {
-        assert!((measured - stated).abs() < 0.02, "{measured}");
+        assert!((measured - stated).abs() < 5.5e-3, "{measured}"); // measured 4.0e-3
     }
     let motion = napa.default_motion().unwrap();
     println!("{}", motion.provenance.join("\n"));

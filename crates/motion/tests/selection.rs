@@ -189,7 +189,7 @@ fn what_cannot_be_chosen_is_refused_with_the_numbers() {
     assert!(told.contains("of 50 records") && told.contains("20 are asked for"), "{told}");
     let told = select(&target(None), &library, &choosing(1)).unwrap_err().to_string();
     assert_eq!(told, "size of the set: expected at least 2, found 1");
-    let mut bad = library.clone();
+    let mut bad = library;
     bad[7].spectrum[2] = 0.0;
     let told = select(&target(None), &bad, &choosing(20)).unwrap_err().to_string();
     let period = target(None).periods()[2];

@@ -1,20 +1,6 @@
 //! The text form of this crate: `# key: value` lines, then one column to a channel.
 //!
-//! ```text
-//! # barrelstack motion 1
-//! # station: Napa College, Napa
-//! # event: South Napa, 2014-08-24, M 6.0
-//! # stage: corrected
-//! # unit: m/s2
-//! # time_step: 0.005
-//! # channels: E az=90, N az=0, Up vertical
-//! 1.2345e-3 -2.3456e-4 0
-//! ```
-//!
-//! `# initial_velocity:` gives the velocity (m/s) at the first sample of each channel where it is not
-//! zero. `# recorded:` gives start (UTC), place and sensor of all channels, or one such line to each:
-//! `start 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, elevation 12, vs30 330, sensor
-//! surface, station Napa`; what is not known is left out. Other `#` lines are comments. Spec: this file; written by [`crate::write::text`].
+//! Spec: [`crate::write::text`], which writes it; its module says what each key means.
 
 use super::source::{LARGEST_ACCELERATION, Source, parse_number, quoted};
 use super::{Format, Told};

@@ -66,7 +66,6 @@ pub(crate) fn leading_number(bytes: &[u8]) -> Option<(f64, String)> {
         }
         end += 1;
     }
-    // A sentence may end in a full stop right after the number.
     let value = parse_number(&rest[..end])?;
     Some((value, latin1(&rest[..end])))
 }
