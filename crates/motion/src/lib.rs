@@ -19,9 +19,10 @@
 //!
 //! # Conventions
 //!
-//! - Numbers are SI: m, m/s, m/s², s, rad. Three exceptions: azimuths, strikes, latitudes and longitudes
-//!   are degrees, azimuths clockwise from north; [`synthesis::BooreSource`] takes km, km/s, bar and g/cm³
-//!   as the literature does; codes and flatfiles keep their own (PGA and Sa in g, distances in km).
+//! - Numbers are SI: m, m/s, m/s², s, rad. Three exceptions: directions, latitudes and longitudes are
+//!   degrees, azimuths clockwise from north; sources and paths of [`BooreSource`] are km, km/s, bar and
+//!   g/cm³, as the literature has them; codes and flatfiles keep their own (PGA and Sa in g, distances in
+//!   km).
 //! - g is 9.80665 m/s² ([`STANDARD_GRAVITY`]).
 //! - Vertical components are positive upward; a channel that points down is turned when read.
 //! - Acceleration is linear between samples, velocity quadratic, displacement cubic.

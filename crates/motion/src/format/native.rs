@@ -153,7 +153,7 @@ fn places(
         count if count == 0 || count == channels => Ok(found),
         count => Err(source.damaged(
             last,
-            format!("one line \"# recorded:\" for all channels, or {channels}, one to a channel"),
+            format!("one line \"# recorded:\" for all, or one to each of {channels} channels"),
             format!("{count} such lines"),
             "correct the header lines",
         )),

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, anyhow, bail};
 use barrelstack::scenario::{Dimension, Quantity};
 use barrelstack_motion::{
-    self as motion, AccelerationUnit, Component, Given, Instrument, MotionError, ReadError,
-    ReadOptions, Record, Refusal, Stage, bundled, read, station_xml,
+    self as motion, AccelerationUnit, Component, Given, Instrument, ReadError, ReadOptions, Record,
+    Refusal, Stage, bundled, read, station_xml,
 };
 use clap::ValueEnum;
 
@@ -281,11 +281,15 @@ impl Choice {
 }
 
 /// All channels after a chain, every step of it in the notes.
-pub(super) fn processed(record: &Record, chain: &Processing) -> Result<Record, MotionError> {
+pub(super) fn processed(record: &Record, chain: &Processing) -> anyhow::Result<Record> {
     let mut out = record.clone();
     for channel in &mut out.channels {
-        let done =
-            chain.apply(channel.time_step, &channel.acceleration, channel.initial_velocity)?;
+        let done = chain
+            .apply(channel.time_step, &channel.acceleration, channel.initial_velocity)
+            .map_err(|error| {
+                let (file, name) = (&record.file, &channel.name);
+                anyhow!("{file}, channel {name}: {error}; give a value in that range")
+            })?;
         channel.acceleration = done.acceleration;
         channel.initial_velocity = done.initial_velocity;
         for step in done.steps {
