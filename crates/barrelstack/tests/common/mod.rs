@@ -6,7 +6,8 @@ use std::io::Write as _;
 /// Says that a test has nothing to test here, past the runner, which keeps what a passing test prints, to
 /// where skipped tests are counted.
 pub(crate) fn skipped(why: &str) {
-    std::io::stdout().write_all(format!("skipped: {why}\n").as_bytes()).unwrap();
+    let notice = format!("skipped: {why}\n");
+    std::io::stdout().write_all(notice.as_bytes()).expect("a standard output");
 }
 
 /// Numbers between 0 and 1, the same on every machine (`SplitMix64`).
