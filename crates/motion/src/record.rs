@@ -13,7 +13,7 @@ use crate::utc::Utc;
 pub enum Stage {
     /// As recorded; velocity and displacement drift when it is integrated.
     Raw,
-    /// Filtered and baseline-corrected by its publisher.
+    /// Filtered and baseline-corrected, by its publisher or since.
     Corrected,
     /// The file does not say.
     Unknown,
