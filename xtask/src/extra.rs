@@ -19,7 +19,7 @@ pub(crate) struct Extra {
 }
 
 /// The oldest toolchain that builds the workspace: `rust-version` in `Cargo.toml`.
-const OLDEST: &str = "1.89";
+const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
 
 /// The target of browsers.
 const BROWSER_TARGET: &str = "wasm32-unknown-unknown";
@@ -45,7 +45,7 @@ pub(crate) fn all(root: &Path) -> Vec<Extra> {
         } else {
             Err(format!("no toolchain {OLDEST}; type `rustup toolchain install {OLDEST}`"))
         },
-        remedy: "write what Rust 1.89 knows, or raise rust-version in Cargo.toml and say so in \
+        remedy: "write what that toolchain knows, or raise rust-version in Cargo.toml and say so in \
                  CHANGELOG.md",
         pages: None,
     };

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
-    AccelerationUnit, Channel, Component, GroundMotion, Horizontals, IntensityMeasure, MotionError,
-    Processing, ReadError, ReadFailure, ReadOptions, Record, Refusal,
+    AccelerationUnit, Channel, Component, Given, GroundMotion, Horizontals, IntensityMeasure,
+    MotionError, Processing, ReadError, ReadFailure, ReadOptions, Record, Refusal,
 };
 
 use crate::scenario::{
@@ -358,17 +358,14 @@ fn read_file(
     record.map_err(|error| {
         let mut failure: ReadFailure = (*error).clone();
         // The reader knows what is missing, the scenario where to state it.
-        if failure.refusal == Refusal::Missing {
-            failure.remedy += if failure.expected.contains("a unit or a sensitivity") {
-                " in the scenario, as motion.unit = \"1 g\" or motion.sensitivity = 427819"
-            } else if failure.expected.contains("unit") {
-                " in the scenario, for example motion.unit = \"1 g\""
-            } else if failure.expected.contains("step") {
-                " in the scenario, for example motion.time_step = \"0.01 s\""
-            } else if failure.expected.contains("sensitivity") {
-                " in the scenario, for example motion.sensitivity = 427819"
-            } else {
-                ""
+        if let Refusal::Missing(given) = failure.refusal {
+            failure.remedy += match given {
+                Given::UnitOrSensitivity => {
+                    " in the scenario, as motion.unit = \"1 g\" or motion.sensitivity = 427819"
+                }
+                Given::Unit => " in the scenario, for example motion.unit = \"1 g\"",
+                Given::Step => " in the scenario, for example motion.time_step = \"0.01 s\"",
+                Given::Sensitivity => " in the scenario, for example motion.sensitivity = 427819",
             };
         }
         GroundError::Read(failure.into())

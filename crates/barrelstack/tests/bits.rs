@@ -1,8 +1,9 @@
 //! Results have the bits that are kept of them, or another version.
-#![expect(clippy::print_stdout, reason = "what is skipped on a machine of another kind")]
 
+mod common;
 mod golden;
 
+use common::skipped;
 use golden::{RENEW, Table, Verdict, file};
 
 #[test]
@@ -10,7 +11,7 @@ fn results_have_the_bits_that_are_kept_or_another_version() {
     let file = file();
     if !file.is_file() {
         let kind = std::env::consts::ARCH;
-        println!("skipped: no bits are kept for {kind}; type `{RENEW}` on one to keep them");
+        skipped(&format!("no bits are kept for {kind}; type `{RENEW}` on one to keep them"));
         return;
     }
     let kept = std::fs::read_to_string(&file).map_err(|error| error.to_string());

@@ -9,7 +9,8 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
 
-use std::io::Write as _;
+mod common;
+
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -183,9 +184,7 @@ fn hollywood() -> Option<String> {
     if file.is_file() {
         return Some(format!("motion.record={:?}", file.display().to_string()));
     }
-    // Straight to the terminal: the runner keeps what tests that pass print by the usual way.
-    let notice = "skipped: RSN995_NORTHR_PEL360.AT2 is not there; it may not be passed on\n";
-    std::io::stdout().write_all(notice.as_bytes()).unwrap();
+    common::skipped("RSN995_NORTHR_PEL360.AT2 is not there; it may not be passed on");
     None
 }
 

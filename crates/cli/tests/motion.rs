@@ -5,10 +5,9 @@
 mod common;
 
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use common::{barrelstack, names, refused, stderr, stdout};
+use common::{barrelstack, names, refused, skipped, stderr, stdout};
 use serde_json::Value;
 
 /// Runs `motion` in a way that must succeed, and gives what it printed.
@@ -413,6 +412,10 @@ fn mistakes_are_one_error_and_nothing_is_written() {
     let timed = folder.path().join("timed.txt");
     fs::write(&timed, "0.00 0.1\n0.01 0.2\n0.02 -0.1\n0.03 0.0\n").unwrap();
     let timed = text(&timed);
+    let unstated = folder.path().join("unstated.txt");
+    let header = "# barrelstack motion 1\n# time_step: 0.01\n# channels: E\n";
+    fs::write(&unstated, format!("{header}0.1\n0.2\n-0.1\n")).unwrap();
+    let unstated = text(&unstated);
     let table = folder.path().join("table.csv");
     fs::write(&table, "0.1,1\n0.2,1\n").unwrap();
     let table = text(&table);
@@ -420,6 +423,8 @@ fn mistakes_are_one_error_and_nothing_is_written() {
         (&["convert", "missing.at2"], &["missing.at2", "there is no such file"]),
         (&["convert", columns], &["time step", "--time-step"]),
         (&["convert", timed], &["unit", "--unit"]),
+        (&["convert", unstated, "--unit", "g"], &["line 3", "\"# unit: ...\"", "add the line"]),
+        (&["convert", columns, "--time-step", "0 s", "--unit", "g"], &["above 0", "give another"]),
         (&["convert", timed, "--unit", "furlong"], &["--unit", "furlong", "cm/s2"]),
         (&["convert", columns, "--time-step", "0.01"], &["--time-step", "no unit", "0.01 s"]),
         (&["convert", first, "--component", "west"], &["west", "\"Up\""]),
@@ -435,6 +440,10 @@ fn mistakes_are_one_error_and_nothing_is_written() {
         (&["scale", first, "--froude", "-1"], &["--froude", "above 0", "-1"]),
         (&["process", first, "--high-pass", "0.1"], &["--high-pass", "no unit", "0.1 Hz"]),
         (&["process", first, "--high-pass", "200 Hz"], &["high-pass", "Nyquist", "100 Hz"]),
+        (
+            &["process", first, "--low-pass", "1e-9 Hz"],
+            &["channel E: low-pass", "one over the duration, 0.02", "give a value in that range"],
+        ),
         (&["process", first, "--chain", "none"], &["does nothing"]),
         (&["match", first, "--to", "asce8:a=1"], &["asce8", "nzs1170"]),
         (&["match", first, "--to", "asce7:sds=1"], &["sd1 is missing"]),
@@ -487,8 +496,7 @@ fn every_real_file_is_shown_or_refused() {
     ];
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions");
     if !folder.is_dir() {
-        // Straight to stderr: the test runner swallows what a passing test prints.
-        let _ = writeln!(std::io::stderr(), "SKIPPED: {} is not there", folder.display());
+        skipped(&format!("{} is not there", folder.display()));
         return;
     }
     let mut seen = 0;

@@ -80,6 +80,22 @@ impl Direction {
         }
         bearing(text).or_else(|| seed_channel(text)).unwrap_or_default()
     }
+
+    /// What a name says, or else the code of the direction in headers of CSMIP and COSMOS: an azimuth, or
+    /// a number from 400 on, of which those from 700 on are relative to a structure.
+    pub(crate) fn of_name_or_code(name: &str, code: Option<f64>) -> Self {
+        let stated = Self::parse(name);
+        if stated != Self::default() {
+            return stated;
+        }
+        match code {
+            Some(azimuth) if (1.0..=360.0).contains(&azimuth) => Self::horizontal(azimuth),
+            Some(400.0 | 401.0 | 500.0) => Self::up(),
+            Some(402.0 | 600.0) => Self::down(),
+            Some(700.0 | 701.0 | 800.0 | 801.0 | 1100.0 | 1200.0) => Self::some_horizontal(),
+            _ => stated,
+        }
+    }
 }
 
 /// A quadrant bearing such as `N28W`.

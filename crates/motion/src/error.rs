@@ -11,8 +11,26 @@ pub enum Refusal {
     NotAcceleration,
     /// The file contradicts itself or its format: cut, overflown, counted wrong, not a number.
     Damaged,
-    /// The format does not say something that must be known and was not given by the caller.
-    Missing,
+    /// The file does not say something that must be known and was not given by the caller.
+    Missing(Given),
+    /// The channel is of another instrument than an accelerometer; the caller may have it
+    /// differentiated.
+    OtherInstrument,
+    /// Something that the caller gave is out of its range; the file was not looked at.
+    Options,
+}
+
+/// What a caller may have to say of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Given {
+    /// The unit of acceleration.
+    Unit,
+    /// The step.
+    Step,
+    /// The sensitivity, as the file holds counts.
+    Sensitivity,
+    /// One of both, as the file may hold accelerations or counts.
+    UnitOrSensitivity,
 }
 
 /// A file that could not be read: where, what was expected, what was found and what to do.
@@ -38,7 +56,7 @@ impl From<ReadFailure> for ReadError {
 
 /// The facts of a [`ReadError`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{file}{}: expected {expected}, found {found}; {remedy}", Place { line: *line, column: *column })]
+#[error("{file}{}: expected {expected}, found {found}; {remedy}", place(*line, *column))]
 pub struct ReadFailure {
     /// Name of the file as given by the caller.
     pub file: String,
@@ -56,21 +74,11 @@ pub struct ReadFailure {
     pub remedy: String,
 }
 
-struct Place {
-    line: Option<usize>,
-    column: Option<usize>,
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(line) = self.line {
-            write!(f, ", line {line}")?;
-        }
-        if let Some(column) = self.column {
-            write!(f, ", column {column}")?;
-        }
-        Ok(())
-    }
+/// `, line 5, column 3`, as far as it is known.
+fn place(line: Option<usize>, column: Option<usize>) -> String {
+    let part =
+        |what: &str, of: Option<usize>| of.map_or_else(String::new, |n| format!(", {what} {n}"));
+    part("line", line) + &part("column", column)
 }
 
 /// A request about a motion that cannot be met.

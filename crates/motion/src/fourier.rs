@@ -75,6 +75,18 @@ fn transform(values: &mut [Complex], sign: f64) {
     }
 }
 
+/// Correlation of a series with another at every shift, from their transforms; where the second is real,
+/// the real and the imaginary part of the first keep apart.
+pub(crate) fn correlate(series: &[Complex], kernel: &[Complex]) -> Vec<Complex> {
+    let mut product: Vec<Complex> = series
+        .iter()
+        .zip(kernel)
+        .map(|(a, b)| Complex { re: a.re * b.re + a.im * b.im, im: a.im * b.re - a.re * b.im })
+        .collect();
+    inverse(&mut product);
+    product
+}
+
 /// Transform of real values, padded with zeros to `length` (a power of two).
 pub(crate) fn forward_real(values: &[f64], length: usize) -> Vec<Complex> {
     let mut padded: Vec<Complex> = values.iter().map(|&re| Complex { re, im: 0.0 }).collect();

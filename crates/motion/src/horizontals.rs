@@ -47,16 +47,7 @@ impl Horizontals {
         second: &Sampled,
     ) -> Result<f64, MotionError> {
         measure.check()?;
-        if (first.time_step() / second.time_step() - 1.0).abs() > 1e-9 {
-            return Err(MotionError::Mismatch {
-                what: format!(
-                    "one horizontal has a step of {} s, the other of {} s",
-                    first.time_step(),
-                    second.time_step()
-                ),
-                remedy: "choose components of one step".to_owned(),
-            });
-        }
+        first.require_step(second)?;
         let peaks = match (self, measure) {
             (Self::GeometricMean, _) => {
                 return Ok((measure.of(first)? * measure.of(second)?).sqrt());

@@ -14,7 +14,8 @@ use crate::sampled::Sampled;
 /// A measure of the intensity of one component, in SI units.
 ///
 /// Integrals over time are trapezoids of the samples, as published values are.
-/// Parses from and prints as `pgv`, `sa(1.0)`, `sa(1.0,0.02)`, `d5-95`, `housner(0.2)` and so on.
+/// Parses from `pgv`, `sa(1.0)`, `sa(1.0,0.02)`, `d5-95`, `housner` and so on, and prints with all
+/// parameters: `sa(1,0.05)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IntensityMeasure {
     /// Peak ground acceleration (m/s²).
@@ -361,18 +362,13 @@ fn spectrum_integral(
     of_acceleration: bool,
 ) -> Result<f64, MotionError> {
     let steps = ((last - first) / 0.01).round();
-    let mut ordinates = Vec::new();
-    let mut k = 0.0;
-    while k <= steps {
-        let period = first + (last - first) * k / steps;
+    let ordinate = |k: u32| {
+        let period = first + (last - first) * f64::from(k) / steps;
         let peaks = response(time_step, acceleration, period, damping)?;
-        ordinates.push(if of_acceleration {
-            peaks.pseudo_acceleration
-        } else {
-            peaks.pseudo_velocity
-        });
-        k += 1.0;
-    }
+        Ok(if of_acceleration { peaks.pseudo_acceleration } else { peaks.pseudo_velocity })
+    };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some hundred")]
+    let ordinates: Vec<f64> = (0..=steps as u32).map(ordinate).collect::<Result<_, _>>()?;
     Ok(math::trapezoid(ordinates.into_iter(), (last - first) / steps))
 }
 

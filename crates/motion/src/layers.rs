@@ -8,7 +8,7 @@ use crate::math::{self, TAU};
 use crate::response::{TOGETHER, larger};
 
 /// Least number of steps to a period at a step coarser than the motion's own.
-const STEPS_A_PERIOD: f64 = 40.0;
+const LAYER_STEPS: f64 = 40.0;
 
 /// A piecewise-linear acceleration averaged around the samples of ever coarser steps.
 pub(crate) struct Layers {
@@ -23,7 +23,7 @@ impl Layers {
     pub(crate) fn new(time_step: f64, acceleration: &[f64], longest: f64) -> Self {
         let mut layers = vec![averaged(acceleration, 1, [4.0 / 6.0, 1.0 / 6.0])];
         let mut step = 2.0 * time_step;
-        while step * STEPS_A_PERIOD <= longest {
+        while step * LAYER_STEPS <= longest {
             let next = averaged(&layers[layers.len() - 1], 2, [0.5, 0.25]);
             layers.push(next);
             step *= 2.0;
@@ -41,7 +41,7 @@ impl Layers {
         mut see: impl FnMut(usize, &[f64; TOGETHER]),
     ) {
         let (mut layer, mut stride) = (0, 1);
-        let coarse = |stride: usize| self.time_step * stride as f64 * STEPS_A_PERIOD;
+        let coarse = |stride: usize| self.time_step * stride as f64 * LAYER_STEPS;
         while layer + 1 < self.layers.len() && coarse(2 * stride) <= periods[0] {
             (layer, stride) = (layer + 1, 2 * stride);
         }
@@ -101,7 +101,7 @@ mod tests {
     use crate::response::pseudo_accelerations;
 
     #[test]
-    fn peaks_are_those_of_the_exact_recursion_within_a_percent() {
+    fn peaks_are_those_of_the_exact_recursion_as_nearly_as_they_are_stated() {
         let mut random = Random::new(4);
         let mut last = 0.0;
         let noise = |k: u32| {
@@ -113,6 +113,6 @@ mod tests {
         let ours = Layers::new(0.005, &a, 5.0).pseudo_accelerations(&periods, 0.05);
         let exact = pseudo_accelerations(0.005, &a, &periods, 0.05);
         let worst = ours.iter().zip(&exact).map(|(o, e)| (o / e - 1.0).abs()).fold(0.0, f64::max);
-        assert!(worst < 0.01, "{worst}");
+        assert!(worst < 0.006, "{worst}"); // measured 0.0042
     }
 }

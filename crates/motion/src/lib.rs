@@ -1,4 +1,4 @@
-//! Strong ground motion: read, process, scale, synthesise and measure.
+//! Strong ground motion: read, process, scale, synthesize and measure.
 //!
 //! A file becomes a [`Record`] (as recorded, SI, with everything the header said), a record becomes a
 //! [`GroundMotion`] (processed, scaled, ready to drive a model), and a motion answers
@@ -19,7 +19,10 @@
 //!
 //! # Conventions
 //!
-//! - Every number is SI: m, m/s, m/s², s, rad. Azimuths alone are degrees clockwise from north.
+//! - Numbers are SI: m, m/s, m/s², s, rad. Three exceptions: directions, latitudes and longitudes are
+//!   degrees, azimuths clockwise from north; sources and paths of [`BooreSource`] are km, km/s, bar and
+//!   g/cm³, as the literature has them; codes and flatfiles keep their own (PGA and Sa in g, distances in
+//!   km).
 //! - g is 9.80665 m/s² ([`STANDARD_GRAVITY`]).
 //! - Vertical components are positive upward; a channel that points down is turned when read.
 //! - Acceleration is linear between samples, velocity quadratic, displacement cubic.
@@ -99,9 +102,9 @@ pub use collection::{
 };
 pub use corners::{Corners, NoiseCriterion, noise_corners};
 pub use direction::{Direction, Orientation};
-pub use error::{MotionError, ReadError, ReadFailure, Refusal};
+pub use error::{Given, MotionError, ReadError, ReadFailure, Refusal};
 pub use fault_axes::Turned;
-pub use format::{FORMATS, Format, ReadOptions, read, slammer_step};
+pub use format::{FORMATS, Format, ReadOptions, read};
 pub use fourier::FourierSpectrum;
 pub use ground_motion::GroundMotion;
 pub use history::{Delayed, History};
@@ -117,9 +120,7 @@ pub use pulse_class::{ClassifiedPulse, classify_component, classify_pair};
 pub use pulse_fit::{PulseFit, dominant_pulse};
 pub use random::Random;
 pub use record::{Channel, Quantity, Record, Stage, StatedPeak, Warning};
-pub use response::{
-    ResponsePeaks, ResponseSpectrum, response, response_subdivided, standard_periods,
-};
+pub use response::{ResponsePeaks, ResponseSpectrum, response, standard_periods};
 pub use rotd::{RotatedPeak, rotated_peak, rotated_spectrum};
 pub use sampled::{Kinematics, Sampled};
 pub use select::Component;

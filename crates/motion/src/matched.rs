@@ -14,6 +14,9 @@ pub struct Missed {
     pub misfit: f64,
 }
 
+/// Most ranges that are told one by one.
+const MOST_TOLD: usize = 5;
+
 /// A matched motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matched {
@@ -34,14 +37,23 @@ pub struct Matched {
 }
 
 impl Matched {
-    /// The missed ranges, for a sentence: "by +5.6 % at 0.41 to 0.43 s, ...".
+    /// The missed ranges, for a sentence: "by +5.6 % at 0.41 to 0.43 s, ..."; of many, the worst.
     pub fn missed_in_words(&self) -> String {
         let words = |missed: &Missed| {
             let (from, to) = (format!("{:.3}", missed.from), format!("{:.3}", missed.to));
             let periods = if from == to { from } else { format!("{from} to {to}") };
             format!("by {:+.1} % at {periods} s", 100.0 * missed.misfit)
         };
-        self.missed.iter().map(words).collect::<Vec<_>>().join(", ")
+        let mut sizes: Vec<f64> = self.missed.iter().map(|missed| missed.misfit.abs()).collect();
+        sizes.sort_by(|a, b| b.total_cmp(a));
+        let least = sizes.get(MOST_TOLD - 1).copied().unwrap_or(0.0);
+        let worst = self.missed.iter().filter(|missed| missed.misfit.abs() >= least);
+        let mut told: Vec<String> = worst.map(words).collect();
+        match self.missed.len() - told.len() {
+            0 => {}
+            rest => told.push(format!("by less at {rest} other ranges")),
+        }
+        told.join(", ")
     }
 
     /// Where it was matched, for a sentence: "matched in …".

@@ -69,6 +69,15 @@ pub(crate) fn peak(values: &[f64]) -> f64 {
     values.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()))
 }
 
+/// Takes the mean off and gives it.
+pub(crate) fn take_mean(values: &mut [f64]) -> f64 {
+    let mean = mean(values);
+    for value in values {
+        *value -= mean;
+    }
+    mean
+}
+
 /// Arithmetic mean, 0 for an empty slice.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     if values.is_empty() { 0.0 } else { values.iter().sum::<f64>() / values.len() as f64 }

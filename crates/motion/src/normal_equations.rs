@@ -1,7 +1,7 @@
 //! Least squares with a ridge.
 
 /// Ridge relative to the largest diagonal entry, which keeps neighbors from fighting.
-const RIDGE: f64 = 1e-2;
+const RIDGE: f64 = 1e-4;
 
 /// Normal equations `(CᵀC + λI) b = Cᵀ r` of many demands on few wavelets, solved by Cholesky
 /// factors.
@@ -33,7 +33,7 @@ impl System {
         let m = &mut self.normal;
         let largest = (0..n).map(|k| m[k * n + k]).fold(0.0, f64::max);
         for k in 0..n {
-            m[k * n + k] += RIDGE * RIDGE * largest;
+            m[k * n + k] += RIDGE * largest;
         }
         for j in 0..n {
             for k in 0..=j {

@@ -46,7 +46,7 @@ pub struct Processing {
     pub taper: f64,
     /// Corner of the high-pass (Hz); raised to one over the duration if it lies below.
     pub high_pass: Option<f64>,
-    /// Corner of the low-pass (Hz), below the Nyquist frequency.
+    /// Corner of the low-pass (Hz), from one over the duration to the Nyquist frequency.
     pub low_pass: Option<f64>,
     /// Order `n` of the Butterworth filter, applied forth and back:
     /// gain `1/(1 + (fc/f)^(2n))`, no phase, half amplitude at the corner.
@@ -109,7 +109,7 @@ impl Processing {
             && !self.close
     }
 
-    fn check(&self, time_step: f64) -> Result<(), MotionError> {
+    fn check(&self, time_step: f64, samples: usize) -> Result<(), MotionError> {
         MotionError::require_positive("time step (s)", time_step)?;
         if !(0.0..=0.5).contains(&self.taper) {
             return Err(MotionError::parameter("taper", "a fraction from 0 to 0.5", self.taper));
@@ -117,30 +117,40 @@ impl Processing {
         if !(1..=12).contains(&self.order) {
             return Err(MotionError::parameter("filter order", "1 to 12", self.order));
         }
-        let nyquist = 0.5 / time_step;
-        for (what, corner) in
-            [("high-pass corner (Hz)", self.high_pass), ("low-pass corner (Hz)", self.low_pass)]
-        {
-            if let Some(corner) = corner
-                && !(corner > 0.0 && corner < nyquist)
-            {
-                return Err(MotionError::parameter(
-                    what,
-                    format!("above 0 and below the Nyquist frequency, {nyquist} Hz"),
-                    corner,
-                ));
-            }
-        }
-        if let (Some(high), Some(low)) = (self.high_pass, self.low_pass)
-            && high >= low
+        let (slowest, nyquist) = (1.0 / (time_step * samples as f64), 0.5 / time_step);
+        if let Some(corner) = self.high_pass
+            && !(corner > 0.0 && corner < nyquist)
         {
             return Err(MotionError::parameter(
                 "high-pass corner (Hz)",
-                format!("below the low-pass corner, {low} Hz"),
-                high,
+                format!("above 0 and below the Nyquist frequency, {nyquist} Hz"),
+                corner,
             ));
         }
-        Ok(())
+        let Some(low) = self.low_pass else { return Ok(()) };
+        if !(low >= slowest && low < nyquist) {
+            return Err(MotionError::parameter(
+                "low-pass corner (Hz)",
+                format!(
+                    "at least one over the duration, {slowest:.4} Hz, and below the Nyquist \
+                     frequency, {nyquist} Hz"
+                ),
+                low,
+            ));
+        }
+        match self.high_pass_used(time_step, samples) {
+            Some(high) if high >= low => Err(MotionError::parameter(
+                "high-pass corner (Hz), at least one over the duration",
+                format!("below the low-pass corner, {low} Hz"),
+                high,
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// The corner of the high-pass (Hz) on a record of this length: no slower wave fits into it.
+    fn high_pass_used(&self, time_step: f64, samples: usize) -> Option<f64> {
+        self.high_pass.map(|corner| corner.max(1.0 / (time_step * samples as f64)))
     }
 
     /// Applies the chain to accelerations (m/s²) of step `time_step` (s).
@@ -153,7 +163,7 @@ impl Processing {
         acceleration: &[f64],
         initial_velocity: f64,
     ) -> Result<Processed, MotionError> {
-        self.check(time_step)?;
+        self.check(time_step, acceleration.len())?;
         let mut steps = Vec::new();
         let mut a = acceleration.to_vec();
         let mut initial_velocity = initial_velocity;
@@ -206,8 +216,7 @@ impl Processing {
 
     /// Pads and filters; returns the time by which the record now starts later (s).
     fn filter(&self, time_step: f64, a: &mut Vec<f64>, steps: &mut Vec<String>) -> f64 {
-        let duration = time_step * a.len() as f64;
-        let corner = self.high_pass.map(|corner| corner.max(1.0 / duration));
+        let corner = self.high_pass_used(time_step, a.len());
         if let (Some(asked), Some(used)) = (self.high_pass, corner)
             && used > asked
         {
@@ -220,7 +229,8 @@ impl Processing {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "positive, and at most 9 times the record because fc >= 1/duration"
+            reason = "positive, and at most 9 times the record because both corners are at least \
+                      1/duration"
         )]
         let side = side as usize;
         let recorded = a.len();

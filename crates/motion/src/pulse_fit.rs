@@ -1,7 +1,7 @@
 //! The dominant velocity pulse of a motion: its period, amplitude, place and share of the energy.
 
 use crate::error::MotionError;
-use crate::fourier::{Complex, forward_real, inverse};
+use crate::fourier::{Complex, correlate, forward_real};
 use crate::history::History;
 use crate::math::{self, TAU};
 use crate::pulse::Pulse;
@@ -74,12 +74,12 @@ pub fn dominant_pulse(
     let spectrum = forward_real(&velocity, length);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
     let count = (PER_E_FOLD * math::ln(longest / shortest)).ceil().clamp(1.0, 1e4) as usize;
-    let mut best = Candidate { period: shortest, gamma: WIDTHS[0], center: 0.0, explained: 0.0 };
+    let mut best = Trial { period: shortest, gamma: WIDTHS[0], center: 0.0, explained: 0.0 };
     for period in math::log_space(shortest, longest, count) {
         for gamma in WIDTHS {
             let (center, explained) = best_shift(&spectrum, dt, velocity.len(), period, gamma);
             if explained > best.explained {
-                best = Candidate { period, gamma, center, explained };
+                best = Trial { period, gamma, center, explained };
             }
         }
     }
@@ -104,7 +104,7 @@ pub fn dominant_pulse(
 }
 
 #[derive(Clone, Copy)]
-struct Candidate {
+struct Trial {
     period: f64,
     gamma: f64,
     center: f64,
@@ -144,18 +144,8 @@ fn best_shift(
         even_norm += e * e;
         odd_norm += o * o;
     }
-    // Even and odd are real: one complex transform carries both correlations.
-    let correlate = |series: &[f64]| -> Vec<Complex> {
-        let kernel = forward_real(series, length);
-        let mut product: Vec<Complex> = spectrum
-            .iter()
-            .zip(&kernel)
-            .map(|(a, b)| Complex { re: a.re * b.re + a.im * b.im, im: a.im * b.re - a.re * b.im })
-            .collect();
-        inverse(&mut product);
-        product
-    };
-    let (even, odd) = (correlate(&even), correlate(&odd));
+    let with = |series: &[f64]| correlate(spectrum, &forward_real(series, length));
+    let (even, odd) = (with(&even), with(&odd));
     let mut best = (0.0, 0.0);
     for k in 0..samples {
         let explained = even[k].re * even[k].re / even_norm + odd[k].re * odd[k].re / odd_norm;
@@ -173,8 +163,8 @@ struct Projection {
 }
 
 /// Least-squares amplitudes of the two quadratures, sampled at the velocity's own times.
-fn project(velocity: &[f64], dt: f64, candidate: &Candidate) -> Projection {
-    let Candidate { period, gamma, center, .. } = *candidate;
+fn project(velocity: &[f64], dt: f64, trial: &Trial) -> Projection {
+    let Trial { period, gamma, center, .. } = *trial;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
     let index = |t: f64| (t / dt).clamp(0.0, velocity.len() as f64) as usize;
     let (first, last) = (
@@ -200,7 +190,7 @@ fn project(velocity: &[f64], dt: f64, candidate: &Candidate) -> Projection {
 }
 
 /// Coordinate search on period, width and middle with shrinking steps.
-fn refine(velocity: &[f64], dt: f64, start: Candidate, shortest: f64, longest: f64) -> Candidate {
+fn refine(velocity: &[f64], dt: f64, start: Trial, shortest: f64, longest: f64) -> Trial {
     let mut best = start;
     best.explained = project(velocity, dt, &best).explained;
     let mut size = 0.05;
@@ -214,7 +204,7 @@ fn refine(velocity: &[f64], dt: f64, start: Candidate, shortest: f64, longest: f
             (0.0, 0.0, size),
             (0.0, 0.0, -size),
         ] {
-            let mut next = Candidate {
+            let mut next = Trial {
                 period: (best.period * (1.0 + dp)).clamp(shortest, longest),
                 gamma: (best.gamma * (1.0 + dg)).clamp(WIDTHS[0], WIDTHS[WIDTHS.len() - 1]),
                 center: best.center + dc * best.period,

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::direction::{Direction, Orientation};
+use crate::format::Printed;
 use crate::math;
 use crate::site::Site;
 use crate::utc::Utc;
@@ -12,7 +13,7 @@ use crate::utc::Utc;
 pub enum Stage {
     /// As recorded; velocity and displacement drift when it is integrated.
     Raw,
-    /// Filtered and baseline-corrected by its publisher.
+    /// Filtered and baseline-corrected, by its publisher or since.
     Corrected,
     /// The file does not say.
     Unknown,
@@ -91,15 +92,25 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// Notes the peak acceleration that a header states, and its resolution, both in a unit of `factor`
-    /// m/s², beside the one that was read.
-    pub(crate) fn state_peak(&mut self, stated: f64, resolution: f64, factor: f64) {
-        self.peaks.push(StatedPeak {
-            quantity: Quantity::Acceleration,
-            stated: stated.abs() * factor,
-            resolution: resolution * factor,
-            measured: math::peak(&self.acceleration),
-        });
+    /// Notes the peak acceleration that a header states in a unit of `factor` m/s² beside the one that
+    /// was read.
+    pub(crate) fn state_peak(&mut self, stated: Option<Printed>, factor: f64) {
+        let measured = math::peak(&self.acceleration);
+        self.state(Quantity::Acceleration, stated, factor, measured);
+    }
+
+    /// As [`Channel::state_peak`] for any quantity, whose peak `measured` is in SI.
+    pub(crate) fn state(
+        &mut self,
+        quantity: Quantity,
+        stated: Option<Printed>,
+        factor: f64,
+        measured: f64,
+    ) {
+        if let Some(Printed { value, resolution }) = stated {
+            let (stated, resolution) = (value.abs() * factor, resolution * factor);
+            self.peaks.push(StatedPeak { quantity, stated, resolution, measured });
+        }
     }
 
     /// A channel without stated peaks, starting from rest.
@@ -234,24 +245,5 @@ impl Record {
 
     pub(crate) fn warn(&mut self, line: impl Into<Option<usize>>, message: impl Into<String>) {
         self.warnings.push(Warning { line: line.into(), message: message.into() });
-    }
-
-    /// One line to a channel: name, duration, PGA, PGV, PGD, so that a wrong unit or step is seen.
-    pub fn summary(&self) -> Vec<String> {
-        self.channels
-            .iter()
-            .map(|channel| {
-                format!(
-                    "{}: {} samples at {} s, {:.2} s, PGA {:.4} g, PGV {:.2} cm/s, PGD {:.2} cm",
-                    channel.name,
-                    channel.acceleration.len(),
-                    channel.time_step,
-                    channel.duration(),
-                    channel.pga() / math::STANDARD_GRAVITY,
-                    channel.pgv() * 100.0,
-                    channel.pgd() * 100.0,
-                )
-            })
-            .collect()
     }
 }

@@ -112,7 +112,7 @@ pub(crate) fn check_oscillator(period: f64, damping: f64) -> Result<(), MotionEr
 /// Peak response of one oscillator to accelerations (m/s²) of step `time_step` (s).
 ///
 /// Peaks are taken at the samples, and the free vibration after the record does not count.
-/// Below ten steps a period peaks fall between samples; use [`response_subdivided`] there.
+/// Below ten steps a period peaks fall between samples.
 ///
 /// # Errors
 /// If the period is negative or the damping ratio is not in `0..1`.
@@ -121,22 +121,6 @@ pub fn response(
     acceleration: &[f64],
     period: f64,
     damping: f64,
-) -> Result<ResponsePeaks, MotionError> {
-    response_subdivided(time_step, acceleration, period, damping, 1)
-}
-
-/// As [`response`], with every step cut into `parts` so that peaks between samples are seen.
-///
-/// The load stays linear within the original step, so the response itself does not change.
-///
-/// # Errors
-/// As [`response`].
-pub fn response_subdivided(
-    time_step: f64,
-    acceleration: &[f64],
-    period: f64,
-    damping: f64,
-    parts: usize,
 ) -> Result<ResponsePeaks, MotionError> {
     check_oscillator(period, damping)?;
     MotionError::require_positive("time step (s)", time_step)?;
@@ -148,21 +132,14 @@ pub fn response_subdivided(
             ..ResponsePeaks::default()
         });
     }
-    let parts = parts.max(1);
-    let step = Step::new(period, damping, time_step / parts as f64);
+    let step = Step::new(period, damping, time_step);
     let (mut u, mut v) = (0.0_f64, 0.0_f64);
     let (mut peak_u, mut peak_v, mut peak_a) = (0.0_f64, 0.0_f64, 0.0_f64);
     for pair in acceleration.windows(2) {
-        let slope = (pair[1] - pair[0]) / parts as f64;
-        let mut load = -pair[0];
-        for part in 1..=parts {
-            let next = if part == parts { -pair[1] } else { -pair[0] - slope * part as f64 };
-            (u, v) = step.advance(u, v, load, next);
-            load = next;
-            peak_u = peak_u.max(u.abs());
-            peak_v = peak_v.max(v.abs());
-            peak_a = peak_a.max(step.total(u, v).abs());
-        }
+        (u, v) = step.advance(u, v, -pair[0], -pair[1]);
+        peak_u = peak_u.max(u.abs());
+        peak_v = peak_v.max(v.abs());
+        peak_a = peak_a.max(step.total(u, v).abs());
     }
     let w = TAU / period;
     Ok(ResponsePeaks {

@@ -99,6 +99,18 @@ impl Sampled {
         self.time_step
     }
 
+    /// Refuses another component with another step.
+    pub(crate) fn require_step(&self, other: &Self) -> Result<(), MotionError> {
+        let (one, two) = (self.time_step, other.time_step);
+        if (two / one - 1.0).abs() > 1e-9 {
+            return Err(MotionError::Mismatch {
+                what: format!("one horizontal has a step of {one} s, the other of {two} s"),
+                remedy: "choose components of one step".to_owned(),
+            });
+        }
+        Ok(())
+    }
+
     /// Time of the last sample (s); the first is at 0.
     pub fn duration(&self) -> f64 {
         self.time_step * (self.acceleration.len() - 1) as f64
@@ -177,39 +189,6 @@ impl Sampled {
         math::peak(&running_trapezoid(self.time_step, &self.velocity))
     }
 
-    /// Largest absolute velocity at any time, also between samples (m/s).
-    ///
-    /// Where the acceleration changes sign inside a step the velocity has an extremum there.
-    pub fn pgv_between_samples(&self) -> f64 {
-        let mut peak = self.pgv();
-        for (k, pair) in self.acceleration.windows(2).enumerate() {
-            if pair[0] * pair[1] < 0.0 {
-                let elapsed = self.time_step * pair[0] / (pair[0] - pair[1]);
-                peak = peak.max((self.velocity[k] + 0.5 * pair[0] * elapsed).abs());
-            }
-        }
-        peak
-    }
-
-    /// Largest absolute displacement at any time, also between samples (m).
-    pub fn pgd_between_samples(&self) -> f64 {
-        let mut peak = self.pgd();
-        for k in 0..self.acceleration.len() - 1 {
-            let (a, slope) = (
-                self.acceleration[k],
-                (self.acceleration[k + 1] - self.acceleration[k]) / self.time_step,
-            );
-            for root in quadratic_roots(0.5 * slope, a, self.velocity[k]).into_iter().flatten() {
-                if root > 0.0 && root < self.time_step {
-                    let d = self.displacement[k]
-                        + root * (self.velocity[k] + root * (0.5 * a + slope * root / 6.0));
-                    peak = peak.max(d.abs());
-                }
-            }
-        }
-        peak
-    }
-
     /// The same motion times `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
@@ -265,14 +244,4 @@ pub(crate) fn integrate(
         displacement.push(d);
     }
     (velocity, displacement)
-}
-
-/// Real roots of `a x² + b x + c`, without loss of digits when `a` is small.
-fn quadratic_roots(a: f64, b: f64, c: f64) -> [Option<f64>; 2] {
-    let discriminant = b * b - 4.0 * a * c;
-    if discriminant < 0.0 {
-        return [None, None];
-    }
-    let q = -0.5 * (b + discriminant.sqrt().copysign(b));
-    [(a != 0.0).then(|| q / a), (q != 0.0).then(|| c / q)]
 }

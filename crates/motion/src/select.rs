@@ -7,6 +7,7 @@ use crate::direction::Direction;
 use crate::error::MotionError;
 use crate::ground_motion::GroundMotion;
 use crate::history::History;
+use crate::join::require_step;
 use crate::math;
 use crate::process::Processing;
 use crate::record::{Channel, Record, Stage};
@@ -183,7 +184,8 @@ impl Record {
             .map(|channel| history(&channel, "vertical", processing, &mut provenance))
             .transpose()?;
         let name = format!("{} {}", crate::format::file_stem(&self.file), first.name);
-        let mut motion = GroundMotion::new(name, horizontal, vertical);
+        let vertical = vertical.map(History::Sampled);
+        let mut motion = GroundMotion::new(name, History::Sampled(horizontal), vertical);
         motion.provenance = provenance;
         Ok(motion)
     }
@@ -231,7 +233,7 @@ impl Record {
             }
         }
         self.require_one_site(one, two)?;
-        require_one_step(one, two)?;
+        require_step(one, two, "choose channels of one step")?;
         if let (Some(a), Some(b)) = (one.direction.azimuth, two.direction.azimuth)
             && math::cos((b - a).to_radians()).abs() > OBLIQUE
         {
@@ -255,14 +257,7 @@ impl Record {
         let (mut first, mut second) = (first.clone(), second.clone());
         let mut told = Vec::new();
         cut_to_shorter(&mut first, &mut second, &mut told)?;
-        let mut series = |channel: &Channel| -> Result<Sampled, MotionError> {
-            match history(channel, "horizontal", processing, &mut told)? {
-                History::Sampled(sampled) => Ok(sampled),
-                other @ (History::Analytic(_) | History::Sum(_)) => {
-                    other.sampled(channel.time_step)
-                }
-            }
-        };
+        let mut series = |channel: &Channel| history(channel, "horizontal", processing, &mut told);
         Ok((series(&first)?, series(&second)?))
     }
 
@@ -286,30 +281,21 @@ fn history(
     role: &str,
     processing: &Processing,
     provenance: &mut Vec<String>,
-) -> Result<History, MotionError> {
-    let processed =
-        processing.apply(channel.time_step, &channel.acceleration, channel.initial_velocity)?;
-    for step in &processed.steps {
-        provenance.push(format!("{role} ({}): {step}", channel.name));
-    }
-    Ok(History::Sampled(Sampled::with_initial_velocity(
-        channel.time_step,
-        processed.acceleration,
-        processed.initial_velocity,
-    )?))
+) -> Result<Sampled, MotionError> {
+    let (motion, steps) = processed(channel, processing)?;
+    provenance.extend(steps.iter().map(|step| format!("{role} ({}): {step}", channel.name)));
+    Ok(motion)
 }
 
-fn require_one_step(first: &Channel, second: &Channel) -> Result<(), MotionError> {
-    if (first.time_step - second.time_step).abs() > 1e-9 * first.time_step {
-        return Err(MotionError::Mismatch {
-            what: format!(
-                "channel {} has a step of {} s, channel {} of {} s",
-                first.name, first.time_step, second.name, second.time_step
-            ),
-            remedy: "choose channels of one step".to_owned(),
-        });
-    }
-    Ok(())
+/// The channel after processing, and what was done.
+pub(crate) fn processed(
+    channel: &Channel,
+    processing: &Processing,
+) -> Result<(Sampled, Vec<String>), MotionError> {
+    let done =
+        processing.apply(channel.time_step, &channel.acceleration, channel.initial_velocity)?;
+    let (a, v) = (done.acceleration, done.initial_velocity);
+    Ok((Sampled::with_initial_velocity(channel.time_step, a, v)?, done.steps))
 }
 
 /// Same step required; the longer of two channels loses its end.
@@ -318,7 +304,7 @@ fn cut_to_shorter(
     second: &mut Channel,
     provenance: &mut Vec<String>,
 ) -> Result<(), MotionError> {
-    require_one_step(first, second)?;
+    require_step(first, second, "choose channels of one step")?;
     let shorter = first.acceleration.len().min(second.acceleration.len());
     for channel in [first, second] {
         let extra = channel.acceleration.len() - shorter;

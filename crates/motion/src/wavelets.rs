@@ -25,7 +25,7 @@ const POLISHED: f64 = 0.95;
 /// is disturbed.
 const BAND: f64 = 0.6;
 /// Least number of lines to a period of a wavelet when oscillators answer to it.
-const STEPS_A_PERIOD: f64 = 40.0;
+const WAVELET_LINES: f64 = 40.0;
 /// Logarithm of the decay after which a free vibration counts as over.
 const FORGOTTEN: f64 = 7.0;
 /// Ratio of two periods that are too near each other for wavelets of their own.
@@ -179,12 +179,7 @@ fn bounded(work: &Work<'_>, a: &[f64], periods: &[f64], band: f64) -> Vec<f64> {
     let mut active = Vec::new();
     let extrema = extrema(work, a, &oscillators, WATCHED);
     for (k, (oscillator, extrema)) in oscillators.iter().zip(extrema).enumerate() {
-        let mut peak = extrema[0];
-        for extremum in &extrema {
-            if extremum.value.abs() > peak.value.abs() {
-                peak = *extremum;
-            }
-        }
+        let peak = peak(&extrema);
         for extremum in extrema {
             let Extremum { sample, value } = extremum;
             let bounds = (1.0 - band, 1.0 + band);
@@ -302,6 +297,17 @@ impl Group {
     }
 }
 
+/// The first of the largest extrema.
+fn peak(extrema: &[Extremum]) -> Extremum {
+    let first = Extremum { sample: 1, value: 0.0 };
+    extrema.iter().fold(
+        first,
+        |best, other| {
+            if other.value.abs() > best.value.abs() { *other } else { best }
+        },
+    )
+}
+
 /// Adds the demands of one oscillator and returns its peak.
 fn demand(
     extrema: &[Extremum],
@@ -311,10 +317,7 @@ fn demand(
     demands: &mut Vec<Demand>,
 ) -> Extremum {
     let goal = oscillator.goal;
-    let first = Extremum { sample: 1, value: 0.0 };
-    let peak = extrema.iter().fold(first, |best, other| {
-        if other.value.abs() > best.value.abs() { *other } else { best }
-    });
+    let peak = peak(extrema);
     for extremum in extrema {
         let is_peak = extremum.sample == peak.sample;
         let apart = extremum.sample.abs_diff(peak.sample) as f64 * time_step;
@@ -414,7 +417,7 @@ impl Wavelet {
             (bell, ratio) = (bell * ratio, ratio * squared);
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1000")]
-        let stride = (period / (STEPS_A_PERIOD * time_step)).clamp(1.0, 1000.0) as usize;
+        let stride = (period / (WAVELET_LINES * time_step)).clamp(1.0, 1000.0) as usize;
         Self { first, values, stride }
     }
 

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by unwrap")]
 
-use barrelstack_motion::{ReadOptions, Refusal, read};
+use barrelstack_motion::{Given, ReadOptions, Refusal, read};
 
 #[test]
 fn columns_without_time_are_channels_only_if_named() {
@@ -33,7 +33,7 @@ fn a_unit_behind_every_name_is_a_stated_one() {
     assert_eq!(record.channels[1].direction.azimuth, Some(0.0));
     for header in ["time (s),EW (cm/s2),NS (g)", "time (s),EW,NS", "time (s),EW (cm/s2),NS"] {
         let error = table(header).unwrap_err();
-        assert_eq!(error.refusal, Refusal::Missing, "{header}: {error}");
+        assert_eq!(error.refusal, Refusal::Missing(Given::Unit), "{header}: {error}");
     }
 }
 

@@ -8,7 +8,7 @@
 
 use barrelstack_motion::{
     FourierSpectrum, Horizontals, IntensityMeasure, Pulse, STANDARD_GRAVITY, Sampled,
-    dominant_pulse, response, response_subdivided, rotated_peak, rotated_spectrum,
+    dominant_pulse, response, rotated_peak, rotated_spectrum,
 };
 
 const TAU: f64 = std::f64::consts::TAU;
@@ -54,14 +54,13 @@ fn a_harmonic_has_its_closed_forms_to_a_millionth() {
 #[test]
 fn the_spectrum_goes_to_pga_at_short_periods_and_to_pgd_at_long_ones() {
     let pulse = Pulse::Ricker { acceleration: 3.0, period: 0.5 };
-    let motion = barrelstack_motion::History::Analytic(pulse).sampled(0.002).unwrap();
-    let at = |period: f64| {
-        response_subdivided(motion.time_step(), motion.acceleration(), period, 0.05, 4).unwrap()
-    };
+    let motion = barrelstack_motion::History::Analytic(pulse).sampled(0.0005).unwrap();
+    let at =
+        |period: f64| response(motion.time_step(), motion.acceleration(), period, 0.05).unwrap();
     let pga = motion.pga();
     assert_eq!(at(0.0).pseudo_acceleration, pga);
-    assert!((at(0.01).pseudo_acceleration / pga - 1.0).abs() < 1e-3);
-    assert!((at(200.0).displacement / motion.pgd() - 1.0).abs() < 0.02);
+    assert!((at(0.01).pseudo_acceleration / pga - 1.0).abs() < 1e-3); // measured 5.9e-4
+    assert!((at(200.0).displacement / motion.pgd() - 1.0).abs() < 1e-3); // measured 4.6e-4
 }
 
 #[test]
@@ -110,17 +109,18 @@ fn rotated_peaks_of_known_paths() {
     let x: Vec<f64> = (0..7200).map(|k| circle(k).cos()).collect();
     let y: Vec<f64> = (0..7200).map(|k| circle(k).sin()).collect();
     let round = rotated_peak(&x, &y);
-    assert!((round.median - 1.0).abs() < 1e-6 && (round.largest - 1.0).abs() < 1e-6);
+    // Measured: here and below 2.2e-16 at most.
+    assert!((round.median - 1.0).abs() < 1e-14 && (round.largest - 1.0).abs() < 1e-14);
     // Along one line at 30 degrees: the largest is the amplitude, the median its cosine at 45.
     let (s, c) = 30.0_f64.to_radians().sin_cos();
     let x: Vec<f64> = (0..100).map(|k| c * (0.1 * f64::from(k)).sin()).collect();
     let y: Vec<f64> = (0..100).map(|k| s * (0.1 * f64::from(k)).sin()).collect();
     let line = rotated_peak(&x, &y);
     let amplitude = (0..100).map(|k| (0.1 * f64::from(k)).sin().abs()).fold(0.0, f64::max);
-    assert!((line.largest - amplitude).abs() < 1e-12);
+    assert!((line.largest - amplitude).abs() < 1e-14);
     assert_eq!(line.angle, 30.0);
-    assert!((line.median / amplitude - 45.0_f64.to_radians().cos()).abs() < 0.01);
-    assert!(line.smallest < 0.01 * amplitude);
+    assert!((line.median / amplitude - 45.0_f64.to_radians().cos()).abs() < 1e-14);
+    assert!(line.smallest < 1e-14 * amplitude);
 }
 
 #[test]
@@ -132,9 +132,10 @@ fn a_rotated_spectrum_lies_between_the_components_of_a_pair() {
         rotated_spectrum(one.time_step(), one.acceleration(), &zero, &periods, 0.05).unwrap();
     for (period, peak) in periods.iter().zip(rotated) {
         let single = response(one.time_step(), one.acceleration(), *period, 0.05).unwrap();
-        assert!((peak.largest / single.pseudo_acceleration - 1.0).abs() < 1e-12);
+        // Measured: 0, and 1.1e-16 of the ratio.
+        assert!((peak.largest / single.pseudo_acceleration - 1.0).abs() < 1e-14);
         let ratio = peak.median / peak.largest;
-        assert!((ratio - 0.5_f64.sqrt()).abs() < 0.01, "{ratio}");
+        assert!((ratio - 0.5_f64.sqrt()).abs() < 1e-14, "{ratio}");
     }
 }
 
@@ -201,10 +202,11 @@ fn a_pulse_is_found_in_noise_with_its_period_and_amplitude() {
         let motion = Sampled::new(0.005, a).unwrap();
         let fit = dominant_pulse(&motion, 0.4, 6.0).unwrap();
         println!("{fit:?}");
-        assert!((fit.period / period - 1.0).abs() < 0.05, "{period}: {fit:?}");
-        assert!((fit.amplitude / 0.9 - 1.0).abs() < 0.05, "{fit:?}");
-        assert!((fit.start - start).abs() < 0.1 * period, "{fit:?}");
-        assert!(fit.energy_share > 0.8 && fit.energy_share <= 1.0, "{fit:?}");
+        // Measured: period 0.8 %, amplitude 1.3 %, start 1.4 % of a period, share 0.98 and more.
+        assert!((fit.period / period - 1.0).abs() < 0.015, "{period}: {fit:?}");
+        assert!((fit.amplitude / 0.9 - 1.0).abs() < 0.025, "{fit:?}");
+        assert!((fit.start - start).abs() < 0.03 * period, "{fit:?}");
+        assert!(fit.energy_share > 0.95 && fit.energy_share <= 1.0, "{fit:?}");
     }
     let still = Sampled::new(0.01, vec![0.0; 100]).unwrap();
     assert!(dominant_pulse(&still, 0.5, 5.0).is_err());

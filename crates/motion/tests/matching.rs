@@ -148,6 +148,8 @@ fn impossible_matches_are_refused_in_words() {
     let hopeless = Matching { tolerance: 1e-6, rounds: 2, ..Matching::default() };
     let error = motion.match_spectrum(target, &hopeless).unwrap_err().to_string();
     assert!(error.contains("misfit"), "{error}");
+    // A page of periods is no message.
+    assert!(error.contains(" other ranges") && error.len() < 500, "{error}");
     let bad = TargetSpectrum::Table { points: vec![(1.0, 1.0), (0.5, 1.0)], damping: 0.05 };
     assert!(motion.match_spectrum(&bad, &Matching::default()).is_err());
 }
@@ -181,7 +183,7 @@ fn code_spectra_have_their_published_ordinates() {
         let mut previous = spectrum.acceleration(0.01);
         for k in 1..4000 {
             let here = spectrum.acceleration(0.01 + 0.001 * f64::from(k));
-            assert!((here / previous - 1.0).abs() < 0.05);
+            assert!((here / previous - 1.0).abs() < 0.03); // measured 0.022, where branches meet
             previous = here;
         }
     }
@@ -205,6 +207,7 @@ fn code_spectra_have_their_published_ordinates() {
         (SiteClass::D, 1.5, 1.43),
         (SiteClass::E, 1.5, 2.21),
     ] {
+        // Measured: 0.0121, as the printed table is rounded and its formula is not.
         assert!((nzs(site, t) - shape).abs() < 0.013, "{site:?} {t}: {}", nzs(site, t));
     }
     let near_fault = |return_period: f64, t: f64| {

@@ -8,8 +8,8 @@
     reason = "a test fails by unwrap and tells by print"
 )]
 
-use std::io::Write as _;
-use std::path::Path;
+mod shared;
+
 use std::time::Instant;
 
 use barrelstack_motion::{
@@ -30,12 +30,7 @@ const RECORDS: [&str; 8] = [
 #[test]
 #[cfg_attr(debug_assertions, ignore = "sixteen matches take a minute; run in release")]
 fn real_records_meet_codes_in_the_frequency_domain() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions/peer");
-    if !folder.is_dir() {
-        // Straight to stderr: the test runner swallows what a passing test prints.
-        let _ = writeln!(std::io::stderr(), "SKIPPED: {} is not there", folder.display());
-        return;
-    }
+    let Some(folder) = shared::shared("peer") else { return };
     let targets = [
         TargetSpectrum::Eurocode8 {
             ground_acceleration: 0.3,

@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by unwrap")]
 
-use std::io::Write as _;
+mod shared;
+
 use std::path::Path;
 
 use barrelstack_motion::{
@@ -25,13 +26,8 @@ fn sample(file: &str) -> Record {
 }
 
 fn shared(file: &str) -> Option<Record> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions");
-    if !folder.is_dir() {
-        // Straight to stderr: the test runner swallows what a passing test prints.
-        let _ = writeln!(std::io::stderr(), "SKIPPED: {} is not there", folder.display());
-        return None;
-    }
-    Some(read(&std::fs::read(folder.join(file)).unwrap(), file, &options()).unwrap())
+    let path = shared::shared(file)?;
+    Some(read(&std::fs::read(path).unwrap(), file, &options()).unwrap())
 }
 
 fn start(record: &Record) -> String {
@@ -182,7 +178,7 @@ fn channels_that_begin_apart_are_cut_to_their_common_span() {
     assert_eq!(east.acceleration.len(), 2000);
     assert_eq!(north.start, east.start);
     let off = north.acceleration.iter().zip(&east.acceleration).map(|(a, b)| (a - b).abs());
-    assert!(off.fold(0.0, f64::max) < 1e-9);
+    assert!(off.fold(0.0, f64::max) < 1e-12); // measured 8.2e-14
     let told = gathered.notes.join("\n");
     assert!(told.contains("channel E begins 20.0000 s before N: 2000 samples outside"), "{told}");
     assert!(told.contains("channel N: 1000 samples outside"), "{told}");
@@ -344,5 +340,5 @@ fn channels_of_seismometers_are_refused_or_differentiated() {
     let recorded = &plain.channels[0].acceleration;
     let shift = |k: usize| f64::midpoint(recorded[k], recorded[k + 1]) - again[k];
     let spread = (1..recorded.len() - 2).map(|k| (shift(k) - shift(1)).abs()).fold(0.0, f64::max);
-    assert!(spread < 0.01 * plain.channels[0].pga(), "{spread}");
+    assert!(spread < 2e-3 * plain.channels[0].pga(), "{spread}"); // measured 9.7e-4
 }

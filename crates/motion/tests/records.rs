@@ -69,7 +69,7 @@ fn rotation_recovers_any_azimuth_from_oblique_horizontals() {
     assert_eq!(back.acceleration, truth.channels[1].acceleration);
     let opposite = given.component(&Component::Azimuth(180.0)).unwrap();
     for (a, b) in opposite.acceleration.iter().zip(&given.channels[0].acceleration) {
-        assert!((a + b).abs() < 1e-12);
+        assert!((a + b).abs() < 1e-14); // measured 2.2e-16
     }
 }
 
@@ -158,12 +158,24 @@ fn unreasonable_settings_are_refused() {
         Processing { high_pass: Some(60.0), ..Processing::none() },
         Processing { high_pass: Some(f64::NAN), ..Processing::none() },
         Processing { low_pass: Some(0.0), ..Processing::none() },
-        Processing { high_pass: Some(5.0), low_pass: Some(1.0), ..Processing::none() },
+        // Slower than one over the duration of 1 s: the pads would be longer than any memory.
+        Processing { low_pass: Some(0.99), ..Processing::none() },
+        Processing { low_pass: Some(1e-9), ..Processing::none() },
+        Processing { low_pass: Some(1e-30), ..Processing::none() },
+        Processing { high_pass: Some(5.0), low_pass: Some(2.0), ..Processing::none() },
+        // Raised to 1 Hz, where the low-pass is.
+        Processing { high_pass: Some(0.1), low_pass: Some(1.0), ..Processing::none() },
         Processing { taper: 0.7, ..Processing::none() },
         Processing { order: 0, high_pass: Some(1.0), ..Processing::none() },
     ] {
         assert!(chain.apply(0.01, &a, 0.0).is_err(), "{chain:?}");
     }
+    let chain = Processing { low_pass: Some(1e-9), ..Processing::none() };
+    let told = chain.apply(0.01, &a, 0.0).unwrap_err().to_string();
+    assert!(told.starts_with("low-pass corner (Hz): expected at least one over the duration, 1"));
+    let chain = Processing { high_pass: Some(0.1), low_pass: Some(1.0), ..Processing::none() };
+    let told = chain.apply(0.01, &a, 0.0).unwrap_err().to_string();
+    assert!(told.contains("at least one over the duration: expected below the low-pass"), "{told}");
     let whole = Processing { mean: MeanRemoval::Whole, ..Processing::none() };
     assert!(whole.apply(0.01, &a, 0.0).unwrap().acceleration.iter().all(|v| v.abs() < 1e-15));
 }
@@ -238,7 +250,7 @@ fn parts_of_every_kind_are_joined_by_name_or_by_order() {
         .zip(&whole.channels[0].acceleration)
         .map(|(a, b)| (a - b).abs())
         .fold(0.0, f64::max);
-    assert!(off < 1e-12, "{off}");
+    assert!(off < 1e-15, "{off}"); // measured 2.8e-17
 }
 
 fn stem(file: &str) -> String {
@@ -262,7 +274,7 @@ fn parts_are_joined_where_they_repeat() {
     for (a, b) in joined.channels.iter().zip(&whole.channels) {
         assert_eq!(a.acceleration.len(), 3000);
         let off = a.acceleration.iter().zip(&b.acceleration).map(|(x, y)| (x - y).abs());
-        assert!(off.fold(0.0, f64::max) < 1e-12);
+        assert!(off.fold(0.0, f64::max) < 1e-14); // measured 1.1e-16
     }
     assert!(joined.notes.iter().any(|note| note.contains("5.00 s")));
     let apart = part(2000, 3000, 0.0, "parte3");
@@ -294,11 +306,11 @@ fn the_bundled_record_has_its_published_peaks_and_comes_to_rest() {
     assert_eq!(napa.stage, Stage::Raw);
     let pga: Vec<f64> = napa.channels.iter().map(|c| c.pga() / STANDARD_GRAVITY).collect();
     for (measured, stated) in pga.iter().zip([0.3728, 0.3389, 0.2152]) {
-        assert!((measured - stated).abs() < 6e-5);
+        assert!((measured - stated).abs() < 5.5e-5); // measured 3.0e-5; half a digit is 5e-5
     }
     let pgv: Vec<f64> = napa.channels.iter().map(|c| c.pgv() * 100.0).collect();
     for (measured, stated) in pgv.iter().zip([57.17, 55.52, 18.96]) {
-        assert!((measured - stated).abs() < 0.02, "{measured}");
+        assert!((measured - stated).abs() < 5.5e-3, "{measured}"); // measured 4.0e-3
     }
     let motion = napa.default_motion().unwrap();
     println!("{}", motion.provenance.join("\n"));

@@ -9,24 +9,12 @@
     reason = "a test fails by unwrap and tells by print"
 )]
 
-use std::io::Write as _;
-use std::path::PathBuf;
+mod shared;
 
 use barrelstack_motion::{
     IntensityMeasure, ReadOptions, STANDARD_GRAVITY, Sampled, dominant_pulse, read, response,
 };
-
-fn shared(path: &str) -> Option<PathBuf> {
-    let full =
-        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions").join(path);
-    if full.exists() {
-        Some(full)
-    } else {
-        // Straight to stderr: the test runner swallows what a passing test prints.
-        let _ = writeln!(std::io::stderr(), "SKIPPED: {} is not there", full.display());
-        None
-    }
-}
+use shared::shared;
 
 /// PGA (g), PGV (m/s), PGD (m), Arias (m/s), CAV (m/s), D5-95 (s), then PSA (g) at 5 % for periods.
 struct Row {
@@ -75,33 +63,30 @@ const ROWS: [Row; 3] = [
     },
 ];
 
-/// Within `relative` of the reference, or half a unit of its last printed digit.
-fn near(what: &str, value: f64, reference: f64, relative: f64, digit: f64) {
-    let off = (value - reference).abs();
-    assert!(
-        off <= (relative * reference).max(0.501 * digit),
-        "{what}: {value} against {reference}, off by {:.2e}",
-        off / reference
-    );
+/// Within half a unit of the reference's last printed digit; measured 0.50 at most.
+fn near(what: &str, value: f64, reference: f64, digit: f64) {
+    let off = (value - reference).abs() / digit;
+    println!("{what}: {value}, off by {off:.2} digits");
+    assert!(off <= 0.51, "{what}: {value} against {reference}, off by {off:.2} digits");
 }
 
 #[test]
 fn the_reference_records_give_the_reference_values() {
     for row in &ROWS {
-        let Some(path) = shared(row.file) else { continue };
+        let Some(path) = shared(row.file) else { return };
         let bytes = std::fs::read(path).unwrap();
         let record = read(&bytes, row.file, &ReadOptions::default()).unwrap();
         let channel = &record.channels[0];
         let motion = Sampled::new(channel.time_step, channel.acceleration.clone()).unwrap();
         let of = |measure: IntensityMeasure| measure.of(&motion).unwrap();
-        near("PGA", motion.pga() / STANDARD_GRAVITY, row.pga, 1e-3, 1e-4);
-        near("PGV", motion.pgv(), row.pgv, 2e-4, 1e-4);
-        near("PGD", of(IntensityMeasure::Pgd), row.pgd, 1e-3, 1e-4);
+        near("PGA", motion.pga() / STANDARD_GRAVITY, row.pga, 1e-4);
+        near("PGV", motion.pgv(), row.pgv, 1e-4);
+        near("PGD", of(IntensityMeasure::Pgd), row.pgd, 1e-4);
         // What drives a model is the exact integral; for the first record it is 0.37 % larger.
         let exact = motion.pgd() / of(IntensityMeasure::Pgd) - 1.0;
         assert!((0.0..4e-3).contains(&exact), "{}: {exact}", row.file);
-        near("Arias", of(IntensityMeasure::Arias), row.arias, 1e-3, 1e-3);
-        near("CAV", of(IntensityMeasure::Cav), row.cav, 1e-3, 1e-3);
+        near("Arias", of(IntensityMeasure::Arias), row.arias, 1e-3);
+        near("CAV", of(IntensityMeasure::Cav), row.cav, 1e-3);
         let duration = of(IntensityMeasure::D5_95);
         assert!(
             (duration - row.duration).abs() <= channel.time_step,
@@ -114,7 +99,7 @@ fn the_reference_records_give_the_reference_values() {
             }
             let peaks = response(channel.time_step, motion.acceleration(), period, 0.05).unwrap();
             let psa = peaks.pseudo_acceleration / STANDARD_GRAVITY;
-            near(&format!("{} PSA({period})", row.file), psa, reference, 1e-3, 1e-4);
+            near(&format!("{} PSA({period})", row.file), psa, reference, 1e-4);
         }
     }
 }
@@ -128,10 +113,11 @@ fn the_motion_of_the_seed_paper_scales_as_published() {
     // A corrected record drives the model as published, from its first sample.
     assert_eq!(motion.duration, 1999.0 * 0.02);
     let factor = motion.scale_factor(IntensityMeasure::Pgv, 0.6).unwrap();
-    assert!((factor - 2.192).abs() < 1e-3, "{factor}");
+    assert!((factor - 2.192).abs() < 5e-4, "{factor}"); // measured 1.9e-4
     let strong = motion.scale_to(IntensityMeasure::Pgv, 0.6).unwrap();
-    assert!((strong.pga() / STANDARD_GRAVITY - 0.786).abs() < 1e-3);
-    assert!((strong.pgd() - 0.066).abs() < 1e-3);
+    // Measured: 4.5e-4 g and 6.0e-4 m.
+    assert!((strong.pga() / STANDARD_GRAVITY - 0.786).abs() < 6e-4);
+    assert!((strong.pgd() - 0.066).abs() < 8e-4);
     let half = strong.froude(0.5);
     assert!((half.pgv() - 0.6 * 0.5_f64.sqrt()).abs() < 1e-12);
 }

@@ -61,7 +61,8 @@ fn library(count: usize) -> Vec<Candidate> {
         let deviates: Vec<f64> = (0..n).map(|_| random.normal()).collect();
         let along = |i: usize| (0..=i).map(|j| root[i][j] * deviates[j]).sum::<f64>();
         let sa = |i: usize| STANDARD_GRAVITY * MODEL[i].1 * (MODEL[i].2 * along(i)).exp();
-        Candidate { spectrum: (0..n).map(sa).collect(), group: format!("event {}", k % 40) }
+        let (name, group) = (format!("record {k}"), format!("event {}", k % 40));
+        Candidate { name, spectrum: (0..n).map(sa).collect(), group }
     };
     (0..count).map(one).collect()
 }
@@ -188,6 +189,26 @@ fn what_cannot_be_chosen_is_refused_with_the_numbers() {
     assert!(told.contains("of 50 records") && told.contains("20 are asked for"), "{told}");
     let told = select(&target(None), &library, &choosing(1)).unwrap_err().to_string();
     assert_eq!(told, "size of the set: expected at least 2, found 1");
+    let mut bad = library;
+    bad[7].spectrum[2] = 0.0;
+    let told = select(&target(None), &bad, &choosing(20)).unwrap_err().to_string();
+    let period = target(None).periods()[2];
+    assert_eq!(
+        told,
+        format!(
+            "spectrum of record 7 at {period} s: expected an acceleration above 0 (m/s2), found 0"
+        )
+    );
+    bad[7].spectrum.pop();
+    let told = select(&target(None), &bad, &choosing(20)).unwrap_err().to_string();
+    let n = MODEL.len();
+    let found = n - 1;
+    assert_eq!(
+        told,
+        format!(
+            "spectrum of record 7: expected {n} accelerations, one to a period of the target, found {found}"
+        )
+    );
     let given = Some(Condition { period: 0.31, acceleration: 1.0 });
     let told = SelectionTarget::new(&[0.1, 1.0], &[1.0, 1.0], &[0.5, 0.5], given);
     assert!(

@@ -26,7 +26,8 @@ fn the_generator_has_its_published_first_numbers() {
     let draws: Vec<f64> = (0..n).map(|_| random.normal()).collect();
     let mean = draws.iter().sum::<f64>() / f64::from(n);
     let variance = draws.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / f64::from(n);
-    assert!(mean.abs() < 0.01 && (variance - 1.0).abs() < 0.02);
+    // Measured: 3.2e-4 and 2.0e-3; one standard error is 2.2e-3 and 3.2e-3.
+    assert!(mean.abs() < 5e-3 && (variance - 1.0).abs() < 8e-3);
 }
 
 #[test]
@@ -65,7 +66,7 @@ fn stationary_noise_has_its_density_in_the_mean() {
             .sum::<f64>()
             / f64::from(steps);
         assert!(
-            (measured / expected - 1.0).abs() < 0.03,
+            (measured / expected - 1.0).abs() < 0.01, // measured 0.0024
             "{low} to {high} Hz: {measured} {expected}"
         );
     }
@@ -169,8 +170,8 @@ fn a_near_fault_motion_holds_its_pulse() {
     comes_to_rest(&motion);
     let sampled = motion.horizontal.sampled(0.01).unwrap();
     let fit = barrelstack_motion::dominant_pulse(&sampled, 0.5, 6.0).unwrap();
-    assert!((fit.period / 2.0 - 1.0).abs() < 0.1, "{fit:?}");
-    assert!((fit.amplitude - 1.0).abs() < 0.15, "{fit:?}");
+    assert!((fit.period / 2.0 - 1.0).abs() < 0.01, "{fit:?}"); // measured 0.0016
+    assert!((fit.amplitude - 1.0).abs() < 0.05, "{fit:?}"); // measured 0.026
 }
 
 #[test]

@@ -4,11 +4,12 @@ use crate::error::MotionError;
 use crate::horizontals::Horizontals;
 use crate::intensity::IntensityMeasure;
 use crate::process::Processing;
-use crate::pulse_class::{ClassifiedPulse, classify_all, classify_component};
+use crate::pulse_class::{ClassifiedPulse, classify_component, classify_pair};
 use crate::record::{Channel, Record};
 use crate::response::response;
 use crate::rotd::{RotatedPeak, rotated_spectrum};
 use crate::sampled::Sampled;
+use crate::select::processed;
 
 /// Damping ratio of all spectra.
 const DAMPING: f64 = 0.05;
@@ -74,11 +75,7 @@ pub fn measure(
     if record.channels.is_empty() {
         return Err(MotionError::parameter("channels", "at least one", 0));
     }
-    let motion = |channel: &Channel| -> Result<Sampled, MotionError> {
-        let done =
-            processing.apply(channel.time_step, &channel.acceleration, channel.initial_velocity)?;
-        Sampled::with_initial_velocity(channel.time_step, done.acceleration, done.initial_velocity)
-    };
+    let motion = |channel: &Channel| processed(channel, processing).map(|(motion, _)| motion);
     let flat: Vec<&Channel> = record.channels.iter().filter(|c| !c.is_vertical()).take(2).collect();
     let mut horizontals = Vec::new();
     for channel in &flat {
@@ -91,7 +88,7 @@ pub fn measure(
             let (first, second) = record.horizontals(processing)?;
             let mut pair = both(&first, &second, periods)?;
             // A motion without a velocity has no pulse, which is no reason to refuse it.
-            if let Ok((singles, together)) = classify_all(&first, &second) {
+            if let Ok((singles, together)) = classify_pair(&first, &second) {
                 pair.pulse = Some(together);
                 for (component, pulse) in horizontals.iter_mut().zip(singles) {
                     component.pulse = Some(pulse);

@@ -5,7 +5,8 @@ mod smooth;
 
 use crate::error::MotionError;
 use crate::fourier::forward_real;
-use crate::math::{self, PI};
+use crate::math;
+use crate::process::taper_ends;
 use crate::record::{Channel, Record};
 
 use arrival::arrival;
@@ -175,7 +176,7 @@ impl Spectra {
         let smooth = |part: &[f64]| -> Vec<f64> {
             let mean = math::mean(part);
             let mut part: Vec<f64> = part.iter().map(|a| a - mean).collect();
-            taper(&mut part);
+            taper_ends(&mut part, TAPER);
             let amplitude: Vec<f64> =
                 forward_real(&part, length)[..=length / 2].iter().map(|x| x.norm()).collect();
             konno_ohmachi(&frequency, &amplitude, &centers, bandwidth)
@@ -244,16 +245,4 @@ fn samples(seconds: f64, dt: f64) -> usize {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative")]
     let n = (seconds / dt).round().clamp(0.0, 1e9) as usize;
     n
-}
-
-/// Half a Hann window at each end.
-fn taper(a: &mut [f64]) {
-    let n = a.len();
-    let width = TAPER * n as f64;
-    let ends = samples(width, 1.0).min(n / 2);
-    for k in 0..ends {
-        let weight = 0.5 * (1.0 - math::cos(PI * k as f64 / ends as f64));
-        a[k] *= weight;
-        a[n - 1 - k] *= weight;
-    }
 }

@@ -2,8 +2,10 @@
 //!
 //! Spec: header lines of the Turkish National Strong Motion Network (NSMN) text files.
 
-use super::source::{LARGEST_ACCELERATION, Source, latin1, leading_number, resolution, shorten};
-use super::{Format, ReadOptions};
+use super::source::{
+    GAL, LARGEST_ACCELERATION, Source, latin1, leading_number, leading_printed, shorten,
+};
+use super::{Format, Told};
 use crate::direction::Direction;
 use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
@@ -13,7 +15,6 @@ use crate::utc::{DateOrder, Utc};
 pub(crate) const FORMAT: Format =
     Format { name: "afad", title: "AFAD and NSMN text (Turkey)", sniff, read };
 
-const GAL: f64 = 0.01;
 const MOST_HEADER_LINES: usize = 40;
 
 fn sniff(source: &Source<'_>) -> bool {
@@ -22,14 +23,13 @@ fn sniff(source: &Source<'_>) -> bool {
 }
 
 fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
-    (0..MOST_HEADER_LINES).find_map(|line| {
-        let text = source.text(line);
+    source.field(MOST_HEADER_LINES, |text| {
         let (name, value) = text.split_once(':')?;
-        name.trim().starts_with(key).then(|| (line, value.trim().to_owned()))
+        name.trim().starts_with(key).then_some(value)
     })
 }
 
-fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let number = |key: &str| {
         let found = field(source, key);
         let value = found.as_ref().and_then(|(line, text)| {
@@ -67,10 +67,8 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         let mut channel = Channel::new(*name, Direction::parse(name), time_step, values);
         let stated = peaks
             .split_once(&format!("({name})"))
-            .and_then(|(_, rest)| leading_number(rest.as_bytes()));
-        if let Some((value, digits)) = stated {
-            channel.state_peak(value, resolution(&digits), GAL);
-        }
+            .and_then(|(_, rest)| leading_printed(rest.as_bytes()));
+        channel.state_peak(stated, GAL);
         record.channels.push(channel);
     }
     let text = |key: &str| field(source, key).map(|(_, text)| text).unwrap_or_default();

@@ -4,7 +4,7 @@
 //! Center); the layout descends from CDMG volume 1 with equally spaced values.
 
 use super::source::{Columns, LARGEST_ACCELERATION, Source, quoted};
-use super::{Format, ReadOptions};
+use super::{Format, Told};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::record::{Channel, Record, Stage};
@@ -21,16 +21,9 @@ fn sniff(source: &Source<'_>) -> bool {
     source.find(0, "VOL1DS FILE").is_some_and(|at| at < 6)
 }
 
-fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
-    let mut line = 0;
-    while line < source.lines.len() {
-        if source.raw(line).trim_ascii().is_empty() {
-            line += 1;
-            continue;
-        }
-        line = read_component(source, &mut record, line)?;
-    }
+    source.each_block(|line| read_component(source, &mut record, line))?;
     Ok(record)
 }
 

@@ -1,13 +1,13 @@
 //! The CDMG volume 1 layout that CSMIP, RENADIC and USC share, one block to a channel:
 //! 13 text lines, 7 lines 16I5, 7 lines of reals, then data.
 
-use super::ReadOptions;
+use super::Told;
 use super::even::{Timed, even_steps};
-use super::source::{Columns, LARGEST_ACCELERATION, Source, latin1, quoted};
+use super::source::{Columns, GAL, LARGEST_ACCELERATION, Source, latin1, quoted};
 use crate::direction::Direction;
-use crate::error::{ReadError, Refusal};
-use crate::math::{self, STANDARD_GRAVITY};
-use crate::record::{Channel, Quantity, Record, StatedPeak};
+use crate::error::{Given, ReadError, Refusal};
+use crate::math::STANDARD_GRAVITY;
+use crate::record::{Channel, Record};
 use crate::site::{Site, position};
 use crate::units::AccelerationUnit;
 use crate::utc::{DateOrder, Utc};
@@ -21,24 +21,16 @@ pub(crate) const PAIRS: Columns = Columns { indent: 0, per_line: 10, width: 7 };
 /// Reads every block of a volume 1 file into `record`.
 pub(crate) fn read_blocks(
     source: &Source<'_>,
-    options: &ReadOptions,
+    told: &Told<'_>,
     record: &mut Record,
     pairs: Columns,
 ) -> Result<(), ReadError> {
-    let mut line = 0;
-    while line < source.lines.len() {
-        if source.raw(line).trim_ascii().is_empty() {
-            line += 1;
-            continue;
-        }
-        line = read_block(source, options, record, pairs, line)?;
-    }
-    Ok(())
+    source.each_block(|line| read_block(source, told, record, pairs, line))
 }
 
 fn read_block(
     source: &Source<'_>,
-    options: &ReadOptions,
+    told: &Told<'_>,
     record: &mut Record,
     pairs: Columns,
     first: usize,
@@ -62,10 +54,12 @@ fn read_block(
         record.station = station_name(source, first + 5);
     }
     let name = channel_name(source, first + 6);
-    let direction = direction(source, first, &name);
+    // Integer 27 of the header is the direction's code.
+    let code = super::source::parse_number(source.slice(first + 14, 50, 5));
+    let direction = Direction::of_name_or_code(&name, code);
     let data = first + HEADER_LINES;
     let equal = source.has(data, "points");
-    let unit = unit(source, if equal { data } else { first + 11 }, options)?;
+    let unit = unit(source, if equal { data } else { first + 11 }, told)?;
     let limit = LARGEST_ACCELERATION / unit.factor();
     let (time_step, mut values, next) = if equal {
         read_equal(source, record, data, limit)?
@@ -75,13 +69,7 @@ fn read_block(
             .ok_or_else(|| missing(source, first + 10, "the number of points"))?;
         let count = super::whole(source, first + 10, "a number of points", count)?;
         let (numbers, next) = source.counted(record, data, 2 * count, pairs, limit.max(1e6))?;
-        let timed = Timed {
-            first_line: data,
-            per_line: pairs.per_line / 2,
-            time: numbers.iter().copied().step_by(2).collect(),
-            values: vec![numbers.iter().copied().skip(1).step_by(2).collect()],
-            resolution: 0.001,
-        };
+        let timed = Timed::of_pairs(data, pairs, &numbers, 0.001);
         let (step, mut columns) = even_steps(source, record, &name, timed)?;
         (step, columns.pop().unwrap_or_default(), next)
     };
@@ -91,9 +79,9 @@ fn read_block(
     let mut channel = Channel::new(name, direction, time_step, values);
     channel.start = start(source, first);
     channel.site = Site::default().at(position(&source.text(first + 4)));
-    if let Some(peak) = stated_peak(source, first + 11, math::peak(&channel.acceleration)) {
-        channel.peaks.push(peak);
-    }
+    // `MAX  =  -.200 G`: in g even where the data are in g/10.
+    let factor = if source.has(first + 11, "CM/SEC") { GAL } else { STANDARD_GRAVITY };
+    channel.state_peak(source.printed_after(first + 11, "MAX"), factor);
     record.channels.push(channel);
     source.end_of_channel(next, "UNCORRECTED ACCELEROGRAM")
 }
@@ -167,58 +155,15 @@ pub(crate) fn channel_name(source: &Source<'_>, line: usize) -> String {
     name.split("  ").next().unwrap_or("").trim().to_owned()
 }
 
-/// The name decides; integer 27 of the header is asked where the name says nothing.
-fn direction(source: &Source<'_>, first: usize, name: &str) -> Direction {
-    let stated = Direction::parse(name);
-    if stated != Direction::default() {
-        return stated;
-    }
-    match super::source::parse_number(source.slice(first + 14, 50, 5)) {
-        Some(azimuth) if (1.0..=360.0).contains(&azimuth) => Direction::horizontal(azimuth),
-        Some(400.0 | 500.0) => Direction::up(),
-        Some(600.0) => Direction { downward: true, ..Direction::up() },
-        Some(700.0 | 800.0 | 1100.0 | 1200.0) => Direction::some_horizontal(),
-        _ => stated,
-    }
-}
-
-fn unit(
-    source: &Source<'_>,
-    line: usize,
-    options: &ReadOptions,
-) -> Result<AccelerationUnit, ReadError> {
-    for key in ["SEC AND ", "SECONDS AND ", "units of ", "UNITS: ", "in "] {
-        let Some(at) = source.find(line, key) else { continue };
-        let text = latin1(&source.raw(line)[at + key.len()..]);
-        let word = text
-            .trim_start_matches(['(', ' '])
-            .split([' ', ')', ','])
-            .next()
-            .unwrap_or("")
-            .trim_end_matches('.');
-        if let Ok(unit) = word.parse() {
-            return Ok(unit);
-        }
-    }
-    options.unit.ok_or_else(|| {
+fn unit(source: &Source<'_>, line: usize, told: &Told<'_>) -> Result<AccelerationUnit, ReadError> {
+    let keys = ["SEC AND ", "SECONDS AND ", "units of ", "UNITS: ", "in "];
+    source.unit_after(line, &keys).or_else(|| told.unit()).ok_or_else(|| {
         source.error(
             line,
-            Refusal::Missing,
+            Refusal::Missing(Given::Unit),
             "a unit of acceleration",
             quoted(&source.text(line)),
             "state the unit (g, g/10, cm/s2)",
         )
-    })
-}
-
-/// `MAX  =  -.200 G`: in g even where the data are in g/10.
-fn stated_peak(source: &Source<'_>, line: usize, measured: f64) -> Option<StatedPeak> {
-    let printed = source.printed_after(line, "MAX")?;
-    let factor = if source.has(line, "CM/SEC") { 0.01 } else { STANDARD_GRAVITY };
-    Some(StatedPeak {
-        quantity: Quantity::Acceleration,
-        stated: printed.value.abs() * factor,
-        resolution: printed.resolution * factor,
-        measured,
     })
 }

@@ -4,9 +4,9 @@
 
 use super::even::{Timed, even_steps};
 use super::source::{Source, latin1, quoted};
-use super::{Format, ReadOptions};
+use super::{Format, Told};
 use crate::direction::Direction;
-use crate::error::{ReadError, Refusal};
+use crate::error::{Given, ReadError, Refusal};
 use crate::math;
 use crate::record::{Channel, Record, Stage};
 use crate::units::AccelerationUnit;
@@ -40,7 +40,7 @@ fn sniff(source: &Source<'_>) -> bool {
         || first == 0
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
     source.require_text()?;
     let first = first_row(source).unwrap_or(0);
     let mut record = Record::new(FORMAT.name, source.name, Stage::Unknown);
@@ -61,21 +61,23 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
         let resolution = time_resolution(source, first, end);
         let timed = Timed { first_line: first, per_line: 1, time, values: table, resolution };
         let (step, columns) = even_steps(source, &mut record, "all", timed)?;
-        let given = options.time_step.or(stated.map(|(_, step)| step));
+        let given = stated.map(|(_, step)| step);
         if let Some(given) = given
             && (given / step - 1.0).abs() > 1e-3
         {
             record.warn(
                 first + 1,
-                format!("the time column has a step of {step} s; {given} s was ignored"),
+                format!(
+                    "the time column has a step of {step} s; {given} s, stated here, is ignored"
+                ),
             );
         }
         (step, columns)
     } else {
-        let step = stated.map(|(_, step)| step).or(options.time_step).ok_or_else(|| {
+        let step = stated.map(|(_, step)| step).or_else(|| told.time_step()).ok_or_else(|| {
             source.error(
                 first,
-                Refusal::Missing,
+                Refusal::Missing(Given::Step),
                 "a time column or a time step",
                 format!("{width} column(s) without time"),
                 "state the time step (s)",
@@ -92,7 +94,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
             column.truncate(used);
         }
     }
-    let unit = unit(source, first, options, &columns, &mut record)?;
+    let unit = unit(source, first, told, &columns)?;
     let names = if timed { names.get(1..).unwrap_or(&[]).to_vec() } else { names };
     let stem = super::file_stem(source.name);
     let several = columns.len() > 1;
@@ -200,12 +202,7 @@ fn table(source: &Source<'_>, first: usize, end: usize) -> Result<Vec<Vec<f64>>,
             if line + 1 == end && row.len() < width && !is_time(&columns[0]) {
                 continue;
             }
-            return Err(source.damaged(
-                (line, source.end_of(line)),
-                format!("{width} numbers"),
-                format!("{} numbers", row.len()),
-                "the file is cut or a line was lost; get it again from its source",
-            ));
+            return Err(source.ragged(line, width, row.len()));
         }
         for (column, value) in columns.iter_mut().zip(&row) {
             column.push(*value);
@@ -286,7 +283,7 @@ fn header_names(source: &Source<'_>, first: usize, width: usize) -> Vec<String> 
 
 /// The unit in parentheses or after "units" in a header line that speaks of acceleration, or the one
 /// that stands in parentheses behind every name but that of the time.
-fn stated_unit(source: &Source<'_>, first: usize) -> Option<(usize, AccelerationUnit)> {
+fn stated_unit(source: &Source<'_>, first: usize) -> Option<AccelerationUnit> {
     for line in 0..first {
         let text = source.text(line).to_ascii_lowercase();
         if let Some(at) = text.find("acc")
@@ -295,18 +292,18 @@ fn stated_unit(source: &Source<'_>, first: usize) -> Option<(usize, Acceleration
             let rest = &text[at + open + 1..];
             let word = rest.split([')', ']']).next().unwrap_or("");
             if let Ok(unit) = word.parse() {
-                return Some((line, unit));
+                return Some(unit);
             }
         }
         if let Some((_, rest)) = text.split_once("unit") {
             let word = rest.trim_start_matches(['s', ':', '=', ' ']);
             let word = word.split([' ', ',', ';']).next().unwrap_or("");
             if let Ok(unit) = word.parse() {
-                return Some((line, unit));
+                return Some(unit);
             }
         }
         if let Some(unit) = unit_of_every_column(&text) {
-            return Some((line, unit));
+            return Some(unit);
         }
     }
     None
@@ -326,24 +323,14 @@ fn unit_of_every_column(header: &str) -> Option<AccelerationUnit> {
 fn unit(
     source: &Source<'_>,
     first: usize,
-    options: &ReadOptions,
+    told: &Told<'_>,
     columns: &[Vec<f64>],
-    record: &mut Record,
 ) -> Result<AccelerationUnit, ReadError> {
-    if let Some((line, unit)) = stated_unit(source, first) {
-        if options.unit.is_some_and(|given| given != unit) {
-            record.warn(
-                line + 1,
-                format!("the file states its unit ({unit}); that given is ignored"),
-            );
-        }
-        return Ok(unit);
-    }
-    options.unit.ok_or_else(|| {
+    stated_unit(source, first).or_else(|| told.unit()).ok_or_else(|| {
         let peak = columns.iter().map(|column| math::peak(column)).fold(0.0, f64::max);
         source.error(
             first,
-            Refusal::Missing,
+            Refusal::Missing(Given::Unit),
             "a unit of acceleration",
             format!("numbers up to {peak:.4} without one"),
             "state the unit (g, m/s2, cm/s2)",

@@ -4,11 +4,11 @@
 //! Spec: Strong-Motion Data Format of the COSMOS Board, version 1.20 (2001), tables 2 to 6.
 
 use super::source::{
-    Columns, LARGEST_ACCELERATION, Source, latin1, leading_number, quoted, shorten,
+    Columns, GAL, LARGEST_ACCELERATION, Printed, Source, latin1, leading_number, quoted, shorten,
 };
-use super::{Format, ReadOptions};
+use super::{Format, Told};
 use crate::direction::Direction;
-use crate::error::{ReadError, Refusal};
+use crate::error::{Given, ReadError, Refusal};
 use crate::math::{self, STANDARD_GRAVITY};
 use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
@@ -48,7 +48,7 @@ impl Header {
     }
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
     let stage = if source.text(0).to_ascii_lowercase().starts_with("corrected") {
         Stage::Corrected
     } else {
@@ -56,14 +56,9 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     };
     let mut record = Record::new(FORMAT.name, source.name, stage);
     let mut refused = None;
-    let mut line = 0;
-    while line < source.lines.len() {
-        if source.raw(line).trim_ascii().is_empty() {
-            line += 1;
-            continue;
-        }
+    source.each_block(|line| {
         let header = header(source, line)?;
-        let (channel, next) = read_channel(source, options, &mut record, line, &header)?;
+        let (channel, next) = read_channel(source, told, &mut record, line, &header)?;
         match channel {
             Ok(channel) => record.channels.push(channel),
             Err(error) => {
@@ -74,8 +69,8 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
                 refused = Some(error);
             }
         }
-        line = next;
-    }
+        Ok(next)
+    })?;
     match refused {
         Some(error) if record.channels.is_empty() => Err(error),
         _ => Ok(record),
@@ -141,7 +136,7 @@ type ChannelOrRefusal = Result<Channel, ReadError>;
 
 fn read_channel(
     source: &Source<'_>,
-    options: &ReadOptions,
+    told: &Told<'_>,
     record: &mut Record,
     first: usize,
     header: &Header,
@@ -182,8 +177,8 @@ fn read_channel(
     }
     let factor = match unit {
         Some(UNIT_G) => STANDARD_GRAVITY,
-        Some(UNIT_CM_S2 | UNIT_GAL) => 0.01,
-        Some(UNIT_COUNTS) => counts_to_si(source, options, header, line)?,
+        Some(UNIT_CM_S2 | UNIT_GAL) => GAL,
+        Some(UNIT_COUNTS) => counts_to_si(source, told, header, line)?,
         other => {
             let code = other.map_or("none".to_owned(), |code| code.to_string());
             return Ok((Err(refuse(format!("unit code {code} (\"{}\")", shorten(&text)))), next));
@@ -205,7 +200,7 @@ fn read_channel(
         record.station = source.text(first + 4);
     }
     let name = channel_name(source, first);
-    let mut direction = direction(header.integer(54), &name);
+    let mut direction = Direction::of_name_or_code(&name, header.integer(54).map(|n| n as f64));
     if direction == Direction::default()
         && let Some(code) = seed_code(source, first, line)
     {
@@ -214,14 +209,10 @@ fn read_channel(
     let mut channel = Channel::new(name, direction, time_step, values);
     channel.start = start(header);
     channel.site = site(source, first, header);
-    if let Some(peak) = header.real(64) {
-        channel.state_peak(peak, 1e-6, factor);
-    }
+    let peak = header.real(64).map(|value| Printed { value, resolution: 1e-6 });
+    channel.state_peak(peak, factor);
     if unit == Some(UNIT_COUNTS) {
-        let offset = math::mean(&channel.acceleration);
-        for value in &mut channel.acceleration {
-            *value -= offset;
-        }
+        let offset = math::take_mean(&mut channel.acceleration);
         record.notes.push(format!(
             "channel {}: counts times {factor:.6e} m/s2; digitizer offset of {offset:.4} m/s2 (mean \
              of the record) removed",
@@ -248,11 +239,11 @@ fn site(source: &Source<'_>, first: usize, header: &Header) -> Site {
 /// `LSB (µV) / (sensor sensitivity (V/g) × gain)`, or the caller's counts per m/s².
 fn counts_to_si(
     source: &Source<'_>,
-    options: &ReadOptions,
+    told: &Told<'_>,
     header: &Header,
     line: usize,
 ) -> Result<f64, ReadError> {
-    if let Some(sensitivity) = options.sensitivity {
+    if let Some(sensitivity) = told.sensitivity() {
         return Ok(1.0 / sensitivity);
     }
     let needed = [(22, "LSB in microvolt"), (42, "sensor V/g"), (47, "gain")];
@@ -261,7 +252,7 @@ fn counts_to_si(
         *value = header.real(number).filter(|value| *value > 0.0).ok_or_else(|| {
             source.error(
                 line,
-                Refusal::Missing,
+                Refusal::Missing(Given::Sensitivity),
                 format!("real header {number} ({what}) to turn counts into accelerations"),
                 header.real(number).map_or("unknown".to_owned(), |v| v.to_string()),
                 "state the sensitivity in counts per m/s2",
@@ -289,20 +280,4 @@ fn seed_code(source: &Source<'_>, from: usize, to: usize) -> Option<String> {
         let (_, code) = text.split_once("<SCNL>")?;
         code.split('.').nth(1).map(|code| code.trim().to_owned())
     })
-}
-
-/// Integer 54: azimuth, 400 to 600 vertical, 700 and above horizontal relative to a structure.
-fn direction(code: Option<i64>, name: &str) -> Direction {
-    let stated = Direction::parse(name);
-    if stated.azimuth.is_some() || stated.orientation.is_some() {
-        return stated;
-    }
-    match code {
-        #[expect(clippy::cast_precision_loss, reason = "0 to 360")]
-        Some(azimuth @ 1..=360) => Direction::horizontal(azimuth as f64),
-        Some(400 | 401 | 500) => Direction::up(),
-        Some(402 | 600) => Direction { downward: true, ..Direction::up() },
-        Some(700 | 701 | 800 | 801 | 1100 | 1200) => Direction::some_horizontal(),
-        _ => stated,
-    }
 }

@@ -5,7 +5,7 @@
 //! format"; CDMG volume 1 of the 1970s.
 
 use super::source::Source;
-use super::{Format, ReadOptions, cdmg};
+use super::{Format, Told, cdmg};
 use crate::error::ReadError;
 use crate::record::{Record, Stage};
 
@@ -16,8 +16,8 @@ fn sniff(source: &Source<'_>) -> bool {
     source.find(0, "UNCORRECTED ACCELEROGRAM DATA").is_some_and(|at| at < 4)
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
-    cdmg::read_blocks(source, options, &mut record, cdmg::PAIRS)?;
+    cdmg::read_blocks(source, told, &mut record, cdmg::PAIRS)?;
     Ok(record)
 }

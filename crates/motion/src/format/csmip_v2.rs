@@ -4,12 +4,12 @@
 //! Spec: Shakal, Huang and Rojahn 1985, CSMIP report OSMS 85-03.
 
 use super::cdmg::{channel_name, format_in, start, station_name};
-use super::source::{Columns, LARGEST_ACCELERATION, Source, latin1, leading_number, quoted};
-use super::{Format, ReadOptions};
+use super::source::{Columns, GAL, LARGEST_ACCELERATION, Source, leading_number, quoted};
+use super::{Format, Told};
 use crate::direction::Direction;
-use crate::error::{ReadError, Refusal};
+use crate::error::{Given, ReadError, Refusal};
 use crate::math;
-use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::record::{Channel, Quantity, Record, Stage};
 use crate::site::{Site, position};
 use crate::units::AccelerationUnit;
 
@@ -26,7 +26,7 @@ fn sniff(source: &Source<'_>) -> bool {
         || source.has(0, "RESPONSE AND FOURIER AMPLITUDE SPECTRA")
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
     if source.has(0, "SPECTRA") {
         return Err(source.error(
             0,
@@ -37,20 +37,13 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
         ));
     }
     let mut record = Record::new(FORMAT.name, source.name, Stage::Corrected);
-    let mut line = 0;
-    while line < source.lines.len() {
-        if source.raw(line).trim_ascii().is_empty() {
-            line += 1;
-            continue;
-        }
-        line = read_channel(source, options, &mut record, line)?;
-    }
+    source.each_block(|line| read_channel(source, told, &mut record, line))?;
     Ok(record)
 }
 
 fn read_channel(
     source: &Source<'_>,
-    options: &ReadOptions,
+    told: &Told<'_>,
     record: &mut Record,
     first: usize,
 ) -> Result<usize, ReadError> {
@@ -93,7 +86,7 @@ fn read_channel(
                     "give the file that holds the accelerations",
                 )
             })?;
-    let unit = unit(source, first + HEADER_LINES, options)?;
+    let unit = unit(source, first + HEADER_LINES, told)?;
     let step = time_step(source, first, first + HEADER_LINES)?;
     let values: Vec<f64> = accelerations.iter().map(|value| value * unit.factor()).collect();
     let mut channel = Channel::new(name.as_str(), Direction::parse(&name), step, values);
@@ -103,7 +96,7 @@ fn read_channel(
         vec![(Quantity::Acceleration, unit.factor(), math::peak(&channel.acceleration))];
     for (key, quantity) in [("vel", Quantity::Velocity), ("dis", Quantity::Displacement)] {
         if let Some((block, after)) = read_block(source, record, next, key, 1e9)? {
-            measured.push((quantity, 0.01, 0.01 * math::peak(&block)));
+            measured.push((quantity, GAL, GAL * math::peak(&block)));
             next = after;
         }
     }
@@ -118,14 +111,7 @@ fn read_channel(
             .filter(|&line| source.text(line).to_ascii_uppercase().starts_with("PEAK"))
             .find(|&line| source.has(line, word))
             .and_then(|line| source.printed_after(line, "="));
-        if let Some(printed) = stated {
-            channel.peaks.push(StatedPeak {
-                quantity,
-                stated: printed.value.abs() * factor,
-                resolution: printed.resolution * factor,
-                measured,
-            });
-        }
+        channel.state(quantity, stated, factor, measured);
     }
     let mut header = header;
     if let Some(velocity) = header.find_map(|line| source.number_after(line, "INITIAL VELOCITY")) {
@@ -152,27 +138,15 @@ fn read_block(
     source.counted(record, line + 1, count, columns, limit).map(Some)
 }
 
-fn unit(
-    source: &Source<'_>,
-    line: usize,
-    options: &ReadOptions,
-) -> Result<AccelerationUnit, ReadError> {
-    let text = latin1(source.raw(line)).to_ascii_lowercase();
-    if text.contains("cm/s") {
+fn unit(source: &Source<'_>, line: usize, told: &Told<'_>) -> Result<AccelerationUnit, ReadError> {
+    if source.has(line, "cm/s") {
         return Ok(AccelerationUnit::Gal);
     }
-    for key in ["in ", "units: ", "units of "] {
-        if let Some((_, rest)) = text.split_once(key) {
-            let word = rest.split([' ', '.', ',', ')']).next().unwrap_or("");
-            if let Ok(unit) = word.parse() {
-                return Ok(unit);
-            }
-        }
-    }
-    options.unit.ok_or_else(|| {
+    let stated = source.unit_after(line, &["in ", "units: ", "units of "]);
+    stated.or_else(|| told.unit()).ok_or_else(|| {
         source.error(
             line,
-            Refusal::Missing,
+            Refusal::Missing(Given::Unit),
             "a unit of acceleration on the data line",
             quoted(&source.text(line)),
             "state the unit (cm/s2 by the rules of this format)",

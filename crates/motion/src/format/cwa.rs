@@ -4,8 +4,10 @@
 //! the columns stands in `#DataSequence`.
 
 use super::even::{Timed, even_steps};
-use super::source::{Columns, LARGEST_ACCELERATION, Source, leading_number, quoted, resolution};
-use super::{Format, ReadOptions};
+use super::source::{
+    Columns, GAL, LARGEST_ACCELERATION, Source, leading_number, leading_printed, quoted,
+};
+use super::{Format, Told};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::record::{Channel, Record, Stage};
@@ -15,7 +17,6 @@ use crate::utc::{DateOrder, Utc};
 pub(crate) const FORMAT: Format =
     Format { name: "cwa", title: "CWA/CWB text (Taiwan)", sniff, read };
 
-const GAL: f64 = 0.01;
 const MOST_HEADER_LINES: usize = 60;
 
 fn sniff(source: &Source<'_>) -> bool {
@@ -23,18 +24,11 @@ fn sniff(source: &Source<'_>) -> bool {
 }
 
 fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
-    (0..MOST_HEADER_LINES).find_map(|line| {
-        let text = source.text(line);
-        text.strip_prefix(key).map(|rest| (line, rest.trim().to_owned()))
-    })
+    source.field(MOST_HEADER_LINES, |text| text.strip_prefix(key))
 }
 
-#[expect(clippy::too_many_lines, reason = "one header, read from top to bottom")]
-fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
-    let need = |key: &str| {
-        field(source, key)
-            .ok_or_else(|| source.header((), format!("a header line \"{key}\""), "none"))
-    };
+fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
+    let need = |key: &str| source.needed(field(source, key), key);
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
     let (unit_line, unit) = need("#AmplitudeUnit:")?;
     if !unit.to_ascii_lowercase().starts_with("gal") {
@@ -100,19 +94,9 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             );
         }
         if let Some((line, seconds)) = number(source, "#RecordLength(sec):") {
-            let stated = (seconds * rate).round();
-            let stated = super::whole(source, line, "a record length", stated)?;
-            // Whole seconds are stated; up to one second more or less is rounding.
-            if (rows as f64 - stated as f64).abs() > rate {
-                let used = super::check_count(source, &mut record, line, stated, rows)?;
-                for column in &mut values {
-                    column.truncate(used);
-                }
-            } else if rows != stated {
-                record.warn(
-                    line + 1,
-                    format!("the header states {stated} rows, the file holds {rows}"),
-                );
+            let used = super::check_seconds(source, &mut record, line, [seconds, rate], rows)?;
+            for column in &mut values {
+                column.truncate(used);
             }
         }
     }
@@ -126,10 +110,9 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         let mut channel = Channel::new(plain.clone(), direction, time_step, values);
         if let Some((_, text)) = field(source, &format!("#AmplitudeMAX. {plain}:")) {
             // Both extremes are stated: "0.658~   -0.837".
-            let extremes = text.split('~').filter_map(|part| leading_number(part.as_bytes()));
-            if let Some((value, digits)) = extremes.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs())) {
-                channel.state_peak(value, resolution(&digits), GAL);
-            }
+            let extremes = text.split('~').filter_map(|part| leading_printed(part.as_bytes()));
+            let largest = extremes.max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
+            channel.state_peak(largest, GAL);
         }
         record.channels.push(channel);
     }

@@ -2,8 +2,10 @@
 //!
 //! Spec: Luzi et al. 2016, "Engineering Strong-Motion database, format DYNA 1.2" (INGV).
 
-use super::source::{LARGEST_ACCELERATION, Source, leading_number, quoted, resolution};
-use super::{Format, ReadOptions};
+use super::source::{
+    GAL, LARGEST_ACCELERATION, Source, leading_number, leading_printed, parse_number, quoted,
+};
+use super::{Format, Told};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::record::{Channel, Record, Stage};
@@ -22,13 +24,12 @@ fn sniff(source: &Source<'_>) -> bool {
             && (0..MOST_HEADER_LINES).any(|line| source.text(line).starts_with("NDATA:")))
 }
 
-/// Line and value of a key; values may hold colons.
+/// Line and value of a key, if it has one; values may hold colons.
 fn field(source: &Source<'_>, end: usize, key: &str) -> Option<(usize, String)> {
-    (0..end).find_map(|line| {
-        let text = source.text(line);
-        let (name, value) = text.split_once(':')?;
-        (name.trim() == key).then(|| (line, value.trim().to_owned()))
-    })
+    let found = source.field(end, |text| {
+        text.split_once(':').filter(|(name, _)| name.trim() == key).map(|(_, value)| value)
+    });
+    found.filter(|(_, value)| !value.is_empty())
 }
 
 /// `20190728_160905.700`.
@@ -45,15 +46,11 @@ fn start(text: &str) -> Option<Utc> {
     )
 }
 
-fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let end = (0..source.lines.len().min(MOST_HEADER_LINES))
-        .find(|&line| super::source::parse_number(source.raw(line)).is_some())
+        .find(|&line| parse_number(source.raw(line)).is_some())
         .ok_or_else(|| source.cut("values after the header", "none"))?;
-    let need = |key: &str| {
-        field(source, end, key)
-            .filter(|(_, value)| !value.is_empty())
-            .ok_or_else(|| source.header((), format!("a value for {key}"), "none"))
-    };
+    let need = |key: &str| source.needed(field(source, end, key), key);
     let number = |key: &str| {
         let (line, text) = need(key)?;
         let value = leading_number(text.as_bytes()).map(|(value, _)| value);
@@ -97,7 +94,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let limit = LARGEST_ACCELERATION / unit.factor();
     let mut values = Vec::with_capacity(source.lines.len() - end);
     for line in end..source.lines.len() {
-        let value = super::source::parse_number(source.raw(line))
+        let value = parse_number(source.raw(line))
             .ok_or_else(|| source.bad_number(line, 0, source.raw(line)))?;
         let value = source.within(line, 0, value, limit)?;
         values.push(value * unit.factor());
@@ -115,9 +112,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         ..Site::default()
     }
     .at(number("STATION_LATITUDE_DEGREE").zip(number("STATION_LONGITUDE_DEGREE")));
-    if let Some((value, digits)) = leading_number(text("PGA_CM/S^2").as_bytes()) {
-        channel.state_peak(value, resolution(&digits), 0.01);
-    }
+    channel.state_peak(leading_printed(text("PGA_CM/S^2").as_bytes()), GAL);
     if text("LATE/NORMAL_TRIGGERED").eq_ignore_ascii_case("LT") {
         record.warn(None, "late-triggered record: its beginning is missing");
     }

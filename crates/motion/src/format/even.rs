@@ -1,6 +1,6 @@
 //! A step from a time column: even times give it, uneven ones are interpolated, neither is assumed.
 
-use super::source::Source;
+use super::source::{Columns, Source};
 use crate::error::ReadError;
 use crate::math;
 use crate::record::Record;
@@ -17,6 +17,19 @@ pub(crate) struct Timed {
     pub(crate) values: Vec<Vec<f64>>,
     /// One unit of the last printed digit of the times (s).
     pub(crate) resolution: f64,
+}
+
+impl Timed {
+    /// From pairs of time and value.
+    pub(crate) fn of_pairs(
+        first_line: usize,
+        pairs: Columns,
+        numbers: &[f64],
+        resolution: f64,
+    ) -> Self {
+        let (time, values) = numbers.chunks_exact(2).map(|pair| (pair[0], pair[1])).unzip();
+        Self { first_line, per_line: pairs.per_line / 2, time, values: vec![values], resolution }
+    }
 }
 
 /// The even step of the times and the columns at that step.

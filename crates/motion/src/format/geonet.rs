@@ -5,11 +5,11 @@
 //! Spec: GeoNet, "Strong motion data, file formats" (GNS Science).
 
 use super::source::{Columns, LARGEST_ACCELERATION, Source, quoted};
-use super::{Format, ReadOptions};
+use super::{Format, Told};
 use crate::direction::Direction;
 use crate::error::ReadError;
 use crate::math;
-use crate::record::{Channel, Quantity, Record, Stage, StatedPeak};
+use crate::record::{Channel, Quantity, Record, Stage};
 use crate::site::{Site, position};
 use crate::utc::Utc;
 
@@ -26,16 +26,13 @@ fn sniff(source: &Source<'_>) -> bool {
         || source.has(0, "GNS Science")
 }
 
-fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let raw = source.has(0, "uncorrected");
     let stage = if raw { Stage::Raw } else { Stage::Corrected };
     let mut record = Record::new(FORMAT.name, source.name, stage);
     record.station = source.text(2);
     record.event = source.text(6);
-    let mut line = 0;
-    while line < source.lines.len() {
-        line = read_component(source, &mut record, line)?;
-    }
+    source.each_block(|line| read_component(source, &mut record, line))?;
     Ok(record)
 }
 
@@ -100,22 +97,13 @@ fn read_component(
         }
     }
     for (k, (quantity, measured)) in measured.into_iter().enumerate() {
-        if let Some(printed) = source.printed_after(first + 13 + k, "peak") {
-            channel.peaks.push(StatedPeak {
-                quantity,
-                stated: printed.value.abs() * MILLIMETER,
-                resolution: printed.resolution * MILLIMETER,
-                measured,
-            });
-        }
+        let stated = source.printed_after(first + 13 + k, "peak");
+        channel.state(quantity, stated, MILLIMETER, measured);
     }
     if record.channels.iter().any(|other| other.name == name) {
         channel.name = format!("{name} ({})", record.channels.len() + 1);
         record.warn(first + 13, format!("two components are named {name}; the second is renamed"));
     }
     record.channels.push(channel);
-    while line < source.lines.len() && source.raw(line).trim_ascii().is_empty() {
-        line += 1;
-    }
     Ok(line)
 }

@@ -4,8 +4,10 @@
 //! stated after its removal.
 //! Spec: NIED, "K-NET ASCII format" (knetform).
 
-use super::source::{Columns, LARGEST_ACCELERATION, Source, latin1, leading_number, quoted};
-use super::{Format, ReadOptions};
+use super::source::{
+    Columns, GAL, LARGEST_ACCELERATION, Source, leading_number, leading_printed, quoted,
+};
+use super::{Format, Told};
 use crate::direction::Direction;
 use crate::error::ReadError;
 use crate::math;
@@ -17,7 +19,6 @@ pub(crate) const FORMAT: Format =
     Format { name: "knet", title: "K-NET and KiK-net (NIED)", sniff, read };
 
 const HEADER_LINES: usize = 17;
-const GAL: f64 = 0.01;
 /// What is taken off the record time to get that of the first sample (s): the delay of the recorder
 /// and the nine hours of Japan time.
 const LATE: f64 = 15.0 + 9.0 * 3600.0;
@@ -29,17 +30,14 @@ fn sniff(source: &Source<'_>) -> bool {
 
 /// Line and text of a header field by the start of its key.
 fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
-    (0..HEADER_LINES + 2)
-        .find(|&line| source.text(line).starts_with(key))
-        .map(|line| (line, latin1(source.slice(line, 18, 200)).trim().to_owned()))
+    source.field(HEADER_LINES + 2, |text| {
+        text.starts_with(key).then(|| text.get(18..).unwrap_or_default())
+    })
 }
 
-fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
-    let need = |key: &str| {
-        field(source, key)
-            .ok_or_else(|| source.header((), format!("a header line \"{key}\""), "none"))
-    };
+    let need = |key: &str| source.needed(field(source, key), key);
     let bad =
         |line: usize, expected: &str, text: &str| source.header((line, 18), expected, quoted(text));
     record.event = format!("{} (Japan time)", need("Origin Time")?.1);
@@ -59,28 +57,13 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let counts = read_counts(source, first, LARGEST_ACCELERATION / factor)?;
     let mut used = counts.len();
     let (duration_line, duration) = need("Duration")?;
-    if let Some((seconds, _)) = leading_number(duration.as_bytes()) {
-        let stated = (seconds * rate).round();
-        if (1.0..=1e9).contains(&stated) {
-            let stated = super::whole(source, duration_line, "a duration", stated)?;
-            // Whole seconds are stated; up to one second more or less is rounding.
-            let second = super::whole(source, duration_line, "a sampling frequency", rate.ceil())?;
-            if counts.len().abs_diff(stated) > second {
-                let (line, found) = (duration_line, counts.len());
-                used = super::check_count(source, &mut record, line, stated, found)?;
-            } else if counts.len() != stated {
-                record.warn(
-                    duration_line + 1,
-                    format!("the header states {stated} values, the file holds {}", counts.len()),
-                );
-            }
-        }
+    // Some state no duration, or none above 0.
+    if let Some((seconds, _)) = leading_number(duration.as_bytes()).filter(|(s, _)| *s > 0.0) {
+        let length = [seconds, rate];
+        used = super::check_seconds(source, &mut record, duration_line, length, counts.len())?;
     }
     let mut values: Vec<f64> = counts[..used].iter().map(|count| count * factor).collect();
-    let offset = math::mean(&values);
-    for value in &mut values {
-        *value -= offset;
-    }
+    let offset = math::take_mean(&mut values);
     record.notes.push(format!(
         "channel {name}: offset of {:.3} cm/s2, the mean of the whole record, removed as the \
          format prescribes",
@@ -105,12 +88,8 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         ..Site::default()
     }
     .at(number("Station Lat.").zip(number("Station Lon")));
-    if let Some((line, text)) = field(source, "Max")
-        && let Some((value, digits)) = leading_number(text.as_bytes())
-    {
-        let _ = line;
-        channel.state_peak(value, super::source::resolution(&digits), GAL);
-    }
+    let peak = field(source, "Max").and_then(|(_, text)| leading_printed(text.as_bytes()));
+    channel.state_peak(peak, GAL);
     record.channels.push(channel);
     Ok(record)
 }

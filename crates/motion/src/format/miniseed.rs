@@ -9,9 +9,9 @@
 use std::collections::BTreeMap;
 
 use super::source::{Source, latin1};
-use super::{Format, ReadOptions, seed};
+use super::{Format, Told, seed};
 use crate::direction::Direction;
-use crate::error::{ReadError, Refusal};
+use crate::error::{Given, ReadError, Refusal};
 use crate::instrument::SeedName;
 use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
@@ -50,7 +50,7 @@ struct Trace {
     values: Vec<f64>,
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
     let bytes = source.bytes;
     let mut traces: BTreeMap<SeedName, Trace> = BTreeMap::new();
     let mut at = 0;
@@ -83,12 +83,12 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
     stations.dedup();
     record.station = stations.join(", ");
     for (id, trace) in traces {
-        let known = options.instruments.iter().find(|i| i.describes(&id, Some(trace.start)));
-        let sensitivity = known.map(|known| known.sensitivity).or(options.sensitivity);
+        let known = told.instrument(&id, Some(trace.start));
+        let sensitivity = known.map(|known| known.sensitivity).or_else(|| told.sensitivity());
         let sensitivity = sensitivity.ok_or_else(|| {
             source.error(
                 (),
-                Refusal::Missing,
+                Refusal::Missing(Given::Sensitivity),
                 format!("a sensitivity for channel {} (miniSEED holds counts)", id.channel),
                 "none",
                 "state the counts per m/s2 from the station's StationXML (InstrumentSensitivity)",
@@ -97,8 +97,8 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError>
         let step = 1.0 / trace.rate;
         let values: Vec<f64> = trace.values.iter().map(|count| count / sensitivity).collect();
         let mut values =
-            seed::as_acceleration(source, &mut record, options, &id, known, step, values)?;
-        if !seed::differentiates(options) {
+            seed::as_acceleration(source, &mut record, told, &id, known, step, values)?;
+        if !seed::differentiates(told) {
             super::remove_offset(&mut record, &id.channel, &mut values);
         }
         record.notes.push(format!(

@@ -25,19 +25,19 @@ mod seed;
 mod slammer;
 mod smc;
 mod source;
+mod told;
 mod unam;
 mod usc;
 mod zip;
 
-pub use slammer::slammer_step;
-
 use crate::error::{ReadError, Refusal};
 use crate::instrument::Instrument;
 use crate::math::STANDARD_GRAVITY;
-use crate::record::{Quantity, Record};
+use crate::record::{Channel, Quantity, Record};
 use crate::units::AccelerationUnit;
 use source::{LARGEST_ACCELERATION, Place, Source, parse_number};
-pub(crate) use source::{quoted, shorten};
+pub(crate) use source::{Printed, quoted, shorten};
+use told::Told;
 
 /// What the caller knows and a file may not say.
 ///
@@ -49,8 +49,8 @@ pub struct ReadOptions {
     pub unit: Option<AccelerationUnit>,
     /// Step (s) for formats that state none.
     pub time_step: Option<f64>,
-    /// Counts to one m/s² for formats that hold counts; to one m/s or m where [`ReadOptions::recorded`]
-    /// says that velocity or displacement was recorded.
+    /// Counts to one m/s² for files that hold counts, also before what a COSMOS header states; to one
+    /// m/s or m where [`ReadOptions::recorded`] says that velocity or displacement was recorded.
     pub sensitivity: Option<f64>,
     /// Metadata of single channels; the first that fits a channel goes before the sensitivity for all.
     pub instruments: Vec<Instrument>,
@@ -67,7 +67,7 @@ pub struct Format {
     /// Full name with its publisher.
     pub title: &'static str,
     sniff: fn(&Source<'_>) -> bool,
-    read: fn(&Source<'_>, &ReadOptions) -> Result<Record, ReadError>,
+    read: fn(&Source<'_>, &Told<'_>) -> Result<Record, ReadError>,
 }
 
 impl Format {
@@ -92,15 +92,11 @@ impl Format {
     }
 
     fn read_source(&self, source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
-        let mut record = (self.read)(source, options)?;
+        let told = Told::new(options);
+        let mut record = (self.read)(source, &told)?;
         record.format = self.name;
-        if options.recorded.is_some()
-            && ![sac::FORMAT.name, miniseed::FORMAT.name].contains(&self.name)
-        {
-            record.warn(None, "the file states what it holds; what was said of it was ignored");
-        }
-        if options.time_step.is_some() && self.name != columns::FORMAT.name {
-            record.warn(None, "the file states its step; the time step given was ignored");
+        for what in told.ignored() {
+            record.warn(None, format!("{what} given was ignored, as this file does not need it"));
         }
         finish(source, &mut record)?;
         Ok(record)
@@ -235,10 +231,10 @@ fn check_options(source: &Source<'_>, options: &ReadOptions) -> Result<(), ReadE
         {
             return Err(source.error(
                 (),
-                Refusal::Missing,
+                Refusal::Options,
                 format!("a {what} above 0"),
-                value.to_string(),
-                "correct the option",
+                format!("{value}, as given"),
+                "give another",
             ));
         }
     }
@@ -378,6 +374,25 @@ fn check_count(
     ))
 }
 
+/// As [`check_count`] where the header states a length in whole seconds: up to one second more or
+/// less is rounding.
+fn check_seconds(
+    source: &Source<'_>,
+    record: &mut Record,
+    line: usize,
+    [seconds, rate]: [f64; 2],
+    found: usize,
+) -> Result<usize, ReadError> {
+    let stated = whole(source, line, "a length of the record", (seconds * rate).round())?;
+    if found.abs_diff(stated) as f64 > rate {
+        return check_count(source, record, line, stated, found);
+    }
+    if found != stated {
+        record.warn(line + 1, format!("the header states {stated} values, the file holds {found}"));
+    }
+    Ok(found)
+}
+
 /// The file name without folders and ending.
 pub(crate) fn file_stem(name: &str) -> String {
     let base = name.rsplit(['/', '\\']).next().unwrap_or(name);
@@ -398,12 +413,7 @@ fn rows(
         row.clear();
         source.tokens(line, limit, &mut row)?;
         if row.len() != width {
-            return Err(source.damaged(
-                (line, source.end_of(line)),
-                format!("{width} numbers"),
-                format!("{} numbers", row.len()),
-                "the file is cut or a line was lost; get it again from its source",
-            ));
+            return Err(source.ragged(line, width, row.len()));
         }
         for (column, value) in columns.iter_mut().zip(&row) {
             column.push(*value);
@@ -414,19 +424,12 @@ fn rows(
 
 /// Leaves out channels that never change: clocks and unused inputs.
 fn drop_dead_channels(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
-    let dead: Vec<String> = record
-        .channels
-        .iter()
-        .filter(|channel| {
-            channel.acceleration.len() > 1
-                && channel.acceleration.iter().all(|value| *value == channel.acceleration[0])
-        })
-        .map(|channel| channel.name.clone())
-        .collect();
-    if dead.is_empty() {
-        return Ok(());
-    }
-    if dead.len() == record.channels.len() {
+    let dead = |channel: &mut Channel| match channel.acceleration.as_slice() {
+        [first, rest @ ..] => !rest.is_empty() && rest.iter().all(|value| value == first),
+        [] => false,
+    };
+    let left_out: Vec<Channel> = record.channels.extract_if(.., dead).collect();
+    if !left_out.is_empty() && record.channels.is_empty() {
         return Err(source.error(
             (),
             Refusal::NotAcceleration,
@@ -435,14 +438,10 @@ fn drop_dead_channels(source: &Source<'_>, record: &mut Record) -> Result<(), Re
             "give the file that holds the accelerations",
         ));
     }
-    record.channels.retain(|channel| {
-        channel.acceleration.len() < 2
-            || channel.acceleration.iter().any(|value| *value != channel.acceleration[0])
-    });
-    for name in dead {
+    for channel in left_out {
         record.warn(
             None,
-            format!("channel {name} holds one value throughout (a clock or an unused input) and was left out"),
+            format!("channel {} holds one value throughout (a clock or an unused input) and was left out", channel.name),
         );
     }
     Ok(())
@@ -450,10 +449,7 @@ fn drop_dead_channels(source: &Source<'_>, record: &mut Record) -> Result<(), Re
 
 /// Takes off the mean of a raw digital channel, whose zero is arbitrary, and notes it.
 fn remove_offset(record: &mut Record, name: &str, values: &mut [f64]) {
-    let offset = crate::math::mean(values);
-    for value in values.iter_mut() {
-        *value -= offset;
-    }
+    let offset = crate::math::take_mean(values);
     record.notes.push(format!(
         "channel {name}: offset of {offset:.4e} m/s2, the mean of the whole record, removed because \
          the digitizer's zero is arbitrary"

@@ -1,25 +1,11 @@
 //! The text form of this crate: `# key: value` lines, then one column to a channel.
 //!
-//! ```text
-//! # barrelstack motion 1
-//! # station: Napa College, Napa
-//! # event: South Napa, 2014-08-24, M 6.0
-//! # stage: corrected
-//! # unit: m/s2
-//! # time_step: 0.005
-//! # channels: E az=90, N az=0, Up vertical
-//! 1.2345e-3 -2.3456e-4 0
-//! ```
-//!
-//! `# initial_velocity:` gives the velocity (m/s) at the first sample of each channel where it is not
-//! zero. `# recorded:` gives start (UTC), place and sensor of all channels, or one such line to each:
-//! `start 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, elevation 12, vs30 330, sensor
-//! surface, station Napa`; what is not known is left out. Other `#` lines are comments. Spec: this file; written by [`crate::write::text`].
+//! Spec: [`crate::write::text`], which writes it; its module says what each key means.
 
 use super::source::{LARGEST_ACCELERATION, Source, parse_number, quoted};
-use super::{Format, ReadOptions};
+use super::{Format, Told};
 use crate::direction::Direction;
-use crate::error::{ReadError, Refusal};
+use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
 use crate::units::AccelerationUnit;
@@ -47,7 +33,7 @@ fn field(source: &Source<'_>, end: usize, key: &str) -> Option<(usize, String)> 
     })
 }
 
-fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let end = (0..source.lines.len())
         .find(|&line| !written(source, line).starts_with('#'))
         .ok_or_else(|| source.cut("rows of numbers after the header", "none"))?;
@@ -71,12 +57,11 @@ pub(super) fn described(
     }
     let need = |key: &str| {
         field(source, end, key).ok_or_else(|| {
-            source.error(
-                (),
-                Refusal::Missing,
-                format!("a line \"# {key}: ...\""),
+            source.damaged(
+                end.saturating_sub(1),
+                format!("a line \"# {key}: ...\" in the header, which ends here"),
                 "none",
-                "add the line to the header",
+                "add the line",
             )
         })
     };
@@ -149,10 +134,11 @@ fn places(
     end: usize,
     channels: usize,
 ) -> Result<Vec<(Option<Utc>, Site)>, ReadError> {
-    let mut found = Vec::new();
+    let (mut found, mut last) = (Vec::new(), 0);
     for line in 0..end {
         let text = written(source, line);
         let Some(words) = text.strip_prefix("# recorded:") else { continue };
+        last = line;
         found.push(place(words).ok_or_else(|| {
             source.damaged(
                 line,
@@ -162,7 +148,16 @@ fn places(
             )
         })?);
     }
-    Ok(if found.len() == 1 { vec![found.remove(0); channels] } else { found })
+    match found.len() {
+        1 => Ok(vec![found.remove(0); channels]),
+        count if count == 0 || count == channels => Ok(found),
+        count => Err(source.damaged(
+            last,
+            format!("one line \"# recorded:\" for all, or one to each of {channels} channels"),
+            format!("{count} such lines"),
+            "correct the header lines",
+        )),
+    }
 }
 
 /// `start 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, sensor surface`.

@@ -7,8 +7,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::source::{Source, latin1, shorten};
-use super::{Format, ReadOptions, native, zip};
-use crate::error::{ReadError, Refusal};
+use super::{Format, Told, native, zip};
+use crate::error::{ReadError, ReadFailure, Refusal};
 use crate::record::Record;
 use crate::write::{TITLE, array_name};
 
@@ -33,7 +33,7 @@ pub(super) fn is_numpy(source: &Source<'_>) -> bool {
     source.bytes.starts_with(b"PK\x03\x04") && name.windows(4).any(|four| four == b".npy")
 }
 
-fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let damaged = |expected: &str, found: String| {
         source.damaged((), expected, found, "write the archive again")
     };
@@ -79,7 +79,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         }
     }
     let text = Source::new(source.name, header.as_bytes());
-    native::described(&text, text.lines.len(), |names, limit| {
+    let described = native::described(&text, text.lines.len(), |names, limit| {
         let mut rows = None;
         let mut columns = Vec::new();
         for name in names {
@@ -99,7 +99,9 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
             columns.push(values.clone());
         }
         Ok(columns)
-    })
+    });
+    // An archive has no lines.
+    described.map_err(|error| ReadFailure { line: None, column: None, ..(*error).clone() }.into())
 }
 
 /// One array of numbers or strings in a row; nothing if it is something else.

@@ -66,9 +66,13 @@ pub(crate) fn leading_number(bytes: &[u8]) -> Option<(f64, String)> {
         }
         end += 1;
     }
-    // A sentence may end in a full stop right after the number.
     let value = parse_number(&rest[..end])?;
     Some((value, latin1(&rest[..end])))
+}
+
+/// As [`leading_number`] with the resolution of the printed digits.
+pub(crate) fn leading_printed(bytes: &[u8]) -> Option<Printed> {
+    leading_number(bytes).map(|(value, text)| Printed { value, resolution: resolution(&text) })
 }
 
 /// One unit of the last digit of a printed number.

@@ -6,8 +6,9 @@ use super::source::{Source, shorten};
 use super::zip;
 use crate::error::{ReadError, Refusal};
 
-/// Most bytes that are unpacked, lest a few packed bytes take all memory; an hour of one component at
-/// 100 Hz has a quarter of it as text.
+/// Most bytes that are unpacked, lest a few packed bytes take all memory: lines of one digit take sixteen
+/// times their size while they are read, 192 MB of as many as this; 64 MB of them would take 1 GB.
+/// An hour of one component at 100 Hz has a quarter of it as text.
 const LARGEST: u64 = 12 << 20;
 
 /// The bytes of the one file inside, and its name; nothing where the file is not packed.

@@ -7,9 +7,9 @@
 //! files.
 
 use super::source::{LARGEST_ACCELERATION, Source, leading_number, quoted};
-use super::{Format, ReadOptions};
+use super::{Format, Told};
 use crate::direction::Direction;
-use crate::error::{ReadError, Refusal};
+use crate::error::{Given, ReadError, Refusal};
 use crate::record::{Channel, Record, Stage};
 use crate::units::AccelerationUnit;
 
@@ -29,13 +29,10 @@ fn sniff(source: &Source<'_>) -> bool {
     (0..HEADER_LINES.min(source.lines.len())).any(|line| source.has(line, "NPTS"))
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
     let counts = find_counts(source)?;
-    let unit = find_unit(source, counts.line, options)?;
+    let unit = find_unit(source, counts.line, told)?;
     let mut record = Record::new(FORMAT.name, source.name, Stage::Corrected);
-    if options.unit.is_some_and(|given| given != unit) {
-        record.warn(None, format!("the file states its unit ({unit}); the unit given was ignored"));
-    }
     let (event, station, component) = names(source, counts.line);
     record.event = event;
     record.station = station;
@@ -148,7 +145,7 @@ fn find_counts(source: &Source<'_>) -> Result<Counts, ReadError> {
 fn find_unit(
     source: &Source<'_>,
     last: usize,
-    options: &ReadOptions,
+    told: &Told<'_>,
 ) -> Result<AccelerationUnit, ReadError> {
     for line in 0..last {
         let stated = |quantity: &str| {
@@ -166,17 +163,10 @@ fn find_unit(
     }
     for line in 0..last {
         for key in ["UNITS OF ", "UNITS ARE ", "UNITS: "] {
-            let Some(at) = source.find(line, key) else { continue };
-            let text = super::source::latin1(&source.raw(line)[at + key.len()..]);
-            let word = text
-                .trim_start_matches(['(', ' '])
-                .split([' ', ')', ',', ';'])
-                .next()
-                .unwrap_or("")
-                .trim_end_matches('.');
+            let Some((column, word)) = source.word_after(line, key) else { continue };
             return word.parse().map_err(|_| {
                 source.error(
-                    (line, at + key.len()),
+                    (line, column),
                     Refusal::NotAcceleration,
                     "a unit of acceleration",
                     format!("\"{word}\""),
@@ -185,10 +175,10 @@ fn find_unit(
             });
         }
     }
-    options.unit.ok_or_else(|| {
+    told.unit().ok_or_else(|| {
         source.error(
             (),
-            Refusal::Missing,
+            Refusal::Missing(Given::Unit),
             "a header line with the unit of acceleration",
             "none",
             "state the unit (g, m/s2, cm/s2)",

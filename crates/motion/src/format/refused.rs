@@ -1,7 +1,7 @@
 //! Files that are known and hold no acceleration history that can be read here.
 
 use super::source::Source;
-use super::{Format, ReadOptions};
+use super::{Format, Told};
 use crate::error::{ReadError, Refusal};
 use crate::instrument::station_xml;
 use crate::record::{Quantity, Record};
@@ -30,7 +30,7 @@ fn is_usgs_blocks(source: &Source<'_>) -> bool {
         && (0..7).any(|line| source.has(line, "DATA TYPE="))
 }
 
-fn usgs_blocks(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
+fn usgs_blocks(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let line = (0..7).find(|&line| source.has(line, "DATA TYPE="));
     Err(source.error(
         line,
@@ -45,7 +45,7 @@ fn is_hdf5(source: &Source<'_>) -> bool {
     source.bytes.starts_with(b"\x89HDF\r\n\x1a\n")
 }
 
-fn hdf5(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
+fn hdf5(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     Err(source.error(
         (),
         Refusal::NotAcceleration,
@@ -60,7 +60,7 @@ fn is_xml(source: &Source<'_>) -> bool {
     text.starts_with("<?xml") || text.starts_with("<FDSNStationXML")
 }
 
-fn xml(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
+fn xml(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let mut found = station_xml(&String::from_utf8_lossy(source.bytes)).unwrap_or_default();
     found.retain(|known| known.quantity == Some(Quantity::Acceleration));
     let remedy = if found.is_empty() {

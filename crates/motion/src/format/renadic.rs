@@ -5,7 +5,7 @@
 //! Spec: the CDMG volume 1 layout; "UNIVERSIDAD DE CHILE - RENADIC" on line 8 of each channel.
 
 use super::source::Source;
-use super::{Format, ReadOptions, cdmg};
+use super::{Format, Told, cdmg};
 use crate::error::ReadError;
 use crate::record::{Record, Stage};
 use crate::site::Site;
@@ -17,9 +17,9 @@ fn sniff(source: &Source<'_>) -> bool {
     source.has(0, "UNCORRECTED ACCELEROGRAM DATA") && source.has(7, "RENADIC")
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
-    cdmg::read_blocks(source, options, &mut record, cdmg::PAIRS)?;
+    cdmg::read_blocks(source, told, &mut record, cdmg::PAIRS)?;
     // Times and coordinates of these headers are those of the software's first day, or zero.
     record.place(None, &Site::default());
     if source.name.to_ascii_lowercase().contains("parte") {

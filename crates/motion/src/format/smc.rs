@@ -5,8 +5,8 @@
 //! Brady 1992, USGS Open-File Report 92-296A.
 
 use super::even::{Timed, even_steps};
-use super::source::{Columns, LARGEST_ACCELERATION, Printed, Source, latin1, quoted};
-use super::{Format, ReadOptions};
+use super::source::{Columns, GAL, LARGEST_ACCELERATION, Source, latin1, quoted};
+use super::{Format, Told};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::record::{Channel, Record, Stage};
@@ -18,7 +18,7 @@ pub(crate) const FORMAT: Format = Format { name: "smc", title: "USGS SMC", sniff
 const TEXT_LINES: usize = 11;
 const INTEGER_LINES: usize = 6;
 const REAL_LINES: usize = 10;
-const GAL: f64 = 0.01;
+const COLUMNS: Columns = Columns { indent: 0, per_line: 8, width: 10 };
 
 fn sniff(source: &Source<'_>) -> bool {
     let text = source.text(0).to_ascii_uppercase();
@@ -33,7 +33,7 @@ fn sniff(source: &Source<'_>) -> bool {
         })
 }
 
-fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let title = source.text(0).to_ascii_uppercase();
     if !title.contains("ACCELEROGRAM") {
         return Err(source.error(
@@ -50,8 +50,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let end = source.find(5, "component").unwrap_or(41);
     let station = latin1(source.slice(5, 0, end));
     station.split_once('=').map_or("", |(_, name)| name).trim().clone_into(&mut record.station);
-    let (integers, line) =
-        source.fixed(TEXT_LINES, 8 * INTEGER_LINES, Columns::new(8, 10), f64::INFINITY)?;
+    let (integers, line) = source.fixed(TEXT_LINES, 8 * INTEGER_LINES, COLUMNS, f64::INFINITY)?;
     let (reals, line) = source.fixed(line, 5 * REAL_LINES, Columns::new(5, 15), f64::INFINITY)?;
     let known = |index: usize| Some(integers[index]).filter(|value| *value != integers[0]);
     let real = |index: usize| Some(reals[index]).filter(|value| value.abs() < 1e37);
@@ -70,7 +69,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         }
     }
     let limit = LARGEST_ACCELERATION / GAL;
-    let (numbers, next) = source.counted(&mut record, data, count, Columns::new(8, 10), limit)?;
+    let (numbers, next) = source.counted(&mut record, data, count, COLUMNS, limit)?;
     if next < source.lines.len() {
         record.warn(
             next + 1,
@@ -81,13 +80,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let (time_step, values) = if let Some(rate) = real(1).filter(|rate| *rate > 0.0) {
         (1.0 / rate, numbers)
     } else {
-        let timed = Timed {
-            first_line: data,
-            per_line: 4,
-            time: numbers.iter().copied().step_by(2).collect(),
-            values: vec![numbers.iter().copied().skip(1).step_by(2).collect()],
-            resolution: 1e-4,
-        };
+        let timed = Timed::of_pairs(data, COLUMNS, &numbers, 1e-4);
         let (step, mut columns) = even_steps(source, &mut record, &name, timed)?;
         (step, columns.pop().unwrap_or_default())
     };
@@ -105,12 +98,8 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let clock = known(5).zip(known(6)).map(|(second, milli)| second + 1e-3 * milli);
     channel.start = (|| Utc::ordinal(whole(1)?, whole(2)?, whole(3)?, whole(4)?, clock?))();
     channel.site = Site::default().at(real(10).zip(real(11)));
-    if let Some(Printed { value, resolution }) = source
-        .printed_after(6, "pk acc")
-        .or_else(|| source.find(6, "pk").and_then(|_| source.printed_after(6, "pk     ")))
-    {
-        channel.state_peak(value, resolution, GAL);
-    }
+    let peak = ["pk acc", "pk     "].iter().find_map(|key| source.printed_after(6, key));
+    channel.state_peak(peak, GAL);
     record.channels.push(channel);
     for line in 0..TEXT_LINES {
         if source.has(line, "building") || source.has(line, "floor") {

@@ -1,12 +1,18 @@
 //! The bytes of a text file by line and column, and numbers read from them or refused with a place.
 
 use super::number::split_touching;
-pub(crate) use super::number::{Printed, leading_number, parse_number, resolution};
+pub(crate) use super::number::{
+    Printed, leading_number, leading_printed, parse_number, resolution,
+};
 use crate::error::{ReadError, ReadFailure, Refusal};
 use crate::record::Record;
+use crate::units::AccelerationUnit;
 
 /// Largest acceleration any reader accepts (m/s²), about a thousand g's.
 pub(crate) const LARGEST_ACCELERATION: f64 = 1e4;
+
+/// m/s² to one gal, the cm/s² of most networks.
+pub(crate) const GAL: f64 = 0.01;
 
 /// A file split into lines; line indices count from 0 here, from 1 in messages.
 pub(crate) struct Source<'a> {
@@ -31,7 +37,7 @@ impl Columns {
         Self { indent: 0, per_line, width }
     }
 
-    /// Reads `8F10.5`, `(10I8)`, `(1X,10F7.3)`, `5(E15.7)` is not a thing in these files.
+    /// Reads `8F10.5`, `(10I8)` and `(1X,10F7.3)`; repeated groups such as `5(E15.7)` are not known.
     pub(crate) fn parse(format: &str) -> Option<Self> {
         let inner = format.trim().trim_start_matches('(');
         let inner = inner.split(')').next()?.trim();
@@ -116,8 +122,49 @@ impl<'a> Source<'a> {
     /// As [`Source::number_after`] with the resolution of the printed digits.
     pub(crate) fn printed_after(&self, line: usize, key: &str) -> Option<Printed> {
         let start = self.find(line, key)? + key.len();
-        leading_number(&self.raw(line)[start..])
-            .map(|(value, text)| Printed { value, resolution: resolution(&text) })
+        leading_printed(&self.raw(line)[start..])
+    }
+
+    /// The unit that follows one of `keys` on the line, in parentheses or not.
+    pub(crate) fn unit_after(&self, line: usize, keys: &[&str]) -> Option<AccelerationUnit> {
+        keys.iter().find_map(|key| self.word_after(line, key)?.1.parse().ok())
+    }
+
+    /// The word behind `key` on the line, and where the key ends.
+    pub(crate) fn word_after(&self, line: usize, key: &str) -> Option<(usize, String)> {
+        let at = self.find(line, key)? + key.len();
+        let text = latin1(&self.raw(line)[at..]);
+        let word = text.trim_start_matches(['(', ' ']).split([' ', ')', ',', ';']).next()?;
+        Some((at, word.trim_end_matches('.').to_owned()))
+    }
+
+    /// Line and value of the first line before `end` in which `value` finds one.
+    pub(crate) fn field(
+        &self,
+        end: usize,
+        value: impl Fn(&str) -> Option<&str>,
+    ) -> Option<(usize, String)> {
+        (0..end.min(self.lines.len()))
+            .find_map(|line| Some((line, value(&self.text(line))?.trim().to_owned())))
+    }
+
+    /// A field that the header must have.
+    pub(crate) fn needed<T>(&self, field: Option<T>, key: &str) -> Result<T, ReadError> {
+        field.ok_or_else(|| self.header((), format!("a value for \"{key}\""), "none"))
+    }
+
+    /// Reads blocks to the end of the file, past blank lines between them; `read` takes the first
+    /// line of a block and gives the one behind it.
+    pub(crate) fn each_block(
+        &self,
+        mut read: impl FnMut(usize) -> Result<usize, ReadError>,
+    ) -> Result<(), ReadError> {
+        let mut line = 0;
+        while line < self.lines.len() {
+            let blank = self.raw(line).trim_ascii().is_empty();
+            line = if blank { line + 1 } else { read(line)? };
+        }
+        Ok(())
     }
 
     /// The line behind the end of a channel, "/&" or "end of data", which blank lines may precede; the
@@ -203,15 +250,14 @@ impl<'a> Source<'a> {
                 "the file is damaged or has another layout; get it again from its source",
             )
         };
-        self.error((line, column), Refusal::Damaged, "a number", found, remedy)
+        self.damaged((line, column), "a number", found, remedy)
     }
 
     /// A file that ends too soon, right behind its last sign.
     pub(crate) fn cut(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
         let last = self.lines.len().saturating_sub(1);
-        self.error(
+        self.damaged(
             (last, self.end_of(last)),
-            Refusal::Damaged,
             expected,
             found,
             "the file is cut; get it again from its source",
@@ -323,13 +369,7 @@ impl<'a> Source<'a> {
         for k in 0..wanted {
             let from = columns.indent + k * columns.width;
             if from >= filled {
-                return Err(self.error(
-                    (line, filled),
-                    Refusal::Damaged,
-                    format!("{wanted} numbers"),
-                    format!("{k} numbers"),
-                    "the file is cut or a line was lost; get it again from its source",
-                ));
+                return Err(self.ragged(line, wanted, k));
             }
             let field = self.slice(line, from, columns.width);
             let value = parse_number(field).ok_or_else(|| self.bad_number(line, from, field))?;
@@ -337,9 +377,8 @@ impl<'a> Source<'a> {
         }
         let end = columns.indent + wanted * columns.width;
         if filled > end {
-            return Err(self.error(
+            return Err(self.damaged(
                 (line, end),
-                Refusal::Damaged,
                 format!("the end of {wanted} numbers"),
                 quoted(&latin1(raw[end..].trim_ascii())),
                 "the header states fewer numbers than the file holds or other columns; get the \
@@ -406,9 +445,8 @@ impl<'a> Source<'a> {
         if value.abs() <= limit {
             Ok(value)
         } else {
-            Err(self.error(
+            Err(self.damaged(
                 (line, column),
-                Refusal::Damaged,
                 format!("a number up to {limit:.3e} in the file's unit"),
                 format!("{value:e}"),
                 "no ground moves like that; check the unit, or get the file again from its source",
@@ -416,13 +454,22 @@ impl<'a> Source<'a> {
         }
     }
 
+    /// A row that has not `width` numbers.
+    pub(crate) fn ragged(&self, line: usize, width: usize, found: usize) -> ReadError {
+        self.damaged(
+            (line, self.end_of(line)),
+            format!("{width} numbers"),
+            format!("{found} numbers"),
+            "the file is cut or a line was lost; get it again from its source",
+        )
+    }
+
     /// Refuses the first byte that no text file holds.
     pub(crate) fn require_text(&self) -> Result<(), ReadError> {
         for (line, raw) in self.lines.iter().enumerate() {
             if let Some(column) = raw.iter().position(|&b| b < 0x09 || (0x0E..0x20).contains(&b)) {
-                return Err(self.error(
+                return Err(self.damaged(
                     (line, column),
-                    Refusal::Damaged,
                     "text",
                     format!("byte 0x{:02X}", raw[column]),
                     "the file is binary or damaged; give the original file",

@@ -4,8 +4,10 @@
 //! `ORIENTACION C1-C6`.
 //! Spec: Sociedad Mexicana de Ingeniería Sísmica, formato estándar de aceleración, version 2.0.
 
-use super::source::{Columns, LARGEST_ACCELERATION, Source, leading_number, quoted, resolution};
-use super::{Format, ReadOptions};
+use super::source::{
+    Columns, GAL, LARGEST_ACCELERATION, Source, leading_number, leading_printed, quoted,
+};
+use super::{Format, Told};
 use crate::direction::Direction;
 use crate::error::{ReadError, Refusal};
 use crate::record::{Channel, Record, Stage};
@@ -15,7 +17,6 @@ use crate::utc::{DateOrder, Utc};
 pub(crate) const FORMAT: Format =
     Format { name: "unam", title: "UNAM and CICESE ASA 2.0 (Mexico)", sniff, read };
 
-const GAL: f64 = 0.01;
 const MOST_HEADER_LINES: usize = 200;
 
 fn sniff(source: &Source<'_>) -> bool {
@@ -30,24 +31,20 @@ fn reduced(text: &str) -> String {
 
 fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
     let key = reduced(key);
-    (0..MOST_HEADER_LINES).find_map(|line| {
-        let text = source.text(line);
+    let found = source.field(MOST_HEADER_LINES, |text| {
         let (name, value) = text.split_once(':')?;
-        reduced(name).starts_with(&key).then(|| (line, value.trim().to_owned()))
-    })
+        reduced(name).starts_with(&key).then_some(value)
+    });
+    found.filter(|(_, value)| !value.is_empty())
 }
 
-/// `/a/b/c`.
+/// `/a/b/c`: one part or more.
 fn list(text: &str) -> Vec<String> {
     text.trim_start_matches('/').split('/').map(|part| part.trim().to_owned()).collect()
 }
 
-fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
-    let need = |key: &str| {
-        field(source, key)
-            .filter(|(_, value)| !value.is_empty())
-            .ok_or_else(|| source.header((), format!("a value for \"{key}\""), "none"))
-    };
+fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
+    let need = |key: &str| source.needed(field(source, key), key);
     let numbers = |key: &str| -> Result<(usize, Vec<f64>), ReadError> {
         let (line, text) = need(key)?;
         let values: Option<Vec<f64>> = list(&text)
@@ -72,9 +69,7 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
     let names = list(&need("ORIENTACION C1-C6")?.1);
     let (step_line, steps) = numbers("INTERVALO DE MUESTREO, C1-C6")?;
     let (count_line, counts) = numbers("NUM. TOTAL DE MUESTRAS, C1-C6")?;
-    let (Some(&time_step), Some(&count)) = (steps.first(), counts.first()) else {
-        return Err(source.cut("steps and counts", "none"));
-    };
+    let (time_step, count) = (steps[0], counts[0]);
     if steps.iter().any(|step| *step != time_step) {
         return Err(source.damaged(
             step_line,
@@ -118,10 +113,8 @@ fn read(source: &Source<'_>, _: &ReadOptions) -> Result<Record, ReadError> {
         field(source, "ACEL. MAX.(Gal), C1-C6").map(|(_, text)| list(&text)).unwrap_or_default();
     for (k, (name, values)) in names.iter().zip(values).enumerate() {
         let mut channel = Channel::new(name.clone(), Direction::parse(name), time_step, values);
-        if let Some((value, digits)) = peaks.get(k).and_then(|text| leading_number(text.as_bytes()))
-        {
-            channel.state_peak(value, resolution(&digits), GAL);
-        }
+        let peak = peaks.get(k).and_then(|text| leading_printed(text.as_bytes()));
+        channel.state_peak(peak, GAL);
         record.channels.push(channel);
     }
     record.place(start(source), &site(source));

@@ -5,7 +5,7 @@
 //! USC network data release.
 
 use super::source::{Columns, Source};
-use super::{Format, ReadOptions, cdmg};
+use super::{Format, Told, cdmg};
 use crate::error::ReadError;
 use crate::record::{Record, Stage};
 
@@ -19,8 +19,8 @@ fn sniff(source: &Source<'_>) -> bool {
         && source.has(0, "UNCORRECTED ACCELEROGRAM")
 }
 
-fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
-    cdmg::read_blocks(source, options, &mut record, PAIRS)?;
+    cdmg::read_blocks(source, told, &mut record, PAIRS)?;
     Ok(record)
 }

@@ -58,12 +58,20 @@ pub fn classify_component(motion: &Sampled) -> Result<ClassifiedPulse, MotionErr
     single(&thin.first, thin.time_step, &map)
 }
 
-/// Both horizontals one by one as [`classify_component`], and together as [`classify_pair`], in one
-/// go.
+/// Two horizontals one by one as [`classify_component`], and together, judged in the directions of their five strongest wavelets by Shahi and Baker
+/// (2014, BSSA 104:2456-2466), with PGV in cm/s:
+///
+/// ```text
+/// PC = 0.63 PGV ratio + 0.777 energy ratio
+/// PI = 9.384 (0.76 − PC − 0.0616 PGV)(PC + 6.914·10⁻⁴ PGV − 1.072) − 6.179
+/// ```
+///
+/// A pulse counts if PI is above 0 and it has a twentieth of its energy before the motion has 17 %.
+/// Given is the first that counts, else the first.
 ///
 /// # Errors
-/// As [`classify_pair`].
-pub(crate) fn classify_all(
+/// If the steps differ, or as [`classify_component`].
+pub fn classify_pair(
     first: &Sampled,
     second: &Sampled,
 ) -> Result<([ClassifiedPulse; 2], ClassifiedPulse), MotionError> {
@@ -90,25 +98,6 @@ fn single(velocity: &[f64], time_step: f64, map: &Map) -> Result<ClassifiedPulse
         angle: 0.0,
         pgv,
     })
-}
-
-/// Two horizontals, judged in the directions of their five strongest wavelets by Shahi and Baker
-/// (2014, BSSA 104:2456-2466), with PGV in cm/s:
-///
-/// ```text
-/// PC = 0.63 PGV ratio + 0.777 energy ratio
-/// PI = 9.384 (0.76 − PC − 0.0616 PGV)(PC + 6.914·10⁻⁴ PGV − 1.072) − 6.179
-/// ```
-///
-/// A pulse counts if PI is above 0 and it has a twentieth of its energy before the motion has 17 %.
-/// Given is the first that counts, else the first.
-///
-/// # Errors
-/// If the steps differ, or as [`classify_component`].
-pub fn classify_pair(first: &Sampled, second: &Sampled) -> Result<ClassifiedPulse, MotionError> {
-    let thin = Thinned::of(first, Some(second))?;
-    let [_, _, both] = Map::of(&thin);
-    double(&thin, both)
 }
 
 fn double(thin: &Thinned, mut map: Map) -> Result<ClassifiedPulse, MotionError> {
@@ -166,17 +155,7 @@ struct Thinned {
 impl Thinned {
     fn of(first: &Sampled, second: Option<&Sampled>) -> Result<Self, MotionError> {
         let dt = first.time_step();
-        if let Some(second) = second
-            && (second.time_step() / dt - 1.0).abs() > 1e-9
-        {
-            return Err(MotionError::Mismatch {
-                what: format!(
-                    "one horizontal has a step of {dt} s, the other of {} s",
-                    second.time_step()
-                ),
-                remedy: "choose components of one step".to_owned(),
-            });
-        }
+        second.map_or(Ok(()), |second| first.require_step(second))?;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1")]
         let every = (STEP / dt * (1.0 + 1e-9)).floor().clamp(1.0, 1e6) as usize;
         let thin = |motion: &Sampled| -> Vec<f64> {

@@ -18,6 +18,8 @@ const ROUNDS: usize = 20;
 /// A record that may be chosen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
+    /// Its name, for messages.
+    pub name: String,
     /// Pseudo-accelerations (m/s²) at the target's periods.
     pub spectrum: Vec<f64>,
     /// Candidates of one group are alternatives: at most [`Choosing::most_of_group`] of them are
@@ -164,12 +166,20 @@ fn check(
         return Err(MotionError::parameter("factors", "0 < smallest <= largest", found));
     }
     let periods = target.periods().len();
-    for (k, candidate) in candidates.iter().enumerate() {
-        if candidate.spectrum.len() != periods || candidate.spectrum.iter().any(|sa| !(*sa > 0.0)) {
+    for candidate in candidates {
+        let (name, values) = (&candidate.name, &candidate.spectrum);
+        if values.len() != periods {
             return Err(MotionError::parameter(
-                format!("spectrum of candidate {}", k + 1),
-                format!("{periods} accelerations above 0"),
-                format!("{:?}", candidate.spectrum),
+                format!("spectrum of {name}"),
+                format!("{periods} accelerations, one to a period of the target"),
+                values.len(),
+            ));
+        }
+        if let Some(k) = values.iter().position(|sa| !(*sa > 0.0)) {
+            return Err(MotionError::parameter(
+                format!("spectrum of {name} at {} s", target.periods()[k]),
+                "an acceleration above 0 (m/s2)",
+                values[k],
             ));
         }
     }
@@ -256,7 +266,6 @@ struct Set<'a> {
     target: &'a SelectionTarget,
     /// Rows of the pool, each with the level that it is scaled to.
     members: Vec<(usize, f64)>,
-    size: usize,
     /// Sums of ln Sa less the target's mean, which keeps their digits.
     sums: Vec<f64>,
     squares: Vec<f64>,
@@ -272,12 +281,11 @@ impl<'a> Set<'a> {
         let spread = target.deviation().iter().any(|s| *s > 0.0);
         let weight = if spread { SPREAD_WEIGHT } else { NO_SPREAD_WEIGHT };
         let (sums, squares) = (vec![0.0; n], vec![0.0; n]);
-        Self { target, members: Vec::new(), size: 0, sums, squares, weight, largest: false }
+        Self { target, members: Vec::new(), sums, squares, weight, largest: false }
     }
 
     fn add(&mut self, pool: &Pool, row: usize, level: f64) {
         self.members.push((row, level));
-        self.size += 1;
         self.count(&pool.rows[row].spectrum, level - pool.rows[row].level, 1.0);
     }
 
@@ -312,9 +320,7 @@ impl<'a> Set<'a> {
     }
 
     fn error_at(&self, k: usize, sum: f64, squares: f64) -> f64 {
-        let n = self.size as f64;
-        let mean = sum / n;
-        let deviation = ((squares - n * mean * mean) / (n - 1.0)).max(0.0).sqrt();
+        let (mean, deviation) = self.moments_of(sum, squares);
         let wanted = self.target.deviation()[k];
         let apart = deviation - wanted;
         if !self.largest {
@@ -379,13 +385,20 @@ impl<'a> Set<'a> {
         Selection { chosen, mean, deviation, eligible: pool.eligible(self.target), rounds }
     }
 
+    /// Mean and standard deviation of ln Sa at each period.
     fn moments(&self) -> (Vec<f64>, Vec<f64>) {
-        let n = self.size as f64;
-        let mean = self.sums.iter().zip(self.target.mean()).map(|(sum, mean)| mean + sum / n);
-        let spread = self.sums.iter().zip(&self.squares).map(|(sum, squares)| {
-            let mean = sum / n;
-            ((squares - n * mean * mean) / (n - 1.0)).max(0.0).sqrt()
-        });
-        (mean.collect(), spread.collect())
+        let of = |(sum, squares): (&f64, &f64)| self.moments_of(*sum, *squares);
+        let (mut mean, spread): (Vec<f64>, _) = self.sums.iter().zip(&self.squares).map(of).unzip();
+        for (mean, target) in mean.iter_mut().zip(self.target.mean()) {
+            *mean += target;
+        }
+        (mean, spread)
+    }
+
+    /// Mean and standard deviation, with `n − 1`, that sums over the whole set have.
+    fn moments_of(&self, sum: f64, squares: f64) -> (f64, f64) {
+        let n = self.members.len() as f64;
+        let mean = sum / n;
+        (mean, ((squares - n * mean * mean) / (n - 1.0)).max(0.0).sqrt())
     }
 }

@@ -24,7 +24,7 @@ pub struct Path {
     /// Distance from source to site (km); spreading is `1/R` up to 70 km and constant to 130 km,
     /// then `(130/R)^0.5/70` (Atkinson and Boore 1995).
     pub distance: f64,
-    /// Quality factor at 1 Hz; `Q = q · f^exponent`, not below `q` at 1 Hz times 0.1.
+    /// Quality factor at 1 Hz; `Q = q · f^exponent`, and never less than a tenth of `q`.
     pub quality: f64,
     /// Exponent of the quality factor.
     pub quality_exponent: f64,

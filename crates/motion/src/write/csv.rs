@@ -39,10 +39,8 @@ pub fn csv(record: &Record) -> Result<String, MotionError> {
     for note in super::provenance(record) {
         let _ = writeln!(text, "# processing: {}", plain(&note));
     }
-    if record.channels.iter().any(|channel| channel.initial_velocity != 0.0) {
-        let velocities: Vec<String> =
-            record.channels.iter().map(|c| format!("{:e}", c.initial_velocity)).collect();
-        let _ = writeln!(text, "{INITIAL_VELOCITY} {}", velocities.join(" "));
+    if let Some(velocities) = super::initial_velocities(record) {
+        let _ = writeln!(text, "{INITIAL_VELOCITY} {velocities}");
     }
     text.push_str("time (s)");
     for name in super::names(&record.channels) {

@@ -37,6 +37,13 @@ fn common(record: &Record) -> Result<(f64, usize), MotionError> {
     Ok((first.time_step, rows))
 }
 
+/// Velocities (m/s) at the first samples, one to a channel, where one is not zero.
+fn initial_velocities(record: &Record) -> Option<String> {
+    let some = record.channels.iter().any(|channel| channel.initial_velocity != 0.0);
+    let all = record.channels.iter().map(|c| format!("{:e}", c.initial_velocity));
+    some.then(|| all.collect::<Vec<_>>().join(" "))
+}
+
 /// A text on one line, without control characters.
 fn line(text: &str) -> String {
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();

@@ -14,10 +14,13 @@
 //!
 //! One column stands for each channel, numbers as the shortest decimals that read back to the same
 //! double.
-//! `# recorded:` tells start (UTC), place and sensor, once or for each channel.
+//! `# recorded:` tells start (UTC), place and sensor, once or for each channel: `start
+//! 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, elevation 12, vs30 330, sensor surface,
+//! station Napa`; what is not known is left out.
 //! `# initial_velocity:` (m/s, one to a channel) stands there where one is not zero.
 //! `az=` is the azimuth (degrees clockwise from north); `vertical` means positive upward;
 //! `horizontal` a horizontal of unknown azimuth; a name alone an unknown direction.
+//! `# source:`, `# attribution:` and `# licence:` are kept; other `#` lines are comments.
 
 use std::fmt::Write as _;
 
@@ -81,11 +84,7 @@ pub(super) fn head(record: &Record, step: f64) -> Vec<(&'static str, String)> {
         .map(|(channel, name)| with_direction(channel, &name))
         .collect();
     lines.push(("channels", channels.join(", ")));
-    if record.channels.iter().any(|channel| channel.initial_velocity != 0.0) {
-        let velocities: Vec<String> =
-            record.channels.iter().map(|c| format!("{:e}", c.initial_velocity)).collect();
-        lines.push(("initial_velocity", velocities.join(" ")));
-    }
+    lines.extend(super::initial_velocities(record).map(|v| ("initial_velocity", v)));
     lines.into_iter().map(|(key, value)| (key, super::line(&value))).collect()
 }
 

@@ -240,8 +240,8 @@ pub static SCALE: Section = Section {
             Kind::Text,
             Default::Nothing,
             "Any other measure that grows with the motion, whose `value` shall be reached: `pgd`, \
-             `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`, `sa(1.0)` (period in seconds, \
-             damping 5 %) or `sa(1.0,0.02)`.",
+             `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`, `fiv3(1.0)`, `sa(1.0)` (period \
+             in seconds, damping 5 %) or `sa(1.0,0.02)`.",
         ),
         Field::new(
             "value",

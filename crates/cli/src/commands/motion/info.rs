@@ -217,7 +217,7 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
 fn stage(stage: Stage) -> &'static str {
     match stage {
         Stage::Raw => "raw, as recorded",
-        Stage::Corrected => "corrected by its publisher",
+        Stage::Corrected => "corrected",
         Stage::Unknown => "not stated",
     }
 }

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, anyhow, bail};
 use barrelstack::scenario::{Dimension, Quantity};
 use barrelstack_motion::{
-    self as motion, AccelerationUnit, Component, Instrument, MotionError, ReadError, ReadOptions,
-    Record, Refusal, Stage, bundled, read, station_xml,
+    self as motion, AccelerationUnit, Component, Given, Instrument, ReadError, ReadOptions, Record,
+    Refusal, Stage, bundled, read, station_xml,
 };
 use clap::ValueEnum;
 
@@ -193,7 +193,8 @@ impl Input {
         let first = read_file(file, options);
         let lacking = first.as_ref().is_err_and(|error| {
             error.downcast_ref::<ReadError>().is_some_and(|error| {
-                error.refusal == Refusal::Missing && error.expected.contains("sensitivity")
+                let counts = [Given::Sensitivity, Given::UnitOrSensitivity];
+                counts.iter().any(|given| error.refusal == Refusal::Missing(*given))
             })
         });
         if !lacking || self.station_xml.is_some() {
@@ -280,11 +281,15 @@ impl Choice {
 }
 
 /// All channels after a chain, every step of it in the notes.
-pub(super) fn processed(record: &Record, chain: &Processing) -> Result<Record, MotionError> {
+pub(super) fn processed(record: &Record, chain: &Processing) -> anyhow::Result<Record> {
     let mut out = record.clone();
     for channel in &mut out.channels {
-        let done =
-            chain.apply(channel.time_step, &channel.acceleration, channel.initial_velocity)?;
+        let done = chain
+            .apply(channel.time_step, &channel.acceleration, channel.initial_velocity)
+            .map_err(|error| {
+                let (file, name) = (&record.file, &channel.name);
+                anyhow!("{file}, channel {name}: {error}; give a value in that range")
+            })?;
         channel.acceleration = done.acceleration;
         channel.initial_velocity = done.initial_velocity;
         for step in done.steps {
@@ -365,19 +370,16 @@ fn read_file(file: &str, options: &ReadOptions) -> anyhow::Result<Record> {
 fn with_option(error: anyhow::Error) -> anyhow::Error {
     let Some(cause) = error.downcast_ref::<ReadError>() else { return error };
     let option = match cause.refusal {
-        Refusal::NotAcceleration if cause.expected.contains("accelerometer") => {
-            "add --as velocity, with the sensitivity in counts to one m/s"
-        }
-        Refusal::Missing if cause.expected.contains("unit") => "add --unit g, or the unit it is",
-        Refusal::Missing if cause.expected.contains("step") => {
-            "add --time-step \"0.01 s\", or the step it is"
-        }
-        Refusal::Missing
-            if cause.expected.contains("sensitivity") || cause.expected.contains("counts") =>
-        {
+        Refusal::OtherInstrument => "add --as velocity, with the sensitivity in counts to one m/s",
+        Refusal::Missing(Given::Unit) => "add --unit g, or the unit it is",
+        Refusal::Missing(Given::Step) => "add --time-step \"0.01 s\", or the step it is",
+        Refusal::Missing(Given::Sensitivity) => {
             "add --sensitivity with the counts to one m/s2, or --station-xml with the station's file"
         }
-        Refusal::Missing | Refusal::NotAcceleration | Refusal::Damaged | Refusal::Unrecognized => {
+        Refusal::Missing(Given::UnitOrSensitivity) => {
+            "add --unit g, or the unit it is, or --sensitivity with the counts to one m/s2"
+        }
+        Refusal::Options | Refusal::NotAcceleration | Refusal::Damaged | Refusal::Unrecognized => {
             return error;
         }
     };

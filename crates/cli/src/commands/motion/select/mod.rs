@@ -178,6 +178,7 @@ fn candidates(
     let columns: Vec<&[Option<f64>]> =
         periods.iter().filter_map(|period| table.numbers(&args.spectrum.column(*period))).collect();
     let events = table.texts("event").unwrap_or_default();
+    let names = table.texts("record").unwrap_or_default();
     let mut kept = Vec::new();
     let mut candidates = Vec::new();
     for &row in rows {
@@ -186,7 +187,8 @@ fn candidates(
         let Some(spectrum) = spectrum else { continue };
         let group = events[row].clone().unwrap_or_else(|| format!("record {row}"));
         kept.push(row);
-        candidates.push(Candidate { spectrum, group });
+        let name = names[row].clone().unwrap_or_else(|| format!("row {}", row + 1));
+        candidates.push(Candidate { name, spectrum, group });
     }
     (kept, candidates)
 }

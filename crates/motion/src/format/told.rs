@@ -1,0 +1,68 @@
+//! What the caller told of a file, and which of it the reader asked for.
+
+use std::cell::Cell;
+
+use super::ReadOptions;
+use crate::instrument::{Instrument, SeedName};
+use crate::record::Quantity;
+use crate::units::AccelerationUnit;
+use crate::utc::Utc;
+
+/// What the caller told, for readers.
+///
+/// A reader asks only for what the file does not state; so what nobody asked for is ignored, and
+/// reported.
+pub(super) struct Told<'a> {
+    options: &'a ReadOptions,
+    unit: Cell<bool>,
+    time_step: Cell<bool>,
+    sensitivity: Cell<bool>,
+    recorded: Cell<bool>,
+}
+
+impl<'a> Told<'a> {
+    pub(super) fn new(options: &'a ReadOptions) -> Self {
+        let no = || Cell::new(false);
+        Self { options, unit: no(), time_step: no(), sensitivity: no(), recorded: no() }
+    }
+
+    pub(super) fn unit(&self) -> Option<AccelerationUnit> {
+        self.unit.set(true);
+        self.options.unit
+    }
+
+    pub(super) fn time_step(&self) -> Option<f64> {
+        self.time_step.set(true);
+        self.options.time_step
+    }
+
+    pub(super) fn sensitivity(&self) -> Option<f64> {
+        self.sensitivity.set(true);
+        self.options.sensitivity
+    }
+
+    /// The metadata of a channel that begins at `start`.
+    pub(super) fn instrument(&self, seed: &SeedName, start: Option<Utc>) -> Option<&'a Instrument> {
+        self.sensitivity.set(true);
+        self.options.instruments.iter().find(|known| known.describes(seed, start))
+    }
+
+    pub(super) fn recorded(&self) -> Option<Quantity> {
+        self.recorded.set(true);
+        self.options.recorded
+    }
+
+    /// What was given and not asked for, in words.
+    pub(super) fn ignored(&self) -> impl Iterator<Item = &'static str> {
+        let options = self.options;
+        let counts = options.sensitivity.is_some() || !options.instruments.is_empty();
+        [
+            (options.unit.is_some() && !self.unit.get(), "the unit"),
+            (options.time_step.is_some() && !self.time_step.get(), "the time step"),
+            (counts && !self.sensitivity.get(), "the sensitivity"),
+            (options.recorded.is_some() && !self.recorded.get(), "the quantity"),
+        ]
+        .into_iter()
+        .filter_map(|(ignored, what)| ignored.then_some(what))
+    }
+}
