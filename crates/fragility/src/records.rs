@@ -14,8 +14,8 @@ use crate::proportion::Interval;
 /// that Bell and `McCaffrey` 2002 compare as the jackknife, and others call CR3) with Student's t of one degree
 /// of freedom less than there are groups.
 /// They take nothing for granted of how the cases of one record depend on each other.
-/// Where tried, they hold the truth in 94 to 98 of 100 campaigns with 8 to 40 records at ten levels, at one
-/// tenth, one half and nine tenths (`tests/coverage.rs`).
+/// Where tried, 95 % intervals hold the truth in 93.7 to 98.3 of 100 campaigns with 8 to 40 records at ten
+/// levels, at one tenth, one half and nine tenths (`tests/coverage.rs`).
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeaveOneOut {
     fitted: Lognormal,
