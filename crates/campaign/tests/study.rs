@@ -303,7 +303,9 @@ fn a_damaged_shard_is_named_when_read_and_made_again_when_run() {
         // What killed runs leave goes, what looks alike stays.
         let left = [".000001-0.parquet.1.part", "000001.claim", "mine.part", "mine.claim"];
         let left = left.map(|name| shards.join(name));
-        left.iter().for_each(|path| std::fs::write(path, "half").unwrap());
+        for path in &left {
+            std::fs::write(path, "half").unwrap();
+        }
         assert_eq!(run_with(&study, folder.path(), 1), whole);
         assert_eq!(left.map(|path| std::fs::remove_file(path).is_ok()), [false, false, true, true]);
         assert_eq!(std::fs::read(&names[1]).unwrap(), good);
