@@ -8,6 +8,7 @@ use barrelstack_campaign::decision::{
     DecisionError, LimitState, Request, SiteHazard, decide, export,
 };
 use barrelstack_campaign::study::{Collected, Role, StudyTable, Values};
+use barrelstack_report::{Axis, Figure, FigureKind, Plot, Series, SeriesStyle};
 use common::{integer, made, number, skipped, text};
 
 /// Twelve records at eight levels; `falls` says how many barrels of six fall for a record at a level (m/s).
@@ -282,7 +283,7 @@ fn what_is_exported_is_the_same_curve_to_four_digits() {
     }
 }
 
-/// Chances at 30, 50 and 80 cm/s as OpenQuake's own reader and curves give them.
+/// Chances at 10, 20, … 150 cm/s as OpenQuake's own reader and curves give them.
 const OPENQUAKE: &str = "
 import sys, numpy
 import openquake.risklib.read_nrml
@@ -290,7 +291,7 @@ from openquake.hazardlib import nrml
 model = nrml.to_python(sys.argv[1])
 for functions in model.values():
     for name, curve in zip(model.limitStates, functions.build(model.limitStates, 100, 1)):
-        print(*curve(numpy.array([30.0, 50.0, 80.0])))
+        print(*curve(numpy.linspace(10.0, 150.0, 15)))
 for loss in nrml.to_python(sys.argv[1].replace('fragility', 'vulnerability')).values():
     print(*loss.mean_loss_ratios)
 ";
@@ -306,10 +307,28 @@ read = damage.ds_model.damage_params
 for state in dict.fromkeys(c for c in read.columns.get_level_values(0) if c.startswith('LS')):
     family, *theta = (read[(state, k)].iloc[0] for k in ('Family', 'Theta_0', 'Theta_1'))
     curve = uq.rv_class_map(family)(state, theta=numpy.array(theta, dtype=float))
-    print(*curve.cdf(numpy.array([0.3, 0.5, 0.8])))
+    print(*curve.cdf(numpy.linspace(0.1, 1.5, 15)))
 ";
 
-/// The exported curves are read by another program and are the same at 30, 50 and 80 cm/s.
+/// Our curves as lines, those of another program as dots.
+fn beside(at: &[f64], ours: &[Vec<f64>], theirs: &[f64]) -> Figure {
+    let dots = SeriesStyle { dots: true, index: Some(5), ..SeriesStyle::default() };
+    let mut series = Vec::new();
+    for (ours, theirs) in ours.iter().zip(theirs.chunks(at.len())) {
+        series.push(Series::new("ours", at.to_vec(), ours.clone()));
+        for (x, y) in at.iter().zip(theirs) {
+            let label = if *x == at[0] && series.len() == 1 { "theirs" } else { "" };
+            series.push(Series { style: dots, ..Series::new(label, vec![*x], vec![*y]) });
+        }
+    }
+    let (x, y) = (Axis::new("PGV", "m/s"), Axis::new("chance", ""));
+    let kind = FigureKind::Plot(Plot { x, y, series, ..Plot::default() });
+    Figure { id: "beside".into(), caption: String::new(), kind }
+}
+
+/// The exported curves are read by another program and are the same from 10 to 150 cm/s.
+///
+/// A picture of both goes into the folder that `BARRELSTACK_PAGES` names.
 fn read_by(module: &str, file: &str, script: &str) {
     let python =
         |arguments: &[&str]| std::process::Command::new("python3").args(arguments).output();
@@ -332,8 +351,14 @@ fn read_by(module: &str, file: &str, script: &str) {
     };
     let theirs: Vec<f64> = said.lines().filter_map(numbers).flatten().collect();
     let fits = decision.curves.iter().filter_map(|curve| curve.fit.as_ref().ok());
-    let mut ours: Vec<f64> =
-        fits.flat_map(|fit| [0.3, 0.5, 0.8].map(|x| fit.curve.probability(x))).collect();
+    let at: Vec<f64> = (1..=15).map(|k| 0.1 * f64::from(k)).collect();
+    let curves: Vec<Vec<f64>> =
+        fits.map(|fit| at.iter().map(|x| fit.curve.probability(*x)).collect()).collect();
+    if let Ok(folder) = std::env::var("BARRELSTACK_PAGES") {
+        let picture = std::path::Path::new(&folder).join(file).with_extension("png");
+        std::fs::write(picture, beside(&at, &curves, &theirs).to_png(144.0)).unwrap();
+    }
+    let mut ours = curves.concat();
     if file.starts_with("openquake") {
         let levels = &decision.losses.as_ref().unwrap().levels;
         ours.extend(levels.iter().map(|loss| loss.fallen / 6.0));
