@@ -144,10 +144,7 @@ impl Values {
     }
 
     /// Appends a value of the column's kind; a whole number may stand for a number.
-    ///
-    /// # Errors
-    /// When the value is of another kind.
-    pub fn push(&mut self, value: Option<Value>) -> Result<(), StudyError> {
+    pub(super) fn push(&mut self, value: Option<Value>) -> Result<(), StudyError> {
         match (self, value) {
             (Self::Integer(values), None) => values.push(None),
             (Self::Number(values), None) => values.push(None),
@@ -180,7 +177,7 @@ pub struct Column {
 
 impl Column {
     /// A column without rows.
-    pub fn empty(spec: ColumnSpec) -> Self {
+    pub(crate) fn empty(spec: ColumnSpec) -> Self {
         Self { values: Values::empty(spec.kind), spec }
     }
 }

@@ -56,13 +56,16 @@ impl StudyTable {
         Ok(Self { columns })
     }
 
-    /// A table without rows.
-    pub(super) fn empty(specs: &[ColumnSpec]) -> Self {
+    /// A table without rows, whose columns have names of their own.
+    pub fn empty(specs: &[ColumnSpec]) -> Self {
         Self { columns: specs.iter().cloned().map(Column::empty).collect() }
     }
 
     /// Appends a row, one value a column.
-    pub(super) fn push(&mut self, row: Vec<Option<Value>>) -> Result<(), StudyError> {
+    ///
+    /// # Errors
+    /// When a value is missing or is of another kind than its column.
+    pub fn push(&mut self, row: Vec<Option<Value>>) -> Result<(), StudyError> {
         if row.len() != self.columns.len() {
             let (found, expected) = (row.len(), self.columns.len());
             return Err(StudyError::Table(format!(

@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use anyhow::{Context as _, bail};
 use barrelstack::pool;
 use barrelstack::scenario::{Dimension, fnv1a};
-use barrelstack_campaign::study::{Column, StudyTable};
+use barrelstack_campaign::study::StudyTable;
 use barrelstack_motion::{Flatfile, Processing, Record, Stage, measure, record_sequence_number};
 use indicatif::ProgressBar;
 
@@ -175,7 +175,7 @@ pub(super) fn run(
     };
     let done = pool::map(&sources, one, &|done| bar.set_position(done as u64));
     bar.finish_and_clear();
-    let mut columns: Vec<Column> = specs.into_iter().map(Column::empty).collect();
+    let mut table = StudyTable::empty(&specs);
     let (mut refused, mut stopped) = (Vec::new(), false);
     for (done, source) in done.into_iter().zip(&sources) {
         match done? {
@@ -183,8 +183,8 @@ pub(super) fn run(
             Done::Unsure(reasons) => refused.extend(reasons),
             Done::Noted => {
                 let entry = journal.entry(&source.record.name)?;
-                for (column, value) in columns.iter_mut().zip(entry.row.iter().flatten()) {
-                    column.values.push(value.clone())?;
+                if let Some(row) = entry.row {
+                    table.push(row)?;
                 }
                 refused.extend(entry.refused);
             }
@@ -192,7 +192,7 @@ pub(super) fn run(
     }
     let before = before.into_inner();
     let out = batch.out.to_owned();
-    let found = Measurements { table: StudyTable::new(columns)?, refused, before, stopped, out };
+    let found = Measurements { table, refused, before, stopped, out };
     found.write()?;
     Ok(found)
 }
