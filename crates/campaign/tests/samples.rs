@@ -55,14 +55,16 @@ fn island(level: f64) -> f64 {
 fn a_page_of_ten_thousand_samples_is_small_binned_and_says_what_it_rests_on() {
     let found = sampled(10_000, 1, ordered);
     let bins = found.curves[0].stripes.len();
-    assert!((10..=20).contains(&bins), "{bins} bins");
+    assert_eq!(bins, 16);
     let cases: u32 = found.curves[0].stripes.iter().map(|stripe| stripe.cases).sum();
     assert_eq!(cases, 10_000);
-    // Measured: 0.07 MB.
-    assert!(found.html().len() < 1_000_000, "{} bytes", found.html().len());
+    // Measured: 66 kB.
+    assert!(found.html().len() < 100_000, "{} bytes", found.html().len());
     let headline = &found.document.verdict.headline;
     assert!(headline.contains("10000 cases") && headline.contains(" to "), "{headline}");
-    assert!(found.curves[0].median.unwrap().holds(0.5));
+    // Measured: 0.489 to 0.502.
+    let median = found.curves[0].median.unwrap();
+    assert!(median.holds(0.5) && median.high - median.low < 0.02, "{median:?}");
     assert!(found.html().contains("counted in 16 bins of about 625 neighbors"));
     if let Ok(folder) = std::env::var("BARRELSTACK_PAGES") {
         std::fs::write(std::path::Path::new(&folder).join("samples.html"), found.html()).unwrap();
@@ -76,6 +78,6 @@ fn an_island_among_samples_is_found_with_every_seed_and_none_where_there_is_none
         (1..=20).filter(|seed| sampled(10_000, *seed, chance).curves[0].violates_order()).count()
     };
     assert_eq!(told(island), 20);
-    // The level of the test is one in twenty.
-    assert!(told(ordered) <= 4);
+    // Measured: none; the level of the test is one in twenty.
+    assert!(told(ordered) <= 1);
 }

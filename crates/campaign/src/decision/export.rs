@@ -182,7 +182,10 @@ fn fragility(
     about: &str,
 ) -> String {
     let names: Vec<&str> = limits.iter().map(|(name, _)| name.as_str()).collect();
-    let (first, last) = (imls[0], imls[imls.len() - 1]);
+    // Outside this range OpenQuake holds a chance constant: no digit of four is lost to that.
+    let reaches = |p: f64| limits.iter().map(move |(_, curve)| curve.intensity(p));
+    let first = reaches(5e-5).fold(imls[0], f64::min);
+    let last = reaches(1.0 - 5e-5).fold(imls[imls.len() - 1], f64::max);
     let mut text = format!(
         "{HEAD}  <fragilityModel id=\"barrelstack\" assetCategory=\"contents\" lossCategory=\"contents\">\n    \
          <description>{}</description>\n    <limitStates>{}</limitStates>\n    \
