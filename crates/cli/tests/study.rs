@@ -222,10 +222,11 @@ fn job_files_name_every_chunk() {
         let check = std::process::Command::new("sh").arg("-n").arg(&script).status().unwrap();
         assert!(check.success(), "{text}");
     }
+    let python = there("python3", &["--version"]);
     for engine in ["dask", "pylauncher"] {
         let text = emit(engine, &[]);
         assert!(text.contains("CHUNKS = 10\n") && text.contains("run-chunk"), "{text}");
-        if there("python3", &["--version"]) {
+        if python {
             let compile = "import sys; compile(sys.argv[1], 'job', 'exec')";
             let mut python = std::process::Command::new("python3");
             assert!(python.args(["-c", compile, &text]).status().unwrap().success(), "{text}");
