@@ -8,6 +8,8 @@
 //! | [`response`] | histories of a shaken stack | `k`, `c`, μ together |
 //! | [`mod@collapse`] | mode and fall times of collapses | `k`, `c`, μ together |
 //!
+//! Those of [`response`] have held the truth in about 90 % of made records only.
+//!
 //! Files are CSV with a header whose columns carry their unit, such as `penetration (mm),force (kN)`.
 //! Intervals hold what scatters in the file; what is given as exact (a mass, the model itself) is not
 //! in them.

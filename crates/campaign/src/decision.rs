@@ -25,10 +25,14 @@ mod page;
 mod sensitivity;
 mod words;
 
+use std::path::Path;
+
 use barrelstack_report::Document;
 
 use crate::measured::TableError;
-use crate::study::{Collected, Column, Provenance, Role, StudyTable, Values};
+use crate::study::{
+    Collected, Column, Provenance, Role, StudyError, StudyTable, manifest_of, read_shards,
+};
 
 pub(crate) use figures::{bars, chance_axis};
 pub(crate) use json::bounds as interval_json;
@@ -118,11 +122,14 @@ pub enum DecisionError {
     /// The hazard curve cannot be used.
     #[error(transparent)]
     Hazard(#[from] TableError),
+    /// The folder of the study cannot be read.
+    #[error(transparent)]
+    Study(#[from] StudyError),
 }
 
 /// What decisions rest on, gathered from the rows of a study part by part, so that no table of a million cases
 /// need be in memory.
-pub struct Gathering {
+struct Gathering {
     made: Provenance,
     cases: cases::Reading,
     /// The values of the factors.
@@ -131,30 +138,20 @@ pub struct Gathering {
 }
 
 impl Gathering {
-    /// Begins with what the rows come from, and a table of them, which may be empty.
-    ///
-    /// # Errors
-    /// When the table is not one of a study.
-    pub fn new(made: &Provenance, columns: &StudyTable) -> Result<Self, DecisionError> {
-        let empty = |column: &Column| Column {
-            spec: column.spec.clone(),
-            values: Values::empty(column.spec.kind),
-        };
+    fn new(made: &Provenance) -> Result<Self, DecisionError> {
+        let factors = made.columns.iter().filter(|column| column.role == Role::Factor);
         Ok(Self {
             made: made.clone(),
-            cases: cases::Reading::new(made, columns)?,
-            factors: columns.of_role(Role::Factor).map(empty).collect(),
+            cases: cases::Reading::new(made)?,
+            factors: factors.cloned().map(Column::empty).collect(),
             results: indices::Results::default(),
         })
     }
 
     /// Reads the rows that follow, in the order of the cases.
-    ///
-    /// # Errors
-    /// When the table is not one of a study.
-    pub fn add(&mut self, table: &StudyTable) -> Result<(), DecisionError> {
+    fn add(&mut self, table: &StudyTable) -> Result<(), DecisionError> {
         for (factor, column) in self.factors.iter_mut().zip(table.of_role(Role::Factor)) {
-            factor.values.append(column.values.clone());
+            factor.values.append(column.values.clone())?;
         }
         self.results.add(&self.made, table);
         self.cases.add(table)
@@ -162,12 +159,7 @@ impl Gathering {
 
     /// Everything that the study says, when all rows were read; `made` is what they come from, now that it is known
     /// how many there are.
-    ///
-    /// Resampling starts from the seed of the study, so that the same study gives the same page.
-    ///
-    /// # Errors
-    /// When no case has a verdict, or the hazard is over a measure that the study does not have.
-    pub fn decide(self, made: &Provenance, request: &Request) -> Result<Decision, DecisionError> {
+    fn decide(self, made: &Provenance, request: &Request) -> Result<Decision, DecisionError> {
         let cases = self.cases.finish()?;
         let effects = sensitivity::effects(&self.factors, made, &cases);
         drop(self.factors);
@@ -206,10 +198,27 @@ impl Gathering {
 
 /// Everything that a study says whose table is in memory.
 ///
+/// Resampling starts from the seed of the study, so that the same study gives the same page.
+///
 /// # Errors
-/// As [`Gathering::decide`].
+/// When the table is not one of a study, no case has a verdict, or the hazard is over a measure that the study does not
+/// have.
 pub fn decide(collected: &Collected, request: &Request) -> Result<Decision, DecisionError> {
-    let mut gathering = Gathering::new(&collected.provenance, &collected.table)?;
+    let mut gathering = Gathering::new(&collected.provenance)?;
     gathering.add(&collected.table)?;
     gathering.decide(&collected.provenance, request)
+}
+
+/// Everything that the study of a folder says, finished or not, and what its rows come from; its table is read part by
+/// part.
+///
+/// # Errors
+/// As [`decide`] and [`read_shards`].
+pub fn decide_folder(
+    folder: &Path,
+    request: &Request,
+) -> Result<(Decision, Provenance), DecisionError> {
+    let mut gathering = Gathering::new(&manifest_of(folder)?)?;
+    let made = read_shards(folder, &mut |_, rows| gathering.add(rows))?;
+    Ok((gathering.decide(&made, request)?, made))
 }

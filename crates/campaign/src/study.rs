@@ -50,14 +50,15 @@ mod table;
 use crate::scenario::template::Template;
 
 pub use builtin::{get as builtin, names as builtin_names};
-pub use collect::{Collected, Status, collect, read_parts};
+pub use collect::{Collected, Status, collect, read_shards};
 pub use column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
 pub use design::Design;
 pub use distribution::Distribution;
 pub use endings::{Endings, Following};
 pub use error::StudyError;
-pub use execute::{Progress, RunOptions};
+pub use execute::{ChunkRun, Progress, RunOptions};
 pub use fields::STUDY;
+pub(crate) use folder::manifest_of;
 pub use folder::{MotionSource, Provenance};
 pub use grow::Common;
 pub use ida::Hunt;

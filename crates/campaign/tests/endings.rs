@@ -2,12 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
-use std::io::Write as _;
+mod common;
+
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use barrelstack_campaign::decision::{Request, decide};
-use barrelstack_campaign::study::{Collected, Endings, RunOptions, Study};
+use barrelstack_campaign::study::{Collected, Endings, RunOptions, Study, StudyTable};
 
 /// Four records that may not be bundled; says so where they are not there.
 fn records() -> Option<String> {
@@ -21,8 +22,7 @@ fn records() -> Option<String> {
     ];
     let paths: Vec<PathBuf> = files.iter().map(|file| folder.join(file)).collect();
     if let Some(missing) = paths.iter().find(|path| !path.is_file()) {
-        // Straight to stderr: the test runner swallows what a passing test prints.
-        let _ = writeln!(std::io::stderr(), "SKIPPED: {} is not there", missing.display());
+        common::skipped(&format!("{} is not there", missing.display()));
         return None;
     }
     let quoted: Vec<String> = paths.iter().map(|path| format!("{:?}", path.display())).collect();
@@ -47,6 +47,12 @@ fn study(folder: &Path, run: &str) -> Option<(Study, Collected)> {
     Some((study, collected.unwrap()))
 }
 
+fn endings_of(table: &StudyTable) -> Endings {
+    let mut found = Endings::default();
+    found.add(table);
+    found
+}
+
 fn falls(collected: &Collected) -> Vec<Option<i64>> {
     collected.table.integers("barrels_fallen").unwrap().to_vec()
 }
@@ -68,7 +74,7 @@ fn whole_motions_have_the_verdicts_of_two_minutes_and_a_cut_is_told_everywhere()
     let (_, long) = study(&at("long"), whole).unwrap();
     assert_eq!(verdicts(&by_default), verdicts(&long));
     assert_eq!(falls(&by_default), falls(&long));
-    let endings = Endings::of(&by_default.table);
+    let endings = endings_of(&by_default.table);
     assert_eq!((endings.followed, endings.judged), (40, 40), "{endings:?}");
     let page = decide(&by_default, &Request::default()).unwrap();
     assert!(!page.warnings.iter().any(|said| said.contains("cut short")), "{:?}", page.warnings);
@@ -82,7 +88,7 @@ fn whole_motions_have_the_verdicts_of_two_minutes_and_a_cut_is_told_everywhere()
     assert_eq!(following.cut.len(), 4, "every record is longer than 12 s");
     let plan = following.words(4);
     assert!(plan.contains("while the ground still moves under 4 of 4 motions"), "{plan}");
-    let endings = Endings::of(&cut.table);
+    let endings = endings_of(&cut.table);
     assert!(endings.cut > 0 && endings.open > 0, "{endings:?}");
     let told = endings.sentences();
     assert!(told[0].contains("cut short by run.duration while the ground still moved"), "{told:?}");
@@ -113,7 +119,7 @@ fn the_shipped_example_loses_what_it_loses_without_any_stop() {
         study.run(&folder.path().join(name), &options, &|_| ControlFlow::Continue(())).unwrap()
     };
     let (followed, long) = (run("followed", &example), run("long", &without));
-    let rested = Endings::of(&followed.table);
+    let rested = endings_of(&followed.table);
     assert!(rested.no_losses().is_none(), "{rested:?}");
     assert_eq!(verdicts(&followed), verdicts(&long));
     assert_eq!(falls(&followed), falls(&long));

@@ -2,29 +2,22 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
+mod common;
+
 use std::collections::BTreeSet;
 use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::path::Path;
 
 use barrelstack_campaign::study::{
-    Collected, Role, RunOptions, Study, StudyError, StudyTable, Tally, Value,
+    ChunkRun, Collected, Role, RunOptions, Study, StudyError, StudyTable, Tally, Value,
 };
+use common::HEAD;
 
-/// Two barrels on two levels that are shaken for a moment: a case of a few milliseconds.
-const BASE: &str = "\
-schema = 1
-title = \"two barrels for a moment\"
-seed = 7
-[base.stack]
-levels = 2
-columns = 2
-[base.run]
-duration = \"0.4 s\"
-stop_after_collapse = \"0.01 s\"
-";
+/// A moment, behind [`HEAD`]: a case of a few milliseconds.
+const RUN: &str = "duration = \"0.4 s\"\nstop_after_collapse = \"0.01 s\"\n";
 
-/// A pulse that fells the stack of [`BASE`] when it is strong.
+/// A pulse that fells the stack of [`HEAD`] when it is strong.
 const PULSE: &str = "\
 [[motion]]
 name = \"pulse\"
@@ -32,7 +25,7 @@ pulse = { kind = \"one-sine\", amplitude = \"1 g\", period = \"0.8 s\" }
 ";
 
 fn study(rest: &str) -> Study {
-    Study::parse("test.toml", &format!("{BASE}{rest}"))
+    Study::parse("test.toml", &format!("{HEAD}{RUN}{rest}"))
         .unwrap_or_else(|error| panic!("{error}\n{rest}"))
 }
 
@@ -307,9 +300,14 @@ fn a_damaged_shard_is_named_when_read_and_made_again_when_run() {
         std::fs::write(&names[1], damage).unwrap();
         let error = Collected::read(folder.path()).unwrap_err();
         assert!(matches!(&error, StudyError::Shard { path, .. } if *path == names[1]), "{error}");
-        // A leftover of a killed run goes, too.
-        std::fs::write(shards.join(".000001-0.parquet.1.part"), "half").unwrap();
+        // What killed runs leave goes, what looks alike stays.
+        let left = [".000001-0.parquet.1.part", "000001.claim", "mine.part", "mine.claim"];
+        let left = left.map(|name| shards.join(name));
+        for path in &left {
+            std::fs::write(path, "half").unwrap();
+        }
         assert_eq!(run_with(&study, folder.path(), 1), whole);
+        assert_eq!(left.map(|path| std::fs::remove_file(path).is_ok()), [false, false, true, true]);
         assert_eq!(std::fs::read(&names[1]).unwrap(), good);
         assert_eq!(std::fs::read(names[1].with_extension("damaged")).unwrap(), **damage);
         assert_eq!(
@@ -332,12 +330,14 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
         .unwrap_err();
     let told = error.to_string();
     assert!(told.contains("belongs to another study: a [[factor]] has changed"), "{told}");
-    let told =
-        Study::parse("test.toml", &format!("{BASE}{text}").replacen("seed = 7", "seed = 8", 1))
-            .unwrap()
-            .run(folder.path(), &RunOptions::default(), &|_| ControlFlow::Continue(()))
-            .unwrap_err()
-            .to_string();
+    let told = Study::parse(
+        "test.toml",
+        &format!("{HEAD}{RUN}{text}").replacen("seed = 7", "seed = 8", 1),
+    )
+    .unwrap()
+    .run(folder.path(), &RunOptions::default(), &|_| ControlFlow::Continue(()))
+    .unwrap_err()
+    .to_string();
     assert!(told.contains("its seed is 7, that of this one 8"), "{told}");
     assert_eq!(std::fs::read(folder.path().join("study.json")).unwrap(), before);
 
@@ -389,7 +389,7 @@ fn a_changed_record_is_another_study() {
     };
     std::fs::write(&record, samples(0.2)).unwrap();
     let file = folder.path().join("study.toml");
-    let text = format!("{BASE}[[motion]]\nfolder = \".\"\npattern = \"*.csv\"\n{STRIPES}");
+    let text = format!("{HEAD}{RUN}[[motion]]\nfolder = \".\"\npattern = \"*.csv\"\n{STRIPES}");
     std::fs::write(&file, text).unwrap();
     let first = Study::load(&file).unwrap();
     let out = folder.path().join("out");
@@ -443,8 +443,8 @@ fn a_stopped_study_goes_on_where_it_was() {
     let status = Collected::status(again.path()).unwrap();
     assert_eq!((status.provenance.chunks_done, status.provenance.cases), (2, 4));
     assert!(!status.provenance.complete && !status.missing.contains(&0));
-    assert!(study.run_chunk(again.path(), status.missing[0], &|| false).unwrap());
-    assert!(!study.run_chunk(again.path(), status.missing[0], &|| false).unwrap(), "done before");
+    let chunk = || study.run_chunk(again.path(), status.missing[0], &|| false).unwrap();
+    assert_eq!([chunk(), chunk()], [ChunkRun::Now, ChunkRun::Before]);
     assert_eq!(run_with(&study, again.path(), 2), whole);
 }
 

@@ -10,6 +10,7 @@ mod printer;
 mod progress;
 mod remedy;
 mod rows;
+mod store;
 
 use std::process::ExitCode;
 

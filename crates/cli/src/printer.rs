@@ -33,6 +33,11 @@ pub(crate) fn text(text: &str) -> anyhow::Result<()> {
     }
 }
 
+/// A number of things, such as "1 case" and "2 cases".
+pub(crate) fn counted(count: u64, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
 /// An error, with its causes, as one paragraph.
 pub(crate) fn error(error: &anyhow::Error) {
     match remedy(error) {

@@ -6,7 +6,7 @@ mod common;
 
 use std::fs;
 
-use common::{barrelstack, stderr, stdout};
+use common::{HEAD, barrelstack, stderr, stdout};
 
 /// What is said to a mistake.
 fn refused(arguments: &[&str]) -> String {
@@ -18,12 +18,6 @@ fn refused(arguments: &[&str]) -> String {
 
 /// Three stacks of two barrels under pulses of four strengths: some fall, some do not.
 const STUDY: &str = "\
-schema = 1
-title = \"two barrels and pulses\"
-[base.stack]
-levels = 2
-columns = 2
-[base.run]
 duration = \"2 s\"
 [[motion]]
 pulse = { kind = \"one-sine\", amplitude = \"1 g\", period = \"0.8 s\" }
@@ -43,7 +37,7 @@ fn a_study_ends_with_a_page_and_report_adds_what_it_means_at_a_site() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();
     let (study, out, hazard) = (at("two.toml"), at("out"), at("site.csv"));
-    fs::write(&study, STUDY).unwrap();
+    fs::write(&study, [HEAD, STUDY].concat()).unwrap();
     fs::write(&hazard, "pgv (cm/s),rate (1/year)\n5,0.1\n50,0.005\n200,0.0001\n").unwrap();
     let said = stdout(&barrelstack(["study", &study, "--out", &out]));
     assert!(said.contains("page: "), "{said}");

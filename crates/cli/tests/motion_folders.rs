@@ -109,6 +109,22 @@ fn a_folder_becomes_a_table_and_a_stopped_one_goes_on() {
     let other = ["info", text(&records), "--out", text(&out), "--table-periods", "1,2"];
     refused(&other.map(str::to_owned), "holds the table of another command");
     refused(&["info", text(&records)].map(str::to_owned), "--out DIR");
+
+    // Nothing of others is overwritten, nor is a folder shared.
+    let all = all.map(str::to_owned);
+    let kept = fs::read(&journal).unwrap();
+    let lock = fs::File::open(&journal).unwrap();
+    lock.lock().unwrap();
+    refused(&all, "another command is at work in");
+    drop(lock);
+    for foreign in ["{\"my\": \"results\"}", "{\"my\": \"results\"}\n", "my notes\n", "my notes"] {
+        fs::write(&journal, foreign).unwrap();
+        refused(&all, "a rows.jsonl that is none of this program");
+        assert_eq!(fs::read_to_string(&journal).unwrap(), foreign);
+    }
+    // A head that a kill cut is begun anew.
+    fs::write(&journal, &kept[..20]).unwrap();
+    assert!(motion(&all.each_ref().map(String::as_str)).starts_with("6 records measured, 1 file"));
 }
 
 #[test]

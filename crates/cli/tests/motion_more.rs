@@ -70,7 +70,7 @@ fn both_horizontals_reach_their_goal_with_one_factor_for_all() {
         let old = |k: usize| {
             before["records"][0]["channels"][k]["measures"]["pga"]["value"].as_f64().unwrap()
         };
-        assert!((pga(2) / old(2) / (pga(0) / old(0)) - 1.0).abs() < 1e-12);
+        assert!((pga(2) / old(2) / (pga(0) / old(0)) - 1.0).abs() < 1e-12); // measured 0
     }
     let single = folder.path().join("one.txt");
     told(&["convert", text(&file), "--component", "90", "-o", text(&single)]);
@@ -160,8 +160,8 @@ fn horizontals_are_turned_to_a_fault_and_to_the_fastest_direction() {
         };
         document["records"][0]["channels"].as_array().unwrap().iter().map(channel).collect()
     };
-    // The largest of the wave, 2 sin(9 t) exp(-0.3 t), is 1.898 m/s2.
-    let near = |value: f64, expected: f64| (value - expected).abs() < 2e-3 * 1.898;
+    // The largest of the wave, 2 sin(9 t) exp(-0.3 t), is 1.898 m/s2; measured 1.89898.
+    let near = |value: f64, expected: f64| (value - expected).abs() < 2e-3;
     for (axes, along, across) in [("strike:40", 1, 0), ("strike:400", 1, 0), ("strike:130", 0, 1)] {
         let channels = turned(axes);
         assert_eq!(channels.len(), 3, "{axes}");
@@ -169,12 +169,13 @@ fn horizontals_are_turned_to_a_fault_and_to_the_fastest_direction() {
         // The sign of a direction is that of the strike.
         assert_eq!(channels[along].1 % 180.0, 40.0, "{axes}: {channels:?}");
         assert!(near(channels[along].2, 1.898), "{axes}: {channels:?}");
-        assert!(channels[across].2 < 1e-8, "{axes}: {channels:?}");
+        assert!(channels[across].2 < 1e-8, "{axes}: {channels:?}"); // measured 7e-10
     }
     let fastest = turned("vmax");
     assert_eq!((fastest[0].0.as_str(), fastest[1].0.as_str()), ("VMAX", "VMAX-90"));
-    assert!((fastest[0].1 % 180.0 - 40.0).abs() <= 1.0, "{fastest:?}");
-    assert!(near(fastest[0].2, 1.898) && fastest[1].2 < 0.02 * 1.898, "{fastest:?}");
+    // Directions are tried by whole degrees, of which the true one is one.
+    assert_eq!(fastest[0].1 % 180.0, 40.0, "{fastest:?}");
+    assert!(near(fastest[0].2, 1.898) && fastest[1].2 < 1e-8, "{fastest:?}"); // measured 7e-10
 
     let out = folder.path().join("out.txt");
     let says = |axes: &str, file: &Path| {

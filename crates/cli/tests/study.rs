@@ -9,16 +9,10 @@ use std::path::Path;
 use std::process::Stdio;
 use std::time::Duration;
 
-use common::{barrelstack, names, program, refused, stderr, stdout};
+use common::{HEAD, barrelstack, names, program, refused, stderr, stdout, there};
 
-/// Forty short cases in ten chunks.
+/// Forty short cases in ten chunks, behind [`HEAD`].
 const STUDY: &str = "\
-schema = 1
-title = \"two barrels for a moment\"
-[base.stack]
-levels = 2
-columns = 2
-[base.run]
 duration = \"0.4 s\"
 [base.motion.pulse]
 kind = \"one-sine\"
@@ -38,7 +32,7 @@ chunk = 4
 
 fn study(folder: &Path) -> String {
     let file = folder.join("study.toml");
-    fs::write(&file, STUDY).unwrap();
+    fs::write(&file, [HEAD, STUDY].concat()).unwrap();
     file.display().to_string()
 }
 
@@ -123,7 +117,7 @@ fn an_interrupt_ends_with_a_sentence_that_says_how_to_go_on() {
     let folder = tempfile::tempdir().unwrap();
     let file = study(folder.path());
     let out = folder.path().join("out").display().to_string();
-    let child = program(run(&file, &out, "1"))
+    let mut child = program(run(&file, &out, "1"))
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
@@ -131,6 +125,7 @@ fn an_interrupt_ends_with_a_sentence_that_says_how_to_go_on() {
     // The first shard shows that it is at work.
     let shards = Path::new(&out).join("shards");
     while names(&shards).is_none_or(|names| names.is_empty()) {
+        assert!(child.try_wait().unwrap().is_none(), "it ended before it wrote a shard");
         std::thread::sleep(Duration::from_millis(5));
     }
     let killed =
@@ -174,7 +169,7 @@ fn mistakes_are_told_before_anything_is_made() {
     case("a scenario", &["study", &scenario, "--out", &at], &["unknown key `stack`"]);
     let broken = folder.path().join("broken.toml");
     fs::write(folder.path().join("site.AT2"), "not a record\n").unwrap();
-    let text = STUDY.replace(
+    let text = [HEAD, STUDY].concat().replace(
         "[base.motion.pulse]\nkind = \"one-sine\"\namplitude = \"1 g\"\nperiod = \"0.3 s\"\n",
         "[[motion]]\nrecords = [\"site.AT2\"]\n",
     );
@@ -227,15 +222,50 @@ fn job_files_name_every_chunk() {
         let check = std::process::Command::new("sh").arg("-n").arg(&script).status().unwrap();
         assert!(check.success(), "{text}");
     }
+    let python = there("python3", &["--version"]);
     for engine in ["dask", "pylauncher"] {
         let text = emit(engine, &[]);
         assert!(text.contains("CHUNKS = 10\n") && text.contains("run-chunk"), "{text}");
+        if python {
+            let compile = "import sys; compile(sys.argv[1], 'job', 'exec')";
+            let mut python = std::process::Command::new("python3");
+            assert!(python.args(["-c", compile, &text]).status().unwrap().success(), "{text}");
+        }
     }
     // No array is longer than the scheduler takes, and every chunk is in one.
     let limits = ["--array-limit", "4", "--walltime", "00:10:00", "--throttle", "2"];
     let text = emit("slurm", &limits);
     for word in ["submit 0 3 ", "submit 4 3 ", "submit 8 1 ", "0-$last%2", "--time='00:10:00'"] {
         assert!(text.contains(word), "no {word:?} in {text}");
+    }
+    // A throttle holds for all arrays: with an `sbatch` that numbers its jobs, each waits for the one before.
+    let bin = folder.path().join("bin");
+    fs::create_dir(&bin).unwrap();
+    let (sbatch, log) = (bin.join("sbatch"), folder.path().join("log"));
+    let log_to = format!(
+        "#!/bin/sh\ncat > /dev/null\necho \"$@\" >> '{0}'\nwc -l < '{0}' | tr -d ' '\n",
+        log.display()
+    );
+    fs::write(&sbatch, log_to).unwrap();
+    let script = folder.path().join("throttled");
+    fs::write(&script, &text).unwrap();
+    let path = format!("{}:{}", bin.display(), std::env::var("PATH").unwrap());
+    let shell = "chmod +x \"$1\" && exec sh \"$2\"";
+    let mut submit = std::process::Command::new("sh");
+    submit.args(["-c", shell, "sh"]).args([&sbatch, &script]).env("PATH", path);
+    assert!(submit.output().unwrap().status.success());
+    let log = fs::read_to_string(log).unwrap();
+    let waits: Vec<_> = log.lines().map(|job| job.split_once("--dependency=afterany:")).collect();
+    let waits = waits.iter().map(|wait| wait.map(|(_, jobs)| jobs.split(' ').next().unwrap()));
+    assert_eq!(waits.collect::<Vec<_>>(), [None, Some("1"), Some("2"), Some("1:2:3")], "{log}");
+    // What says nothing to an engine is refused, not left out in silence.
+    for (engine, option) in
+        [("dask", "--throttle"), ("parallel", "--walltime"), ("hyperqueue", "--array-limit")]
+    {
+        let words = ["study", "emit", &file, "--engine", engine, "--out", "x", option, "3"];
+        let output = barrelstack(words);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(&format!("{option} says nothing to this engine")));
     }
 }
 

@@ -35,7 +35,7 @@ pub struct Evidence {
     /// How many cases say so.
     pub weight: f64,
     /// What the case shares with others, such as the number of its record: cases of one group are
-    /// resampled together. Of no meaning where nothing is resampled.
+    /// left out together. Of no meaning where none is.
     pub group: usize,
 }
 

@@ -12,19 +12,15 @@ use crate::proportion::Interval;
 ///
 /// Intervals are the delete-one jackknife of groups about the curve itself (the correction for few groups
 /// that Bell and `McCaffrey` 2002 compare as the jackknife, and others call CR3) with Student's t of one degree
-/// of freedom less than there are groups.
+/// of freedom less than there are groups, of the logarithms of median and dispersion, and to first order of what
+/// follows from them.
 /// They take nothing for granted of how the cases of one record depend on each other.
-/// Where tried, they hold the truth in 94 to 98 of 100 campaigns with 8 to 40 records at ten levels, at one
+/// Where tried, they hold the truth in 93 to 97.3 of 100 campaigns with 8 to 40 records at ten levels, at one
 /// tenth, one half and nine tenths (`tests/coverage.rs`).
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeaveOneOut {
     fitted: Lognormal,
     others: Vec<Lognormal>,
-}
-
-/// Intercept and slope of the score `a + b ln x`.
-fn score(curve: &Lognormal) -> [f64; 2] {
-    [-ln(curve.median) / curve.dispersion, 1.0 / curve.dispersion]
 }
 
 /// Fits evidence and what is left of it without each of its groups.
@@ -76,32 +72,32 @@ impl LeaveOneOut {
     /// The interval of the chance of failure at each intensity.
     pub fn band(&self, level: f64, intensities: &[f64]) -> Vec<Interval> {
         let chance = |x: &f64| {
-            // The score does not run into 0 and 1, and is linear in what is fitted.
-            let scores = self.interval(level, |curve| ln(x / curve.median) / curve.dispersion);
-            Interval { low: normal(scores.low), high: normal(scores.high) }
+            // The score does not run into 0 and 1.
+            let score = ln(x / self.fitted.median) / self.fitted.dispersion;
+            let half = self.reach(level) * self.score_error(score);
+            Interval { low: normal(score - half), high: normal(score + half) }
         };
         intensities.iter().map(chance).collect()
     }
 
-    /// The interval of the intensity at which failure has a chance: where the band holds that chance
-    /// (Fieller 1954). A bound is 0 or infinite where the band never leaves it.
+    /// Standard error of the score `(ln x − ln m) / β` where it has a value, to first order in the errors of
+    /// `ln m` and `ln β`: curves with a record left out may be so steep that their own scores run away.
+    fn score_error(&self, score: f64) -> f64 {
+        let (place, width) = (|c: &Lognormal| ln(c.median), |c: &Lognormal| ln(c.dispersion));
+        let beta = self.fitted.dispersion;
+        let variance = self.spread(place, place) / (beta * beta)
+            + 2.0 * score / beta * self.spread(place, width)
+            + score * score * self.spread(width, width);
+        variance.max(0.0).sqrt()
+    }
+
+    /// The interval of the intensity at which failure has a chance.
     pub fn intensity(&self, level: f64, probability: f64) -> Interval {
-        let part = |k: usize| move |curve: &Lognormal| score(curve)[k];
-        let [a, b] = score(&self.fitted);
-        let a = a - normal_quantile(probability);
-        let t2 = self.reach(level) * self.reach(level);
-        let (aa, ab, bb) = (
-            a * a - t2 * self.spread(part(0), part(0)),
-            a * b - t2 * self.spread(part(0), part(1)),
-            b * b - t2 * self.spread(part(1), part(1)),
-        );
-        // (a + b u)² = t² V(u) with the logarithm u of the intensity.
-        let root = ab * ab - aa * bb;
-        if bb <= 0.0 || root < 0.0 {
-            return Interval { low: 0.0, high: f64::INFINITY };
-        }
-        let bound = |sign: f64| exp((-ab + sign * root.sqrt()) / bb);
-        Interval { low: bound(-1.0), high: bound(1.0) }
+        let Lognormal { median, dispersion } = self.fitted;
+        let score = normal_quantile(probability);
+        let half = self.reach(level) * self.score_error(score);
+        let at = |score: f64| median * exp(dispersion * score);
+        Interval { low: at(score - half), high: at(score + half) }
     }
 
     /// The interval of the dispersion.

@@ -109,11 +109,11 @@ fn bands_over_records_hold_the_truth_however_the_cases_of_a_record_depend_on_eac
                 shares[2],
                 share(median)
             );
-            // Measured from 8 records on: 0.927 to 0.977, 0.956 on average; the scatter of a thousand
+            // Measured: 0.930 to 0.973 from 8 records on, 0.950 to 0.980 of 6; the scatter of a thousand
             // campaigns is 0.007.
-            let most = if records < 8 { 1.0 } else { 0.985 };
-            assert!(shares.iter().all(|share| (0.915..=most).contains(share)), "{shares:?}");
-            assert!((0.915..=most).contains(&share(median)), "{}", share(median));
+            let most = if records < 8 { 0.99 } else { 0.98 };
+            assert!(shares.iter().all(|share| (0.925..=most).contains(share)), "{shares:?}");
+            assert!((0.925..=most).contains(&share(median)), "{}", share(median));
         }
     }
 }

@@ -38,7 +38,8 @@ function makePlot(raw, columns, figure, page) {
     values.push(value);
     const swatch = svg("svg", { viewBox: "0 0 28 8", class: "swatch", "aria-hidden": "true" },
       svg("line", { x1: 1, y1: 4, x2: 27, y2: 4, class: s.muted ? "series muted" : `series s${s.look}`,
-        "stroke-dasharray": s.dash }));
+        "stroke-dasharray": s.dash }),
+      ...(s.dots ? [svg("circle", { cx: 14, cy: 4, r: 2.6, class: `dot s${s.look}` })] : []));
     const button = make("button", { type: "button", "aria-pressed": "true" }, swatch, s.label, value);
     button.addEventListener("click", () => {
       s.shown = !s.shown;

@@ -77,9 +77,15 @@ impl Plot {
         });
         self.draw_marks(&mut drawing, &marks, &x, &y);
         for (at, corner, label) in legend {
-            let class = self.class(at);
-            let sample = vec![[corner[0], corner[1] - 4.0], [corner[0] + 26.0, corner[1] - 4.0]];
-            drawing.path(&class, self.dash(at), vec![sample], false);
+            let height = corner[1] - 4.0;
+            // As it is drawn: a line, dots on a line, or dots alone.
+            if !self.series[at].style.dots || self.runs(at, &x, &y).iter().any(|r| r.len() > 1) {
+                let sample = vec![[corner[0], height], [corner[0] + 26.0, height]];
+                drawing.path(&self.class(at), self.dash(at), vec![sample], false);
+            }
+            if self.series[at].style.dots {
+                drawing.push(self.dot(at, [corner[0] + 13.0, height]));
+            }
             drawing.text("label", [corner[0] + 32.0, corner[1]], Anchor::Start, &label);
         }
         drawing
@@ -91,6 +97,10 @@ impl Plot {
         } else {
             format!("series s{}", self.look(at))
         }
+    }
+
+    fn dot(&self, at: usize, center: [f64; 2]) -> Item {
+        Item::Circle { class: format!("dot s{}", self.look(at)), center, radius: 2.6 }
     }
 
     /// Where each legend entry goes, and the height they take together.
@@ -186,11 +196,7 @@ impl Plot {
             if series.style.dots {
                 for k in 0..series.len() {
                     if self.x.shows(series.x[k]) && self.y.shows(series.y[k]) {
-                        items.push(Item::Circle {
-                            class: format!("dot s{}", self.look(at)),
-                            center: [x.at(series.x[k]), y.at(series.y[k])],
-                            radius: 2.6,
-                        });
+                        items.push(self.dot(at, [x.at(series.x[k]), y.at(series.y[k])]));
                     }
                 }
             }

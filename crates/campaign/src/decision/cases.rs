@@ -173,6 +173,13 @@ impl Numbering {
         self.0.insert(name.to_owned(), next);
         next
     }
+
+    /// The names in order.
+    fn names(self) -> Vec<String> {
+        let mut names: Vec<(String, u32)> = self.0.into_iter().collect();
+        names.sort_by_key(|(_, number)| *number);
+        names.into_iter().map(|(name, _)| name).collect()
+    }
 }
 
 /// A count of cases, of which there are ten million at most.
@@ -184,6 +191,7 @@ fn small(count: usize) -> u32 {
 pub(super) struct Reading {
     cases: Cases,
     records: Numbering,
+    modes: Numbering,
     curves: Numbering,
     /// Rows until now, and those of them that are samples of their own.
     rows: usize,
@@ -193,17 +201,18 @@ pub(super) struct Reading {
 }
 
 impl Reading {
-    /// Begins with a table without rows, or the first of them.
-    pub(super) fn new(made: &Provenance, columns: &StudyTable) -> Result<Self, DecisionError> {
-        let measures = columns.of_role(Role::Intensity);
+    /// Begins with what the rows come from.
+    pub(super) fn new(made: &Provenance) -> Result<Self, DecisionError> {
+        let measures = made.columns.iter().filter(|column| column.role == Role::Intensity);
         let mut measures: Vec<Measure> =
-            measures.map(|column| Measure::new(&column.spec.name, &column.spec.unit)).collect();
+            measures.map(|column| Measure::new(&column.name, &column.unit)).collect();
         // `sa(0.5)` is the column `sa_0.5`.
         let asked = made.measure.as_deref().map(|name| name.replace('(', "_").replace(')', ""));
         let known = |name: &str| measures.iter().position(|measure| measure.name == name);
         let main = match asked.as_deref() {
             Some(name) => known(name).unwrap_or_else(|| {
-                let unit = columns.column("level").map_or("", |column| column.spec.unit.as_str());
+                let level = made.columns.iter().find(|column| column.name == "level");
+                let unit = level.map_or("", |column| column.unit.as_str());
                 measures.push(Measure::new(name, unit));
                 measures.len() - 1
             }),
@@ -217,10 +226,7 @@ impl Reading {
             main,
             leveled: asked.is_some(),
             hunted: made.design == "ida",
-            sampled: matches!(
-                made.design.as_str(),
-                "latin-hypercube" | "sobol" | "saltelli" | "monte-carlo"
-            ),
+            sampled: made.is_sampled(),
             drawn: made.drawn.clone(),
             endings: Endings::default(),
             all: Vec::new(),
@@ -230,6 +236,7 @@ impl Reading {
         Ok(Self {
             cases,
             records: Numbering::default(),
+            modes: Numbering::default(),
             curves: Numbering::default(),
             rows: 0,
             own: 0,
@@ -265,7 +272,7 @@ impl Reading {
                 _ => continue,
             };
             let name = records[row].as_deref().unwrap_or_default();
-            let cell = |of: Option<&'_ [Option<f64>]>| of.and_then(|of| of[row]);
+            let cell = |of: Option<&[Option<f64>]>| of.and_then(|of| of[row]);
             let mut intensities: Box<[f64]> =
                 columns.iter().map(|column| cell(*column).unwrap_or(f64::NAN)).collect();
             if self.cases.leveled
@@ -274,14 +281,8 @@ impl Reading {
                 // The level as asked for: the same number in every case of a stripe.
                 intensities[self.cases.main] = level;
             }
-            let mode = modes.and_then(|of| of[row].as_ref()).and_then(|mode| {
-                let known = &mut self.cases.modes;
-                let at = known.iter().position(|name| name == mode).unwrap_or_else(|| {
-                    known.push(mode.clone());
-                    known.len() - 1
-                });
-                u8::try_from(at).ok()
-            });
+            let mode = modes.and_then(|of| of[row].as_deref());
+            let mode = mode.and_then(|mode| u8::try_from(self.modes.of(mode)).ok());
             let falls = heights.and_then(|of| of[row].as_deref()).unwrap_or_default();
             let curve = if self.cases.sampled {
                 small(self.cases.all.len())
@@ -308,15 +309,13 @@ impl Reading {
 
     /// The cases, when all rows were read.
     pub(super) fn finish(self) -> Result<Cases, DecisionError> {
-        let Self { mut cases, records, rows, own, .. } = self;
+        let Self { mut cases, records, modes, rows, own, .. } = self;
         if cases.all.is_empty() {
             return Err(DecisionError::NoCases { rows });
         }
         cases.left_out = own - cases.all.len();
-        cases.records = vec![String::new(); records.0.len()];
-        for (name, number) in records.0 {
-            cases.records[number as usize] = name;
-        }
+        cases.records = records.names();
+        cases.modes = modes.names();
         Ok(cases)
     }
 }
@@ -324,7 +323,7 @@ impl Reading {
 impl Cases {
     /// The cases of a table.
     pub(crate) fn read(collected: &Collected) -> Result<Self, DecisionError> {
-        let mut reading = Reading::new(&collected.provenance, &collected.table)?;
+        let mut reading = Reading::new(&collected.provenance)?;
         reading.add(&collected.table)?;
         reading.finish()
     }
@@ -350,6 +349,15 @@ impl Cases {
     /// How many curves there are: motions, each with every combination of what is not drawn anew.
     pub fn curves(&self) -> usize {
         self.all.iter().map(|case| case.curve).max().map_or(0, |last| last as usize + 1)
+    }
+
+    /// What the curves are, in a sentence.
+    pub fn curves_are(&self) -> &'static str {
+        if self.curves() == self.records.len() {
+            "motions"
+        } else {
+            "curves of one motion and one choice of factors each"
+        }
     }
 
     /// How many barrels fall is known: no case was ended before nothing moved, or hardly any.

@@ -100,12 +100,19 @@ pub fn export(
     let imls: Vec<f64> = decision.curves[0].grid.iter().map(|x| foreign.scale * x).collect();
     found.notes.extend(crossings(&limits, &imls, measure.shown_unit));
     let about = provenance(decision, made);
-    let fragility = fragility(&limits, &imls, &foreign, asset, &about);
+    // A hyphen divides the parts of an identity in Pelicun.
+    let (openquake, in_pelicun) = (identity(asset), asset.replace('-', "."));
+    for (program, name) in [("OpenQuake", &openquake), ("Pelicun", &in_pelicun)] {
+        if name != asset {
+            found.notes.push(format!("{program} takes no name like {asset}: there it is {name}"));
+        }
+    }
+    let fragility = fragility(&limits, &imls, &foreign, &openquake, &about);
     found.files.push(("openquake-fragility.xml", fragility));
-    found.files.push(("pelicun-fragility.csv", pelicun(&limits, &foreign, asset)));
+    found.files.push(("pelicun-fragility.csv", pelicun(&limits, &foreign, &in_pelicun)));
     match &decision.losses {
         Ok(_) => {
-            let text = vulnerability(decision, &foreign, asset, &about);
+            let text = vulnerability(decision, &foreign, &openquake, &about);
             found.files.push(("openquake-vulnerability.xml", text));
         }
         Err(reason) => found.notes.push(format!("losses are left out: {reason}")),
@@ -147,10 +154,11 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// A name as OpenQuake takes it: up to 75 letters, digits, colons, dashes and underscores.
+/// A name as OpenQuake takes it: up to 75 letters, digits, colons, dashes and underscores, with room for what is lost.
 fn identity(text: &str) -> String {
-    let known = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | ':');
-    text.chars().take(75).map(|c| if known(c) { c } else { '_' }).collect()
+    let known = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | ':');
+    let room = 75 - "-barrels".len();
+    text.chars().take(room).map(|c| if known(c) { c } else { '_' }).collect()
 }
 
 fn numbers(values: impl IntoIterator<Item = f64>) -> String {
@@ -174,7 +182,10 @@ fn fragility(
     about: &str,
 ) -> String {
     let names: Vec<&str> = limits.iter().map(|(name, _)| name.as_str()).collect();
-    let (first, last) = (imls[0], imls[imls.len() - 1]);
+    // Outside this range OpenQuake holds a chance constant: no digit of four is lost to that.
+    let reaches = |p: f64| limits.iter().map(move |(_, curve)| curve.intensity(p));
+    let first = reaches(5e-5).fold(imls[0], f64::min);
+    let last = reaches(1.0 - 5e-5).fold(imls[imls.len() - 1], f64::max);
     let mut text = format!(
         "{HEAD}  <fragilityModel id=\"barrelstack\" assetCategory=\"contents\" lossCategory=\"contents\">\n    \
          <description>{}</description>\n    <limitStates>{}</limitStates>\n    \
@@ -182,7 +193,7 @@ fn fragility(
          <imls imt=\"{}\" noDamageLimit=\"0\" minIML=\"{}\" maxIML=\"{}\"/>\n",
         escaped(about),
         names.join(" "),
-        identity(asset),
+        asset,
         foreign.imt,
         plain(first),
         plain(last)
@@ -204,7 +215,9 @@ fn fragility(
 /// Share of the barrels of a stack that burst, by the central assumption.
 fn burst(case: &Case) -> f64 {
     let chance = |fall: &f64| Breakage::RANGE[1].probability(*fall);
-    case.falls.iter().map(chance).sum::<f64>().abs() / f64::from(case.barrels.max(1))
+    // From 0, since a sum of nothing is -0.
+    case.falls.iter().map(chance).fold(0.0, |sum, chance| sum + chance)
+        / f64::from(case.barrels.max(1))
 }
 
 /// Of what may scatter between 0 and 1 about a mean, no more than this share does: a beta distribution has
@@ -236,7 +249,7 @@ fn vulnerability(decision: &Decision, foreign: &Foreign, asset: &str, about: &st
             text,
             "    <vulnerabilityFunction id=\"{}-{name}\" dist=\"BT\">\n      <imls imt=\"{}\">{}</imls>\n      \
              <meanLRs>{}</meanLRs>\n      <covLRs>{}</covLRs>\n    </vulnerabilityFunction>\n",
-            identity(asset),
+            asset,
             foreign.imt,
             numbers(groups.iter().map(|(x, _)| foreign.scale * x)),
             numbers(means),
@@ -251,8 +264,7 @@ fn vulnerability(decision: &Decision, foreign: &Foreign, asset: &str, about: &st
 fn pelicun(limits: &[(String, Lognormal)], foreign: &Foreign, asset: &str) -> String {
     let mut head =
         "ID,Incomplete,Demand-Type,Demand-Unit,Demand-Offset,Demand-Directional".to_owned();
-    // A hyphen divides the parts of an identity there.
-    let quoted = asset.replace('"', "\"\"").replace('-', ".");
+    let quoted = asset.replace('"', "\"\"");
     let mut row = format!("\"{quoted}\",0,{},{},0,0", foreign.demand, foreign.unit);
     for (number, (_, curve)) in (1..).zip(limits) {
         // Writing to a String cannot fail.

@@ -34,6 +34,13 @@ pub(crate) fn bars(
     Series { label: label.to_owned(), x, y, style }
 }
 
+/// Dots that no line joins.
+fn dots(label: &str, x: &[f64], y: impl Iterator<Item = f64>, index: usize) -> Series {
+    let gaps = |values: Vec<f64>| values.into_iter().flat_map(|v| [v, f64::NAN]).collect();
+    let style = SeriesStyle { dots: true, ..style(index) };
+    Series { style, ..Series::new(label, gaps(x.to_vec()), gaps(y.collect())) }
+}
+
 fn axis(measure: &Measure) -> Axis {
     Axis::new(&measure.label, measure.shown_unit)
 }
@@ -65,9 +72,7 @@ pub(super) fn fragility(curve: &LimitCurve, measure: &Measure) -> Figure {
             series.push(bound("", |band| band.high));
         }
     }
-    let fractions = curve.stripes.iter().map(Stripe::fraction).collect();
-    let dots = SeriesStyle { dots: true, ..style(1) };
-    series.push(Series { style: dots, ..Series::new("raw fractions", at.clone(), fractions) });
+    series.push(dots("raw fractions", &at, curve.stripes.iter().map(Stripe::fraction), 1));
     let intervals = at.iter().copied().zip(curve.intervals.iter().copied());
     series.push(bars("95 % interval of each", intervals, style(1)));
     let caption = format!(
@@ -123,9 +128,8 @@ pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Me
     for (index, mode) in modes.iter().enumerate() {
         let name = mode.mode.replace('-', " ");
         let at: Vec<f64> = mode.stripes.iter().map(|s| measure.shown(s.intensity)).collect();
-        let dots = SeriesStyle { dots: true, ..style(index + 1) };
-        let raw = mode.stripes.iter().map(Stripe::fraction).collect();
-        series.push(Series { style: dots, ..Series::new(format!("{name} (raw)"), at, raw) });
+        let raw = mode.stripes.iter().map(Stripe::fraction);
+        series.push(dots(&format!("{name} (raw)"), &at, raw, index + 1));
         if !mode.fitted.is_empty() {
             let line = Series::new(name, grid(), mode.fitted.clone());
             series.push(Series { style: style(index + 1), ..line });

@@ -25,12 +25,12 @@ fn is(case: &Case, mode: usize) -> bool {
 
 /// Every mode that occurs, the most frequent first; none of hunts, which go where collapses are.
 pub(super) fn of(cases: &Cases, collapse: &LimitCurve) -> Vec<ModeIncidence> {
-    let count = |mode: usize| cases.all.iter().filter(|case| is(case, mode)).count();
-    let mut names: Vec<(usize, usize)> =
-        (0..cases.modes.len()).map(|mode| (count(mode), mode)).collect();
     if cases.hunted {
         return Vec::new();
     }
+    let count = |mode: usize| cases.all.iter().filter(|case| is(case, mode)).count();
+    let mut names: Vec<(usize, usize)> =
+        (0..cases.modes.len()).map(|mode| (count(mode), mode)).collect();
     let name = |mode: usize| cases.modes[mode].as_str();
     names.sort_by(|a, b| b.0.cmp(&a.0).then(name(a.1).cmp(name(b.1))));
     let number = |mode: u8| names.iter().position(|(_, name)| *name == usize::from(mode));

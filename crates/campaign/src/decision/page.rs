@@ -50,7 +50,7 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
         blocks.push(heading("Numbers of barrels"));
         blocks.push(Block::Figure(figures::limits(&decision.curves, measure)));
     }
-    blocks.push(Block::Table(limits(&decision.curves, measure)));
+    blocks.push(Block::Table(limits(&decision.curves, cases)));
     if !decision.modes.is_empty() {
         blocks.push(heading("Modes of collapse"));
         blocks.push(Block::Figure(figures::modes(&decision.modes, collapse, measure)));
@@ -203,7 +203,8 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
     vec![Block::List(said)]
 }
 
-fn limits(curves: &[LimitCurve], measure: &Measure) -> Table {
+fn limits(curves: &[LimitCurve], cases: &Cases) -> Table {
+    let measure = cases.measure();
     let mut table = Table::new(
         "Fragility of every limit state.",
         &[
@@ -213,7 +214,7 @@ fn limits(curves: &[LimitCurve], measure: &Measure) -> Table {
             ("95 % interval", measure.shown_unit),
             ("dispersion β", ""),
             ("order violated (p)", ""),
-            ("motions that return", ""),
+            (&format!("{} that return", cases.curves_are()), ""),
             ("remark", ""),
         ],
     );
@@ -397,14 +398,19 @@ fn motions(decision: &Decision, made: &Provenance) -> Table {
         "The motions, with the cases of each.",
         &[("motion", ""), ("source", ""), ("cases", ""), ("collapsed", "")],
     );
-    for (number, name) in decision.cases.records.iter().enumerate() {
-        let of = || decision.cases.all.iter().filter(|case| case.record as usize == number);
+    let mut counts = vec![(0_u32, 0_u32); decision.cases.records.len()];
+    for case in &decision.cases.all {
+        let (cases, collapsed) = &mut counts[case.record as usize];
+        *cases += 1;
+        *collapsed += u32::from(case.collapsed);
+    }
+    for (name, (cases, collapsed)) in decision.cases.records.iter().zip(counts) {
         let source = made.motions.iter().find(|motion| motion.name == *name);
         table.rows.push(vec![
             Cell::text(name),
             source.map_or(Cell::Missing, |motion| Cell::text(&motion.source)),
-            count(of().count() as f64),
-            count(of().filter(|case| case.collapsed).count() as f64),
+            count(cases),
+            count(collapsed),
         ]);
     }
     table

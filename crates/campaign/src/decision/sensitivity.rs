@@ -1,5 +1,6 @@
 //! What varied factors change: shares of collapse at each of their values.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use barrelstack_fragility::{Interval, wilson};
@@ -52,7 +53,7 @@ const MOST: usize = 6;
 pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> Vec<Effect> {
     // One at a time: a factor's cases are those in which every other stands at its base.
     let alone = made.design == "one-at-a-time";
-    let base: Vec<Option<Value>> = factors.iter().map(|f| f.values.get(0)).collect();
+    let base: Vec<Option<Value>> = factors.iter().map(most_frequent).collect();
     let mut found: Vec<Effect> = factors
         .iter()
         .enumerate()
@@ -75,6 +76,16 @@ pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> V
         .collect();
     found.sort_by(|a, b| b.range().total_cmp(&a.range()));
     found
+}
+
+/// The value that most cases have, the first of these: one at a time, that is the base.
+fn most_frequent(factor: &Column) -> Option<Value> {
+    let mut counts: BTreeMap<String, (usize, usize)> = BTreeMap::new();
+    for row in 0..factor.values.len() {
+        counts.entry(told(factor.values.get(row))).or_insert((0, row)).0 += 1;
+    }
+    let (_, first) = counts.into_values().max_by_key(|(count, first)| (*count, Reverse(*first)))?;
+    factor.values.get(first)
 }
 
 fn group(label: String, of: &[&Case]) -> Group {

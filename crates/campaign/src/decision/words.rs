@@ -252,9 +252,10 @@ pub(super) fn warnings(
                 )
             };
             said.push(format!(
-                "{} of {} motions {} (the first collapses at {} and stands at {}). {why}.",
+                "{} of {} {} {} (the first collapses at {} and stands at {}). {why}.",
                 returned.len(),
                 cases.curves(),
+                cases.curves_are(),
                 if returned.len() == 1 {
                     "leaves the stack standing at a higher level than one at which it falls"
                 } else {

@@ -5,7 +5,6 @@
 //! Where a file system has no locks, nobody is kept out: a chunk may be run twice, and either shard will do.
 
 use std::fs::{self, File, TryLockError};
-use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use super::error::StudyError;
@@ -24,10 +23,9 @@ impl Claim {
         let failed = |error: &std::io::Error| StudyError::system("claim a chunk by", &path, error);
         let file = File::create(&path).map_err(|error| failed(&error))?;
         match file.try_lock() {
-            Ok(()) => {}
+            // Any other refusal says that there are no locks here, each file system in its own words.
+            Ok(()) | Err(TryLockError::Error(_)) => {}
             Err(TryLockError::WouldBlock) => return Ok(None),
-            Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {}
-            Err(TryLockError::Error(error)) => return Err(failed(&error)),
         }
         Ok(Some(Self { path, _file: file }))
     }

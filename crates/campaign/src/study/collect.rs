@@ -7,7 +7,7 @@ use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::error::StudyError;
-use super::folder::{Part, Provenance, manifest_of, read_shard, shards, write_whole};
+use super::folder::{Draft, Provenance, manifest_of, read_shard, shards, write_whole};
 use super::shard;
 use super::stop::Tally;
 use super::table::StudyTable;
@@ -36,17 +36,18 @@ pub struct Status {
 ///
 /// Of a Monte Carlo design the chunks count that are done without a gap, up to the one with which there are enough
 /// cases: which of the later ones were run by chance changes nothing.
-struct Parts {
+struct Shards {
     provenance: Provenance,
     paths: BTreeMap<usize, PathBuf>,
     next: usize,
     tally: Tally,
 }
 
-impl Parts {
+impl Shards {
     fn open(folder: &Path) -> Result<Self, StudyError> {
         let provenance = manifest_of(folder)?;
-        Ok(Self { provenance, paths: shards(folder)?, next: 0, tally: Tally::default() })
+        let paths = shards(folder)?.into_iter().collect();
+        Ok(Self { provenance, paths, next: 0, tally: Tally::default() })
     }
 
     fn read(&mut self) -> Result<Option<StudyTable>, StudyError> {
@@ -60,7 +61,7 @@ impl Parts {
                 }
                 continue;
             };
-            let part = read_shard(path, &self.provenance.columns)?;
+            let (part, _) = read_shard(path, &self.provenance.columns)?;
             self.tally = self.tally.plus(Tally::of(&part));
             let made = &mut self.provenance;
             made.cases += part.rows();
@@ -78,20 +79,18 @@ impl Parts {
 ///
 /// # Errors
 /// When the folder is that of no study, or a shard is damaged.
-pub fn read_parts(
+pub fn read_shards<E: From<StudyError>>(
     folder: &Path,
-    visit: &mut dyn FnMut(&Provenance, &StudyTable) -> Result<(), StudyError>,
-) -> Result<Provenance, StudyError> {
-    let mut parts = Parts::open(folder)?;
+    visit: &mut dyn FnMut(&Provenance, &StudyTable) -> Result<(), E>,
+) -> Result<Provenance, E> {
+    let mut parts = Shards::open(folder)?;
     let specs = parts.provenance.columns.clone();
-    let first =
-        |part: &StudyTable| part.integers("case").and_then(|cases| cases.first().copied())?;
     // Rows that a chunk further on may have cases between.
     let mut open = StudyTable::empty(&specs);
     while let Some(part) = parts.read()? {
         // Chunks are opened in the order of the cases, so nothing that follows is before the first of this one.
-        if let Some(first) = first(&part) {
-            let later = open.split_off(open.rows_before(first));
+        if let Some(Some(first)) = part.integers("case").and_then(|cases| cases.first()) {
+            let later = open.split_off(open.rows_before(*first));
             let ready = std::mem::replace(&mut open, later);
             if ready.rows() > 0 {
                 visit(&parts.provenance, &ready)?;
@@ -106,10 +105,10 @@ pub fn read_parts(
 }
 
 /// Writes the rows of a study into its folder: `table.csv`, `table.parquet`, `columns.csv` and `provenance.json`;
-/// `visit` is given them on the way, as by [`read_parts`].
+/// `visit` is given them on the way, as by [`read_shards`].
 ///
 /// # Errors
-/// As [`read_parts`], and when a file cannot be written.
+/// As [`read_shards`], and when a file cannot be written.
 pub fn collect(
     folder: &Path,
     visit: &mut dyn FnMut(&Provenance, &StudyTable) -> Result<(), StudyError>,
@@ -118,7 +117,7 @@ pub fn collect(
     let empty = StudyTable::empty(&specs);
     let path = folder.join("table.csv");
     let failed = |error: &std::io::Error| StudyError::system("write", &path, error);
-    let part = Part::create(&path).map_err(|error| failed(&error))?;
+    let part = Draft::create(&path).map_err(|error| failed(&error))?;
     let mut csv = BufWriter::new(&part.file);
     csv.write_all(empty.csv_heading().as_bytes()).map_err(|error| failed(&error))?;
     let columns = folder.join("table.parquet");
@@ -127,10 +126,10 @@ pub fn collect(
         path: columns.clone(),
         reason: error.to_string(),
     };
-    let stored = Part::create(&columns).map_err(|error| encode(&error))?;
+    let stored = Draft::create(&columns).map_err(|error| encode(&error))?;
     let mut parquet =
         shard::Writer::new(BufWriter::new(&stored.file), &specs).map_err(|error| encode(&error))?;
-    let made = read_parts(folder, &mut |made, rows| {
+    let made = read_shards(folder, &mut |made, rows| {
         csv.write_all(rows.csv_rows().as_bytes()).map_err(|error| failed(&error))?;
         parquet.add(rows).map_err(|error| encode(&error))?;
         visit(made, rows)
@@ -140,7 +139,9 @@ pub fn collect(
     let provenance = serde_json::to_string_pretty(&made)
         .map_err(|error| StudyError::Table(error.to_string()))?;
     // The table travels alone: what it comes from goes with it.
-    let study = fs::read_to_string(folder.join("study.toml")).unwrap_or_default();
+    let path = folder.join("study.toml");
+    let study =
+        fs::read_to_string(&path).map_err(|error| StudyError::system("read", &path, &error))?;
     let about = [("study", study), ("provenance", provenance.clone())];
     parquet.finish(&about).map_err(|error| encode(&error))?;
     part.name().map_err(|error| failed(&error))?;
@@ -154,12 +155,12 @@ impl Collected {
     /// Reads what is done of a study, finished or not, all at once.
     ///
     /// # Errors
-    /// As [`read_parts`].
+    /// As [`read_shards`].
     pub fn read(folder: &Path) -> Result<Self, StudyError> {
         let mut parts = Vec::new();
-        let provenance = read_parts(folder, &mut |_, rows| {
+        let provenance = read_shards(folder, &mut |_, rows| {
             parts.push(rows.clone());
-            Ok(())
+            Ok::<(), StudyError>(())
         })?;
         let table = StudyTable::join(&provenance.columns, &parts)?;
         Ok(Self { table, provenance })
@@ -168,11 +169,11 @@ impl Collected {
     /// How far the study is.
     ///
     /// # Errors
-    /// As [`read_parts`].
+    /// As [`read_shards`].
     pub fn status(folder: &Path) -> Result<Status, StudyError> {
-        let mut parts = Parts::open(folder)?;
+        let mut parts = Shards::open(folder)?;
         while parts.read()?.is_some() {}
-        let Parts { provenance, paths, tally, .. } = parts;
+        let Shards { provenance, paths, tally, .. } = parts;
         let missing = if provenance.complete {
             Vec::new()
         } else {

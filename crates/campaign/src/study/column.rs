@@ -128,14 +128,19 @@ impl Values {
         }
     }
 
-    /// Appends values of the same kind; those of another are left out.
-    pub(crate) fn append(&mut self, more: Self) {
+    /// Appends values of the same kind.
+    pub(crate) fn append(&mut self, more: Self) -> Result<(), StudyError> {
         match (self, more) {
             (Self::Integer(values), Self::Integer(more)) => values.extend(more),
             (Self::Number(values), Self::Number(more)) => values.extend(more),
             (Self::Text(values), Self::Text(more)) => values.extend(more),
-            _ => {}
+            _ => {
+                return Err(StudyError::Table(
+                    "values of another kind than their column".to_owned(),
+                ));
+            }
         }
+        Ok(())
     }
 
     /// Appends a value of the column's kind; a whole number may stand for a number.
@@ -168,4 +173,11 @@ pub struct Column {
     pub spec: ColumnSpec,
     /// Its values, one a row.
     pub values: Values,
+}
+
+impl Column {
+    /// A column without rows.
+    pub(crate) fn empty(spec: ColumnSpec) -> Self {
+        Self { values: Values::empty(spec.kind), spec }
+    }
 }

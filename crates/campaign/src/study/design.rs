@@ -51,6 +51,12 @@ pub enum Design {
 }
 
 impl Design {
+    /// Whether the share of collapse among all cases is that of what they are drawn from: they are a sample of it,
+    /// and neither levels that were asked for nor cases that differ from others in one thing.
+    pub fn is_sample(&self) -> bool {
+        matches!(self, Self::LatinHypercube { .. } | Self::Sobol { .. } | Self::MonteCarlo { .. })
+    }
+
     /// The word used in files.
     pub fn name(&self) -> &'static str {
         match self {

@@ -35,13 +35,6 @@ pub struct Endings {
 }
 
 impl Endings {
-    /// The endings of a table.
-    pub fn of(table: &StudyTable) -> Self {
-        let mut found = Self::default();
-        found.add(table);
-        found
-    }
-
     /// Adds those of a table.
     pub fn add(&mut self, table: &StudyTable) {
         let (Some(outcomes), Some(ended), Some(left)) =

@@ -1,15 +1,15 @@
 //! Runs chunks: one of them, or all that are missing, on all cores.
 
 use std::collections::BTreeMap;
+use std::io::ErrorKind;
 use std::num::NonZero;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use super::Study;
-use super::claim::Claim;
 use super::collect::{Collected, collect};
 use super::error::StudyError;
 use super::folder::{Folder, read_shard};
@@ -49,6 +49,26 @@ pub struct Progress {
     pub damaged: usize,
 }
 
+/// What became of a chunk that was to be run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChunkRun {
+    /// Its shard was there, or another process has made it meanwhile.
+    Before,
+    /// It was run.
+    Now,
+    /// It was run, in place of a damaged shard that was set aside.
+    Again,
+}
+
+/// What a folder holds of some chunks.
+#[derive(Default)]
+struct Done {
+    /// How the cases of each chunk with a sound shard ended.
+    tallies: BTreeMap<usize, Tally>,
+    /// Damaged shards that were set aside.
+    damaged: usize,
+}
+
 /// What threads share.
 struct Shared<'a> {
     study: &'a Study,
@@ -71,9 +91,8 @@ struct State {
     /// How the cases of each chunk that is done ended.
     done: BTreeMap<usize, Tally>,
     progress: Progress,
+    /// Why the run ends early.
     failed: Option<StudyError>,
-    /// Whether the caller asked to stop.
-    interrupted: bool,
 }
 
 impl Study {
@@ -113,7 +132,10 @@ impl Study {
         self.try_motions(&shelf)?;
         let place = Folder::open(folder, self, true)?;
         place.clean()?;
-        let (done, damaged) = self.done(&place)?;
+        let motions = self.motion_keys()?;
+        let Done { tallies: done, damaged } = self.done(&place, 0..self.chunk_count(), &motions)?;
+        // What is not of this study is set aside by now, so nobody takes it for its own.
+        place.describe(self)?;
         let rule = self.stop_rule();
         let mut progress =
             Progress { cases: self.cases(), chunks: self.chunk_count(), ..Progress::default() };
@@ -125,13 +147,12 @@ impl Study {
             (0..self.chunk_count()).rev().filter(|chunk| !done.contains_key(chunk)).collect();
         let threads = options.threads.or_else(|| std::thread::available_parallelism().ok());
         let threads = threads.map_or(1, NonZero::get).min(open.len()).max(1);
-        let state =
-            State { open, elsewhere: Vec::new(), done, progress, failed: None, interrupted: false };
+        let state = State { open, elsewhere: Vec::new(), done, progress, failed: None };
         let shared = Shared {
             study: self,
             folder: &place,
             shelf,
-            motions: self.motion_keys()?,
+            motions,
             rule,
             stop: AtomicBool::new(false),
             state: Mutex::new(state),
@@ -149,9 +170,6 @@ impl Study {
         let state = shared.state.into_inner().unwrap_or_else(PoisonError::into_inner);
         if let Some(error) = state.failed {
             return Err(error);
-        }
-        if state.interrupted {
-            return Err(StudyError::Stopped);
         }
         // What others that were killed beside this run left behind.
         place.clean()
@@ -208,8 +226,7 @@ impl Study {
         StudyTable::join(&self.columns(), &parts)
     }
 
-    /// Runs one chunk and writes its shard; false when it was there already, or another process has made it
-    /// meanwhile.
+    /// Runs one chunk and writes its shard, unless it is there.
     ///
     /// # Errors
     /// When there is no such chunk, or as [`Study::run`].
@@ -218,7 +235,7 @@ impl Study {
         folder: &Path,
         chunk: usize,
         stop: &dyn Fn() -> bool,
-    ) -> Result<bool, StudyError> {
+    ) -> Result<ChunkRun, StudyError> {
         let chunks = self.chunk_count();
         if chunk >= chunks {
             return Err(StudyError::Chunk(format!(
@@ -236,48 +253,55 @@ impl Study {
             }
             std::thread::sleep(LOOK_AGAIN);
         };
-        if self.sound(&place, chunk)?.is_some() {
-            return Ok(false);
+        let motions = self.motion_keys()?;
+        let found = self.done(&place, chunk..chunk + 1, &motions)?;
+        if !found.tallies.is_empty() {
+            return Ok(ChunkRun::Before);
         }
         let mut bench = Bench { shelf: &Shelf::default(), tell: &mut |_| {}, stop };
         let table = self.compute(chunk, &mut bench)?.ok_or(StudyError::Stopped)?;
-        place.write_shard(chunk, self.chunk_key(chunk, &self.motion_keys()?), &table)?;
-        Ok(true)
+        place.write_shard(chunk, self.chunk_key(chunk, &motions), &table)?;
+        Ok(if found.damaged > 0 { ChunkRun::Again } else { ChunkRun::Now })
     }
 
-    /// How the cases of each chunk that is done ended, and how many shards are damaged: they are set aside under
-    /// another name, and their chunks are not done.
-    fn done(&self, folder: &Folder) -> Result<(BTreeMap<usize, Tally>, usize), StudyError> {
-        let mut done = BTreeMap::new();
-        let mut damaged = 0;
-        let shards = folder.shards()?.into_iter();
-        for (chunk, path) in shards.filter(|(chunk, _)| *chunk < self.chunk_count()) {
-            match self.tally_of(&path)? {
-                Some(tally) => drop(done.insert(chunk, tally)),
-                None => damaged += 1,
+    /// What a folder holds of some chunks.
+    ///
+    /// A shard that is damaged, or holds other cases than its chunk has now, is set aside, and its chunk is not done:
+    /// the latter was made before the study grew, maybe by a process that has not ended yet.
+    fn done(
+        &self,
+        folder: &Folder,
+        chunks: Range<usize>,
+        motions: &[u64],
+    ) -> Result<Done, StudyError> {
+        let (mut done, specs) = (Done::default(), self.columns());
+        for (chunk, path) in folder.shards()?.into_iter().filter(|(n, _)| chunks.contains(n)) {
+            match read_shard(&path, &specs) {
+                Ok((table, Some(key))) if key == self.chunk_key(chunk, motions) => {
+                    done.tallies.insert(chunk, Tally::of(&table));
+                }
+                Ok(_) => set_aside(&path, "replaced")?,
+                // Another process set it aside meanwhile.
+                Err(_) if !path.exists() => {}
+                Err(StudyError::Shard { .. }) => {
+                    done.damaged += 1;
+                    set_aside(&path, "damaged")?;
+                }
+                Err(error) => return Err(error),
             }
         }
-        Ok((done, damaged))
-    }
-
-    /// How the cases of a chunk ended; none where it has no sound shard, and a damaged one is set aside.
-    fn sound(&self, folder: &Folder, chunk: usize) -> Result<Option<Tally>, StudyError> {
-        folder.shard(chunk)?.map_or(Ok(None), |path| self.tally_of(&path))
-    }
-
-    fn tally_of(&self, shard: &Path) -> Result<Option<Tally>, StudyError> {
-        match read_shard(shard, &self.columns()) {
-            Ok(table) => Ok(Some(Tally::of(&table))),
-            Err(StudyError::Shard { path, .. }) => set_aside(&path).map(|()| None),
-            Err(error) => Err(error),
-        }
+        Ok(done)
     }
 }
 
-/// Gives a damaged shard another name, so that its chunk is run again and nothing is lost.
-fn set_aside(path: &Path) -> Result<(), StudyError> {
-    std::fs::rename(path, path.with_extension("damaged"))
-        .map_err(|error| StudyError::system("set aside the damaged shard", path, &error))
+/// Gives a shard another ending, so that its chunk is run again and nothing is lost; another process may have done so.
+fn set_aside(path: &Path, ending: &str) -> Result<(), StudyError> {
+    match std::fs::rename(path, path.with_extension(ending)) {
+        Err(error) if error.kind() != ErrorKind::NotFound => {
+            Err(StudyError::system("set aside the shard", path, &error))
+        }
+        _ => Ok(()),
+    }
 }
 
 impl Shared<'_> {
@@ -322,12 +346,14 @@ impl Shared<'_> {
 
     /// Runs a chunk, unless another process has it or has done it.
     fn claimed(&self, chunk: usize) -> Result<(), StudyError> {
-        let Some(claim): Option<Claim> = self.folder.claim(chunk)? else {
+        let Some(_claim) = self.folder.claim(chunk)? else {
             self.state().elsewhere.push(chunk);
             return Ok(());
         };
-        if let Some(tally) = self.study.sound(self.folder, chunk)? {
-            let mut state = self.state();
+        let mut found = self.study.done(self.folder, chunk..chunk + 1, &self.motions)?;
+        let mut state = self.state();
+        state.progress.damaged += found.damaged;
+        if let Some(tally) = found.tallies.remove(&chunk) {
             state.progress.before += tally.cases;
             state.progress.tally = state.progress.tally.plus(tally);
             state.progress.chunks_done += 1;
@@ -335,12 +361,7 @@ impl Shared<'_> {
             self.tell(&mut state);
             return Ok(());
         }
-        self.chunk(chunk)?;
-        drop(claim);
-        Ok(())
-    }
-
-    fn chunk(&self, chunk: usize) -> Result<(), StudyError> {
+        drop(state);
         let mut tell = |result: &CaseResult| self.case_done(result);
         let stop = || self.stop.load(Ordering::Relaxed);
         let mut bench = Bench { shelf: &self.shelf, tell: &mut tell, stop: &stop };
@@ -361,7 +382,7 @@ impl Shared<'_> {
 
     fn tell(&self, state: &mut State) {
         if (self.tell)(&state.progress).is_break() {
-            state.interrupted = true;
+            state.failed.get_or_insert(StudyError::Stopped);
             self.stop.store(true, Ordering::Relaxed);
         }
     }

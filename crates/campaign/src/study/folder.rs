@@ -9,8 +9,7 @@
 //!                                   come from, written when the study is collected
 //! ```
 
-use std::collections::BTreeMap;
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -83,6 +82,18 @@ pub struct Provenance {
     pub complete: bool,
 }
 
+impl Provenance {
+    /// Whether cases are drawn, each with a motion, a level and factors of its own.
+    pub fn is_sampled(&self) -> bool {
+        self.is_sample() || self.design == "saltelli"
+    }
+
+    /// As [`Design::is_sample`].
+    pub fn is_sample(&self) -> bool {
+        matches!(self.design.as_str(), "latin-hypercube" | "sobol" | "monte-carlo")
+    }
+}
+
 /// A motion of a study.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MotionSource {
@@ -100,15 +111,17 @@ pub struct MotionSource {
 #[derive(Clone, Debug)]
 pub(super) struct Folder {
     path: PathBuf,
+    /// Fingerprint of the study that it is opened for.
+    study: String,
 }
 
 impl Folder {
     /// A folder for a study: made when it is not there, checked when it is.
     ///
-    /// A study that grew, or changed in nothing that all its cases have in common, keeps the chunks that are
-    /// still what they were; only a run as a whole may decide that (`grows`).
+    /// The folder of a study that grew, or changed in nothing that all its cases have in common, is kept; only a run as
+    /// a whole may decide that (`grows`), and makes the folder its own by [`Folder::describe`].
     pub(super) fn open(path: &Path, study: &Study, grows: bool) -> Result<Self, StudyError> {
-        let folder = Self { path: path.to_owned() };
+        let folder = Self { path: path.to_owned(), study: study.fingerprint() };
         let refuse = |reason: String| Err(StudyError::Folder { folder: path.to_owned(), reason });
         if path.is_file() {
             return refuse("is a file, not a folder; name another".to_owned());
@@ -118,10 +131,9 @@ impl Folder {
         let foreign = first_in(path, &[SHARDS]).or_else(|| first_in(&shards, &[]));
         if manifest.is_file() {
             let known = manifest_of(path)?;
-            if known.study_hash != study.fingerprint() {
-                let wanted = study.provenance()?;
-                let reason = match difference(&known, &wanted) {
-                    None if grows => return folder.regrown(study, &wanted),
+            if known.study_hash != folder.study {
+                let reason = match difference(&known, &study.provenance()?) {
+                    None if grows => return Ok(folder),
                     None => "the study was changed since; run it as a whole once, which keeps what is still valid".to_owned(),
                     Some(reason) => format!("belongs to another study: {reason}"),
                 };
@@ -137,71 +149,68 @@ impl Folder {
         }
         fs::create_dir_all(&shards)
             .map_err(|error| StudyError::system("make the folder", &shards, &error))?;
-        if !manifest.is_file() {
+        folder.describe(study)?;
+        Ok(folder)
+    }
+
+    /// Writes what the folder belongs to, where that is not there or is what the study was before it grew.
+    pub(super) fn describe(&self, study: &Study) -> Result<(), StudyError> {
+        let manifest = self.path.join(MANIFEST);
+        if !manifest.is_file() || !self.is_ours()? {
             let text = serde_json::to_string_pretty(&study.provenance()?)
                 .map_err(|error| StudyError::Table(error.to_string()))?;
             write_whole(&manifest, format!("{text}\n").as_bytes())?;
         }
         // After the manifest, so that a folder without one holds nothing of ours but an empty folder of shards.
-        let copy = path.join("study.toml");
-        if !copy.is_file() {
-            write_whole(&copy, study.text.as_bytes())?;
+        let copy = self.path.join("study.toml");
+        if fs::read(&copy).is_ok_and(|text| text == study.text.as_bytes()) {
+            return Ok(());
         }
-        Ok(folder)
+        write_whole(&copy, study.text.as_bytes())
     }
 
-    /// The folder, now of another study with the same cases or some of them: shards whose chunks are not what they
-    /// were get the ending `.replaced`.
-    fn regrown(self, study: &Study, wanted: &Provenance) -> Result<Self, StudyError> {
-        let keys = study.chunk_keys()?;
-        for (chunk, path) in self.shards()? {
-            let bytes = read_file(&path)?;
-            let key = shard::text_of(bytes, KEY).unwrap_or_default();
-            if keys.get(&chunk).is_none_or(|wanted| key != format!("{wanted:016x}")) {
-                let aside = path.with_extension("replaced");
-                fs::rename(&path, &aside)
-                    .map_err(|error| StudyError::system("rename", &path, &error))?;
-            }
-        }
-        let text = serde_json::to_string_pretty(wanted)
-            .map_err(|error| StudyError::Table(error.to_string()))?;
-        write_whole(&self.path.join("study.toml"), study.text.as_bytes())?;
-        write_whole(&self.path.join(MANIFEST), format!("{text}\n").as_bytes())?;
-        Ok(self)
+    /// Whether the folder still belongs to the study that it was opened for.
+    fn is_ours(&self) -> Result<bool, StudyError> {
+        Ok(manifest_of(&self.path)?.study_hash == self.study)
     }
 
-    /// The shards by chunk.
-    pub(super) fn shards(&self) -> Result<BTreeMap<usize, PathBuf>, StudyError> {
+    /// The shards of chunks, sorted.
+    pub(super) fn shards(&self) -> Result<Vec<(usize, PathBuf)>, StudyError> {
         shards(&self.path)
     }
 
-    /// The shard of a chunk; none where it is not done.
-    pub(super) fn shard(&self, chunk: usize) -> Result<Option<PathBuf>, StudyError> {
-        let folder = self.path.join(SHARDS);
-        let failed = |error: &std::io::Error| StudyError::system("list", &folder, error);
-        for entry in fs::read_dir(&folder).map_err(|error| failed(&error))? {
-            let path = entry.map_err(|error| failed(&error))?.path();
-            if named(&path).is_some_and(|(number, _)| number == chunk) {
-                return Ok(Some(path));
-            }
-        }
-        Ok(None)
-    }
-
     /// Claims a chunk for this process and thread; none while another has it.
+    ///
+    /// A process that began before the study grew is refused: it would make what the study was.
     pub(super) fn claim(&self, chunk: usize) -> Result<Option<Claim>, StudyError> {
-        Claim::take(self.path.join(SHARDS).join(format!("{chunk:06}.claim")))
+        let claim = Claim::take(self.path.join(SHARDS).join(format!("{chunk:06}.claim")))?;
+        if claim.is_some() && !self.is_ours()? {
+            let reason = "has been given to a study that grew since this run began; run that one";
+            return Err(StudyError::Folder {
+                folder: self.path.clone(),
+                reason: reason.to_owned(),
+            });
+        }
+        Ok(claim)
     }
 
     /// Removes what killed runs left behind.
     pub(super) fn clean(&self) -> Result<(), StudyError> {
-        for folder in [self.path.clone(), self.path.join(SHARDS)] {
-            for path in list(&folder)? {
-                let left = path.extension().is_some_and(|end| end == "part" || end == "claim");
-                // Whoever is alive holds it locked; it may also have its own name by now, or be gone.
-                if left && File::open(&path).is_ok_and(|file| file.try_lock().is_ok()) {
-                    drop(fs::remove_file(&path));
-                }
+        let shards = self.path.join(SHARDS);
+        for path in list(&self.path)?.into_iter().chain(list(&shards)?) {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let claim = name.strip_suffix(".claim").is_some_and(|chunk| {
+                path.starts_with(&shards) && chunk.bytes().all(|c| c.is_ascii_digit())
+            });
+            let draft = name.starts_with('.') && name.ends_with(".part");
+            if !(claim || draft) {
+                continue;
+            }
+            // Whoever is alive holds it locked; it may also have its own name by now, or be gone. Network file
+            // systems lock only what is open for writing.
+            let Ok(file) = File::options().write(true).open(&path) else { continue };
+            if file.try_lock().is_ok() {
+                drop(fs::remove_file(&path));
             }
         }
         Ok(())
@@ -232,7 +241,7 @@ fn read_file(path: &Path) -> Result<Vec<u8>, StudyError> {
 }
 
 /// The manifest of a folder.
-pub(super) fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
+pub(crate) fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
     let refuse = |reason: String| StudyError::Folder { folder: folder.to_owned(), reason };
     let path = folder.join(MANIFEST);
     if !path.is_file() {
@@ -278,15 +287,10 @@ fn list(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
     Ok(paths)
 }
 
-/// The shards of a folder by chunk; two of one chunk differ in their fingerprints, and either will do.
-pub(super) fn shards(folder: &Path) -> Result<BTreeMap<usize, PathBuf>, StudyError> {
-    let mut found = BTreeMap::new();
-    for path in list(&folder.join(SHARDS))? {
-        if let Some((chunk, _)) = named(&path) {
-            found.entry(chunk).or_insert(path);
-        }
-    }
-    Ok(found)
+/// The shards of a folder with their chunks, sorted.
+pub(super) fn shards(folder: &Path) -> Result<Vec<(usize, PathBuf)>, StudyError> {
+    let paths = list(&folder.join(SHARDS))?.into_iter();
+    Ok(paths.filter_map(|path| Some((named(&path)?.0, path))).collect())
 }
 
 /// Chunk and fingerprint in the name of a shard; none for any other file.
@@ -296,8 +300,11 @@ fn named(path: &Path) -> Option<(usize, u64)> {
     Some((chunk.parse().ok()?, u64::from_str_radix(hash, 16).ok()?))
 }
 
-/// Reads a shard; what its bytes are must be what its name says.
-pub(super) fn read_shard(path: &Path, specs: &[ColumnSpec]) -> Result<StudyTable, StudyError> {
+/// Reads a shard and the key of its chunk; what its bytes are must be what its name says.
+pub(super) fn read_shard(
+    path: &Path,
+    specs: &[ColumnSpec],
+) -> Result<(StudyTable, Option<u64>), StudyError> {
     let damaged = |reason: String| StudyError::Shard { path: path.to_owned(), reason };
     let bytes = read_file(path)?;
     let (chunk, hash) =
@@ -309,7 +316,7 @@ pub(super) fn read_shard(path: &Path, specs: &[ColumnSpec]) -> Result<StudyTable
             bytes.len()
         )));
     }
-    let table = StudyTable::from_parquet(bytes).map_err(|error| damaged(error.to_string()))?;
+    let (table, key) = shard::from_bytes(bytes, KEY).map_err(damaged)?;
     let of_chunk =
         |number: &Option<i64>| number.and_then(|n| usize::try_from(n).ok()) == Some(chunk);
     if !table.specs().eq(specs.iter())
@@ -317,40 +324,45 @@ pub(super) fn read_shard(path: &Path, specs: &[ColumnSpec]) -> Result<StudyTable
     {
         return Err(damaged("it holds rows of something else".to_owned()));
     }
-    Ok(table)
+    Ok((table, key.and_then(|key| u64::from_str_radix(&key, 16).ok())))
 }
 
 /// Writes a file under another name, brings it to the disk, and gives it its own.
 pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     let write = || -> std::io::Result<()> {
-        let part = Part::create(path)?;
-        (&part.file).write_all(bytes)?;
-        part.name()
+        let draft = Draft::create(path)?;
+        (&draft.file).write_all(bytes)?;
+        draft.name()
     };
-    let mut result = write();
-    // Another run that tidies the folder may have taken the file for a leftover.
-    if result.as_ref().is_err_and(|error| error.kind() == ErrorKind::NotFound) {
-        result = write();
-    }
-    result.map_err(|error| StudyError::system("write", path, &error))
+    write().map_err(|error| StudyError::system("write", path, &error))
 }
 
 /// A file that is being written under another name; gone again where it never gets its own.
-pub(super) struct Part {
+pub(super) struct Draft {
     pub(super) file: File,
     path: PathBuf,
     whole: PathBuf,
 }
 
-impl Part {
-    /// Begins a file.
+impl Draft {
+    /// Begins a file, under a name that no other process has, on this machine or another.
     pub(super) fn create(whole: &Path) -> std::io::Result<Self> {
-        let name = whole.file_name().map_or_else(String::new, |name| name.to_string_lossy().into());
-        let path = whole.with_file_name(format!(".{name}.{}.part", std::process::id()));
-        let file = File::create(&path)?;
-        // Tells those who tidy the folder that its writer is alive; without locks they write once more.
-        drop(file.try_lock());
-        Ok(Self { file, path, whole: whole.to_owned() })
+        let name = whole.file_name().unwrap_or_default().to_string_lossy();
+        let mut number = 0;
+        loop {
+            let path = whole.with_file_name(format!(".{name}.{number}.part"));
+            number += 1;
+            let file = match File::options().write(true).create_new(true).open(&path) {
+                Ok(file) => file,
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
+                Err(error) => return Err(error),
+            };
+            // Tells those who tidy the folder that its writer is alive. One of them may have come before.
+            let taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+            if !taken && path.exists() {
+                return Ok(Self { file, path, whole: whole.to_owned() });
+            }
+        }
     }
 
     /// Brings it to the disk, and gives it its name.
@@ -361,7 +373,7 @@ impl Part {
     }
 }
 
-impl Drop for Part {
+impl Drop for Draft {
     fn drop(&mut self) {
         // Not there any more where it got its name.
         drop(fs::remove_file(&self.path));

@@ -1,7 +1,5 @@
 //! What a folder may keep when its study has changed: the chunks whose cases are still the same.
 
-use std::collections::BTreeMap;
-
 use serde::{Deserialize, Serialize};
 
 use super::Study;
@@ -65,18 +63,9 @@ impl Study {
         Ok(parts.into_iter().map(common).collect())
     }
 
-    /// Whether cases are samples, so that which motion one takes depends on how many there are.
+    /// Whether each case takes a motion by its sample, so that which one depends on how many there are.
     fn is_sampled(&self) -> bool {
-        match self.design {
-            Design::LatinHypercube { .. }
-            | Design::Sobol { .. }
-            | Design::Saltelli { .. }
-            | Design::MonteCarlo { .. } => true,
-            Design::FullFactorial
-            | Design::OneAtATime { .. }
-            | Design::Stripes
-            | Design::Ida(_) => false,
-        }
+        self.design.is_sample() || matches!(self.design, Design::Saltelli { .. })
     }
 
     /// What tells the motions from all others: how each is made, and the bytes of its files.
@@ -107,13 +96,6 @@ impl Study {
         let all: Vec<String> =
             numbers.iter().map(|number| words(&self.cases.case(self, *number))).collect();
         fnv1a(all.join("\n").as_bytes())
-    }
-
-    /// The keys of all chunks.
-    pub(super) fn chunk_keys(&self) -> Result<BTreeMap<usize, u64>, StudyError> {
-        let motions = self.motion_keys()?;
-        let key = |chunk| (chunk, self.chunk_key(chunk, &motions));
-        Ok((0..self.chunk_count()).map(key).collect())
     }
 }
 

@@ -48,17 +48,12 @@ pub(super) fn plain_names<'a>(specs: impl Iterator<Item = &'a ColumnSpec>) -> Ve
     names
 }
 
-/// A table from the bytes of a Parquet file written by [`to_bytes`].
-pub(super) fn from_bytes(bytes: Vec<u8>) -> Result<StudyTable, String> {
-    read(bytes).map_err(|error| error.to_string())
-}
-
-/// A text that [`to_bytes`] was given beside the table; none where it was not.
-pub(super) fn text_of(bytes: Vec<u8>, key: &str) -> Option<String> {
-    let reader = SerializedFileReader::new(bytes::Bytes::from(bytes)).ok()?;
-    let pairs = reader.metadata().file_metadata().key_value_metadata()?;
-    let key = format!("barrelstack.{key}");
-    pairs.iter().find(|pair| pair.key == key)?.value.clone()
+/// A table from the bytes of a Parquet file written by [`to_bytes`], and a text that was given beside it, by its key.
+pub(super) fn from_bytes(
+    bytes: Vec<u8>,
+    key: &str,
+) -> Result<(StudyTable, Option<String>), String> {
+    read(bytes, key).map_err(|error| error.to_string())
 }
 
 /// Rows of a group, which is what is held in memory while a table is written.
@@ -86,7 +81,7 @@ impl<W: std::io::Write + Send> Writer<W> {
     }
 
     pub(super) fn add(&mut self, rows: &StudyTable) -> Result<(), ParquetError> {
-        self.rows.append(rows.clone());
+        self.rows.append(rows.clone()).map_err(|error| ParquetError::General(error.to_string()))?;
         while self.rows.rows() >= GROUP {
             let rest = self.rows.split_off(GROUP);
             let whole = std::mem::replace(&mut self.rows, rest);
@@ -105,7 +100,7 @@ impl<W: std::io::Write + Send> Writer<W> {
 
     /// Ends the file with what it comes from, as pairs of key and text.
     pub(super) fn finish(mut self, about: &[(&str, String)]) -> Result<(), ParquetError> {
-        let rest = std::mem::replace(&mut self.rows, StudyTable::empty(&[]));
+        let rest = self.rows.split_off(0);
         self.group(&rest)?;
         for (key, text) in about {
             let pair = KeyValue::new(format!("barrelstack.{key}"), text.clone());
@@ -172,30 +167,30 @@ fn write_column<W: std::io::Write + Send>(
     writer.close()
 }
 
-fn read(bytes: Vec<u8>) -> Result<StudyTable, ParquetError> {
+fn read(bytes: Vec<u8>, key: &str) -> Result<(StudyTable, Option<String>), ParquetError> {
     let foreign = || ParquetError::General("it is no table of a study".to_owned());
     let reader = SerializedFileReader::new(bytes::Bytes::from(bytes))?;
     let metadata = reader.metadata().file_metadata();
-    let described = metadata
-        .key_value_metadata()
-        .and_then(|pairs| pairs.iter().find(|pair| pair.key == COLUMNS_KEY))
-        .and_then(|pair| pair.value.as_deref())
-        .and_then(|text| serde_json::from_str::<Vec<ColumnSpec>>(text).ok())
+    let about = |key: &str| {
+        let mut pairs = metadata.key_value_metadata()?.iter();
+        pairs.find(|pair| pair.key == key)?.value.clone()
+    };
+    let described = about(COLUMNS_KEY)
+        .and_then(|text| serde_json::from_str::<Vec<ColumnSpec>>(&text).ok())
         .ok_or_else(foreign)?;
     if metadata.schema_descr().num_columns() != described.len() {
         return Err(foreign());
     }
-    let mut columns: Vec<Column> = described
-        .into_iter()
-        .map(|spec| Column { values: Values::empty(spec.kind), spec })
-        .collect();
+    let mut columns: Vec<Column> = described.into_iter().map(Column::empty).collect();
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group)?;
         for (index, column) in columns.iter_mut().enumerate() {
             read_column(group.as_ref(), index, &mut column.values)?;
         }
     }
-    StudyTable::new(columns).map_err(|error| ParquetError::General(error.to_string()))
+    let table =
+        StudyTable::new(columns).map_err(|error| ParquetError::General(error.to_string()))?;
+    Ok((table, about(&format!("barrelstack.{key}"))))
 }
 
 fn read_column(

@@ -166,7 +166,8 @@ mod tests {
             // Shares of what they are, and of the whole variance where they are nothing.
             let off = [(index.first, first), (index.total, total)]
                 .map(|(found, exact)| (found - exact) / if exact > 0.0 { exact } else { 1.0 });
-            assert!(off.iter().all(|off| off.abs() < 0.01), "{off:?} of {first} and {total}");
+            // Measured: 7e-4.
+            assert!(off.iter().all(|off| off.abs() < 2e-3), "{off:?} of {first} and {total}");
             assert!(index.total_interval.low < total && total < index.total_interval.high);
         }
     }

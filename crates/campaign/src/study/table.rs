@@ -56,15 +56,16 @@ impl StudyTable {
         Ok(Self { columns })
     }
 
-    /// A table without rows.
-    pub(super) fn empty(specs: &[ColumnSpec]) -> Self {
-        let column =
-            |spec: &ColumnSpec| Column { spec: spec.clone(), values: Values::empty(spec.kind) };
-        Self { columns: specs.iter().map(column).collect() }
+    /// A table without rows, whose columns have names of their own.
+    pub fn empty(specs: &[ColumnSpec]) -> Self {
+        Self { columns: specs.iter().cloned().map(Column::empty).collect() }
     }
 
     /// Appends a row, one value a column.
-    pub(super) fn push(&mut self, row: Vec<Option<Value>>) -> Result<(), StudyError> {
+    ///
+    /// # Errors
+    /// When a value is missing or is of another kind than its column.
+    pub fn push(&mut self, row: Vec<Option<Value>>) -> Result<(), StudyError> {
         if row.len() != self.columns.len() {
             let (found, expected) = (row.len(), self.columns.len());
             return Err(StudyError::Table(format!(
@@ -154,10 +155,9 @@ impl StudyTable {
     }
 
     /// Appends the rows of a table of the same columns.
-    pub(super) fn append(&mut self, rows: Self) {
-        for (column, more) in self.columns.iter_mut().zip(rows.columns) {
-            column.values.append(more.values);
-        }
+    pub(super) fn append(&mut self, rows: Self) -> Result<(), StudyError> {
+        let pairs = self.columns.iter_mut().zip(rows.columns);
+        pairs.into_iter().try_for_each(|(column, more)| column.values.append(more.values))
     }
 
     /// The table as CSV: a heading line with units, then one line a case; nothing where there is no value.
@@ -227,7 +227,7 @@ impl StudyTable {
     /// # Errors
     /// When the bytes are none.
     pub fn from_parquet(bytes: Vec<u8>) -> Result<Self, StudyError> {
-        shard::from_bytes(bytes).map_err(StudyError::Table)
+        shard::from_bytes(bytes, "").map(|(table, _)| table).map_err(StudyError::Table)
     }
 }
 

@@ -12,10 +12,11 @@ use barrelstack_calibration::{
     CalibrateError, Calibration, Parameter, Table, collapse, drop, friction, response, stiffness,
 };
 use clap::{Subcommand, ValueEnum};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
 use crate::args::ScenarioArgs;
 use crate::printer;
+use crate::progress::style;
 
 /// What the help ends with.
 const AFTER_HELP: &str = "\
@@ -343,10 +344,7 @@ fn collapsed(args: &CollapseArgs) -> anyhow::Result<Calibration> {
         .map(|name| super::load(&of(name.unwrap_or(&args.scenario))))
         .collect::<anyhow::Result<_>>()?;
     // Hidden by itself where standard error is no terminal.
-    let bar = ProgressBar::new(0);
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} runs, {eta} to go") {
-        bar.set_style(style);
-    }
+    let bar = ProgressBar::new(0).with_style(style("{bar:30} {pos} of {len} runs, {eta} to go"));
     let found = collapse::collapse(&seen, &scenarios, &parameters, &settings, &|done, of| {
         bar.set_length(of as u64);
         bar.set_position(done as u64);

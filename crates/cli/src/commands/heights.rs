@@ -8,10 +8,12 @@ use barrelstack_campaign::heights::{
     HEIGHTS, Heights, HeightsError, Request, VELOCITIES, View, heights,
 };
 use barrelstack_campaign::study::{RunOptions, StudyError};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
 use crate::interrupt::Interrupt;
 use crate::printer;
+use crate::progress::style;
+use crate::store::store;
 
 /// Arguments of `heights`.
 #[derive(Debug, clap::Args)]
@@ -45,12 +47,8 @@ pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
         seed: args.seed,
     };
     let interrupt = Interrupt::listen();
-    let bar = ProgressBar::new(0);
-    if let Ok(style) =
-        ProgressStyle::with_template("{bar:30} {pos} of {len} runs  {elapsed}, {eta} to go")
-    {
-        bar.set_style(style);
-    }
+    let bar = ProgressBar::new(0)
+        .with_style(style("{bar:30} {pos} of {len} runs  {elapsed}, {eta} to go"));
     let result = heights(&request, &args.out, &RunOptions::default(), &|done, of| {
         bar.set_length(of);
         bar.set_position(done);
@@ -81,7 +79,7 @@ pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
 fn write(out: &Path, found: &Heights) -> anyhow::Result<()> {
     let json = serde_json::to_string_pretty(&found.json())? + "\n";
     page(out, &found.html(), &found.markdown("figures"))?;
-    put(&out.join("heights.json"), json.as_bytes())
+    store(&out.join("heights.json"), json.as_bytes())
 }
 
 /// Writes a page as HTML and as Markdown with its figures beside it.
@@ -93,13 +91,9 @@ pub(crate) fn page(
     let figures = out.join("figures");
     std::fs::create_dir_all(&figures)
         .with_context(|| format!("cannot make {}", figures.display()))?;
-    put(&out.join("index.html"), html.as_bytes())?;
-    put(&out.join("index.md"), markdown.text.as_bytes())?;
-    markdown.files.iter().try_for_each(|file| put(&figures.join(&file.name), &file.bytes))
-}
-
-fn put(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    std::fs::write(path, bytes).with_context(|| format!("cannot write {}", path.display()))
+    store(&out.join("index.html"), html.as_bytes())?;
+    store(&out.join("index.md"), markdown.text.as_bytes())?;
+    markdown.files.iter().try_for_each(|file| store(&figures.join(&file.name), &file.bytes))
 }
 
 fn print(found: &Heights) -> anyhow::Result<()> {

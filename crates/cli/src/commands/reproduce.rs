@@ -7,19 +7,18 @@ use anyhow::Context;
 use barrelstack::render::write_figures;
 use barrelstack_report::{Paper, document_pdf};
 use barrelstack_reproduction::{Comparison, Reproduction, percent, reproduce as run_all};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
 use crate::args::ReproduceArgs;
 use crate::printer;
+use crate::progress::style;
+use crate::store::store;
 
 /// Runs every case, writes the page, prints the table.
 pub(crate) fn reproduce(args: &ReproduceArgs) -> anyhow::Result<ExitCode> {
     prepare(&args.out)?;
     // Hidden by itself where standard error is no terminal.
-    let bar = ProgressBar::new(0);
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} runs  {elapsed}") {
-        bar.set_style(style);
-    }
+    let bar = ProgressBar::new(0).with_style(style("{bar:30} {pos} of {len} runs  {elapsed}"));
     let result = run_all(args.record.as_deref(), !args.no_studies, &|done, of| {
         bar.set_length(of as u64);
         bar.set_position(done as u64);
@@ -40,10 +39,7 @@ fn prepare(out: &Path) -> anyhow::Result<()> {
 
 fn write(args: &ReproduceArgs, found: &Reproduction) -> anyhow::Result<()> {
     let out = &args.out;
-    let put = |name: &str, bytes: &[u8]| {
-        let path = out.join(name);
-        std::fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))
-    };
+    let put = |name: &str, bytes: &[u8]| store(&out.join(name), bytes);
     put("index.html", barrelstack_reproduction::html(found).as_bytes())?;
     let bundle = barrelstack_reproduction::markdown(found, "figures");
     put("index.md", bundle.text.as_bytes())?;

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use barrelstack_campaign::study::{self, Collected, RunOptions, Study, StudyError};
+use barrelstack_campaign::study::{self, ChunkRun, Collected, RunOptions, Study, StudyError};
 use clap::Subcommand;
 use serde_json::json;
 
@@ -171,7 +171,7 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         anyhow::bail!("name a study and a folder: barrelstack study STUDY --out DIR");
     };
     let study = load(study)?;
-    let live = live::Live::new(!args.quiet);
+    let live = live::Live::new(!args.quiet, study.design.is_sample());
     let options = RunOptions { threads: args.threads };
     match study.run_all(out, &options, &|progress| live.at(progress)) {
         Ok(()) => {}
@@ -188,19 +188,14 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let damaged = live.damaged();
     drop(live);
     if damaged > 0 {
-        printer::warning(&format!(
-            "{} found in {}: set aside there with the ending .damaged, and made anew",
-            answer::counted(damaged as u64, "damaged shard"),
-            out.join("shards").display()
-        ));
+        warn_of_damaged(damaged, out);
     }
-    let (mut answer, mut gathered) = (answer::Answer::new(), report::Gathered::default());
-    let made = study::collect(out, &mut |made, rows| {
+    let mut answer = answer::Answer::default();
+    let made = study::collect(out, &mut |_, rows| {
         answer.add(rows);
-        gathered.add(made, rows);
         Ok(())
     })?;
-    let page = gathered.write_page(out, &made)?;
+    let page = report::write_page(out)?;
     if args.json {
         printer::lines([answer::json(&answer, &made)?])?;
     } else {
@@ -208,6 +203,14 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         printer::lines(page.map(|page| format!("page: {}", page.display())))?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn warn_of_damaged(shards: usize, out: &Path) {
+    printer::warning(&format!(
+        "{} found in {}: set aside there with the ending .damaged, and made anew",
+        printer::counted(shards as u64, "damaged shard"),
+        out.join("shards").display()
+    ));
 }
 
 fn plan(args: &PlanArgs) -> anyhow::Result<()> {
@@ -240,9 +243,9 @@ fn plan(args: &PlanArgs) -> anyhow::Result<()> {
         format!(
             "  {} design, {most}{} in {}, {}",
             study.design.name(),
-            answer::counted(study.cases(), "case"),
-            answer::counted(study.chunk_count() as u64, "chunk"),
-            answer::counted(study.motions() as u64, "motion")
+            printer::counted(study.cases(), "case"),
+            printer::counted(study.chunk_count() as u64, "chunk"),
+            printer::counted(study.motions() as u64, "motion")
         ),
         format!("  {}", following.words(study.motions())),
         String::new(),
@@ -259,10 +262,17 @@ fn plan(args: &PlanArgs) -> anyhow::Result<()> {
 
 fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
     let study = load(&args.which.study)?;
-    let live = live::Live::new(false);
+    let live = live::Live::new(false, false);
     match study.run_chunk(&args.out, args.chunk, &|| live.stopped()) {
-        Ok(true) => printer::lines([format!("chunk {} is done", args.chunk)])?,
-        Ok(false) => printer::lines([format!("chunk {} was done before", args.chunk)])?,
+        Ok(ChunkRun::Before) => {
+            printer::lines([format!("chunk {} was done before", args.chunk)])?;
+        }
+        Ok(ran) => {
+            if ran == ChunkRun::Again {
+                warn_of_damaged(1, &args.out);
+            }
+            printer::lines([format!("chunk {} is done", args.chunk)])?;
+        }
         Err(StudyError::Stopped) => {
             printer::note(&format!("stopped; chunk {} is to be run again", args.chunk));
             return Ok(ExitCode::from(130));
@@ -277,7 +287,7 @@ fn status(args: &FolderArgs) -> anyhow::Result<()> {
     if args.json {
         let document = json!({
             "provenance": status.provenance,
-            "tally": answer::tally(&status.tally),
+            "tally": answer::tally(&status.tally, status.provenance.is_sample()),
             "missing": status.missing,
         });
         return printer::lines([serde_json::to_string_pretty(&document)?]);
@@ -286,7 +296,7 @@ fn status(args: &FolderArgs) -> anyhow::Result<()> {
 }
 
 fn collect(args: &FolderArgs) -> anyhow::Result<()> {
-    let mut answer = answer::Answer::new();
+    let mut answer = answer::Answer::default();
     let made = study::collect(&args.folder, &mut |_, rows| {
         answer.add(rows);
         Ok(())

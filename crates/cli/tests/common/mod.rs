@@ -8,6 +8,31 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+/// Two barrels on two levels; the time for which they are shaken comes behind.
+pub(crate) const HEAD: &str = "\
+schema = 1
+title = \"two barrels for a moment\"
+[base.stack]
+levels = 2
+columns = 2
+[base.run]
+";
+
+/// Says what was not tested.
+pub(crate) fn skipped(why: &str) {
+    // Straight to the terminal: the runner keeps what tests that pass print by the usual way.
+    std::io::stdout().write_all(format!("skipped: {why}\n").as_bytes()).unwrap();
+}
+
+/// Whether a program of others answers; says so where it does not.
+pub(crate) fn there(command: &str, arguments: &[&str]) -> bool {
+    let found = Command::new(command).args(arguments).output().is_ok_and(|o| o.status.success());
+    if !found {
+        skipped(&format!("{command} {arguments:?} does not answer"));
+    }
+    found
+}
+
 /// The program, with nothing to read on standard input.
 pub(crate) fn program<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_barrelstack"));

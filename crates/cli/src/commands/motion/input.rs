@@ -13,6 +13,8 @@ use clap::ValueEnum;
 
 use barrelstack_motion::{Pads, Processing};
 
+pub(super) use crate::store::plain;
+
 /// Largest file (bytes) that is read; the longest strong-motion files have a tenth of it.
 const LIMIT: u64 = 256 << 20;
 
@@ -424,16 +426,4 @@ pub(super) fn bytes(path: &Path) -> anyhow::Result<Vec<u8>> {
         bail!("{}: it has more than 256 MB, more than any strong-motion file", refused());
     }
     Ok(bytes)
-}
-
-/// What the system says, in words.
-pub(super) fn plain(error: std::io::Error) -> anyhow::Error {
-    let kind = error.kind();
-    if kind == std::io::ErrorKind::NotFound {
-        anyhow!("there is no such file")
-    } else if kind == std::io::ErrorKind::PermissionDenied {
-        anyhow!("permission is denied")
-    } else {
-        error.into()
-    }
 }

@@ -6,6 +6,7 @@ use anyhow::{Context as _, bail};
 use barrelstack_motion::{Record, Stage, write};
 
 use super::folder::Source;
+use crate::store::store;
 
 /// Where a motion goes.
 #[derive(Debug, clap::Args)]
@@ -164,17 +165,4 @@ pub(super) fn make_folder_of(path: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(folder)
         .map_err(super::input::plain)
         .with_context(|| format!("cannot make the folder {}", folder.display()))
-}
-
-/// Writes under a temporary name and renames, so that the file is never half there.
-pub(super) fn store(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".part");
-    let part = path.with_file_name(name);
-    let written = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, path));
-    if written.is_err() {
-        // It may never have been made, and that is well.
-        let _ = std::fs::remove_file(&part);
-    }
-    written.map_err(super::input::plain).with_context(|| format!("cannot write {}", path.display()))
 }

@@ -12,7 +12,8 @@ use barrelstack_report::{
 };
 
 use super::measures::sampled;
-use super::output::{store, vacant};
+use super::output::vacant;
+use crate::store::store;
 
 /// Damping ratio of the spectra.
 const DAMPING: f64 = 0.05;

@@ -15,11 +15,12 @@ use super::folder::{self, Batch, FolderArgs, Source, Worked};
 use super::info;
 use super::input::{self, Chain, Choice, Input};
 use super::measures::sampled;
-use super::output::{self, store, vacant};
+use super::output::{self, vacant};
 use super::panels;
 use super::process::share;
 use crate::figures::FigureArgs;
 use crate::printer;
+use crate::store::store;
 
 /// Arguments of `plot`.
 #[derive(Debug, clap::Args)]

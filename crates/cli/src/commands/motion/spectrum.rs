@@ -12,10 +12,11 @@ use barrelstack_motion::{
 
 use super::info;
 use super::input::{Chain, Choice, Input, quantity};
-use super::output::{store, vacant};
+use super::output::vacant;
 use super::process::share;
 use super::table::{Table, number, percent};
 use crate::printer;
+use crate::store::store;
 
 /// Arguments of `spectrum`.
 #[derive(Debug, clap::Args)]

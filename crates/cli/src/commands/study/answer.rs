@@ -1,15 +1,13 @@
 //! What a study says when it is done, or half done: in words and as JSON.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use barrelstack_campaign::study::{Endings, Provenance, Status, StudyTable, Tally};
 use serde_json::{Value, json};
 
-/// A number of things, such as "1 case" and "2 cases".
-pub(super) fn counted(count: u64, thing: &str) -> String {
-    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
-}
+use crate::printer::counted;
 
 /// A probability with its interval, in percent.
 fn percent((p, [low, high]): (f64, [f64; 2])) -> String {
@@ -25,8 +23,8 @@ pub(super) struct Answer {
     endings: Endings,
     modes: BTreeMap<String, usize>,
     errors: BTreeMap<String, usize>,
-    /// Levels that cases share, with how their cases ended; none where there are too many.
-    levels: Option<Vec<(f64, Tally)>>,
+    /// Levels that cases share, with how their cases ended; one too many where there are too many.
+    levels: Vec<(f64, Tally)>,
     unit: String,
 }
 
@@ -34,10 +32,6 @@ pub(super) struct Answer {
 const MOST: usize = 30;
 
 impl Answer {
-    pub(super) fn new() -> Self {
-        Self { levels: Some(Vec::new()), ..Self::default() }
-    }
-
     /// Adds the rows of a table.
     pub(super) fn add(&mut self, table: &StudyTable) {
         self.tally = self.tally.plus(Tally::of(table));
@@ -45,7 +39,7 @@ impl Answer {
         for (column, counts) in [("mode", &mut self.modes), ("error", &mut self.errors)] {
             for text in table.texts(column).unwrap_or_default().iter().flatten() {
                 let known = counts.contains_key(text) || counts.len() < MOST;
-                let text = if known { text.as_str() } else { "others" };
+                let text = if known { text.as_str() } else { OTHERS };
                 *counts.entry(text.to_owned()).or_default() += 1;
             }
         }
@@ -56,38 +50,49 @@ impl Answer {
         self.unit = table.column("level").map_or_else(String::new, |of| of.spec.unit.clone());
         for (level, outcome) in values.iter().zip(outcomes) {
             let (Some(level), Some(outcome)) = (level, outcome) else { continue };
-            let Some(levels) = &mut self.levels else { return };
-            let at = levels.iter().position(|(known, _)| known == level).unwrap_or_else(|| {
-                levels.push((*level, Tally::default()));
-                levels.len() - 1
-            });
-            levels[at].1.add(outcome);
-            if levels.len() > MOST {
-                self.levels = None;
+            let known = self.levels.iter().position(|(known, _)| known == level);
+            if known.is_none() && self.levels.len() > MOST {
+                return;
             }
+            let at = known.unwrap_or_else(|| {
+                self.levels.push((*level, Tally::default()));
+                self.levels.len() - 1
+            });
+            self.levels[at].1.add(outcome);
         }
     }
 
     /// Levels that several cases share, ascending; none where levels are drawn.
     fn levels(&self) -> Vec<(f64, Tally)> {
-        let mut levels = self.levels.clone().unwrap_or_default();
+        let mut levels = self.levels.clone();
         levels.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let shared = levels.len() > 1 && 2 * levels.len() as u64 <= self.tally.cases;
+        let few = (2..=MOST).contains(&levels.len());
+        let shared = few && 2 * levels.len() as u64 <= self.tally.cases;
         if shared { levels } else { Vec::new() }
     }
 }
 
-/// Counts, the largest first.
+/// Reasons beyond those that are told apart.
+const OTHERS: &str = "others";
+
+/// Counts, the largest first and what is not told apart last.
 fn sorted(counts: &BTreeMap<String, usize>) -> Vec<(&str, usize)> {
     let mut counts: Vec<(&str, usize)> = counts.iter().map(|(k, n)| (k.as_str(), *n)).collect();
-    counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(b.0)));
+    counts.sort_by_key(|(name, count)| (*name == OTHERS, Reverse(*count), *name));
     counts
+}
+
+/// How many cases collapse, and the share of them where the cases are a sample: levels and hunts go where collapses are.
+fn collapse(tally: &Tally, provenance: &Provenance) -> Option<String> {
+    let share = tally.collapse()?;
+    let share =
+        if provenance.is_sample() { format!(": {}", percent(share)) } else { String::new() };
+    Some(format!("  {} of {} collapse{share}", tally.collapsed, tally.judged))
 }
 
 /// The summary for people.
 pub(super) fn lines(answer: &Answer, provenance: &Provenance, folder: &Path) -> Vec<String> {
     let tally = answer.tally;
-    let hunted = provenance.design == "ida";
     let mut lines = vec![provenance.title.clone()];
     let state = if provenance.complete {
         String::new()
@@ -98,11 +103,7 @@ pub(super) fn lines(answer: &Answer, provenance: &Provenance, folder: &Path) -> 
         )
     };
     lines.push(format!("  {}{state}", counted(tally.cases, "case")));
-    if let Some(collapse) = tally.collapse() {
-        // A hunt goes where collapses are: its share of them says nothing.
-        let share = if hunted { String::new() } else { format!(": {}", percent(collapse)) };
-        lines.push(format!("  {} of {} collapse{share}", tally.collapsed, tally.judged));
-    }
+    lines.extend(collapse(&tally, provenance));
     lines.extend(answer.endings.sentences().into_iter().map(|said| format!("  {said}")));
     let modes: Vec<String> =
         sorted(&answer.modes).into_iter().map(|(mode, count)| format!("{mode} {count}")).collect();
@@ -157,10 +158,7 @@ pub(super) fn status(status: &Status) -> Vec<String> {
             if provenance.complete { "; nothing is left to run" } else { "" }
         ),
     ];
-    if provenance.design != "ida" {
-        let collapse = status.tally.collapse();
-        lines.extend(collapse.map(|share| format!("  collapse so far: {}", percent(share))));
-    }
+    lines.extend(collapse(&status.tally, provenance));
     if !status.missing.is_empty() {
         let mut shown: Vec<String> = status.missing.iter().take(20).map(usize::to_string).collect();
         if status.missing.len() > shown.len() {
@@ -171,10 +169,10 @@ pub(super) fn status(status: &Status) -> Vec<String> {
     lines
 }
 
-/// How cases ended.
-pub(super) fn tally(tally: &Tally) -> Value {
-    let collapse =
-        tally.collapse().map(|(p, interval)| json!({ "fraction": p, "interval_95": interval }));
+/// How cases ended, with the share of collapse where they are a sample.
+pub(super) fn tally(tally: &Tally, sample: bool) -> Value {
+    let collapse = tally.collapse().filter(|_| sample);
+    let collapse = collapse.map(|(p, interval)| json!({ "fraction": p, "interval_95": interval }));
     json!({
         "cases": tally.cases, "judged": tally.judged, "collapsed": tally.collapsed, "collapse": collapse,
     })
@@ -185,11 +183,11 @@ pub(super) fn json(answer: &Answer, provenance: &Provenance) -> anyhow::Result<S
     let levels: Vec<Value> = answer
         .levels()
         .iter()
-        .map(|(level, found)| json!({ "level": level, "tally": tally(found) }))
+        .map(|(level, found)| json!({ "level": level, "tally": tally(found, true) }))
         .collect();
     let document = json!({
         "provenance": provenance,
-        "tally": tally(&answer.tally),
+        "tally": tally(&answer.tally, provenance.is_sample()),
         "notes": answer.endings.sentences(),
         "levels": levels,
     });

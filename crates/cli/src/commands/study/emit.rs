@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use clap::ValueEnum;
 
 use crate::printer;
@@ -20,15 +20,15 @@ pub(super) struct EmitArgs {
     /// Folder of the results, which every worker must see.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Longest time of a chunk as Slurm takes it, such as 02:00:00; that of the partition without.
+    /// Longest time of a chunk as Slurm takes it, such as 02:00:00; that of the partition without (slurm).
     #[arg(long, value_name = "TIME")]
     walltime: Option<String>,
-    /// Most chunks that run at a time; as many as the engine has room for without.
+    /// Most chunks that run at a time; as many as the engine has room for without (slurm, parallel).
     #[arg(long, value_name = "NUMBER")]
     throttle: Option<NonZero<usize>>,
-    /// Most tasks of an array job, `MaxArraySize` of Slurm's configuration.
-    #[arg(long, value_name = "NUMBER", default_value = "1001")]
-    array_limit: NonZero<usize>,
+    /// Most tasks of an array job, `MaxArraySize` of Slurm's configuration; 1001 without (slurm).
+    #[arg(long, value_name = "NUMBER")]
+    array_limit: Option<NonZero<usize>>,
 }
 
 /// What runs the chunks.
@@ -80,6 +80,19 @@ impl Job {
 
 /// Prints the job file.
 pub(super) fn emit(args: &EmitArgs) -> anyhow::Result<()> {
+    let slurms = matches!(args.engine, Engine::Slurm);
+    let throttles = slurms || matches!(args.engine, Engine::Parallel);
+    for (option, given, known) in [
+        ("walltime", args.walltime.is_some(), slurms),
+        ("throttle", args.throttle.is_some(), throttles),
+        ("array-limit", args.array_limit.is_some(), slurms),
+    ] {
+        if given && !known {
+            bail!(
+                "--{option} says nothing to this engine; leave it out, and set it where the engine is started"
+            );
+        }
+    }
     let name = &args.which.study;
     let chunks = super::load(name)?.chunk_count();
     let file = Path::new(name);
@@ -108,23 +121,25 @@ fn in_document(text: &str) -> String {
 }
 
 fn slurm(job: &Job, args: &EmitArgs) -> String {
-    let limit = args.array_limit.get();
+    let limit = args.array_limit.map_or(1001, NonZero::get);
     let time =
         args.walltime.as_ref().map_or_else(String::new, |t| format!(" --time={}", quoted(t)));
     let most = args.throttle.map_or_else(String::new, |most| format!("%{most}"));
+    // The limit is one of each array: they follow each other where there are several.
+    let after = if args.throttle.is_some() { " ${job:+--dependency=afterany:$job}" } else { "" };
     let mut text = format!(
         "#!/bin/sh\n\
          # Submits {} chunks, one task each in arrays of at most {limit}, and behind them a job that collects the\n\
          # table: sh THIS-FILE. Options for sbatch such as --partition may stand behind the name of the file.\n\
-         set -eu\njobs=\n\
+         set -eu\njobs= job=\n\
          submit() {{ # number of the first chunk, last task, options\n\
          \x20   first=$1 last=$2; shift 2\n\
-         \x20   job=$(sbatch --parsable --requeue --cpus-per-task=1{time} --array=\"0-$last{most}\" \"$@\" <<END\n\
+         \x20   job=$(sbatch --parsable --requeue --cpus-per-task=1{time} --array=\"0-$last{most}\"{after} \"$@\" <<END\n\
          #!/bin/sh\n\
          exec {}\n\
          END\n\
          )\n\
-         \x20   jobs=\"$jobs:${{job%%;*}}\"\n}}\n",
+         \x20   job=${{job%%;*}} jobs=\"$jobs:${{job%%;*}}\"\n}}\n",
         job.chunks,
         in_document(&job.chunk(PLACE)).replace(PLACE, "\\$(($first + SLURM_ARRAY_TASK_ID))")
     );

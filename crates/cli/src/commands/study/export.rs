@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use anyhow::Context as _;
-use barrelstack_campaign::decision::{Request, export as exported};
+use barrelstack_campaign::decision::{Request, decide_folder, export as exported};
 
 use crate::printer;
+use crate::store::store;
 
 /// Arguments of `study export`.
 #[derive(Debug, clap::Args)]
@@ -23,13 +24,13 @@ pub(super) struct ExportArgs {
 
 /// Writes the files, and says what is not in them.
 pub(super) fn export(args: &ExportArgs) -> anyhow::Result<()> {
-    let (decision, made) = super::report::decision(&args.folder, &Request::default())?;
+    let (decision, made) = decide_folder(&args.folder, &Request::default())?;
     let found = exported(&decision, &made, &args.asset)?;
     std::fs::create_dir_all(&args.out)
         .with_context(|| format!("cannot make {}", args.out.display()))?;
     for (name, text) in &found.files {
         let path = args.out.join(name);
-        std::fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))?;
+        store(&path, text.as_bytes())?;
         printer::lines([path.display().to_string()])?;
     }
     found.notes.iter().for_each(|note| printer::warning(note));

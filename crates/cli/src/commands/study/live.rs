@@ -6,27 +6,30 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use barrelstack_campaign::study::Progress;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
 use crate::interrupt::Interrupt;
+use crate::progress::style;
 
 /// Tells how far a study is, and whether the user wants it to stop.
 pub(super) struct Live {
     bar: Option<ProgressBar>,
+    /// Whether the cases are a sample, so that their share of collapse means something.
+    sample: bool,
     interrupt: Interrupt,
     damaged: AtomicUsize,
 }
 
 impl Live {
     /// Starts; shows a line only when asked to and only on a terminal.
-    pub(super) fn new(show: bool) -> Self {
+    pub(super) fn new(show: bool, sample: bool) -> Self {
         let bar = (show && std::io::stderr().is_terminal()).then(|| {
             let bar = ProgressBar::no_length();
             bar.set_style(style("{spinner} reading the motions"));
             bar.enable_steady_tick(Duration::from_millis(200));
             bar
         });
-        Self { bar, interrupt: Interrupt::listen(), damaged: AtomicUsize::new(0) }
+        Self { bar, sample, interrupt: Interrupt::listen(), damaged: AtomicUsize::new(0) }
     }
 
     /// Whether the user asked to stop.
@@ -53,13 +56,16 @@ impl Live {
             }
             bar.set_length(progress.cases);
             bar.set_position(progress.before + progress.now);
-            if let Some((p, [low, high])) = progress.tally.collapse() {
+            if let Some((p, [low, high])) = progress.tally.collapse().filter(|_| self.sample) {
                 bar.set_message(format!(
                     "collapse {:.0} % ({:.0} to {:.0} %)",
                     100.0 * p,
                     100.0 * low,
                     100.0 * high
                 ));
+            } else {
+                let tally = progress.tally;
+                bar.set_message(format!("{} of {} collapse", tally.collapsed, tally.judged));
             }
         }
         self.interrupt.flow()
@@ -73,8 +79,4 @@ impl Drop for Live {
             bar.finish_and_clear();
         }
     }
-}
-
-fn style(template: &str) -> ProgressStyle {
-    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_spinner())
 }

@@ -2,12 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
-use barrelstack_campaign::decision::{Decision, DecisionError, Gathering, Request, SiteHazard};
-use barrelstack_campaign::study::{Provenance, StudyTable, read_parts};
+use barrelstack_campaign::decision::{Decision, Request, SiteHazard, decide_folder};
 
 use crate::commands::heights::page;
 use crate::printer;
+use crate::store::store;
 
 /// What the help ends with.
 const AFTER_HELP: &str = "\
@@ -43,7 +42,7 @@ pub(super) struct ReportArgs {
 pub(super) fn report(args: &ReportArgs) -> anyhow::Result<()> {
     let hazard = args.hazard.as_deref().map(SiteHazard::load).transpose()?;
     let request = Request { hazard, years: Some(f64::from(args.years)) };
-    let (decision, _) = decision(&args.folder, &request)?;
+    let (decision, _) = decide_folder(&args.folder, &request)?;
     let out = args.out.as_deref().unwrap_or(&args.folder);
     write(out, &decision)?;
     if args.json {
@@ -58,48 +57,18 @@ pub(super) fn report(args: &ReportArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What a folder says, read part by part, and what it comes from.
-pub(super) fn decision(folder: &Path, request: &Request) -> anyhow::Result<(Decision, Provenance)> {
-    let mut gathered = Gathered::default();
-    let made = read_parts(folder, &mut |made, rows| {
-        gathered.add(made, rows);
-        Ok(())
-    })?;
-    Ok((gathered.decide(&made, request)?, made))
-}
-
-/// What decisions rest on, as far as rows were read.
-#[derive(Default)]
-pub(super) struct Gathered(Option<Result<Gathering, DecisionError>>);
-
-impl Gathered {
-    /// Reads the rows that follow.
-    pub(super) fn add(&mut self, made: &Provenance, rows: &StudyTable) {
-        let gathering = self.0.take().unwrap_or_else(|| Gathering::new(made, rows));
-        self.0 = Some(gathering.and_then(|mut all| all.add(rows).map(|()| all)));
-    }
-
-    fn decide(self, made: &Provenance, request: &Request) -> Result<Decision, DecisionError> {
-        self.0.unwrap_or(Err(DecisionError::NoCases { rows: 0 }))?.decide(made, request)
-    }
-
-    /// Writes the page of a study that was run.
-    ///
-    /// A study without a single verdict has none, which is no reason to fail: its table says why.
-    pub(super) fn write_page(
-        self,
-        out: &Path,
-        made: &Provenance,
-    ) -> anyhow::Result<Option<PathBuf>> {
-        match self.decide(made, &Request::default()) {
-            Ok(decision) => {
-                write(out, &decision)?;
-                Ok(Some(out.join("index.html")))
-            }
-            Err(error) => {
-                printer::warning(&format!("no page: {error}"));
-                Ok(None)
-            }
+/// Writes the page of a study that was run.
+///
+/// A study without a single verdict has none, which is no reason to fail: its table says why.
+pub(super) fn write_page(out: &Path) -> anyhow::Result<Option<PathBuf>> {
+    match decide_folder(out, &Request::default()) {
+        Ok((decision, _)) => {
+            write(out, &decision)?;
+            Ok(Some(out.join("index.html")))
+        }
+        Err(error) => {
+            printer::warning(&format!("no page: {error}"));
+            Ok(None)
         }
     }
 }
@@ -108,5 +77,5 @@ fn write(out: &Path, decision: &Decision) -> anyhow::Result<()> {
     page(out, &decision.html(), &decision.markdown("figures"))?;
     let path = out.join("decision.json");
     let text = serde_json::to_string_pretty(&decision.json())? + "\n";
-    std::fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
+    store(&path, text.as_bytes())
 }

@@ -1,6 +1,6 @@
 //! The columns of the table of records: what the header, the flatfile and the measures say.
 
-use barrelstack_campaign::study::{Column, ColumnSpec, Role, Value, ValueKind, Values};
+use barrelstack_campaign::study::{ColumnSpec, Role, Value, ValueKind};
 use barrelstack_motion::{ClassifiedPulse, FlatRow, Measured, MeasuredComponent};
 
 use super::{Source, Worked, stage_of};
@@ -34,23 +34,6 @@ impl Found<'_> {
 
 /// A column with its value in a row.
 type Cell = (ColumnSpec, Option<Value>);
-
-/// A column without rows.
-pub(super) fn empty(spec: ColumnSpec) -> Column {
-    Column { values: Values::empty(spec.kind), spec }
-}
-
-/// Appends a value; one of another kind than the column's is none.
-pub(super) fn push(column: &mut Column, value: Option<&Value>) {
-    match (&mut column.values, value) {
-        (Values::Integer(values), Some(Value::Integer(value))) => values.push(Some(*value)),
-        (Values::Number(values), Some(Value::Number(value))) => values.push(Some(*value)),
-        (Values::Text(values), Some(Value::Text(value))) => values.push(Some(value.clone())),
-        (Values::Integer(values), _) => values.push(None),
-        (Values::Number(values), _) => values.push(None),
-        (Values::Text(values), _) => values.push(None),
-    }
-}
 
 fn spec(name: String, unit: &str, role: Role, kind: ValueKind) -> ColumnSpec {
     ColumnSpec { name, unit: unit.to_owned(), role, kind }

@@ -1,7 +1,7 @@
 //! What was done already, one line a record, so that a stop loses nothing.
 
 use std::collections::BTreeMap;
-use std::fs::File;
+use std::fs::{File, TryLockError};
 use std::io::{BufRead as _, BufReader, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -73,6 +73,12 @@ impl Journal {
             .open(&path)
             .map_err(input::plain)
             .with_context(|| cannot("write"))?;
+        // Where a file system has no locks, two commands are not told from each other.
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            let out = out.display();
+            bail!("another command is at work in {out}: wait for it, or name another folder");
+        }
+        let head = format!("{head}\n");
         let (mut at, mut lines) = (0, BTreeMap::new());
         let mut reader = BufReader::new(&file);
         let mut line = Vec::new();
@@ -80,19 +86,21 @@ impl Journal {
             line.clear();
             let read = reader.read_until(b'\n', &mut line).map_err(input::plain);
             let read = read.with_context(|| cannot("read"))? as u64;
+            let found = serde_json::from_slice::<serde_json::Value>(&line).ok();
+            // A cut head, as a kill leaves it, is ours as well.
+            if at == 0 && !head.as_bytes().starts_with(&line) {
+                let settings = found.as_ref().and_then(|first| first["settings"].as_str());
+                let whose = settings.map_or_else(
+                    || "a rows.jsonl that is none of this program".to_owned(),
+                    |settings| format!("the table of another command ({settings})"),
+                );
+                bail!(
+                    "{} holds {whose}: name another folder, or remove rows.jsonl there",
+                    out.display()
+                );
+            }
             if !line.ends_with(b"\n") {
                 break;
-            }
-            let found = serde_json::from_slice::<serde_json::Value>(&line).ok();
-            match found {
-                Some(first) if at == 0 && first != head => bail!(
-                    "{} holds the table of another command ({}): name another folder, or remove \
-                     rows.jsonl there",
-                    out.display(),
-                    first["settings"]
-                ),
-                None if at == 0 => break,
-                _ => {}
             }
             if let Some(entry) = found.and_then(|found| Entry::of(&found, specs)) {
                 let measured = entry.row.is_some();
@@ -104,7 +112,7 @@ impl Journal {
         let specs = specs.to_vec();
         let mut inner = Inner { file, length: at, lines };
         if at == 0 {
-            inner.append(&format!("{head}\n")).with_context(|| cannot("write"))?;
+            inner.append(&head).with_context(|| cannot("write"))?;
         }
         Ok(Self { path, specs, inner: Mutex::new(inner) })
     }

@@ -12,15 +12,15 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use anyhow::{Context as _, bail};
 use barrelstack::pool;
 use barrelstack::scenario::{Dimension, fnv1a};
-use barrelstack_campaign::study::{Column, StudyTable};
+use barrelstack_campaign::study::StudyTable;
 use barrelstack_motion::{Flatfile, Processing, Record, Stage, measure, record_sequence_number};
 use indicatif::ProgressBar;
 
 use super::input::{self, Chain, Input};
-use super::output::store;
 use crate::interrupt::Interrupt;
 use crate::printer;
 use crate::progress;
+use crate::store::store;
 use columns::{Found, cells};
 use journal::{Entry, Journal};
 pub(super) use tree::Source;
@@ -175,7 +175,7 @@ pub(super) fn run(
     };
     let done = pool::map(&sources, one, &|done| bar.set_position(done as u64));
     bar.finish_and_clear();
-    let mut columns: Vec<Column> = specs.into_iter().map(columns::empty).collect();
+    let mut table = StudyTable::empty(&specs);
     let (mut refused, mut stopped) = (Vec::new(), false);
     for (done, source) in done.into_iter().zip(&sources) {
         match done? {
@@ -183,8 +183,8 @@ pub(super) fn run(
             Done::Unsure(reasons) => refused.extend(reasons),
             Done::Noted => {
                 let entry = journal.entry(&source.record.name)?;
-                for (column, value) in columns.iter_mut().zip(entry.row.iter().flatten()) {
-                    columns::push(column, value.as_ref());
+                if let Some(row) = entry.row {
+                    table.push(row)?;
                 }
                 refused.extend(entry.refused);
             }
@@ -192,7 +192,7 @@ pub(super) fn run(
     }
     let before = before.into_inner();
     let out = batch.out.to_owned();
-    let found = Measurements { table: StudyTable::new(columns)?, refused, before, stopped, out };
+    let found = Measurements { table, refused, before, stopped, out };
     found.write()?;
     Ok(found)
 }
@@ -212,16 +212,15 @@ impl Measurements {
 
     /// Tells what was done, and gives the status: 130 if it was stopped.
     pub(super) fn tell(&self) -> anyhow::Result<ExitCode> {
-        let plural = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
         let mut lines = vec![format!(
             "{} measured{}, {} refused",
-            plural(self.table.rows(), "record"),
+            printer::counted(self.table.rows() as u64, "record"),
             if self.before > 0 {
                 format!(" ({} of them before)", self.before)
             } else {
                 String::new()
             },
-            plural(self.refused.len(), "file")
+            printer::counted(self.refused.len() as u64, "file")
         )];
         for (_, reason) in self.refused.iter().take(NAMED) {
             lines.push(format!("  {reason}"));

@@ -6,7 +6,7 @@ use barrelstack_campaign::study::StudyTable;
 use barrelstack_motion::{Chosen, Selection, SelectionTarget};
 
 use super::SelectArgs;
-use crate::commands::motion::output::store;
+use crate::store::store;
 
 /// A set and where it comes from.
 pub(super) struct Set<'a> {
