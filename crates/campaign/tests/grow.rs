@@ -158,3 +158,23 @@ fn a_process_whose_study_grew_meanwhile_ends_and_says_so() {
     let error = study.run(&out, &options, &tell).unwrap_err().to_string();
     assert!(error.contains("has been given to a study that grew since this run began"), "{error}");
 }
+
+#[test]
+fn a_shard_that_is_damaged_while_a_study_runs_is_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = Study::parse("test.toml", &text(60, PULSE, "", "sobol")).unwrap();
+    let damaged = folder.path().join("shards/000002-0000000000000000.parquet");
+    let last = Mutex::new(Progress::default());
+    let tell = |progress: &Progress| {
+        if progress.now == 1 {
+            std::fs::write(&damaged, "no shard").unwrap();
+        }
+        *last.lock().unwrap() = *progress;
+        ControlFlow::Continue(())
+    };
+    let options = RunOptions { threads: std::num::NonZero::new(1) };
+    let collected = study.run(folder.path(), &options, &tell).unwrap();
+    let last = last.lock().unwrap();
+    assert_eq!((last.damaged, last.now, collected.table.rows()), (1, 60, 60));
+    assert!(damaged.with_extension("damaged").is_file() && !damaged.exists());
+}
