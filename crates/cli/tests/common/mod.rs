@@ -40,12 +40,6 @@ pub(crate) fn program<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -
     command
 }
 
-/// Says that a test has nothing to test here, past the runner, which keeps what a passing test prints, to
-/// where skipped tests are counted.
-pub(crate) fn skipped(why: &str) {
-    std::io::stdout().write_all(format!("skipped: {why}\n").as_bytes()).unwrap();
-}
-
 /// Runs the program to its end.
 pub(crate) fn barrelstack<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Output {
     program(arguments).output().unwrap()
