@@ -53,7 +53,7 @@ const MOST: usize = 6;
 pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> Vec<Effect> {
     // One at a time: a factor's cases are those in which every other stands at its base.
     let alone = made.design == "one-at-a-time";
-    let base: Vec<Option<Value>> = factors.iter().map(most_frequent).collect();
+    let base: Vec<Option<Value>> = factors.iter().filter(|_| alone).map(most_frequent).collect();
     let mut found: Vec<Effect> = factors
         .iter()
         .enumerate()
