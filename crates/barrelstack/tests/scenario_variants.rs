@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
+use std::f64::consts::PI;
+
 use barrelstack_motion::IntensityMeasure;
 
 use barrelstack::scenario::{
@@ -275,10 +277,10 @@ fn shapes_with_their_uniform_inertia() {
     // Outline, mass 12 kg, moment of inertia (kg·m²), center of mass (m).
     let cases: [(&str, f64, [f64; 2]); 6] = [
         (r#"{ type = "rectangle", width = "3 m", height = "4 m" }"#, 25.0, [0.0, 0.0]),
-        // A rectangle all corners is a disk.
+        // A cross of rectangles and four quarters of a disk.
         (
-            r#"{ type = "rectangle", width = "2 m", height = "2 m", corner_radius = "1 m" }"#,
-            6.0,
+            r#"{ type = "rectangle", width = "2 m", height = "2 m", corner_radius = "0.5 m" }"#,
+            12.0 * (11.0 / 6.0 + 5.0 * PI / 32.0) / (3.0 + PI / 4.0),
             [0.0, 0.0],
         ),
         (r#"{ type = "circle", radius = "2 m" }"#, 24.0, [0.0, 0.0]),

@@ -250,9 +250,9 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Shape, ScenarioError> {
         ShapeName::BarrelProfile => {
             let bilge_diameter = reader.quantity("bilge_diameter")?;
             let head_diameter = reader.quantity("head_diameter")?;
-            if head_diameter >= bilge_diameter {
+            if head_diameter > bilge_diameter {
                 let message = format!(
-                    "`{}` is {head_diameter} m, not less than the bilge of {bilge_diameter} m; a barrel is widest at the \
+                    "`{}` is {head_diameter} m, more than the bilge of {bilge_diameter} m; a barrel is widest at the \
                      bilge",
                     reader.path_of("head_diameter")
                 );

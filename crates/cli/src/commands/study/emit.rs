@@ -136,7 +136,12 @@ fn slurm(job: &Job, args: &EmitArgs) -> String {
          \x20   first=$1 last=$2; shift 2\n\
          \x20   job=$(sbatch --parsable --requeue --cpus-per-task=1{time} --array=\"0-$last{most}\"{after} \"$@\" <<END\n\
          #!/bin/sh\n\
-         exec {}\n\
+         # What was killed on its node is run again, up to three times.\n\
+         for again in 1 2 3; do\n\
+         \x20   {} && exit 0\n\
+         \x20   [ \\$? -gt 128 ] || exit 1\n\
+         done\n\
+         exit 1\n\
          END\n\
          )\n\
          \x20   job=${{job%%;*}} jobs=\"$jobs:${{job%%;*}}\"\n}}\n",
