@@ -144,7 +144,7 @@ fn racks_and_cradles() {
     let Cradle::Arc { radius: 0.34, half_angle } = arc.stack().unwrap().rack.cradle else {
         panic!()
     };
-    assert_eq!(half_angle, 40.0 / 180.0 * std::f64::consts::PI);
+    assert_eq!(half_angle, 40.0 / 180.0 * PI);
     let named = stack(&["stack.rack.cradle=supports"]);
     assert_eq!(named.stack().unwrap().rack.cradle, stack(&[]).stack().unwrap().rack.cradle);
 }
@@ -292,8 +292,8 @@ fn shapes_with_their_uniform_inertia() {
         // Half a circle of wire: depth 2 r/π.
         (
             r#"{ type = "cradle", radius = "1 m", half_angle = "90 deg" }"#,
-            12.0 * (1.0 - 4.0 / (std::f64::consts::PI * std::f64::consts::PI)),
-            [0.0, -2.0 / std::f64::consts::PI],
+            12.0 * (1.0 - 4.0 / (PI * PI)),
+            [0.0, -2.0 / PI],
         ),
         (
             r#"{ type = "barrel-profile", length = "3 m", bilge_diameter = "4 m", head_diameter = "4 m" }"#,
