@@ -29,17 +29,20 @@ pub struct ContactPair {
 }
 
 /// Where the contacts of a pair count: so that none is counted twice where a face carries nodes for one
-/// round body and is tested exactly by another pair.
+/// body and is tested exactly by another pair.
+///
+/// A contact is one of the face where the other body's center of mass lies before it and the contact's normal
+/// points no further aside than [`Face::widest`](crate::body::Face::widest).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Counts {
     /// Everywhere.
     #[default]
     Everywhere,
-    /// While the center of mass of the target lies before this face of the contactor.
+    /// Contacts with the target that are of this face of the contactor.
     BeforeFace(usize),
-    /// While the center of mass of the target does not lie before this face of the contactor.
+    /// Contacts with the target that are not of this face of the contactor.
     BehindFace(usize),
-    /// While the center of mass of the contactor does not lie before this face of the target.
+    /// Contacts with the contactor that are not of this face of the target.
     BehindFaceOfTarget(usize),
 }
 
