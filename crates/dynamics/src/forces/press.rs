@@ -176,7 +176,7 @@ const FORESEEN: f64 = 0.01;
 /// How far past the limits of a round piece a normal may point, on the way to another round piece.
 const LIMIT: f64 = 2e-7;
 
-impl<S: Space> Press<'_, S> {
+impl<'a, S: Space> Press<'a, S> {
     /// The round pieces of a convex boundary, each with its deepest point.
     ///
     /// A round piece against a straight side is a contact of this pair wherever it is deepest, or ends
@@ -261,12 +261,15 @@ impl<S: Space> Press<'_, S> {
 
     /// How the bodies meet, asked for by the first node that is near.
     #[inline(always)]
-    fn meeting(&mut self) -> &Meeting<'_, S> {
-        let (frame, (contactor, target)) = (self.frame, self.twists);
-        self.meeting.get_or_insert_with(
-            #[inline(always)]
-            || Meeting::new(frame, contactor, target),
-        )
+    fn meeting(&mut self) -> Meeting<'a, S> {
+        let (contactor, target) = self.twists;
+        let meeting = match self.meeting {
+            Some(meeting) => meeting,
+            // Not in a closure, which would be compiled outside of the scope of the vector unit.
+            None => Meeting::new(self.frame, contactor, target),
+        };
+        self.meeting = Some(meeting);
+        meeting
     }
 
     /// The share with which a corner counts on a side, near whose end the corner of the other body may
@@ -316,8 +319,7 @@ impl<S: Space> Press<'_, S> {
             gap.distance =
                 S::Real::select(face.counts(gap.normal), gap.distance, S::Real::splat(1.0));
         }
-        self.meeting();
-        let Some(meeting) = &self.meeting else { return S::Real::zero() };
+        let meeting = self.meeting();
         let contact = meeting.contact(self.pair, self.elements, element, node, gap);
         let touching = contact.touching;
         let whole = self.elements.weights[element] * share;
@@ -382,6 +384,7 @@ struct PairWrench<S: Space> {
 }
 
 /// Two bodies at their contact, seen from the target's surface.
+#[derive(Clone, Copy)]
 struct Meeting<'a, S: Space> {
     frame: &'a PairFrame<S>,
     /// Center of mass of the contactor from that of the target (m).
