@@ -170,7 +170,7 @@ const SLACK: f64 = 1e-9;
 /// How far (m) from the end of a side a corner is a contact in full, whatever else is inside there.
 const COMPANION: f64 = 0.01;
 
-/// Impacts are foreseen from this gap (m) on; faster ones are followed from the contact on.
+/// Impacts are foreseen from this way (m) on to the depth that whole steps follow; faster ones later.
 const FORESEEN: f64 = 0.01;
 
 /// How far past the limits of a round piece a normal may point, on the way to another round piece.
@@ -244,15 +244,14 @@ impl<'a, S: Space> Press<'a, S> {
     /// Tells whether a node at `node` (m) will soon be deeper than whole time steps follow, wherever it
     /// touches or is about to.
     #[inline(always)]
-    fn foresee(&mut self, node: S::Vector, mut gap: Gap<S>) {
+    fn foresee(&mut self, node: S::Vector, gap: Gap<S>) {
         let Some(calm) = self.calm else { return };
-        if let Some(face) = self.counted {
-            gap.distance =
-                S::Real::select(face.counts(gap.normal), gap.distance, S::Real::splat(1.0));
-        }
-        let near = gap.distance.lt(S::Real::splat(FORESEEN));
+        let mut near = gap.distance.lt(S::Real::splat(FORESEEN) - calm);
         if !near.any() {
             return;
+        }
+        if let Some(face) = self.counted {
+            near = near & face.counts(gap.normal);
         }
         let approach = -self.meeting().velocity(node).dot(gap.normal);
         let ahead = self.horizon * approach.max(S::Real::zero());
