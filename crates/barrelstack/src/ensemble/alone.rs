@@ -6,19 +6,20 @@ use barrelstack_dynamics::{
     EnergyLedger, Model, Observer, Planar, Scratch, Simulation, State, simulate,
 };
 
-use super::{Audience, CaseResult, Run, Stack};
+use super::{Audience, CaseResult, Run};
 use crate::run::{Ended, conclude, method, thresholds};
+use crate::stand::Stack;
 use crate::watch::{End, Ending, Fates};
 
 /// Runs a group; none when asked to stop.
 pub(super) fn run(
     group: &[Run<'_>],
-    stacks: &[Stack],
+    stacks: &[Stack<'_>],
     audience: &mut Audience<'_>,
 ) -> Option<Vec<(usize, CaseResult)>> {
     let mut results = Vec::with_capacity(group.len());
     for run in group {
-        let Ok((standing, _)) = &stacks[run.stack].standing else { continue };
+        let Ok(standing) = &stacks[run.stack].standing else { continue };
         let scenario = &*run.case.scenario;
         let (mut state, mut scratch) = (standing.state.clone(), standing.scratch.clone());
         let simulation = Simulation {

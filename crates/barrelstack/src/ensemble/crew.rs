@@ -4,9 +4,10 @@ use barrelstack_dynamics::lanes::{self, Case, End, Lanewise as _, Task, Width, m
 use barrelstack_dynamics::real::{Mask, Real};
 use barrelstack_dynamics::{Finish, Method, Planar, Scratch, State};
 
-use super::{Audience, CaseResult, Run, Stack};
+use super::{Audience, CaseResult, Run};
 use crate::ground::Ground;
-use crate::run::{Ended, Standing, conclude, thresholds};
+use crate::run::{Ended, conclude, thresholds};
+use crate::stand::{Stack, Standing};
 use crate::watch::{self, Ending, Fates};
 
 /// Steps between two questions whether to stop.
@@ -17,7 +18,7 @@ pub(super) fn run(
     width: Width,
     method: Method,
     group: &[Run<'_>],
-    stacks: &[Stack],
+    stacks: &[Stack<'_>],
     audience: &mut Audience<'_>,
 ) -> Option<Vec<(usize, CaseResult)>> {
     let width = if width.is_here() { width } else { Width::Scalar };
@@ -27,7 +28,7 @@ pub(super) fn run(
 struct Marching<'a, 'b> {
     method: Method,
     group: &'a [Run<'a>],
-    stacks: &'a [Stack],
+    stacks: &'a [Stack<'a>],
     audience: &'a mut Audience<'b>,
 }
 
@@ -56,7 +57,7 @@ impl Task for Marching<'_, '_> {
 
 struct Crew<'a, 'b, R: Real> {
     group: &'a [Run<'a>],
-    stacks: &'a [Stack],
+    stacks: &'a [Stack<'a>],
     audience: &'a mut Audience<'b>,
     /// The next run of the group.
     next: usize,
@@ -77,7 +78,7 @@ struct Crew<'a, 'b, R: Real> {
 impl<R: Real> Crew<'_, '_, R> {
     fn standing(&self, lane: usize) -> Option<(&Run<'_>, &Standing)> {
         let run = &self.group[self.runs[lane]];
-        self.stacks[run.stack].standing.as_ref().ok().map(|(standing, _)| (run, standing))
+        self.stacks[run.stack].standing.as_ref().ok().map(|standing| (run, standing))
     }
 }
 
@@ -88,7 +89,7 @@ impl<'a, R: Real> lanes::Crew<'a, R> for Crew<'a, '_, R> {
         let run = self.group.get(self.next).filter(|_| !self.interrupted)?;
         self.runs[lane] = self.next;
         self.next += 1;
-        let (standing, _) = self.stacks[run.stack].standing.as_ref().ok()?;
+        let standing = self.stacks[run.stack].standing.as_ref().ok()?;
         Some(Case {
             model: &standing.assembly.model,
             state: standing.state.clone(),
