@@ -44,6 +44,15 @@ struct Held<R> {
     turn: R,
 }
 
+impl<R: Real> Held<R> {
+    /// Adds a spring (N/m) at an arm (m).
+    #[inline(always)]
+    fn by(&mut self, stiffness: R, arm: impl Linear<R>) {
+        self.way += stiffness;
+        self.turn += stiffness * arm.dot(arm);
+    }
+}
+
 /// What relaxation carries from step to step. Lanes decide alone; a lane that rests stays as it is.
 pub(super) struct Relaxation<S: Space> {
     /// Fictitious mass over the stiffness that a body's contacts add up to.
@@ -144,11 +153,6 @@ impl<S: Space> Relaxation<S> {
     fn weigh_all(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
         let none = Held { way: S::Real::zero(), turn: S::Real::zero() };
         let mut now = vec![none; model.bodies.len()];
-        let mut hold = |body: usize, stiffness: S::Real, arm: S::Vector| {
-            self.met[body] = true;
-            now[body].way += stiffness;
-            now[body].turn += stiffness * arm.dot(arm);
-        };
         self.touches.clear();
         self.touched.clear();
         self.touched.resize(state.contact_elements.len(), Default::default());
@@ -161,16 +165,18 @@ impl<S: Space> Relaxation<S> {
             let origin = state.poses[pair.target].position + S::rotate(target, placed.offset);
             let point = origin + S::rotate(rotation, contact.point);
             let bodies = [pair.contactor, pair.target];
-            let arms = bodies.map(
-                #[inline(always)]
-                |body| point - state.poses[body].position,
-            );
+            let arms = [
+                point - state.poses[pair.contactor].position,
+                point - state.poses[pair.target].position,
+            ];
             let zero = S::Real::zero();
             let weight = state.contact_elements.weights[contact.element];
             let weight = S::Real::select(contact.touching, weight, zero);
             let stiffness = interface.stiffness(contact.penetration) * weight;
-            hold(bodies[0], stiffness, arms[0]);
-            hold(bodies[1], stiffness, arms[1]);
+            for (body, arm) in bodies.into_iter().zip(arms) {
+                self.met[body] = true;
+                now[body].by(stiffness, arm);
+            }
             let (element, touching, normal) = (contact.element, contact.touching, contact.normal);
             self.touched[element] = touching;
             self.touches.push(Touch { element, touching, bodies, arms, rotation, normal });
@@ -180,7 +186,8 @@ impl<S: Space> Relaxation<S> {
             if bears.any() {
                 let stiffness = S::Real::select(bears, element.stiffness(), S::Real::zero());
                 for (body, point) in element.ends() {
-                    hold(body, stiffness, point);
+                    self.met[body] = true;
+                    now[body].by(stiffness, point);
                 }
             }
         }
