@@ -193,7 +193,7 @@ impl Scenario {
             &mut told,
         );
         let result = simulate(model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
-        let Watch { recording, stresses, fates, elements, ending, .. } = watch;
+        let Watch { recording, mut stresses, fates, elements, ending, .. } = watch;
         let ending = ending.unwrap_or(Ending::of_time(self));
         let ended = result.map(|totals| Ended::of(&totals));
         let Verdict { outcome, energy, steps, mut warnings, ending } =
@@ -218,7 +218,7 @@ impl Scenario {
             outcome,
             fates,
             elements: elements.0,
-            stresses,
+            stresses: stresses.finish(0),
             recording,
             energy,
             settled,

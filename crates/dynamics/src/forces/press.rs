@@ -305,7 +305,9 @@ impl<S: Space> Press<'_, S> {
         self.pressed.push(Pressed {
             element,
             pair: self.pair,
+            node: contact.node,
             touching,
+            point: contact.point,
             normal_force,
             weight: whole,
         });
