@@ -95,7 +95,7 @@ impl CaseResult {
             falls: if sound { barrels.iter().map(fall).collect() } else { Vec::new() },
             fall_heights: if sound { heights().collect() } else { Vec::new() },
             demands: if sound {
-                Demands::of(assembly, fates, Some(stresses))
+                Demands::of(assembly, fates, stresses)
             } else {
                 Demands::default()
             },

@@ -1,6 +1,6 @@
 //! Forces between bodies that lean on each other by design: at rest, and at their largest.
 
-use barrelstack_dynamics::real::Real;
+use barrelstack_dynamics::real::{Mask, Real};
 use barrelstack_dynamics::{BodyId, Planar, Scratch, Vec2, lanewise};
 
 use crate::assemble::{Assembly, PartKind};
@@ -104,12 +104,16 @@ impl<R: Real> Joints<R> {
         }
         for joint in &mut self.joints {
             let Vec2 { x, z } = joint.force;
-            let more = joint.peak_vertical.0.lt(z);
             let (most, when) = joint.peak_vertical;
-            joint.peak_vertical = (R::select(more, z, most), R::select(more, time, when));
+            let more = most.lt(z);
+            if more.any() {
+                joint.peak_vertical = (R::select(more, z, most), R::select(more, time, when));
+            }
             let (most, when) = joint.peak_horizontal;
             let more = most.abs().lt(x.abs());
-            joint.peak_horizontal = (R::select(more, x, most), R::select(more, time, when));
+            if more.any() {
+                joint.peak_horizontal = (R::select(more, x, most), R::select(more, time, when));
+            }
         }
     }
 }

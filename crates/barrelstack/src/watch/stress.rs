@@ -303,7 +303,9 @@ impl<R: Real> Pressing<R> {
             let presses = watched & pressed.touching;
             let here = presses & bounds.holds(pressed.point);
             let more = here & bounds.most.lt(pressed.normal_force);
-            bounds.most = R::select(more, pressed.normal_force, bounds.most);
+            if more.any() {
+                bounds.most = R::select(more, pressed.normal_force, bounds.most);
+            }
             let leaves = presses & !here;
             if leaves.any() {
                 for lane in (0..R::LANES).filter(|lane| leaves.lane(*lane)) {

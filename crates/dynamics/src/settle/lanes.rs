@@ -6,7 +6,7 @@ use crate::integrate::{Still, place_prescribed};
 use crate::lanes::Lanewise;
 use crate::model::Model;
 use crate::real::{Mask, Real};
-use crate::space::{Planar, Pose};
+use crate::space::{Planar, Pose, Twist};
 use crate::state::State;
 
 use super::refusal::Departure;
@@ -127,7 +127,7 @@ impl<R: Real> Lanes<R> {
         self.relaxation.begin(lane);
         self.state.poses.put(lane, poses);
         for twist in &mut self.state.twists {
-            twist.put(lane, &Default::default());
+            twist.put(lane, &Twist::default());
         }
     }
 
