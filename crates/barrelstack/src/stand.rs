@@ -57,7 +57,7 @@ impl<'a> Stack<'a> {
         let own = self.scenario;
         let stands = |scenario: &Scenario| {
             let run = &scenario.run;
-            (run.settle, run.gravity, run.similitude, run.step, run.method)
+            (run.settle, run.gravity, run.similitude, run.accuracy, run.step, run.method)
         };
         let scenes_agree = || match (&own.scene, &other.scene) {
             (Scene::Stack { stack: a, .. }, Scene::Stack { stack: b, .. }) => a == b,
