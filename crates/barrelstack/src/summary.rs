@@ -247,7 +247,7 @@ impl Summary {
                 // Numbers of a run that broke down look like results and are none.
                 Demands::default()
             } else {
-                Demands::of(&run.assembly, &run.fates, Some(&run.stresses))
+                Demands::of(&run.assembly, &run.fates, &run.stresses)
             },
             interfaces: joints(run),
             devices: Devices::of(run),

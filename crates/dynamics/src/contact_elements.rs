@@ -353,6 +353,16 @@ impl<R: Real> ContactElements<Planar<R>> {
             }
         }
     }
+
+    /// What a lane remembers of the elements that touch in it: a list to be rebuilt for a single state.
+    pub(crate) fn of_lane(&self, lane: usize, touching: &[R::Mask]) -> ContactElements<Planar> {
+        let stick = |(stick, touching): (&Stick<Planar<R>>, &R::Mask)| {
+            if touching.lane(lane) { stick.of_lane(lane) } else { Stick::default() }
+        };
+        let sticks = self.sticks.iter().zip(touching).map(stick).collect();
+        let (groups, nodes) = (self.groups.clone(), self.nodes.clone());
+        ContactElements { groups, nodes, sticks, ..ContactElements::default() }
+    }
 }
 
 /// How far (m) every body may move before a list is stale, by how fast it moves: in the worst lane,

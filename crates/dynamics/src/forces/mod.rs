@@ -118,18 +118,25 @@ pub struct Scratch<S: Space> {
     pub(crate) old_accelerations: Vec<Twist<S>>,
     /// Slip rates of that state.
     pub(crate) old_slip_rates: Vec<S::Tangent>,
-    /// What of the contacts their sticks must know once the step is accepted.
-    pressed: Vec<Pressed<S>>,
+    /// What of the contacts their sticks must know once the step is accepted, and how hard they press; in
+    /// the order of their elements.
+    pub pressed: Vec<Pressed<S>>,
 }
 
 /// An element that touches in at least one lane.
 #[derive(Clone, Copy, Debug)]
-struct Pressed<S: Space> {
+pub struct Pressed<S: Space> {
     element: usize,
-    pair: usize,
-    touching: <S::Real as Real>::Mask,
-    /// Compressive force (N).
-    normal_force: S::Real,
+    /// Which pair of the model.
+    pub pair: usize,
+    /// Which node of the contactor's node set.
+    pub node: u32,
+    /// Where it touches.
+    pub touching: <S::Real as Real>::Mask,
+    /// The companion point (m), in the frame of the target's surface.
+    pub point: S::Vector,
+    /// Compressive force (N); zero where it does not touch.
+    pub normal_force: S::Real,
     /// What the constants of its laws are multiplied by.
     weight: S::Real,
 }

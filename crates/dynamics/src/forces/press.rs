@@ -353,7 +353,9 @@ impl<'a, S: Space> Press<'a, S> {
         self.pressed.push(Pressed {
             element,
             pair: self.pair,
+            node: contact.node,
             touching,
+            point: contact.point,
             normal_force,
             weight: whole,
         });
