@@ -14,13 +14,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use barrelstack_dynamics::Method;
-use barrelstack_dynamics::lanes::{Topology, Width};
+use barrelstack_dynamics::lanes::Topology;
 
 use crate::pool;
 use crate::run::{RunFailure, Standing, check_length, end_time, method, stand};
 use crate::scenario::Scenario;
 use crate::watch::End;
 
+pub use barrelstack_dynamics::lanes::Width;
 pub use case::{CaseResult, Prepared};
 
 /// Version of what an ensemble computes: raised whenever the same case may give other bits, so that
@@ -53,7 +54,7 @@ pub struct Audience<'a> {
 ///     let change = format!("interface.block-ground.friction.coefficient={friction}");
 ///     cases.push(Prepared::new(Scenario::builtin("sliding-block", &[change])?)?);
 /// }
-/// let results = Ensemble { cases }.run();
+/// let results = Ensemble { cases, ..Ensemble::default() }.run();
 /// assert!(results.iter().all(|result| result.outcome.is_ok()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -61,6 +62,8 @@ pub struct Audience<'a> {
 pub struct Ensemble {
     /// The cases; those of one stack or one motion share it.
     pub cases: Vec<Prepared>,
+    /// The vector unit in which they march; the widest of the machine without. Results do not depend on it.
+    pub lanes: Option<Width>,
 }
 
 impl Ensemble {
@@ -77,6 +80,7 @@ impl Ensemble {
         observer: &(dyn Fn(&CaseResult) -> ControlFlow<()> + Sync),
     ) -> Option<Vec<CaseResult>> {
         let stopped = AtomicBool::new(false);
+        let lanes = self.lanes.unwrap_or_else(Width::widest);
         let together = |cases: &&[Prepared]| {
             let mut tell = |result: &CaseResult| {
                 if observer(result).is_break() {
@@ -84,7 +88,7 @@ impl Ensemble {
                 }
             };
             let stop = || stopped.load(Ordering::Relaxed);
-            simulate(cases, &mut Audience { tell: &mut tell, stop: &stop })
+            simulate_in(lanes, cases, &mut Audience { tell: &mut tell, stop: &stop })
         };
         let batches: Vec<&[Prepared]> = self.cases.chunks(BATCH).collect();
         let done: Option<Vec<_>> = pool::map(&batches, together, &|_| ()).into_iter().collect();
