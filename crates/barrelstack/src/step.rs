@@ -2,7 +2,7 @@
 
 use barrelstack_dynamics::body::Motion;
 use barrelstack_dynamics::{
-    Body, ContactPair, Element, Linear as _, Model, Nodes, NormalLaw, Planar, Shape, math,
+    Body, BodyId, ContactPair, Element, Linear as _, Model, Nodes, NormalLaw, Planar, Shape, math,
 };
 
 use crate::assemble::Assembly;
@@ -79,13 +79,34 @@ fn fastest(
     rate: impl Fn(&Model<Planar>, &ContactPair, &Body<Planar>) -> f64,
 ) -> f64 {
     let mut most = 0.0_f64;
-    for pair in model.pairs() {
-        for body in [pair.contactor, pair.target].map(|id| &model.bodies()[id]) {
-            if body.motion == Motion::Free {
-                most = most.max(2.0 * rate(model, pair, body));
+    let bodies = model.bodies();
+    model.each_meeting(&mut |pair, contactors, targets| {
+        let met = |contactor, target| ContactPair { contactor, target, ..*pair };
+        let free = |id: &&BodyId| bodies[**id].motion == Motion::Free;
+        // What a pair does to its contactor is the same whichever target it meets.
+        for id in contactors.iter().filter(free) {
+            most = most.max(2.0 * rate(model, &met(*id, pair.target), &bodies[*id]));
+        }
+        // What it does to a target grows with a figure of the contactor: of many, the two with the largest,
+        // since one may be the target itself.
+        let yardstick = (contactors.len() > 1).then(|| bodies[pair.target].clone());
+        let mut largest: [Option<(f64, BodyId)>; 2] = [None; 2];
+        for id in contactors {
+            let figure = |body| rate(model, &met(*id, pair.target), body);
+            let figure = yardstick.as_ref().map_or(0.0, figure);
+            let beats = |other: Option<(f64, BodyId)>| other.is_none_or(|(most, _)| most < figure);
+            if beats(largest[0]) {
+                largest = [Some((figure, *id)), largest[0]];
+            } else if beats(largest[1]) {
+                largest[1] = Some((figure, *id));
             }
         }
-    }
+        for id in targets.iter().filter(free) {
+            if let Some((_, other)) = largest.iter().flatten().find(|(_, other)| other != id) {
+                most = most.max(2.0 * rate(model, &met(*other, *id), &bodies[*id]));
+            }
+        }
+    });
     most
 }
 

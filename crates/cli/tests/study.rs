@@ -132,7 +132,12 @@ fn lanes_of_every_unit_give_one_table_and_other_words_are_answered_with_those_th
         }
     }
     let (out, output) = of("sse2");
-    refused("an unknown unit", &output, Path::new(&out), &["--lanes", "there is no sse2", "scalar"]);
+    refused(
+        "an unknown unit",
+        &output,
+        Path::new(&out),
+        &["--lanes", "there is no sse2", "scalar"],
+    );
 }
 
 #[cfg(unix)]

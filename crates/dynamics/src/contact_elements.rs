@@ -169,9 +169,8 @@ impl<S: Space> ContactElements<S> {
         );
         let mut remembered = Remembered { old: &old, group: 0 };
         let mut origins = Vec::new();
-        let couples = self.couples_in_reach(model, poses);
-        for index in couples.into_iter().flat_map(|couple| model.couples[couple].pairs.clone()) {
-            let pair = &model.pairs[index];
+        for index in self.pairs_in_reach(model, poses) {
+            let pair = &model.pair(index);
             let first = self.nodes.len();
             S::Real::scope(
                 #[inline(always)]
@@ -193,11 +192,11 @@ impl<S: Space> ContactElements<S> {
         origins
     }
 
-    /// The couples of bodies whose extents along the first axis come within their margins, in the order
+    /// The pairs of bodies whose extents along the first axis come within their margins, in the order
     /// of the model: found by a sweep, so that a row of bodies costs by its length and not by its square.
-    fn couples_in_reach(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<usize> {
+    fn pairs_in_reach(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<usize> {
         if self.exhaustive {
-            return (0..model.couples.len()).collect();
+            return model.pairs.numbers().collect();
         }
         // Lanes may be carried by different grounds: extents are those relative to each one's own.
         let ground = model.bodies.iter().position(|body| body.motion == Motion::Prescribed);
@@ -221,13 +220,15 @@ impl<S: Space> ContactElements<S> {
             open.retain(|(end, _)| from <= *end);
             for (_, other) in &open {
                 let bodies = [body.min(*other), body.max(*other)];
-                let found = model.couples.binary_search_by_key(&bodies, |couple| couple.bodies);
-                couples.extend(found.ok());
+                let pairs = model.pairs.of_couple(bodies);
+                if !pairs.is_empty() {
+                    couples.push(pairs);
+                }
             }
             open.push((to, body));
         }
-        couples.sort_unstable();
-        couples
+        couples.sort_unstable_by_key(|pairs| pairs.start);
+        couples.into_iter().flatten().collect()
     }
 
     /// Whether a ball (m) about a point comes within a margin (m) of a surface in any lane.

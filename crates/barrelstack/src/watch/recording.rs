@@ -1,5 +1,6 @@
 //! Frames of the motion and histories of displacements, forces and energies, thinned to stated rates.
 
+use barrelstack_dynamics::forces::PairForce;
 use barrelstack_dynamics::{BodyId, EnergyLedger, Model, Planar, Pose, Scratch, State, Vec2};
 
 use crate::assemble::{Assembly, PartKind};
@@ -73,8 +74,8 @@ pub struct Recording {
     frame_rate: f64,
     history_rate: f64,
     rest: Vec<Vec2>,
-    /// Which joint a pair of the model belongs to, and whether its contactor is the lower body.
-    joint_of_pair: Vec<Option<(usize, bool)>>,
+    /// For every body those below it, each with the number of their joint.
+    joints_of: Vec<Vec<(BodyId, usize)>>,
     /// Force (N) on the upper body of every joint, in the step at hand.
     sums: Vec<Vec2>,
     started: bool,
@@ -111,23 +112,10 @@ impl Recording {
             .collect();
         let ground = state.poses[Assembly::GROUND].position;
         let joints = joints(assembly);
-        let joint_of_pair = assembly
-            .model
-            .pairs()
-            .iter()
-            .map(|pair| {
-                joints.iter().enumerate().find_map(|(at, joint)| {
-                    let between = (pair.contactor, pair.target);
-                    if between == (joint.upper, joint.lower) {
-                        Some((at, false))
-                    } else if between == (joint.lower, joint.upper) {
-                        Some((at, true))
-                    } else {
-                        None
-                    }
-                })
-            })
-            .collect();
+        let mut joints_of = vec![Vec::new(); assembly.parts.len()];
+        for (at, joint) in joints.iter().enumerate() {
+            joints_of[joint.upper].push((joint.lower, at));
+        }
         Self {
             frames: Frames::default(),
             times: Vec::new(),
@@ -137,7 +125,7 @@ impl Recording {
             rest: state.poses.iter().map(|p| p.position - ground).collect(),
             sums: vec![Vec2::default(); joints.len()],
             joints,
-            joint_of_pair,
+            joints_of,
             started: false,
         }
     }
@@ -161,7 +149,7 @@ impl Recording {
         scratch: &Scratch<Planar>,
         energy: &EnergyLedger<Planar>,
     ) {
-        self.sum_joints(scratch);
+        self.sum_joints(model, scratch);
         for (joint, force) in self.joints.iter_mut().zip(&self.sums) {
             if !self.started {
                 joint.at_rest = force.z;
@@ -185,11 +173,17 @@ impl Recording {
     }
 
     /// Sums the forces of the step on the upper body of every joint.
-    fn sum_joints(&mut self, scratch: &Scratch<Planar>) {
+    fn sum_joints(&mut self, model: &Model<Planar>, scratch: &Scratch<Planar>) {
         self.sums.fill(Vec2::default());
-        for pair in &scratch.pair_forces {
-            if let Some((joint, lower_touches)) = self.joint_of_pair[pair.pair] {
-                self.sums[joint] += if lower_touches { -pair.force } else { pair.force };
+        let joint = |upper: BodyId, lower: BodyId| {
+            self.joints_of[upper].iter().find(|(below, _)| *below == lower).map(|(_, at)| *at)
+        };
+        for PairForce { pair, force } in &scratch.pair_forces {
+            let pair = model.pair(*pair);
+            if let Some(at) = joint(pair.contactor, pair.target) {
+                self.sums[at] += *force;
+            } else if let Some(at) = joint(pair.target, pair.contactor) {
+                self.sums[at] += -*force;
             }
         }
     }

@@ -159,6 +159,10 @@ impl Stresses {
             }
         }
         let (mut presses, mut first_press) = (Vec::new(), Vec::new());
+        if envelopes.is_empty() {
+            // As in a free scene, whose pairs may be more than can be listed.
+            return Self { envelopes, of_body, presses, first_press };
+        }
         for pair in model.pairs() {
             first_press.push(presses.len());
             let sets = &model.bodies()[pair.contactor].nodes;
@@ -169,7 +173,7 @@ impl Stresses {
             let rack = of_body[pair.contactor]
                 .filter(|at: &usize| fixed(&sets[pair.nodes]) && envelopes[*at].is_on_nodes());
             presses.extend((0..sets[pair.nodes].count()).map(|node| Press {
-                length: tributary_length(model, pair, node),
+                length: tributary_length(model, &pair, node),
                 place: Place::Nowhere,
                 cells: 0..0,
                 on_rack: rack.map(|at| (at, before + node)),
@@ -177,7 +181,7 @@ impl Stresses {
             }));
         }
         for contact in &scratch.contacts {
-            let pair = &model.pairs()[contact.pair];
+            let pair = &model.pair(contact.pair);
             let press = &mut presses[first_press[contact.pair] + contact.node as usize];
             let placed = &model.bodies()[pair.target].surfaces[pair.surface];
             let place = placed.offset + placed.rotation.apply(contact.point);
@@ -217,13 +221,16 @@ impl Stresses {
 
     /// Raises the envelopes to the stresses of an accepted state.
     pub(super) fn observe(&mut self, model: &Model<Planar>, scratch: &Scratch<Planar>) {
+        if self.envelopes.is_empty() {
+            return;
+        }
         for contact in &scratch.contacts {
             let press = &mut self.presses[self.first_press[contact.pair] + contact.node as usize];
             let placed = press.place.holds(contact.point);
             if placed && contact.normal_force <= press.floor {
                 continue;
             }
-            let pair = &model.pairs()[contact.pair];
+            let pair = &model.pair(contact.pair);
             let stress = contact.normal_force / press.length;
             let mut lowest = f64::INFINITY;
             if let Some(at) = self.of_body[pair.target] {

@@ -288,7 +288,7 @@ fn commit_all<S: Space>(model: &Model<S>, elements: &mut ContactElements<S>, scr
     let ContactElements { sticks, .. } = elements;
     let mut next = 0;
     for pressed in scratch.pressed.chunk_by(|a, b| a.pair == b.pair) {
-        let interface = &model.interfaces[model.pairs[pressed[0].pair].interface];
+        let interface = &model.interfaces[model.pair(pressed[0].pair).interface];
         // Asked once for a pair, not at every contact.
         match interface.friction {
             FrictionLaw::Coulomb {
@@ -355,7 +355,7 @@ pub fn contact_force<S: Space>(
     scratch: &Scratch<S>,
     contact: &Contact<S>,
 ) -> (S::Vector, S::Vector) {
-    let pair = &model.pairs[contact.pair];
+    let pair = &model.pair(contact.pair);
     let placed = &model.bodies[pair.target].surfaces[pair.surface];
     let target = scratch.rotations[pair.target];
     let rotation = S::compose(target, placed.rotation);

@@ -22,7 +22,7 @@ pub(super) fn touch<S: Space>(
     group: &Group,
     scratch: &mut Scratch<S>,
 ) {
-    let interface = &model.interfaces[model.pairs[group.pair].interface];
+    let interface = &model.interfaces[model.pair(group.pair).interface];
     match (interface.normal, interface.friction) {
         (
             NormalLaw::SpeedGap { stiffness, damping },
@@ -57,7 +57,7 @@ fn touch_by<S: Space>(
     group: &Group,
     scratch: &mut Scratch<S>,
 ) {
-    let pair = &model.pairs[group.pair];
+    let pair = &model.pair(group.pair);
     let frame = PairFrame::new(model, pair, &state.poses, &scratch.rotations);
     let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
     let counted = frame.at_face(model, pair);
@@ -172,7 +172,7 @@ impl<S: Space> Press<'_, S> {
         surface: &S::Surface,
     ) {
         let zero = S::Real::zero();
-        let pair = &model.pairs[self.pair];
+        let pair = &model.pair(self.pair);
         let first = pair.contactor < pair.target;
         let slack = S::Real::splat(if first { SLACK } else { -SLACK });
         for element in group.first..group.end {
