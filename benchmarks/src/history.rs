@@ -42,7 +42,8 @@ pub(crate) fn compare(keep: bool) -> Result<(), Failure> {
     println!("{:30} {:22} {:>14} {:>14}  {:>8}  since", "case", "count", "now", "last", "change");
     let mut changed = 0;
     for Count { case, count, value } in &now {
-        let last = rows.iter().rev().find(|row| row[0] != version && row[1..3] == [case, *count]);
+        let last =
+            rows.iter().rev().find(|row| row[0] != version && row[1] == case && row[2] == *count);
         let (last, since) = last.map_or((None, ""), |row| (row[3].parse::<u64>().ok(), row[0]));
         changed += usize::from(last.is_some_and(|last| last != *value));
         let change = last.map_or(String::new(), |last| {
@@ -85,9 +86,7 @@ fn counts() -> Vec<Count> {
     let mut add = |case: &str, count, value| {
         counts.push(Count { case: case.to_owned(), count, value });
     };
-    let mut lines = Vec::new();
-    let instructions = time::instructions(|| lines = golden::Table::now().lines);
-    for line in lines {
+    for line in golden::Table::now().lines {
         add(&line.name, "steps", line.work.steps);
         // Lanes do not count what they test.
         if line.work.evaluations > 0 {
@@ -95,7 +94,7 @@ fn counts() -> Vec<Count> {
             add(&line.name, "contact evaluations", line.work.contact_evaluations);
         }
     }
-    if let Some(instructions) = instructions {
+    if let Some(instructions) = time::instructions(|| drop(golden::Table::now())) {
         add("all of these", "instructions", instructions);
     }
     for (scene, method, [touching, plain, divisions, choices]) in arithmetic::now() {

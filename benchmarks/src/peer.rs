@@ -1,6 +1,6 @@
 //! The same bodies in Rapier, in single and in double precision.
 
-use barrelstack_dynamics::{Linear as _, Model, Nodes, Planar, Shape, State, Vec2};
+use barrelstack_dynamics::{Model, Nodes, Planar, Shape, State, Vec2};
 
 use crate::time;
 

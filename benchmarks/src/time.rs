@@ -51,7 +51,8 @@ pub(crate) fn clock() -> f64 {
     4.0 * ROUNDS as f64 / spent
 }
 
-/// How many instructions some work takes on this thread; none where the system does not count them.
+/// How many instructions some work takes on this thread; none, and nothing is done, where the system does not
+/// count them.
 #[cfg(target_os = "linux")]
 pub(crate) fn instructions(work: impl FnOnce()) -> Option<u64> {
     use perf_event::Builder;
