@@ -42,8 +42,7 @@ pub(crate) fn compare(keep: bool) -> Result<(), Failure> {
     println!("{:30} {:22} {:>14} {:>14}  {:>8}  since", "case", "count", "now", "last", "change");
     let mut changed = 0;
     for Count { case, count, value } in &now {
-        let last =
-            rows.iter().rev().find(|row| row[0] != version && row[1] == case && row[2] == *count);
+        let last = rows.iter().rev().find(|row| row[1] == case && row[2] == *count);
         let (last, since) = last.map_or((None, ""), |row| (row[3].parse::<u64>().ok(), row[0]));
         changed += usize::from(last.is_some_and(|last| last != *value));
         let change = last.map_or(String::new(), |last| {
@@ -52,10 +51,7 @@ pub(crate) fn compare(keep: bool) -> Result<(), Failure> {
         let last = last.map_or("none".to_owned(), |last| last.to_string());
         println!("{case:30} {count:22} {value:14} {last:>14}  {change:>8}  {since}");
     }
-    println!(
-        "{changed} of {} counts differ from the last that are kept of another version",
-        now.len()
-    );
+    println!("{changed} of {} counts differ from the last that are kept", now.len());
     if now.iter().all(|count| count.count != "instructions") {
         println!("(this machine, or its system, does not let programs count instructions)");
     }
@@ -98,7 +94,7 @@ fn counts() -> Vec<Count> {
         add("all of these", "instructions", instructions);
     }
     for (scene, method, [touching, plain, divisions, choices]) in arithmetic::now() {
-        let case = format!("a step of {scene}, {}", method.name());
+        let case = format!("step of {scene} by {}", method.name());
         add(&case, "touching nodes", touching);
         add(&case, "plain operations", plain);
         add(&case, "divisions", divisions);
