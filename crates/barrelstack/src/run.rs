@@ -14,7 +14,7 @@ use crate::outcome::{Outcome, judge};
 use crate::overlap::check_overlap;
 use crate::rest::{Restless, at_rest};
 use crate::scenario::{self, Scenario, Scene, Until};
-use crate::step::{critical_time_step, default_step};
+use crate::step::critical_time_step;
 use crate::stick::SoftStick;
 use crate::summary::Summary;
 use crate::watch::{ElementFate, End, Ending, Fates, Recording, Stresses, Thresholds, Watch};
@@ -339,7 +339,7 @@ pub(crate) fn conclude(
 pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFailure> {
     let scale = scenario.run.similitude.sqrt();
     let Some(step) = scenario.run.step.map(|step| step * scale) else {
-        return Ok(default_step(assembly, scale));
+        return Ok(assembly.step * scenario.run.accuracy.step());
     };
     let critical = critical_time_step(assembly, scale);
     let adapts = matches!(scenario.run.method, scenario::Method::BogackiShampine { .. });
@@ -349,7 +349,7 @@ pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFai
     Err(RunFailure::Step {
         asked: milliseconds(step / scale),
         reason: format!("the stiffest contact allows {:.2} ms at most", 1e3 * critical / scale),
-        instead: milliseconds(default_step(assembly, scale) / scale),
+        instead: milliseconds(assembly.step / scale),
     })
 }
 

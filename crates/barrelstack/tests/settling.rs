@@ -9,7 +9,6 @@ use std::time::Instant;
 
 use barrelstack::Scenario;
 use barrelstack::assemble::{Assembly, assemble};
-use barrelstack::step::default_step;
 use barrelstack_dynamics::forces::contact_force;
 use barrelstack_dynamics::{
     Body, Contact, FrictionLaw, Method, Model, Motion, NormalLaw, Planar, Pose, Scratch,
@@ -151,7 +150,9 @@ fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push
     };
     let bodies = model.bodies().iter().map(damped).collect();
     let (interfaces, pairs) = (model.interfaces().to_vec(), model.pairs().collect());
-    let model = Model::new(bodies, interfaces, pairs, model.gravity()).unwrap();
+    let impacts = model.impacts().clone();
+    let mut model = Model::new(bodies, interfaces, pairs, model.gravity()).unwrap();
+    model.follow_impacts(impacts);
     let mut state = state.clone();
     for (twist, body) in state.twists.iter_mut().zip(model.bodies()) {
         if body.motion == Motion::Free {
@@ -168,7 +169,7 @@ fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push
             || interface.stop.is_some_and(|stop| c.penetration > stop.depth)
     };
     let solid = scratch.contacts.iter().any(meets_solid);
-    let time_step = default_step(assembly, 1.0) * if solid { 0.2 } else { 1.0 };
+    let time_step = assembly.step * if solid { 0.2 } else { 1.0 };
     let simulation = Simulation { method: Method::VelocityVerlet, time_step, end_time: time };
     scratch.keeps_contacts = false;
     let start = state.poses.clone();

@@ -6,13 +6,17 @@
 //! It is therefore a matter of speed alone: the forces are those of testing every node in every step,
 //! in the same order, with the same bits.
 
-use crate::body::{Body, Motion, Nodes};
+use crate::body::{Body, Motion, Nodes, Round};
 use crate::contact::Stick;
 use crate::lanes::Lanewise;
 use crate::model::{ContactPair, Counts, Model};
 use crate::real::{Mask, Real};
 use crate::shape::Surface;
 use crate::space::{Linear, Planar, Pose, Space, Twist};
+
+/// Impacts are foreseen to the same bits whatever else is in the list: so no element outside it may be
+/// nearer than bodies come in the time that is foreseen, and this (m) for what changes their velocities.
+const FORESIGHT: f64 = 1e-3;
 
 /// How far (m) every body may move before the list is built anew.
 const LEAST_ALLOWANCE: f64 = 0.015;
@@ -140,7 +144,7 @@ impl<S: Space> ContactElements<S> {
             let way = S::at_most(moved)
                 + S::at_most(velocity) * ahead
                 + (turned + spin * ahead) * S::Real::splat(model.reach[i]);
-            stale = stale | !way.lt(S::Real::splat(self.allowances[i]));
+            stale = stale | !way.lt(S::Real::splat(self.allowances[i] - FORESIGHT));
         }
         stale.any()
     }
@@ -248,6 +252,30 @@ impl<S: Space> ContactElements<S> {
         self.exhaustive || (!S::Real::splat(margin).lt(distance)).any()
     }
 
+    /// Whether a surface stays so deep within a round piece in all lanes that no contact is meant
+    /// ([`Round::greatest_depth`]): the center of an arc may lie far beyond its body, and goes further than it.
+    #[inline(always)]
+    fn behind(
+        &self,
+        model: &Model<S>,
+        pair: &ContactPair,
+        surface: &S::Surface,
+        round: &Round<S>,
+        center: S::Vector,
+        frame: &PairFrame<S>,
+    ) -> bool {
+        let one = S::Real::splat(1.0);
+        // Bodies move, and turn by no more than what moves a point within their reach as far.
+        let way = |body: usize, arm: S::Vector| {
+            let turning = arm.dot(arm).sqrt() / S::Real::splat(model.reach[body].max(1e-9));
+            S::Real::splat(self.allowances[body]) * (one + turning)
+        };
+        let ways =
+            way(pair.contactor, center - frame.contactor) + way(pair.target, center - frame.target);
+        let depth = round.radius - surface.gap(center).distance;
+        !self.exhaustive && (round.greatest_depth + ways).lt(depth).all()
+    }
+
     #[inline(always)]
     fn list_pair(&mut self, model: &Model<S>, pair: &ContactPair, frame: &PairFrame<S>) {
         let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
@@ -293,7 +321,9 @@ impl<S: Space> ContactElements<S> {
             }
             Nodes::Rounds(rounds) => {
                 for (index, round) in rounds.iter().enumerate() {
-                    if self.near(surface, frame.to_surface(round.center), round.radius, margin) {
+                    let center = frame.to_surface(round.center);
+                    let reaches = self.near(surface, center, round.radius, margin);
+                    if reaches && !self.behind(model, pair, surface, round, center, frame) {
                         self.nodes.push(u32::try_from(index).unwrap_or(u32::MAX));
                         self.positions.push(round.center);
                         self.weights.push(basis.weight(round.tributary_length));

@@ -45,6 +45,17 @@ pub enum Counts {
     BehindFaceOfTarget(usize),
 }
 
+/// How closely impacts are followed: their laws are the stiffest, but only while they are deep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Impacts<R> {
+    /// Into how many short steps a time step is divided while an impact asks for it; a whole number, one or
+    /// more.
+    pub divisions: R,
+    /// Of every interface the penetration (m) that whole time steps follow well enough; infinite where
+    /// they follow any.
+    pub calm: Vec<R>,
+}
+
 /// Bodies, interfaces and pairs; constant during a run and shared between threads.
 #[derive(Clone, Debug)]
 pub struct Model<S: Space> {
@@ -54,6 +65,7 @@ pub struct Model<S: Space> {
     pub(crate) elements: Vec<Element<S>>,
     pub(crate) gravity: S::Vector,
     pub(crate) reach: Vec<f64>,
+    pub(crate) impacts: Impacts<S::Real>,
 }
 
 /// Why bodies and pairs do not make a model.
@@ -208,7 +220,28 @@ impl<S: Space> Model<S> {
         });
         dangling?;
         let reach = bodies.iter().map(Body::reach).collect();
-        Ok(Self { bodies, interfaces, pairs, elements: Vec::new(), gravity, reach })
+        let calm = vec![S::Real::splat(f64::INFINITY); interfaces.len()];
+        let impacts = Impacts { divisions: S::Real::splat(1.0), calm };
+        let elements = Vec::new();
+        Ok(Self { bodies, interfaces, pairs, elements, gravity, reach, impacts })
+    }
+
+    /// Divides time steps while impacts ask for it; without this no step is divided.
+    ///
+    /// # Panics
+    /// When there are not as many penetrations as interfaces.
+    pub fn follow_impacts(&mut self, impacts: Impacts<S::Real>) {
+        assert_eq!(
+            impacts.calm.len(),
+            self.interfaces.len(),
+            "one penetration for every interface"
+        );
+        self.impacts = impacts;
+    }
+
+    /// How closely impacts are followed.
+    pub fn impacts(&self) -> &Impacts<S::Real> {
+        &self.impacts
     }
 
     /// Puts force elements between the bodies, in place of those before, in the order in which their

@@ -43,6 +43,7 @@ pub(super) fn assemble(
         model,
         parts,
         loose: Vec::new(),
+        step: f64::INFINITY,
         devices: Vec::new(),
         height: 0.0,
         levels: 0,

@@ -74,7 +74,7 @@ pub use motion::{
 pub use pair::{StackInterfaces, StackPair};
 pub use rack::{Cradle, Posts, Rack, RackKind, SeatContact};
 pub use root::ROOT;
-pub use run::{Method, OutcomeSpec, RecordSpec, RunSpec, Until};
+pub use run::{Accuracy, Method, OutcomeSpec, RecordSpec, RunSpec, Until};
 pub use shape::Shape;
 pub use stack::{BodyOverride, StackBody, StackSpec, View};
 pub use uniform::Uniform;
