@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use barrelstack_dynamics::Method;
-use barrelstack_dynamics::lanes::{Topology, Width};
+use barrelstack_dynamics::lanes::Topology;
 
 use crate::pool;
 use crate::run::{RunFailure, check_length, end_time, method};
@@ -21,6 +21,7 @@ use crate::run::{RunFailure, check_length, end_time, method};
 use crate::stand::{FEWEST, Stack, Standing, stand_all};
 use crate::watch::End;
 
+pub use barrelstack_dynamics::lanes::Width;
 pub use case::{CaseResult, Prepared};
 
 /// Version of what an ensemble computes: raised whenever the same case may give other bits, so that
@@ -49,7 +50,7 @@ pub struct Audience<'a> {
 ///     let change = format!("interface.block-ground.friction.coefficient={friction}");
 ///     cases.push(Prepared::new(Scenario::builtin("sliding-block", &[change])?)?);
 /// }
-/// let results = Ensemble { cases }.run();
+/// let results = Ensemble { cases, ..Ensemble::default() }.run();
 /// assert!(results.iter().all(|result| result.outcome.is_ok()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -57,6 +58,8 @@ pub struct Audience<'a> {
 pub struct Ensemble {
     /// The cases; those of one stack or one motion share it.
     pub cases: Vec<Prepared>,
+    /// The vector unit in which they march; the widest of the machine without. Results do not depend on it.
+    pub lanes: Option<Width>,
 }
 
 impl Ensemble {
@@ -73,6 +76,7 @@ impl Ensemble {
         observer: &(dyn Fn(&CaseResult) -> ControlFlow<()> + Sync),
     ) -> Option<Vec<CaseResult>> {
         let stopped = AtomicBool::new(false);
+        let lanes = self.lanes.unwrap_or_else(Width::widest);
         let together = |cases: &&[Prepared]| {
             let mut tell = |result: &CaseResult| {
                 if observer(result).is_break() {
@@ -80,7 +84,7 @@ impl Ensemble {
                 }
             };
             let stop = || stopped.load(Ordering::Relaxed);
-            simulate(cases, &mut Audience { tell: &mut tell, stop: &stop })
+            simulate_in(lanes, cases, &mut Audience { tell: &mut tell, stop: &stop })
         };
         let batches: Vec<&[Prepared]> = self.cases.chunks(BATCH).collect();
         let done: Option<Vec<_>> = pool::map(&batches, together, &|_| ()).into_iter().collect();

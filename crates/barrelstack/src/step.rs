@@ -2,8 +2,8 @@
 
 use barrelstack_dynamics::body::Motion;
 use barrelstack_dynamics::{
-    Body, ContactPair, Element, Impacts, Linear as _, Model, Node, Nodes, NormalLaw, Planar, Shape,
-    Space as _, math,
+    Body, BodyId, ContactPair, Element, Impacts, Linear as _, Model, Node, Nodes, NormalLaw,
+    Planar, Shape, Space as _, math,
 };
 
 use crate::assemble::Assembly;
@@ -80,14 +80,14 @@ impl Pace {
         let divisions = (step / impact * (1.0 - 1e-9)).ceil().max(1.0);
         let mut impacts =
             Impacts { divisions, calm: vec![f64::INFINITY; model.interfaces().len()] };
-        for pair in model.pairs() {
+        model.each_meeting(&mut |pair, _, _| {
             let stop = model.interfaces()[pair.interface].stop;
             if let Some(stop) = stop {
                 impacts.calm[pair.interface] = stop.depth + calm;
             } else if is_impact(model, pair) {
                 impacts.calm[pair.interface] = calm;
             }
-        }
+        });
         Self { step, impacts }
     }
 }
@@ -160,18 +160,36 @@ fn of_elements<'a>(
 /// The largest rate over all pairs and their free bodies. A body is held from below and above, so each
 /// counts twice.
 fn fastest(model: &Model<Planar>, rate: impl Fn(&ContactPair, &Body<Planar>) -> f64) -> f64 {
-    let rates =
-        model.pairs().iter().flat_map(|pair| free(model, pair).map(|body| 2.0 * rate(pair, body)));
-    rates.fold(0.0, f64::max)
-}
-
-/// The bodies of a pair that forces move.
-fn free<'a>(
-    model: &'a Model<Planar>,
-    pair: &ContactPair,
-) -> impl Iterator<Item = &'a Body<Planar>> {
-    let bodies = [pair.contactor, pair.target].map(|id| &model.bodies()[id]);
-    bodies.into_iter().filter(|body| body.motion == Motion::Free)
+    let mut most = 0.0_f64;
+    let bodies = model.bodies();
+    model.each_meeting(&mut |pair, contactors, targets| {
+        let met = |contactor, target| ContactPair { contactor, target, ..*pair };
+        let free = |id: &&BodyId| bodies[**id].motion == Motion::Free;
+        // What a pair does to its contactor is the same whichever target it meets.
+        for id in contactors.iter().filter(free) {
+            most = most.max(2.0 * rate(&met(*id, pair.target), &bodies[*id]));
+        }
+        // What it does to a target grows with a figure of the contactor: of many, the two with the largest,
+        // since one may be the target itself.
+        let yardstick = (contactors.len() > 1).then(|| bodies[pair.target].clone());
+        let mut largest: [Option<(f64, BodyId)>; 2] = [None; 2];
+        for id in contactors {
+            let figure = |body| rate(&met(*id, pair.target), body);
+            let figure = yardstick.as_ref().map_or(0.0, figure);
+            let beats = |other: Option<(f64, BodyId)>| other.is_none_or(|(most, _)| most < figure);
+            if beats(largest[0]) {
+                largest = [Some((figure, *id)), largest[0]];
+            } else if beats(largest[1]) {
+                largest[1] = Some((figure, *id));
+            }
+        }
+        for id in targets.iter().filter(free) {
+            if let Some((_, other)) = largest.iter().flatten().find(|(_, other)| other != id) {
+                most = most.max(2.0 * rate(&met(*other, *id), &bodies[*id]));
+            }
+        }
+    });
+    most
 }
 
 /// The rate (1/s²) of a body by each N/m of its nodes that face a target at a time: all those of a straight

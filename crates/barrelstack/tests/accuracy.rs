@@ -36,7 +36,7 @@ fn results(grounds: &[Arc<Ground>], setting: &str) -> Vec<CaseResult> {
             ground: Arc::clone(ground),
         })
     });
-    Ensemble { cases: cases.collect() }.run()
+    Ensemble { cases: cases.collect(), ..Ensemble::default() }.run()
 }
 
 fn falls(result: &CaseResult) -> bool {

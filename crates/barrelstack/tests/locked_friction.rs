@@ -42,7 +42,7 @@ fn changed(
         Interface { friction, ..interface.clone() }
     };
     let interfaces = model.interfaces().iter().map(law).collect();
-    Model::new(bodies, interfaces, model.pairs().to_vec(), model.gravity() * gravity).unwrap()
+    Model::new(bodies, interfaces, model.pairs().collect(), model.gravity() * gravity).unwrap()
 }
 
 fn settled(assembly: &Assembly, way: Way) -> (State<Planar>, Scratch<Planar>) {

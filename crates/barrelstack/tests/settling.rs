@@ -105,7 +105,7 @@ fn out_of_balance(tried: &Tried) -> f64 {
     let mut sums: Vec<(Vec2, f64)> =
         model.bodies().iter().map(|body| (model.gravity() * body.mass, 0.0)).collect();
     for contact in &scratch.contacts {
-        let pair = &model.pairs()[contact.pair];
+        let pair = &model.pair(contact.pair);
         let (force, point) = contact_force(model, state, scratch, contact);
         for (body, force) in [(pair.contactor, force), (pair.target, -force)] {
             let arm = point - state.poses[body].position;
@@ -152,7 +152,7 @@ fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push
         ..body.clone()
     };
     let bodies = model.bodies().iter().map(damped).collect();
-    let (interfaces, pairs) = (model.interfaces().to_vec(), model.pairs().to_vec());
+    let (interfaces, pairs) = (model.interfaces().to_vec(), model.pairs().collect());
     let impacts = model.impacts().clone();
     let mut model = Model::new(bodies, interfaces, pairs, model.gravity()).unwrap();
     model.follow_impacts(impacts);
@@ -167,7 +167,7 @@ fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push
     let mut scratch = Scratch::new(&model);
     evaluate(&model, &state, &mut scratch);
     let meets_solid = |c: &Contact<Planar>| {
-        let interface = &model.interfaces()[model.pairs()[c.pair].interface];
+        let interface = &model.interfaces()[model.pair(c.pair).interface];
         matches!(interface.normal, NormalLaw::Rebound { .. })
             || interface.stop.is_some_and(|stop| c.penetration > stop.depth)
     };

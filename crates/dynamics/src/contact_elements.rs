@@ -173,9 +173,8 @@ impl<S: Space> ContactElements<S> {
         );
         let mut remembered = Remembered { old: &old, group: 0 };
         let mut origins = Vec::new();
-        let couples = self.couples_in_reach(model, poses);
-        for index in couples.into_iter().flat_map(|couple| model.couples[couple].pairs.clone()) {
-            let pair = &model.pairs[index];
+        for index in self.pairs_in_reach(model, poses) {
+            let pair = &model.pair(index);
             let first = self.nodes.len();
             S::Real::scope(
                 #[inline(always)]
@@ -197,22 +196,25 @@ impl<S: Space> ContactElements<S> {
         origins
     }
 
-    /// The couples of bodies whose extents along the first axis come within their margins, in the order
-    /// of the model: found by a sweep, so that a row of bodies costs by its length and not by its square.
-    fn couples_in_reach(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<usize> {
+    /// The pairs of bodies whose balls come within their margins, in the order of the model: found by a sweep
+    /// along the first axis, so that a row of bodies costs by its length and not by its square.
+    fn pairs_in_reach(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<usize> {
         if self.exhaustive {
-            return (0..model.couples.len()).collect();
+            return model.pairs.numbers().collect();
         }
         // Lanes may be carried by different grounds: extents are those relative to each one's own.
         let ground = model.bodies.iter().position(|body| body.motion == Motion::Prescribed);
         let carried = ground.map_or_else(S::Vector::default, |ground| poses[ground].position);
-        let mut extents: Vec<(f64, f64, usize)> = model
-            .bodies
+        let ball = |(i, body): (usize, &Body<S>)| {
+            let reach = if body.is_unbounded() { f64::INFINITY } else { model.reach[i] };
+            reach + self.allowances[i]
+        };
+        let balls: Vec<f64> = model.bodies.iter().enumerate().map(ball).collect();
+        let mut extents: Vec<(f64, f64, usize)> = balls
             .iter()
             .enumerate()
-            .map(|(i, body)| {
-                let reach = if body.is_unbounded() { f64::INFINITY } else { model.reach[i] };
-                let half = S::Real::splat(reach + self.allowances[i]);
+            .map(|(i, ball)| {
+                let half = S::Real::splat(*ball);
                 let place = S::first_coordinate(poses[i].position - carried);
                 let least = -(half - place).largest_lane();
                 (least, (place + half).largest_lane(), i)
@@ -223,15 +225,24 @@ impl<S: Space> ContactElements<S> {
         let mut open: Vec<(f64, usize)> = Vec::new();
         for (from, to, body) in extents {
             open.retain(|(end, _)| from <= *end);
-            for (_, other) in &open {
-                let bodies = [body.min(*other), body.max(*other)];
-                let found = model.couples.binary_search_by_key(&bodies, |couple| couple.bodies);
-                couples.extend(found.ok());
-            }
+            S::Real::scope(
+                #[inline(always)]
+                || {
+                    for (_, other) in &open {
+                        // Of those above each other in a heap, most are far apart.
+                        let apart = poses[body].position - poses[*other].position;
+                        let touch = S::Real::splat(balls[body] + balls[*other]);
+                        if !(touch * touch).lt(apart.dot(apart)).all() {
+                            let bodies = [body.min(*other), body.max(*other)];
+                            couples.push(model.pairs.of_couple(bodies));
+                        }
+                    }
+                },
+            );
             open.push((to, body));
         }
-        couples.sort_unstable();
-        couples
+        couples.sort_unstable_by_key(|pairs| pairs.start);
+        couples.into_iter().flatten().collect()
     }
 
     /// Whether a ball (m) about a point comes within a margin (m) of a surface in any lane.

@@ -63,7 +63,9 @@ use barrelstack_input::{merge, writer};
 
 pub use barrel::{Barrel, Fill};
 pub use error::ScenarioError;
-pub use free::{ChosenNode, FreeBody, FreeInterface, FreeScene, Ground, Nodes, PartShape, Viscous};
+pub use free::{
+    Boundary, ChosenNode, FreeBody, FreeInterface, FreeScene, Ground, Nodes, PartShape, Viscous,
+};
 pub use interface::{Basis, Damping, Friction, Interface, NormalLaw};
 pub use motion::{
     Amplitude, Direction, MeasuredOn, MotionSource, MotionSpec, Processing, Pulse, PulseKind,

@@ -27,12 +27,12 @@ pub struct Joint<R: Real = f64> {
 pub struct Joints<R: Real = f64> {
     /// Every barrel on its rack, every rack on what is below it.
     pub joints: Vec<Joint<R>>,
-    /// Which joint a pair of the model belongs to, and whether its contactor is the lower body.
-    of_pair: Vec<Option<(usize, bool)>>,
+    /// For every body those below it, each with the number of their joint.
+    of_upper: Vec<Vec<(BodyId, usize)>>,
 }
 
 lanewise!(struct Joint<R> { upper, lower, force, at_rest, peak_vertical, peak_horizontal });
-lanewise!(struct Joints<R> { joints, of_pair });
+lanewise!(struct Joints<R> { joints, of_upper });
 
 impl Joint {
     /// Its name, such as "R1 on ground".
@@ -64,20 +64,11 @@ impl Joints {
                 PartKind::Ground => {}
             }
         }
-        let joint_of = |(contactor, target): (BodyId, BodyId)| {
-            joints.iter().enumerate().find_map(|(at, joint)| {
-                if (contactor, target) == (joint.upper, joint.lower) {
-                    Some((at, false))
-                } else if (contactor, target) == (joint.lower, joint.upper) {
-                    Some((at, true))
-                } else {
-                    None
-                }
-            })
-        };
-        let pairs = assembly.model.pairs().iter();
-        let of_pair = pairs.map(|pair| joint_of((pair.contactor, pair.target))).collect();
-        Self { joints, of_pair }
+        let mut of_upper = vec![Vec::new(); assembly.parts.len()];
+        for (at, joint) in joints.iter().enumerate() {
+            of_upper[joint.upper].push((joint.lower, at));
+        }
+        Self { joints, of_upper }
     }
 
     /// Looks at the state at rest.
@@ -98,8 +89,13 @@ impl<R: Real> Joints<R> {
             joint.force = Vec2::default();
         }
         for pair in &scratch.pair_forces {
-            if let Some((joint, lower_touches)) = self.of_pair[pair.pair] {
-                self.joints[joint].force += if lower_touches { -pair.force } else { pair.force };
+            let joint = |upper: BodyId, lower: BodyId| {
+                self.of_upper[upper].iter().find(|(below, _)| *below == lower).map(|(_, at)| *at)
+            };
+            if let Some(at) = joint(pair.contactor, pair.target) {
+                self.joints[at].force += pair.force;
+            } else if let Some(at) = joint(pair.target, pair.contactor) {
+                self.joints[at].force += -pair.force;
             }
         }
         for joint in &mut self.joints {

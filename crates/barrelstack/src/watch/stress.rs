@@ -198,6 +198,11 @@ impl Pressing {
             }
         }
         let (mut presses, mut bounds, mut pairs) = (Vec::new(), Vec::new(), Vec::new());
+        if envelopes.is_empty() {
+            // As in a free scene, whose pairs may be more than can be listed.
+            let lanes = vec![Stresses { envelopes, of_body, presses }];
+            return Self { lanes, watched: false, bounds, pairs };
+        }
         for pair in model.pairs() {
             pairs.push((presses.len(), pair.target));
             let cells = of_body[pair.target].map(|at: usize| envelopes[at].cells);
@@ -209,14 +214,14 @@ impl Pressing {
             let rack = of_body[pair.contactor]
                 .filter(|at: &usize| fixed(&sets[pair.nodes]) && envelopes[*at].is_on_nodes());
             presses.extend((0..sets[pair.nodes].count()).map(|node| Press {
-                length: tributary_length(model, pair, node),
+                length: tributary_length(model, &pair, node),
                 cells: 0..0,
                 on_rack: rack.map(|at| (at, before + node)),
             }));
             bounds.resize(presses.len(), Bounds::new(cells));
         }
         for contact in &scratch.contacts {
-            let pair = &model.pairs()[contact.pair];
+            let pair = &model.pair(contact.pair);
             let press = &mut presses[pairs[contact.pair].0 + contact.node as usize];
             let placed = &model.bodies()[pair.target].surfaces[pair.surface];
             let place = placed.offset + placed.rotation.apply(contact.point);
@@ -266,9 +271,9 @@ impl<R: Real> Pressing<R> {
         } else {
             self.bounds.put(lane, &single.bounds);
         }
+        put_truth(&mut self.watched, lane, single.watched);
         self.lanes[lane] = single.finish(0);
         self.pairs = single.pairs;
-        put_truth(&mut self.watched, lane, true);
     }
 
     /// The stresses of the run of a lane, which is watched no more.

@@ -2,7 +2,7 @@
 
 mod press;
 
-use crate::body::{Motion, Nodes};
+use crate::body::{BodyId, Motion, Nodes};
 use crate::contact::{FrictionLaw, Stick};
 use crate::contact_elements::ContactElements;
 use crate::element::{self, Load};
@@ -76,6 +76,10 @@ impl<S: Space> Default for Losses<S> {
 pub struct PairForce<S: Space> {
     /// Which pair of the model.
     pub pair: usize,
+    /// Its contactor.
+    pub contactor: BodyId,
+    /// Its target.
+    pub target: BodyId,
     /// Force (N) on the contactor, in the inertial frame; the target feels its opposite.
     pub force: S::Vector,
 }
@@ -303,7 +307,7 @@ fn commit_all<S: Space>(model: &Model<S>, elements: &mut ContactElements<S>, scr
     let ContactElements { sticks, .. } = elements;
     let mut next = 0;
     for pressed in scratch.pressed.chunk_by(|a, b| a.pair == b.pair) {
-        let interface = &model.interfaces[model.pairs[pressed[0].pair].interface];
+        let interface = &model.interfaces[model.pair(pressed[0].pair).interface];
         // Asked once for a pair, not at every contact.
         match interface.friction {
             FrictionLaw::Coulomb {
@@ -370,7 +374,7 @@ pub fn contact_force<S: Space>(
     scratch: &Scratch<S>,
     contact: &Contact<S>,
 ) -> (S::Vector, S::Vector) {
-    let pair = &model.pairs[contact.pair];
+    let pair = &model.pair(contact.pair);
     let placed = &model.bodies[pair.target].surfaces[pair.surface];
     let target = scratch.rotations[pair.target];
     let rotation = S::compose(target, placed.rotation);

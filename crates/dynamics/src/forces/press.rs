@@ -22,7 +22,7 @@ pub(super) fn touch<S: Space>(
     group: &Group,
     scratch: &mut Scratch<S>,
 ) {
-    let interface = &model.interfaces[model.pairs[group.pair].interface];
+    let interface = &model.interfaces[model.pair(group.pair).interface];
     match (interface.normal, interface.friction) {
         (
             NormalLaw::SpeedGap { stiffness, damping },
@@ -57,7 +57,7 @@ fn touch_by<S: Space>(
     group: &Group,
     scratch: &mut Scratch<S>,
 ) {
-    let pair = &model.pairs[group.pair];
+    let pair = &model.pair(group.pair);
     let frame = PairFrame::new(model, pair, &state.poses, &scratch.rotations);
     let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
     let counted = frame.at_face(model, pair);
@@ -129,7 +129,9 @@ fn touch_by<S: Space>(
     losses[pair.target].damped += damped.1;
     losses[pair.contactor].friction += friction.0;
     losses[pair.target].friction += friction.1;
-    scratch.pair_forces.push(PairForce { pair: group.pair, force: on_contactor.force });
+    let (contactor, target) = (pair.contactor, pair.target);
+    let force = on_contactor.force;
+    scratch.pair_forces.push(PairForce { pair: group.pair, contactor, target, force });
 }
 
 /// Nodes of a pair that press into a surface, one after the other.
@@ -191,7 +193,7 @@ impl<'a, S: Space> Press<'a, S> {
         surface: &S::Surface,
     ) {
         let zero = S::Real::zero();
-        let pair = &model.pairs[self.pair];
+        let pair = &model.pair(self.pair);
         let first = pair.contactor < pair.target;
         let slack = S::Real::splat(if first { SLACK } else { -SLACK });
         for element in group.first..group.end {

@@ -306,7 +306,6 @@ impl<R: Real> Model<Planar<R>> {
             bodies: Lanewise::in_all(&single.bodies),
             interfaces: Lanewise::in_all(&single.interfaces),
             pairs: single.pairs.clone(),
-            couples: single.couples.clone(),
             elements: Lanewise::in_all(&single.elements),
             gravity: Lanewise::in_all(&single.gravity),
             reach: single.reach.clone(),

@@ -204,11 +204,11 @@ impl<S: Space> Departure<S> {
         going: &[bool],
     ) -> Lack {
         let of = |contact: &&Contact<S>| {
-            let pair = &model.pairs[contact.pair];
+            let pair = &model.pair(contact.pair);
             contact.touching.any() && (pair.contactor == body || pair.target == body)
         };
         let partner = |contact: &Contact<S>| {
-            let pair = &model.pairs[contact.pair];
+            let pair = &model.pair(contact.pair);
             if pair.contactor == body { pair.target } else { pair.contactor }
         };
         // What bears it stays; where all go, the last that bears it tells as much as any.
@@ -219,7 +219,7 @@ impl<S: Space> Departure<S> {
             return if met[body] { Lack::Place } else { Lack::Support };
         };
         let on = model.bodies[partner(last)].name.clone();
-        let law = |contact: &Contact<S>| &model.interfaces[model.pairs[contact.pair].interface];
+        let law = |contact: &Contact<S>| &model.interfaces[model.pair(contact.pair).interface];
         if let Some(creeping) =
             bearing.iter().find(|c| matches!(law(c).friction, FrictionLaw::Regularized { .. }))
         {

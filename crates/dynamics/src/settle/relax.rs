@@ -157,7 +157,7 @@ impl<S: Space> Relaxation<S> {
         self.touched.clear();
         self.touched.resize(state.contact_elements.len(), Default::default());
         for contact in &scratch.contacts {
-            let pair = &model.pairs[contact.pair];
+            let pair = &model.pair(contact.pair);
             let interface = &model.interfaces[pair.interface];
             let placed = &model.bodies[pair.target].surfaces[pair.surface];
             let target = scratch.rotations[pair.target];
