@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use barrelstack_report::{Document, Paper, document_pdf};
 
@@ -23,6 +24,9 @@ const FILES: [&str; 8] = [
     "report.html",
 ];
 
+/// Longest time between the first and the last file of a run; what was changed later was changed by another.
+const AT_ONCE: Duration = Duration::from_secs(10);
+
 /// Why files could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
@@ -32,6 +36,17 @@ pub enum ExportError {
         /// The folder.
         folder: PathBuf,
         /// A file that is there.
+        file: String,
+    },
+    /// What would be replaced belongs to somebody else.
+    #[error(
+        "{file} in {folder} was not written by an earlier run, or was changed since",
+        folder = folder.display()
+    )]
+    Foreign {
+        /// The folder.
+        folder: PathBuf,
+        /// The file.
         file: String,
     },
     /// The system refused.
@@ -71,7 +86,36 @@ impl Folder {
         if let (false, Some(file)) = (overwrite, first()) {
             return Err(ExportError::Occupied { folder: path.to_owned(), file });
         }
+        system::writable(path)
+            .map_err(|reason| ExportError::Write { path: path.to_owned(), reason })?;
         Ok(Self { path: path.to_owned() })
+    }
+
+    /// As [`Folder::prepare`], for a folder in which what an earlier run wrote is replaced, and nothing else.
+    ///
+    /// # Errors
+    /// When one of the files that would be replaced is none that a run wrote, or was changed since.
+    pub fn prepare_again(path: &Path) -> Result<Self, ExportError> {
+        let folder = Self::prepare(path, true)?;
+        let changed = |name: &str| std::fs::metadata(path.join(name)).and_then(|m| m.modified()).ok();
+        let summary = std::fs::read(path.join(FILES[0])).unwrap_or_default();
+        let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
+        let written = changed(FILES[0]).filter(|_| summary["provenance"]["program"] == "barrelstack");
+        let foreign = |name: &&&str| {
+            let Some(at) = changed(name) else { return false };
+            written.is_none_or(|written| at.duration_since(written).is_ok_and(|late| late > AT_ONCE))
+        };
+        match FILES.iter().find(foreign) {
+            Some(file) => {
+                Err(ExportError::Foreign { folder: path.to_owned(), file: (*file).to_owned() })
+            }
+            None => Ok(folder),
+        }
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// Where the report is.
@@ -171,7 +215,7 @@ impl Folder {
     }
 
     fn temporary(&self, name: &str) -> PathBuf {
-        self.path.join(format!("{name}.part"))
+        system::temporary(&self.path.join(name))
     }
 
     fn refused(&self, name: &str, error: &std::io::Error) -> ExportError {

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use barrelstack_dynamics::contact::Basis;
 use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::{
-    Element, EnergySummary, Method, Planar, RunError, Scratch, Settled, Simulation, State, simulate,
+    Element, EnergySummary, Lack, Method, Planar, RunError, Scratch, Settled, Simulation, State, simulate,
 };
 
 use crate::assemble::{AssembleError, Assembly, assemble};
@@ -101,6 +101,60 @@ pub enum RunFailure {
     /// The run would not end, or not begin.
     #[error("{0}")]
     Duration(String),
+    /// What is to be kept is more than memory should hold.
+    #[error(
+        "{samples:.2e} samples of {channels} histories and {frames:.2e} frames of {bodies} bodies take \
+         {gigabytes:.1} GB, more than a run may keep ({} GB): lower record.history_rate or \
+         record.frame_rate, or shorten run.duration",
+        MOST_KEPT / 1e9
+    )]
+    Memory {
+        /// Samples of every history.
+        samples: f64,
+        /// Histories.
+        channels: usize,
+        /// Frames.
+        frames: f64,
+        /// Bodies.
+        bodies: usize,
+        /// Memory for all of them (10⁹ bytes).
+        gigabytes: f64,
+    },
+}
+
+impl RunFailure {
+    /// The fields of a scenario that it is about, the likeliest first.
+    pub fn fields(&self) -> Vec<String> {
+        let of = |fields: &[&str]| fields.iter().map(|field| (*field).to_owned()).collect();
+        match self {
+            Self::Step { .. } => of(&["run.step"]),
+            Self::Duration(_) => of(&["run.duration", "run.step"]),
+            Self::Memory { .. } => of(&["record.history_rate", "record.frame_rate", "run.duration"]),
+            Self::Ground(_) => of(&["motion.record", "motion.bundled"]),
+            Self::Assemble(AssembleError::Overlap { first, second, .. }) => vec![
+                format!("body.{second}.position"),
+                format!("body.{first}.position"),
+                "stack.override".into(),
+            ],
+            Self::Assemble(AssembleError::Shape { body, .. }) => vec![format!("body.{body}.shape")],
+            Self::Assemble(AssembleError::Stack(_)) => of(&["stack.override", "stack"]),
+            Self::Assemble(AssembleError::Model(_)) => Vec::new(),
+            Self::Settle(Restless { error }) => {
+                let body = format!("body.{}.position", error.body);
+                match &error.lack {
+                    Lack::Stiffness { interface, .. } => {
+                        vec![format!("interface.{interface}.stiffness"), body]
+                    }
+                    Lack::Friction { interface, .. } | Lack::Stick { interface, .. } => {
+                        vec![format!("interface.{interface}.friction"), body]
+                    }
+                    Lack::Support | Lack::Balance { .. } | Lack::Place | Lack::Time { .. } => {
+                        vec![body, "stack.override".into()]
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// Share of the energy that went through, missing from the books, above which a run is invalid.
@@ -110,6 +164,9 @@ const BOOKS_BROKEN: f64 = 0.1;
 
 /// Time (s) of a motion that is left at the end of a run which counts as cut short.
 pub const CUT: f64 = 0.01;
+
+/// Most memory (bytes) that what is kept of a run may take.
+const MOST_KEPT: f64 = 2e9;
 
 /// Most steps of a run; a stack takes some 10⁵ steps a second.
 const MOST_STEPS: f64 = 1e9;
@@ -179,6 +236,7 @@ impl Scenario {
         let simulation = Simulation { method: method(self), time_step: step, end_time };
         let thresholds = thresholds(self);
         let rates = (self.record.frame_rate / time_scale, self.record.history_rate / time_scale);
+        check_memory(&assembly, end_time, rates)?;
         let (evaluations, tested) = (scratch.evaluations, scratch.contact_evaluations);
         let sticks = SoftStick::of(&assembly, &scratch, ground.motion.as_ref());
         let mut told = |time| observer(Progress { time, end_time });
@@ -412,6 +470,25 @@ pub(crate) fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
          ({MOST_STEPS:.0e}): shorten run.duration, or see whether run.step and the stiffness of the \
          contacts have the right unit"
     )))
+}
+
+/// Refuses a recording that would not fit into memory, before any of it is made; `rates` are those of frames and
+/// histories (Hz).
+pub(crate) fn check_memory(
+    assembly: &Assembly,
+    end_time: f64,
+    (frame_rate, history_rate): (f64, f64),
+) -> Result<(), RunFailure> {
+    const NUMBER: f64 = size_of::<f64>() as f64;
+    let bodies = assembly.parts.len();
+    let channels = Recording::histories(assembly);
+    let (samples, frames) = (end_time * history_rate + 1.0, end_time * frame_rate + 1.0);
+    // A frame holds the pose of every body, and the forces of about four contacts of each.
+    let kept = NUMBER * (samples * channels as f64 + frames * (bodies * (3 + 4 * 4)) as f64);
+    if kept <= MOST_KEPT {
+        return Ok(());
+    }
+    Err(RunFailure::Memory { samples, channels, frames, bodies, gigabytes: kept / 1e9 })
 }
 
 /// Why a run whose energy books do not balance has no outcome.

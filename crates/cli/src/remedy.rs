@@ -14,6 +14,9 @@ pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
                 "name another folder, or add --overwrite to replace what an earlier run wrote there",
             );
         }
+        if let Some(ExportError::Foreign { .. }) = cause.downcast_ref() {
+            return Some("move the file away, or name another folder with --out");
+        }
         if let Some(CompareError::TooFew(_)) = cause.downcast_ref() {
             return Some("name another scenario, or add --against PATH=VALUE");
         }

@@ -1,6 +1,9 @@
 //! What every device bore, told in its own words.
 
+use barrelstack_report::described::{Described, object};
 use serde::{Serialize, Serializer, ser::SerializeMap};
+
+use serde_json::{Value, json};
 
 use crate::device::{DEVICES, Words};
 use crate::run::Run;
@@ -73,5 +76,33 @@ impl Serialize for ElementSummary {
         map.serialize_entry(&format!("peak_{force}_at"), &self.peak_at)?;
         map.serialize_entry(&format!("{broken}_at"), &self.broken_at)?;
         map.end()
+    }
+}
+
+impl Described for Devices {
+    fn schema() -> Value {
+        let text = |meaning: &str| json!({ "type": "string", "description": meaning });
+        let number = |types: Value, unit: &str, meaning: &str| {
+            json!({ "type": types, "unit": unit, "description": meaning })
+        };
+        let mut whole = object("", &[]);
+        for Words { one, many, force, broken, .. } in DEVICES {
+            let mut element = object(&format!("One {one}."), &[]);
+            element["properties"] = json!({
+                "name": text("The bodies that it joins, and where."),
+                format!("peak_{force}"):
+                    number(json!("number"), "N", &format!("The {force} that is largest in size.")),
+                format!("peak_{force}_at"): number(json!("number"), "s", "When."),
+                format!("{broken}_at"):
+                    number(json!(["number", "null"]), "s", &format!("When it was {broken}.")),
+            });
+            let keys = element["properties"].as_object().into_iter().flatten();
+            element["required"] = keys.map(|(key, _)| json!(key)).collect();
+            whole["properties"][many] = json!({
+                "type": "array", "items": element, "description": format!("All {many}."),
+            });
+        }
+        whole["required"] = DEVICES.iter().map(|words| json!(words.many)).collect();
+        whole
     }
 }

@@ -59,6 +59,12 @@ pub struct JointForces {
     pub horizontal: Vec<f64>,
 }
 
+/// Histories of the ground: acceleration, velocity and displacement, sideways and up.
+const GROUND: usize = 6;
+
+/// Histories of a body: two displacements and a rotation.
+const BODY: usize = 3;
+
 /// What is kept of a run.
 #[derive(Clone, Debug)]
 pub struct Recording {
@@ -140,6 +146,11 @@ impl Recording {
             joint_of_pair,
             started: false,
         }
+    }
+
+    /// How many numbers a sample has.
+    pub(crate) fn histories(assembly: &Assembly) -> usize {
+        1 + GROUND + BODY * assembly.parts.len() + ENERGIES.len() + 2 * joints(assembly).len()
     }
 
     /// The channel of a name.

@@ -9,7 +9,11 @@ use crate::printer;
 pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     let scenario = super::load(&args.scenario)?;
     let found =
-        barrelstack::check(&scenario).map_err(|error| super::placed(error, &args.scenario))?;
-    printer::lines(found.lines())?;
+        barrelstack::check(&scenario).map_err(|error| super::placed(error, &scenario, &args.scenario))?;
+    if args.json {
+        printer::document(&found)?;
+    } else {
+        printer::lines(found.lines())?;
+    }
     Ok(ExitCode::SUCCESS)
 }
