@@ -1,6 +1,6 @@
 //! Demands on a stack: each declared once, with where it comes from, what it is called, and its unit in print.
 
-use barrelstack_report::described::{self, Described, Field};
+use barrelstack_report::described::{self, Described, Field, Objects};
 use serde::Serialize;
 
 use crate::assemble::{Assembly, PartKind};
@@ -103,7 +103,7 @@ demands! {
 }
 
 impl Described for Demands {
-    fn schema() -> serde_json::Value {
+    fn schema(objects: &mut Objects) -> serde_json::Value {
         let field = |demand: &Demand| Field {
             key: demand.name,
             meaning: demand.meaning,
@@ -113,7 +113,8 @@ impl Described for Demands {
             schema: <Option<f64> as Described>::schema,
         };
         let fields: Vec<Field> = DEMANDS.iter().map(field).collect();
-        described::object("Demands on the stack, while it stood unless said otherwise.", &fields)
+        let meaning = "Demands on the stack, while it stood unless said otherwise.";
+        described::object(objects, "Demands", meaning, &fields)
     }
 }
 

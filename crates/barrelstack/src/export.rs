@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use barrelstack_report::{Document, Paper, document_pdf};
+use barrelstack_report::{Document, Paper, csv_field, document_pdf, shortest};
 
 use crate::report;
 use crate::run::Run;
@@ -97,13 +97,16 @@ impl Folder {
     /// When one of the files that would be replaced is none that a run wrote, or was changed since.
     pub fn prepare_again(path: &Path) -> Result<Self, ExportError> {
         let folder = Self::prepare(path, true)?;
-        let changed = |name: &str| std::fs::metadata(path.join(name)).and_then(|m| m.modified()).ok();
+        let changed =
+            |name: &str| std::fs::metadata(path.join(name)).and_then(|m| m.modified()).ok();
         let summary = std::fs::read(path.join(FILES[0])).unwrap_or_default();
         let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
-        let written = changed(FILES[0]).filter(|_| summary["provenance"]["program"] == "barrelstack");
+        let written =
+            changed(FILES[0]).filter(|_| summary["provenance"]["program"] == "barrelstack");
         let foreign = |name: &&&str| {
             let Some(at) = changed(name) else { return false };
-            written.is_none_or(|written| at.duration_since(written).is_ok_and(|late| late > AT_ONCE))
+            written
+                .is_none_or(|written| at.duration_since(written).is_ok_and(|late| late > AT_ONCE))
         };
         match FILES.iter().find(foreign) {
             Some(file) => {
@@ -226,31 +229,43 @@ impl Folder {
     fn histories_npz(&self, run: &Run) -> Result<Vec<u8>, ExportError> {
         let recording = &run.recording;
         let mut arrays = vec![("time".to_owned(), recording.times.as_slice())];
+        let mut add = |name: String, values| {
+            let named = |name: &str| arrays.iter().any(|(known, _)| known == name);
+            let name = array_name(&name);
+            let mut names = (2..).map(|number| format!("{name}_{number}"));
+            let name = if named(&name) { names.find(|name| !named(name)) } else { Some(name) };
+            arrays.push((name.unwrap_or_default(), values));
+        };
         for channel in &recording.channels {
-            arrays.push((channel.name.replace(' ', "_"), &channel.values));
+            add(channel.name.clone(), channel.values.as_slice());
         }
         for joint in &recording.joints {
-            let name = joint.name.replace(' ', "_");
-            arrays.push((format!("{name}_vertical_force"), &joint.vertical));
-            arrays.push((format!("{name}_horizontal_force"), &joint.horizontal));
+            add(format!("{} vertical force", joint.name), &joint.vertical);
+            add(format!("{} horizontal force", joint.name), &joint.horizontal);
         }
         barrelstack_motion::write::archive(&arrays)
             .map_err(|error| self.refused("histories.npz", &error))
     }
 }
 
+/// A name as a file of the archive: it stays in the folder in which it is unpacked.
+fn array_name(name: &str) -> String {
+    let kept = |c: char| if c.is_alphanumeric() || matches!(c, '.' | '-') { c } else { '_' };
+    name.chars().map(kept).collect()
+}
+
 /// Columns side by side, `time (s)` first.
 fn csv(times: &[f64], columns: &[(String, &[f64])]) -> String {
     let mut text = String::from("time (s)");
     for (name, _) in columns {
-        let _ = write!(text, ",{name}");
+        let _ = write!(text, ",{}", csv_field(name));
     }
     text.push('\n');
     for (row, time) in times.iter().enumerate() {
-        let _ = write!(text, "{time}");
+        text.push_str(&shortest(*time));
         for (_, values) in columns {
             match values.get(row) {
-                Some(value) => _ = write!(text, ",{value}"),
+                Some(value) => _ = write!(text, ",{}", shortest(*value)),
                 None => text.push(','),
             }
         }
@@ -289,14 +304,16 @@ fn envelopes_csv(run: &Run) -> String {
         "body,x (m),z (m),coordinate (rad or m),stress at rest (N/m),largest stress (N/m)\n",
     );
     for envelope in &run.stresses.envelopes {
-        let name = &run.assembly.parts[envelope.body].name;
+        let name = csv_field(&run.assembly.parts[envelope.body].name);
         for ((point, rest), peak) in
             envelope.points.iter().zip(&envelope.at_rest).zip(&envelope.peak)
         {
             let _ = writeln!(
                 text,
-                "{name},{},{},{},{rest},{peak}",
-                point.position.x, point.position.z, point.coordinate
+                "{name},{}",
+                [point.position.x, point.position.z, point.coordinate, *rest, *peak]
+                    .map(shortest)
+                    .join(",")
             );
         }
     }
@@ -306,13 +323,15 @@ fn envelopes_csv(run: &Run) -> String {
 fn frames_csv(run: &Run) -> String {
     let mut text = String::from("time (s)");
     for part in &run.assembly.parts {
-        let _ = write!(text, ",{0} x (m),{0} z (m),{0} angle (rad)", part.name);
+        for what in ["x (m)", "z (m)", "angle (rad)"] {
+            let _ = write!(text, ",{}", csv_field(&format!("{} {what}", part.name)));
+        }
     }
     text.push('\n');
     for (time, poses) in run.recording.frames.times.iter().zip(&run.recording.frames.poses) {
-        let _ = write!(text, "{time}");
-        for pose in poses {
-            let _ = write!(text, ",{},{},{}", pose[0], pose[1], pose[2]);
+        text.push_str(&shortest(*time));
+        for number in poses.iter().flatten() {
+            let _ = write!(text, ",{}", shortest(*number));
         }
         text.push('\n');
     }

@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 use barrelstack_dynamics::contact::Basis;
 use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::{
-    Element, EnergySummary, Lack, Method, Planar, RunError, Scratch, Settled, Simulation, State, simulate,
+    Element, EnergySummary, Lack, Method, Planar, RunError, Scratch, Settled, Simulation, State,
+    simulate,
 };
 
 use crate::assemble::{AssembleError, Assembly, assemble};
@@ -129,8 +130,17 @@ impl RunFailure {
         match self {
             Self::Step { .. } => of(&["run.step"]),
             Self::Duration(_) => of(&["run.duration", "run.step"]),
-            Self::Memory { .. } => of(&["record.history_rate", "record.frame_rate", "run.duration"]),
-            Self::Ground(_) => of(&["motion.record", "motion.bundled"]),
+            Self::Memory { .. } => {
+                of(&["record.history_rate", "record.frame_rate", "run.duration"])
+            }
+            Self::Ground(GroundError::Vertical { .. }) => of(&["motion.vertical"]),
+            Self::Ground(GroundError::Unit { .. }) => of(&["motion.unit"]),
+            Self::Ground(GroundError::Motion(_)) => of(&["motion.component", "motion.scale"]),
+            Self::Ground(
+                GroundError::Unreadable { .. }
+                | GroundError::Read(_)
+                | GroundError::UnknownBundled { .. },
+            ) => of(&["motion.record", "motion.bundled"]),
             Self::Assemble(AssembleError::Overlap { first, second, .. }) => vec![
                 format!("body.{second}.position"),
                 format!("body.{first}.position"),

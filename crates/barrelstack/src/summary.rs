@@ -1,7 +1,6 @@
 //! The summary of a run: one JSON document, the same numbers in print.
 
 mod devices;
-mod ensemble;
 
 use barrelstack_dynamics::EnergySummary;
 use barrelstack_motion::GroundMotion;
@@ -15,7 +14,6 @@ use crate::verify::Verification;
 use crate::watch::StressEnvelope;
 
 pub use devices::{Device, Devices, ElementSummary};
-pub use ensemble::{EnsembleSummary, Percentiles};
 
 /// Name and version of the summary's layout.
 pub const SUMMARY_SCHEMA: &str = "summary/1";
@@ -31,8 +29,6 @@ described! {
         pub title: String,
         /// What happened.
         pub outcome: OutcomeSummary,
-        /// What became of all variants; null where the scenario was run once.
-        pub ensemble: Option<EnsembleSummary>,
         /// Every body but the ground.
         pub bodies: Vec<BodySummary>,
         /// Demands on the stack.
@@ -252,7 +248,6 @@ impl Summary {
             schema: SUMMARY_SCHEMA,
             title: run.scenario.title.clone(),
             outcome: outcome(run),
-            ensemble: None,
             bodies: bodies(run),
             demands: if matches!(run.outcome, Outcome::Invalid { .. }) {
                 // Numbers of a run that broke down look like results and are none.

@@ -35,8 +35,8 @@ use crate::study::{
 };
 
 pub(crate) use figures::{bars, chance_axis};
-pub(crate) use json::bounds;
 pub use json::DecisionDocument;
+pub(crate) use json::bounds;
 pub(crate) use page::{heading, text};
 pub(crate) use words::{percent, refusal};
 

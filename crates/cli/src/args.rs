@@ -106,7 +106,7 @@ pub(crate) struct RunArgs {
     /// Print one JSON document in place of the summary for people.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Show no progress, which is shown on a terminal only; warnings are still printed.
+    /// Show no progress; warnings are still printed.
     #[arg(long, short)]
     pub(crate) quiet: bool,
 }

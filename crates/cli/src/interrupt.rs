@@ -23,7 +23,7 @@ static KEPT: Mutex<Option<String>> = Mutex::new(None);
 static FOLDERS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Time for work to end by itself and to keep what it has; what is left of a second is for saying so.
-const GRACE: Duration = Duration::from_millis(800);
+const GRACE: Duration = Duration::from_millis(600);
 
 /// Exit status of a program that was asked to stop.
 pub(crate) const STATUS: u8 = 130;
@@ -53,7 +53,9 @@ pub(crate) fn watch(json: bool) {
 #[expect(clippy::exit, reason = "the work does not end by itself")]
 fn end(json: bool) -> ! {
     let folders = FOLDERS.lock().map(|folders| folders.clone()).unwrap_or_default();
-    for entry in folders.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().flatten() {
+    for entry in
+        folders.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().flatten()
+    {
         if entry.file_name().to_string_lossy().ends_with(&system::unfinished()) {
             // It may have been renamed since, and then it is whole.
             let _ = std::fs::remove_file(entry.path());

@@ -6,8 +6,8 @@ use std::io::{ErrorKind, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::Context as _;
-use barrelstack::scenario::error::Place;
 use barrelstack::scenario::ScenarioError;
+use barrelstack::scenario::error::Place;
 use barrelstack::{Run, Summary};
 use barrelstack_report::{Characters, described};
 

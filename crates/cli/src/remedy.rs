@@ -17,6 +17,9 @@ pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
         if let Some(ExportError::Foreign { .. }) = cause.downcast_ref() {
             return Some("move the file away, or name another folder with --out");
         }
+        if let Some(ExportError::Write { .. }) = cause.downcast_ref() {
+            return Some("name another folder with --out");
+        }
         if let Some(CompareError::TooFew(_)) = cause.downcast_ref() {
             return Some("name another scenario, or add --against PATH=VALUE");
         }

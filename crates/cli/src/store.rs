@@ -16,8 +16,9 @@ pub(crate) fn store(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 /// Refuses a folder in which nothing can be written, before the work is done.
 pub(crate) fn writable(folder: &Path) -> anyhow::Result<()> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    system::writable(folder)
-        .map_err(|reason| anyhow!("cannot write in {}: {reason}; name another folder", folder.display()))
+    system::writable(folder).map_err(|reason| {
+        anyhow!("cannot write in {}: {reason}; name another folder", folder.display())
+    })
 }
 
 /// What the system says, in words.

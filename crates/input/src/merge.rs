@@ -230,7 +230,8 @@ pub fn apply_overrides(
     for index in 0..texts.len() {
         apply_override(table, section, sources, index)?;
         let undone = |known: &&usize| !holds(table, Origin::Override(**known));
-        if let Some(known) = set.iter().find(undone).filter(|known| texts[**known] != texts[index]) {
+        if let Some(known) = set.iter().find(undone).filter(|known| texts[**known] != texts[index])
+        {
             let message = format!(
                 "it contradicts the override `{}`; keep one of them",
                 crate::quantity::shorten(&texts[*known])

@@ -144,9 +144,8 @@ impl Scenario {
     /// the file; else where one of them stands in what the file extends. None where none was written.
     pub fn place_of(&self, fields: &[String]) -> Option<Place> {
         let (sources, table) = self.written.0.as_deref()?;
-        let origin = |field: &String| {
-            merge::origin_at(table, &field.split('.').collect::<Vec<_>>())
-        };
+        let origin =
+            |field: &String| merge::origin_at(table, &field.split('.').collect::<Vec<_>>());
         let rank = |origin: &tree::Origin| match origin {
             tree::Origin::Override(_) => 0,
             tree::Origin::File { file: 0, .. } => 1,

@@ -8,7 +8,9 @@ use super::reader::Reader;
 use super::run::Until;
 use super::tree::Table;
 use super::writer::Writer;
-use super::{OutcomeSpec, RecordSpec, Scenario, Scene, free, interface, motion, pair, run, stack, Written};
+use super::{
+    OutcomeSpec, RecordSpec, Scenario, Scene, Written, free, interface, motion, pair, run, stack,
+};
 
 /// Version of the scenario language.
 pub(super) const SCHEMA: u32 = 1;

@@ -1,9 +1,9 @@
 //! What every device bore, told in its own words.
 
-use barrelstack_report::described::{Described, object};
+use barrelstack_report::described::{Described, Objects};
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use crate::device::{DEVICES, Words};
 use crate::run::Run;
@@ -80,29 +80,39 @@ impl Serialize for ElementSummary {
 }
 
 impl Described for Devices {
-    fn schema() -> Value {
-        let text = |meaning: &str| json!({ "type": "string", "description": meaning });
-        let number = |types: Value, unit: &str, meaning: &str| {
-            json!({ "type": types, "unit": unit, "description": meaning })
-        };
-        let mut whole = object("", &[]);
+    fn schema(objects: &mut Objects) -> Value {
+        let (mut properties, number) = (
+            Map::new(),
+            |unit: &str, meaning: String| json!({ "type": "number", "unit": unit, "description": meaning }),
+        );
         for Words { one, many, force, broken, .. } in DEVICES {
-            let mut element = object(&format!("One {one}."), &[]);
-            element["properties"] = json!({
-                "name": text("The bodies that it joins, and where."),
-                format!("peak_{force}"):
-                    number(json!("number"), "N", &format!("The {force} that is largest in size.")),
-                format!("peak_{force}_at"): number(json!("number"), "s", "When."),
-                format!("{broken}_at"):
-                    number(json!(["number", "null"]), "s", &format!("When it was {broken}.")),
-            });
-            let keys = element["properties"].as_object().into_iter().flatten();
-            element["required"] = keys.map(|(key, _)| json!(key)).collect();
-            whole["properties"][many] = json!({
-                "type": "array", "items": element, "description": format!("All {many}."),
-            });
+            let mut element = Map::new();
+            let name = json!({ "type": "string", "description": "What it joins, and where." });
+            element.insert("name".into(), name);
+            let peak = number("N", format!("The {force} that is largest in size."));
+            element.insert(format!("peak_{force}"), peak);
+            element.insert(format!("peak_{force}_at"), number("s", "When.".into()));
+            let mut at = number("s", format!("When it was {broken}."));
+            at["type"] = json!(["number", "null"]);
+            element.insert(format!("{broken}_at"), at);
+            let element = closed(&format!("One {one}."), element);
+            let all = format!("All {many}.");
+            let all = json!({ "type": "array", "items": element, "description": all });
+            properties.insert((*many).into(), all);
         }
-        whole["required"] = DEVICES.iter().map(|words| json!(words.many)).collect();
-        whole
+        objects.insert("Devices".into(), closed("The devices.", properties));
+        json!({ "$ref": "#/$defs/Devices" })
     }
+}
+
+/// An object that has these properties, and no other.
+fn closed(meaning: &str, properties: Map<String, Value>) -> Value {
+    let required: Vec<&String> = properties.keys().collect();
+    json!({
+        "type": "object",
+        "description": meaning,
+        "required": required,
+        "properties": properties,
+        "additionalProperties": false,
+    })
 }

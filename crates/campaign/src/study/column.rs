@@ -1,7 +1,7 @@
 //! One column of a table of cases: what it is, and its values.
 
 use barrelstack_report::described;
-use barrelstack_report::described::Described;
+use barrelstack_report::described::{Described, Objects};
 use serde::{Deserialize, Serialize};
 
 use super::error::StudyError;
@@ -27,7 +27,7 @@ pub enum Role {
 }
 
 impl Described for Role {
-    fn schema() -> serde_json::Value {
+    fn schema(_: &mut Objects) -> serde_json::Value {
         serde_json::json!({ "type": "string", "enum": ["key", "factor", "motion", "intensity", "outcome", "demand", "run"] })
     }
 }
@@ -45,7 +45,7 @@ pub enum ValueKind {
 }
 
 impl Described for ValueKind {
-    fn schema() -> serde_json::Value {
+    fn schema(_: &mut Objects) -> serde_json::Value {
         serde_json::json!({ "type": "string", "enum": ["integer", "number", "text"] })
     }
 }

@@ -13,7 +13,6 @@ use std::fs::{self, File, TryLockError};
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
-
 use barrelstack_report::described;
 
 use crate::scenario::fnv1a;

@@ -77,7 +77,11 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         return Err(Stopped.into());
     }
     if sides.len() < scenarios.len() {
-        printer::note(&format!("stopped; {} of {} runs are compared", sides.len(), scenarios.len()));
+        printer::note(&format!(
+            "stopped; {} of {} runs are compared",
+            sides.len(),
+            scenarios.len()
+        ));
     }
     let document = compare::document(&sides);
     crate::interrupt::writes_to(folder.path());
@@ -114,7 +118,13 @@ fn asked(args: &CompareArgs) -> Vec<(String, ScenarioArgs)> {
     let with = |scenario: &String, more: Option<&String>| ScenarioArgs {
         scenario: scenario.clone(),
         // What is changed in one run is changed from what all have.
-        set: args.set.iter().filter(|set| more.is_none_or(|m| path(m) != path(set))).chain(more).cloned().collect(),
+        set: args
+            .set
+            .iter()
+            .filter(|set| more.is_none_or(|m| path(m) != path(set)))
+            .chain(more)
+            .cloned()
+            .collect(),
         record: args.record.clone(),
     };
     let files = args.scenarios.iter().map(|name| (short(name), with(name, None)));

@@ -53,7 +53,10 @@ pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
         seed: args.seed,
     };
     writable(&args.out)?;
-    keeps(format!("what was run is kept in {}, the same command goes on from there", args.out.display()));
+    keeps(format!(
+        "what was run is kept in {}, the same command goes on from there",
+        args.out.display()
+    ));
     let progress = Progress::new(!args.quiet);
     let result = heights(&request, &args.out, &RunOptions::default(), &|done, of| {
         progress.counted(done, of, "runs")

@@ -18,8 +18,8 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let scenario = super::load(&args.scenario)?;
     // The folder is looked at before the work is done, not after.
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
-    let (run, summary) =
-        watched(&scenario, !args.quiet).map_err(|error| super::placed(error, &scenario, &args.scenario))?;
+    let (run, summary) = watched(&scenario, !args.quiet)
+        .map_err(|error| super::placed(error, &scenario, &args.scenario))?;
     let verification = args
         .verify
         .then(|| repeated(&run, !args.quiet))

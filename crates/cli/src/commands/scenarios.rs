@@ -72,7 +72,10 @@ fn filtered(reference: &str, filter: &str) -> anyhow::Result<Vec<String>> {
         let holds = line.to_lowercase().contains(&wanted);
         if line.starts_with("## ") {
             (head, named) = (vec![line], holds);
-        } else if line.starts_with("With ") || line.starts_with("| field") || line.starts_with("|--") {
+        } else if line.starts_with("With ")
+            || line.starts_with("| field")
+            || line.starts_with("|--")
+        {
             head.push(line);
         } else if line.starts_with("| ") && (holds || named) {
             let separated = if lines.is_empty() || head.is_empty() { None } else { Some("") };
@@ -81,7 +84,9 @@ fn filtered(reference: &str, filter: &str) -> anyhow::Result<Vec<String>> {
         }
     }
     if lines.is_empty() {
-        bail!("no field has \"{filter}\" in its name, its table or its meaning; without it all are listed");
+        bail!(
+            "no field has \"{filter}\" in its name, its table or its meaning; without it all are listed"
+        );
     }
     Ok(lines)
 }

@@ -14,8 +14,8 @@ use anyhow::Context as _;
 use barrelstack_campaign::study::{
     self, ChunkRun, Collected, Following, RunOptions, Study, StudyError,
 };
-use clap::Subcommand;
 use barrelstack_report::described;
+use clap::Subcommand;
 
 pub(crate) use answer::StudyResult;
 
@@ -70,7 +70,7 @@ struct RunArgs {
     /// Print one JSON document in place of the summary for people.
     #[arg(long)]
     json: bool,
-    /// Show no progress, which is shown on a terminal only.
+    /// Show no progress.
     #[arg(long, short)]
     quiet: bool,
 }

@@ -434,7 +434,8 @@ fn document(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Reco
         let motion = measures::sampled(channel)?;
         let mut values = BTreeMap::new();
         for Shown { measure, .. } in shown {
-            let value = MeasureInfo { value: measure.of(&motion)?, unit: measure.unit().to_string() };
+            let value =
+                MeasureInfo { value: measure.of(&motion)?, unit: measure.unit().to_string() };
             values.insert(measure.to_string(), value);
         }
         let pulse = all.then(|| measures::pulse(&motion).ok()).flatten();

@@ -30,7 +30,13 @@ impl Live {
             bar.enable_steady_tick(Duration::from_millis(200));
             bar
         });
-        Self { bar, lines: Lines::new(show), sample, interrupt: Interrupt::listen(), damaged: AtomicUsize::new(0) }
+        Self {
+            bar,
+            lines: Lines::new(show),
+            sample,
+            interrupt: Interrupt::listen(),
+            damaged: AtomicUsize::new(0),
+        }
     }
 
     /// Whether the user asked to stop.

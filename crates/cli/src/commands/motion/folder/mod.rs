@@ -42,7 +42,7 @@ pub(super) struct FolderArgs {
     /// Periods of the table's spectra in seconds between commas, or with a unit each.
     #[arg(long = "table-periods", value_name = "LIST", value_delimiter = ',')]
     periods: Vec<String>,
-    /// Show no progress, which is shown on a terminal only.
+    /// Show no progress.
     #[arg(long, short)]
     quiet: bool,
 }
