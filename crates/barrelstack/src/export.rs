@@ -71,6 +71,10 @@ impl Folder {
     /// # Errors
     /// When it holds anything and `overwrite` is not set, or is no folder.
     pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, ExportError> {
+        if path.as_os_str().is_empty() {
+            let reason = "the name is empty".to_owned();
+            return Err(ExportError::Write { path: path.to_owned(), reason });
+        }
         // A folder that is to be made needs one above it that is there.
         let there = path.ancestors().find(|folder| folder.exists());
         if let Some(file) = there.filter(|there| !there.is_dir()) {

@@ -75,7 +75,7 @@ pub(crate) fn counted(count: u64, thing: &str) -> String {
 
 /// An error, with its causes, as one paragraph; `json` asks for a document as well.
 pub(crate) fn error(error: &anyhow::Error, json: bool) {
-    let (next, words) = (remedy(error), format!("{error:#}"));
+    let (next, words) = (remedy(error), bounded(&format!("{error:#}")));
     match next {
         Some(next) => eprintln!("error: {}; {next}", harmless(&words)),
         None => eprintln!("error: {}", harmless(&words)),
@@ -85,8 +85,21 @@ pub(crate) fn error(error: &anyhow::Error, json: bool) {
     told(ErrorDocument::of(&(&words, next, place, 2)), json);
 }
 
+/// A text of which the middle is left out where it is longer than anyone reads.
+fn bounded(text: &str) -> String {
+    const LONGEST: usize = 2000;
+    const KEPT: usize = 400;
+    let length = text.chars().count();
+    if length <= LONGEST {
+        return text.to_owned();
+    }
+    let [first, last] = [0, length - KEPT].map(|skip| text.chars().skip(skip).take(KEPT));
+    first.chain(" […] ".chars()).chain(last).collect()
+}
+
 /// What the parser of the command line says.
 pub(crate) fn usage(words: &str, json: bool) {
+    let words = &bounded(words);
     eprint!("{}", harmless(words));
     let first = words.split("\n\n").next().unwrap_or(words).trim_start_matches("error: ");
     told(ErrorDocument::of(&(first, None, None, 2)), json);

@@ -16,6 +16,9 @@ const EVERY: Duration = Duration::from_secs(5);
 /// How long work is looked at before it is told how long all of it takes.
 const LOOKED_AT: Duration = Duration::from_secs(1);
 
+/// The share of it that is done by then, unless it takes long.
+const SHARE: f64 = 0.02;
+
 /// The shortest work of which that is told.
 const LONG: Duration = Duration::from_secs(10);
 
@@ -83,7 +86,8 @@ impl Lines {
     pub(crate) fn at(&self, done: f64, of: f64, words: impl Fn() -> String) {
         let spent = self.start.elapsed();
         let Some(Ok(mut last)) = self.last.as_ref().map(Mutex::lock) else { return };
-        if spent < LOOKED_AT || done <= 0.0 {
+        // The first of many things that go on together says little of the rest.
+        if spent < LOOKED_AT || done <= 0.0 || (done < SHARE * of && spent < EVERY) {
             return;
         }
         let whole = spent.mul_f64((of / done).clamp(1.0, 1e6));

@@ -5,6 +5,7 @@ use barrelstack::RunFailure;
 use barrelstack::compare::CompareError;
 use barrelstack::export::ExportError;
 use barrelstack::ground::GroundError;
+use barrelstack_motion::MotionError;
 
 /// What to type after an error, where one option helps.
 pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
@@ -33,6 +34,10 @@ pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
 fn of_ground(error: &GroundError) -> Option<&'static str> {
     match error {
         GroundError::Unreadable { .. } => Some("name your file with --record FILE"),
+        GroundError::Motion(MotionError::NoChannel { .. }) => Some(
+            "a horizontal one is chosen with --set motion.component=NAME, and a vertical one alone moves \
+             nothing sideways",
+        ),
         GroundError::Read(_)
         | GroundError::Motion(_)
         | GroundError::Vertical { .. }

@@ -61,7 +61,7 @@ fn every_command_ends_within_a_second_and_says_what_is_kept() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let study = format!(
-        "{HEAD}duration = \"2000 s\"\n[base.motion.pulse]\nkind = \"one-sine\"\n\
+        "{HEAD}duration = \"2000 s\"\nuntil = \"duration\"\n[base.motion.pulse]\nkind = \"one-sine\"\n\
                          amplitude = \"0.1 g\"\nperiod = \"0.3 s\"\n\
                          [[factor]]\nfield = \"motion.pulse.amplitude\"\nvalues = [\"0.1 g\", \"0.2 g\"]\n\
                          [design]\nkind = \"full-factorial\"\nchunk = 1\n"
@@ -73,8 +73,7 @@ fn every_command_ends_within_a_second_and_says_what_is_kept() {
         "time (s),B1.1 displacement x (mm)\n0,0\n1,0.1\n2,0.1\n3,0.2\n4,0\n",
     )
     .unwrap();
-    let made =
-        ["motion", "synth", "clough-penzien", "--pga=0.3 g", "--duration=400 s", "-o", "long.txt"];
+    let made = ["motion", "synth", "clough-penzien", "--duration=400 s", "-o", "long.txt"];
     let made = program(made).current_dir(at).output().unwrap();
     assert!(made.status.success(), "{}", common::stderr(&made));
 

@@ -300,8 +300,8 @@ fn every_number_has_a_unit_and_every_field_a_meaning() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "hundred and forty runs, a minute; run in release")]
 fn the_heights_of_a_moment_have_their_schema() {
-    // Without synthetic motions, a minute of one core (measured 20 s on two).
     let folder = tempfile::tempdir().unwrap();
     let out = path(folder.path(), "heights");
     let mut seen = Seen::default();

@@ -200,21 +200,19 @@ pub fn origin_at(table: &Table, keys: &[&str]) -> Option<Origin> {
     }
 }
 
-/// Whether anything of a table was written in an override.
+/// Whether any value of a table was written in an override; the tables on the way to another are none.
 fn holds(table: &Table, origin: Origin) -> bool {
-    fn inside(node: &Node, origin: Origin) -> bool {
-        node.origin == origin
-            || match &node.value {
-                Value::Array(items) => items.iter().any(|item| inside(item, origin)),
-                Value::Table(table) => holds(table, origin),
-                Value::Text(_)
-                | Value::Integer(_)
-                | Value::Float(_)
-                | Value::Flag(_)
-                | Value::Date => false,
-            }
-    }
-    table.entries.iter().any(|entry| entry.origin == origin || inside(&entry.node, origin))
+    table.entries.iter().any(|entry| match &entry.node.value {
+        Value::Table(below) => holds(below, origin),
+        Value::Array(items) => {
+            let inside = |item: &Node| match &item.value {
+                Value::Table(below) => holds(below, origin),
+                _ => item.origin == origin,
+            };
+            entry.node.origin == origin || items.iter().any(inside)
+        }
+        _ => entry.node.origin == origin,
+    })
 }
 
 /// Applies all overrides, in order.

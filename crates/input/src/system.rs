@@ -60,14 +60,20 @@ pub fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
     written
 }
 
-/// Whether files can be made in a folder, or in the nearest one above it that is there; tried, and nothing left.
+/// Whether files can be made in a folder that may have to be made itself; tried, and nothing left.
 ///
 /// # Errors
 /// In words, when the system refuses.
 pub fn writable(folder: &Path) -> Result<(), String> {
-    let absolute = std::path::absolute(folder).map_err(|error| words(&error))?;
-    let there = absolute.ancestors().find(|folder| folder.exists()).unwrap_or(&absolute);
-    let probe = temporary(&there.join("barrelstack"));
-    std::fs::write(&probe, []).map_err(|error| words(&error))?;
-    std::fs::remove_file(&probe).map_err(|error| words(&error))
+    let folder = std::path::absolute(folder).map_err(|error| words(&error))?;
+    let missing: Vec<&Path> = folder.ancestors().take_while(|folder| !folder.exists()).collect();
+    let probe = temporary(&folder.join("barrelstack"));
+    let tried = std::fs::create_dir_all(&folder)
+        .and_then(|()| std::fs::write(&probe, []))
+        .and_then(|()| std::fs::remove_file(&probe));
+    for made in missing {
+        // What could not be made need not be removed, and what is not empty is somebody else's.
+        let _ = std::fs::remove_dir(made);
+    }
+    tried.map_err(|error| words(&error))
 }

@@ -95,10 +95,15 @@ impl Described for Devices {
             let mut at = number("s", format!("When it was {broken}."));
             at["type"] = json!(["number", "null"]);
             element.insert(format!("{broken}_at"), at);
-            let element = closed(&format!("One {one}."), element);
-            let all = format!("All {many}.");
-            let all = json!({ "type": "array", "items": element, "description": all });
-            properties.insert((*many).into(), all);
+            objects.insert((*one).into(), closed(&format!("One {one}."), element));
+            properties.insert(
+                (*many).into(),
+                json!({
+                    "type": "array",
+                    "items": { "$ref": format!("#/$defs/{one}") },
+                    "description": format!("All {many}."),
+                }),
+            );
         }
         objects.insert("Devices".into(), closed("The devices.", properties));
         json!({ "$ref": "#/$defs/Devices" })
