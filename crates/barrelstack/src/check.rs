@@ -145,7 +145,7 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
         rest,
         motion: ground.motion.as_ref().map(MotionSummary::of),
         sticks: sticks.iter().map(ToString::to_string).collect(),
-        warnings: ground.warnings.clone(),
+        warnings: ground.warnings,
         scenario_hash: format!("{:016x}", scenario.fingerprint()),
     })
 }

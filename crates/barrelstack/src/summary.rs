@@ -15,9 +15,6 @@ use crate::watch::StressEnvelope;
 
 pub use devices::{Device, Devices, ElementSummary};
 
-/// Name and version of the summary's layout.
-pub const SUMMARY_SCHEMA: &str = "summary/1";
-
 described! {
     /// The summary of a run. Lengths in m, times in s, forces in N, angles in rad; null where it did not
     /// happen or does not apply.
@@ -245,7 +242,7 @@ impl Summary {
     /// Sums up a run; `wall_seconds` is the time it took on the clock, where it was measured.
     pub fn of(run: &Run, wall_seconds: Option<f64>) -> Self {
         Self {
-            schema: SUMMARY_SCHEMA,
+            schema: "summary/1",
             title: run.scenario.title.clone(),
             outcome: outcome(run),
             bodies: bodies(run),

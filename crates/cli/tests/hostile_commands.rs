@@ -6,6 +6,7 @@
 
 mod common;
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -198,7 +199,7 @@ fn toml_text(text: &str) -> String {
     let escaped = text.chars().fold(String::new(), |mut all, c| {
         match c {
             '"' | '\\' => all.extend(['\\', c]),
-            c if c.is_control() => all += &format!("\\u{:04x}", u32::from(c)),
+            c if c.is_control() => write!(all, "\\u{:04x}", u32::from(c)).unwrap(),
             c => all.push(c),
         }
         all

@@ -202,17 +202,14 @@ pub fn origin_at(table: &Table, keys: &[&str]) -> Option<Origin> {
 
 /// Whether any value of a table was written in an override; the tables on the way to another are none.
 fn holds(table: &Table, origin: Origin) -> bool {
-    table.entries.iter().any(|entry| match &entry.node.value {
-        Value::Table(below) => holds(below, origin),
-        Value::Array(items) => {
-            let inside = |item: &Node| match &item.value {
-                Value::Table(below) => holds(below, origin),
-                _ => item.origin == origin,
-            };
-            entry.node.origin == origin || items.iter().any(inside)
+    fn inside(node: &Node, origin: Origin) -> bool {
+        if let Value::Table(below) = &node.value {
+            return holds(below, origin);
         }
-        _ => entry.node.origin == origin,
-    })
+        let items = if let Value::Array(items) = &node.value { items.as_slice() } else { &[] };
+        node.origin == origin || items.iter().any(|item| inside(item, origin))
+    }
+    table.entries.iter().any(|entry| inside(&entry.node, origin))
 }
 
 /// Applies all overrides, in order.

@@ -95,7 +95,7 @@ impl Described for Devices {
             let mut at = number("s", format!("When it was {broken}."));
             at["type"] = json!(["number", "null"]);
             element.insert(format!("{broken}_at"), at);
-            objects.insert((*one).into(), closed(&format!("One {one}."), element));
+            objects.insert((*one).into(), closed(&format!("One {one}."), &element));
             properties.insert(
                 (*many).into(),
                 json!({
@@ -105,13 +105,13 @@ impl Described for Devices {
                 }),
             );
         }
-        objects.insert("Devices".into(), closed("The devices.", properties));
+        objects.insert("Devices".into(), closed("The devices.", &properties));
         json!({ "$ref": "#/$defs/Devices" })
     }
 }
 
 /// An object that has these properties, and no other.
-fn closed(meaning: &str, properties: Map<String, Value>) -> Value {
+fn closed(meaning: &str, properties: &Map<String, Value>) -> Value {
     let required: Vec<&String> = properties.keys().collect();
     json!({
         "type": "object",

@@ -35,11 +35,7 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         Ok(())
     });
     if args.json {
-        let document = match &verification {
-            Some(verification) => verification.with_summary(&summary),
-            None => summary.to_json(),
-        };
-        printer::lines([document])?;
+        printer::document(&Summary { verification: verification.clone(), ..summary.clone() })?;
     } else {
         let characters = if args.plain { Characters::Ascii } else { Characters::Unicode };
         printer::summary(&run, &summary, &args.scenario.set, characters)?;
