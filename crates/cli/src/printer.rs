@@ -49,14 +49,16 @@ fn raw(text: &str) -> anyhow::Result<()> {
 pub(crate) fn document(document: &impl Serialize) -> anyhow::Result<()> {
     let text = serde_json::to_string_pretty(document)? + "\n";
     PRINTED.store(true, Ordering::Relaxed);
-    // The characters that JSON leaves as they are and a terminal obeys.
-    let obeyed = |c: char| c.is_control() && c != '\n';
-    raw(&text.split_inclusive(obeyed).fold(String::new(), |mut all, piece| {
-        all.push_str(piece.trim_end_matches(obeyed));
-        let last = piece.chars().next_back().filter(|c| obeyed(*c));
-        last.into_iter().for_each(|c| _ = write!(all, "\\u{:04x}", u32::from(c)));
-        all
-    }))
+    let mut whole = String::with_capacity(text.len());
+    for c in text.chars() {
+        // The characters that JSON leaves as they are and a terminal obeys.
+        if c.is_control() && c != '\n' {
+            let _ = write!(whole, "\\u{:04x}", u32::from(c));
+        } else {
+            whole.push(c);
+        }
+    }
+    raw(&whole)
 }
 
 /// Whether a document was printed: then no second one follows.
@@ -82,7 +84,7 @@ pub(crate) fn error(error: &anyhow::Error, json: bool) {
     }
     let read = error.chain().find_map(|cause| cause.downcast_ref::<ScenarioError>());
     let place = error.downcast_ref::<Place>().or(read.map(ScenarioError::place));
-    told(ErrorDocument::of(&(&words, next, place, 2)), json);
+    told(&ErrorDocument::of(&(&words, next, place, 2)), json);
 }
 
 /// A text of which the middle is left out where it is longer than anyone reads.
@@ -102,21 +104,21 @@ pub(crate) fn usage(words: &str, json: bool) {
     let words = &bounded(words);
     eprint!("{}", harmless(words));
     let first = words.split("\n\n").next().unwrap_or(words).trim_start_matches("error: ");
-    told(ErrorDocument::of(&(first, None, None, 2)), json);
+    told(&ErrorDocument::of(&(first, None, None, 2)), json);
 }
 
 /// That the program was stopped, and what is kept.
 pub(crate) fn stopped(json: bool) {
     let words = Stopped.to_string();
     note(&words);
-    told(ErrorDocument::of(&(&words, None, None, STATUS)), json);
+    told(&ErrorDocument::of(&(&words, None, None, STATUS)), json);
 }
 
 /// Prints a document of an error where documents are asked for and none was printed.
-fn told(document: ErrorDocument, json: bool) {
+fn told(document: &ErrorDocument, json: bool) {
     if json && !PRINTED.load(Ordering::Relaxed) {
         // Where standard output is gone, standard error has it all.
-        drop(self::document(&document));
+        drop(self::document(document));
     }
 }
 

@@ -94,7 +94,11 @@ impl Lines {
         if *last == self.start && whole > LONG {
             printer::note(&format!("this takes about {}", rounded(whole)));
         } else if last.elapsed() > EVERY {
-            printer::note(&format!("{}, about {} to go", words(), rounded(whole - spent)));
+            printer::note(&format!(
+                "{}, about {} to go",
+                words(),
+                rounded(whole.saturating_sub(spent))
+            ));
         } else {
             return;
         }

@@ -22,6 +22,7 @@ pub(crate) fn writable(folder: &Path) -> anyhow::Result<()> {
 }
 
 /// What the system says, in words.
+#[expect(clippy::needless_pass_by_value, reason = "as errors are mapped")]
 pub(crate) fn plain(error: std::io::Error) -> anyhow::Error {
     anyhow!(system::words(&error))
 }

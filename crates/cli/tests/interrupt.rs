@@ -21,7 +21,7 @@ const AT_MOST: Duration = Duration::from_millis(1500);
 /// Starts a command, signals it, and gives its words on standard error.
 fn stopped(signal: &str, arguments: &[&str], folder: &Path) -> String {
     let what = format!("{signal} {arguments:?}");
-    let child = program(arguments)
+    let mut child = program(arguments)
         .current_dir(folder)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -31,8 +31,11 @@ fn stopped(signal: &str, arguments: &[&str], folder: &Path) -> String {
     std::thread::sleep(Duration::from_millis(700));
     let sent = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
     assert!(sent.success(), "{what}: it had ended before");
+    // Standard input stays open, so that what reads it waits on.
+    let input = child.stdin.take();
     let start = Instant::now();
     let output = child.wait_with_output().unwrap();
+    drop(input);
     let took = start.elapsed();
     let words = common::stderr(&output);
     assert_eq!(output.status.code(), Some(130), "{what}: {words}");
@@ -68,11 +71,10 @@ fn every_command_ends_within_a_second_and_says_what_is_kept() {
     );
     fs::write(at.join("study.toml"), study).unwrap();
     fs::write(at.join("seen.csv"), "mode,until (s)\nstands,8\n").unwrap();
-    fs::write(
-        at.join("response.csv"),
-        "time (s),B1.1 displacement x (mm)\n0,0\n1,0.1\n2,0.1\n3,0.2\n4,0\n",
-    )
-    .unwrap();
+    let rows: Vec<String> =
+        (0..400).map(|row| format!("{:.1},{}\n", 0.1 * f64::from(row), row % 3)).collect();
+    let response = format!("time (s),B1.1 displacement x (mm)\n{}", rows.concat());
+    fs::write(at.join("response.csv"), response).unwrap();
     let made = ["motion", "synth", "clough-penzien", "--duration=400 s", "-o", "long.txt"];
     let made = program(made).current_dir(at).output().unwrap();
     assert!(made.status.success(), "{}", common::stderr(&made));
@@ -103,8 +105,9 @@ fn every_command_ends_within_a_second_and_says_what_is_kept() {
     for (number, arguments) in commands.iter().enumerate() {
         let signal = if number % 2 == 0 { "-INT" } else { "-TERM" };
         stopped(signal, arguments, at);
-        let half: Vec<String> =
-            files(at).into_iter().filter(|file| file.ends_with(".part")).collect();
+        let unfinished =
+            |file: &String| Path::new(file).extension().is_some_and(|end| end == "part");
+        let half: Vec<String> = files(at).into_iter().filter(unfinished).collect();
         assert_eq!(half, Vec::<String>::new(), "{arguments:?}");
     }
     // What was computed until then is there.

@@ -74,10 +74,11 @@ impl Schema {
                     self.check(one, value, at, &mut inner);
                     inner.is_empty()
                 }),
-                "type" => !match rule {
-                    Value::Array(types) => types.iter().any(|one| is(one, value)),
-                    one => is(one, value),
-                },
+                "type" => {
+                    let types = rule.as_array();
+                    !types
+                        .map_or_else(|| is(rule, value), |all| all.iter().any(|one| is(one, value)))
+                }
                 "enum" => !rule.as_array().unwrap().contains(value),
                 "minimum" => value.as_f64().is_some_and(|number| number < rule.as_f64().unwrap()),
                 "minItems" => {
@@ -108,11 +109,10 @@ impl Schema {
                     let known = schema.get("properties").and_then(Value::as_object);
                     for (key, inner) in value.as_object().into_iter().flatten() {
                         let more = known.is_none_or(|known| !known.contains_key(key));
-                        match rule {
-                            Value::Bool(false) if more => errors.push(format!("{at}.{key} is new")),
-                            Value::Bool(_) => {}
-                            rule if more => self.check(rule, inner, &format!("{at}.{key}"), errors),
-                            _ => {}
+                        if more && rule == false {
+                            errors.push(format!("{at}.{key} is new"));
+                        } else if more {
+                            self.check(rule, inner, &format!("{at}.{key}"), errors);
                         }
                     }
                     false
@@ -141,6 +141,9 @@ fn is(kind: &Value, value: &Value) -> bool {
 
 /// Whether a field holds numbers that are not whole.
 fn counts(field: &Value) -> bool {
+    if !field.is_object() {
+        return false;
+    }
     let number = |kind: &Value| kind == "number";
     let kinds = field["type"]
         .as_array()

@@ -35,7 +35,7 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         Ok(())
     });
     if args.json {
-        printer::document(&Summary { verification: verification.clone(), ..summary.clone() })?;
+        printer::document(&Summary { verification, ..summary })?;
     } else {
         let characters = if args.plain { Characters::Ascii } else { Characters::Unicode };
         printer::summary(&run, &summary, &args.scenario.set, characters)?;
