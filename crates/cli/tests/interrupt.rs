@@ -13,7 +13,8 @@ use std::time::{Duration, Instant};
 use common::{HEAD, barrelstack, names, program};
 
 /// Work of hours.
-const LONG: [&str; 2] = ["--set=run.duration=3600 s", "--set=stack.levels=2"];
+const LONG: [&str; 3] =
+    ["--set=run.duration=3600 s", "--set=run.until=duration", "--set=stack.levels=2"];
 
 /// How long a command may take to end; measured 0.1 to 0.9 s on a machine that does other things, too.
 const AT_MOST: Duration = Duration::from_millis(1500);

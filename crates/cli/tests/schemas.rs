@@ -229,8 +229,14 @@ fn every_document_has_the_schema_that_it_names_in_every_outcome() {
     assert!(seen.run(&verified, 0)["verification"].is_object());
     #[cfg(unix)]
     {
-        let long =
-            ["run", "demo-napa", "--set=run.duration=3600 s", "--set=stack.levels=2", "--json"];
+        let long = [
+            "run",
+            "demo-napa",
+            "--set=run.duration=3600 s",
+            "--set=run.until=duration",
+            "--set=stack.levels=2",
+            "--json",
+        ];
         let value = seen.output("stopped", &interrupted(&long), 130);
         assert_eq!(value["run"]["interrupted"], true);
     }
