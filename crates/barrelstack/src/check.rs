@@ -1,21 +1,108 @@
 //! Is a scenario sound, and does its stack stand before it is shaken?
 
+use barrelstack_report::described;
+
 use crate::assemble::PartKind;
-use crate::run::{RunFailure, end_time};
+use crate::run::{RunFailure, check_memory, end_time};
 use crate::scenario::Scenario;
 use crate::stand::{Standing, stand};
 use crate::stick::SoftStick;
+use crate::summary::MotionSummary;
 
-/// What a check found.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Checked {
-    lines: Vec<String>,
+described! {
+    /// What a check found: the scenario is sound.
+    #[derive(Clone, Debug)]
+    pub struct Checked {
+        /// Name and version of this layout.
+        pub schema: &'static str ["check/1"],
+        /// The scenario's title.
+        pub title: String,
+        /// Barrels.
+        pub barrels: usize,
+        /// Racks.
+        pub racks: usize,
+        /// Bodies of a free scene.
+        pub free_bodies: usize,
+        /// Time step.
+        pub time_step: f64 as "s",
+        /// How it came to rest; null where the scenario starts without.
+        pub rest: Option<AtRest>,
+        /// What shakes it.
+        pub motion: Option<MotionSummary>,
+        /// What its elastic sticks are too soft for, one sentence each.
+        pub sticks: Vec<String>,
+        /// What the reader should know.
+        pub warnings: Vec<String>,
+        /// Hash of the scenario with every default written out.
+        pub scenario_hash: String,
+    }
+
+    /// How a stack came to rest.
+    #[derive(Clone, Debug)]
+    pub struct AtRest {
+        /// Steps taken to find equilibrium.
+        pub steps: u64,
+        /// Deepest sinking of a body into its contacts.
+        pub deepest_sinking: f64 as "m",
+        /// Force that is left unbalanced, over gravity.
+        pub unbalanced: f64 as "1",
+        /// Friction locked in as the stack sank, over the normal forces.
+        pub locked_friction: f64 as "1",
+        /// Contacts that hold.
+        pub holding: usize,
+        /// Contacts at their limit of friction.
+        pub slipping: usize,
+    }
 }
 
 impl Checked {
     /// What was found, a line each, for people.
-    pub fn lines(&self) -> impl Iterator<Item = &str> {
-        self.lines.iter().map(String::as_str)
+    pub fn lines(&self) -> Vec<String> {
+        let mut lines = vec![self.title.clone()];
+        let counts =
+            [(self.barrels, "barrel"), (self.racks, "rack"), (self.free_bodies, "free body")];
+        let counts: Vec<String> = counts
+            .into_iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, name)| match (count, name) {
+                (1, _) => format!("1 {name}"),
+                (_, "free body") => format!("{count} free bodies"),
+                _ => format!("{count} {name}s"),
+            })
+            .collect();
+        lines.push(format!("  bodies        {}", counts.join(", ")));
+        lines.push(format!("  time step     {:.3} ms", 1e3 * self.time_step));
+        if let Some(rest) = &self.rest {
+            lines.push(format!(
+                "  at rest       after {} steps, deepest sinking {:.1} mm, forces balanced to {:.0e} of \
+                 gravity",
+                rest.steps,
+                1e3 * rest.deepest_sinking,
+                rest.unbalanced
+            ));
+            lines.push(format!(
+                "  friction      locked in as the stack sank: {:.0} % of the normal forces, at {} contacts \
+                 that hold and {} at their limit",
+                100.0 * rest.locked_friction,
+                rest.holding,
+                rest.slipping
+            ));
+        }
+        if let Some(motion) = &self.motion {
+            lines.push(format!(
+                "  motion        {}: {:.2} s, PGA {:.3} g, PGV {:.1} cm/s, PGD {:.1} cm",
+                motion.name,
+                motion.duration,
+                motion.pga / barrelstack_motion::STANDARD_GRAVITY,
+                100.0 * motion.pgv,
+                100.0 * motion.pgd
+            ));
+        }
+        lines.extend(self.sticks.iter().map(|stick| format!("  stick         {stick}")));
+        lines.extend(self.warnings.iter().map(|warning| format!("  warning       {warning}")));
+        lines.push(format!("  fingerprint   {}", self.scenario_hash));
+        lines.push("the scenario is sound".into());
+        lines
     }
 }
 
@@ -24,63 +111,42 @@ impl Checked {
 /// # Errors
 /// As [`Scenario::run`].
 pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
-    let mut lines = vec![scenario.title.clone()];
     let ground = scenario.ground()?;
     let end_time = end_time(scenario, &ground, scenario.run.similitude.sqrt())?;
     let Standing { assembly, state, scratch, settled, step } = stand(scenario, end_time)?;
+    let scale = scenario.run.similitude.sqrt();
+    let rates = (scenario.record.frame_rate / scale, scenario.record.history_rate / scale);
+    check_memory(&assembly, end_time, rates)?;
     let count = |kind| assembly.of_kind(kind).count();
-    let counts = [
-        (count(PartKind::Barrel), "barrel"),
-        (count(PartKind::Rack), "rack"),
-        (count(PartKind::Body), "free body"),
-    ];
-    let counts: Vec<String> = counts
-        .into_iter()
-        .filter(|(count, _)| *count > 0)
-        .map(|(count, name)| match (count, name) {
-            (1, _) => format!("1 {name}"),
-            (_, "free body") => format!("{count} free bodies"),
-            _ => format!("{count} {name}s"),
-        })
-        .collect();
-    lines.push(format!("  bodies        {}", counts.join(", ")));
-    lines.push(format!("  time step     {:.3} ms", 1e3 * step));
-    if let Some(settled) = settled {
+    let rest = settled.map(|settled| {
         let sunk = assembly.model.bodies().iter().zip(&state.poses);
         let deepest =
             sunk.map(|(body, now)| body.pose.position.z - now.position.z).fold(0.0, f64::max);
-        lines.push(format!(
-            "  at rest       after {} steps, deepest sinking {:.1} mm, forces balanced to {:.0e} of \
-             gravity",
-            settled.steps,
-            1e3 * deepest,
-            settled.unbalanced
-        ));
-        let locked = settled.locked;
-        lines.push(format!(
-            "  friction      locked in as the stack sank: {:.0} % of the normal forces, at {} contacts \
-             that hold and {} at their limit",
-            100.0 * locked.friction,
-            locked.holding,
-            locked.slipping
-        ));
-    }
-    if let Some(motion) = &ground.motion {
-        lines.push(format!(
-            "  motion        {}: {:.2} s, PGA {:.3} g, PGV {:.1} cm/s, PGD {:.1} cm",
-            motion.name,
-            motion.duration,
-            motion.pga() / barrelstack_motion::STANDARD_GRAVITY,
-            100.0 * motion.pgv(),
-            100.0 * motion.pgd()
-        ));
-    }
-    if scenario.run.settle {
-        let soft = SoftStick::of(&assembly, &scratch, ground.motion.as_ref());
-        lines.extend(soft.iter().map(|stick| format!("  stick         {stick}")));
-    }
-    lines.extend(ground.warnings.iter().map(|warning| format!("  warning       {warning}")));
-    lines.push(format!("  fingerprint   {:016x}", scenario.fingerprint()));
-    lines.push("the scenario is sound".into());
-    Ok(Checked { lines })
+        AtRest {
+            steps: settled.steps,
+            deepest_sinking: deepest,
+            unbalanced: settled.unbalanced,
+            locked_friction: settled.locked.friction,
+            holding: settled.locked.holding,
+            slipping: settled.locked.slipping,
+        }
+    });
+    let sticks = if scenario.run.settle {
+        SoftStick::of(&assembly, &scratch, ground.motion.as_ref())
+    } else {
+        Vec::new()
+    };
+    Ok(Checked {
+        schema: "check/1",
+        title: scenario.title.clone(),
+        barrels: count(PartKind::Barrel),
+        racks: count(PartKind::Rack),
+        free_bodies: count(PartKind::Body),
+        time_step: step,
+        rest,
+        motion: ground.motion.as_ref().map(MotionSummary::of),
+        sticks: sticks.iter().map(ToString::to_string).collect(),
+        warnings: ground.warnings,
+        scenario_hash: format!("{:016x}", scenario.fingerprint()),
+    })
 }

@@ -3,7 +3,7 @@
 mod page;
 mod tables;
 
-use barrelstack_report::Document;
+use barrelstack_report::{Document, described};
 
 use crate::run::Run;
 use crate::scenario::Scenario;
@@ -66,15 +66,37 @@ pub fn check(scenarios: &[(String, Scenario)]) -> Result<(), CompareError> {
     Ok(())
 }
 
-/// One input that is not the same in all runs.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
-pub struct Difference {
-    /// Its path, as in an override.
-    pub path: String,
-    /// What the field means.
-    pub help: &'static str,
-    /// The value in each run; none where that run has no such field.
-    pub values: Vec<Option<String>>,
+described! {
+    /// Two or more runs side by side.
+    #[derive(Clone, Debug)]
+    pub struct Comparison of sides: &[Side] {
+        /// Name and version of this layout.
+        pub schema: &'static str ["comparison/1"] = "comparison/1",
+        /// The runs, in order.
+        pub runs: Vec<Compared> = sides.iter().map(Compared::of).collect(),
+        /// The inputs that differ.
+        pub differences: Vec<Difference> = differences(sides.iter().map(|side| &side.run.scenario)),
+    }
+
+    /// One of them.
+    #[derive(Clone, Debug)]
+    pub struct Compared of side: &Side {
+        /// Its name.
+        pub name: String = side.name.clone(),
+        /// Its summary.
+        pub summary: Summary = side.summary.clone(),
+    }
+
+    /// One input that is not the same in all runs.
+    #[derive(Clone, Debug, PartialEq, Eq)]
+    pub struct Difference {
+        /// Its path, as in an override.
+        pub path: String,
+        /// What the field means.
+        pub help: &'static str,
+        /// The value in each run; null where that run has no such field.
+        pub values: Vec<Option<String>>,
+    }
 }
 
 /// The inputs that differ, in the order of the file.

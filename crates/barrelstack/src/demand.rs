@@ -1,5 +1,6 @@
 //! Demands on a stack: each declared once, with where it comes from, what it is called, and its unit in print.
 
+use barrelstack_report::described::{self, Described, Field, Objects};
 use serde::Serialize;
 
 use crate::assemble::{Assembly, PartKind};
@@ -10,6 +11,8 @@ use crate::watch::{Fate, Fates, StressEnvelope, Stresses};
 pub struct Demand {
     /// Key in files.
     pub name: &'static str,
+    /// What it is, in a sentence.
+    pub meaning: &'static str,
     /// What it is, in print.
     pub label: &'static str,
     /// Unit in files, which is SI; `1` for a ratio.
@@ -44,6 +47,7 @@ macro_rules! demands {
         /// All demands, in reading order.
         pub static DEMANDS: &[Demand] = &[$(Demand {
             name: stringify!($name),
+            meaning: concat!($($doc),+),
             label: $label,
             unit: $unit,
             shown_unit: $shown,
@@ -95,6 +99,22 @@ demands! {
     /// Largest tilt of any rack.
     rack_tilt_peak "rad": "tilt of a rack, largest", 57.295_779_513_082_32 "deg",
         |seen, body| Some(seen.fate(body, PartKind::Rack, None)?.peak_tilt);
+}
+
+impl Described for Demands {
+    fn schema(objects: &mut Objects) -> serde_json::Value {
+        let field = |demand: &Demand| Field {
+            key: demand.name,
+            meaning: demand.meaning,
+            unit: Some(demand.unit),
+            words: &[],
+            how: None,
+            schema: <Option<f64> as Described>::schema,
+        };
+        let fields: Vec<Field> = DEMANDS.iter().map(field).collect();
+        let meaning = "Demands on the stack, while it stood unless said otherwise.";
+        described::object(objects, "Demands", meaning, &fields)
+    }
 }
 
 /// What demands are taken from.

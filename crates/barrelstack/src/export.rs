@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
-use barrelstack_report::{Document, Paper, document_pdf};
+use barrelstack_report::{Document, Paper, csv_field, document_pdf, shortest};
 
 use crate::report;
 use crate::run::Run;
@@ -23,6 +24,9 @@ const FILES: [&str; 8] = [
     "report.html",
 ];
 
+/// Longest time between the first and the last file of a run; what was changed later was changed by another.
+const AT_ONCE: Duration = Duration::from_secs(10);
+
 /// Why files could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
@@ -32,6 +36,17 @@ pub enum ExportError {
         /// The folder.
         folder: PathBuf,
         /// A file that is there.
+        file: String,
+    },
+    /// What would be replaced belongs to somebody else.
+    #[error(
+        "{file} in {folder} was not written by an earlier run, or was changed since",
+        folder = folder.display()
+    )]
+    Foreign {
+        /// The folder.
+        folder: PathBuf,
+        /// The file.
         file: String,
     },
     /// The system refused.
@@ -56,6 +71,10 @@ impl Folder {
     /// # Errors
     /// When it holds anything and `overwrite` is not set, or is no folder.
     pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, ExportError> {
+        if path.as_os_str().is_empty() {
+            let reason = "the name is empty".to_owned();
+            return Err(ExportError::Write { path: path.to_owned(), reason });
+        }
         // A folder that is to be made needs one above it that is there.
         let there = path.ancestors().find(|folder| folder.exists());
         if let Some(file) = there.filter(|there| !there.is_dir()) {
@@ -71,7 +90,39 @@ impl Folder {
         if let (false, Some(file)) = (overwrite, first()) {
             return Err(ExportError::Occupied { folder: path.to_owned(), file });
         }
+        system::writable(path)
+            .map_err(|reason| ExportError::Write { path: path.to_owned(), reason })?;
         Ok(Self { path: path.to_owned() })
+    }
+
+    /// As [`Folder::prepare`], for a folder in which what an earlier run wrote is replaced, and nothing else.
+    ///
+    /// # Errors
+    /// When one of the files that would be replaced is none that a run wrote, or was changed since.
+    pub fn prepare_again(path: &Path) -> Result<Self, ExportError> {
+        let folder = Self::prepare(path, true)?;
+        let changed =
+            |name: &str| std::fs::metadata(path.join(name)).and_then(|m| m.modified()).ok();
+        let summary = std::fs::read(path.join(FILES[0])).unwrap_or_default();
+        let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
+        let written =
+            changed(FILES[0]).filter(|_| summary["provenance"]["program"] == "barrelstack");
+        let foreign = |name: &&&str| {
+            let Some(at) = changed(name) else { return false };
+            written
+                .is_none_or(|written| at.duration_since(written).is_ok_and(|late| late > AT_ONCE))
+        };
+        match FILES.iter().find(foreign) {
+            Some(file) => {
+                Err(ExportError::Foreign { folder: path.to_owned(), file: (*file).to_owned() })
+            }
+            None => Ok(folder),
+        }
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// Where the report is.
@@ -171,7 +222,7 @@ impl Folder {
     }
 
     fn temporary(&self, name: &str) -> PathBuf {
-        self.path.join(format!("{name}.part"))
+        system::temporary(&self.path.join(name))
     }
 
     fn refused(&self, name: &str, error: &std::io::Error) -> ExportError {
@@ -182,31 +233,43 @@ impl Folder {
     fn histories_npz(&self, run: &Run) -> Result<Vec<u8>, ExportError> {
         let recording = &run.recording;
         let mut arrays = vec![("time".to_owned(), recording.times.as_slice())];
+        let mut add = |name: String, values| {
+            let named = |name: &str| arrays.iter().any(|(known, _)| known == name);
+            let name = array_name(&name);
+            let mut names = (2..).map(|number| format!("{name}_{number}"));
+            let name = if named(&name) { names.find(|name| !named(name)) } else { Some(name) };
+            arrays.push((name.unwrap_or_default(), values));
+        };
         for channel in &recording.channels {
-            arrays.push((channel.name.replace(' ', "_"), &channel.values));
+            add(channel.name.clone(), channel.values.as_slice());
         }
         for joint in &recording.joints {
-            let name = joint.name.replace(' ', "_");
-            arrays.push((format!("{name}_vertical_force"), &joint.vertical));
-            arrays.push((format!("{name}_horizontal_force"), &joint.horizontal));
+            add(format!("{} vertical force", joint.name), &joint.vertical);
+            add(format!("{} horizontal force", joint.name), &joint.horizontal);
         }
         barrelstack_motion::write::archive(&arrays)
             .map_err(|error| self.refused("histories.npz", &error))
     }
 }
 
+/// A name as a file of the archive: it stays in the folder in which it is unpacked.
+fn array_name(name: &str) -> String {
+    let kept = |c: char| if c.is_alphanumeric() || matches!(c, '.' | '-') { c } else { '_' };
+    name.chars().map(kept).collect()
+}
+
 /// Columns side by side, `time (s)` first.
 fn csv(times: &[f64], columns: &[(String, &[f64])]) -> String {
     let mut text = String::from("time (s)");
     for (name, _) in columns {
-        let _ = write!(text, ",{name}");
+        let _ = write!(text, ",{}", csv_field(name));
     }
     text.push('\n');
     for (row, time) in times.iter().enumerate() {
-        let _ = write!(text, "{time}");
+        text.push_str(&shortest(*time));
         for (_, values) in columns {
             match values.get(row) {
-                Some(value) => _ = write!(text, ",{value}"),
+                Some(value) => _ = write!(text, ",{}", shortest(*value)),
                 None => text.push(','),
             }
         }
@@ -245,14 +308,16 @@ fn envelopes_csv(run: &Run) -> String {
         "body,x (m),z (m),coordinate (rad or m),stress at rest (N/m),largest stress (N/m)\n",
     );
     for envelope in &run.stresses.envelopes {
-        let name = &run.assembly.parts[envelope.body].name;
+        let name = csv_field(&run.assembly.parts[envelope.body].name);
         for ((point, rest), peak) in
             envelope.points.iter().zip(&envelope.at_rest).zip(&envelope.peak)
         {
             let _ = writeln!(
                 text,
-                "{name},{},{},{},{rest},{peak}",
-                point.position.x, point.position.z, point.coordinate
+                "{name},{}",
+                [point.position.x, point.position.z, point.coordinate, *rest, *peak]
+                    .map(shortest)
+                    .join(",")
             );
         }
     }
@@ -262,13 +327,15 @@ fn envelopes_csv(run: &Run) -> String {
 fn frames_csv(run: &Run) -> String {
     let mut text = String::from("time (s)");
     for part in &run.assembly.parts {
-        let _ = write!(text, ",{0} x (m),{0} z (m),{0} angle (rad)", part.name);
+        for what in ["x (m)", "z (m)", "angle (rad)"] {
+            let _ = write!(text, ",{}", csv_field(&format!("{} {what}", part.name)));
+        }
     }
     text.push('\n');
     for (time, poses) in run.recording.frames.times.iter().zip(&run.recording.frames.poses) {
-        let _ = write!(text, "{time}");
-        for pose in poses {
-            let _ = write!(text, ",{},{},{}", pose[0], pose[1], pose[2]);
+        text.push_str(&shortest(*time));
+        for number in poses.iter().flatten() {
+            let _ = write!(text, ",{}", shortest(*number));
         }
         text.push('\n');
     }

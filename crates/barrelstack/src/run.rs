@@ -1,5 +1,7 @@
 //! One run: scenario in, everything that was seen out.
 
+mod failure;
+
 use std::ops::ControlFlow;
 
 use barrelstack_dynamics::contact::Basis;
@@ -8,16 +10,18 @@ use barrelstack_dynamics::{
     EnergySummary, Method, Planar, RunError, Settled, Simulation, simulate,
 };
 
-use crate::assemble::{AssembleError, Assembly};
-use crate::ground::{Ground, GroundError};
+use crate::assemble::Assembly;
+use crate::ground::Ground;
 use crate::outcome::{Outcome, judge};
-use crate::rest::Restless;
 use crate::scenario::{self, Scenario, Scene, Until};
 use crate::stand::{Standing, stand};
 use crate::step::critical_time_step;
 use crate::stick::SoftStick;
 use crate::summary::Summary;
 use crate::watch::{ElementFate, End, Ending, Fates, Recording, Stresses, Thresholds, Watch};
+
+use failure::MOST_KEPT;
+pub use failure::RunFailure;
 
 /// Everything that was seen of a run.
 #[derive(Clone, Debug)]
@@ -74,33 +78,6 @@ pub struct Progress {
     pub time: f64,
     /// Simulated time (s) at which it ends, unless rest or a collapse ends it earlier.
     pub end_time: f64,
-}
-
-/// Why there is no run.
-#[derive(Debug, thiserror::Error)]
-pub enum RunFailure {
-    /// The motion is missing.
-    #[error(transparent)]
-    Ground(#[from] GroundError),
-    /// The stack cannot be built.
-    #[error(transparent)]
-    Assemble(#[from] AssembleError),
-    /// The stack does not stand by itself.
-    #[error(transparent)]
-    Settle(#[from] Restless),
-    /// The step is too long for the contacts.
-    #[error("run.step = {asked} ms is too long: {reason}; try {instead} ms, or leave it out")]
-    Step {
-        /// The step asked for (ms).
-        asked: f64,
-        /// How that shows.
-        reason: String,
-        /// The step that is taken when none is given (ms).
-        instead: f64,
-    },
-    /// The run would not end, or not begin.
-    #[error("{0}")]
-    Duration(String),
 }
 
 /// Share of the energy that went through, missing from the books, above which a run is invalid.
@@ -179,6 +156,7 @@ impl Scenario {
         let simulation = Simulation { method: method(self), time_step: step, end_time };
         let thresholds = thresholds(self);
         let rates = (self.record.frame_rate / time_scale, self.record.history_rate / time_scale);
+        check_memory(&assembly, end_time, rates)?;
         let (evaluations, tested) = (scratch.evaluations, scratch.contact_evaluations);
         let sticks = SoftStick::of(&assembly, &scratch, ground.motion.as_ref());
         let mut told = |time| observer(Progress { time, end_time });
@@ -369,6 +347,25 @@ pub(crate) fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
          ({MOST_STEPS:.0e}): shorten run.duration, or see whether run.step and the stiffness of the \
          contacts have the right unit"
     )))
+}
+
+/// Refuses a recording that would not fit into memory, before any of it is made; `rates` are those of frames and
+/// histories (Hz).
+pub(crate) fn check_memory(
+    assembly: &Assembly,
+    end_time: f64,
+    (frame_rate, history_rate): (f64, f64),
+) -> Result<(), RunFailure> {
+    const NUMBER: f64 = size_of::<f64>() as f64;
+    let bodies = assembly.parts.len();
+    let channels = Recording::histories(assembly);
+    let (samples, frames) = (end_time * history_rate + 1.0, end_time * frame_rate + 1.0);
+    // A frame holds the pose of every body, and the forces of about four contacts of each.
+    let kept = NUMBER * (samples * channels as f64 + frames * (bodies * (3 + 4 * 4)) as f64);
+    if kept <= MOST_KEPT {
+        return Ok(());
+    }
+    Err(RunFailure::Memory { samples, channels, frames, bodies, gigabytes: kept / 1e9 })
 }
 
 /// Why a run whose energy books do not balance has no outcome.

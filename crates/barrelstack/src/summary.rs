@@ -3,159 +3,221 @@
 mod devices;
 
 use barrelstack_dynamics::EnergySummary;
-use serde::Serialize;
+use barrelstack_motion::GroundMotion;
+use barrelstack_report::described;
 
 use crate::assemble::PartKind;
 use crate::demand::Demands;
 use crate::outcome::Outcome;
 use crate::run::Run;
+use crate::verify::Verification;
 use crate::watch::StressEnvelope;
 
 pub use devices::{Device, Devices, ElementSummary};
 
-/// Version of the summary's layout.
-pub const SUMMARY_SCHEMA: u32 = 1;
+described! {
+    /// The summary of a run. Lengths in m, times in s, forces in N, angles in rad; null where it did not
+    /// happen or does not apply.
+    #[derive(Clone, Debug)]
+    pub struct Summary {
+        /// Name and version of this layout.
+        pub schema: &'static str ["summary/1"],
+        /// The scenario's title.
+        pub title: String,
+        /// What happened.
+        pub outcome: OutcomeSummary,
+        /// Every body but the ground.
+        pub bodies: Vec<BodySummary>,
+        /// Demands on the stack.
+        pub demands: Demands,
+        /// Forces between bodies.
+        pub interfaces: Vec<JointSummary>,
+        /// The force elements of every device, where there are any.
+        #[serde(flatten)]
+        pub devices: Devices,
+        /// The energy books; null where numbers were lost.
+        pub energy: Option<EnergyBooks>,
+        /// What shook it.
+        pub motion: Option<MotionSummary>,
+        /// How it was computed.
+        pub run: RunSummary,
+        /// What the reader should know.
+        pub warnings: Vec<String>,
+        /// What made the result.
+        pub provenance: Provenance,
+        /// What repeats say about it; null where there were none.
+        pub verification: Option<Verification>,
+    }
 
-/// The summary of a run. Lengths in m, times in s, forces in N, angles in rad; null where it did not
-/// happen or does not apply.
-#[derive(Clone, Debug, Serialize)]
-pub struct Summary {
-    /// Version of this layout.
-    pub schema: u32,
-    /// The scenario's title.
-    pub title: String,
     /// What happened.
-    pub outcome: OutcomeSummary,
-    /// Every body but the ground.
-    pub bodies: Vec<BodySummary>,
-    /// Demands on the stack.
-    pub demands: Demands,
-    /// Forces between bodies.
-    pub interfaces: Vec<JointSummary>,
-    /// The force elements of every device, where there are any.
-    #[serde(flatten)]
-    pub devices: Devices,
-    /// The energy books; null where numbers were lost.
-    pub energy: Option<EnergyBooks>,
+    #[derive(Clone, Debug)]
+    pub struct OutcomeSummary {
+        /// What it was.
+        pub kind: &'static str ["stable", "collapse", "not-judged", "interrupted", "invalid"],
+        /// How it collapsed.
+        pub mode: Option<&'static str> ["ejection", "rocking", "rack-sliding", "overturning"],
+        /// When the first body left its seat.
+        pub time: Option<f64> as "s",
+        /// That body.
+        pub first: Option<String>,
+        /// The lowest level that gave way.
+        pub from_level: Option<u32>,
+        /// The highest level that went.
+        pub to_level: Option<u32>,
+        /// When the first barrel had fallen.
+        pub first_fall: Option<f64> as "s",
+        /// Barrels that had fallen at the end.
+        pub barrels_fallen: usize,
+        /// Barrels in all.
+        pub barrels: usize,
+        /// Why the run is invalid.
+        pub reason: Option<String>,
+    }
+
+    /// One body.
+    #[derive(Clone, Debug)]
+    pub struct BodySummary {
+        /// Its name.
+        pub name: String,
+        /// What it is.
+        pub kind: &'static str ["barrel", "rack", "body"],
+        /// Level, 1 at the bottom.
+        pub level: Option<u32>,
+        /// Column, 1 at the left.
+        pub column: Option<u32>,
+        /// When it left its seat.
+        pub left_seat_at: Option<f64> as "s",
+        /// When it had fallen.
+        pub fell_at: Option<f64> as "s",
+        /// Largest drop below its place at rest, for what fell.
+        pub fall_height: Option<f64> as "m",
+        /// When it landed: when it went down less than half as fast as it had since it fell.
+        pub landed_at: Option<f64> as "s",
+        /// Its largest speed downward until then.
+        pub landing_speed: Option<f64> as "m/s",
+        /// Displacement along x relative to the ground, at the end.
+        pub residual_displacement: f64 as "m",
+        /// Largest displacement along x relative to the ground, while the stack stood.
+        pub peak_displacement: f64 as "m",
+        /// Displacement relative to what it stands on, at the end: a rack's walk, a barrel's way in its
+        /// cradle.
+        pub residual_slip: f64 as "m",
+        /// Largest such displacement while the stack stood.
+        pub peak_slip: f64 as "m",
+        /// Largest rise above its place at rest while the stack stood.
+        pub peak_uplift: f64 as "m",
+        /// Largest tilt while the stack stood; racks only.
+        pub peak_tilt: Option<f64> as "rad",
+        /// Largest normal stress at rest, per meter of boundary.
+        pub stress_at_rest: Option<f64> as "N/m",
+        /// Largest normal stress while the stack stood, over the largest at rest.
+        pub stress_amplification: Option<f64> as "1",
+        /// Average over the loaded boundary of the same ratio.
+        pub mean_stress_amplification: Option<f64> as "1",
+    }
+
+    /// The force between two bodies.
+    #[derive(Clone, Debug)]
+    pub struct JointSummary {
+        /// Such as "R1 on ground".
+        pub name: String,
+        /// Vertical force on the upper body at rest.
+        pub at_rest: f64 as "N",
+        /// Largest vertical force on the upper body, and when.
+        pub peak_vertical: f64 as "N",
+        /// When.
+        pub peak_vertical_at: f64 as "s",
+        /// Largest horizontal force on the upper body, with its sign, and when.
+        pub peak_horizontal: f64 as "N",
+        /// When.
+        pub peak_horizontal_at: f64 as "s",
+    }
+
+    /// The energy books at the end (J), relative to the start.
+    #[derive(Clone, Debug)]
+    pub struct EnergyBooks {
+        /// Kinetic energy.
+        pub kinetic: f64 as "J",
+        /// Potential energy in gravity.
+        pub potential: f64 as "J",
+        /// In contact springs and force elements.
+        pub elastic: f64 as "J",
+        /// In sticks.
+        pub stick: f64 as "J",
+        /// Lost in the dampers of contacts and elements, and with elements that broke.
+        pub damped: f64 as "J",
+        /// Lost to friction.
+        pub friction: f64 as "J",
+        /// Lost to viscous damping.
+        pub viscous: f64 as "J",
+        /// Work of the ground.
+        pub ground_work: f64 as "J",
+        /// What does not balance.
+        pub residual: f64 as "J",
+        /// Energy that went through: absolute work of the ground plus the drop of potential energy.
+        pub input: f64 as "J",
+        /// |residual| / input.
+        pub residual_ratio: f64 as "1",
+    }
+
     /// What shook it.
-    pub motion: Option<MotionSummary>,
+    #[derive(Clone, Debug)]
+    pub struct MotionSummary of motion: &GroundMotion {
+        /// Its name.
+        pub name: String = motion.name.clone(),
+        /// Peak horizontal acceleration (m/s²).
+        pub pga: f64 as "m/s2" = motion.pga(),
+        /// Peak horizontal velocity (m/s).
+        pub pgv: f64 as "m/s" = motion.pgv(),
+        /// Peak horizontal displacement (m).
+        pub pgd: f64 as "m" = motion.pgd(),
+        /// Whether there is a vertical component.
+        pub vertical: bool = motion.vertical.is_some(),
+        /// When the shaking ends.
+        pub duration: f64 as "s" = motion.duration,
+    }
+
     /// How it was computed.
-    pub run: RunSummary,
-    /// What the reader should know.
-    pub warnings: Vec<String>,
+    #[derive(Clone, Debug)]
+    pub struct RunSummary {
+        /// Integration method.
+        pub method: &'static str,
+        /// Time step.
+        pub time_step: f64 as "s",
+        /// Accepted steps.
+        pub steps: u64,
+        /// Evaluations of all forces.
+        pub evaluations: u64,
+        /// Contact elements tested.
+        pub contact_evaluations: u64,
+        /// Simulated time reached.
+        pub end_time: f64 as "s",
+        /// Why it ended.
+        pub ending: &'static str ["rest", "after-collapse", "duration", "patience", "interrupted", "broken"],
+        /// Whether it was stopped early by the user.
+        pub interrupted: bool,
+        /// What contact constants are stated for.
+        pub stiffness_basis: &'static str ["node", "length", "mixed"],
+        /// Length scale of similitude.
+        pub similitude: f64 as "1",
+        /// Steps taken to find equilibrium.
+        pub settle_steps: Option<u64>,
+        /// Time on the clock.
+        pub wall_seconds: Option<f64> as "s",
+    }
+
     /// What made the result.
-    pub provenance: Provenance,
-}
-
-/// What happened.
-#[derive(Clone, Debug, Serialize)]
-pub struct OutcomeSummary {
-    /// "stable", "collapse", "not-judged" or "invalid".
-    pub kind: &'static str,
-    /// "ejection", "rocking", "rack-sliding" or "overturning".
-    pub mode: Option<&'static str>,
-    /// When the first body left its seat.
-    pub time: Option<f64>,
-    /// That body.
-    pub first: Option<String>,
-    /// The lowest level that gave way.
-    pub from_level: Option<u32>,
-    /// The highest level that went.
-    pub to_level: Option<u32>,
-    /// When the first barrel had fallen.
-    pub first_fall: Option<f64>,
-    /// Barrels that had fallen at the end.
-    pub barrels_fallen: usize,
-    /// Barrels in all.
-    pub barrels: usize,
-    /// Why the run is invalid.
-    pub reason: Option<String>,
-}
-
-/// One body.
-#[derive(Clone, Debug, Serialize)]
-pub struct BodySummary {
-    /// Its name.
-    pub name: String,
-    /// "barrel", "rack" or "body".
-    pub kind: &'static str,
-    /// Level, 1 at the bottom.
-    pub level: Option<u32>,
-    /// Column, 1 at the left.
-    pub column: Option<u32>,
-    /// When it left its seat.
-    pub left_seat_at: Option<f64>,
-    /// When it had fallen.
-    pub fell_at: Option<f64>,
-    /// Largest drop below its place at rest, for what fell.
-    pub fall_height: Option<f64>,
-    /// When it landed: when it went down less than half as fast as it had since it fell.
-    pub landed_at: Option<f64>,
-    /// Its largest speed downward until then.
-    pub landing_speed: Option<f64>,
-    /// Displacement along x relative to the ground, at the end.
-    pub residual_displacement: f64,
-    /// Largest displacement along x relative to the ground, while the stack stood.
-    pub peak_displacement: f64,
-    /// Displacement relative to what it stands on, at the end: a rack's walk, a barrel's way in its
-    /// cradle.
-    pub residual_slip: f64,
-    /// Largest such displacement while the stack stood.
-    pub peak_slip: f64,
-    /// Largest rise above its place at rest while the stack stood.
-    pub peak_uplift: f64,
-    /// Largest tilt while the stack stood; racks only.
-    pub peak_tilt: Option<f64>,
-    /// Largest normal stress at rest, per meter of boundary.
-    pub stress_at_rest: Option<f64>,
-    /// Largest normal stress while the stack stood, over the largest at rest.
-    pub stress_amplification: Option<f64>,
-    /// Average over the loaded boundary of the same ratio.
-    pub mean_stress_amplification: Option<f64>,
-}
-
-/// The force between two bodies.
-#[derive(Clone, Debug, Serialize)]
-pub struct JointSummary {
-    /// Such as "R1 on ground".
-    pub name: String,
-    /// Vertical force on the upper body at rest.
-    pub at_rest: f64,
-    /// Largest vertical force on the upper body, and when.
-    pub peak_vertical: f64,
-    /// When.
-    pub peak_vertical_at: f64,
-    /// Largest horizontal force on the upper body, with its sign, and when.
-    pub peak_horizontal: f64,
-    /// When.
-    pub peak_horizontal_at: f64,
-}
-
-/// The energy books at the end (J), relative to the start.
-#[derive(Clone, Debug, Serialize)]
-pub struct EnergyBooks {
-    /// Kinetic energy.
-    pub kinetic: f64,
-    /// Potential energy in gravity.
-    pub potential: f64,
-    /// In contact springs and force elements.
-    pub elastic: f64,
-    /// In sticks.
-    pub stick: f64,
-    /// Lost in the dampers of contacts and elements, and with elements that broke.
-    pub damped: f64,
-    /// Lost to friction.
-    pub friction: f64,
-    /// Lost to viscous damping.
-    pub viscous: f64,
-    /// Work of the ground.
-    pub ground_work: f64,
-    /// What does not balance.
-    pub residual: f64,
-    /// Energy that went through: absolute work of the ground plus the drop of potential energy.
-    pub input: f64,
-    /// |residual| / input.
-    pub residual_ratio: f64,
+    #[derive(Clone, Debug)]
+    pub struct Provenance {
+        /// The program.
+        pub program: &'static str,
+        /// Its version.
+        pub version: &'static str,
+        /// Hash of the scenario with every default written out.
+        pub scenario_hash: String,
+        /// Where the motion came from and what was done to it, one sentence each.
+        pub motion: Vec<String>,
+    }
 }
 
 impl EnergyBooks {
@@ -176,70 +238,11 @@ impl EnergyBooks {
     }
 }
 
-/// What shook it.
-#[derive(Clone, Debug, Serialize)]
-pub struct MotionSummary {
-    /// Its name.
-    pub name: String,
-    /// Peak horizontal acceleration (m/s²).
-    pub pga: f64,
-    /// Peak horizontal velocity (m/s).
-    pub pgv: f64,
-    /// Peak horizontal displacement (m).
-    pub pgd: f64,
-    /// Whether there is a vertical component.
-    pub vertical: bool,
-    /// When the shaking ends.
-    pub duration: f64,
-}
-
-/// How it was computed.
-#[derive(Clone, Debug, Serialize)]
-pub struct RunSummary {
-    /// Integration method.
-    pub method: &'static str,
-    /// Time step.
-    pub time_step: f64,
-    /// Accepted steps.
-    pub steps: u64,
-    /// Evaluations of all forces.
-    pub evaluations: u64,
-    /// Contact elements tested.
-    pub contact_evaluations: u64,
-    /// Simulated time reached.
-    pub end_time: f64,
-    /// Why it ended: "rest", "after-collapse", "duration", "patience", "interrupted" or "broken".
-    pub ending: &'static str,
-    /// Whether it was stopped early by the user.
-    pub interrupted: bool,
-    /// What contact constants are stated for: "node", "length" or "mixed".
-    pub stiffness_basis: &'static str,
-    /// Length scale of similitude.
-    pub similitude: f64,
-    /// Steps taken to find equilibrium.
-    pub settle_steps: Option<u64>,
-    /// Time on the clock.
-    pub wall_seconds: Option<f64>,
-}
-
-/// What made the result.
-#[derive(Clone, Debug, Serialize)]
-pub struct Provenance {
-    /// The program.
-    pub program: &'static str,
-    /// Its version.
-    pub version: &'static str,
-    /// Hash of the scenario with every default written out.
-    pub scenario_hash: String,
-    /// Where the motion came from and what was done to it, one sentence each.
-    pub motion: Vec<String>,
-}
-
 impl Summary {
     /// Sums up a run; `wall_seconds` is the time it took on the clock, where it was measured.
     pub fn of(run: &Run, wall_seconds: Option<f64>) -> Self {
         Self {
-            schema: SUMMARY_SCHEMA,
+            schema: "summary/1",
             title: run.scenario.title.clone(),
             outcome: outcome(run),
             bodies: bodies(run),
@@ -252,14 +255,7 @@ impl Summary {
             interfaces: joints(run),
             devices: Devices::of(run),
             energy: run.energy.as_ref().map(EnergyBooks::of),
-            motion: run.ground.motion.as_ref().map(|motion| MotionSummary {
-                name: motion.name.clone(),
-                pga: motion.pga(),
-                pgv: motion.pgv(),
-                pgd: motion.pgd(),
-                vertical: motion.vertical.is_some(),
-                duration: motion.duration,
-            }),
+            motion: run.ground.motion.as_ref().map(MotionSummary::of),
             run: RunSummary {
                 method: run.simulation.method.name(),
                 time_step: run.simulation.time_step,
@@ -286,6 +282,7 @@ impl Summary {
                     .map(|motion| motion.provenance.clone())
                     .unwrap_or_default(),
             },
+            verification: None,
         }
     }
 

@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
-use serde::Serialize;
+use barrelstack_report::described;
 
 use crate::assemble::PartKind;
 use crate::pool;
@@ -30,52 +30,54 @@ pub const DISTURBANCE: f64 = 1e-9;
 /// How many disturbed repeats there are.
 pub const DISTURBED: u64 = 4;
 
-/// What repeats say about a run. Times in s, lengths in m, at the scale of the run.
-#[derive(Clone, Debug, Serialize)]
-pub struct Verification {
-    /// Distance between two runs at which a body counts as gone another way.
-    pub apart: f64,
-    /// Until when no body of any repeat is that far from where the run has it; none where that holds
-    /// for all that both ran.
-    pub predictable_until: Option<f64>,
-    /// Whether all repeats, of which there are some, end as the run does: the same kind, mode and first
-    /// body, and every fall before they part at the same time.
-    pub robust: bool,
-    /// The repeats.
-    pub repeats: Vec<Repeat>,
-    /// What was not repeated.
-    pub skipped: Vec<Skipped>,
-}
+described! {
+    /// What repeats say about a run. Times in s, lengths in m, at the scale of the run.
+    #[derive(Clone, Debug)]
+    pub struct Verification {
+        /// Distance between two runs at which a body counts as gone another way.
+        pub apart: f64 as "m",
+        /// Until when no body of any repeat is that far from where the run has it; none where that holds
+        /// for all that both ran.
+        pub predictable_until: Option<f64> as "s",
+        /// Whether all repeats, of which there are some, end as the run does: the same kind, mode and first
+        /// body, and every fall before they part at the same time.
+        pub robust: bool,
+        /// The repeats.
+        pub repeats: Vec<Repeat>,
+        /// What was not repeated.
+        pub skipped: Vec<Skipped>,
+    }
 
-/// One repeat.
-#[derive(Clone, Debug, Serialize)]
-pub struct Repeat {
-    /// What is different.
-    pub change: String,
-    /// What happens.
-    pub outcome: OutcomeSummary,
-    /// Whether kind, mode and first body are those of the run.
-    pub same_outcome: bool,
-    /// When some body is first too far from where the run has it; none where that does not happen.
-    pub apart_at: Option<f64>,
-    /// Largest difference of a fall before any repeat parts from the run; none where nothing falls.
-    pub fall_difference: Option<f64>,
-    /// Whether it ends as the run does: the same outcome, and every fall before any repeat parts from
-    /// the run at the same time.
-    #[serde(skip)]
-    alike: bool,
-    /// When each barrel had fallen.
-    #[serde(skip)]
-    falls: Vec<Option<f64>>,
-}
+    /// One repeat.
+    #[derive(Clone, Debug)]
+    pub struct Repeat {
+        /// What is different.
+        pub change: String,
+        /// What happens.
+        pub outcome: OutcomeSummary,
+        /// Whether kind, mode and first body are those of the run.
+        pub same_outcome: bool,
+        /// When some body is first too far from where the run has it; none where that does not happen.
+        pub apart_at: Option<f64> as "s",
+        /// Largest difference of a fall before any repeat parts from the run; none where nothing falls.
+        pub fall_difference: Option<f64> as "s",
+        /// Whether it ends as the run does: the same outcome, and every fall before any repeat parts from
+        /// the run at the same time.
+        #[serde(skip)]
+        alike: bool,
+        /// When each barrel had fallen.
+        #[serde(skip)]
+        falls: Vec<Option<f64>>,
+    }
 
-/// A repeat that was not done.
-#[derive(Clone, Debug, Serialize)]
-pub struct Skipped {
-    /// What would have been different.
-    pub change: &'static str,
-    /// Why it says nothing here.
-    pub reason: String,
+    /// A repeat that was not done.
+    #[derive(Clone, Debug)]
+    pub struct Skipped {
+        /// What would have been different.
+        pub change: &'static str,
+        /// Why it says nothing here.
+        pub reason: String,
+    }
 }
 
 /// Repeats a run: with half the step, with nodes at half the spacing, and with every barrel displaced
@@ -326,19 +328,10 @@ fn judge(base: &Run, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verific
     Verification { apart: APART * scale, predictable_until, robust, repeats, skipped }
 }
 
-/// A summary with its verification, as one document.
-#[derive(Serialize)]
-struct Verified<'a> {
-    #[serde(flatten)]
-    summary: &'a Summary,
-    verification: &'a Verification,
-}
-
 impl Verification {
     /// The summary of the run as JSON text with this as its field `verification`.
     pub fn with_summary(&self, summary: &Summary) -> String {
-        // Only maps with keys that are not text could fail, and there is none.
-        serde_json::to_string_pretty(&Verified { summary, verification: self }).unwrap_or_default()
+        Summary { verification: Some(self.clone()), ..summary.clone() }.to_json()
     }
 
     /// What was found, in plain sentences.

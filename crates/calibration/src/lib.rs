@@ -33,4 +33,4 @@ pub use barrelstack_input::measured::{Table, TableError};
 pub use error::CalibrateError;
 pub use impact::{Impact, impact};
 pub use parameters::Parameter;
-pub use result::{Calibration, Estimate};
+pub use result::{Calibration, CalibrationDocument, Estimate};

@@ -1,7 +1,9 @@
 //! What a calibration gives: parameters with intervals, lines for a scenario, warnings.
 
+use std::collections::BTreeMap;
+
 use barrelstack::scenario::Dimension;
-use serde_json::{Value, json};
+use barrelstack_report::described;
 
 /// A parameter with its 95 % interval.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,28 +111,46 @@ impl Calibration {
     }
 
     /// The result for programs, all numbers in SI; an end that the test does not bound is null.
-    pub fn to_json(&self) -> Value {
-        let estimates = self.estimates.iter().map(|estimate| {
-            json!({
-                "name": estimate.name,
-                "value": estimate.value,
-                "low": bounded(estimate.low),
-                "high": bounded(estimate.high),
-                "unit": estimate.dimension.si_unit(),
-            })
-        });
-        let facts: serde_json::Map<String, Value> =
-            self.facts.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
-        json!({
-            "title": self.title,
-            "confidence": 0.95,
-            "estimates": estimates.collect::<Vec<_>>(),
-            "correlation": self.correlation,
-            "condition": self.condition.and_then(bounded),
-            "facts": facts,
-            "scenario": self.scenario,
-            "warnings": self.warnings,
-        })
+    pub fn to_document(&self) -> CalibrationDocument {
+        CalibrationDocument::of(self)
+    }
+}
+
+described! {
+    /// Contact parameters from tests.
+    pub struct CalibrationDocument of found: &Calibration {
+        /// Name and version of this layout.
+        pub schema: &'static str ["calibration/1"] = "calibration/1",
+        /// The test, in one line.
+        pub title: String = found.title.clone(),
+        /// Confidence of the intervals.
+        pub confidence: f64 as "1" = 0.95,
+        /// The parameters.
+        pub estimates: Vec<EstimateRow> = found.estimates.iter().map(EstimateRow::of).collect(),
+        /// Correlations between the estimates, in their order; empty where they are not fitted together.
+        pub correlation: Vec<Vec<f64>> as "1" = found.correlation.clone(),
+        /// Ratio of the largest to the smallest eigenvalue of the correlation of the sensitivities.
+        pub condition: Option<f64> as "1" = found.condition.and_then(bounded),
+        /// Further figures for people, by name.
+        pub facts: BTreeMap<String, String> = found.facts.iter().cloned().collect(),
+        /// Lines to paste into a scenario.
+        pub scenario: String = found.scenario.clone(),
+        /// What the reader should know.
+        pub warnings: Vec<String> = found.warnings.clone(),
+    }
+
+    /// A parameter.
+    pub struct EstimateRow of estimate: &Estimate {
+        /// What it is.
+        pub name: String = estimate.name.clone(),
+        /// Its value.
+        pub value: f64 as "as `unit` says" = estimate.value,
+        /// Lower end of its interval.
+        pub low: Option<f64> as "as `unit` says" = bounded(estimate.low),
+        /// Upper end of its interval.
+        pub high: Option<f64> as "as `unit` says" = bounded(estimate.high),
+        /// SI unit of its value.
+        pub unit: String = estimate.dimension.si_unit(),
     }
 }
 

@@ -35,7 +35,8 @@ use crate::study::{
 };
 
 pub(crate) use figures::{bars, chance_axis};
-pub(crate) use json::bounds as interval_json;
+pub use json::DecisionDocument;
+pub(crate) use json::bounds;
 pub(crate) use page::{heading, text};
 pub(crate) use words::{percent, refusal};
 
@@ -96,9 +97,9 @@ impl Decision {
         barrelstack_report::markdown(&self.document, figure_dir)
     }
 
-    /// The numbers as JSON, in SI units.
-    pub fn json(&self) -> serde_json::Value {
-        json::of(self)
+    /// The numbers for programs, in SI units.
+    pub fn to_document(&self) -> DecisionDocument {
+        DecisionDocument::of(self)
     }
 }
 

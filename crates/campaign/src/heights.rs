@@ -17,6 +17,7 @@ use barrelstack_report::Document;
 use crate::decision::{Case, Cases, DecisionError, LimitCurve, LimitState};
 use crate::study::{Collected, Progress, RunOptions, Study, StudyError, Value};
 
+pub use json::HeightsDocument;
 pub use plan::{HEIGHTS, VELOCITIES, View};
 
 /// What is asked for.
@@ -24,6 +25,8 @@ pub use plan::{HEIGHTS, VELOCITIES, View};
 pub struct Request {
     /// Name of a rack of the catalog.
     pub rack: String,
+    /// Name of a barrel of the catalog.
+    pub barrel: String,
     /// Files of further motions.
     pub records: Vec<PathBuf>,
     /// How many synthetic motions; the bundled record comes in addition.
@@ -34,7 +37,13 @@ pub struct Request {
 
 impl Default for Request {
     fn default() -> Self {
-        Self { rack: "two-barrel".to_owned(), records: Vec::new(), synthetic: 22, seed: 1 }
+        Self {
+            rack: "two-barrel".to_owned(),
+            barrel: "bordeaux-225".to_owned(),
+            records: Vec::new(),
+            synthetic: 22,
+            seed: 1,
+        }
     }
 }
 
@@ -138,9 +147,9 @@ impl Heights {
         barrelstack_report::markdown(&self.document, figure_dir)
     }
 
-    /// The numbers as JSON, in SI units.
-    pub fn json(&self) -> serde_json::Value {
-        json::of(self)
+    /// The numbers for programs, in SI units.
+    pub fn to_document(&self) -> HeightsDocument {
+        HeightsDocument::of(self)
     }
 }
 
@@ -150,6 +159,9 @@ pub enum HeightsError {
     /// The rack is not in the catalog.
     #[error("there is no rack `{0}`; those are {1}")]
     Rack(String, String),
+    /// The barrel is not in the catalog.
+    #[error("there is no barrel `{0}`; those are {1}")]
+    Barrel(String, String),
     /// A study cannot be run.
     #[error(transparent)]
     Study(#[from] StudyError),

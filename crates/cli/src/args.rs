@@ -18,7 +18,9 @@ Exit status:
   1    the numbers broke down, and there is no verdict
   2    there is none: a mistake in what was asked for, or a file that could not be read or written
   3    a motion was matched only nearly, and written as asked (motion match --accept-misfit)
-  130  stopped by Ctrl-C: what was computed until then was printed and written";
+  130  stopped by Ctrl-C or by SIGTERM: what was computed until then was printed and written
+
+With --json what has no result prints one document as well, of the schema `error`; see barrelstack schema.";
 
 /// Does a stack of wine barrels survive an earthquake, how does it fail, what would save it?
 #[derive(Debug, Parser)]
@@ -54,6 +56,12 @@ pub(crate) enum Command {
     Study(crate::commands::study::StudyArgs),
     /// List the built-in scenarios, or print one.
     Scenarios(ScenariosArgs),
+    /// List the documents that --json prints, or print the JSON Schema of one.
+    Schema(crate::commands::schema::SchemaArgs),
+    /// Print completions for a shell.
+    Completions(crate::commands::shell::CompletionsArgs),
+    /// Write manual pages.
+    Man(crate::commands::shell::ManArgs),
 }
 
 /// A scenario and what to change in it.
@@ -98,7 +106,7 @@ pub(crate) struct RunArgs {
     /// Print one JSON document in place of the summary for people.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Show no progress, which is shown on a terminal only; warnings are still printed.
+    /// Show no progress; warnings are still printed.
     #[arg(long, short)]
     pub(crate) quiet: bool,
 }
@@ -106,7 +114,7 @@ pub(crate) struct RunArgs {
 /// Arguments of `demo`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct DemoArgs {
-    /// Where to write; what an earlier demo wrote there is replaced.
+    /// Where to write; what an earlier demo wrote there is replaced, and nothing else.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-demo")]
     pub(crate) out: PathBuf,
     /// Change a value of the scenario, such as stack.levels=4; may be repeated.
@@ -119,6 +127,9 @@ pub(crate) struct DemoArgs {
 pub(crate) struct CheckArgs {
     #[command(flatten)]
     pub(crate) scenario: ScenarioArgs,
+    /// Print one JSON document in place of the lines for people.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// Arguments of `reproduce`.
@@ -146,13 +157,20 @@ pub(crate) struct ScenariosArgs {
     /// What to do with them.
     #[command(subcommand)]
     pub(crate) action: Option<ScenariosAction>,
+    /// Print the list as one JSON document.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// What to do with the built-in scenarios.
 #[derive(Debug, Subcommand)]
 pub(crate) enum ScenariosAction {
     /// List them.
-    List,
+    List {
+        /// Print one JSON document.
+        #[arg(long)]
+        json: bool,
+    },
     /// Print one, with its comments, as a starting point for your own.
     Show {
         /// Its name.
@@ -162,7 +180,10 @@ pub(crate) enum ScenariosAction {
         resolved: bool,
     },
     /// List every field of a scenario, with its default and what it means.
-    Fields,
+    Fields {
+        /// Only those that have this in their name, their table or their meaning.
+        filter: Option<String>,
+    },
     /// Print the JSON schema for editors.
     Schema,
 }

@@ -18,11 +18,26 @@ use std::process::ExitCode;
 use clap::Parser;
 
 fn main() -> ExitCode {
-    let args = args::Args::parse();
+    // Known before the rest is understood, so that a mistake in it is told as asked, too.
+    let json = std::env::args_os().any(|argument| argument == "--json");
+    interrupt::watch(json);
+    let args = match args::Args::try_parse() {
+        Ok(args) => args,
+        // Anything may have been typed, so it is printed as all else is.
+        Err(error) if error.use_stderr() => {
+            printer::usage(&error.render().to_string(), json);
+            return ExitCode::from(2);
+        }
+        Err(help) => help.exit(),
+    };
     match commands::dispatch(args) {
         Ok(code) => code,
+        Err(error) if error.is::<interrupt::Stopped>() => {
+            printer::stopped(json);
+            ExitCode::from(interrupt::STATUS)
+        }
         Err(error) => {
-            printer::error(&error);
+            printer::error(&error, json);
             // The same status as for a mistyped option, so that scripts can tell both from a verdict.
             ExitCode::from(2)
         }

@@ -1,12 +1,19 @@
 //! Everything that is printed: results to standard output, errors and warnings to standard error.
 #![expect(clippy::print_stderr, reason = "this is where printing is done")]
 
+use std::fmt::Write as _;
 use std::io::{ErrorKind, Write as _};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::Context as _;
+use barrelstack::scenario::ScenarioError;
+use barrelstack::scenario::error::Place;
 use barrelstack::{Run, Summary};
-use barrelstack_report::Characters;
+use barrelstack_report::{Characters, described};
 
+use serde::Serialize;
+
+use crate::interrupt::{STATUS, Stopped};
 use crate::remedy::remedy;
 
 /// Lines of a result.
@@ -24,6 +31,11 @@ pub(crate) fn lines<T: AsRef<str>>(lines: impl IntoIterator<Item = T>) -> anyhow
 /// A reader that has gone away (`| head`) wants no more, and no message either.
 /// Any other failure, such as a full disk, would leave half a result behind and is an error.
 pub(crate) fn text(text: &str) -> anyhow::Result<()> {
+    raw(&harmless(text))
+}
+
+/// As [`text`], of what is no text for people.
+fn raw(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -33,27 +45,125 @@ pub(crate) fn text(text: &str) -> anyhow::Result<()> {
     }
 }
 
+/// A document for programs.
+pub(crate) fn document(document: &impl Serialize) -> anyhow::Result<()> {
+    let text = serde_json::to_string_pretty(document)? + "\n";
+    PRINTED.store(true, Ordering::Relaxed);
+    let mut whole = String::with_capacity(text.len());
+    for c in text.chars() {
+        // The characters that JSON leaves as they are and a terminal obeys.
+        if c.is_control() && c != '\n' {
+            let _ = write!(whole, "\\u{:04x}", u32::from(c));
+        } else {
+            whole.push(c);
+        }
+    }
+    raw(&whole)
+}
+
+/// Whether a document was printed: then no second one follows.
+static PRINTED: AtomicBool = AtomicBool::new(false);
+
+/// Text that cannot disturb a terminal.
+pub(crate) fn harmless(text: &str) -> String {
+    let shown = |c: char| if c.is_control() && !matches!(c, '\n' | '\t') { '\u{fffd}' } else { c };
+    text.chars().map(shown).collect()
+}
+
 /// A number of things, such as "1 case" and "2 cases".
 pub(crate) fn counted(count: u64, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
-/// An error, with its causes, as one paragraph.
-pub(crate) fn error(error: &anyhow::Error) {
-    match remedy(error) {
-        Some(next) => eprintln!("error: {error:#}; {next}"),
-        None => eprintln!("error: {error:#}"),
+/// An error, with its causes, as one paragraph; `json` asks for a document as well.
+pub(crate) fn error(error: &anyhow::Error, json: bool) {
+    let (next, words) = (remedy(error), bounded(&format!("{error:#}")));
+    match next {
+        Some(next) => eprintln!("error: {}; {next}", harmless(&words)),
+        None => eprintln!("error: {}", harmless(&words)),
+    }
+    let read = error.chain().find_map(|cause| cause.downcast_ref::<ScenarioError>());
+    let place = error.downcast_ref::<Place>().or(read.map(ScenarioError::place));
+    told(&ErrorDocument::of(&(&words, next, place, 2)), json);
+}
+
+/// A text of which the middle is left out where it is longer than anyone reads.
+fn bounded(text: &str) -> String {
+    const LONGEST: usize = 2000;
+    const KEPT: usize = 400;
+    let length = text.chars().count();
+    if length <= LONGEST {
+        return text.to_owned();
+    }
+    let [first, last] = [0, length - KEPT].map(|skip| text.chars().skip(skip).take(KEPT));
+    first.chain(" […] ".chars()).chain(last).collect()
+}
+
+/// What the parser of the command line says.
+pub(crate) fn usage(words: &str, json: bool) {
+    let words = &bounded(words);
+    eprint!("{}", harmless(words));
+    let first = words.split("\n\n").next().unwrap_or(words).trim_start_matches("error: ");
+    told(&ErrorDocument::of(&(first, None, None, 2)), json);
+}
+
+/// That the program was stopped, and what is kept.
+pub(crate) fn stopped(json: bool) {
+    let words = Stopped.to_string();
+    note(&words);
+    told(&ErrorDocument::of(&(&words, None, None, STATUS)), json);
+}
+
+/// Prints a document of an error where documents are asked for and none was printed.
+fn told(document: &ErrorDocument, json: bool) {
+    if json && !PRINTED.load(Ordering::Relaxed) {
+        // Where standard output is gone, standard error has it all.
+        drop(self::document(document));
+    }
+}
+
+described! {
+    /// Why there is no result.
+    pub(crate) struct ErrorDocument of error: &(&str, Option<&str>, Option<&Place>, u8) {
+        /// Name and version of this layout.
+        schema: &'static str ["error/1"] = "error/1",
+        /// What is wrong, with the causes.
+        error: String = error.0.to_owned(),
+        /// What to type next, where one option helps.
+        next: Option<String> = error.1.map(str::to_owned),
+        /// The file that is wrong.
+        file: Option<String> = match error.2 {
+            Some(Place::File { file, .. } | Place::Whole { file }) => Some(file.clone()),
+            Some(Place::Override { .. } | Place::Unknown) | None => None,
+        },
+        /// The override that is wrong, as typed.
+        change: Option<String> = match error.2 {
+            Some(Place::Override { text }) => Some(text.clone()),
+            Some(Place::File { .. } | Place::Whole { .. } | Place::Unknown) | None => None,
+        },
+        /// The line, from 1.
+        line: Option<usize> = match error.2 {
+            Some(Place::File { line, .. }) => Some(*line),
+            Some(Place::Override { .. } | Place::Whole { .. } | Place::Unknown) | None => None,
+        },
+        /// The column, in characters from 1.
+        column: Option<usize> = match error.2 {
+            Some(Place::File { column, .. }) => Some(*column),
+            Some(Place::Override { .. } | Place::Whole { .. } | Place::Unknown) | None => None,
+        },
+        /// Exit status of the program.
+        status: u32 = u32::from(error.3),
     }
 }
 
 /// What became of the work, beside a result.
 pub(crate) fn note(text: &str) {
-    eprintln!("{text}");
+    eprintln!("{}", harmless(text));
 }
 
 /// What the reader of a result should know, one sentence.
 pub(crate) fn warning(text: &str) {
-    eprintln!("warning: {text}");
+    eprintln!("warning: {}", harmless(text));
 }
 
 /// What the reader of a result should know.

@@ -1,50 +1,112 @@
-//! A progress bar on a terminal, and Ctrl-C that keeps what was computed.
+//! How far work is: a bar on a terminal, a line now and then elsewhere; and Ctrl-C that keeps what was computed.
 
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
-use std::time::Duration;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::interrupt::Interrupt;
+use crate::printer;
 
-/// Tells how far a run is, and whether the user wants it to stop.
+/// How often a line is printed where there is no terminal.
+const EVERY: Duration = Duration::from_secs(5);
+
+/// How long work is looked at before it is told how long all of it takes.
+const LOOKED_AT: Duration = Duration::from_secs(1);
+
+/// The share of it that is done by then, unless it takes long.
+const SHARE: f64 = 0.02;
+
+/// The shortest work of which that is told.
+const LONG: Duration = Duration::from_secs(10);
+
+/// Tells how far work is, and whether the user wants it to stop.
 pub(crate) struct Progress {
     bar: Option<ProgressBar>,
+    lines: Lines,
     interrupt: Interrupt,
 }
 
 impl Progress {
-    /// Starts; shows a line only when asked to and only on a terminal.
+    /// Starts; shows something only when asked to.
     pub(crate) fn new(show: bool) -> Self {
         let bar = (show && std::io::stderr().is_terminal()).then(|| {
             let bar = ProgressBar::new_spinner().with_style(style("{spinner} {msg}"));
-            bar.set_message("the stack comes to rest");
+            bar.set_message("getting ready");
             bar.enable_steady_tick(Duration::from_millis(100));
             bar
         });
-        Self { bar, interrupt: Interrupt::listen() }
+        Self { bar, lines: Lines::new(show), interrupt: Interrupt::listen() }
     }
 
     /// The run has come this far.
-    pub(crate) fn at(&mut self, progress: barrelstack::Progress) -> ControlFlow<()> {
+    pub(crate) fn at(&self, progress: barrelstack::Progress) -> ControlFlow<()> {
+        let barrelstack::Progress { time, end_time } = progress;
+        self.told(time, end_time, || format!("{time:.1} of {end_time:.1} s simulated"))
+    }
+
+    /// So many of so many things are done.
+    pub(crate) fn counted(&self, done: u64, of: u64, things: &str) -> ControlFlow<()> {
+        self.told(done as f64, of as f64, || format!("{done} of {of} {things}"))
+    }
+
+    fn told(&self, done: f64, of: f64, words: impl Fn() -> String) -> ControlFlow<()> {
         if let Some(bar) = &self.bar {
             if bar.length().is_none() {
                 bar.set_style(style("{spinner} {bar:30} {msg}, {eta} to go"));
                 bar.reset_eta();
             }
-            bar.set_length(milliseconds(progress.end_time));
-            bar.set_position(milliseconds(progress.time));
-            bar.set_message(format!(
-                "{:.1} of {:.1} s simulated",
-                progress.time, progress.end_time
-            ));
+            bar.set_length(thousandths(of));
+            bar.set_position(thousandths(done));
+            bar.set_message(words());
         }
+        self.lines.at(done, of, words);
         self.interrupt.flow()
     }
 }
 
-/// Takes the line away, also where the run ends in an error.
+/// Lines where there is no terminal: how long all of it takes, then every few seconds how far it is.
+pub(crate) struct Lines {
+    start: Instant,
+    /// When a line was last printed; none where none is wanted.
+    last: Option<Mutex<Instant>>,
+}
+
+impl Lines {
+    /// Starts; prints something only when asked to, and only where there is no terminal.
+    pub(crate) fn new(show: bool) -> Self {
+        let start = Instant::now();
+        let last = (show && !std::io::stderr().is_terminal()).then(|| Mutex::new(start));
+        Self { start, last }
+    }
+
+    /// Work has come this far.
+    pub(crate) fn at(&self, done: f64, of: f64, words: impl Fn() -> String) {
+        let spent = self.start.elapsed();
+        let Some(Ok(mut last)) = self.last.as_ref().map(Mutex::lock) else { return };
+        // The first of many things that go on together says little of the rest.
+        if spent < LOOKED_AT || done <= 0.0 || (done < SHARE * of && spent < EVERY) {
+            return;
+        }
+        let whole = spent.mul_f64((of / done).clamp(1.0, 1e6));
+        if *last == self.start && whole > LONG {
+            printer::note(&format!("this takes about {}", rounded(whole)));
+        } else if last.elapsed() > EVERY {
+            printer::note(&format!(
+                "{}, about {} to go",
+                words(),
+                rounded(whole.saturating_sub(spent))
+            ));
+        } else {
+            return;
+        }
+        *last = Instant::now();
+    }
+}
+
+/// Takes the line away, also where the work ends in an error.
 impl Drop for Progress {
     fn drop(&mut self) {
         if let Some(bar) = &self.bar {
@@ -58,12 +120,21 @@ pub(crate) fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_spinner())
 }
 
-/// Whole milliseconds of a time (s), the unit in which the bar counts.
+/// The unit in which the bar counts.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "times are not negative"
+    reason = "what is counted is not negative"
 )]
-fn milliseconds(time: f64) -> u64 {
-    (1e3 * time) as u64
+fn thousandths(value: f64) -> u64 {
+    (1e3 * value) as u64
+}
+
+/// A time as a person would say it.
+fn rounded(time: Duration) -> String {
+    match time.as_secs() {
+        seconds @ 0..90 => format!("{} s", seconds.max(1)),
+        seconds @ 90..5400 => format!("{} min", (seconds + 30) / 60),
+        seconds => format!("{} h", (seconds + 1800) / 3600),
+    }
 }

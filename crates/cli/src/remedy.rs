@@ -5,6 +5,7 @@ use barrelstack::RunFailure;
 use barrelstack::compare::CompareError;
 use barrelstack::export::ExportError;
 use barrelstack::ground::GroundError;
+use barrelstack_motion::MotionError;
 
 /// What to type after an error, where one option helps.
 pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
@@ -13,6 +14,12 @@ pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
             return Some(
                 "name another folder, or add --overwrite to replace what an earlier run wrote there",
             );
+        }
+        if let Some(ExportError::Foreign { .. }) = cause.downcast_ref() {
+            return Some("move the file away, or name another folder with --out");
+        }
+        if let Some(ExportError::Write { .. }) = cause.downcast_ref() {
+            return Some("name another folder with --out");
         }
         if let Some(CompareError::TooFew(_)) = cause.downcast_ref() {
             return Some("name another scenario, or add --against PATH=VALUE");
@@ -27,6 +34,10 @@ pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
 fn of_ground(error: &GroundError) -> Option<&'static str> {
     match error {
         GroundError::Unreadable { .. } => Some("name your file with --record FILE"),
+        GroundError::Motion(MotionError::NoChannel { .. }) => Some(
+            "a horizontal one is chosen with --set motion.component=NAME, and a vertical one alone moves \
+             nothing sideways",
+        ),
         GroundError::Read(_)
         | GroundError::Motion(_)
         | GroundError::Vertical { .. }

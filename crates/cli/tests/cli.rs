@@ -102,6 +102,42 @@ fn an_occupied_folder_is_left_alone_unless_told_otherwise() {
 }
 
 #[test]
+fn a_demo_replaces_what_a_demo_wrote_and_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("demo");
+    let demo = || {
+        let quick = ["demo", "--set=stack.levels=1", "--set=run.duration=0.05 s", "--out"];
+        barrelstack(quick.into_iter().chain([out.to_str().unwrap()]))
+    };
+    for _ in 0..2 {
+        let output = demo();
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+    // Changed by its owner a while after.
+    let mine = fs::File::options().append(true).open(out.join("scenario.toml")).unwrap();
+    (&mine).write_all(b"# mine\n").unwrap();
+    mine.set_modified(std::time::SystemTime::now() + std::time::Duration::from_secs(60)).unwrap();
+    let output = demo();
+    assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
+    assert!(stderr(&output).contains("scenario.toml in "), "{}", stderr(&output));
+    assert!(fs::read_to_string(out.join("scenario.toml")).unwrap().ends_with("# mine\n"));
+}
+
+#[test]
+fn a_verdict_that_cannot_be_written_is_printed_all_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    // The folder is there before the run; what is in the way of a file is so only afterwards.
+    fs::create_dir_all(out.join("report.html/in the way")).unwrap();
+    let arguments =
+        SHORT.into_iter().chain(["--json", "--overwrite", "--out", out.to_str().unwrap()]);
+    let output = barrelstack(arguments);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(json(&stdout(&output))["outcome"]["kind"], "collapse");
+    assert!(stderr(&output).starts_with("error: cannot write "), "{}", stderr(&output));
+}
+
+#[test]
 fn a_file_in_the_place_of_the_folder_is_refused_before_anything_runs() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");

@@ -147,7 +147,7 @@ fn numbers_that_are_none() {
 fn runs_that_never_begin_or_end() {
     let run = |field: &str| stack(&format!("[run]\n{field}"));
     refuse("no step", &run("step = \"0 s\""), &[":4:", "step"]);
-    refuse("long step", &run("step = \"5 ms\""), &["run.step", "at most", "try 0."]);
+    refuse("long step", &run("step = \"5 ms\""), &[":4:", "run.step", "at most", "try 0."]);
     refuse("short step", &run("step = \"1e-30 s\""), &["step"]);
     refuse("endless", &run("duration = \"1e12 s\""), &["duration"]);
     refuse("no time", &run("duration = \"0 s\""), &[":4:", "duration"]);
@@ -165,9 +165,13 @@ fn bodies_where_none_can_be() {
     refuse(
         "overlap",
         &free("\"1 m\", \"0.5 m\" => \"-0.5 m\", \"0.5 m\""),
-        &["left", "right", "overlap", "move"],
+        &[":14:", "left", "right", "overlap", "move"],
     );
-    refuse("in the air", &free("\"1 m\", \"0.5 m\" => \"1 m\", \"5 m\""), &["right", "rest"]);
+    refuse(
+        "in the air",
+        &free("\"1 m\", \"0.5 m\" => \"1 m\", \"5 m\""),
+        &[":14:", "right", "rest"],
+    );
     refuse("twice the name", &free("name = \"right\" => name = \"left\""), &["left", "name"]);
     refuse("no mass", &free("mass = \"100 kg\" => mass = \"0 kg\""), &[":7:", "mass"]);
     refuse(

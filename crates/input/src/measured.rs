@@ -33,7 +33,7 @@ pub struct Table {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TableError {
     /// The file cannot be read.
-    #[error("cannot read {path}: {reason}", path = path.display())]
+    #[error("cannot read {path}: {reason}; correct the path", path = path.display())]
     Unreadable {
         /// The path.
         path: PathBuf,
@@ -158,7 +158,9 @@ impl Table {
             rows.push((line, row));
         }
         if rows.is_empty() {
-            return Err(unsuited("it has a header and no measurements below it"));
+            return Err(unsuited(
+                "it has a header and no measurements below it; write a line for each",
+            ));
         }
         Ok(Self { file: file.to_owned(), header_line, columns, rows })
     }

@@ -121,7 +121,7 @@ pub fn expand_names(table: &mut Table, section: &'static Section) {
 }
 
 /// Applies the override of the given index, `path=value`.
-pub fn apply_override(
+fn apply_override(
     table: &mut Table,
     section: &'static Section,
     sources: &Sources,
@@ -177,6 +177,66 @@ pub fn field_at(
     }
     let below = if let Some(Value::Table(below)) = node { Some(below) } else { None };
     field_at(below, inner, rest)
+}
+
+/// Where the value at a path was written; `None` where nothing is.
+///
+/// Items of lists are known by their name or their number, as in overrides.
+pub fn origin_at(table: &Table, keys: &[&str]) -> Option<Origin> {
+    let (key, rest) = keys.split_first()?;
+    let mut node = &table.get(key)?.node;
+    let mut rest = rest;
+    if let (Value::Array(items), [wanted, below @ ..]) = (&node.value, rest) {
+        let named = |(index, item): &(usize, &Node)| {
+            item_name(item, *index) == *wanted || *wanted == (index + 1).to_string()
+        };
+        node = items.iter().enumerate().find(named)?.1;
+        rest = below;
+    }
+    match (&node.value, rest) {
+        (_, []) => Some(node.origin),
+        (Value::Table(below), _) => origin_at(below, rest),
+        _ => None,
+    }
+}
+
+/// Whether any value of a table was written in an override; the tables on the way to another are none.
+fn holds(table: &Table, origin: Origin) -> bool {
+    fn inside(node: &Node, origin: Origin) -> bool {
+        if let Value::Table(below) = &node.value {
+            return holds(below, origin);
+        }
+        let items = if let Value::Array(items) = &node.value { items.as_slice() } else { &[] };
+        node.origin == origin || items.iter().any(|item| inside(item, origin))
+    }
+    table.entries.iter().any(|entry| inside(&entry.node, origin))
+}
+
+/// Applies all overrides, in order.
+///
+/// One that takes back what another has set contradicts it, and is refused; the same one twice is not.
+pub fn apply_overrides(
+    table: &mut Table,
+    section: &'static Section,
+    sources: &Sources,
+) -> Result<(), InputError> {
+    let texts = &sources.overrides;
+    let mut set: Vec<usize> = Vec::new();
+    for index in 0..texts.len() {
+        apply_override(table, section, sources, index)?;
+        let undone = |known: &&usize| !holds(table, Origin::Override(**known));
+        if let Some(known) = set.iter().find(undone).filter(|known| texts[**known] != texts[index])
+        {
+            let message = format!(
+                "it contradicts the override `{}`; keep one of them",
+                crate::quantity::shorten(&texts[*known])
+            );
+            return Err(sources.error(Origin::Override(index), Problem::Inconsistent { message }));
+        }
+        set.retain(|known| holds(table, Origin::Override(*known)));
+        set.extend(holds(table, Origin::Override(index)).then_some(index));
+    }
+    Ok(())
 }
 
 /// Sets the value at a path, making the tables on the way.

@@ -1,7 +1,7 @@
 //! Files as the system gives them: read with a limit, refused in plain words.
 
 use std::io::{self, Read as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What the system says of a file, in words that a person can act on.
 pub fn words(error: &io::Error) -> String {
@@ -32,4 +32,48 @@ pub fn read(path: &Path, limit: usize) -> Result<Vec<u8>, String> {
         return Err(format!("it has more than {} MB, more than any such file", limit >> 20));
     }
     Ok(bytes)
+}
+
+/// The name under which a file is written until it is whole: of this process alone.
+pub fn temporary(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(unfinished());
+    path.with_file_name(name)
+}
+
+/// What the names of files end with that this process has not finished.
+pub fn unfinished() -> String {
+    format!(".{}.part", std::process::id())
+}
+
+/// Writes under a name of this process alone and renames, so that the file is never half there.
+///
+/// # Errors
+/// When the system refuses.
+pub fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let part = temporary(path);
+    let written = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, path));
+    if written.is_err() {
+        // It may never have been made, and that is well.
+        let _ = std::fs::remove_file(&part);
+    }
+    written
+}
+
+/// Whether files can be made in a folder that may have to be made itself; tried, and nothing left.
+///
+/// # Errors
+/// In words, when the system refuses.
+pub fn writable(folder: &Path) -> Result<(), String> {
+    let folder = std::path::absolute(folder).map_err(|error| words(&error))?;
+    let missing: Vec<&Path> = folder.ancestors().take_while(|folder| !folder.exists()).collect();
+    let probe = temporary(&folder.join("barrelstack"));
+    let tried = std::fs::create_dir_all(&folder)
+        .and_then(|()| std::fs::write(&probe, []))
+        .and_then(|()| std::fs::remove_file(&probe));
+    for made in missing {
+        // What could not be made need not be removed, and what is not empty is somebody else's.
+        let _ = std::fs::remove_dir(made);
+    }
+    tried.map_err(|error| words(&error))
 }

@@ -51,7 +51,7 @@ pub(crate) fn markdown(text: &str) -> String {
 }
 
 /// A CSV field, quoted when it must be.
-pub(crate) fn csv(text: &str) -> String {
+pub fn csv(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {

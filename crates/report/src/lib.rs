@@ -35,6 +35,7 @@
 //! of unequal length are read to the end of the shorter, empty figures draw empty axes.
 
 mod animation;
+pub mod described;
 mod diagram;
 mod document;
 mod drawing;
@@ -73,11 +74,12 @@ pub use animation::Animation;
 pub use diagram::{Arrow, Diagram};
 pub use document::{Block, Document, Tone, Verdict};
 pub use envelope::{BoundarySample, Envelope};
+pub use escape::csv as csv_field;
 pub use figure::{Attachment, Figure, FigureKind, Format, attachments, figures};
 pub use film::Film;
 pub use html::html;
 pub use markdown::{MarkdownBundle, markdown};
-pub use number::significant;
+pub use number::{shortest, significant};
 pub use pack::{POSE_QUANTUM, TIME_QUANTUM};
 pub use pages::{Paper, document_pdf};
 pub use panels::Panels;

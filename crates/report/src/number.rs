@@ -55,7 +55,18 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
 
 /// A number for a CSV cell: shortest text that reads back to the same bits; empty when not finite.
 pub(crate) fn csv_number(value: f64) -> String {
-    if value.is_finite() { format!("{value}") } else { String::new() }
+    if value.is_finite() { shortest(value) } else { String::new() }
+}
+
+/// The shortest decimal text that reads back to the same bits.
+pub fn shortest(value: f64) -> String {
+    let plain = format!("{value}");
+    // Within these bounds an exponent never saves a character.
+    if (1e-2..1e3).contains(&value.abs()) || value == 0.0 {
+        return plain;
+    }
+    let exponent = format!("{value:e}");
+    if exponent.len() < plain.len() { exponent } else { plain }
 }
 
 /// Words that stand behind a number as its unit, or begin one such as `cm/s`.
@@ -109,6 +120,33 @@ pub(crate) fn superscript(exponent: i64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_shortest_text_reads_back_to_the_same_bits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (-0.0, "-0"),
+            (0.5, "0.5"),
+            (0.001, "1e-3"),
+            (1e-9, "1e-9"),
+            (1e22, "1e22"),
+            (-1234.5, "-1234.5"),
+            (5e-324, "5e-324"),
+            (100.0, "100"),
+            (1e3, "1e3"),
+            (0.00123, "0.00123"),
+        ] {
+            assert_eq!(shortest(value), text);
+        }
+        let mut value = 1.1e-300_f64;
+        while value < 1e300 {
+            let text = shortest(value);
+            assert_eq!(text.parse::<f64>().unwrap().to_bits(), value.to_bits(), "{text}");
+            let [plain, exponent] = [format!("{value}"), format!("{value:e}")];
+            assert!(text.len() <= plain.len().min(exponent.len()), "{text} {plain} {exponent}");
+            value *= 7.3;
+        }
+    }
 
     #[test]
     fn rounding_carries_into_the_next_power_of_ten() {

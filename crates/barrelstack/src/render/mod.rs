@@ -134,6 +134,8 @@ impl RenderFolder {
                 }
             }
         }
+        system::writable(path)
+            .map_err(|reason| ExportError::Write { path: path.to_owned(), reason })?;
         Ok(folder)
     }
 
@@ -270,7 +272,7 @@ fn write_all(folder: &Path, files: &[Attachment]) -> Result<usize, ExportError> 
 
 /// Writes one file.
 fn put(path: &Path, bytes: &[u8]) -> Result<usize, ExportError> {
-    std::fs::write(path, bytes).map_err(|error| refused(path, &error))?;
+    system::store(path, bytes).map_err(|error| refused(path, &error))?;
     Ok(1)
 }
 

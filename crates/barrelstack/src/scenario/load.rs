@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use std::sync::Arc;
 
 use super::error::{Place, Problem, ScenarioError};
 use super::reader::{Reader, nearest};
 use super::tree::{Origin, SourceFile, Sources, Table, Value};
-use super::{Scenario, builtin, merge, root, title};
+use super::{Scenario, Written, builtin, merge, root, title};
 use crate::system;
 
 /// Largest scenario file (bytes).
@@ -164,9 +165,7 @@ fn read(
     let folder = Path::new(name).parent().map(Path::to_path_buf).unwrap_or_default();
     add_source(&mut sources, name, bytes, folder)?;
     let mut table = chain(&mut sources, access)?;
-    for index in 0..overrides.len() {
-        merge::apply_override(&mut table, &root::ROOT, &sources, index)?;
-    }
+    merge::apply_overrides(&mut table, &root::ROOT, &sources)?;
     merge::expand_names(&mut table, &root::ROOT);
     let reader =
         Reader::open(&sources, &root::ROOT, String::new(), Some(&table), Origin::Whole(0))?;
@@ -183,6 +182,7 @@ fn read(
     if !own {
         scenario.title = title::of(&scenario);
     }
+    scenario.written = Written(Some(Arc::new((sources, table))));
     Ok(scenario)
 }
 

@@ -59,6 +59,8 @@ pub use barrelstack_input::{
     quantity,
 };
 pub use barrelstack_input::{fnv1a, reader, tree};
+use std::sync::Arc;
+
 use barrelstack_input::{merge, writer};
 
 pub use barrel::{Barrel, Fill};
@@ -97,6 +99,23 @@ pub struct Scenario {
     pub run: RunSpec,
     /// What is kept.
     pub record: RecordSpec,
+    written: Written,
+}
+
+/// Where the values of a scenario were written; two that say the same are equal wherever they say it.
+#[derive(Clone, Default)]
+struct Written(Option<Arc<(tree::Sources, tree::Table)>>);
+
+impl PartialEq for Written {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl std::fmt::Debug for Written {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Written")
+    }
 }
 
 /// What stands.
@@ -121,6 +140,22 @@ impl Scenario {
             Scene::Stack { stack, .. } => Some(stack),
             Scene::Free(_) => None,
         }
+    }
+
+    /// Where the value of the first of these fields was written that the user wrote, be it in an override or in
+    /// the file; else where one of them stands in what the file extends. None where none was written.
+    pub fn place_of(&self, fields: &[String]) -> Option<Place> {
+        let (sources, table) = self.written.0.as_deref()?;
+        let origin =
+            |field: &String| merge::origin_at(table, &field.split('.').collect::<Vec<_>>());
+        let rank = |origin: &tree::Origin| match origin {
+            tree::Origin::Override(_) => 0,
+            tree::Origin::File { file: 0, .. } => 1,
+            tree::Origin::File { .. } => 2,
+            tree::Origin::Whole(_) | tree::Origin::Default => 3,
+        };
+        let found = fields.iter().filter_map(origin).filter(|origin| rank(origin) < 3);
+        found.min_by_key(rank).map(|origin| sources.place(origin))
     }
 
     /// The scenario as text that reads back equal: every default written out, every quantity in SI. Paths are kept as written.

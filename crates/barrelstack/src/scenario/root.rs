@@ -8,7 +8,9 @@ use super::reader::Reader;
 use super::run::Until;
 use super::tree::Table;
 use super::writer::Writer;
-use super::{OutcomeSpec, RecordSpec, Scenario, Scene, free, interface, motion, pair, run, stack};
+use super::{
+    OutcomeSpec, RecordSpec, Scenario, Scene, Written, free, interface, motion, pair, run, stack,
+};
 
 /// Version of the scenario language.
 pub(super) const SCHEMA: u32 = 1;
@@ -138,7 +140,7 @@ pub(super) fn read(reader: Reader<'_>, fallback_title: &str) -> Result<Scenario,
         None => return Err(reader.missing("motion")),
     };
     reader.finish();
-    Ok(Scenario { title, scene, motion, run, record })
+    Ok(Scenario { title, scene, motion, run, record, written: Written::default() })
 }
 
 /// Writes the whole scenario.

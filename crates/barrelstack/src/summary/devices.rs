@@ -1,6 +1,9 @@
 //! What every device bore, told in its own words.
 
+use barrelstack_report::described::{Described, Objects};
 use serde::{Serialize, Serializer, ser::SerializeMap};
+
+use serde_json::{Map, Value, json};
 
 use crate::device::{DEVICES, Words};
 use crate::run::Run;
@@ -74,4 +77,47 @@ impl Serialize for ElementSummary {
         map.serialize_entry(&format!("{broken}_at"), &self.broken_at)?;
         map.end()
     }
+}
+
+impl Described for Devices {
+    fn schema(objects: &mut Objects) -> Value {
+        let (mut properties, number) = (
+            Map::new(),
+            |unit: &str, meaning: String| json!({ "type": "number", "unit": unit, "description": meaning }),
+        );
+        for Words { one, many, force, broken, .. } in DEVICES {
+            let mut element = Map::new();
+            let name = json!({ "type": "string", "description": "What it joins, and where." });
+            element.insert("name".into(), name);
+            let peak = number("N", format!("The {force} that is largest in size."));
+            element.insert(format!("peak_{force}"), peak);
+            element.insert(format!("peak_{force}_at"), number("s", "When.".into()));
+            let mut at = number("s", format!("When it was {broken}."));
+            at["type"] = json!(["number", "null"]);
+            element.insert(format!("{broken}_at"), at);
+            objects.insert((*one).into(), closed(&format!("One {one}."), &element));
+            properties.insert(
+                (*many).into(),
+                json!({
+                    "type": "array",
+                    "items": { "$ref": format!("#/$defs/{one}") },
+                    "description": format!("All {many}."),
+                }),
+            );
+        }
+        objects.insert("Devices".into(), closed("The devices.", &properties));
+        json!({ "$ref": "#/$defs/Devices" })
+    }
+}
+
+/// An object that has these properties, and no other.
+fn closed(meaning: &str, properties: &Map<String, Value>) -> Value {
+    let required: Vec<&String> = properties.keys().collect();
+    json!({
+        "type": "object",
+        "description": meaning,
+        "required": required,
+        "properties": properties,
+        "additionalProperties": false,
+    })
 }

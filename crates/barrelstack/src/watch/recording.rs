@@ -60,6 +60,12 @@ pub struct JointForces {
     pub horizontal: Vec<f64>,
 }
 
+/// Histories of the ground: acceleration, velocity and displacement, sideways and up.
+const GROUND: usize = 6;
+
+/// Histories of a body: two displacements and a rotation.
+const BODY: usize = 3;
+
 /// What is kept of a run.
 #[derive(Clone, Debug)]
 pub struct Recording {
@@ -131,6 +137,14 @@ impl Recording {
             forces,
             started: false,
         }
+    }
+
+    /// How many numbers a sample has.
+    pub(crate) fn histories(assembly: &Assembly) -> usize {
+        1 + GROUND
+            + BODY * assembly.parts.len()
+            + ENERGIES.len()
+            + 2 * Joints::new(assembly).joints.len()
     }
 
     /// The channel of a name.

@@ -1,57 +1,107 @@
-//! The numbers of the page as JSON, in SI units.
+//! The numbers of the page for programs, in SI units.
 
-use serde_json::{Value, json};
+use barrelstack_report::described;
 
-use super::{Height, Heights};
-use crate::decision::{LimitCurve, interval_json};
+use super::{AsRecorded, Height, Heights};
+use crate::decision::{LimitCurve, bounds};
 
-/// Everything but the page.
-pub(super) fn of(all: &Heights) -> Value {
-    json!({
-        "rack": all.request.rack,
-        "seed": all.request.seed,
-        "motions": all.motions,
-        "runs": all.runs,
-        "runs_without_verdict": all.left_out,
-        "headline": all.document.verdict.headline,
-        "heights": all.heights.iter().map(height).collect::<Vec<_>>(),
-        "as_recorded": all.recorded.iter().map(|run| json!({
-            "levels": run.levels,
-            "direction": run.view.name(),
-            "motion": run.motion,
-            "collapsed": run.collapsed,
-            "fallen_share": run.fallen,
-            "pgv": run.velocity,
-            "pga": run.acceleration,
-        })).collect::<Vec<_>>(),
-        "warnings": all.warnings,
-    })
+described! {
+    /// How high is safe.
+    pub struct HeightsDocument of all: &Heights {
+        /// Name and version of this layout.
+        pub schema: &'static str ["heights/1"] = "heights/1",
+        /// Rack of the catalog.
+        pub rack: String = all.request.rack.clone(),
+        /// Barrel of the catalog.
+        pub barrel: String = all.request.barrel.clone(),
+        /// Seed of motions and friction.
+        pub seed: u32 = all.request.seed,
+        /// Motions that shook every stack.
+        pub motions: usize = all.motions,
+        /// Runs in all.
+        pub runs: usize = all.runs,
+        /// Runs without a verdict.
+        pub runs_without_verdict: usize = all.left_out,
+        /// The answer in a sentence.
+        pub headline: String = all.document.verdict.headline.clone(),
+        /// Every height in every direction.
+        pub heights: Vec<HeightRow> = all.heights.iter().map(HeightRow::of).collect(),
+        /// The bundled record as it was recorded.
+        pub as_recorded: Vec<RecordedRow> = all.recorded.iter().map(RecordedRow::of).collect(),
+        /// What the reader must know.
+        pub warnings: Vec<String> = all.warnings.clone(),
+    }
+
+    /// One run under the bundled record as it was recorded.
+    pub struct RecordedRow of run: &AsRecorded {
+        /// Levels of the stack.
+        pub levels: u32 = run.levels,
+        /// Direction of the shaking: across or along the barrels.
+        pub direction: &'static str ["transverse", "longitudinal"] = run.view.name(),
+        /// The component.
+        pub motion: String = run.motion.clone(),
+        /// Whether it collapsed.
+        pub collapsed: bool = run.collapsed,
+        /// Share of its barrels that fell.
+        pub fallen_share: f64 as "1" = run.fallen,
+        /// Peak ground velocity.
+        pub pgv: f64 as "m/s" = run.velocity,
+        /// Peak ground acceleration.
+        pub pga: f64 as "m/s2" = run.acceleration,
+    }
+
+    /// The stacks of one height in one direction.
+    pub struct HeightRow of height: &Height {
+        /// Levels of the stack.
+        pub levels: u32 = height.levels,
+        /// Direction of the shaking: across or along the barrels.
+        pub direction: &'static str ["transverse", "longitudinal"] = height.view.name(),
+        /// What becomes of them at every level of shaking.
+        pub at: Vec<LevelRow> = levels(height),
+        /// Collapse over peak ground velocity (m/s).
+        pub pgv: FittedCurve = FittedCurve::of(&height.by_velocity),
+        /// Collapse over peak ground acceleration (m/s2).
+        pub pga: FittedCurve = FittedCurve::of(&height.by_acceleration),
+    }
+
+    /// What becomes of stacks at one level of shaking.
+    pub struct LevelRow {
+        /// Peak ground velocity.
+        pub pgv: f64 as "m/s",
+        /// Runs with a verdict.
+        pub cases: u32,
+        /// Runs that collapse.
+        pub collapsed: u32,
+        /// 95 % interval of the chance of collapse (Wilson).
+        pub interval: [Option<f64>; 2] as "1",
+        /// Mean share of the barrels that fall.
+        pub fallen_share: f64 as "1",
+    }
+
+    /// A lognormal curve of the chance of collapse.
+    pub struct FittedCurve of curve: &LimitCurve {
+        /// Intensity at which half collapse; null where no curve can be fitted.
+        pub median: Option<f64> as "of the intensity" =
+            curve.fit.as_ref().ok().map(|fit| fit.curve.median),
+        /// Standard deviation of the logarithm of the intensity at collapse.
+        pub dispersion: Option<f64> as "1" = curve.fit.as_ref().ok().map(|fit| fit.curve.dispersion),
+        /// 95 % interval of the median.
+        pub median_interval: Option<[Option<f64>; 2]> as "of the intensity" =
+            curve.median.filter(|_| curve.fit.is_ok()).map(bounds),
+        /// Why there is no curve.
+        pub no_curve: Option<String> = curve.fit.as_ref().err().map(ToString::to_string),
+    }
 }
 
-fn height(height: &Height) -> Value {
+fn levels(height: &Height) -> Vec<LevelRow> {
     let curve = &height.by_velocity;
     let at = curve.stripes.iter().zip(&curve.intervals).zip(&height.fallen);
-    json!({
-        "levels": height.levels,
-        "direction": height.view.name(),
-        "at": at.map(|((stripe, interval), fallen)| json!({
-            "pgv": stripe.intensity,
-            "cases": stripe.cases,
-            "collapsed": stripe.failures,
-            "interval": interval_json(*interval),
-            "fallen_share": fallen,
-        })).collect::<Vec<_>>(),
-        "pgv": fitted(curve),
-        "pga": fitted(&height.by_acceleration),
+    at.map(|((stripe, interval), fallen)| LevelRow {
+        pgv: stripe.intensity,
+        cases: stripe.cases,
+        collapsed: stripe.failures,
+        interval: bounds(*interval),
+        fallen_share: *fallen,
     })
-}
-
-fn fitted(curve: &LimitCurve) -> Value {
-    let fit = curve.fit.as_ref().ok();
-    json!({
-        "median": fit.map(|fit| fit.curve.median),
-        "dispersion": fit.map(|fit| fit.curve.dispersion),
-        "median_interval": curve.median.filter(|_| fit.is_some()).map(interval_json),
-        "no_curve": curve.fit.as_ref().err().map(ToString::to_string),
-    })
+    .collect()
 }

@@ -364,9 +364,12 @@ fn rests_on(all: &Heights) -> Vec<String> {
             all.request.synthetic,
             if all.request.records.is_empty() { "" } else { ", and the records that were named" }
         ),
-        "Full Bordeaux barrels of 225 L. Friction is drawn for every run: rack on floor about 0.5 (scatter 20 %), barrel on \
-         rack about 0.3 (scatter 25 %). Both are assumptions; wet floors and painted racks differ. Measure yours."
-            .into(),
+        format!(
+            "Full barrels, `{}` of the catalog. Friction is drawn for every run: rack on floor about 0.5 (scatter 20 %), \
+             barrel on rack about 0.3 (scatter 25 %). Both are assumptions; wet floors and painted racks differ. Measure \
+             yours.",
+            all.request.barrel
+        ),
         "One stack alone in a plane: no neighbors, no walls, no straps. Collapse is the loss of the first seat of a barrel \
          or a rack."
             .into(),

@@ -52,6 +52,10 @@ pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<Stri
         let known: Vec<&str> = catalog::RACKS.iter().map(|known| known.rack.base).collect();
         HeightsError::Rack(request.rack.clone(), known.join(", "))
     })?;
+    if catalog::barrel(&request.barrel).is_none() {
+        let known: Vec<&str> = catalog::BARRELS.iter().map(|known| known.name).collect();
+        return Err(HeightsError::Barrel(request.barrel.clone(), known.join(", ")));
+    }
     // Along the barrels one rack is one column, and a rail that touches a bulged stave at its inner edge only needs
     // closer nodes.
     let (columns, rack) = match view {
@@ -71,7 +75,7 @@ pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<Stri
          view = \"{}\"\n\
          levels = 4\n\
          columns = {columns}\n\
-         barrel = \"bordeaux-225\"\n\
+         barrel = \"{}\"\n\
          rack = {rack}\n\n\
          [[factor]]\n\
          name = \"levels\"\n\
@@ -81,6 +85,7 @@ pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<Stri
         view.words(),
         request.seed,
         view.name(),
+        request.barrel,
         levels.join(", ")
     );
     if !recorded {

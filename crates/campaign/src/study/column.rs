@@ -1,5 +1,7 @@
 //! One column of a table of cases: what it is, and its values.
 
+use barrelstack_report::described;
+use barrelstack_report::described::{Described, Objects};
 use serde::{Deserialize, Serialize};
 
 use super::error::StudyError;
@@ -24,6 +26,12 @@ pub enum Role {
     Run,
 }
 
+impl Described for Role {
+    fn schema(_: &mut Objects) -> serde_json::Value {
+        serde_json::json!({ "type": "string", "enum": ["key", "factor", "motion", "intensity", "outcome", "demand", "run"] })
+    }
+}
+
 /// What the values of a column are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -34,6 +42,12 @@ pub enum ValueKind {
     Number,
     /// Text.
     Text,
+}
+
+impl Described for ValueKind {
+    fn schema(_: &mut Objects) -> serde_json::Value {
+        serde_json::json!({ "type": "string", "enum": ["integer", "number", "text"] })
+    }
 }
 
 /// One value; every column may lack some.
@@ -47,17 +61,19 @@ pub enum Value {
     Text(String),
 }
 
-/// What a column holds.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ColumnSpec {
-    /// Its name without the unit, unique in a table.
-    pub name: String,
-    /// SI unit; empty for pure numbers and for text.
-    pub unit: String,
-    /// What it tells.
-    pub role: Role,
-    /// What its values are.
-    pub kind: ValueKind,
+described! {
+    /// What a column holds.
+    #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
+    pub struct ColumnSpec {
+        /// Its name without the unit, unique in a table.
+        pub name: String,
+        /// SI unit; empty for pure numbers and for text.
+        pub unit: String,
+        /// What it tells.
+        pub role: Role,
+        /// What its values are.
+        pub kind: ValueKind,
+    }
 }
 
 impl ColumnSpec {

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use std::collections::BTreeSet;
 
-use serde::Serialize;
+use barrelstack_report::described;
 
 use super::Study;
 use super::error::StudyError;
@@ -114,21 +114,23 @@ impl Endings {
     }
 }
 
-/// How long the cases of a study are followed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Following {
-    /// Whether a case goes on until nothing moves.
-    pub to_rest: bool,
-    /// Longest time (s) after the end of the motion, where nothing else ends a case.
-    pub patience: f64,
-    /// The length (s) that the study gives its cases; none where the motion does.
-    pub duration: Option<f64>,
-    /// Time (s) after a collapse at which the study stops its cases; none where it does not.
-    pub after_collapse: Option<f64>,
-    /// Motions that are longer than that length.
-    pub cut: Vec<String>,
-    /// The longest time (s) that is cut off.
-    pub longest_cut: f64,
+described! {
+    /// How long the cases of a study are followed.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Following {
+        /// Whether a case goes on until nothing moves.
+        pub to_rest: bool,
+        /// Longest time (s) after the end of the motion, where nothing else ends a case.
+        pub patience: f64 as "s",
+        /// The length (s) that the study gives its cases; none where the motion does.
+        pub duration: Option<f64> as "s",
+        /// Time (s) after a collapse at which the study stops its cases; none where it does not.
+        pub after_collapse: Option<f64> as "s",
+        /// Motions that are longer than that length.
+        pub cut: Vec<String>,
+        /// The longest time (s) that is cut off.
+        pub longest_cut: f64 as "s",
+    }
 }
 
 impl Study {

@@ -13,7 +13,7 @@ use std::fs::{self, File, TryLockError};
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
+use barrelstack_report::described;
 
 use crate::scenario::fnv1a;
 use crate::system;
@@ -41,45 +41,47 @@ const SHARDS: &str = "shards";
 /// Under this key a shard says what its chunk holds.
 const KEY: &str = "chunk";
 
-/// What the rows of a study come from.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Provenance {
-    /// Version of this layout.
-    pub schema: u32,
-    /// The program.
-    pub program: String,
-    /// Its version.
-    pub version: String,
-    /// The title of the study.
-    pub title: String,
-    /// Fingerprint of the study file, the scenarios it extends, the bytes of its records, and the version.
-    pub study_hash: String,
-    /// Seed of everything that was drawn.
-    pub seed: u64,
-    /// The design, as study files name it.
-    pub design: String,
-    /// The intensity measure of the column `level`.
-    pub measure: Option<String>,
-    /// When a Monte Carlo design has enough cases.
-    pub stop: Option<StopRule>,
-    /// Factors that are drawn anew for each case of a motion.
-    pub drawn: Vec<String>,
-    /// What a design for sensitivity exchanges, in the order of the cases of a block; empty for others.
-    pub varied: Vec<String>,
-    /// What all cases depend on.
-    pub common: Vec<Common>,
-    /// The motions, in order.
-    pub motions: Vec<MotionSource>,
-    /// The columns of the table.
-    pub columns: Vec<ColumnSpec>,
-    /// Chunks in all; of a Monte Carlo design, at most.
-    pub chunks: usize,
-    /// Chunks that are done.
-    pub chunks_done: usize,
-    /// Rows of the table.
-    pub cases: usize,
-    /// Whether nothing is left to run.
-    pub complete: bool,
+described! {
+    /// What the rows of a study come from.
+    #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
+    pub struct Provenance {
+        /// Version of this layout.
+        pub schema: u32,
+        /// The program.
+        pub program: String,
+        /// Its version.
+        pub version: String,
+        /// The title of the study.
+        pub title: String,
+        /// Fingerprint of the study file, the scenarios it extends, the bytes of its records, and the version.
+        pub study_hash: String,
+        /// Seed of everything that was drawn.
+        pub seed: u64,
+        /// The design, as study files name it.
+        pub design: String,
+        /// The intensity measure of the column `level`.
+        pub measure: Option<String>,
+        /// When a Monte Carlo design has enough cases.
+        pub stop: Option<StopRule>,
+        /// Factors that are drawn anew for each case of a motion.
+        pub drawn: Vec<String>,
+        /// What a design for sensitivity exchanges, in the order of the cases of a block; empty for others.
+        pub varied: Vec<String>,
+        /// What all cases depend on.
+        pub common: Vec<Common>,
+        /// The motions, in order.
+        pub motions: Vec<MotionSource>,
+        /// The columns of the table.
+        pub columns: Vec<ColumnSpec>,
+        /// Chunks in all; of a Monte Carlo design, at most.
+        pub chunks: usize,
+        /// Chunks that are done.
+        pub chunks_done: usize,
+        /// Rows of the table.
+        pub cases: usize,
+        /// Whether nothing is left to run.
+        pub complete: bool,
+    }
 }
 
 impl Provenance {
@@ -94,17 +96,19 @@ impl Provenance {
     }
 }
 
-/// A motion of a study.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct MotionSource {
-    /// Its name in the table.
-    pub name: String,
-    /// Where it comes from: files, or how it is made.
-    pub source: String,
-    /// Fingerprint of the bytes of its files; none where it has none.
-    pub hash: Option<String>,
-    /// Fingerprint of how it is made.
-    pub key: String,
+described! {
+    /// A motion of a study.
+    #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
+    pub struct MotionSource {
+        /// Its name in the table.
+        pub name: String,
+        /// Where it comes from: files, or how it is made.
+        pub source: String,
+        /// Fingerprint of the bytes of its files; none where it has none.
+        pub hash: Option<String>,
+        /// Fingerprint of how it is made.
+        pub key: String,
+    }
 }
 
 /// A folder that belongs to a study.

@@ -1,6 +1,6 @@
 //! What a folder may keep when its study has changed: the chunks whose cases are still the same.
 
-use serde::{Deserialize, Serialize};
+use barrelstack_report::described;
 
 use super::Study;
 use super::design::{Case, Design};
@@ -10,16 +10,17 @@ use super::motions::hash_files;
 use crate::scenario::fnv1a;
 use crate::scenario::quantity::plain;
 
-/// One thing on which every case of a study depends, with its fingerprint.
-///
-/// How many samples there are is not among them, nor which motions: these tell cases from each other, and the
-/// key of a chunk holds them. More samples and more motions come behind those that there were.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Common {
-    /// What it is, as a sentence calls it.
-    pub what: String,
-    /// Its fingerprint.
-    pub hash: String,
+// How many samples there are is not among them, nor which motions: these tell cases from each other, and the
+// key of a chunk holds them. More samples and more motions come behind those that there were.
+described! {
+    /// One thing on which every case of a study depends, with its fingerprint.
+    #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
+    pub struct Common {
+        /// What it is, as a sentence calls it.
+        pub what: String,
+        /// Its fingerprint.
+        pub hash: String,
+    }
 }
 
 impl Study {

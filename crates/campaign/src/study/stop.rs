@@ -1,7 +1,7 @@
 //! When enough cases have been run: the collapse probability and its interval.
 
 use barrelstack_fragility::wilson;
-use serde::{Deserialize, Serialize};
+use barrelstack_report::described;
 
 use super::table::StudyTable;
 
@@ -56,13 +56,15 @@ impl Tally {
     }
 }
 
-/// When a Monte Carlo design has enough cases.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StopRule {
-    /// Half of the width of the 95 % interval (Wilson) of the collapse probability at which to stop.
-    pub half_width: f64,
-    /// Number of cases before the interval is looked at.
-    pub least: u32,
+described! {
+    /// When a Monte Carlo design has enough cases.
+    #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
+    pub struct StopRule {
+        /// Half of the width of the 95 % interval (Wilson) of the collapse probability at which to stop.
+        pub half_width: f64 as "1",
+        /// Number of cases before the interval is looked at.
+        pub least: u32,
+    }
 }
 
 impl StopRule {

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use barrelstack_report::{csv_field, shortest};
+
 use super::column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
 use super::error::StudyError;
 use super::shard;
@@ -169,7 +171,7 @@ impl StudyTable {
 
     /// The heading line of the table as CSV.
     pub(super) fn csv_heading(&self) -> String {
-        let headings: Vec<String> = self.specs().map(|spec| field(&spec.heading())).collect();
+        let headings: Vec<String> = self.specs().map(|spec| csv_field(&spec.heading())).collect();
         headings.join(",") + "\n"
     }
 
@@ -185,9 +187,9 @@ impl StudyTable {
                     None => {}
                     Some(Value::Integer(value)) => drop(write!(text, "{value}")),
                     Some(Value::Number(value)) => {
-                        text.push_str(&crate::scenario::quantity::plain(value));
+                        text.push_str(&shortest(value));
                     }
-                    Some(Value::Text(value)) => text.push_str(&field(&value)),
+                    Some(Value::Text(value)) => text.push_str(&csv_field(&value)),
                 }
             }
             text.push('\n');
@@ -217,7 +219,7 @@ impl StudyTable {
                 serde_json::to_value(spec.kind).map_or_else(|_| String::new(), word),
                 super::rows::meaning(spec).to_owned(),
             ];
-            let _ = writeln!(text, "{}", cells.map(|cell| field(&cell)).join(","));
+            let _ = writeln!(text, "{}", cells.map(|cell| csv_field(&cell)).join(","));
         }
         text
     }
@@ -228,14 +230,5 @@ impl StudyTable {
     /// When the bytes are none.
     pub fn from_parquet(bytes: Vec<u8>) -> Result<Self, StudyError> {
         shard::from_bytes(bytes, "").map(|(table, _)| table).map_err(StudyError::Table)
-    }
-}
-
-/// A field of a CSV file (RFC 4180), quoted where it has to be.
-fn field(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
     }
 }

@@ -12,12 +12,11 @@ use barrelstack_calibration::{
     CalibrateError, Calibration, Parameter, Table, collapse, drop, friction, response, stiffness,
 };
 use clap::{Subcommand, ValueEnum};
-use indicatif::ProgressBar;
 
 use crate::args::ScenarioArgs;
 use crate::lanes::LanesArgs;
 use crate::printer;
-use crate::progress::style;
+use crate::progress::Progress;
 
 /// What the help ends with.
 const AFTER_HELP: &str = "\
@@ -252,7 +251,7 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
 
 fn print(found: &Calibration, json: bool) -> anyhow::Result<()> {
     if json {
-        return printer::lines([serde_json::to_string_pretty(&found.to_json())?]);
+        return printer::document(&found.to_document());
     }
     printer::lines(found.lines())?;
     found.warnings.iter().for_each(|warning| printer::warning(warning));
@@ -293,10 +292,10 @@ fn parameters(fit: &[Fitted]) -> anyhow::Result<Vec<Parameter>> {
 }
 
 /// An error of a calibration with the scenario it comes from.
-fn placed(error: CalibrateError, scenario: &ScenarioArgs) -> anyhow::Error {
+fn placed(error: CalibrateError, scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Error {
     match error {
-        CalibrateError::Run(failure) => super::placed(failure, scenario),
-        CalibrateError::Scenario(reason) => anyhow::anyhow!("{}: {reason}", scenario.scenario),
+        CalibrateError::Run(failure) => super::placed(failure, scenario, args),
+        CalibrateError::Scenario(reason) => anyhow::anyhow!("{}: {reason}", args.scenario),
         CalibrateError::Table(error) => error.into(),
     }
 }
@@ -316,7 +315,7 @@ fn fitted(args: &ResponseArgs) -> anyhow::Result<Calibration> {
     let scenario = super::load(&scenario_args)?;
     let table = Table::load(&args.file)?;
     response::response(&scenario, &table, &parameters, until)
-        .map_err(|error| placed(error, &scenario_args))
+        .map_err(|error| placed(error, &scenario, &scenario_args))
 }
 
 fn collapsed(args: &CollapseArgs) -> anyhow::Result<Calibration> {
@@ -347,12 +346,11 @@ fn collapsed(args: &CollapseArgs) -> anyhow::Result<Calibration> {
         .scenarios()
         .map(|name| super::load(&of(name.unwrap_or(&args.scenario))))
         .collect::<anyhow::Result<_>>()?;
-    // Hidden by itself where standard error is no terminal.
-    let bar = ProgressBar::new(0).with_style(style("{bar:30} {pos} of {len} runs, {eta} to go"));
+    let progress = Progress::new(true);
     let found = collapse::collapse(&seen, &scenarios, &parameters, &settings, &|done, of| {
-        bar.set_length(of as u64);
-        bar.set_position(done as u64);
+        // What was found from a part of the simulations is no estimate: the program ends as a whole.
+        let _ = progress.counted(done as u64, of as u64, "runs");
     });
-    bar.finish_and_clear();
-    found.map_err(|error| placed(error, &of(&args.scenario)))
+    drop(progress);
+    found.map_err(|error| placed(error, &scenarios[0], &of(&args.scenario)))
 }

@@ -8,8 +8,12 @@ use crate::printer;
 /// Reads, builds and settles, and prints what was found.
 pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     let scenario = super::load(&args.scenario)?;
-    let found =
-        barrelstack::check(&scenario).map_err(|error| super::placed(error, &args.scenario))?;
-    printer::lines(found.lines())?;
+    let found = barrelstack::check(&scenario)
+        .map_err(|error| super::placed(error, &scenario, &args.scenario))?;
+    if args.json {
+        printer::document(&found)?;
+    } else {
+        printer::lines(found.lines())?;
+    }
     Ok(ExitCode::SUCCESS)
 }

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::bail;
-use barrelstack::compare::{self, Difference, Side, differences};
+use barrelstack::compare::{self, Comparison, Difference, Side, differences};
 use barrelstack::export::Folder;
 use barrelstack::outcome::Outcome;
 
 use crate::args::ScenarioArgs;
+use crate::interrupt::{STATUS, Stopped};
 use crate::printer;
 
 /// What the help of `compare` ends with.
@@ -65,18 +66,30 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let mut sides = Vec::new();
     for ((name, scenario), (_, one)) in scenarios.iter().zip(&asked) {
         let (run, summary) = super::run::watched(scenario, !args.quiet)
-            .map_err(|error| super::placed(error, one))?;
-        if run.interrupted {
-            printer::warning("stopped before all runs were done; nothing was written");
-            return Ok(ExitCode::from(130));
-        }
+            .map_err(|error| super::placed(error, scenario, one))?;
+        let stopped = run.interrupted;
         sides.push(Side { name: name.clone(), run, summary });
+        if stopped {
+            break;
+        }
+    }
+    if sides.len() < 2 {
+        return Err(Stopped.into());
+    }
+    if sides.len() < scenarios.len() {
+        printer::note(&format!(
+            "stopped; {} of {} runs are compared",
+            sides.len(),
+            scenarios.len()
+        ));
     }
     let document = compare::document(&sides);
-    folder.write_comparison(&document)?;
+    crate::interrupt::writes_to(folder.path());
+    // The verdict is printed even where it cannot be written.
+    let written = folder.write_comparison(&document);
     let differing = differences(sides.iter().map(|side| &side.run.scenario));
     if args.json {
-        printer::lines([json(&sides, &differing)?])?;
+        printer::document(&Comparison::of(&sides))?;
     } else {
         let verdict = &document.verdict;
         let mut lines = vec![verdict.headline.clone()];
@@ -90,15 +103,28 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
             printer::warning(&format!("{}: {text}", side.name));
         }
     }
+    written?;
     let broken = sides.iter().any(|side| matches!(side.run.outcome, Outcome::Invalid { .. }));
-    Ok(if broken { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+    let stopped = sides.iter().any(|side| side.run.interrupted);
+    Ok(match (broken, stopped) {
+        (true, _) => ExitCode::FAILURE,
+        (false, true) => ExitCode::from(STATUS),
+        (false, false) => ExitCode::SUCCESS,
+    })
 }
 
 /// The runs asked for, with a short name for each.
 fn asked(args: &CompareArgs) -> Vec<(String, ScenarioArgs)> {
     let with = |scenario: &String, more: Option<&String>| ScenarioArgs {
         scenario: scenario.clone(),
-        set: args.set.iter().chain(more).cloned().collect(),
+        // What is changed in one run is changed from what all have.
+        set: args
+            .set
+            .iter()
+            .filter(|set| more.is_none_or(|m| path(m) != path(set)))
+            .chain(more)
+            .cloned()
+            .collect(),
         record: args.record.clone(),
     };
     let files = args.scenarios.iter().map(|name| (short(name), with(name, None)));
@@ -112,6 +138,11 @@ fn asked(args: &CompareArgs) -> Vec<(String, ScenarioArgs)> {
 fn short(name: &str) -> String {
     let stem = Path::new(name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
     stem.unwrap_or_else(|| name.to_owned())
+}
+
+/// The path of a change.
+fn path(change: &str) -> &str {
+    change.split_once('=').map_or(change, |(path, _)| path).trim()
 }
 
 /// A change as it is read: `stack.levels = 4`.
@@ -131,13 +162,4 @@ fn table(differing: &[Difference]) -> Vec<String> {
         lines.push(format!("  {:<44} {}", one.path, values.join("  |  ")));
     }
     lines
-}
-
-fn json(sides: &[Side], differing: &[Difference]) -> anyhow::Result<String> {
-    let runs: Vec<serde_json::Value> = sides
-        .iter()
-        .map(|side| serde_json::json!({ "name": side.name, "summary": side.summary }))
-        .collect();
-    let document = serde_json::json!({ "schema": 1, "runs": runs, "differences": differing });
-    Ok(serde_json::to_string_pretty(&document)?)
 }

@@ -5,18 +5,27 @@ use std::process::ExitCode;
 use barrelstack::Scenario;
 use barrelstack::export::Folder;
 
-use crate::args::DemoArgs;
+use crate::args::{DemoArgs, ScenarioArgs};
 use crate::printer;
+
+/// The scenario.
+const NAME: &str = "demo-napa";
 
 /// Runs the demo scenario and says in a few sentences what happened.
 pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
-    let scenario = Scenario::builtin("demo-napa", &args.set)?;
-    let folder = Folder::prepare(&args.out, true)?;
-    let (run, summary) = super::run::watched(&scenario, true)?;
-    folder.write(&run, &summary, None)?;
+    let scenario = Scenario::builtin(NAME, &args.set)?;
+    let folder = Folder::prepare_again(&args.out)?;
+    crate::interrupt::writes_to(folder.path());
+    let (run, summary) = super::run::watched(&scenario, true).map_err(|error| {
+        let args = ScenarioArgs { scenario: NAME.to_owned(), set: args.set.clone(), record: None };
+        super::placed(error, &scenario, &args)
+    })?;
+    // The verdict is printed even where it cannot be written.
+    let written = folder.write(&run, &summary, None);
     printer::lines(barrelstack::report::sentences(&run, &summary))?;
+    printer::warnings(&summary);
+    written?;
     let report = folder.report();
     printer::lines(["", &format!("Open {} in a browser to watch it.", report.display())])?;
-    printer::warnings(&summary);
     Ok(super::run::status(&run))
 }

@@ -8,13 +8,12 @@ use barrelstack_campaign::heights::{
     HEIGHTS, Heights, HeightsError, Request, VELOCITIES, View, heights,
 };
 use barrelstack_campaign::study::{RunOptions, StudyError};
-use indicatif::ProgressBar;
 
-use crate::interrupt::Interrupt;
+use crate::interrupt::{Stopped, keeps};
 use crate::lanes::LanesArgs;
 use crate::printer;
-use crate::progress::style;
-use crate::store::store;
+use crate::progress::Progress;
+use crate::store::{store, writable};
 
 /// Arguments of `heights`.
 #[derive(Debug, clap::Args)]
@@ -22,6 +21,9 @@ pub(crate) struct HeightsArgs {
     /// Rack of the catalog.
     #[arg(long, value_name = "NAME", default_value = "two-barrel")]
     rack: String,
+    /// Barrel of the catalog.
+    #[arg(long, value_name = "NAME", default_value = "bordeaux-225")]
+    barrel: String,
     /// File of a further motion, such as that of your own site; may be repeated.
     #[arg(long, value_name = "FILE")]
     record: Vec<PathBuf>,
@@ -39,49 +41,51 @@ pub(crate) struct HeightsArgs {
     /// Print one JSON document in place of the table.
     #[arg(long)]
     json: bool,
+    /// Show no progress.
+    #[arg(long, short)]
+    quiet: bool,
 }
 
 /// Runs every height in both directions, writes the page, prints the table.
 pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
     let request = Request {
         rack: args.rack.clone(),
+        barrel: args.barrel.clone(),
         records: args.record.clone(),
         synthetic: args.synthetic,
         seed: args.seed,
     };
-    let interrupt = Interrupt::listen();
-    let bar = ProgressBar::new(0)
-        .with_style(style("{bar:30} {pos} of {len} runs  {elapsed}, {eta} to go"));
+    writable(&args.out)?;
+    keeps(format!(
+        "what was run is kept in {}, the same command goes on from there",
+        args.out.display()
+    ));
+    let progress = Progress::new(!args.quiet);
     let options = RunOptions { lanes: args.lanes.lanes, ..RunOptions::default() };
-    let result = heights(&request, &args.out, &options, &|done, of| {
-        bar.set_length(of);
-        bar.set_position(done);
-        interrupt.flow()
-    });
-    bar.finish_and_clear();
+    let result =
+        heights(&request, &args.out, &options, &|done, of| progress.counted(done, of, "runs"));
+    drop(progress);
     let found = match result {
         Err(HeightsError::Study(StudyError::Stopped)) => {
-            printer::warning(&format!(
-                "stopped; what was run is kept in {}, the same command goes on from there",
-                args.out.display()
-            ));
-            return Ok(ExitCode::from(130));
+            return Err(Stopped.into());
         }
         other => other?,
     };
-    write(&args.out, &found)?;
+    // The answer is printed even where it cannot be written.
+    let written = write(&args.out, &found);
     if args.json {
-        printer::lines([serde_json::to_string_pretty(&found.json())?])?;
+        printer::document(&found.to_document())?;
     } else {
         print(&found)?;
         printer::lines(["", &format!("page: {}", args.out.join("index.html").display())])?;
     }
     found.warnings.iter().for_each(|warning| printer::warning(warning));
+    written?;
     Ok(ExitCode::SUCCESS)
 }
 
 fn write(out: &Path, found: &Heights) -> anyhow::Result<()> {
-    let json = serde_json::to_string_pretty(&found.json())? + "\n";
+    let json = serde_json::to_string_pretty(&found.to_document())? + "\n";
     page(out, &found.html(), &found.markdown("figures"))?;
     store(&out.join("heights.json"), json.as_bytes())
 }

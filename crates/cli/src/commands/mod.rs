@@ -10,6 +10,8 @@ pub(crate) mod render;
 mod reproduce;
 mod run;
 mod scenarios;
+pub(crate) mod schema;
+pub(crate) mod shell;
 pub(crate) mod study;
 
 use std::io::Read as _;
@@ -40,6 +42,9 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
         Command::Render(args) => render::render(&args),
         Command::Study(args) => study::study(&args),
         Command::Scenarios(args) => scenarios::scenarios(&args),
+        Command::Schema(args) => schema::schema(&args),
+        Command::Completions(args) => shell::completions(&args),
+        Command::Man(args) => shell::man(&args),
     }
 }
 
@@ -90,9 +95,9 @@ fn no_such(name: &str, error: &ScenarioError) -> anyhow::Error {
     anyhow::anyhow!("there is no file {name:?} and no built-in scenario of that name; {next}")
 }
 
-/// An error of a run with the scenario it comes from; a record named on the command line comes from
-/// none.
-fn placed(error: RunFailure, args: &ScenarioArgs) -> anyhow::Error {
+/// An error of a run with the place in the scenario that it is about, or with the scenario; a record named on the
+/// command line stands in none.
+fn placed(error: RunFailure, scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Error {
     if args.record.is_some()
         && let RunFailure::Ground(error) = error
     {
@@ -103,5 +108,8 @@ fn placed(error: RunFailure, args: &ScenarioArgs) -> anyhow::Error {
             error.into()
         };
     }
-    anyhow::Error::from(error).context(args.scenario.clone())
+    match scenario.place_of(&error.fields()) {
+        Some(place) => anyhow::Error::from(error).context(place),
+        None => anyhow::Error::from(error).context(args.scenario.clone()),
+    }
 }

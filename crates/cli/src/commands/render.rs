@@ -8,6 +8,7 @@ use barrelstack::render::{Part, RenderFolder, Rendering};
 
 use crate::args::ScenarioArgs;
 use crate::figures::{FigureArgs, PaperName};
+use crate::interrupt::keeps;
 use crate::printer;
 
 /// Arguments of `render`.
@@ -114,16 +115,23 @@ pub(crate) fn render(args: &RenderArgs) -> anyhow::Result<ExitCode> {
     };
     // The folder is looked at before the work is done, not after.
     let folder = RenderFolder::prepare(&args.out, &args.parts(), args.overwrite)?;
-    let (run, summary) = super::run::watched(&scenario, !args.quiet)?;
+    for part in args.parts() {
+        crate::interrupt::writes_to(&args.out.join(part.place()));
+    }
+    crate::interrupt::writes_to(&args.out);
+    let (run, summary) = super::run::watched(&scenario, !args.quiet)
+        .map_err(|error| super::placed(error, &scenario, &args.scenario))?;
     if let Some([from, _]) = how.between
         && from > run.end_time
     {
         bail!("--from {from}: the run ends at {:.2} s, and there is nothing to film", run.end_time);
     }
+    keeps(format!("the parts that are whole are in {}", args.out.display()));
     let written = folder.write(&run, &summary, &how)?;
     printer::lines(written.iter().map(|part| match part.files {
         1 => part.place.display().to_string(),
         files => format!("{}: {files} files", part.place.display()),
     }))?;
-    Ok(if run.interrupted { ExitCode::from(130) } else { ExitCode::SUCCESS })
+    printer::warnings(&summary);
+    Ok(super::run::status(&run))
 }

@@ -7,26 +7,25 @@ use anyhow::Context;
 use barrelstack::render::write_figures;
 use barrelstack_report::{Paper, document_pdf};
 use barrelstack_reproduction::{Comparison, Reproduction, percent, reproduce as run_all};
-use indicatif::ProgressBar;
 
 use crate::args::ReproduceArgs;
 use crate::printer;
-use crate::progress::style;
-use crate::store::store;
+use crate::progress::Progress;
+use crate::store::{store, writable};
 
 /// Runs every case, writes the page, prints the table.
 pub(crate) fn reproduce(args: &ReproduceArgs) -> anyhow::Result<ExitCode> {
     prepare(&args.out)?;
-    // Hidden by itself where standard error is no terminal.
-    let bar = ProgressBar::new(0).with_style(style("{bar:30} {pos} of {len} runs  {elapsed}"));
+    let progress = Progress::new(true);
     let result = run_all(args.record.as_deref(), !args.no_studies, &|done, of| {
-        bar.set_length(of as u64);
-        bar.set_position(done as u64);
+        // Half of the table would say nothing, so the runs are not asked to stop: the program is.
+        let _ = progress.counted(done as u64, of as u64, "runs");
     });
-    bar.finish_and_clear();
+    drop(progress);
     let found = result?;
-    write(args, &found)?;
+    let written = write(args, &found);
     print(&found)?;
+    written?;
     printer::lines(["", &format!("page: {}", args.out.join("index.html").display())])?;
     found.document.warnings.iter().for_each(|warning| printer::warning(warning));
     Ok(ExitCode::SUCCESS)
@@ -34,7 +33,8 @@ pub(crate) fn reproduce(args: &ReproduceArgs) -> anyhow::Result<ExitCode> {
 
 /// The folder must be there to be written to before the work is done.
 fn prepare(out: &Path) -> anyhow::Result<()> {
-    std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))
+    std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))?;
+    writable(out)
 }
 
 fn write(args: &ReproduceArgs, found: &Reproduction) -> anyhow::Result<()> {

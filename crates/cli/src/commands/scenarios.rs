@@ -2,8 +2,10 @@
 
 use std::process::ExitCode;
 
+use anyhow::bail;
 use barrelstack::Scenario;
 use barrelstack::scenario::{builtin, reference, schema};
+use barrelstack_report::described;
 
 use crate::args::{ScenariosAction, ScenariosArgs};
 use crate::printer;
@@ -11,13 +13,9 @@ use crate::printer;
 /// Lists, shows, explains.
 pub(crate) fn scenarios(args: &ScenariosArgs) -> anyhow::Result<ExitCode> {
     match &args.action {
-        None | Some(ScenariosAction::List) => {
-            let widest = builtin::names().map(str::len).max().unwrap_or(0);
-            let lines: anyhow::Result<Vec<String>> = builtin::names()
-                .map(|name| Ok(format!("{name:widest$}  {}", Scenario::builtin(name, &[])?.title)))
-                .collect();
-            printer::lines(lines?)?;
-        }
+        None => list(args.json)?,
+        Some(ScenariosAction::List { json }) => list(*json || args.json)?,
+        Some(_) if args.json => bail!("--json is for the list of scenarios; leave it out"),
         Some(ScenariosAction::Show { name, resolved: false }) => {
             // Loading it gives the error, with the nearest name, where there is none of this name.
             Scenario::builtin(name, &[])?;
@@ -26,10 +24,69 @@ pub(crate) fn scenarios(args: &ScenariosArgs) -> anyhow::Result<ExitCode> {
         Some(ScenariosAction::Show { name, resolved: true }) => {
             printer::text(&Scenario::builtin(name, &[])?.to_resolved_toml())?;
         }
-        Some(ScenariosAction::Fields) => printer::text(&reference::markdown())?,
+        Some(ScenariosAction::Fields { filter: None }) => printer::text(&reference::markdown())?,
+        Some(ScenariosAction::Fields { filter: Some(filter) }) => {
+            printer::lines(filtered(&reference::markdown(), filter)?)?;
+        }
         Some(ScenariosAction::Schema) => {
             printer::lines([serde_json::to_string_pretty(&schema::json_schema())?])?;
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+described! {
+    /// The built-in scenarios.
+    pub(crate) struct ScenarioList {
+        /// Name and version of this layout.
+        schema: &'static str ["scenarios/1"],
+        /// All of them.
+        scenarios: Vec<Listed>,
+    }
+
+    /// A built-in scenario.
+    pub(crate) struct Listed {
+        /// Its name.
+        name: &'static str,
+        /// Its title.
+        title: String,
+    }
+}
+
+fn list(json: bool) -> anyhow::Result<()> {
+    let scenarios = builtin::names()
+        .map(|name| Ok(Listed { name, title: Scenario::builtin(name, &[])?.title }))
+        .collect::<anyhow::Result<Vec<_>>>()?;
+    if json {
+        return printer::document(&ScenarioList { schema: "scenarios/1", scenarios });
+    }
+    let widest = scenarios.iter().map(|one| one.name.len()).max().unwrap_or(0);
+    printer::lines(scenarios.iter().map(|one| format!("{:widest$}  {}", one.name, one.title)))
+}
+
+/// The rows of the reference that hold a text, under the heads of their tables.
+fn filtered(reference: &str, filter: &str) -> anyhow::Result<Vec<String>> {
+    let wanted = filter.to_lowercase();
+    let (mut lines, mut head, mut named) = (Vec::new(), Vec::new(), false);
+    for line in reference.lines() {
+        let holds = line.to_lowercase().contains(&wanted);
+        if line.starts_with("## ") {
+            (head, named) = (vec![line], holds);
+        } else if line.starts_with("With ")
+            || line.starts_with("| field")
+            || line.starts_with("|--")
+        {
+            head.push(line);
+        } else if line.starts_with("| ") && (holds || named) {
+            let separated = if lines.is_empty() || head.is_empty() { None } else { Some("") };
+            lines.extend(separated.into_iter().chain(head.drain(..)).map(str::to_owned));
+            lines.push(line.to_owned());
+        }
+    }
+    if lines.is_empty() {
+        bail!(
+            "no field has \"{filter}\" in its name, its table or its meaning; without it all are listed"
+        );
+    }
+    Ok(lines)
 }

@@ -12,10 +12,15 @@ use std::process::ExitCode;
 
 use anyhow::Context as _;
 use barrelstack::ensemble::Width;
-use barrelstack_campaign::study::{self, ChunkRun, Collected, RunOptions, Study, StudyError};
+use barrelstack_campaign::study::{
+    self, ChunkRun, Collected, Following, RunOptions, Study, StudyError,
+};
+use barrelstack_report::described;
 use clap::Subcommand;
-use serde_json::json;
 
+pub(crate) use answer::StudyResult;
+
+use crate::interrupt::{Stopped, keeps};
 use crate::lanes::LanesArgs;
 use crate::printer;
 
@@ -69,7 +74,7 @@ struct RunArgs {
     /// Print one JSON document in place of the summary for people.
     #[arg(long)]
     json: bool,
-    /// Show no progress, which is shown on a terminal only.
+    /// Show no progress.
     #[arg(long, short)]
     quiet: bool,
 }
@@ -177,17 +182,17 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         anyhow::bail!("name a study and a folder: barrelstack study STUDY --out DIR");
     };
     let study = load(study)?;
+    keeps(format!(
+        "every chunk that was done is in {}: run the same command again to go on from there",
+        out.display()
+    ));
     let live = live::Live::new(!args.quiet, study.design.is_sample());
     let options = RunOptions { threads: args.threads, lanes: args.lanes.lanes };
     match study.run_all(out, &options, &|progress| live.at(progress)) {
         Ok(()) => {}
         Err(StudyError::Stopped) => {
             drop(live);
-            printer::note(&format!(
-                "stopped; every chunk that was done is in {}: run the same command again to go on from there",
-                out.display()
-            ));
-            return Ok(ExitCode::from(130));
+            return Err(Stopped.into());
         }
         Err(error) => return Err(error.into()),
     }
@@ -203,12 +208,60 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     })?;
     let page = report::write_page(out)?;
     if args.json {
-        printer::lines([answer::json(&answer, &made)?])?;
+        printer::document(&StudyResult::of(&(&answer, &made)))?;
     } else {
         printer::lines(answer::lines(&answer, &made, out))?;
         printer::lines(page.map(|page| format!("page: {}", page.display())))?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+described! {
+    /// What a study will run.
+    pub(crate) struct StudyPlan of plan: &(&Study, Following) {
+        /// Name and version of this layout.
+        schema: &'static str ["study-plan/1"] = "study-plan/1",
+        /// The title of the study.
+        title: String = plan.0.title.clone(),
+        /// The design, as study files name it.
+        design: &'static str = plan.0.design.name(),
+        /// Fingerprint of the study.
+        study_hash: String = format!("{:016x}", plan.0.hash()),
+        /// Cases in all.
+        cases: u64 = plan.0.cases(),
+        /// Whether there may be fewer, because what is found decides.
+        at_most: bool = plan.0.is_adaptive(),
+        /// Motions.
+        motions: usize = plan.0.motions(),
+        /// How long the cases are followed.
+        following: Following = plan.1.clone(),
+        /// The chunks.
+        chunks: Vec<PlannedChunk> = plan.0.plan().map(|chunk| PlannedChunk::of(&chunk)).collect(),
+    }
+
+    /// Cases that are computed together.
+    pub(crate) struct PlannedChunk of chunk: &study::Chunk {
+        /// Its number, from 0.
+        chunk: usize = chunk.number,
+        /// Its cases.
+        cases: usize = chunk.cases,
+        /// The first of them.
+        first: u64 = chunk.first,
+        /// The last of them.
+        last: u64 = chunk.last,
+    }
+
+    /// How far a study is.
+    pub(crate) struct StudyStatus of status: &study::Status {
+        /// Name and version of this layout.
+        schema: &'static str ["study-status/1"] = "study-status/1",
+        /// What the folder belongs to.
+        provenance: study::Provenance = status.provenance.clone(),
+        /// How the cases that are done ended.
+        tally: answer::TallyRow = answer::TallyRow::of(&(status.tally, status.provenance.is_sample())),
+        /// Chunks that are still to be run.
+        missing: Vec<usize> = status.missing.clone(),
+    }
 }
 
 fn warn_of_damaged(shards: usize, out: &Path) {
@@ -224,24 +277,7 @@ fn plan(args: &PlanArgs) -> anyhow::Result<()> {
     let at_most = study.is_adaptive();
     let following = study.following()?;
     if args.json {
-        let chunks: Vec<_> = study
-            .plan()
-            .map(|chunk| {
-                let (number, cases) = (chunk.number, chunk.cases);
-                json!({ "chunk": number, "cases": cases, "first": chunk.first, "last": chunk.last })
-            })
-            .collect();
-        let document = json!({
-            "title": study.title,
-            "design": study.design.name(),
-            "study_hash": format!("{:016x}", study.hash()),
-            "cases": study.cases(),
-            "at_most": at_most,
-            "motions": study.motions(),
-            "following": following,
-            "chunks": chunks,
-        });
-        return printer::lines([serde_json::to_string_pretty(&document)?]);
+        return printer::document(&StudyPlan::of(&(&study, following)));
     }
     let (most, unit) = (if at_most { "at most " } else { "" }, study.chunk_unit());
     let mut lines = vec![
@@ -268,6 +304,7 @@ fn plan(args: &PlanArgs) -> anyhow::Result<()> {
 
 fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
     let study = load(&args.which.study)?;
+    keeps(format!("chunk {} is to be run again", args.chunk));
     let live = live::Live::new(false, false);
     let lanes = args.lanes.lanes.unwrap_or_else(Width::widest);
     match study.run_chunk(&args.out, args.chunk, lanes, &|| live.stopped()) {
@@ -281,8 +318,7 @@ fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
             printer::lines([format!("chunk {} is done", args.chunk)])?;
         }
         Err(StudyError::Stopped) => {
-            printer::note(&format!("stopped; chunk {} is to be run again", args.chunk));
-            return Ok(ExitCode::from(130));
+            return Err(Stopped.into());
         }
         Err(error) => return Err(error.into()),
     }
@@ -292,12 +328,7 @@ fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
 fn status(args: &FolderArgs) -> anyhow::Result<()> {
     let status = Collected::status(&args.folder)?;
     if args.json {
-        let document = json!({
-            "provenance": status.provenance,
-            "tally": answer::tally(&status.tally, status.provenance.is_sample()),
-            "missing": status.missing,
-        });
-        return printer::lines([serde_json::to_string_pretty(&document)?]);
+        return printer::document(&StudyStatus::of(&status));
     }
     printer::lines(answer::status(&status))
 }
@@ -309,7 +340,7 @@ fn collect(args: &FolderArgs) -> anyhow::Result<()> {
         Ok(())
     })?;
     if args.json {
-        return printer::lines([answer::json(&answer, &made)?]);
+        return printer::document(&StudyResult::of(&(&answer, &made)));
     }
     printer::lines(answer::lines(&answer, &made, &args.folder))
 }

@@ -1,5 +1,6 @@
 //! `barrelstack motion info`: what a file holds, so that a wrong unit or step is seen.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -7,7 +8,7 @@ use anyhow::bail;
 use barrelstack_motion::{
     Channel, FORMATS, NoiseCriterion, Orientation, Quantity, Record, STANDARD_GRAVITY, Stage,
 };
-use serde_json::{Value, json};
+use barrelstack_report::described;
 
 use super::folder::{self, Batch, FolderArgs, Worked};
 use super::input::Input;
@@ -51,12 +52,9 @@ pub(super) fn info(args: &InfoArgs) -> anyhow::Result<ExitCode> {
     let shown: Vec<&Shown> =
         USUAL.iter().chain(if args.all_measures { FURTHER } else { &[] }).collect();
     if args.json {
-        let documents: Vec<Value> = records
-            .iter()
-            .map(|record| document(record, &shown, args.all_measures))
-            .collect::<Result<_, _>>()?;
-        let whole = json!({ "units": "m, s, degrees clockwise from north", "records": documents });
-        printer::lines([serde_json::to_string_pretty(&whole)?])?;
+        let documents = records.iter().map(|record| document(record, &shown, args.all_measures));
+        let records = documents.collect::<Result<_, _>>()?;
+        printer::document(&MotionInfo { schema: "motion-info/1", records })?;
     } else {
         let mut lines = Vec::new();
         for record in &records {
@@ -301,83 +299,183 @@ fn stated(record: &Record) -> Table {
     table
 }
 
-fn document(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Value> {
+described! {
+    /// What records hold. Lengths in m, times in s, directions in degrees clockwise from north.
+    pub(crate) struct MotionInfo {
+        /// Name and version of this layout.
+        schema: &'static str ["motion-info/1"],
+        /// The records.
+        records: Vec<RecordInfo>,
+    }
+
+    /// A record.
+    pub(crate) struct RecordInfo {
+        /// Its file.
+        file: String,
+        /// The form of the file.
+        format: &'static str,
+        /// The event, as the file tells.
+        event: String,
+        /// The station, as the file tells.
+        station: String,
+        /// Whether it is raw or corrected.
+        stage: String,
+        /// Its components.
+        channels: Vec<ChannelInfo>,
+        /// Peaks over all horizontal directions, where all measures are asked for.
+        over_all_directions: Vec<RotatedInfo>,
+        /// What is wrong or doubtful.
+        warnings: Vec<String>,
+        /// What was done to it.
+        notes: Vec<String>,
+    }
+
+    /// A component.
+    pub(crate) struct ChannelInfo {
+        /// Its name.
+        name: String,
+        /// Its direction, clockwise from north.
+        azimuth: Option<f64> as "deg",
+        /// Whether it is vertical.
+        vertical: bool,
+        /// Universal time of the first sample.
+        start: Option<String>,
+        /// The station.
+        station: String,
+        /// The sensor.
+        sensor: String,
+        /// Latitude, north positive.
+        latitude: Option<f64> as "deg",
+        /// Longitude, east positive.
+        longitude: Option<f64> as "deg",
+        /// Elevation.
+        elevation: Option<f64> as "m",
+        /// Mean velocity of shear waves in the upper 30 m.
+        vs30: Option<f64> as "m/s",
+        /// Samples.
+        samples: usize,
+        /// Time between two samples.
+        time_step: f64 as "s",
+        /// From the first sample to the last.
+        duration: f64 as "s",
+        /// Velocity at the first sample.
+        initial_velocity: f64 as "m/s",
+        /// Peaks that the file states, beside those of its samples.
+        stated_peaks: Vec<PeakInfo>,
+        /// Where the signal stands above the noise; null where that cannot be told.
+        noise_corners: Option<CornersInfo>,
+        /// Intensity measures, by name.
+        measures: BTreeMap<String, MeasureInfo>,
+        /// The dominant velocity pulse, where all measures are asked for.
+        velocity_pulse: Option<PulseInfo>,
+    }
+
+    /// A peak that a file states.
+    pub(crate) struct PeakInfo of peak: &barrelstack_motion::StatedPeak {
+        /// Of which quantity.
+        quantity: String = peak.quantity.to_string(),
+        /// As stated, in SI units.
+        stated: f64 as "SI" = peak.stated,
+        /// As measured, in SI units.
+        measured: f64 as "SI" = peak.measured,
+        /// Whether the two agree.
+        agrees: bool = peak.agrees(),
+    }
+
+    /// The frequencies between which the signal stands above the noise.
+    pub(crate) struct CornersInfo of found: &barrelstack_motion::Corners {
+        /// The lowest.
+        high_pass: f64 as "Hz" = found.high_pass,
+        /// The highest.
+        low_pass: f64 as "Hz" = found.low_pass,
+        /// When the signal arrives.
+        arrival: f64 as "s" = found.arrival,
+        /// Signal over noise that was asked for.
+        least_ratio: f64 as "1" = found.least_ratio,
+    }
+
+    /// An intensity measure.
+    pub(crate) struct MeasureInfo {
+        /// Its value.
+        value: f64 as "as `unit` says",
+        /// Its unit.
+        unit: String,
+    }
+
+    /// A velocity pulse.
+    pub(crate) struct PulseInfo of fit: &barrelstack_motion::PulseFit {
+        /// Its period.
+        period: f64 as "s" = fit.period,
+        /// Its peak velocity.
+        peak_velocity: f64 as "m/s" = fit.peak_velocity,
+        /// When it starts.
+        start: f64 as "s" = fit.start,
+        /// Its share of the energy of the velocity.
+        energy_share: f64 as "1" = fit.energy_share,
+    }
+
+    /// A peak over all horizontal directions.
+    pub(crate) struct RotatedInfo {
+        /// The measure.
+        measure: String,
+        /// Its unit.
+        unit: String,
+        /// Median over the directions.
+        rotd50: f64 as "as `unit` says",
+        /// Largest over the directions.
+        rotd100: f64 as "as `unit` says",
+    }
+}
+
+fn document(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<RecordInfo> {
     let mut channels = Vec::new();
     let corners = record.noise_corners(&NoiseCriterion::default());
     for (channel, corners) in record.channels.iter().zip(corners) {
         let motion = measures::sampled(channel)?;
-        let mut values = serde_json::Map::new();
+        let mut values = BTreeMap::new();
         for Shown { measure, .. } in shown {
-            let value = json!({ "value": measure.of(&motion)?, "unit": measure.unit() });
+            let value =
+                MeasureInfo { value: measure.of(&motion)?, unit: measure.unit().to_string() };
             values.insert(measure.to_string(), value);
         }
-        let peaks: Vec<Value> = channel
-            .peaks
-            .iter()
-            .map(|peak| {
-                json!({
-                    "quantity": peak.quantity.to_string(),
-                    "stated": peak.stated,
-                    "measured": peak.measured,
-                    "agrees": peak.agrees(),
-                })
-            })
-            .collect();
-        let pulse = all.then(|| measures::pulse(&motion).ok()).flatten().map(|fit| {
-            json!({
-                "period": fit.period,
-                "peak_velocity": fit.peak_velocity,
-                "start": fit.start,
-                "energy_share": fit.energy_share,
-            })
+        let pulse = all.then(|| measures::pulse(&motion).ok()).flatten();
+        channels.push(ChannelInfo {
+            name: channel.name.clone(),
+            azimuth: channel.direction.azimuth,
+            vertical: channel.is_vertical(),
+            start: channel.start.map(|start| start.to_string()),
+            station: channel.site.station.clone(),
+            sensor: channel.site.sensor.clone(),
+            latitude: channel.site.latitude,
+            longitude: channel.site.longitude,
+            elevation: channel.site.elevation,
+            vs30: channel.site.vs30,
+            samples: channel.acceleration.len(),
+            time_step: channel.time_step,
+            duration: channel.duration(),
+            initial_velocity: channel.initial_velocity,
+            stated_peaks: channel.peaks.iter().map(PeakInfo::of).collect(),
+            noise_corners: corners.ok().map(|found| CornersInfo::of(&found)),
+            measures: values,
+            velocity_pulse: pulse.map(|fit| PulseInfo::of(&fit)),
         });
-        channels.push(json!({
-            "name": channel.name,
-            "azimuth": channel.direction.azimuth,
-            "vertical": channel.is_vertical(),
-            "start": channel.start.map(|start| start.to_string()),
-            "station": channel.site.station,
-            "sensor": channel.site.sensor,
-            "latitude": channel.site.latitude,
-            "longitude": channel.site.longitude,
-            "elevation": channel.site.elevation,
-            "vs30": channel.site.vs30,
-            "samples": channel.acceleration.len(),
-            "time_step": channel.time_step,
-            "duration": channel.duration(),
-            "initial_velocity": channel.initial_velocity,
-            "stated_peaks": peaks,
-            "noise_corners": corners.ok().map(|c| json!({
-                "high_pass": c.high_pass,
-                "low_pass": c.low_pass,
-                "arrival": c.arrival,
-                "least_ratio": c.least_ratio,
-            })),
-            "measures": values,
-            "velocity_pulse": pulse,
-        }));
     }
     let rotated = if all { measures::rotated(record).unwrap_or_default() } else { Vec::new() };
-    let rotated: Vec<Value> = rotated
-        .iter()
-        .map(|row| {
-            json!({
-                "measure": row.measure.to_string(),
-                "unit": row.measure.unit(),
-                "rotd50": row.peak.median,
-                "rotd100": row.peak.largest,
-            })
-        })
-        .collect();
-    Ok(json!({
-        "file": record.file,
-        "format": record.format,
-        "event": record.event,
-        "station": record.station,
-        "stage": record.stage.to_string(),
-        "channels": channels,
-        "over_all_directions": rotated,
-        "warnings": record.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
-        "notes": record.notes,
-    }))
+    let rotated = rotated.iter().map(|row| RotatedInfo {
+        measure: row.measure.to_string(),
+        unit: row.measure.unit().to_string(),
+        rotd50: row.peak.median,
+        rotd100: row.peak.largest,
+    });
+    Ok(RecordInfo {
+        file: record.file.clone(),
+        format: record.format,
+        event: record.event.clone(),
+        station: record.station.clone(),
+        stage: record.stage.to_string(),
+        channels,
+        over_all_directions: rotated.collect(),
+        warnings: record.warnings.iter().map(ToString::to_string).collect(),
+        notes: record.notes.clone(),
+    })
 }

@@ -417,13 +417,17 @@ fn beside(file: &Path) -> Vec<PathBuf> {
 pub(super) fn bytes(path: &Path) -> anyhow::Result<Vec<u8>> {
     let refused = || format!("cannot read {}", path.display());
     if path.is_dir() {
-        bail!("{}: it is a folder, not a file", refused());
+        bail!("{}: it is a folder, not a file; name one of its files", refused());
     }
+    let plain = |error| anyhow!("{:#}; correct the path", plain(error));
     let file = std::fs::File::open(path).map_err(plain).with_context(refused)?;
     let mut bytes = Vec::new();
     file.take(LIMIT + 1).read_to_end(&mut bytes).map_err(plain).with_context(refused)?;
     if bytes.len() as u64 > LIMIT {
-        bail!("{}: it has more than 256 MB, more than any strong-motion file", refused());
+        bail!(
+            "{}: it has more than 256 MB, more than any strong-motion file; correct the path",
+            refused()
+        );
     }
     Ok(bytes)
 }

@@ -36,6 +36,8 @@ Quantities carry their unit: \"60 cm/s\", \"0.35 g\", \"0.1 Hz\", \"0.8 s\".
 Every step that is done to a motion is printed, and written into the header of the file.
 Accelerations are taken as linear between samples, velocities and displacements as their integrals.";
 
+pub(crate) use info::MotionInfo;
+
 /// Arguments of `motion`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = AFTER_HELP)]

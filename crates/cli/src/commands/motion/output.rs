@@ -153,7 +153,11 @@ pub(super) fn vacant(path: &Path, overwrite: bool) -> anyhow::Result<()> {
     }
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
-            bail!("cannot write {}: there is no folder {}", path.display(), folder.display())
+            bail!(
+                "cannot write {}: there is no folder {}; make it, or name another",
+                path.display(),
+                folder.display()
+            )
         }
         _ => Ok(()),
     }

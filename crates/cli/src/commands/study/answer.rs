@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use barrelstack_campaign::study::{Endings, Provenance, Status, StudyTable, Tally};
-use serde_json::{Value, json};
+use barrelstack_report::described;
 
 use crate::printer::counted;
 
@@ -18,7 +18,7 @@ fn percent((p, [low, high]): (f64, [f64; 2])) -> String {
 
 /// What a study says of its cases, added up part by part.
 #[derive(Default)]
-pub(super) struct Answer {
+pub(crate) struct Answer {
     tally: Tally,
     endings: Endings,
     modes: BTreeMap<String, usize>,
@@ -169,27 +169,46 @@ pub(super) fn status(status: &Status) -> Vec<String> {
     lines
 }
 
-/// How cases ended, with the share of collapse where they are a sample.
-pub(super) fn tally(tally: &Tally, sample: bool) -> Value {
-    let collapse = tally.collapse().filter(|_| sample);
-    let collapse = collapse.map(|(p, interval)| json!({ "fraction": p, "interval_95": interval }));
-    json!({
-        "cases": tally.cases, "judged": tally.judged, "collapsed": tally.collapsed, "collapse": collapse,
-    })
-}
+described! {
+    /// What a study says of its cases.
+    pub(crate) struct StudyResult of found: &(&Answer, &Provenance) {
+        /// Name and version of this layout.
+        schema: &'static str ["study-result/1"] = "study-result/1",
+        /// What the rows of the study come from.
+        provenance: Provenance = found.1.clone(),
+        /// How its cases ended.
+        tally: TallyRow = TallyRow::of(&(found.0.tally, found.1.is_sample())),
+        /// What is to be known of cases that were not followed to their end.
+        notes: Vec<String> = found.0.endings.sentences(),
+        /// How cases ended at each level that several share.
+        levels: Vec<LevelTally> = found.0.levels().iter().map(LevelTally::of).collect(),
+    }
 
-/// The summary as JSON.
-pub(super) fn json(answer: &Answer, provenance: &Provenance) -> anyhow::Result<String> {
-    let levels: Vec<Value> = answer
-        .levels()
-        .iter()
-        .map(|(level, found)| json!({ "level": level, "tally": tally(found, true) }))
-        .collect();
-    let document = json!({
-        "provenance": provenance,
-        "tally": tally(&answer.tally, provenance.is_sample()),
-        "notes": answer.endings.sentences(),
-        "levels": levels,
-    });
-    Ok(serde_json::to_string_pretty(&document)?)
+    /// How the cases of one level ended.
+    pub(crate) struct LevelTally of found: &(f64, Tally) {
+        /// The level.
+        level: f64 as "of the measure" = found.0,
+        /// How they ended.
+        tally: TallyRow = TallyRow::of(&(found.1, true)),
+    }
+
+    /// How cases ended.
+    pub(crate) struct TallyRow of found: &(Tally, bool) {
+        /// Cases in all.
+        cases: u64 = found.0.cases,
+        /// Those with a verdict.
+        judged: u64 = found.0.judged,
+        /// Those that collapsed.
+        collapsed: u64 = found.0.collapsed,
+        /// The chance of collapse; null where the cases are no sample.
+        collapse: Option<Fraction> = found.0.collapse().filter(|_| found.1).map(|at| Fraction::of(&at)),
+    }
+
+    /// A share with its interval.
+    pub(crate) struct Fraction of found: &(f64, [f64; 2]) {
+        /// The share.
+        fraction: f64 as "1" = found.0,
+        /// Its 95 % interval (Wilson).
+        interval_95: [f64; 2] as "1" = found.1,
+    }
 }

@@ -9,11 +9,12 @@ use barrelstack_campaign::study::Progress;
 use indicatif::ProgressBar;
 
 use crate::interrupt::Interrupt;
-use crate::progress::style;
+use crate::progress::{Lines, style};
 
 /// Tells how far a study is, and whether the user wants it to stop.
 pub(super) struct Live {
     bar: Option<ProgressBar>,
+    lines: Lines,
     /// Whether the cases are a sample, so that their share of collapse means something.
     sample: bool,
     interrupt: Interrupt,
@@ -29,7 +30,13 @@ impl Live {
             bar.enable_steady_tick(Duration::from_millis(200));
             bar
         });
-        Self { bar, sample, interrupt: Interrupt::listen(), damaged: AtomicUsize::new(0) }
+        Self {
+            bar,
+            lines: Lines::new(show),
+            sample,
+            interrupt: Interrupt::listen(),
+            damaged: AtomicUsize::new(0),
+        }
     }
 
     /// Whether the user asked to stop.
@@ -68,6 +75,10 @@ impl Live {
                 bar.set_message(format!("{} of {} collapse", tally.collapsed, tally.judged));
             }
         }
+        let left = progress.cases.saturating_sub(progress.before);
+        self.lines.at(progress.now as f64, left as f64, || {
+            format!("{} of {} cases", progress.before + progress.now, progress.cases)
+        });
         self.interrupt.flow()
     }
 }

@@ -46,7 +46,7 @@ pub(super) fn report(args: &ReportArgs) -> anyhow::Result<()> {
     let out = args.out.as_deref().unwrap_or(&args.folder);
     write(out, &decision)?;
     if args.json {
-        printer::lines([serde_json::to_string_pretty(&decision.json())?])?;
+        printer::document(&decision.to_document())?;
     } else {
         let verdict = &decision.document.verdict;
         let sentences = verdict.sentences.iter().map(|sentence| format!("  {sentence}"));
@@ -76,6 +76,6 @@ pub(super) fn write_page(out: &Path) -> anyhow::Result<Option<PathBuf>> {
 fn write(out: &Path, decision: &Decision) -> anyhow::Result<()> {
     page(out, &decision.html(), &decision.markdown("figures"))?;
     let path = out.join("decision.json");
-    let text = serde_json::to_string_pretty(&decision.json())? + "\n";
+    let text = serde_json::to_string_pretty(&decision.to_document())? + "\n";
     store(&path, text.as_bytes())
 }

@@ -19,7 +19,7 @@ use indicatif::ProgressBar;
 use super::input::{self, Chain, Input};
 use crate::interrupt::Interrupt;
 use crate::printer;
-use crate::progress;
+use crate::progress::{self, Lines};
 use crate::store::store;
 use columns::{Found, cells};
 use journal::{Entry, Journal};
@@ -42,7 +42,7 @@ pub(super) struct FolderArgs {
     /// Periods of the table's spectra in seconds between commas, or with a unit each.
     #[arg(long = "table-periods", value_name = "LIST", value_delimiter = ',')]
     periods: Vec<String>,
-    /// Show no progress, which is shown on a terminal only.
+    /// Show no progress.
     #[arg(long, short)]
     quiet: bool,
 }
@@ -152,6 +152,11 @@ pub(super) fn run(
         format!("{}; {}; flatfile {fingerprint:016x}", batch.settings, batch.input.told());
     let journal = Journal::open(batch.out, &settings, &specs)?;
     let bar = bar(!batch.folder.quiet, sources.len());
+    let lines = Lines::new(!batch.folder.quiet);
+    crate::interrupt::keeps(format!(
+        "what was done is in {}: the same command goes on from there",
+        batch.out.display()
+    ));
     let interrupt = Interrupt::listen();
     let before = AtomicUsize::new(0);
     let one = |source: &Source| -> anyhow::Result<Done> {
@@ -173,7 +178,12 @@ pub(super) fn run(
         journal.note(&entry)?;
         Ok(Done::Noted)
     };
-    let done = pool::map(&sources, one, &|done| bar.set_position(done as u64));
+    let done = pool::map(&sources, one, &|done| {
+        bar.set_position(done as u64);
+        lines.at(done as f64, sources.len() as f64, || {
+            format!("{done} of {} records", sources.len())
+        });
+    });
     bar.finish_and_clear();
     let mut table = StudyTable::empty(&specs);
     let (mut refused, mut stopped) = (Vec::new(), false);

@@ -1,0 +1,100 @@
+//! Why there is no run, and which fields of the scenario that is about.
+
+use barrelstack_dynamics::Lack;
+
+use crate::assemble::AssembleError;
+use crate::ground::GroundError;
+use crate::rest::Restless;
+
+/// Most memory (bytes) that what is kept of a run may take.
+pub(super) const MOST_KEPT: f64 = 2e9;
+
+/// Why there is no run.
+#[derive(Debug, thiserror::Error)]
+pub enum RunFailure {
+    /// The motion is missing.
+    #[error(transparent)]
+    Ground(#[from] GroundError),
+    /// The stack cannot be built.
+    #[error(transparent)]
+    Assemble(#[from] AssembleError),
+    /// The stack does not stand by itself.
+    #[error(transparent)]
+    Settle(#[from] Restless),
+    /// The step is too long for the contacts.
+    #[error("run.step = {asked} ms is too long: {reason}; try {instead} ms, or leave it out")]
+    Step {
+        /// The step asked for (ms).
+        asked: f64,
+        /// How that shows.
+        reason: String,
+        /// The step that is taken when none is given (ms).
+        instead: f64,
+    },
+    /// The run would not end, or not begin.
+    #[error("{0}")]
+    Duration(String),
+    /// What is to be kept is more than memory should hold.
+    #[error(
+        "{samples:.2e} samples of {channels} histories and {frames:.2e} frames of {bodies} bodies take \
+         {gigabytes:.1} GB, more than a run may keep ({} GB): lower record.history_rate or \
+         record.frame_rate, or shorten run.duration",
+        MOST_KEPT / 1e9
+    )]
+    Memory {
+        /// Samples of every history.
+        samples: f64,
+        /// Histories.
+        channels: usize,
+        /// Frames.
+        frames: f64,
+        /// Bodies.
+        bodies: usize,
+        /// Memory for all of them (10⁹ bytes).
+        gigabytes: f64,
+    },
+}
+
+impl RunFailure {
+    /// The fields of a scenario that it is about, the likeliest first.
+    pub fn fields(&self) -> Vec<String> {
+        let of = |fields: &[&str]| fields.iter().map(|field| (*field).to_owned()).collect();
+        match self {
+            Self::Step { .. } => of(&["run.step"]),
+            Self::Duration(_) => of(&["run.duration", "run.step"]),
+            Self::Memory { .. } => {
+                of(&["record.history_rate", "record.frame_rate", "run.duration"])
+            }
+            Self::Ground(GroundError::Vertical { .. }) => of(&["motion.vertical"]),
+            Self::Ground(GroundError::Unit { .. }) => of(&["motion.unit"]),
+            Self::Ground(GroundError::Motion(_)) => of(&["motion.component", "motion.scale"]),
+            Self::Ground(
+                GroundError::Unreadable { .. }
+                | GroundError::Read(_)
+                | GroundError::UnknownBundled { .. },
+            ) => of(&["motion.record", "motion.bundled"]),
+            Self::Assemble(AssembleError::Overlap { first, second, .. }) => vec![
+                format!("body.{second}.position"),
+                format!("body.{first}.position"),
+                "stack.override".into(),
+            ],
+            Self::Assemble(AssembleError::Shape { body, .. }) => vec![format!("body.{body}.shape")],
+            Self::Assemble(AssembleError::Stack(_)) => of(&["stack.override", "stack"]),
+            Self::Assemble(AssembleError::Model(_)) => Vec::new(),
+            Self::Settle(Restless { error }) => {
+                let body = format!("body.{}.position", error.body);
+                match &error.lack {
+                    Lack::Stiffness { interface, .. } => {
+                        vec![format!("interface.{interface}.stiffness"), body]
+                    }
+                    Lack::Friction { interface, .. } | Lack::Stick { interface, .. } => {
+                        vec![format!("interface.{interface}.friction"), body]
+                    }
+                    Lack::Support | Lack::Balance { .. } | Lack::Place | Lack::Time { .. } => {
+                        vec![body, "stack.override".into()]
+                    }
+                }
+            }
+        }
+    }
+}

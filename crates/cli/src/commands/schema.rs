@@ -1,0 +1,88 @@
+//! `barrelstack schema`: what the documents for programs hold.
+
+use std::process::ExitCode;
+
+use anyhow::bail;
+use barrelstack::Summary;
+use barrelstack::compare::Comparison;
+use barrelstack_calibration::CalibrationDocument;
+use barrelstack_campaign::decision::DecisionDocument;
+use barrelstack_campaign::heights::HeightsDocument;
+use barrelstack_report::described;
+use serde_json::Value;
+
+use super::motion::MotionInfo;
+use super::scenarios::ScenarioList;
+use super::study::{StudyPlan, StudyResult, StudyStatus};
+use crate::printer::{self, ErrorDocument};
+
+/// Arguments of `schema`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct SchemaArgs {
+    /// Name of the document; without it, all are listed.
+    name: Option<String>,
+    /// Print a table of key, unit and meaning in place of the JSON Schema.
+    #[arg(long, requires = "name")]
+    dictionary: bool,
+}
+
+/// A document: its name, the command that prints it, its schema.
+struct Known {
+    name: &'static str,
+    of: &'static str,
+    schema: fn() -> Value,
+}
+
+/// Lists the documents: name, type, command.
+macro_rules! documents {
+    ($($name:literal $type:ty: $of:literal;)*) => {
+        const DOCUMENTS: &[Known] = &[$(Known {
+            name: $name,
+            of: $of,
+            schema: || described::document::<$type>($name),
+        }),*];
+    };
+}
+
+documents! {
+    "summary" Summary: "run --json, and summary.json of --out";
+    "check" barrelstack::check::Checked: "check --json";
+    "comparison" Comparison: "compare --json";
+    "heights" HeightsDocument: "heights --json, and heights.json of --out";
+    "scenarios" ScenarioList: "scenarios --json";
+    "study-plan" StudyPlan: "study plan --json";
+    "study-result" StudyResult: "study --json and study collect --json";
+    "study-status" StudyStatus: "study status --json";
+    "decision" DecisionDocument: "study report --json, and decision.json of --out";
+    "calibration" CalibrationDocument: "calibrate --json";
+    "motion-info" MotionInfo: "motion info --json";
+    "error" ErrorDocument: "any command with --json that has no result";
+}
+
+/// Prints one, or lists all.
+pub(crate) fn schema(args: &SchemaArgs) -> anyhow::Result<ExitCode> {
+    let Some(name) = &args.name else {
+        let lines = DOCUMENTS.iter().map(|known| format!("{:14}{}", known.name, known.of));
+        printer::lines(lines)?;
+        return Ok(ExitCode::SUCCESS);
+    };
+    // What a document says of itself has its version behind its name.
+    let wanted = name.split('/').next().unwrap_or(name);
+    let Some(known) = DOCUMENTS.iter().find(|known| known.name == wanted) else {
+        let names: Vec<&str> = DOCUMENTS.iter().map(|known| known.name).collect();
+        bail!("there is no document \"{name}\"; those are {}", names.join(", "));
+    };
+    let schema = (known.schema)();
+    if args.dictionary {
+        let rows = described::dictionary(&schema);
+        let width = |column: usize| {
+            rows.iter().map(|row: &[String; 3]| row[column].chars().count()).max().unwrap_or(0)
+        };
+        let (key, unit) = (width(0), width(1));
+        let line = |row: &[String; 3]| format!("{:key$}  {:unit$}  {}", row[0], row[1], row[2]);
+        printer::lines(rows.iter().map(line))?;
+    } else {
+        printer::document(&schema)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,57 @@
+//! `barrelstack completions` and `barrelstack man`: what shells and readers of manuals ask for.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Context as _;
+use clap::CommandFactory as _;
+use clap_complete::Shell;
+
+use crate::args::Args;
+use crate::printer;
+use crate::store::{plain, store, writable};
+
+/// Arguments of `completions`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct CompletionsArgs {
+    /// The shell.
+    #[arg(value_enum)]
+    shell: Shell,
+}
+
+/// Arguments of `man`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct ManArgs {
+    /// Folder for the pages, such as ~/.local/share/man/man1; pages of the same names are replaced.
+    dir: PathBuf,
+}
+
+/// Prints what a shell reads.
+pub(crate) fn completions(args: &CompletionsArgs) -> anyhow::Result<ExitCode> {
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut Args::command(), "barrelstack", &mut script);
+    printer::text(&String::from_utf8(script)?)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes a page for the program and one for every subcommand.
+pub(crate) fn man(args: &ManArgs) -> anyhow::Result<ExitCode> {
+    std::fs::create_dir_all(&args.dir)
+        .map_err(plain)
+        .with_context(|| format!("cannot make the folder {}", args.dir.display()))?;
+    writable(&args.dir)?;
+    let mut command = Args::command();
+    command.build();
+    let mut left = vec![command];
+    let mut pages = 0;
+    while let Some(command) = left.pop() {
+        left.extend(command.get_subcommands().filter(|sub| sub.get_name() != "help").cloned());
+        let page = clap_mangen::Man::new(command);
+        let mut text = Vec::new();
+        page.render(&mut text)?;
+        store(&args.dir.join(page.get_filename()), &text)?;
+        pages += 1;
+    }
+    printer::lines([format!("{}: {}", args.dir.display(), printer::counted(pages, "page"))])?;
+    Ok(ExitCode::SUCCESS)
+}

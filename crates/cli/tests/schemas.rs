@@ -1,0 +1,328 @@
+//! Every document for programs has the schema that the program prints for it, whatever came of the work.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
+mod common;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+use std::process::{Output, Stdio};
+use std::time::Duration;
+
+use common::{HEAD, barrelstack, program, stderr, stdout};
+use serde_json::Value;
+
+/// Forty short cases in ten chunks, behind [`HEAD`].
+const STUDY: &str = "\
+duration = \"0.4 s\"
+[base.motion.pulse]
+kind = \"one-sine\"
+amplitude = \"1 g\"
+period = \"0.3 s\"
+[[factor]]
+name = \"friction\"
+field = \"interface.rack-ground.friction.coefficient\"
+range = { from = 0.2, to = 0.6, count = 10 }
+[[factor]]
+field = \"motion.pulse.amplitude\"
+values = [\"0.3 g\", \"0.6 g\", \"0.9 g\", \"1.2 g\"]
+[design]
+kind = \"full-factorial\"
+chunk = 4
+";
+
+/// A step near the critical one under dampers too strong for it, and no settling that would show it.
+const BROKEN: [&str; 5] = [
+    "run",
+    "candia-8-barrels",
+    "--set=run.settle=false",
+    "--set=run.step=0.6 ms",
+    "--set=interface.barrel-rack.damping=\"3000 N s/cm\"",
+];
+
+/// A schema and the objects that it refers to.
+struct Schema(Value);
+
+impl Schema {
+    fn printed(name: &str) -> Self {
+        let output = barrelstack(["schema", name]);
+        assert_eq!(output.status.code(), Some(0), "{name}: {}", stderr(&output));
+        Self(serde_json::from_str(&stdout(&output)).unwrap())
+    }
+
+    /// Everything in a value that the schema does not allow. Strict: a word of a schema that is not known here is
+    /// an error, too.
+    fn errors(&self, value: &Value) -> Vec<String> {
+        let mut errors = Vec::new();
+        self.check(&self.0, value, "$", &mut errors);
+        errors
+    }
+
+    fn check(&self, schema: &Value, value: &Value, at: &str, errors: &mut Vec<String>) {
+        const TELLING: [&str; 5] = ["$schema", "$defs", "title", "description", "unit"];
+        for (word, rule) in schema.as_object().unwrap() {
+            let wrong = match word.as_str() {
+                word if TELLING.contains(&word) => false,
+                "$ref" => {
+                    let name = rule.as_str().unwrap().strip_prefix("#/$defs/").unwrap();
+                    self.check(&self.0["$defs"][name], value, at, errors);
+                    false
+                }
+                "anyOf" => !rule.as_array().unwrap().iter().any(|one| {
+                    let mut inner = Vec::new();
+                    self.check(one, value, at, &mut inner);
+                    inner.is_empty()
+                }),
+                "type" => {
+                    let types = rule.as_array();
+                    !types
+                        .map_or_else(|| is(rule, value), |all| all.iter().any(|one| is(one, value)))
+                }
+                "enum" => !rule.as_array().unwrap().contains(value),
+                "minimum" => value.as_f64().is_some_and(|number| number < rule.as_f64().unwrap()),
+                "minItems" => {
+                    value.as_array().is_some_and(|a| (a.len() as u64) < rule.as_u64().unwrap())
+                }
+                "maxItems" => {
+                    value.as_array().is_some_and(|a| (a.len() as u64) > rule.as_u64().unwrap())
+                }
+                "items" => {
+                    for (place, item) in value.as_array().into_iter().flatten().enumerate() {
+                        self.check(rule, item, &format!("{at}[{place}]"), errors);
+                    }
+                    false
+                }
+                "required" => {
+                    let missing = |key: &&Value| value.get(key.as_str().unwrap()).is_none();
+                    value.is_object() && rule.as_array().unwrap().iter().any(|key| missing(&key))
+                }
+                "properties" => {
+                    for (key, inner) in value.as_object().into_iter().flatten() {
+                        if let Some(rule) = rule.get(key) {
+                            self.check(rule, inner, &format!("{at}.{key}"), errors);
+                        }
+                    }
+                    false
+                }
+                "additionalProperties" => {
+                    let known = schema.get("properties").and_then(Value::as_object);
+                    for (key, inner) in value.as_object().into_iter().flatten() {
+                        let more = known.is_none_or(|known| !known.contains_key(key));
+                        if more && rule == false {
+                            errors.push(format!("{at}.{key} is new"));
+                        } else if more {
+                            self.check(rule, inner, &format!("{at}.{key}"), errors);
+                        }
+                    }
+                    false
+                }
+                word => panic!("{at}: nothing is known of {word:?}"),
+            };
+            if wrong {
+                errors.push(format!("{at} is {value}, but {word}: {rule}"));
+            }
+        }
+    }
+}
+
+fn is(kind: &Value, value: &Value) -> bool {
+    match kind.as_str().unwrap() {
+        "null" => value.is_null(),
+        "boolean" => value.is_boolean(),
+        "integer" => value.is_u64() || value.is_i64(),
+        "number" => value.is_number(),
+        "string" => value.is_string(),
+        "array" => value.is_array(),
+        "object" => value.is_object(),
+        kind => panic!("nothing is known of {kind:?}"),
+    }
+}
+
+/// Whether a field holds numbers that are not whole.
+fn counts(field: &Value) -> bool {
+    if !field.is_object() {
+        return false;
+    }
+    let number = |kind: &Value| kind == "number";
+    let kinds = field["type"]
+        .as_array()
+        .map_or_else(|| number(&field["type"]), |all| all.iter().any(number));
+    let inner = ["items", "additionalProperties"].iter().any(|key| counts(&field[*key]));
+    kinds || inner || field["anyOf"].as_array().is_some_and(|all| all.iter().any(counts))
+}
+
+/// The names that the program lists.
+fn listed() -> BTreeSet<String> {
+    let list = stdout(&barrelstack(["schema"]));
+    list.lines().map(|line| line.split(' ').next().unwrap().to_owned()).collect()
+}
+
+/// Documents that were seen, by the name of their schema.
+#[derive(Default)]
+struct Seen(BTreeMap<String, usize>);
+
+impl Seen {
+    /// Standard output is one document, which has the schema of the name that it says itself.
+    fn document(&mut self, what: &str, text: &str) -> Value {
+        let value: Value =
+            serde_json::from_str(text).unwrap_or_else(|e| panic!("{what}: {e}: {text}"));
+        let said = value["schema"].as_str().unwrap_or_else(|| panic!("{what}: no schema: {text}"));
+        let errors = Schema::printed(said).errors(&value);
+        assert_eq!(errors, Vec::<String>::new(), "{what}: {text}");
+        *self.0.entry(said.split('/').next().unwrap().to_owned()).or_default() += 1;
+        value
+    }
+
+    fn output(&mut self, what: &str, output: &Output, status: i32) -> Value {
+        assert_eq!(output.status.code(), Some(status), "{what}: {}", stderr(output));
+        self.document(what, &stdout(output))
+    }
+
+    fn run<S: AsRef<std::ffi::OsStr> + std::fmt::Debug>(
+        &mut self,
+        arguments: &[S],
+        status: i32,
+    ) -> Value {
+        let output = program(arguments).arg("--json").output().unwrap();
+        self.output(&format!("{arguments:?}"), &output, status)
+    }
+}
+
+/// Sends a signal to a program after a moment and gives what it said.
+#[cfg(unix)]
+fn interrupted(arguments: &[&str]) -> Output {
+    let child = program(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(1500));
+    std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    child.wait_with_output().unwrap()
+}
+
+fn path(folder: &Path, name: &str) -> String {
+    folder.join(name).display().to_string()
+}
+
+#[test]
+fn every_document_has_the_schema_that_it_names_in_every_outcome() {
+    let mut seen = Seen::default();
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| path(folder.path(), name);
+    let write = |name: &str, text: &str| {
+        fs::write(folder.path().join(name), text).unwrap();
+        at(name)
+    };
+
+    let short = ["--set=run.stop_after_collapse=0.1 s"];
+    let outcome = |value: &Value| value["outcome"]["kind"].as_str().unwrap().to_owned();
+    let stands = ["run", "demo-napa", "--set=stack.levels=1", "--set=run.duration=1 s"];
+    assert_eq!(outcome(&seen.run(&stands, 0)), "stable");
+    assert_eq!(
+        outcome(&seen.run(&[&["run", "candia-8-barrels"], &short[..]].concat(), 0)),
+        "collapse"
+    );
+    assert_eq!(outcome(&seen.run(&["run", "sliding-block"], 0)), "not-judged");
+    assert_eq!(outcome(&seen.run(&BROKEN, 1)), "invalid");
+    let strap = "stack.strap={ levels = 4, ties = \"levels-together\", pretension = \"3 kN\" }";
+    let strapped = ["run", "candia-8-barrels", "--set", strap, "--set=run.duration=1 s"];
+    assert!(!seen.run(&strapped, 0)["straps"].as_array().unwrap().is_empty());
+    let verified = ["run", "rocking-block", "--verify", "--set=run.duration=1 s"];
+    assert!(seen.run(&verified, 0)["verification"].is_object());
+    #[cfg(unix)]
+    {
+        let long = [
+            "run",
+            "demo-napa",
+            "--set=run.duration=3600 s",
+            "--set=run.until=duration",
+            "--set=stack.levels=2",
+            "--json",
+        ];
+        let value = seen.output("stopped", &interrupted(&long), 130);
+        assert_eq!(value["run"]["interrupted"], true);
+    }
+
+    seen.run(&["check", "candia-8-barrels"], 0);
+    seen.run(&["check", "bouncing-disc"], 0);
+    let against = "--against=run.duration=0.5 s";
+    let out = at("compared");
+    seen.run(&["compare", "rocking-block", against, "--set=run.duration=0.6 s", "--out", &out], 0);
+    seen.run(&["scenarios"], 0);
+    seen.run(&["scenarios", "list"], 0);
+
+    let study = write("study.toml", &[HEAD, STUDY].concat());
+    let done = at("study");
+    seen.run(&["study", "plan", &study], 0);
+    seen.run(&["study", &study, "--out", &done], 0);
+    seen.run(&["study", "status", &done], 0);
+    seen.run(&["study", "collect", &done], 0);
+    seen.run(&["study", "report", &done], 0);
+    let hazard = write("hazard.csv", "pgv (cm/s),rate (1/year)\n5,0.1\n20,0.01\n60,0.001\n");
+    seen.run(&["study", "report", &done, "--hazard", &hazard], 0);
+    let decision = fs::read_to_string(folder.path().join("study/decision.json")).unwrap();
+    seen.document("decision.json", &decision);
+    // A study of which a part is there.
+    let part = at("part");
+    assert!(
+        barrelstack(["study", "run-chunk", &study, "--chunk=1", "--out", &part]).status.success()
+    );
+    seen.run(&["study", "status", &part], 0);
+    seen.run(&["study", "collect", &part], 0);
+
+    let tilt = write("tilt.csv", "angle (deg)\n25\n26\n24\n25.5\n");
+    seen.run(&["calibrate", "friction", &tilt], 0);
+    let press = write("press.csv", "penetration (mm),force (kN)\n1,2\n2,4.1\n3,5.9\n");
+    seen.run(&["calibrate", "stiffness", &press], 0);
+
+    seen.run(&["motion", "info", "napa-college-2014"], 0);
+    seen.run(&["motion", "info", "napa-college-2014", "--all-measures"], 0);
+
+    let error = seen.run(&["run", "nowhere.toml"], 2);
+    assert_eq!(error["file"], "nowhere.toml");
+    let bad = write("bad.toml", "schema = 1\nextends = \"demo-napa\"\n[stack]\nlevels = 2.5\n");
+    let error = seen.run(&["check", &bad], 2);
+    assert_eq!((&error["line"], &error["status"]), (&Value::from(4), &Value::from(2)));
+    let error = seen.run(&["run", "demo-napa", "--set=run.step=5 ms"], 2);
+    assert_eq!(error["change"], "run.step=5 ms");
+    seen.run(&["run", "--levels=3"], 2);
+    seen.run(&["motion", "info", &bad], 2);
+    #[cfg(unix)]
+    {
+        let long = ["heights", "--json", "--quiet", "--out", &at("heights")];
+        let error = seen.output("stopped", &interrupted(&long), 130);
+        assert!(error["error"].as_str().unwrap().contains("goes on from there"), "{error}");
+    }
+
+    // What takes minutes is seen by the test below.
+    let seen: BTreeSet<String> = seen.0.into_keys().chain(["heights".to_owned()]).collect();
+    assert_eq!(seen, listed());
+}
+
+#[test]
+fn every_number_has_a_unit_and_every_field_a_meaning() {
+    for name in listed() {
+        let schema = Schema::printed(&name);
+        for (object, described) in schema.0["$defs"].as_object().unwrap() {
+            for (key, field) in described["properties"].as_object().unwrap() {
+                let place = format!("{name}: {object}.{key}");
+                assert!(!field["description"].as_str().unwrap_or_default().is_empty(), "{place}");
+                assert!(!counts(field) || field["unit"].is_string(), "{place}: {field}");
+            }
+        }
+        let dictionary = stdout(&barrelstack(["schema", &name, "--dictionary"]));
+        let keys = dictionary.lines().filter(|line| line.starts_with("schema ")).count();
+        assert_eq!(keys, 1, "{name}: {dictionary}");
+    }
+}
+
+#[test]
+#[cfg_attr(debug_assertions, ignore = "hundred and forty runs, a minute; run in release")]
+fn the_heights_of_a_moment_have_their_schema() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = path(folder.path(), "heights");
+    let mut seen = Seen::default();
+    let arguments = ["heights", "--synthetic=0", "--barrel=burgundy-228", "--quiet", "--out", &out];
+    let value = seen.run(&arguments, 0);
+    assert_eq!(value["barrel"], "burgundy-228");
+    let file = fs::read_to_string(folder.path().join("heights/heights.json")).unwrap();
+    seen.document("heights.json", &file);
+}

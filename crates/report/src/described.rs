@@ -1,0 +1,330 @@
+//! Documents for programs: every field declared once, with its unit and meaning; the JSON Schema and the
+//! data dictionary are made from that.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Map, Value, json};
+
+/// The objects of a document, by name: each is described once, wherever it stands, in itself too.
+pub type Objects = Map<String, Value>;
+
+/// What has a JSON Schema.
+pub trait Described {
+    /// The schema of its values, whose objects are added to those of the document; the unit of a number is told
+    /// under `unit`.
+    fn schema(objects: &mut Objects) -> Value;
+}
+
+macro_rules! plain {
+    ($($type:ty: $schema:tt),* $(,)?) => {
+        $(impl Described for $type {
+            fn schema(_: &mut Objects) -> Value {
+                json!($schema)
+            }
+        })*
+    };
+}
+
+plain! {
+    bool: { "type": "boolean" },
+    f64: { "type": "number" },
+    u32: { "type": "integer", "minimum": 0 },
+    u64: { "type": "integer", "minimum": 0 },
+    usize: { "type": "integer", "minimum": 0 },
+    String: { "type": "string" },
+    &'static str: { "type": "string" },
+}
+
+/// A value, or null.
+impl<T: Described> Described for Option<T> {
+    fn schema(objects: &mut Objects) -> Value {
+        let mut schema = T::schema(objects);
+        if schema["type"].is_string() {
+            schema["type"] = json!([schema["type"], "null"]);
+            schema
+        } else {
+            json!({ "anyOf": [schema, { "type": "null" }] })
+        }
+    }
+}
+
+impl<T: Described> Described for Box<T> {
+    fn schema(objects: &mut Objects) -> Value {
+        T::schema(objects)
+    }
+}
+
+impl<T: Described> Described for Vec<T> {
+    fn schema(objects: &mut Objects) -> Value {
+        json!({ "type": "array", "items": T::schema(objects) })
+    }
+}
+
+impl<T: Described, const N: usize> Described for [T; N] {
+    fn schema(objects: &mut Objects) -> Value {
+        json!({ "type": "array", "items": T::schema(objects), "minItems": N, "maxItems": N })
+    }
+}
+
+/// Values by a name that only the document knows.
+impl<K: Ord, T: Described> Described for BTreeMap<K, T> {
+    fn schema(objects: &mut Objects) -> Value {
+        json!({ "type": "object", "additionalProperties": T::schema(objects) })
+    }
+}
+
+/// A field of an object, as [`described!`](crate::described!) knows it.
+#[derive(Clone, Copy, Debug)]
+pub struct Field {
+    /// Its key.
+    pub key: &'static str,
+    /// What it means, as written in its comment.
+    pub meaning: &'static str,
+    /// Unit; none where it has none of its own.
+    pub unit: Option<&'static str>,
+    /// The words that it may be, where those are known.
+    pub words: &'static [&'static str],
+    /// How it is written: `flatten` puts its own fields in its place, `skip` leaves it out.
+    pub how: Option<&'static str>,
+    /// The schema of its type.
+    pub schema: fn(&mut Objects) -> Value,
+}
+
+/// Describes an object under its name, once, and refers to it.
+pub fn object(objects: &mut Objects, name: &str, meaning: &str, fields: &[Field]) -> Value {
+    let reference = json!({ "$ref": format!("#/$defs/{name}") });
+    if objects.contains_key(name) {
+        return reference;
+    }
+    // Where it stands in itself, it is known by then.
+    objects.insert(name.to_owned(), Value::Null);
+    let (mut properties, mut required) = (Map::new(), Vec::new());
+    for field in fields.iter().filter(|field| field.how != Some("skip")) {
+        let mut schema = (field.schema)(objects);
+        if field.how == Some("flatten") {
+            let mut inner = resolved(&schema, objects).clone();
+            if let (Value::Object(own), Value::Array(names)) =
+                (inner["properties"].take(), inner["required"].take())
+            {
+                properties.extend(own);
+                required.extend(names);
+            }
+            continue;
+        }
+        if !field.words.is_empty() {
+            let mut words: Vec<Value> = field.words.iter().map(|word| json!(word)).collect();
+            words.extend(schema["type"].is_array().then_some(Value::Null));
+            schema["enum"] = Value::Array(words);
+        }
+        schema["description"] = json!(sentence(field.meaning));
+        if let Some(unit) = field.unit {
+            schema["unit"] = json!(unit);
+        }
+        properties.insert(field.key.to_owned(), schema);
+        required.push(json!(field.key));
+    }
+    let described = json!({
+        "type": "object",
+        "description": sentence(meaning),
+        "properties": properties,
+        "required": required,
+        "additionalProperties": false,
+    });
+    objects.insert(name.to_owned(), described);
+    reference
+}
+
+/// What a schema refers to, or itself.
+fn resolved<'a>(schema: &'a Value, objects: &'a Objects) -> &'a Value {
+    let name = schema["$ref"].as_str().and_then(|at| at.strip_prefix("#/$defs/"));
+    name.and_then(|name| objects.get(name)).unwrap_or(schema)
+}
+
+/// A doc comment as one line.
+fn sentence(comment: &str) -> String {
+    comment.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The schema of a whole document under a title.
+pub fn document<T: Described>(title: &str) -> Value {
+    let mut objects = Objects::new();
+    let mut schema = T::schema(&mut objects);
+    schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
+    schema["title"] = json!(title);
+    schema["$defs"] = Value::Object(objects);
+    schema
+}
+
+/// Every field of a document as key, unit and meaning, by key; what is in a list has `[]` behind the key of the
+/// list, what is under a free name `.*`. What an object holds that stands in itself is told once.
+pub fn dictionary(document: &Value) -> Vec<[String; 3]> {
+    let none = Objects::new();
+    let mut walk = Walk {
+        objects: document["$defs"].as_object().unwrap_or(&none),
+        within: Vec::new(),
+        rows: Vec::new(),
+    };
+    walk.inside(document, "");
+    walk.rows
+}
+
+/// The way through a schema.
+struct Walk<'a> {
+    objects: &'a Objects,
+    /// The objects in which the walk is.
+    within: Vec<&'a Value>,
+    rows: Vec<[String; 3]>,
+}
+
+impl<'a> Walk<'a> {
+    fn inside(&mut self, schema: &'a Value, path: &str) {
+        for one in schema["anyOf"].as_array().into_iter().flatten() {
+            self.inside(one, path);
+        }
+        let schema = resolved(schema, self.objects);
+        if self.within.iter().any(|known| std::ptr::eq(*known, schema)) {
+            return;
+        }
+        self.within.push(schema);
+        for (key, field) in schema["properties"].as_object().into_iter().flatten() {
+            let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+            let text = |key: &str| field[key].as_str().unwrap_or_default().to_owned();
+            let mut meaning = text("description");
+            if let Some(words) = field["enum"].as_array() {
+                let words: Vec<&str> = words.iter().filter_map(Value::as_str).collect();
+                meaning = format!("{meaning} One of: {}.", words.join(", "));
+            }
+            self.rows.push([path.clone(), text("unit"), meaning]);
+            self.inside(field, &path);
+        }
+        if schema["items"].is_object() {
+            self.inside(&schema["items"], &format!("{path}[]"));
+        }
+        if schema["additionalProperties"].is_object() {
+            self.inside(&schema["additionalProperties"], &format!("{path}.*"));
+        }
+        self.within.pop();
+    }
+}
+
+/// Declares an object of a document: a struct that is written as JSON and knows its schema.
+///
+/// The comment of a field is its meaning. Behind the type follow, where there are any, the unit (`as "m/s"`,
+/// `as "1"` for a ratio), the words that it may be (`["a", "b"]`), and, in a struct that is made `of` something,
+/// its value.
+///
+/// ```
+/// barrelstack_report::described! {
+///     /// A fall.
+///     #[derive(Clone, Debug)]
+///     pub struct Fall of drop: &f64 {
+///         /// How far.
+///         pub height: f64 as "m" = *drop,
+///         /// How hard.
+///         pub kind: &'static str ["soft", "hard"] = if *drop < 1.0 { "soft" } else { "hard" },
+///     }
+/// }
+/// use barrelstack_report::described::document;
+/// assert_eq!(Fall::of(&2.0).kind, "hard");
+/// let schema = document::<Fall>("fall");
+/// assert_eq!(schema["$defs"]["Fall"]["properties"]["height"]["unit"], "m");
+/// ```
+#[macro_export]
+macro_rules! described {
+    ($(
+        $(#[doc = $doc:literal])+
+        $(#[derive($($derive:path),* $(,)?)])?
+        $vis:vis struct $name:ident $(of $from:ident: $of:ty)? {
+            $(
+                $(#[doc = $meaning:literal])+
+                $(#[serde($how:ident)])?
+                $fvis:vis $field:ident: $type:ty $(as $unit:literal)? $([$($word:literal),+ $(,)?])? $(= $value:expr)?
+            ),* $(,)?
+        }
+    )*) => {
+        $(
+            $(#[doc = $doc])+
+            $(#[derive($($derive),*)])?
+            #[derive(serde::Serialize)]
+            $vis struct $name {
+                $($(#[doc = $meaning])+ $(#[serde($how)])? $fvis $field: $type),*
+            }
+
+            impl $crate::described::Described for $name {
+                fn schema(objects: &mut $crate::described::Objects) -> serde_json::Value {
+                    let fields = &[$($crate::described::Field {
+                        key: stringify!($field),
+                        meaning: concat!($($meaning),+),
+                        unit: $crate::described!(@option $($unit)?),
+                        words: &[$($($word),+)?],
+                        how: $crate::described!(@name $($how)?),
+                        schema: <$type as $crate::described::Described>::schema,
+                    }),*];
+                    let meaning = concat!($($doc),+);
+                    $crate::described::object(objects, stringify!($name), meaning, fields)
+                }
+            }
+
+            $crate::described!(@of $vis $name $(, $from, $of)? { $($field $(= $value)?),* });
+        )*
+    };
+    (@option) => { None };
+    (@option $unit:literal) => { Some($unit) };
+    (@name) => { None };
+    (@name $how:ident) => { Some(stringify!($how)) };
+    (@of $vis:vis $name:ident { $($field:ident),* }) => {};
+    (@of $vis:vis $name:ident, $from:ident, $of:ty { $($field:ident = $value:expr),* }) => {
+        impl $name {
+            /// What there is to say of it.
+            $vis fn of($from: $of) -> Self {
+                Self { $($field: $value),* }
+            }
+        }
+    };
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::{dictionary, document};
+
+    described! {
+        /// A thing.
+        struct Thing {
+            /// How long
+            /// it is.
+            length: Option<f64> as "m",
+            /// Its parts.
+            parts: Vec<Part>,
+            /// What is in it.
+            inner: Option<Box<Thing>>,
+            /// What is never told.
+            #[serde(skip)]
+            hidden: bool,
+        }
+
+        /// A part.
+        struct Part of name: &'static str {
+            /// Its kind.
+            kind: &'static str ["a", "b"] = name,
+        }
+    }
+
+    #[test]
+    fn a_schema_and_a_dictionary_say_what_is_written() {
+        let thing = Thing { length: None, parts: vec![Part::of("a")], inner: None, hidden: true };
+        assert!(thing.hidden);
+        let written = serde_json::to_value(thing).unwrap();
+        assert_eq!(written, json!({ "length": null, "parts": [{ "kind": "a" }], "inner": null }));
+        let schema = document::<Thing>("thing");
+        let object = &schema["$defs"]["Thing"];
+        assert_eq!(object["required"], json!(["length", "parts", "inner"]));
+        assert_eq!(object["properties"]["length"]["type"], json!(["number", "null"]));
+        let rows = dictionary(&schema);
+        let row = |key: &str| rows.iter().find(|row| row[0] == key).unwrap();
+        assert_eq!(row("length")[1..], ["m", "How long it is."]);
+        assert_eq!(row("parts[].kind")[2], "Its kind. One of: a, b.");
+        assert_eq!(rows.len(), 4);
+    }
+}
