@@ -5,16 +5,19 @@ use std::path::{Path, PathBuf};
 
 use barrelstack_report::{Document, Paper, document_pdf};
 
+use crate::outcome::Outcome;
 use crate::report;
 use crate::run::Run;
-use crate::summary::Summary;
+use crate::scenario::View;
 use crate::system;
+use crate::variants::{Answer, Shown};
 use crate::verify::Verification;
 
 /// The names of the files that every run writes.
-const FILES: [&str; 8] = [
+const FILES: [&str; 9] = [
     "summary.json",
     "scenario.toml",
+    "variants.csv",
     "histories.csv",
     "histories.npz",
     "forces.csv",
@@ -86,17 +89,18 @@ impl Folder {
     /// When the system refuses.
     pub fn write(
         &self,
-        run: &Run,
-        summary: &Summary,
+        answer: &Answer,
         verification: Option<&Verification>,
     ) -> Result<(), ExportError> {
-        let document = report::verified_document(run, summary, verification);
+        let Shown { run, summary, .. } = &answer.decides;
+        let document = report::answer_document(answer, verification);
         let json =
             verification.map_or_else(|| summary.to_json(), |found| found.with_summary(summary));
         // In the order of FILES.
         let contents: [Vec<u8>; FILES.len()] = [
             (json + "\n").into_bytes(),
-            run.scenario.to_resolved_toml().into_bytes(),
+            answer.scenario.to_resolved_toml().into_bytes(),
+            variants_csv(answer).into_bytes(),
             histories_csv(run).into_bytes(),
             self.histories_npz(run)?,
             forces_csv(run).into_bytes(),
@@ -160,12 +164,11 @@ impl Folder {
     /// When the system refuses.
     pub fn write_pdf(
         &self,
-        run: &Run,
-        summary: &Summary,
+        answer: &Answer,
         verification: Option<&Verification>,
         paper: Paper,
     ) -> Result<(), ExportError> {
-        let document = report::verified_document(run, summary, verification);
+        let document = report::answer_document(answer, verification);
         let bytes = document_pdf(&document, paper);
         self.put(&std::iter::once(("report.pdf", bytes.as_slice())))
     }
@@ -211,6 +214,34 @@ fn csv(times: &[f64], columns: &[(String, &[f64])]) -> String {
             }
         }
         text.push('\n');
+    }
+    text
+}
+
+/// One row for the case as it is stated and for every variant, in every plane.
+fn variants_csv(answer: &Answer) -> String {
+    let mut text = String::from(
+        "plane,variant,outcome,mode,first body,collapse (s),first fall (s),barrels fallen,barrels\n",
+    );
+    let planes = std::iter::once(&answer.decides).chain(&answer.other);
+    for found in planes.filter_map(|shown| shown.variants.as_ref()) {
+        let view = found.view.map_or("", View::name);
+        for (number, result) in found.results.iter().enumerate() {
+            let (kind, collapse) = match &result.outcome {
+                Ok(Outcome::Collapse { mode, time, first, .. }) => {
+                    ("collapse", format!("{},{first},{time}", mode.name()))
+                }
+                Ok(outcome) => (outcome.kind(), ",,".to_owned()),
+                Err(_) => ("cannot-stand", ",,".to_owned()),
+            };
+            let first = result.first_fall.map_or_else(String::new, |time| time.to_string());
+            let fallen = result.falls.iter().filter(|(_, at)| at.is_some()).count();
+            let _ = writeln!(
+                text,
+                "{view},{number},{kind},{collapse},{first},{fallen},{}",
+                result.barrels
+            );
+        }
     }
     text
 }

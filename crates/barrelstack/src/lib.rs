@@ -55,6 +55,7 @@ pub mod scenario;
 pub mod step;
 mod stick;
 pub mod summary;
+pub mod variants;
 pub mod verify;
 pub mod watch;
 

@@ -9,6 +9,8 @@ use crate::assemble::PartKind;
 use crate::demand::Demands;
 use crate::outcome::Outcome;
 use crate::run::Run;
+use crate::scenario::View;
+use crate::variants::Spread;
 use crate::watch::StressEnvelope;
 
 pub use devices::{Device, Devices, ElementSummary};
@@ -24,6 +26,12 @@ pub struct Summary {
     pub schema: u32,
     /// The scenario's title.
     pub title: String,
+    /// The plane of the model: "transverse" or "longitudinal"; null for a free scene.
+    pub view: Option<&'static str>,
+    /// Which variant of the stack this is; 0 as it is stated.
+    pub variant: u32,
+    /// What all variants say together; null where none were run.
+    pub ensemble: Option<Spread>,
     /// What happened.
     pub outcome: OutcomeSummary,
     /// Every body but the ground.
@@ -45,12 +53,15 @@ pub struct Summary {
     pub warnings: Vec<String>,
     /// What made the result.
     pub provenance: Provenance,
+    /// The same of the other plane, where the scenario looks at its stack in both: this one is the worse.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub other_plane: Option<Box<Summary>>,
 }
 
 /// What happened.
 #[derive(Clone, Debug, Serialize)]
 pub struct OutcomeSummary {
-    /// "stable", "collapse", "not-judged" or "invalid".
+    /// "stable", "collapse", "not-judged", "invalid" or, of a run that was stopped, "interrupted".
     pub kind: &'static str,
     /// "ejection", "rocking", "rack-sliding" or "overturning".
     pub mode: Option<&'static str>,
@@ -241,6 +252,9 @@ impl Summary {
         Self {
             schema: SUMMARY_SCHEMA,
             title: run.scenario.title.clone(),
+            view: run.assembly.view.map(View::name),
+            variant: 0,
+            ensemble: None,
             outcome: outcome(run),
             bodies: bodies(run),
             demands: if matches!(run.outcome, Outcome::Invalid { .. }) {
@@ -286,7 +300,18 @@ impl Summary {
                     .map(|motion| motion.provenance.clone())
                     .unwrap_or_default(),
             },
+            other_plane: None,
         }
+    }
+
+    /// What all variants say in each plane in which they were run, across the barrels first.
+    pub fn spreads(&self) -> Vec<(View, &Spread)> {
+        let own = std::iter::once(self).chain(self.other_plane.as_deref());
+        let known = |one: &Self| View::ALL.into_iter().find(|view| Some(view.name()) == one.view);
+        let mut all: Vec<_> =
+            own.filter_map(|one| Some((known(one)?, one.ensemble.as_ref()?))).collect();
+        all.sort_by_key(|(view, _)| *view == View::Longitudinal);
+        all
     }
 
     /// The summary as JSON text, indented.
@@ -299,7 +324,11 @@ impl Summary {
 fn outcome(run: &Run) -> OutcomeSummary {
     let barrels: Vec<usize> = run.assembly.of_kind(PartKind::Barrel).collect();
     let mut summary = OutcomeSummary {
-        kind: run.outcome.kind(),
+        kind: if run.interrupted && !matches!(run.outcome, Outcome::Invalid { .. }) {
+            "interrupted"
+        } else {
+            run.outcome.kind()
+        },
         mode: None,
         time: None,
         first: None,

@@ -17,7 +17,8 @@ use barrelstack_report::Document;
 use crate::decision::{Case, Cases, DecisionError, LimitCurve, LimitState};
 use crate::study::{Collected, Progress, RunOptions, Study, StudyError, Value};
 
-pub use plan::{HEIGHTS, VELOCITIES, View};
+pub use crate::scenario::View;
+pub use plan::{HEIGHTS, VELOCITIES};
 
 /// What is asked for.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,6 +4,7 @@ use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
+use barrelstack::variants::Told;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::interrupt::Interrupt;
@@ -24,6 +25,29 @@ impl Progress {
             bar
         });
         Self { bar, interrupt: Interrupt::listen() }
+    }
+
+    /// The variants, or the run that is shown, have come this far.
+    pub(crate) fn told(&mut self, told: Told) -> ControlFlow<()> {
+        let (done, of) = match told {
+            Told::Run(progress) => return self.at(progress),
+            Told::Variants { done, of } => (done, of),
+        };
+        if let Some(bar) = &self.bar {
+            if bar.length().is_none() {
+                bar.set_style(style("{spinner} {bar:30} {msg}, {eta} to go"));
+                bar.reset_eta();
+            }
+            bar.set_length(of as u64);
+            bar.set_position(done as u64);
+            bar.set_message(format!("{done} of {of} variants"));
+            if done == of {
+                // What comes next counts otherwise.
+                bar.unset_length();
+                bar.set_style(style("{spinner} {msg}"));
+            }
+        }
+        self.interrupt.flow()
     }
 
     /// The run has come this far.

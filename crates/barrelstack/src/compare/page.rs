@@ -115,7 +115,7 @@ fn players(sides: &[Side]) -> Players {
                 mark: letter(at).into(),
                 name: side.name.clone(),
                 verdict: report::headline(&side.run, &side.summary),
-                tone: report::tone(&side.run),
+                tone: report::tone(&side.run, &side.summary),
                 scene: report::scene(&side.run),
                 traces: report::traces(&side.run),
             })

@@ -38,6 +38,7 @@ pub mod barrel;
 pub mod builtin;
 pub mod catalog;
 pub mod free;
+pub mod imperfections;
 pub mod interface;
 mod load;
 pub mod motion;
@@ -64,6 +65,7 @@ use barrelstack_input::{merge, writer};
 pub use barrel::{Barrel, Fill};
 pub use error::ScenarioError;
 pub use free::{ChosenNode, FreeBody, FreeInterface, FreeScene, Ground, Nodes, PartShape, Viscous};
+pub use imperfections::{Imperfection, Imperfections};
 pub use interface::{Basis, Damping, Friction, Interface, NormalLaw};
 pub use motion::{
     Amplitude, Direction, MeasuredOn, MotionSource, MotionSpec, Processing, Pulse, PulseKind,
@@ -107,6 +109,8 @@ pub enum Scene {
         stack: StackSpec,
         /// Thresholds that tell a collapse.
         outcome: OutcomeSpec,
+        /// How its variants differ from it.
+        imperfections: Imperfections,
     },
     /// Any planar bodies.
     Free(FreeScene),
@@ -117,6 +121,14 @@ impl Scenario {
     pub fn stack(&self) -> Option<&StackSpec> {
         match &self.scene {
             Scene::Stack { stack, .. } => Some(stack),
+            Scene::Free(_) => None,
+        }
+    }
+
+    /// How the variants of the stack differ from it, unless the scene is free.
+    pub fn imperfections(&self) -> Option<&Imperfections> {
+        match &self.scene {
+            Scene::Stack { imperfections, .. } => Some(imperfections),
             Scene::Free(_) => None,
         }
     }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use barrelstack_fragility::sobol;
 use barrelstack_motion::IntensityMeasure;
 
 use crate::scenario::field::Range;
@@ -430,7 +431,7 @@ fn read_design(
         }
         DesignKind::LatinHypercube => Design::LatinHypercube { count: reader.integer("count")? },
         DesignKind::Sobol => {
-            let most = super::sobol::DIMENSIONS - 2;
+            let most = sobol::DIMENSIONS - 2;
             if factors.len() > most {
                 return refuse(&format!(
                     "the points of Sobol' here have at most {most} factors, this study has {}; take \
@@ -441,7 +442,7 @@ fn read_design(
             Design::Sobol { count: reader.integer("count")? }
         }
         DesignKind::Saltelli => {
-            let most = super::sobol::DIMENSIONS / 2 - 2;
+            let most = sobol::DIMENSIONS / 2 - 2;
             if factors.len() > most {
                 return refuse(&format!(
                     "the blocks of Saltelli here have at most {most} factors, this study has {}; leave out those that \

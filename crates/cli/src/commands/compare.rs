@@ -7,6 +7,7 @@ use anyhow::bail;
 use barrelstack::compare::{self, Difference, Side, differences};
 use barrelstack::export::Folder;
 use barrelstack::outcome::Outcome;
+use barrelstack::variants::{Asked, Shown};
 
 use crate::args::ScenarioArgs;
 use crate::printer;
@@ -64,8 +65,9 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let folder = Folder::prepare(&args.out, args.overwrite)?;
     let mut sides = Vec::new();
     for ((name, scenario), (_, one)) in scenarios.iter().zip(&asked) {
-        let (run, summary) = super::run::watched(scenario, !args.quiet)
+        let answer = super::run::answered(scenario, Asked::Typical, !args.quiet)
             .map_err(|error| super::placed(error, one))?;
+        let Shown { run, summary, .. } = answer.decides;
         if run.interrupted {
             printer::warning("stopped before all runs were done; nothing was written");
             return Ok(ExitCode::from(130));
