@@ -13,19 +13,6 @@ use crate::system;
 use crate::variants::{Answer, Shown};
 use crate::verify::Verification;
 
-/// The names of the files that every run writes.
-const FILES: [&str; 9] = [
-    "summary.json",
-    "scenario.toml",
-    "variants.csv",
-    "histories.csv",
-    "histories.npz",
-    "forces.csv",
-    "envelopes.csv",
-    "frames.csv",
-    "report.html",
-];
-
 /// Why files could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
@@ -82,7 +69,7 @@ impl Folder {
         self.path.join("report.html")
     }
 
-    /// Writes all files: under temporary names first and renamed together, so that none is ever half
+    /// Writes all files, those of a run with the name of its plane before theirs where there are two: under temporary names first and renamed together, so that none is ever half
     /// there and a full disk leaves an earlier run as it was.
     ///
     /// # Errors
@@ -96,19 +83,26 @@ impl Folder {
         let document = report::answer_document(answer, verification);
         let json =
             verification.map_or_else(|| summary.to_json(), |found| found.with_summary(summary));
-        // In the order of FILES.
-        let contents: [Vec<u8>; FILES.len()] = [
-            (json + "\n").into_bytes(),
-            answer.scenario.to_resolved_toml().into_bytes(),
-            variants_csv(answer).into_bytes(),
-            histories_csv(run).into_bytes(),
-            self.histories_npz(run)?,
-            forces_csv(run).into_bytes(),
-            envelopes_csv(run).into_bytes(),
-            frames_csv(run).into_bytes(),
-            barrelstack_report::html(&document).into_bytes(),
+        let mut files = vec![
+            ("summary.json".to_owned(), (json + "\n").into_bytes()),
+            ("scenario.toml".to_owned(), answer.scenario.to_resolved_toml().into_bytes()),
+            ("variants.csv".to_owned(), variants_csv(answer).into_bytes()),
         ];
-        self.put(&FILES.iter().copied().zip(contents.iter().map(Vec::as_slice)))
+        let both = answer.other.is_some();
+        for run in std::iter::once(run).chain(answer.other.as_ref().map(|other| &other.run)) {
+            // Of both planes each has its own files.
+            let view = run.assembly.view.filter(|_| both);
+            let plane = view.map_or_else(String::new, |view| format!("{}-", view.name()));
+            files.extend([
+                (format!("{plane}histories.csv"), histories_csv(run).into_bytes()),
+                (format!("{plane}histories.npz"), self.histories_npz(run)?),
+                (format!("{plane}forces.csv"), forces_csv(run).into_bytes()),
+                (format!("{plane}envelopes.csv"), envelopes_csv(run).into_bytes()),
+                (format!("{plane}frames.csv"), frames_csv(run).into_bytes()),
+            ]);
+        }
+        files.push(("report.html".to_owned(), barrelstack_report::html(&document).into_bytes()));
+        self.put(&files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())))
     }
 
     /// Writes the page of a comparison as `report.html`, and as `report.md` with the figures and

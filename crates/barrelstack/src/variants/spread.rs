@@ -35,6 +35,9 @@ pub struct Spread {
     pub barrels_fallen: Option<Range>,
     /// Barrels in all.
     pub barrels: usize,
+    /// The earliest end of a variant that stood while some of the motion was left; null where none was cut
+    /// short so.
+    pub standing_until: Option<f64>,
     /// Variants by the mode of their collapse.
     pub modes: BTreeMap<&'static str, u32>,
     /// Variants that do not stand before they are shaken.
@@ -85,14 +88,14 @@ impl Spread {
     pub(super) fn of(imperfections: &Imperfections, results: &[CaseResult]) -> Self {
         let variants = results.get(1..).unwrap_or_default();
         let judged = || variants.iter().filter(|result| judged(result));
-        let collapsed = || judged().filter(|result| collapsed(result));
+        let falling = || judged().filter(|result| collapsed(result));
         let mut modes = BTreeMap::new();
-        for result in collapsed() {
+        for result in falling() {
             if let Ok(Outcome::Collapse { mode, .. }) = &result.outcome {
                 *modes.entry(mode.name()).or_default() += 1;
             }
         }
-        let (count, falls) = (number(judged().count()), number(collapsed().count()));
+        let (count, falls) = (number(judged().count()), number(falling().count()));
         let interval = wilson(falls, count, LEVEL);
         let order = Order::of(results);
         Self {
@@ -103,8 +106,12 @@ impl Spread {
             share: (count > 0).then(|| f64::from(falls) / f64::from(count)),
             interval: [interval.low, interval.high],
             first_fall: Range::of(judged().filter_map(|result| result.first_fall)),
-            barrels_fallen: Range::of(collapsed().map(|result| fallen(result) as f64)),
+            barrels_fallen: Range::of(falling().map(|result| fallen(result) as f64)),
             barrels: results.iter().map(|result| result.barrels).max().unwrap_or(0),
+            standing_until: judged()
+                .filter(|result| !collapsed(result) && result.cut.is_some_and(|left| left > 0.0))
+                .filter_map(|result| result.end_time)
+                .reduce(f64::min),
             modes,
             cannot_stand: number(variants.iter().filter(|one| one.outcome.is_err()).count()),
             broken: number(

@@ -45,6 +45,14 @@ fn alone(spread: &Spread) -> String {
     };
     let course = course(spread);
     let standing = variants - collapsed;
+    // What stands in the middle of a motion has not stood it.
+    if let Some(until) = spread.standing_until {
+        let count = if standing == *variants { "all".to_owned() } else { format!("{standing} of") };
+        return format!(
+            "Until {until:.1} s, where the runs end and the motion does not, this stack stands in {count} \
+             {variants} variants."
+        );
+    }
     match (*collapsed, share) {
         (0, _) => format!(
             "This stack stands in all {variants} variants: of stacks like it at most {} fall.",
@@ -79,23 +87,20 @@ fn together(planes: [(View, &Spread); 2]) -> String {
         } else {
             view.words().replace("the barrels", "them")
         };
-        let of = if at == 0 { " of variants" } else { "" };
-        parts.push(match (spread.share, spread.collapsed) {
-            (None, _) => format!("{place} no variant has a verdict"),
-            (Some(_), 0) => format!("{place} it stands in all {} variants", spread.variants),
-            (Some(_), all) if all == spread.variants => {
-                format!("{place} it falls in all {all} variants")
-            }
-            (Some(share), _) if share >= 0.5 => {
-                format!("{place} it falls in {}{of}", percent(share))
-            }
-            (Some(share), _) => format!("{place} it stands in {}{of}", percent(1.0 - share)),
+        let fate = fate(spread);
+        let fate = if at == 0 { &fate } else { fate.trim_end_matches(" of variants") };
+        parts.push(match spread.share {
+            None => format!("{place} no variant has a verdict"),
+            Some(_) => format!("{place} it {fate}"),
         });
     }
     let worst = planes.iter().filter_map(|(_, spread)| spread.share).reduce(f64::max);
     let verdict = match worst {
         None => return format!("{}.", parts.join("; ")),
         Some(share) if share >= FALLS => "it falls",
+        Some(_) if planes.iter().any(|(_, spread)| spread.standing_until.is_some()) => {
+            "but the runs end before the motion does"
+        }
         Some(share) if share <= STANDS => "it stands",
         Some(_) => UNSAFE,
     };
@@ -120,8 +125,11 @@ pub(crate) fn sentences(summary: &Summary, imperfections: Option<&Imperfections>
         0 => "the stack as it is stated".to_owned(),
         number => format!("variant {number}"),
     };
+    let decides = planes.iter().find(|(view, _)| Some(view.name()) == summary.view);
+    let plane = decides.filter(|_| planes.len() > 1).map(|(view, _)| format!(" {}", view.words()));
     sentences.push(format!(
-        "Shown is {}{typical}; the gentlest is {}, the worst {}.",
+        "Shown{} is {}{typical}; the gentlest is {}, the worst {}.",
+        plane.unwrap_or_default(),
         named(summary.variant),
         named(spread.gentlest),
         named(spread.worst)
@@ -146,6 +154,18 @@ pub(crate) fn sentences(summary: &Summary, imperfections: Option<&Imperfections>
         }
     ));
     sentences
+}
+
+/// What a stack does: "falls in 97 % of variants".
+pub fn fate(spread: &Spread) -> String {
+    let variants = spread.variants;
+    match (spread.share, spread.collapsed) {
+        (None, _) => "has no verdict".to_owned(),
+        (Some(_), 0) => format!("stands in all {variants} variants"),
+        (Some(_), all) if all == variants => format!("falls in all {variants} variants"),
+        (Some(share), _) if share >= 0.5 => format!("falls in {} of variants", percent(share)),
+        (Some(share), _) => format!("stands in {} of variants", percent(1.0 - share)),
+    }
 }
 
 /// When the first barrel falls, and how many do: "first between 5.6 and 6.4 s; 4 to 8 of 10 barrels".
@@ -233,6 +253,7 @@ mod tests {
             first_fall: falls.then(|| range(5.6, 6.4, 5.0, 7.0)),
             barrels_fallen: falls.then(|| range(4.0, 8.0, 4.0, 8.0)),
             barrels: 10,
+            standing_until: None,
             modes: BTreeMap::new(),
             cannot_stand: 0,
             broken: 0,
@@ -307,6 +328,18 @@ mod tests {
         let end = " 2 more variants do not stand before they are shaken. One more variant has no verdict: its \
                    numbers broke down.";
         assert!(said.ends_with(end), "{said}");
+    }
+
+    #[test]
+    fn a_motion_that_is_cut_has_not_been_stood() {
+        let mut one = spread(64, 0);
+        one.standing_until = Some(1.0);
+        assert_eq!(
+            headline(&[(View::Transverse, &one)]),
+            "Until 1.0 s, where the runs end and the motion does not, this stack stands in all 64 variants."
+        );
+        let both = headline(&[(View::Transverse, &one), (View::Longitudinal, &one)]);
+        assert!(both.ends_with("variants: but the runs end before the motion does."), "{both}");
     }
 
     #[test]

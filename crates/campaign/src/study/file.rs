@@ -90,6 +90,12 @@ fn read(opened: &Opened) -> Result<Study, StudyError> {
     // How long a scenario is run was chosen for its own motion and for a film of it.
     template.forget_inherited("run", &ENDS);
     let scenario = template.with([])?;
+    if scenario.stack().is_some_and(|stack| stack.columns_along.is_some()) {
+        let message = "a study looks at one plane: set `base.stack.view` to \"transverse\" or to \
+                       \"longitudinal\", in a study for each"
+            .to_owned();
+        return Err(top.inconsistent("base", message).into());
+    }
 
     let mut motions = Vec::new();
     for (number, set) in (1..).zip(sets) {

@@ -7,9 +7,9 @@ use anyhow::bail;
 use barrelstack::compare::{self, Difference, Side, differences};
 use barrelstack::export::Folder;
 use barrelstack::outcome::Outcome;
-use barrelstack::variants::{Asked, Shown};
+use barrelstack::variants::Asked;
 
-use crate::args::ScenarioArgs;
+use crate::args::{ScenarioArgs, VariantArgs};
 use crate::printer;
 
 /// What the help of `compare` ends with.
@@ -35,6 +35,9 @@ pub(crate) struct CompareArgs {
     /// The file of the ground motion of all runs, in place of the scenarios' own.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
+    /// Variants of each stack to run beside it, in place of imperfections.variants; 0 for one run.
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=4096))]
+    variants: Option<u32>,
     /// Where to write report.html, report.md and figures/; must be new or empty.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-compare")]
     out: PathBuf,
@@ -59,21 +62,24 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     }
     let mut scenarios = Vec::new();
     for (name, one) in &asked {
-        scenarios.push((name.clone(), super::load(one)?));
+        let mut scenario = super::load(one)?;
+        let variants = VariantArgs { variants: args.variants, variant: None };
+        super::run::asked(&mut scenario, variants)?;
+        scenarios.push((name.clone(), scenario));
     }
     compare::check(&scenarios)?;
     let folder = Folder::prepare(&args.out, args.overwrite)?;
-    let mut sides = Vec::new();
+    let mut answers = Vec::new();
     for ((name, scenario), (_, one)) in scenarios.iter().zip(&asked) {
         let answer = super::run::answered(scenario, Asked::Typical, !args.quiet)
             .map_err(|error| super::placed(error, one))?;
-        let Shown { run, summary, .. } = answer.decides;
-        if run.interrupted {
+        if answer.decides.run.interrupted {
             printer::warning("stopped before all runs were done; nothing was written");
             return Ok(ExitCode::from(130));
         }
-        sides.push(Side { name: name.clone(), run, summary });
+        answers.push((name.clone(), answer));
     }
+    let sides = compare::sides(answers);
     let document = compare::document(&sides);
     folder.write_comparison(&document)?;
     let differing = differences(sides.iter().map(|side| &side.run.scenario));
@@ -138,7 +144,10 @@ fn table(differing: &[Difference]) -> Vec<String> {
 fn json(sides: &[Side], differing: &[Difference]) -> anyhow::Result<String> {
     let runs: Vec<serde_json::Value> = sides
         .iter()
-        .map(|side| serde_json::json!({ "name": side.name, "summary": side.summary }))
+        .map(|side| {
+            let (name, summary, other) = (&side.name, &side.summary, &side.other);
+            serde_json::json!({ "name": name, "summary": summary, "ensemble_of_other_plane": other })
+        })
         .collect();
     let document = serde_json::json!({ "schema": 1, "runs": runs, "differences": differing });
     Ok(serde_json::to_string_pretty(&document)?)
