@@ -16,7 +16,7 @@ use crate::watch::StressEnvelope;
 pub use devices::{Device, Devices, ElementSummary};
 
 /// Version of the summary's layout.
-pub const SUMMARY_SCHEMA: u32 = 1;
+pub const SUMMARY_SCHEMA: u32 = 2;
 
 /// The summary of a run. Lengths in m, times in s, forces in N, angles in rad; null where it did not
 /// happen or does not apply.
@@ -34,11 +34,11 @@ pub struct Summary {
     pub ensemble: Option<Spread>,
     /// What happened.
     pub outcome: OutcomeSummary,
-    /// Every body but the ground.
+    /// Every body but the ground; none where the run is invalid.
     pub bodies: Vec<BodySummary>,
     /// Demands on the stack.
     pub demands: Demands,
-    /// Forces between bodies.
+    /// Forces between bodies; none where the run is invalid.
     pub interfaces: Vec<JointSummary>,
     /// The force elements of every device, where there are any.
     #[serde(flatten)]
@@ -75,8 +75,8 @@ pub struct OutcomeSummary {
     pub to_level: Option<u32>,
     /// When the first barrel had fallen.
     pub first_fall: Option<f64>,
-    /// Barrels that had fallen at the end.
-    pub barrels_fallen: usize,
+    /// Barrels that had fallen at the end; null where the run is invalid.
+    pub barrels_fallen: Option<usize>,
     /// Barrels in all.
     pub barrels: usize,
     /// Why the run is invalid.
@@ -256,14 +256,14 @@ impl Summary {
             variant: 0,
             ensemble: None,
             outcome: outcome(run),
-            bodies: bodies(run),
-            demands: if matches!(run.outcome, Outcome::Invalid { .. }) {
-                // Numbers of a run that broke down look like results and are none.
-                Demands::default()
-            } else {
+            // Numbers of a run that broke down look like results and are none.
+            bodies: if sound(run) { bodies(run) } else { Vec::new() },
+            demands: if sound(run) {
                 Demands::of(&run.assembly, &run.fates, Some(&run.stresses))
+            } else {
+                Demands::default()
             },
-            interfaces: joints(run),
+            interfaces: if sound(run) { joints(run) } else { Vec::new() },
             devices: Devices::of(run),
             energy: run.energy.as_ref().map(EnergyBooks::of),
             motion: run.ground.motion.as_ref().map(|motion| MotionSummary {
@@ -321,24 +321,24 @@ impl Summary {
     }
 }
 
+/// Whether the numbers of a run are results.
+fn sound(run: &Run) -> bool {
+    !matches!(run.outcome, Outcome::Invalid { .. })
+}
+
 fn outcome(run: &Run) -> OutcomeSummary {
     let barrels: Vec<usize> = run.assembly.of_kind(PartKind::Barrel).collect();
     let mut summary = OutcomeSummary {
-        kind: if run.interrupted && !matches!(run.outcome, Outcome::Invalid { .. }) {
-            "interrupted"
-        } else {
-            run.outcome.kind()
-        },
+        kind: if run.interrupted && sound(run) { "interrupted" } else { run.outcome.kind() },
         mode: None,
         time: None,
         first: None,
         from_level: None,
         to_level: None,
-        first_fall: run.fates.first_fall(),
-        barrels_fallen: barrels
-            .iter()
-            .filter(|body| run.fates.fate(**body).fell_at.is_some())
-            .count(),
+        first_fall: run.fates.first_fall().filter(|_| sound(run)),
+        barrels_fallen: sound(run).then(|| {
+            barrels.iter().filter(|body| run.fates.fate(**body).fell_at.is_some()).count()
+        }),
         barrels: barrels.len(),
         reason: None,
     };

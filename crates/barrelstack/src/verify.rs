@@ -72,7 +72,7 @@ impl Robust {
         let late: Option<Vec<f64>> = repeats.iter().map(late).collect();
         let fallen = || {
             let repeats = repeats.iter().map(|repeat| repeat.outcome.barrels_fallen);
-            repeats.chain(std::iter::once(own.barrels_fallen))
+            repeats.chain(std::iter::once(own.barrels_fallen)).flatten()
         };
         Self {
             kind: all(|a, b| a.kind == b.kind),

@@ -55,8 +55,8 @@ pub(crate) fn rows(
         return rows;
     }
     let outcome = &summary.outcome;
-    if outcome.barrels > 0 {
-        row("barrels fallen", format!("{} of {}", outcome.barrels_fallen, outcome.barrels));
+    if let Some(fallen) = outcome.barrels_fallen.filter(|_| outcome.barrels > 0) {
+        row("barrels fallen", format!("{fallen} of {}", outcome.barrels));
     }
     let mut fallen: Vec<(f64, f64, &str)> = summary
         .bodies

@@ -95,7 +95,9 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
     row("first fall", &|side| seconds(side.summary.outcome.first_fall));
     row("barrels fallen", &|side| {
         let outcome = &side.summary.outcome;
-        Cell::text(format!("{} of {}", outcome.barrels_fallen, outcome.barrels))
+        let fallen = outcome.barrels_fallen;
+        fallen
+            .map_or(Cell::Missing, |fallen| Cell::text(format!("{fallen} of {}", outcome.barrels)))
     });
     row("end of the run", &|side| seconds(Some(side.run.end_time)));
     table

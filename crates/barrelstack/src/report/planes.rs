@@ -11,7 +11,7 @@ use crate::summary::Summary;
 use crate::variants::words::percent;
 use crate::variants::{Range, Shown, Spread};
 
-/// Both planes beside each other on one clock, the one that decides first.
+/// Both planes beside each other on one clock, the one across the barrels first.
 pub(super) fn players(
     (run, summary, scene): (&Run, &Summary, &Arc<Scene>),
     other: &Shown,
@@ -27,16 +27,22 @@ pub(super) fn players(
             traces: sections::traces(run),
         }
     };
+    let mut both = [
+        pane(run, summary, Arc::clone(scene)),
+        pane(&other.run, &other.summary, drawing::scene(&other.run)),
+    ];
+    let mut runs = [run, &other.run];
+    if run.assembly.view == Some(View::Longitudinal) {
+        both.reverse();
+        runs.reverse();
+    }
     Players {
         id: "players".into(),
         caption: "The stack across its barrels and along them as computed, on one clock and to one scale. \
                   Arrows are contact forces, each on the body that it pushes up."
             .into(),
-        panes: vec![
-            pane(run, summary, Arc::clone(scene)),
-            pane(&other.run, &other.summary, drawing::scene(&other.run)),
-        ],
-        ground: [run, &other.run].into_iter().filter_map(ground).collect(),
+        panes: both.into(),
+        ground: runs.into_iter().filter_map(ground).collect(),
     }
 }
 
@@ -84,12 +90,13 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
     });
     row("first fall", &|spread| {
         spread.first_fall.map(|Range { p05, p95, least, most, .. }| {
-            format!("{p05:.1} to {p95:.1} s ({least:.1} to {most:.1} s)")
+            format!("{} s ({} s)", span(p05, p95, 1), span(least, most, 1))
         })
     });
     row("barrels fallen where it collapses", &|spread| {
         spread.barrels_fallen.map(|Range { p05, p95, least, most, .. }| {
-            format!("{p05:.0} to {p95:.0} of {} ({least:.0} to {most:.0})", spread.barrels)
+            let within = format!("{} of {}", span(p05, p95, 0), spread.barrels);
+            format!("{within} ({})", span(least, most, 0))
         })
     });
     row("by mode", &|spread| {
@@ -111,4 +118,10 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         }),
     );
     blocks
+}
+
+/// From one number to another, once where they look the same.
+fn span(from: f64, to: f64, decimals: usize) -> String {
+    let [from, to] = [from, to].map(|value| format!("{value:.decimals$}"));
+    if from == to { from } else { format!("{from} to {to}") }
 }

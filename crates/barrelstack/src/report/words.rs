@@ -32,7 +32,8 @@ pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
         }
         (Outcome::Collapse { time, .. }, until) => {
             let until = until.map(|until| format!("; {until}")).unwrap_or_default();
-            let (fallen, barrels) = (summary.outcome.barrels_fallen, summary.outcome.barrels);
+            let (fallen, barrels) =
+                (summary.outcome.barrels_fallen.unwrap_or(0), summary.outcome.barrels);
             if fallen == 0 {
                 return format!(
                     "The stack comes apart after {time:.1} s, but no barrel falls{until}."

@@ -5,6 +5,7 @@ use std::sync::Mutex;
 
 use super::{Plane, Spread, Variants, planes, run};
 use crate::pool;
+use crate::report::headline;
 use crate::run::{Progress, Run, RunFailure};
 use crate::scenario::Scenario;
 use crate::summary::Summary;
@@ -41,6 +42,13 @@ pub struct Answer {
     pub decides: Shown,
     /// The other plane, where the scenario looks at both.
     pub other: Option<Shown>,
+}
+
+impl Answer {
+    /// The answer in one sentence.
+    pub fn headline(&self) -> String {
+        headline(&self.decides.run, &self.decides.summary)
+    }
 }
 
 /// One plane of an answer.
@@ -149,5 +157,5 @@ fn weight(shown: &Shown) -> (f64, f64) {
     let alone = if outcome.mode.is_some() { 1.0 } else { 0.0 };
     let share = spread.and_then(|spread| spread.share).unwrap_or(alone);
     let median = spread.and_then(|spread| spread.barrels_fallen).map(|fallen| fallen.p50);
-    (share, median.unwrap_or(outcome.barrels_fallen as f64) / barrels)
+    (share, median.unwrap_or(outcome.barrels_fallen.unwrap_or(0) as f64) / barrels)
 }

@@ -169,6 +169,9 @@ pub fn run(
         let Some(imperfections) = plane.scenario.imperfections() else { continue };
         found.push(Variants::of(plane.view(), imperfections, own));
     }
+    let all: Vec<&[CaseResult]> = found.iter().map(|one| one.results.as_slice()).collect();
+    let typical = typical::typical(&all);
+    found.iter_mut().for_each(|one| one.spread.typical = typical);
     Ok(Some(found))
 }
 

@@ -48,8 +48,8 @@ pub struct Spread {
     pub reason: Option<String>,
     /// What happens to the case as it is stated: "stable", "collapse" or "invalid".
     pub stated: &'static str,
-    /// The number of the run that is most like all others, by outcome, mode, time and what falls; 0 is the
-    /// case as it is stated.
+    /// The number of the run that is most like all others, by outcome, mode, time and what falls, in all
+    /// planes together; 0 is the case as it is stated.
     pub typical: u32,
     /// The number of the run in which least happens.
     pub gentlest: u32,

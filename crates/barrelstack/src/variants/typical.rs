@@ -21,7 +21,7 @@ impl Order {
         let number = |at: Option<&usize>| at.and_then(|at| u32::try_from(*at).ok()).unwrap_or(0);
         let severity = |a: &&usize, b: &&usize| severity(&results[**a], &results[**b]);
         Self {
-            typical: typical(results, &judged),
+            typical: typical(&[results]),
             // Of equals the first.
             gentlest: number(judged.iter().min_by(severity)),
             worst: number(judged.iter().rev().max_by(severity)),
@@ -40,19 +40,29 @@ fn severity(a: &CaseResult, b: &CaseResult) -> Ordering {
         .then(drift(a).total_cmp(&drift(b)))
 }
 
-/// The run with the least sum of distances to all others (the medoid); of equals the first.
-fn typical(results: &[CaseResult], judged: &[usize]) -> u32 {
+/// The number of the run that is least far from all others (the medoid), summed over planes, since a variant
+/// is one stack in all of them; of equals the first, and 0 where none has a verdict in all.
+pub(super) fn typical(planes: &[&[CaseResult]]) -> u32 {
+    let sums: Vec<Vec<Option<f64>>> = planes.iter().map(|results| sums(results)).collect();
+    let count = sums.iter().map(Vec::len).min().unwrap_or(0);
+    let sum = |at: usize| sums.iter().map(|plane| plane[at]).sum::<Option<f64>>();
+    let known = (0..count).filter_map(|at| Some((at, sum(at)?)));
+    let least = known.min_by(|a, b| a.1.total_cmp(&b.1));
+    least.and_then(|(at, _)| u32::try_from(at).ok()).unwrap_or(0)
+}
+
+/// The sum of the distances of each run to all others; none where it has no verdict.
+fn sums(results: &[CaseResult]) -> Vec<Option<f64>> {
+    let judged: Vec<usize> = (0..results.len()).filter(|at| judged(&results[*at])).collect();
     let times = extent(judged.iter().filter_map(|at| Some(collapse(&results[*at])?.1)));
     let drifts = extent(
         judged.iter().filter(|at| !collapsed(&results[**at])).filter_map(|at| drift(&results[*at])),
     );
-    let sum = |at: &usize| {
-        let to = |other: &usize| distance(&results[*at], &results[*other], times, drifts);
-        judged.iter().map(to).sum::<f64>()
+    let sum = |result: &CaseResult| {
+        let to = |other: &usize| distance(result, &results[*other], times, drifts);
+        self::judged(result).then(|| judged.iter().map(to).sum())
     };
-    let sums: Vec<(usize, f64)> = judged.iter().map(|at| (*at, sum(at))).collect();
-    let least = sums.iter().min_by(|a, b| a.1.total_cmp(&b.1));
-    least.and_then(|(at, _)| u32::try_from(*at).ok()).unwrap_or(0)
+    results.iter().map(sum).collect()
 }
 
 /// How unlike two runs are: 4 for another outcome, 1 for another mode, 1 for the whole extent of times of
@@ -95,7 +105,7 @@ fn extent(values: impl Iterator<Item = f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::Order;
+    use super::{Order, typical};
     use crate::ensemble::CaseResult;
     use crate::outcome::{CollapseMode, Outcome};
 
@@ -131,6 +141,10 @@ mod tests {
         assert_eq!(Order::of(&results), Order { typical: 3, gentlest: 5, worst: 2 });
         let standing = [stands(0.1), stands(0.2), stands(0.35), CaseResult::failed("no".into())];
         assert_eq!(Order::of(&standing), Order { typical: 1, gentlest: 0, worst: 2 });
+        // Together with another plane that has no verdict on the third.
+        let mut other = vec![stands(0.1); 6];
+        other[3] = CaseResult::failed("no".into());
+        assert_eq!(typical(&[&results, &other]), 2);
         let none = [CaseResult::failed("no".into())];
         assert_eq!(Order::of(&none), Order { typical: 0, gentlest: 0, worst: 0 });
     }
