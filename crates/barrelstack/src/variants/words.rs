@@ -126,11 +126,11 @@ pub(crate) fn sentences(summary: &Summary, imperfections: Option<&Imperfections>
         number => format!("variant {number}"),
     };
     let decides = planes.iter().find(|(view, _)| Some(view.name()) == summary.view);
-    let plane = decides.filter(|_| planes.len() > 1).map(|(view, _)| format!(" {}", view.words()));
+    let plane = decides.filter(|_| planes.len() > 1).map(|(view, _)| format!("{} ", view.words()));
     sentences.push(format!(
-        "Shown{} is {}{typical}; the gentlest is {}, the worst {}.",
-        plane.unwrap_or_default(),
+        "Shown is {}{typical}; {}the gentlest is {}, the worst {}.",
         named(summary.variant),
+        plane.unwrap_or_default(),
         named(spread.gentlest),
         named(spread.worst)
     ));
