@@ -135,14 +135,15 @@ mod tests {
             falls(5.0, [true, false]),
             falls(6.0, both),
             falls(6.2, both),
+            falls(6.5, both),
             falls(7.0, both),
             stands(0.01),
         ];
-        assert_eq!(Order::of(&results), Order { typical: 3, gentlest: 5, worst: 2 });
+        assert_eq!(Order::of(&results), Order { typical: 3, gentlest: 6, worst: 2 });
         let standing = [stands(0.1), stands(0.2), stands(0.35), CaseResult::failed("no".into())];
         assert_eq!(Order::of(&standing), Order { typical: 1, gentlest: 0, worst: 2 });
         // Together with another plane that has no verdict on the third.
-        let mut other = vec![stands(0.1); 6];
+        let mut other = vec![stands(0.1); 7];
         other[3] = CaseResult::failed("no".into());
         assert_eq!(typical(&[&results, &other]), 2);
         let none = [CaseResult::failed("no".into())];

@@ -117,7 +117,9 @@ pub(crate) fn sentences(summary: &Summary, imperfections: Option<&Imperfections>
     if planes.len() > 1 {
         let falls = planes.iter().filter(|(_, spread)| spread.collapsed > 0);
         sentences.extend(
-            falls.map(|(view, spread)| format!("{}: {}.", capital(view.words()), course(spread))),
+            falls.map(|(view, spread)| {
+                format!("Where it falls {}: {}.", view.words(), course(spread))
+            }),
         );
     }
     let typical = if summary.variant == spread.typical { ", the most typical of all" } else { "" };
