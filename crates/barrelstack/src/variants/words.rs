@@ -46,7 +46,7 @@ fn alone(spread: &Spread) -> String {
     let course = course(spread);
     let standing = variants - collapsed;
     // What stands in the middle of a motion has not stood it.
-    if let Some(until) = spread.standing_until {
+    if let Some(until) = spread.standing_until.filter(|_| share <= STANDS) {
         let count = if standing == *variants { "all".to_owned() } else { format!("{standing} of") };
         return format!(
             "Until {until:.1} s, where the runs end and the motion does not, this stack stands in {count} \
@@ -98,11 +98,11 @@ fn together(planes: [(View, &Spread); 2]) -> String {
     let verdict = match worst {
         None => return format!("{}.", parts.join("; ")),
         Some(share) if share >= FALLS => "it falls",
+        Some(share) if share > STANDS => UNSAFE,
         Some(_) if planes.iter().any(|(_, spread)| spread.standing_until.is_some()) => {
             "but the runs end before the motion does"
         }
-        Some(share) if share <= STANDS => "it stands",
-        Some(_) => UNSAFE,
+        Some(_) => "it stands",
     };
     format!("{}: {verdict}.", parts.join("; "))
 }
