@@ -1,4 +1,4 @@
-//! How much arithmetic a step takes, and how much of the machine's peak that is.
+//! How much arithmetic a step takes, how much of the machine's peak that is, and what lanes hold.
 
 use barrelstack_dynamics::lanes::{Case, Crew, End, Task, Width, march};
 use barrelstack_dynamics::real::Real;
@@ -7,7 +7,7 @@ use barrelstack_validation::counting::Work;
 use barrelstack_validation::drive::Shake;
 
 use crate::scene::Scene;
-use crate::time;
+use crate::{memory, time};
 
 /// Prints the operations of a step, and the share of the machine's peak that lanes reach.
 pub(crate) fn per_step(scene: &Scene, method: Method, step: f64) {
@@ -21,43 +21,79 @@ pub(crate) fn per_step(scene: &Scene, method: Method, step: f64) {
     println!("  additions and multiplications  {plain:10.0}");
     println!("  divisions and square roots     {divisions:10.0}");
     println!("  comparisons, choices, signs    {choices:10.0}");
-    println!("  lanes     peak, 10⁹ additions and multiplications a second   a step reaches of it");
+    let clock = time::clock();
+    println!(
+        "  peak: independent additions and multiplications in registers; a core with two vector ports begins \
+         two a cycle, at {:.2} GHz",
+        1e-9 * clock
+    );
+    println!(
+        "  lanes     peak, 10⁹/s   numbers a cycle of those possible   a step reaches   KB held   instructions \
+         a step of a case"
+    );
     for width in Width::ALL.into_iter().filter(|width| width.is_here()) {
-        let Some((operations, spent)) = width.run(Peak) else { continue };
-        let peak = operations / spent;
-        let marching = Many { scene, step, end_time };
+        // Bundles of AVX2 are two registers each, of which there are sixteen.
+        let (peak, ports) = match width {
+            Width::Scalar => (width.run(Peak::<12>), 2.0),
+            Width::Avx2 => (width.run(Peak::<6>), 8.0),
+            Width::Avx512 => (width.run(Peak::<12>), 16.0),
+        };
+        let Some(peak) = peak else { continue };
+        let marched = || width.run(Many { scene, step, end_time });
         let spent = time::least(|| {
-            width.run(Marching(&marching));
+            marched();
+        });
+        let held = marched().unwrap_or_default();
+        let instructions = time::instructions(|| {
+            marched();
+        });
+        let instructions = instructions.map_or("not told".to_owned(), |count| {
+            format!("{:.0}", count as f64 / (steps * MANY as f64))
         });
         let reached = plain * steps * MANY as f64 / spent;
-        println!("  {:8} {:30.1} {:40.0} %", width.name(), 1e-9 * peak, 100.0 * reached / peak);
+        println!(
+            "  {:8} {:12.1} {:17.1} of {ports:2} {:28.0} % {:9.0}   {instructions}",
+            width.name(),
+            1e-9 * peak,
+            peak / clock,
+            100.0 * reached / peak,
+            1e-3 * held as f64
+        );
+    }
+    if time::instructions(|| {}).is_none() {
+        println!("  (this machine, or its system, does not let programs count instructions)");
     }
 }
 
-/// Independent additions and multiplications in registers.
-struct Peak;
+/// Additions and multiplications a second of so many independent numbers in registers.
+struct Peak<const COUNT: usize>;
 
-impl Task for Peak {
-    type Output = (f64, f64);
+impl<const COUNT: usize> Task for Peak<COUNT> {
+    type Output = f64;
 
-    fn run<R: Real>(self) -> (f64, f64) {
+    fn run<R: Real>(self) -> f64 {
         const ROUNDS: usize = 4_000_000;
-        let mut sums = [R::splat(1.0); 12];
         let (factor, step) = (R::splat(0.999_999), R::splat(1e-9));
         let spent = time::least(|| {
             R::scope(
                 #[inline(always)]
                 || {
+                    let mut sums = [R::splat(1.0); COUNT];
                     for _ in 0..ROUNDS {
                         for sum in &mut sums {
                             *sum = *sum * factor + step;
                         }
                     }
+                    // Their sum alone leaves the registers: an array that did would be stored every round.
+                    let mut all = R::zero();
+                    for sum in sums {
+                        all += sum;
+                    }
+                    std::hint::black_box(all);
                 },
             );
         });
-        std::hint::black_box(&sums);
-        ((ROUNDS * sums.len() * 2 * R::LANES) as f64, spent)
+        (ROUNDS * COUNT * 2 * R::LANES) as f64 / spent
     }
 }
 
@@ -70,15 +106,16 @@ struct Many<'a> {
     end_time: f64,
 }
 
-struct Marching<'a>(&'a Many<'a>);
+impl Task for Many<'_> {
+    /// Bytes that all lanes hold together.
+    type Output = usize;
 
-impl Task for Marching<'_> {
-    type Output = ();
-
-    fn run<R: Real>(self) {
-        let Many { scene, step, end_time } = *self.0;
-        let mut crew = Repeated { scene, step, end_time, left: MANY };
+    fn run<R: Real>(self) -> usize {
+        let Self { scene, step, end_time } = self;
+        let before = memory::in_use();
+        let mut crew = Repeated { scene, step, end_time, left: MANY, before, held: 0 };
         march::<R, _>(Method::VelocityVerlet, &mut crew);
+        crew.held
     }
 }
 
@@ -87,6 +124,8 @@ struct Repeated<'a> {
     step: f64,
     end_time: f64,
     left: usize,
+    before: usize,
+    held: usize,
 }
 
 impl<'a, R: Real> Crew<'a, R> for Repeated<'a> {
@@ -98,6 +137,9 @@ impl<'a, R: Real> Crew<'a, R> for Repeated<'a> {
     }
     fn start(&mut self, _: usize, _: &State<Planar>, _: &Scratch<Planar>) {}
     fn observe(&mut self, _: &State<Planar<R>>, _: &Scratch<Planar<R>>) -> R::Mask {
+        if self.held == 0 {
+            self.held = memory::in_use().saturating_sub(self.before);
+        }
         R::Mask::default()
     }
     fn end(&mut self, _: usize, _: End) {}

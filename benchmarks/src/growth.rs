@@ -1,112 +1,134 @@
-//! The cost of a step against the size of the stack: it must grow with the contacts, and no faster.
+//! What a run costs against the size of what runs: it must grow with the contacts, and no faster.
+
+use std::fmt::Write as _;
 
 use barrelstack::Scenario;
-use barrelstack::assemble::assemble;
-use barrelstack::ground::Ground;
-use barrelstack::step::default_step;
-use barrelstack_dynamics::lanes::{Case, Crew, End, Task, Width, march};
-use barrelstack_dynamics::real::Real;
-use barrelstack_dynamics::{Method, Model, Planar, Scratch, State, settle};
 
 use crate::{Failure, time};
 
-/// The stack still stands then (s).
-const STANDING: f64 = 0.5;
+/// Nothing has fallen then (s).
+const UNTIL: f64 = 0.25;
 
-/// Cases side by side.
-const CASES: usize = 32;
+/// A family of scenes by the number that grows.
+struct Family {
+    name: &'static str,
+    sizes: &'static [usize],
+    scenario: fn(usize, f64) -> Result<Scenario, Failure>,
+}
 
-/// Prints the cost against levels and against columns, alone and in lanes.
+const FAMILIES: [Family; 4] = [
+    Family {
+        name: "levels of two barrels",
+        sizes: &[2, 4, 6, 8, 10, 12],
+        scenario: |levels, until| stack(levels, 2, until),
+    },
+    Family {
+        name: "columns of four barrels",
+        sizes: &[2, 4, 8, 12, 16, 20],
+        scenario: |columns, until| stack(4, columns, until),
+    },
+    Family { name: "blocks in a row", sizes: BODIES, scenario: |count, until| row(count, until) },
+    Family { name: "discs in a heap", sizes: BODIES, scenario: |count, until| heap(count, until) },
+];
+
+const BODIES: &[usize] = &[10, 50, 200, 500, 1000, 2000, 5000];
+
+/// Prints set-up and cost a contact of all families, and how far the largest is from the least.
 pub(crate) fn with_size() -> Result<(), Failure> {
-    println!("a step of the standing paper stack against its size");
     println!(
-        "  levels  columns  bodies  touching contacts   ns a contact alone   in {} lanes",
-        Width::widest().name()
+        "runs against their size, alone: from text to the first step, and for each contact element tested"
     );
-    for (levels, columns) in [(2, 2), (4, 2), (6, 2), (8, 2), (4, 4), (4, 8), (4, 16)] {
-        let stage = Stage::new(levels, columns)?;
-        let steps = STANDING / stage.step;
-        let touching = stage.touching(steps);
-        let spent = |width: Width, cases: usize| {
-            let spent = time::least(|| {
-                width.run(Marching { stage: &stage, cases });
+    for Family { name, sizes, scenario } in FAMILIES {
+        println!("  {name:24}  bodies  elements   set-up ms   µs a body and log₂   ns an element");
+        let (mut costs, mut shares) = (Vec::new(), Vec::new());
+        for size in sizes {
+            let long = scenario(*size, UNTIL)?.run()?;
+            let elements = long.work.contact_evaluations as f64;
+            let count = (long.assembly.parts.len() - 1) as f64;
+            // The first step is part of the set-up.
+            let set_up = time::least_of(2, || {
+                let brief = scenario(*size, 1e-4).map(|brief| brief.run());
+                assert!(brief.is_ok_and(|run| run.is_ok()), "it runs");
             });
-            1e9 * spent / (cases as f64 * steps * touching)
-        };
+            let all = time::least_of(2, || {
+                let whole = scenario(*size, UNTIL).map(|whole| whole.run());
+                assert!(whole.is_ok_and(|run| run.is_ok()), "it runs");
+            });
+            let (cost, share) = ((all - set_up) / elements, set_up / (count * count.log2()));
+            println!(
+                "  {size:24} {count:7} {:9.0} {:11.1} {:20.2} {:15.1}",
+                elements / long.work.evaluations as f64,
+                1e3 * set_up,
+                1e6 * share,
+                1e9 * cost
+            );
+            costs.push(cost);
+            shares.push(share);
+        }
         println!(
-            "  {levels:6} {columns:8} {:7} {touching:18.1} {:20.1} {:12.1}",
-            stage.model.bodies().len() - 1,
-            spent(Width::Scalar, 1),
-            spent(Width::widest(), CASES)
+            "  largest over least: {:.2} of an element, {:.2} of the set-up",
+            spread(&costs),
+            spread(&shares)
         );
     }
     Ok(())
 }
 
-struct Stage {
-    model: Model<Planar>,
-    rest: State<Planar>,
-    ground: Ground,
-    step: f64,
+fn spread(values: &[f64]) -> f64 {
+    let most = values.iter().copied().fold(0.0, f64::max);
+    most / values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-impl Stage {
-    fn new(levels: u32, columns: u32) -> Result<Self, Failure> {
-        let settings = [format!("stack.levels={levels}"), format!("stack.columns={columns}")];
-        let scenario = Scenario::builtin("candia-8-barrels", &settings)?;
-        let assembly = assemble(&scenario)?;
-        let step = default_step(&assembly, 1.0);
-        let mut rest = State::initial(&assembly.model);
-        settle(&assembly.model, &mut rest, &mut Scratch::new(&assembly.model), 1e-9)?;
-        Ok(Self { model: assembly.model, rest, ground: scenario.ground()?, step })
-    }
-
-    /// Contacts that touch in a step, in the mean.
-    fn touching(&self, steps: f64) -> f64 {
-        let mut crew = Cases { stage: self, left: 1, touched: 0 };
-        march::<f64, _>(Method::VelocityVerlet, &mut crew);
-        crew.touched as f64 / steps
-    }
+fn stack(levels: usize, columns: usize, until: f64) -> Result<Scenario, Failure> {
+    let settings = [
+        format!("stack.levels={levels}"),
+        format!("stack.columns={columns}"),
+        format!("run.duration=\"{until} s\""),
+    ];
+    Ok(Scenario::builtin("candia-8-barrels", &settings)?)
 }
 
-struct Marching<'a> {
-    stage: &'a Stage,
-    cases: usize,
+fn row(count: usize, until: f64) -> Result<Scenario, Failure> {
+    let shape = "{ type = \"rectangle\", width = \"0.4 m\", height = \"0.4 m\" }";
+    free((0..count).map(|at| (0.5 * at as f64, 0.2)), shape, "corners", until)
 }
 
-impl Task for Marching<'_> {
-    type Output = ();
-
-    fn run<R: Real>(self) {
-        let mut crew = Cases { stage: self.stage, left: self.cases, touched: 0 };
-        march::<R, _>(Method::VelocityVerlet, &mut crew);
-    }
+/// Hexagonal, about as high as it is wide.
+fn heap(count: usize, until: f64) -> Result<Scenario, Failure> {
+    let across = (count as f64).sqrt().ceil() as usize;
+    let place = |at: usize| {
+        let (row, column) = (at / across, at % across);
+        let odd = (row % 2) as f64;
+        (0.4 * (column as f64 + 0.5 * odd), 0.2 + 0.4 * 0.866_025_404 * row as f64)
+    };
+    free((0..count).map(place), "{ type = \"circle\", radius = \"0.2 m\" }", "rolling", until)
 }
 
-struct Cases<'a> {
-    stage: &'a Stage,
-    left: usize,
-    touched: usize,
-}
-
-impl<'a, R: Real> Crew<'a, R> for Cases<'a> {
-    type Drive = &'a Ground;
-
-    fn next(&mut self, _: usize) -> Option<Case<'a, &'a Ground>> {
-        self.left = self.left.checked_sub(1)?;
-        let Stage { model, rest, ground, step } = self.stage;
-        Some(Case {
-            model,
-            state: rest.clone(),
-            drive: ground,
-            time_step: *step,
-            end_time: STANDING,
-        })
+/// Bodies of one shape at places (m) of their centers.
+fn free(
+    places: impl Iterator<Item = (f64, f64)>,
+    shape: &str,
+    nodes: &str,
+    until: f64,
+) -> Result<Scenario, Failure> {
+    let mut text = format!(
+        "schema = 1\ntitle = \"growth\"\nkind = \"free\"\n\
+         [motion.sine]\namplitude = \"1 cm\"\nperiod = \"1 s\"\ncycles = 10\n\
+         [run]\nduration = \"{until} s\"\nstep = \"0.1 ms\"\nsettle = false\n"
+    );
+    for between in ["[\"body\", \"ground\"]", "[\"body\", \"body\"]"] {
+        write!(
+            text,
+            "[[interface]]\nbetween = {between}\nstiffness = \"1e6 N/m\"\ndamping = \"2000 N s/m\"\n\
+             friction = {{ coefficient = 0.5 }}\n"
+        )?;
     }
-    fn start(&mut self, _: usize, _: &State<Planar>, _: &Scratch<Planar>) {}
-    fn observe(&mut self, _: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) -> R::Mask {
-        self.touched += scratch.touching();
-        R::Mask::default()
+    for (at, (x, z)) in places.enumerate() {
+        write!(
+            text,
+            "[[body]]\nname = \"b{at}\"\nkind = \"body\"\nshape = {shape}\nmass = \"100 kg\"\n\
+             nodes = \"{nodes}\"\nposition = [\"{x} m\", \"{z} m\"]\n"
+        )?;
     }
-    fn end(&mut self, _: usize, _: End) {}
+    Ok(Scenario::parse("growth.toml", &text, &[])?)
 }

@@ -1,17 +1,12 @@
-//! Many cases in lanes: against the width, on threads, and from scenario to result.
+//! Many cases in lanes, against their width.
 
-use std::cell::Cell;
-use std::sync::Arc;
-
-use barrelstack::Scenario;
-use barrelstack::ensemble::{Audience, Prepared, simulate_in};
 use barrelstack_dynamics::lanes::{Case, Crew, End, Task, Width, march};
 use barrelstack_dynamics::real::Real;
 use barrelstack_dynamics::{Method, Planar, Scratch, State};
 use barrelstack_validation::drive::Shake;
 
 use crate::scene::Scene;
-use crate::{Failure, time};
+use crate::time;
 
 /// Cases of a march; more than any bundle has lanes.
 const CASES: usize = 64;
@@ -19,8 +14,16 @@ const CASES: usize = 64;
 /// Until then (s) the stack stands.
 const STANDING: f64 = 1.2;
 
-/// Prints the cost against the width and gives that of the widest (s a simulated second).
-pub(crate) fn against_width(scene: &Scene, step: f64) -> f64 {
+/// What the widest lanes take for a simulated second of a case (s).
+pub(crate) fn of_widest(scene: &Scene, step: f64) -> f64 {
+    let march = || Width::widest().run(Marching { scene, step });
+    time::least(|| {
+        march();
+    }) / (CASES as f64 * STANDING)
+}
+
+/// Prints the cost against the width.
+pub(crate) fn against_width(scene: &Scene, step: f64) {
     println!(
         "lanes: {CASES} such stacks with amplitudes from 0.8 to 1.2, before they fall, steps of {} ms",
         1e3 * step
@@ -28,7 +31,6 @@ pub(crate) fn against_width(scene: &Scene, step: f64) -> f64 {
     println!("  lanes     × real time   µs a step of a case   against scalar");
     let simulated = CASES as f64 * STANDING;
     let mut scalar = None;
-    let mut last = f64::INFINITY;
     for width in Width::ALL.into_iter().filter(|width| width.is_here()) {
         let spent = time::least(|| {
             width.run(Marching { scene, step });
@@ -41,57 +43,7 @@ pub(crate) fn against_width(scene: &Scene, step: f64) -> f64 {
             1e6 * spent * step / simulated,
             scalar / spent
         );
-        last = spent / simulated;
     }
-    last
-}
-
-/// Prints how the widest lanes scale over threads.
-pub(crate) fn threads(scene: &Scene, step: f64) {
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    println!("threads: as many marches as threads, widest lanes ({cores} cores)");
-    println!("  threads   × real time on the clock   against one thread");
-    let mut one = None;
-    let mut count = 1;
-    while count <= cores {
-        let spent = time::least_wall(|| {
-            std::thread::scope(|scope| {
-                for _ in 0..count {
-                    scope.spawn(|| Width::widest().run(Marching { scene, step }));
-                }
-            });
-        });
-        let speed = count as f64 * CASES as f64 * STANDING / spent;
-        println!("  {count:7} {speed:26.0} {:20.2}", speed / *one.get_or_insert(speed));
-        count *= 2;
-    }
-}
-
-/// Prints what an ensemble of scenarios costs with all it does: building, settling, judging.
-pub(crate) fn scenario() -> Result<(), Failure> {
-    let cases: Result<Vec<Prepared>, Failure> = (0..CASES)
-        .map(|k| {
-            let friction = 0.3 + 0.4 * k as f64 / CASES as f64;
-            let setting = format!("interface.rack-ground.friction.coefficient={friction}");
-            let settings = [setting, "run.step=\"0.5 ms\"".into()];
-            let scenario = Scenario::builtin("candia-8-barrels", &settings)?;
-            let ground = Arc::new(scenario.ground()?);
-            Ok(Prepared { scenario: Arc::new(scenario), ground })
-        })
-        .collect();
-    let cases = cases?;
-    println!("ensemble: {CASES} scenarios candia-8-barrels to their collapse and 4 s on, 0.5 ms");
-    println!("  lanes     × real time with all it takes");
-    for width in Width::ALL.into_iter().filter(|width| width.is_here()) {
-        let simulated = Cell::new(0.0);
-        let spent = time::least(|| {
-            let mut audience = Audience { tell: &mut |_| {}, stop: &|| false };
-            let results = simulate_in(width, &cases, &mut audience).unwrap_or_default();
-            simulated.set(results.iter().filter_map(|result| result.end_time).sum());
-        });
-        println!("  {:8} {:12.0}", width.name(), simulated.get() / spent);
-    }
-    Ok(())
 }
 
 /// Cases that differ in the amplitude of the ground.

@@ -16,10 +16,15 @@ fn spent(start: Instant) -> f64 {
 const LONG: f64 = 0.1;
 
 /// The least processor time (s) of some work on this thread.
-pub(crate) fn least(mut work: impl FnMut()) -> f64 {
+pub(crate) fn least(work: impl FnMut()) -> f64 {
+    least_of(REPEATS, work)
+}
+
+/// The same of so many measurements.
+pub(crate) fn least_of(repeats: usize, mut work: impl FnMut()) -> f64 {
     let start = Instant::now();
     let mut least = f64::INFINITY;
-    for _ in 0..REPEATS {
+    for _ in 0..repeats {
         let before = spent(start);
         let mut times = 0;
         while times == 0 || spent(start) - before < LONG {
@@ -31,13 +36,37 @@ pub(crate) fn least(mut work: impl FnMut()) -> f64 {
     least
 }
 
-/// The least time (s) on the clock of some work on any number of threads.
-pub(crate) fn least_wall(mut work: impl FnMut()) -> f64 {
-    let mut least = f64::INFINITY;
-    for _ in 0..REPEATS {
-        let start = Instant::now();
-        work();
-        least = least.min(start.elapsed().as_secs_f64());
-    }
-    least
+/// The clock of this core now (cycles a second), by a chain of operations whose cycles are known.
+pub(crate) fn clock() -> f64 {
+    const ROUNDS: u64 = 20_000_000;
+    let spent = least(|| {
+        let mut value = std::hint::black_box(1_u64);
+        for _ in 0..ROUNDS {
+            value = value.rotate_left(1);
+            value = value.wrapping_mul(3);
+        }
+        std::hint::black_box(value);
+    });
+    // A rotation takes a cycle, a multiplication three.
+    4.0 * ROUNDS as f64 / spent
+}
+
+/// How many instructions some work takes on this thread; none, and nothing is done, where the system does not
+/// count them.
+#[cfg(target_os = "linux")]
+pub(crate) fn instructions(work: impl FnOnce()) -> Option<u64> {
+    use perf_event::Builder;
+    use perf_event::events::Hardware;
+
+    let mut counter = Builder::new().kind(Hardware::INSTRUCTIONS).build().ok()?;
+    counter.enable().ok()?;
+    work();
+    counter.disable().ok()?;
+    counter.read().ok().filter(|count| *count > 0)
+}
+
+/// Elsewhere nobody counts.
+#[cfg(not(target_os = "linux"))]
+pub(crate) fn instructions(_: impl FnOnce()) -> Option<u64> {
+    None
 }

@@ -21,7 +21,8 @@ tasks:
   golden     keeps how all report pages look now, for the next test; look at what it keeps before you commit it
   golden bits  keeps what results are now, to the last bit, once their version is raised
   validate   every problem with an exact answer, in full, with a report; `--out DIR`, `--only TEXT`, `--fast`
-  bench      how fast stacks are computed, beside a game engine on the same scene
+  bench      how fast stacks are computed, beside a game engine on the same scenes; `--cases N`, `table`, `growth`,
+             `history` (the work of runs beside that of the last release; `history keep` writes it down)
   fuzz       damaged files through every reader of records; `--executions N`, `--reader NAME`, `--first K`";
 
 fn main() -> ExitCode {

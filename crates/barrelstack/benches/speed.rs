@@ -9,7 +9,6 @@ use std::time::Instant;
 use barrelstack::assemble::{Assembly, assemble};
 use barrelstack::ground::Ground;
 use barrelstack::scenario::Scene;
-use barrelstack::step::default_step;
 use barrelstack::watch::{End, Thresholds, Watch};
 use barrelstack::{Scenario, Summary};
 use barrelstack_dynamics::{
@@ -146,7 +145,7 @@ impl Stage {
     fn new(scenario: &Scenario) -> Result<Self, Failure> {
         let assembly = assemble(scenario)?;
         let ground = scenario.ground()?;
-        let step = default_step(&assembly, 1.0);
+        let step = assembly.step;
         let mut state = State::initial(&assembly.model);
         let mut scratch = Scratch::new(&assembly.model);
         settle(&assembly.model, &mut state, &mut scratch, 1e-10)?;

@@ -11,7 +11,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let change = format!("interface.rack-ground.friction.coefficient={friction:.2}");
         cases.push(Prepared::new(Scenario::builtin("candia-8-barrels", &[change])?)?);
     }
-    let results = Ensemble { cases }.run();
+    let results = Ensemble { cases, ..Ensemble::default() }.run();
     let fell = |result: &_| matches!(result, Ok(Outcome::Collapse { .. }));
     let fallen = results.iter().filter(|result| fell(&result.outcome)).count();
     println!("{fallen} of {} came down", results.len());

@@ -1,8 +1,9 @@
 //! Is a scenario sound, and does its stack stand before it is shaken?
 
 use crate::assemble::PartKind;
-use crate::run::{RunFailure, Standing, end_time, stand};
+use crate::run::{RunFailure, end_time};
 use crate::scenario::Scenario;
+use crate::stand::{Standing, stand};
 use crate::stick::SoftStick;
 
 /// What a check found.

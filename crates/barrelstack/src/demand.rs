@@ -52,12 +52,11 @@ macro_rules! demands {
         }),*];
 
         impl Demands {
-            /// The demands on a stack of a run that did not break down; those of stress where stresses
-            /// were watched.
+            /// The demands on a stack of a run that did not break down.
             pub(crate) fn of(
                 assembly: &Assembly,
                 fates: &Fates,
-                stresses: Option<&Stresses>,
+                stresses: &Stresses,
             ) -> Self {
                 let seen = Seen { assembly, fates, stresses };
                 Self { $($name: seen.most($of)),* }
@@ -102,7 +101,7 @@ demands! {
 struct Seen<'a> {
     assembly: &'a Assembly,
     fates: &'a Fates,
-    stresses: Option<&'a Stresses>,
+    stresses: &'a Stresses,
 }
 
 impl Seen<'_> {
@@ -122,7 +121,7 @@ impl Seen<'_> {
     /// The stress around a barrel of the bottom level.
     fn stress(&self, body: usize) -> Option<&StressEnvelope> {
         self.fate(body, PartKind::Barrel, Some(1))?;
-        self.stresses?.of(body)
+        self.stresses.of(body)
     }
 }
 

@@ -10,26 +10,23 @@ mod case;
 mod crew;
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use barrelstack_dynamics::Method;
-use barrelstack_dynamics::lanes::{Topology, Width};
+use barrelstack_dynamics::lanes::Topology;
 
 use crate::pool;
-use crate::run::{RunFailure, Standing, check_length, end_time, method, stand};
-use crate::scenario::Scenario;
+use crate::run::{RunFailure, check_length, end_time, method};
+
+use crate::stand::{FEWEST, Stack, Standing, stand_all};
 use crate::watch::End;
 
+pub use barrelstack_dynamics::lanes::Width;
 pub use case::{CaseResult, Prepared};
 
 /// Version of what an ensemble computes: raised whenever the same case may give other bits, so that
 /// results of two versions are never put together.
-pub const VERSION: u32 = 8;
-
-/// Fewer cases than this of one topology go one after the other: a bundle costs as much as some three
-/// single runs, however few of its lanes are used.
-const FEWEST: usize = 3;
+pub const VERSION: u32 = 9;
 
 /// Cases that a thread takes at once: enough to fill lanes, few enough that all threads have some.
 const BATCH: usize = 32;
@@ -53,7 +50,7 @@ pub struct Audience<'a> {
 ///     let change = format!("interface.block-ground.friction.coefficient={friction}");
 ///     cases.push(Prepared::new(Scenario::builtin("sliding-block", &[change])?)?);
 /// }
-/// let results = Ensemble { cases }.run();
+/// let results = Ensemble { cases, ..Ensemble::default() }.run();
 /// assert!(results.iter().all(|result| result.outcome.is_ok()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -61,6 +58,8 @@ pub struct Audience<'a> {
 pub struct Ensemble {
     /// The cases; those of one stack or one motion share it.
     pub cases: Vec<Prepared>,
+    /// The vector unit in which they march; the widest of the machine without. Results do not depend on it.
+    pub lanes: Option<Width>,
 }
 
 impl Ensemble {
@@ -77,6 +76,7 @@ impl Ensemble {
         observer: &(dyn Fn(&CaseResult) -> ControlFlow<()> + Sync),
     ) -> Option<Vec<CaseResult>> {
         let stopped = AtomicBool::new(false);
+        let lanes = self.lanes.unwrap_or_else(Width::widest);
         let together = |cases: &&[Prepared]| {
             let mut tell = |result: &CaseResult| {
                 if observer(result).is_break() {
@@ -84,7 +84,7 @@ impl Ensemble {
                 }
             };
             let stop = || stopped.load(Ordering::Relaxed);
-            simulate(cases, &mut Audience { tell: &mut tell, stop: &stop })
+            simulate_in(lanes, cases, &mut Audience { tell: &mut tell, stop: &stop })
         };
         let batches: Vec<&[Prepared]> = self.cases.chunks(BATCH).collect();
         let done: Option<Vec<_>> = pool::map(&batches, together, &|_| ()).into_iter().collect();
@@ -105,23 +105,27 @@ pub fn simulate_in(
     cases: &[Prepared],
     audience: &mut Audience<'_>,
 ) -> Option<Vec<CaseResult>> {
-    let mut results: Vec<Option<CaseResult>> = vec![None; cases.len()];
-    let mut stacks: Vec<Stack> = Vec::new();
-    let mut runs: Vec<Run<'_>> = Vec::new();
+    let mut stacks: Vec<Stack<'_>> = Vec::new();
+    let mut runs: Vec<Result<Run<'_>, String>> = Vec::new();
     for (index, case) in cases.iter().enumerate() {
         if (audience.stop)() {
             return None;
         }
-        match prepare(case, index, &mut stacks) {
-            Ok(run) => runs.push(run),
+        runs.push(prepare(case, index, &mut stacks));
+    }
+    stand_all(width, &mut stacks, audience.stop)?;
+    let mut results: Vec<Option<CaseResult>> = vec![None; cases.len()];
+    let mut ready = Vec::new();
+    for (run, result) in runs.into_iter().zip(&mut results) {
+        match run.and_then(|run| stacks[run.stack].found().map(|_| run)) {
+            Ok(run) => ready.push(run),
             Err(reason) => {
-                let result = CaseResult::failed(reason);
-                (audience.tell)(&result);
-                results[index] = Some(result);
+                let failed = result.insert(CaseResult::failed(reason));
+                (audience.tell)(failed);
             }
         }
     }
-    for (method, group) in groups(&runs, &stacks) {
+    for (method, group) in groups(&ready, &stacks) {
         let done = if method.is_adaptive() {
             alone::run(&group, &stacks, audience)
         } else {
@@ -135,10 +139,11 @@ pub fn simulate_in(
     results.into_iter().collect()
 }
 
-/// A stack at rest, shared by the cases that differ in their motion alone.
-struct Stack {
-    scenario: Arc<Scenario>,
-    standing: Result<(Standing, Topology), String>,
+impl Stack<'_> {
+    /// The stack, or in words why there is none.
+    fn found(&self) -> Result<&Standing, String> {
+        self.standing.as_ref().map_err(ToString::to_string)
+    }
 }
 
 /// A case on its stack.
@@ -160,45 +165,41 @@ impl Run<'_> {
     }
 }
 
-/// Finds or builds the stack of a case and lets it come to rest; or says why it cannot.
+/// Finds or builds the stack of a case, or says why it cannot.
 fn prepare<'a>(
     case: &'a Prepared,
     index: usize,
-    stacks: &mut Vec<Stack>,
+    stacks: &mut Vec<Stack<'a>>,
 ) -> Result<Run<'a>, String> {
     let scenario = &case.scenario;
     let time_scale = scenario.run.similitude.sqrt();
     let end_time = end_time(scenario, &case.ground, time_scale).map_err(|e| e.to_string())?;
-    let known = stacks.iter().rposition(|stack| Arc::ptr_eq(&stack.scenario, scenario));
-    let stack = if let Some(stack) = known {
-        stack
-    } else {
-        let standing = match stand(scenario, end_time) {
-            // The fault of this motion: under a shorter one the stack may be run.
-            Err(failure @ RunFailure::Duration(_)) => return Err(failure.to_string()),
-            Err(failure) => Err(failure.to_string()),
-            Ok(standing) => {
-                let topology = Topology::of(&standing.assembly.model);
-                Ok((standing, topology))
-            }
-        };
-        stacks.push(Stack { scenario: Arc::clone(scenario), standing });
-        stacks.len() - 1
-    };
-    let (standing, _) = stacks[stack].standing.as_ref().map_err(Clone::clone)?;
-    check_length(end_time, standing.step).map_err(|failure| failure.to_string())?;
+    let known = stacks.iter().rposition(|stack| stack.is_of(scenario));
+    let stack = known.unwrap_or(stacks.len());
+    if known.is_none() {
+        let built = Stack::built(scenario, end_time);
+        // The fault of this motion: under a shorter one the stack may be run.
+        if let Err(failure @ RunFailure::Duration(_)) = &built.standing {
+            return Err(failure.to_string());
+        }
+        stacks.push(built);
+    }
+    let step = stacks[stack].found()?.step;
+    check_length(end_time, step).map_err(|failure| failure.to_string())?;
     Ok(Run { case, index, stack, end_time })
 }
 
 /// The runs that may march together, in the order of their cases.
-fn groups<'a>(runs: &[Run<'a>], stacks: &[Stack]) -> Vec<(Method, Vec<Run<'a>>)> {
-    let mut groups: Vec<(Method, &Topology, Vec<Run<'a>>)> = Vec::new();
+fn groups<'a>(runs: &[Run<'a>], stacks: &[Stack<'_>]) -> Vec<(Method, Vec<Run<'a>>)> {
+    let topology = |stack: &Stack<'_>| Some(Topology::of(&stack.found().ok()?.assembly.model));
+    let topologies: Vec<_> = stacks.iter().map(topology).collect();
+    let mut groups: Vec<(Method, usize, Vec<Run<'a>>)> = Vec::new();
     for run in runs {
-        let Ok((_, topology)) = &stacks[run.stack].standing else { continue };
         let method = method(&run.case.scenario);
-        match groups.iter_mut().find(|(m, t, _)| *m == method && *t == topology) {
+        let alike = |stack: usize| topologies[stack] == topologies[run.stack];
+        match groups.iter_mut().find(|(m, stack, _)| *m == method && alike(*stack)) {
             Some((_, _, group)) => group.push(*run),
-            None => groups.push((method, topology, vec![*run])),
+            None => groups.push((method, run.stack, vec![*run])),
         }
     }
     groups.into_iter().map(|(method, _, group)| (method, group)).collect()

@@ -52,6 +52,7 @@ pub mod report;
 mod rest;
 pub mod run;
 pub mod scenario;
+mod stand;
 pub mod step;
 mod stick;
 pub mod summary;

@@ -94,24 +94,28 @@ impl Boundaries {
             .zip(poses)
             .map(|(outlines, pose)| outlines.iter().map(|o| o.at(pose)).collect())
             .collect();
+        // A sweep along x, so that a row of bodies costs by its length and not by its square.
+        let mut extents: Vec<(f64, f64, BodyId)> = Vec::new();
+        for (body, outlines) in placed.iter().enumerate() {
+            let least = outlines.iter().map(|(_, around)| around[0]).fold(f64::INFINITY, f64::min);
+            let most = outlines.iter().map(|(_, around)| around[2]);
+            extents.push((least, most.fold(f64::NEG_INFINITY, f64::max), body));
+        }
+        extents.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         let mut overlaps = Vec::new();
-        for first in 0..placed.len() {
-            for second in first + 1..placed.len() {
-                let mut depth = 0.0_f64;
-                for (a, box_a) in &placed[first] {
-                    for (b, box_b) in &placed[second] {
-                        let apart =
-                            (0..2).any(|k| box_a[k] > box_b[k + 2] || box_b[k] > box_a[k + 2]);
-                        if !apart {
-                            depth = depth.max(parting(a, b));
-                        }
-                    }
-                }
+        let mut open: Vec<(f64, BodyId)> = Vec::new();
+        for (from, to, body) in extents {
+            open.retain(|(end, _)| from <= *end);
+            for (_, other) in &open {
+                let bodies = [body.min(*other), body.max(*other)];
+                let depth = deepest_of(&placed[bodies[0]], &placed[bodies[1]]);
                 if depth > 0.0 {
-                    overlaps.push(Overlap { bodies: [first, second], depth });
+                    overlaps.push(Overlap { bodies, depth });
                 }
             }
+            open.push((to, body));
         }
+        overlaps.sort_unstable_by_key(|overlap| overlap.bodies);
         overlaps
     }
 }
@@ -143,6 +147,20 @@ impl Outline {
     }
 }
 
+/// The deepest overlap (m) of the parts of two bodies, each in its box; zero where there is none.
+fn deepest_of(first: &[(Outline, [f64; 4])], second: &[(Outline, [f64; 4])]) -> f64 {
+    let mut depth = 0.0_f64;
+    for (a, box_a) in first {
+        for (b, box_b) in second {
+            let apart = (0..2).any(|k| box_a[k] > box_b[k + 2] || box_b[k] > box_a[k + 2]);
+            if !apart {
+                depth = depth.max(parting(a, b));
+            }
+        }
+    }
+    depth
+}
+
 /// The shortest way (m) that parts two convex outlines; zero or less where they are apart.
 ///
 /// Of all ways to part two convex polygons the shortest is along a normal of a side of one of them.
@@ -163,8 +181,14 @@ fn least_along(sides: &[Vec2], corners: &[Vec2]) -> f64 {
     for (i, from) in sides.iter().enumerate() {
         let along = sides[(i + 1) % sides.len()] - *from;
         let outward = -along.quarter_turn() * (1.0 / along.length());
-        let lowest =
-            corners.iter().map(|c| (*c - *from).dot(outward)).fold(f64::INFINITY, f64::min);
+        let mut lowest = f64::INFINITY;
+        for corner in corners {
+            lowest = lowest.min((*corner - *from).dot(outward));
+            // Another side parts them sooner.
+            if -lowest >= least {
+                break;
+            }
+        }
         least = least.min(-lowest);
         if least <= 0.0 {
             break;

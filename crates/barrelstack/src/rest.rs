@@ -1,11 +1,6 @@
-//! A stack comes to rest, or is refused with what would help.
+//! Why a stack does not come to rest, with what would help.
 
-use barrelstack_dynamics::{Lack, Planar, Scratch, SettleError, Settled, State, settle};
-
-use crate::assemble::Assembly;
-
-/// Largest share of gravity that may be left unbalanced at rest.
-const TOLERANCE: f64 = 1e-10;
+use barrelstack_dynamics::{Lack, SettleError};
 
 /// A stack that does not stand by itself, and what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -13,18 +8,6 @@ const TOLERANCE: f64 = 1e-10;
 pub struct Restless {
     /// Which body goes, and why.
     pub error: SettleError,
-}
-
-/// Lets the stack come to rest.
-///
-/// # Errors
-/// When it does not stand: names the body that goes first, what it lacks, and what would help.
-pub(crate) fn at_rest(
-    assembly: &Assembly,
-    state: &mut State<Planar>,
-    scratch: &mut Scratch<Planar>,
-) -> Result<Settled, Restless> {
-    settle(&assembly.model, state, scratch, TOLERANCE).map_err(|error| Restless { error })
 }
 
 /// The next move of who wants a stack that stands.

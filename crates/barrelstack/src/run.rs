@@ -5,16 +5,16 @@ use std::ops::ControlFlow;
 use barrelstack_dynamics::contact::Basis;
 use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::{
-    Element, EnergySummary, Method, Planar, RunError, Scratch, Settled, Simulation, State, simulate,
+    EnergySummary, Method, Planar, RunError, Settled, Simulation, simulate,
 };
 
-use crate::assemble::{AssembleError, Assembly, assemble};
+use crate::assemble::{AssembleError, Assembly};
 use crate::ground::{Ground, GroundError};
 use crate::outcome::{Outcome, judge};
-use crate::overlap::check_overlap;
-use crate::rest::{Restless, at_rest};
+use crate::rest::Restless;
 use crate::scenario::{self, Scenario, Scene, Until};
-use crate::step::{critical_time_step, default_step};
+use crate::stand::{Standing, stand};
+use crate::step::critical_time_step;
 use crate::stick::SoftStick;
 use crate::summary::Summary;
 use crate::watch::{ElementFate, End, Ending, Fates, Recording, Stresses, Thresholds, Watch};
@@ -193,7 +193,7 @@ impl Scenario {
             &mut told,
         );
         let result = simulate(model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
-        let Watch { recording, stresses, fates, elements, ending, .. } = watch;
+        let Watch { recording, mut stresses, fates, elements, ending, .. } = watch;
         let ending = ending.unwrap_or(Ending::of_time(self));
         let ended = result.map(|totals| Ended::of(&totals));
         let Verdict { outcome, energy, steps, mut warnings, ending } =
@@ -218,7 +218,7 @@ impl Scenario {
             outcome,
             fates,
             elements: elements.0,
-            stresses,
+            stresses: stresses.finish(0),
             recording,
             energy,
             settled,
@@ -232,49 +232,6 @@ impl Scenario {
             assembly,
         })
     }
-}
-
-/// A stack that stands at rest, ready to be shaken.
-#[derive(Clone, Debug)]
-pub(crate) struct Standing {
-    pub(crate) assembly: Assembly,
-    pub(crate) state: State<Planar>,
-    pub(crate) scratch: Scratch<Planar>,
-    pub(crate) settled: Option<Settled>,
-    /// The time step (s).
-    pub(crate) step: f64,
-}
-
-/// Builds a stack for a run until a time (s) and lets it come to rest.
-///
-/// # Errors
-/// When it cannot be built, or does not stand.
-pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunFailure> {
-    let mut assembly = assemble(scenario)?;
-    let mut state = State::initial(&assembly.model);
-    let mut scratch = Scratch::new(&assembly.model);
-    check_overlap(&assembly, &state, scenario.run.similitude)?;
-    let step = time_step(scenario, &assembly)?;
-    check_length(end_time, step)?;
-    let mut settled = if scenario.run.settle {
-        Some(at_rest(&assembly, &mut state, &mut scratch)?)
-    } else {
-        barrelstack_dynamics::evaluate(&assembly.model, &state, &mut scratch);
-        None
-    };
-    assembly.fasten(&mut state).map_err(AssembleError::from)?;
-    let strained = |element: &Element<Planar>| element.load(&state).force != 0.0;
-    if scenario.run.settle && assembly.model.elements().iter().any(strained) {
-        // Elements that bear something from the start press the stack together.
-        let before = settled.map_or(0, |settled| settled.steps);
-        let again = at_rest(&assembly, &mut state, &mut scratch)?;
-        settled = Some(Settled { steps: before + again.steps, ..again });
-    }
-    if matches!(scenario.scene, Scene::Free(_)) {
-        // Equilibrium is that of the places; what the scenario sets in motion starts from there.
-        state.twists = assembly.model.bodies().iter().map(|b| b.twist).collect();
-    }
-    Ok(Standing { assembly, state, scratch, settled, step })
 }
 
 /// What a run that came to its end leaves behind.
@@ -339,7 +296,7 @@ pub(crate) fn conclude(
 pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFailure> {
     let scale = scenario.run.similitude.sqrt();
     let Some(step) = scenario.run.step.map(|step| step * scale) else {
-        return Ok(default_step(assembly, scale));
+        return Ok(assembly.step * scenario.run.accuracy.step());
     };
     let critical = critical_time_step(assembly, scale);
     let adapts = matches!(scenario.run.method, scenario::Method::BogackiShampine { .. });
@@ -349,7 +306,7 @@ pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFai
     Err(RunFailure::Step {
         asked: milliseconds(step / scale),
         reason: format!("the stiffest contact allows {:.2} ms at most", 1e3 * critical / scale),
-        instead: milliseconds(default_step(assembly, scale) / scale),
+        instead: milliseconds(assembly.step / scale),
     })
 }
 

@@ -39,7 +39,7 @@ impl SoftStick {
         let model = &assembly.model;
         let mut sums = vec![(0.0, 0.0); model.interfaces().len()];
         for contact in &rest.contacts {
-            let pair = &model.pairs()[contact.pair];
+            let pair = &model.pair(contact.pair);
             let interface = &model.interfaces()[pair.interface];
             let length = tributary_length(model, pair, contact.node as usize);
             let weight = interface.basis.weight(length);

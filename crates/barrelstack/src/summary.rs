@@ -259,7 +259,7 @@ impl Summary {
             // Numbers of a run that broke down look like results and are none.
             bodies: if sound(run) { bodies(run) } else { Vec::new() },
             demands: if sound(run) {
-                Demands::of(&run.assembly, &run.fates, Some(&run.stresses))
+                Demands::of(&run.assembly, &run.fates, &run.stresses)
             } else {
                 Demands::default()
             },

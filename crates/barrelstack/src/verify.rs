@@ -214,12 +214,15 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
             }
             let mut refined = false;
             for body in &mut scene.bodies {
-                match &mut body.nodes {
-                    Nodes::Spacing(spacing) => *spacing *= 0.5,
-                    Nodes::Count(count) => *count *= 2,
-                    Nodes::Corners | Nodes::Rolling | Nodes::Exact | Nodes::At(_) => continue,
+                let further = body.boundaries.iter_mut().map(|boundary| &mut boundary.nodes);
+                for nodes in further.chain([&mut body.nodes]) {
+                    match nodes {
+                        Nodes::Spacing(spacing) => *spacing *= 0.5,
+                        Nodes::Count(count) => *count *= 2,
+                        Nodes::Corners | Nodes::Rolling | Nodes::Exact | Nodes::At(_) => continue,
+                    }
+                    refined = true;
                 }
-                refined = true;
             }
             if !refined {
                 return Err("no body carries nodes along its sides".into());

@@ -2,6 +2,7 @@
 
 mod elements;
 mod fate;
+mod joints;
 mod recording;
 mod rest;
 mod stress;
@@ -17,8 +18,10 @@ use crate::scenario::Scenario;
 
 pub use elements::{ElementFate, ElementFates};
 pub use fate::{Fate, Fates, Loss, Thresholds};
+pub use joints::{Joint, Joints};
 pub use recording::{Channel, Frames, JointForces, Recording};
 pub use rest::{Ending, Rest};
+pub(crate) use stress::Pressing;
 pub use stress::{BoundaryPoint, StressEnvelope, Stresses};
 
 /// Everything that watches a run, together.
@@ -26,7 +29,7 @@ pub struct Watch<'a> {
     /// Frames and histories.
     pub recording: Recording,
     /// Normal stress along every boundary.
-    pub stresses: Stresses,
+    pub(crate) stresses: Pressing,
     /// Seats, falls, slips and tilts.
     pub fates: Fates,
     /// What force elements bore.
@@ -103,7 +106,7 @@ impl<'a> Watch<'a> {
     ) -> Self {
         Self {
             recording: Recording::new(assembly, state, rates),
-            stresses: Stresses::new(assembly, scratch),
+            stresses: Pressing::new(assembly, scratch),
             fates: Fates::new(assembly, state, thresholds),
             elements: ElementFates::default(),
             ground,
@@ -131,9 +134,7 @@ impl Observer<Planar> for Watch<'_> {
         self.elements.observe(state, scratch);
         // Envelopes are those of the standing stack: what falling barrels do to each other is another
         // question.
-        if self.fates.collapse_time().is_none() {
-            self.stresses.observe(model, scratch);
-        }
+        self.stresses.observe(self.fates.collapse_time().is_none(), scratch);
         self.recording.observe(self.assembly, self.ground, model, state, scratch, energy);
         if state.time >= self.next_progress {
             self.next_progress = state.time + PROGRESS;

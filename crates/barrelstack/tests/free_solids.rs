@@ -6,15 +6,18 @@ use barrelstack::scenario::Scene;
 use barrelstack::{Run, Scenario};
 
 fn scene(bodies: &str, between: [&str; 2]) -> Scenario {
-    let text = format!(
+    Scenario::parse("solids", &text(bodies, between), &[]).unwrap()
+}
+
+fn text(bodies: &str, between: [&str; 2]) -> String {
+    format!(
         "schema = 1\ntitle = \"solids\"\nkind = \"free\"\n{bodies}\n\
          [[interface]]\nbetween = [\"{}\", \"{}\"]\nstiffness = \"1 MN/m\"\ndamping = \"2 kN s/m\"\n\
          friction = {{ coefficient = 0.5 }}\n\
          [[interface]]\nbetween = [\"box\", \"ground\"]\nstiffness = \"1 MN/m\"\ndamping = \"2 kN s/m\"\n\
          friction = {{ coefficient = 0.5 }}\n[run]\nduration = \"1 s\"\n",
         between[0], between[1]
-    );
-    Scenario::parse("solids", &text, &[]).unwrap()
+    )
 }
 
 fn run(scenario: &Scenario) -> Run {
@@ -150,4 +153,32 @@ fn a_restitution_holds_for_its_speed_under_the_law_of_hunt_and_crossley() {
     let top = risen.map(|(_, poses)| poses[1].position.z - 0.35).fold(0.0, f64::max);
     println!("rises to {top} m");
     assert!((top / 0.16 - 1.0).abs() < 5e-3, "{top}");
+}
+
+/// A hexagonal heap of discs, 20 cm in radius, on the ground.
+fn heap(count: usize, across: usize) -> String {
+    let mut bodies = String::new();
+    for at in 0..count {
+        let (row, column) = (at / across, at % across);
+        let x = 0.4 * (column as f64 + 0.5 * (row % 2) as f64);
+        let z = 0.2 + 0.4 * 0.75_f64.sqrt() * row as f64;
+        bodies += &format!(
+            "[[body]]\nname = \"b{at}\"\nkind = \"box\"\nshape = {{ type = \"circle\", radius = \"0.2 m\" }}\n\
+             mass = \"100 kg\"\nposition = [\"{x} m\", \"{z} m\"]\n"
+        );
+    }
+    text(&bodies, ["box", "box"])
+}
+
+#[test]
+fn five_thousand_bodies_run_and_the_next_one_is_refused_in_words() {
+    let settings = ["run.settle=false".to_owned(), "run.duration=\"2 ms\"".to_owned()];
+    let scenario = Scenario::parse("heap", &heap(5000, 71), &settings).unwrap();
+    let run = run(&scenario);
+    // Six neighbors each but at the border, half of them counted at the other: 14,500 contacts, and nothing else
+    // is looked at.
+    let tested = run.work.contact_evaluations as f64 / run.work.evaluations as f64;
+    assert!((14_000.0..16_000.0).contains(&tested), "{tested} contact elements a step");
+    let error = Scenario::parse("heap", &heap(5001, 71), &[]).unwrap_err().to_string();
+    assert!(error.contains("at most 5000 bodies"), "{error}");
 }

@@ -7,7 +7,6 @@ use std::ops::ControlFlow;
 
 use barrelstack::Scenario;
 use barrelstack::assemble::{Assembly, assemble};
-use barrelstack::step::default_step;
 use barrelstack_dynamics::{
     Body, FrictionLaw, Interface, Method, Model, Planar, Scratch, Simulation, State, Still, look,
     settle, simulate,
@@ -43,7 +42,7 @@ fn changed(
         Interface { friction, ..interface.clone() }
     };
     let interfaces = model.interfaces().iter().map(law).collect();
-    Model::new(bodies, interfaces, model.pairs().to_vec(), model.gravity() * gravity).unwrap()
+    Model::new(bodies, interfaces, model.pairs().collect(), model.gravity() * gravity).unwrap()
 }
 
 fn settled(assembly: &Assembly, way: Way) -> (State<Planar>, Scratch<Planar>) {
@@ -81,7 +80,7 @@ fn settled(assembly: &Assembly, way: Way) -> (State<Planar>, Scratch<Planar>) {
             let model = changed(assembly, damped, true, 1.0);
             let simulation = Simulation {
                 method: Method::VelocityVerlet,
-                time_step: default_step(assembly, 1.0),
+                time_step: assembly.step,
                 end_time: 10.0,
             };
             let mut scratch = Scratch::new(&model);
@@ -104,11 +103,8 @@ fn drop_of(
 /// When (s) the first body falls.
 fn first_fall(scenario: &Scenario, assembly: &Assembly, rest: &State<Planar>) -> f64 {
     let ground = scenario.ground().unwrap();
-    let simulation = Simulation {
-        method: Method::VelocityVerlet,
-        time_step: default_step(assembly, 1.0),
-        end_time: 15.0,
-    };
+    let simulation =
+        Simulation { method: Method::VelocityVerlet, time_step: assembly.step, end_time: 15.0 };
     let (mut state, mut scratch) = (rest.clone(), Scratch::new(&assembly.model));
     let falls = |(from, to): (&_, &_)| drop_of(from, to) > 0.2;
     let mut first_fall = look(|state: &State<Planar>, _, _| {

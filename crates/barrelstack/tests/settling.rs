@@ -9,8 +9,10 @@ use std::time::Instant;
 
 use barrelstack::Scenario;
 use barrelstack::assemble::{Assembly, assemble};
-use barrelstack::step::default_step;
 use barrelstack_dynamics::forces::contact_force;
+use barrelstack_dynamics::lanes::{Task, Topology, Width};
+use barrelstack_dynamics::real::Real;
+use barrelstack_dynamics::settle::{Stack, settle_all};
 use barrelstack_dynamics::{
     Body, Contact, FrictionLaw, Method, Model, Motion, NormalLaw, Planar, Pose, Scratch,
     SettleError, Settled, Simulation, State, Still, Vec2, evaluate, look, settle, simulate,
@@ -103,7 +105,7 @@ fn out_of_balance(tried: &Tried) -> f64 {
     let mut sums: Vec<(Vec2, f64)> =
         model.bodies().iter().map(|body| (model.gravity() * body.mass, 0.0)).collect();
     for contact in &scratch.contacts {
-        let pair = &model.pairs()[contact.pair];
+        let pair = &model.pair(contact.pair);
         let (force, point) = contact_force(model, state, scratch, contact);
         for (body, force) in [(pair.contactor, force), (pair.target, -force)] {
             let arm = point - state.poses[body].position;
@@ -150,8 +152,10 @@ fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push
         ..body.clone()
     };
     let bodies = model.bodies().iter().map(damped).collect();
-    let (interfaces, pairs) = (model.interfaces().to_vec(), model.pairs().to_vec());
-    let model = Model::new(bodies, interfaces, pairs, model.gravity()).unwrap();
+    let (interfaces, pairs) = (model.interfaces().to_vec(), model.pairs().collect());
+    let impacts = model.impacts().clone();
+    let mut model = Model::new(bodies, interfaces, pairs, model.gravity()).unwrap();
+    model.follow_impacts(impacts);
     let mut state = state.clone();
     for (twist, body) in state.twists.iter_mut().zip(model.bodies()) {
         if body.motion == Motion::Free {
@@ -163,12 +167,12 @@ fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push
     let mut scratch = Scratch::new(&model);
     evaluate(&model, &state, &mut scratch);
     let meets_solid = |c: &Contact<Planar>| {
-        let interface = &model.interfaces()[model.pairs()[c.pair].interface];
+        let interface = &model.interfaces()[model.pair(c.pair).interface];
         matches!(interface.normal, NormalLaw::Rebound { .. })
             || interface.stop.is_some_and(|stop| c.penetration > stop.depth)
     };
     let solid = scratch.contacts.iter().any(meets_solid);
-    let time_step = default_step(assembly, 1.0) * if solid { 0.2 } else { 1.0 };
+    let time_step = assembly.step * if solid { 0.2 } else { 1.0 };
     let simulation = Simulation { method: Method::VelocityVerlet, time_step, end_time: time };
     scratch.keeps_contacts = false;
     let start = state.poses.clone();
@@ -271,5 +275,85 @@ fn dampers_do_not_decide_whether_a_stack_comes_to_rest_nor_where() {
         let other = tried("candia-8-barrels", &settings);
         assert_eq!(other.result.clone().unwrap().steps, steps, "{settings:?}");
         assert_eq!(usual.state.poses, other.state.poses, "{settings:?}");
+    }
+}
+
+/// Everything at rest, to the last bit, but for how the contacts are listed.
+fn at_rest(tried: &Tried) -> String {
+    let Tried { state, scratch, result, .. } = tried;
+    let sticks: Vec<_> = scratch
+        .contacts
+        .iter()
+        .map(|contact| {
+            (Contact { element: 0, ..*contact }, state.contact_elements.stick(contact.element))
+        })
+        .collect();
+    let (poses, twists, memory) = (&state.poses, &state.twists, &state.memory);
+    format!("{result:?} {poses:?} {twists:?} {memory:?} {sticks:?} {:?}", scratch.pair_forces)
+}
+
+/// Stacks settle side by side.
+struct Together<'a>(&'a mut [Tried]);
+
+impl Task for Together<'_> {
+    type Output = Vec<Result<Settled, SettleError>>;
+
+    fn run<R: Real>(self) -> Self::Output {
+        let mut stacks = Vec::new();
+        for Tried { assembly, state, scratch, .. } in self.0 {
+            stacks.push(Stack { model: &assembly.model, state, scratch });
+        }
+        settle_all::<R>(&mut stacks, 1e-10, &|| false).expect("nobody stops it")
+    }
+}
+
+#[test]
+fn a_stack_that_settles_beside_others_comes_to_the_bits_that_it_comes_to_alone() {
+    const COUNT: u64 = if cfg!(debug_assertions) { 24 } else { 240 };
+    // Any stacks of one view, rack and height, with stiffness, friction and places of their own.
+    let settings = |seed: u64| {
+        let view = ["transverse", "longitudinal"][usize::from(seed.is_multiple_of(2))];
+        let mut random = Random(seed);
+        let mut set = random_stack(seed);
+        let rack = ["\"two-barrel\"", "\"candia-2008\""][usize::from(seed % 4 < 2)];
+        set.retain(|line| line.starts_with("interface"));
+        set.push(format!("stack.levels={}", 2 + seed % 3));
+        set.push(format!("stack.view=\"{view}\""));
+        set.push(format!("stack.rack={rack}"));
+        let (mass, aside) = (random.between(50.0, 300.0), random.between(-0.02, 0.02));
+        set.push(format!(
+            "stack.override=[{{ kind=\"barrel\", level=2, column=1, mass=\"{mass:.1} kg\", \
+             offset_x=\"{aside:.4} m\" }}]"
+        ));
+        set
+    };
+    let alone: Vec<Tried> = (0..COUNT).map(|seed| tried("demo-napa", &settings(seed))).collect();
+    let refused = alone.iter().filter(|tried| tried.result.is_err()).count();
+    println!("{refused} of {COUNT} are refused");
+    assert!(refused > 0);
+    for width in Width::ALL.into_iter().filter(|width| width.is_here()) {
+        let mut groups: Vec<(Topology, Vec<usize>, Vec<Tried>)> = Vec::new();
+        for (index, tried) in alone.iter().enumerate() {
+            let assembly = tried.assembly.clone();
+            let topology = Topology::of(&assembly.model);
+            let (state, scratch) = (State::initial(&assembly.model), Scratch::new(&assembly.model));
+            let fresh =
+                Tried { assembly, state, scratch, result: tried.result.clone(), milliseconds: 0.0 };
+            match groups.iter_mut().find(|(known, ..)| *known == topology) {
+                Some((_, indices, group)) => {
+                    indices.push(index);
+                    group.push(fresh);
+                }
+                None => groups.push((topology, vec![index], vec![fresh])),
+            }
+        }
+        println!("{} topologies in {} lanes", groups.len(), width.name());
+        for (_, indices, mut group) in groups {
+            let results = width.run(Together(&mut group)).expect("the width is here");
+            for ((index, mut tried), result) in indices.into_iter().zip(group).zip(results) {
+                tried.result = result;
+                assert_eq!(at_rest(&alone[index]), at_rest(&tried), "stack {index}");
+            }
+        }
     }
 }

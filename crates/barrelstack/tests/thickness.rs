@@ -5,7 +5,6 @@
 use barrelstack::Scenario;
 use barrelstack::assemble::{Outline, PartKind, assemble};
 use barrelstack::scenario::{RackKind, catalog};
-use barrelstack::step::default_step;
 
 /// Least width (m) of a convex outline over all directions: that across one of its sides.
 fn least_width(outline: &Outline) -> f64 {
@@ -42,7 +41,7 @@ fn what_falls_from_six_levels_passes_through_nothing() {
             let thinnest = thinnest.fold(f64::INFINITY, f64::min);
             // What falls all the way, against what leaves the floor with the restitution of a fall.
             let speed = 1.3 * (2.0 * 9.80665 * assembly.height).sqrt();
-            let way = speed * default_step(&assembly, 1.0);
+            let way = speed * assembly.step / assembly.model.impacts().divisions;
             println!(
                 "{name}, {view}: {:.1} mm in a step, thinnest solid {:.1} mm",
                 1e3 * way,

@@ -7,7 +7,7 @@ mod sampler;
 
 use std::sync::Arc;
 
-use barrelstack::ensemble::Prepared;
+use barrelstack::ensemble::{Prepared, Width};
 use barrelstack::ground::Ground;
 use barrelstack::run::RunFailure;
 use barrelstack::scenario::Scenario;
@@ -39,11 +39,21 @@ pub struct Settings {
     pub simulations: usize,
     /// Start of all random numbers.
     pub seed: u64,
+    /// The vector unit in which simulations march; the widest of the machine without. The result does not
+    /// depend on it.
+    pub lanes: Option<Width>,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { within: 2.0, placement: 1e-3, errors: Errors::default(), simulations: 1000, seed: 1 }
+        Self {
+            within: 2.0,
+            placement: 1e-3,
+            errors: Errors::default(),
+            simulations: 1000,
+            seed: 1,
+            lanes: None,
+        }
     }
 }
 
@@ -148,7 +158,8 @@ pub fn collapse(
                 trials.iter().map(built).collect::<Vec<_>>()
             })
             .collect();
-        let seen = simulate(batch, &|done| tell(before + done, of.max(before + done)));
+        let seen =
+            simulate(batch, settings.lanes, &|done| tell(before + done, of.max(before + done)));
         let logs = seen
             .chunks_exact(trials.len())
             .map(|tests| {

@@ -8,6 +8,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Mutex;
 
+use barrelstack::ensemble::Width;
 use barrelstack_campaign::study::{ChunkRun, Progress, RunOptions, Study, StudyError};
 use common::HEAD;
 
@@ -96,14 +97,15 @@ fn what_every_case_depends_on_may_not_change_and_the_refusal_names_it() {
     }
     // A chunk alone does not decide that the study has changed.
     let study = Study::parse("test.toml", &first.replace("count = 40", "count = 60")).unwrap();
-    let reason = study.run_chunk(folder.path(), 2, &|| false).unwrap_err().to_string();
+    let reason =
+        study.run_chunk(folder.path(), 2, Width::widest(), &|| false).unwrap_err().to_string();
     assert!(reason.contains("run it as a whole once"), "{reason}");
     // A damaged shard heals, chunk by chunk too.
     let study = Study::parse("test.toml", &first).unwrap();
     let shard = std::fs::read_dir(folder.path().join("shards")).unwrap().next().unwrap().unwrap();
     std::fs::write(shard.path(), b"no shard").unwrap();
     let chunk = shard.file_name().to_string_lossy()[..6].parse().unwrap();
-    let run = || study.run_chunk(folder.path(), chunk, &|| false).unwrap();
+    let run = || study.run_chunk(folder.path(), chunk, Width::widest(), &|| false).unwrap();
     assert_eq!([run(), run()], [ChunkRun::Again, ChunkRun::Before]);
 }
 
@@ -138,7 +140,7 @@ fn what_an_older_process_writes_into_a_grown_folder_is_run_again() {
     std::fs::remove_file(&good).unwrap();
     std::fs::copy(&foreign, &stale).unwrap();
     let study = Study::parse("test.toml", &large).unwrap();
-    assert_eq!(study.run_chunk(&grown, 1, &|| false).unwrap(), ChunkRun::Now);
+    assert_eq!(study.run_chunk(&grown, 1, Width::widest(), &|| false).unwrap(), ChunkRun::Now);
     assert!(good.is_file() && !stale.exists());
 }
 
@@ -154,7 +156,7 @@ fn a_process_whose_study_grew_meanwhile_ends_and_says_so() {
         }
         ControlFlow::Continue(())
     };
-    let options = RunOptions { threads: std::num::NonZero::new(1) };
+    let options = RunOptions { threads: std::num::NonZero::new(1), ..RunOptions::default() };
     let error = study.run(&out, &options, &tell).unwrap_err().to_string();
     assert!(error.contains("has been given to a study that grew since this run began"), "{error}");
 }
@@ -172,7 +174,7 @@ fn a_shard_that_is_damaged_while_a_study_runs_is_counted() {
         *last.lock().unwrap() = *progress;
         ControlFlow::Continue(())
     };
-    let options = RunOptions { threads: std::num::NonZero::new(1) };
+    let options = RunOptions { threads: std::num::NonZero::new(1), ..RunOptions::default() };
     let collected = study.run(folder.path(), &options, &tell).unwrap();
     let last = last.lock().unwrap();
     assert_eq!((last.damaged, last.now, collected.table.rows()), (1, 60, 60));

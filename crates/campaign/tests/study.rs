@@ -9,6 +9,7 @@ use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use barrelstack::ensemble::Width;
 use barrelstack_campaign::study::{
     ChunkRun, Collected, Role, RunOptions, Study, StudyError, StudyTable, Tally, Value,
 };
@@ -30,7 +31,7 @@ fn study(rest: &str) -> Study {
 }
 
 fn run_with(study: &Study, folder: &Path, threads: usize) -> Collected {
-    let options = RunOptions { threads: NonZero::new(threads) };
+    let options = RunOptions { threads: NonZero::new(threads), ..RunOptions::default() };
     study.run(folder, &options, &|_| ControlFlow::Continue(())).unwrap()
 }
 
@@ -437,13 +438,14 @@ fn a_stopped_study_goes_on_where_it_was() {
     let stop = |progress: &barrelstack_campaign::study::Progress| {
         if progress.now >= 5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let options = RunOptions { threads: NonZero::new(1) };
+    let options = RunOptions { threads: NonZero::new(1), ..RunOptions::default() };
     let error = study.run(again.path(), &options, &stop).unwrap_err();
     assert!(matches!(error, StudyError::Stopped));
     let status = Collected::status(again.path()).unwrap();
     assert_eq!((status.provenance.chunks_done, status.provenance.cases), (2, 4));
     assert!(!status.provenance.complete && !status.missing.contains(&0));
-    let chunk = || study.run_chunk(again.path(), status.missing[0], &|| false).unwrap();
+    let chunk =
+        || study.run_chunk(again.path(), status.missing[0], Width::widest(), &|| false).unwrap();
     assert_eq!([chunk(), chunk()], [ChunkRun::Now, ChunkRun::Before]);
     assert_eq!(run_with(&study, again.path(), 2), whole);
 }

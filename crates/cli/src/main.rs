@@ -6,6 +6,7 @@ mod args;
 mod commands;
 mod figures;
 mod interrupt;
+mod lanes;
 mod printer;
 mod progress;
 mod remedy;

@@ -111,6 +111,35 @@ fn chunks_run_one_by_one_in_any_order_give_the_table_of_the_whole() {
     assert!(stderr(&output).contains("has no chunk 10; its 10 chunks are numbered from 0 to 9"));
 }
 
+#[test]
+fn lanes_of_every_unit_give_one_table_and_other_words_are_answered_with_those_there_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = study(folder.path());
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let of = |unit: &str| {
+        let out = path(unit);
+        let output = barrelstack([&run(&file, &out, "2")[..], &["--lanes", unit]].concat());
+        (out, output)
+    };
+    let (scalar, output) = of("scalar");
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    for unit in ["avx2", "avx512"] {
+        let (out, output) = of(unit);
+        if output.status.code() == Some(0) {
+            assert!(tables(&scalar) == tables(&out), "{unit}");
+        } else {
+            refused(unit, &output, Path::new(&out), &["this machine has no", unit, "has scalar"]);
+        }
+    }
+    let (out, output) = of("sse2");
+    refused(
+        "an unknown unit",
+        &output,
+        Path::new(&out),
+        &["--lanes", "there is no sse2", "scalar"],
+    );
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupt_ends_with_a_sentence_that_says_how_to_go_on() {

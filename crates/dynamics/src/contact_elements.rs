@@ -6,13 +6,17 @@
 //! It is therefore a matter of speed alone: the forces are those of testing every node in every step,
 //! in the same order, with the same bits.
 
-use crate::body::{Body, Motion, Nodes};
+use crate::body::{Body, Motion, Nodes, Round};
 use crate::contact::Stick;
 use crate::lanes::Lanewise;
 use crate::model::{ContactPair, Counts, Model};
 use crate::real::{Mask, Real};
 use crate::shape::Surface;
 use crate::space::{Linear, Planar, Pose, Space, Twist};
+
+/// Impacts are foreseen to the same bits whatever else is in the list: so no element outside it may be
+/// nearer than bodies come in the time that is foreseen, and this (m) for what changes their velocities.
+const FORESIGHT: f64 = 1e-3;
 
 /// How far (m) every body may move before the list is built anew.
 const LEAST_ALLOWANCE: f64 = 0.015;
@@ -140,7 +144,7 @@ impl<S: Space> ContactElements<S> {
             let way = S::at_most(moved)
                 + S::at_most(velocity) * ahead
                 + (turned + spin * ahead) * S::Real::splat(model.reach[i]);
-            stale = stale | !way.lt(S::Real::splat(self.allowances[i]));
+            stale = stale | !way.lt(S::Real::splat(self.allowances[i] - FORESIGHT));
         }
         stale.any()
     }
@@ -169,9 +173,8 @@ impl<S: Space> ContactElements<S> {
         );
         let mut remembered = Remembered { old: &old, group: 0 };
         let mut origins = Vec::new();
-        let couples = self.couples_in_reach(model, poses);
-        for index in couples.into_iter().flat_map(|couple| model.couples[couple].pairs.clone()) {
-            let pair = &model.pairs[index];
+        for index in self.pairs_in_reach(model, poses) {
+            let pair = &model.pair(index);
             let first = self.nodes.len();
             S::Real::scope(
                 #[inline(always)]
@@ -193,22 +196,25 @@ impl<S: Space> ContactElements<S> {
         origins
     }
 
-    /// The couples of bodies whose extents along the first axis come within their margins, in the order
-    /// of the model: found by a sweep, so that a row of bodies costs by its length and not by its square.
-    fn couples_in_reach(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<usize> {
+    /// The pairs of bodies whose balls come within their margins, in the order of the model: found by a sweep
+    /// along the first axis, so that a row of bodies costs by its length and not by its square.
+    fn pairs_in_reach(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<usize> {
         if self.exhaustive {
-            return (0..model.couples.len()).collect();
+            return model.pairs.numbers().collect();
         }
         // Lanes may be carried by different grounds: extents are those relative to each one's own.
         let ground = model.bodies.iter().position(|body| body.motion == Motion::Prescribed);
         let carried = ground.map_or_else(S::Vector::default, |ground| poses[ground].position);
-        let mut extents: Vec<(f64, f64, usize)> = model
-            .bodies
+        let ball = |(i, body): (usize, &Body<S>)| {
+            let reach = if body.is_unbounded() { f64::INFINITY } else { model.reach[i] };
+            reach + self.allowances[i]
+        };
+        let balls: Vec<f64> = model.bodies.iter().enumerate().map(ball).collect();
+        let mut extents: Vec<(f64, f64, usize)> = balls
             .iter()
             .enumerate()
-            .map(|(i, body)| {
-                let reach = if body.is_unbounded() { f64::INFINITY } else { model.reach[i] };
-                let half = S::Real::splat(reach + self.allowances[i]);
+            .map(|(i, ball)| {
+                let half = S::Real::splat(*ball);
                 let place = S::first_coordinate(poses[i].position - carried);
                 let least = -(half - place).largest_lane();
                 (least, (place + half).largest_lane(), i)
@@ -219,15 +225,24 @@ impl<S: Space> ContactElements<S> {
         let mut open: Vec<(f64, usize)> = Vec::new();
         for (from, to, body) in extents {
             open.retain(|(end, _)| from <= *end);
-            for (_, other) in &open {
-                let bodies = [body.min(*other), body.max(*other)];
-                let found = model.couples.binary_search_by_key(&bodies, |couple| couple.bodies);
-                couples.extend(found.ok());
-            }
+            S::Real::scope(
+                #[inline(always)]
+                || {
+                    for (_, other) in &open {
+                        // Of those above each other in a heap, most are far apart.
+                        let apart = poses[body].position - poses[*other].position;
+                        let touch = S::Real::splat(balls[body] + balls[*other]);
+                        if !(touch * touch).lt(apart.dot(apart)).all() {
+                            let bodies = [body.min(*other), body.max(*other)];
+                            couples.push(model.pairs.of_couple(bodies));
+                        }
+                    }
+                },
+            );
             open.push((to, body));
         }
-        couples.sort_unstable();
-        couples
+        couples.sort_unstable_by_key(|pairs| pairs.start);
+        couples.into_iter().flatten().collect()
     }
 
     /// Whether a ball (m) about a point comes within a margin (m) of a surface in any lane.
@@ -235,6 +250,30 @@ impl<S: Space> ContactElements<S> {
     fn near(&self, surface: &S::Surface, point: S::Vector, radius: S::Real, margin: f64) -> bool {
         let distance = surface.gap(point).distance - radius;
         self.exhaustive || (!S::Real::splat(margin).lt(distance)).any()
+    }
+
+    /// Whether a surface stays so deep within a round piece in all lanes that no contact is meant
+    /// ([`Round::greatest_depth`]): the center of an arc may lie far beyond its body, and goes further than it.
+    #[inline(always)]
+    fn behind(
+        &self,
+        model: &Model<S>,
+        pair: &ContactPair,
+        surface: &S::Surface,
+        round: &Round<S>,
+        center: S::Vector,
+        frame: &PairFrame<S>,
+    ) -> bool {
+        let one = S::Real::splat(1.0);
+        // Bodies move, and turn by no more than what moves a point within their reach as far.
+        let way = |body: usize, arm: S::Vector| {
+            let turning = arm.dot(arm).sqrt() / S::Real::splat(model.reach[body].max(1e-9));
+            S::Real::splat(self.allowances[body]) * (one + turning)
+        };
+        let ways =
+            way(pair.contactor, center - frame.contactor) + way(pair.target, center - frame.target);
+        let depth = round.radius - surface.gap(center).distance;
+        !self.exhaustive && (round.greatest_depth + ways).lt(depth).all()
     }
 
     #[inline(always)]
@@ -282,7 +321,9 @@ impl<S: Space> ContactElements<S> {
             }
             Nodes::Rounds(rounds) => {
                 for (index, round) in rounds.iter().enumerate() {
-                    if self.near(surface, frame.to_surface(round.center), round.radius, margin) {
+                    let center = frame.to_surface(round.center);
+                    let reaches = self.near(surface, center, round.radius, margin);
+                    if reaches && !self.behind(model, pair, surface, round, center, frame) {
                         self.nodes.push(u32::try_from(index).unwrap_or(u32::MAX));
                         self.positions.push(round.center);
                         self.weights.push(basis.weight(round.tributary_length));
@@ -322,6 +363,16 @@ impl<R: Real> ContactElements<Planar<R>> {
                 rate.put(lane, &origin.map_or(0.0, |o| single_slip_rates[o]));
             }
         }
+    }
+
+    /// What a lane remembers of the elements that touch in it: a list to be rebuilt for a single state.
+    pub(crate) fn of_lane(&self, lane: usize, touching: &[R::Mask]) -> ContactElements<Planar> {
+        let stick = |(stick, touching): (&Stick<Planar<R>>, &R::Mask)| {
+            if touching.lane(lane) { stick.of_lane(lane) } else { Stick::default() }
+        };
+        let sticks = self.sticks.iter().zip(touching).map(stick).collect();
+        let (groups, nodes) = (self.groups.clone(), self.nodes.clone());
+        ContactElements { groups, nodes, sticks, ..ContactElements::default() }
     }
 }
 

@@ -1,10 +1,9 @@
 //! What does not change during a run: bodies, interfaces, and which boundaries may meet.
 
-use std::ops::Range;
-
 use crate::body::{Body, BodyId, Motion, Nodes};
 use crate::contact::Interface;
 use crate::element::Element;
+use crate::pairs::Pairs;
 use crate::real::Real;
 use crate::space::Space;
 
@@ -46,13 +45,15 @@ pub enum Counts {
     BehindFaceOfTarget(usize),
 }
 
-/// The pairs of two bodies, one after the other in the order of the model.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Couple {
-    /// The two bodies, the lower id first.
-    pub(crate) bodies: [BodyId; 2],
-    /// Their pairs.
-    pub(crate) pairs: Range<usize>,
+/// How closely impacts are followed: their laws are the stiffest, but only while they are deep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Impacts<R> {
+    /// Into how many short steps a time step is divided while an impact asks for it; a whole number, one or
+    /// more.
+    pub divisions: R,
+    /// Of every interface the penetration (m) that whole time steps follow well enough; infinite where
+    /// they follow any.
+    pub calm: Vec<R>,
 }
 
 /// Bodies, interfaces and pairs; constant during a run and shared between threads.
@@ -60,12 +61,11 @@ pub(crate) struct Couple {
 pub struct Model<S: Space> {
     pub(crate) bodies: Vec<Body<S>>,
     pub(crate) interfaces: Vec<Interface<S>>,
-    pub(crate) pairs: Vec<ContactPair>,
-    /// The pairs, two bodies at a time.
-    pub(crate) couples: Vec<Couple>,
+    pub(crate) pairs: Pairs,
     pub(crate) elements: Vec<Element<S>>,
     pub(crate) gravity: S::Vector,
     pub(crate) reach: Vec<f64>,
+    pub(crate) impacts: Impacts<S::Real>,
 }
 
 /// Why bodies and pairs do not make a model.
@@ -124,11 +124,6 @@ pub enum ModelError {
     },
 }
 
-/// The two bodies of a pair, the lower id first.
-fn between(pair: &ContactPair) -> [BodyId; 2] {
-    [pair.contactor.min(pair.target), pair.contactor.max(pair.target)]
-}
-
 impl<S: Space> Model<S> {
     /// Checks bodies, interfaces and pairs, and puts the pairs in their lasting order.
     ///
@@ -139,7 +134,38 @@ impl<S: Space> Model<S> {
     pub fn new(
         bodies: Vec<Body<S>>,
         interfaces: Vec<Interface<S>>,
-        mut pairs: Vec<ContactPair>,
+        pairs: Vec<ContactPair>,
+        gravity: S::Vector,
+    ) -> Result<Self, ModelError> {
+        Self::of_pairs(bodies, interfaces, Pairs::listed(pairs), gravity)
+    }
+
+    /// As [`Model::new`], where how two bodies meet is a matter of their kinds, numbered from 0: `meet` tells
+    /// the pairs of two bodies, the lower id first, and would tell the same for any others of their kinds.
+    ///
+    /// Thousands of bodies need no list of all their pairs, whose number is the square of theirs.
+    ///
+    /// # Errors
+    /// As [`Model::new`].
+    ///
+    /// # Panics
+    /// When there is not one kind for each body.
+    pub fn of_kinds(
+        bodies: Vec<Body<S>>,
+        interfaces: Vec<Interface<S>>,
+        kinds: Vec<usize>,
+        meet: &dyn Fn(&[Body<S>], [BodyId; 2]) -> Vec<ContactPair>,
+        gravity: S::Vector,
+    ) -> Result<Self, ModelError> {
+        assert_eq!(kinds.len(), bodies.len(), "one kind for each body");
+        let pairs = Pairs::of_kinds(kinds, &|between| meet(&bodies, between));
+        Self::of_pairs(bodies, interfaces, pairs, gravity)
+    }
+
+    fn of_pairs(
+        bodies: Vec<Body<S>>,
+        interfaces: Vec<Interface<S>>,
+        pairs: Pairs,
         gravity: S::Vector,
     ) -> Result<Self, ModelError> {
         let mut names: Vec<&str> = bodies.iter().map(|b| b.name.as_str()).collect();
@@ -162,40 +188,60 @@ impl<S: Space> Model<S> {
                 return Err(ModelError::Unbounded { name: body.name.clone() });
             }
         }
-        pairs.sort_unstable_by_key(|pair| (between(pair), *pair));
-        pairs.dedup();
-        for (pair, p) in pairs.iter().enumerate() {
-            let check = |what, index, count| {
-                if index < count {
-                    Ok(())
-                } else {
-                    Err(ModelError::Dangling { pair, what, index, count })
+        let mut dangling = Ok(());
+        let mut pair = 0;
+        pairs.each(&mut |p, contactors, targets| {
+            let mut check = |what, index, count| {
+                if index >= count && dangling.is_ok() {
+                    dangling = Err(ModelError::Dangling { pair, what, index, count });
                 }
             };
-            check("body", p.contactor, bodies.len())?;
-            check("body", p.target, bodies.len())?;
-            check("node set", p.nodes, bodies[p.contactor].nodes.len())?;
-            check("surface", p.surface, bodies[p.target].surfaces.len())?;
-            check("interface", p.interface, interfaces.len())?;
-            match p.counts {
-                Counts::Everywhere => {}
-                Counts::BeforeFace(face) | Counts::BehindFace(face) => {
-                    check("face", face, bodies[p.contactor].faces.len())?;
-                }
-                Counts::BehindFaceOfTarget(face) => {
-                    check("face", face, bodies[p.target].faces.len())?;
+            check("interface", p.interface, interfaces.len());
+            for id in contactors {
+                check("body", *id, bodies.len());
+                let Some(body) = bodies.get(*id) else { continue };
+                check("node set", p.nodes, body.nodes.len());
+                match p.counts {
+                    Counts::Everywhere | Counts::BehindFaceOfTarget(_) => {}
+                    Counts::BeforeFace(face) | Counts::BehindFace(face) => {
+                        check("face", face, body.faces.len());
+                    }
                 }
             }
-        }
-        let mut couples: Vec<Couple> = Vec::new();
-        for (index, pair) in pairs.iter().enumerate() {
-            match couples.last_mut() {
-                Some(couple) if couple.bodies == between(pair) => couple.pairs.end = index + 1,
-                _ => couples.push(Couple { bodies: between(pair), pairs: index..index + 1 }),
+            for id in targets {
+                check("body", *id, bodies.len());
+                let Some(body) = bodies.get(*id) else { continue };
+                check("surface", p.surface, body.surfaces.len());
+                if let Counts::BehindFaceOfTarget(face) = p.counts {
+                    check("face", face, body.faces.len());
+                }
             }
-        }
+            pair += 1;
+        });
+        dangling?;
         let reach = bodies.iter().map(Body::reach).collect();
-        Ok(Self { bodies, interfaces, pairs, couples, elements: Vec::new(), gravity, reach })
+        let calm = vec![S::Real::splat(f64::INFINITY); interfaces.len()];
+        let impacts = Impacts { divisions: S::Real::splat(1.0), calm };
+        let elements = Vec::new();
+        Ok(Self { bodies, interfaces, pairs, elements, gravity, reach, impacts })
+    }
+
+    /// Divides time steps while impacts ask for it; without this no step is divided.
+    ///
+    /// # Panics
+    /// When there are not as many penetrations as interfaces.
+    pub fn follow_impacts(&mut self, impacts: Impacts<S::Real>) {
+        assert_eq!(
+            impacts.calm.len(),
+            self.interfaces.len(),
+            "one penetration for every interface"
+        );
+        self.impacts = impacts;
+    }
+
+    /// How closely impacts are followed.
+    pub fn impacts(&self) -> &Impacts<S::Real> {
+        &self.impacts
     }
 
     /// Puts force elements between the bodies, in place of those before, in the order in which their
@@ -224,9 +270,22 @@ impl<S: Space> Model<S> {
         &self.interfaces
     }
 
-    /// The contact pairs, in the order in which their forces are summed.
-    pub fn pairs(&self) -> &[ContactPair] {
-        &self.pairs
+    /// The contact pairs, in the order in which their forces are summed; in a model of kinds as many as the
+    /// square of its bodies.
+    pub fn pairs(&self) -> impl Iterator<Item = ContactPair> + '_ {
+        self.pairs.numbers().map(|number| self.pairs.get(number))
+    }
+
+    /// The contact pair of a number, such as that of a [`Contact`](crate::forces::Contact).
+    #[inline(always)]
+    pub fn pair(&self, number: usize) -> ContactPair {
+        self.pairs.get(number)
+    }
+
+    /// Tells how bodies meet: a pair, and the bodies that may stand in the place of its contactor and of its
+    /// target, any of them with any other.
+    pub fn each_meeting(&self, tell: &mut dyn FnMut(&ContactPair, &[BodyId], &[BodyId])) {
+        self.pairs.each(tell);
     }
 
     /// The force elements, in the order of [`Scratch::loads`](crate::Scratch::loads).

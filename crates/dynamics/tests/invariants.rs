@@ -67,7 +67,7 @@ proptest! {
                 let limit = static_coefficient * contact.normal_force;
                 assert!(contact.friction_force.abs() <= limit * (1.0 + 1e-15));
                 let (force, point) = contact_force(&model, state, scratch, contact);
-                let pair = model.pairs()[contact.pair];
+                let pair = model.pair(contact.pair);
                 // Both bodies feel the force on the target's surface.
                 let surface = &model.bodies()[pair.target].surfaces[pair.surface].surface;
                 assert!(Surface::<Planar>::gap(surface, contact.point).distance.abs() < 1e-14);

@@ -263,7 +263,7 @@ pub(super) fn pairs(run: &Run, caption: &str) -> Table {
 /// Contactor, target and force at rest (N) of all bodies that lean on each other by design.
 fn designed_pairs(run: &Run) -> impl Iterator<Item = (usize, usize, f64)> {
     run.recording.joints.iter().filter_map(|joint| {
-        let pair = run.assembly.model.pairs().iter().find(|pair| {
+        let pair = run.assembly.model.pairs().find(|pair| {
             let between = [pair.contactor, pair.target];
             between == [joint.upper, joint.lower] || between == [joint.lower, joint.upper]
         })?;

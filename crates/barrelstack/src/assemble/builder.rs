@@ -12,6 +12,8 @@ pub(super) struct Builder<'a> {
     pub(super) scale: Similitude,
     pub(super) bodies: Vec<Body<Planar>>,
     pub(super) parts: Vec<Part>,
+    /// Moment of inertia (kg·m²) of a barrel of which nothing is changed.
+    inertia: f64,
     /// How the surfaces of every body are touched, in their order.
     pub(super) touches: Vec<Vec<Touch>>,
 }
@@ -40,7 +42,8 @@ impl<'a> Builder<'a> {
     /// A stack of nothing but the ground.
     pub(super) fn new(spec: &'a StackSpec, scale: Similitude) -> Self {
         let (bodies, parts) = (vec![Body::ground(0.0)], vec![Part::ground()]);
-        Self { spec, scale, bodies, parts, touches: vec![Vec::new()] }
+        let inertia = spec.barrel.inertia(spec.view);
+        Self { spec, scale, bodies, parts, inertia, touches: vec![Vec::new()] }
     }
 
     /// Adds a body, scaled; returns its id.
@@ -112,9 +115,10 @@ impl<'a> Builder<'a> {
         let mut barrels = Vec::new();
         for (column, place) in (first..).zip(places) {
             let mut barrel = spec.barrel.clone();
-            let mut offset = 0.0;
+            let (mut inertia, mut offset) = (self.inertia, 0.0);
             for change in self.spec.changes_of(StackBody::Barrel, level, column) {
                 barrel = barrel.altered(change.mass, change.fill);
+                inertia = barrel.inertia(spec.view);
                 offset += change.offset_x;
             }
             barrels.push(self.add(Draft {
@@ -123,7 +127,7 @@ impl<'a> Builder<'a> {
                 level,
                 column,
                 mass: barrel.mass,
-                inertia: Some(barrel.inertia(spec.view)),
+                inertia: Some(inertia),
                 position: Vec2::new(origin.x + place + offset, origin.z),
                 size,
                 solids: vec![Solid::exact(shape.clone(), Vec2::default(), Seat::None)],

@@ -1,5 +1,9 @@
 //! A free scene: any planar bodies on a ground.
 
+use std::collections::HashMap;
+use std::mem::discriminant;
+use std::ops::Range;
+
 use barrelstack_dynamics::shape::{BarrelProfile, Circle, Cradle, Polygon};
 use barrelstack_dynamics::space::Space;
 use barrelstack_dynamics::{
@@ -9,7 +13,7 @@ use barrelstack_dynamics::{
 
 use super::interfaces::interface;
 use super::{AssembleError, Assembly, Part, PartKind, Similitude, outline_of};
-use crate::scenario::{self, FreeBody, FreeScene};
+use crate::scenario::{self, FreeBody, FreeInterface, FreeScene};
 
 /// Builds a free scene.
 pub(super) fn assemble(
@@ -19,26 +23,27 @@ pub(super) fn assemble(
 ) -> Result<Assembly, AssembleError> {
     let mut bodies = vec![Body::ground(scene.ground.slope)];
     let mut parts = vec![Part::ground()];
-    let mut kinds = vec![scene.ground.kind.as_str()];
+    let mut outer = vec![Outer {
+        group: None,
+        boundaries: vec![Boundary { kind: &scene.ground.kind, surfaces: 0..1, nodes: 0..0 }],
+    }];
     for body in &scene.bodies {
-        let (body_of_model, part) = free_body(body, scale)?;
+        let (body_of_model, part, of_body) = free_body(body, scale)?;
         bodies.push(body_of_model);
         parts.push(part);
-        kinds.push(body.kind.as_str());
+        outer.push(of_body);
     }
-    let mut pairs = Vec::new();
-    let mut interfaces = Vec::new();
-    for (index, law) in scene.interfaces.iter().enumerate() {
-        let [contactor_kind, target_kind] = &law.between;
-        join(&bodies, &kinds, [contactor_kind.as_str(), target_kind.as_str()], index, &mut pairs);
-        let name = format!("{contactor_kind}-{target_kind}");
-        interfaces.push(interface(&name, &law.law, 1.0, scale));
-    }
-    let model = Model::new(bodies, interfaces, pairs, Vec2::new(0.0, -gravity))?;
+    let law = |law: &FreeInterface| interface(&law.between.join("-"), &law.law, 1.0, scale);
+    let interfaces = scene.interfaces.iter().map(law).collect();
+    let kinds = kinds(scene, &bodies, &outer);
+    let gravity = Vec2::new(0.0, -gravity);
+    let meet = |bodies: &[Body<Planar>], between| pairs(scene, between, bodies, &outer);
+    let model = Model::of_kinds(bodies, interfaces, kinds, &meet, gravity)?;
     Ok(Assembly {
         model,
         parts,
         loose: Vec::new(),
+        step: f64::INFINITY,
         devices: Vec::new(),
         height: 0.0,
         levels: 0,
@@ -47,76 +52,152 @@ pub(super) fn assemble(
     })
 }
 
-/// Every body of the first kind against every one of the second.
+/// What of a body touches others.
+struct Outer<'a> {
+    group: Option<&'a str>,
+    boundaries: Vec<Boundary<'a>>,
+}
+
+/// Surfaces and node sets of a body that are of one kind. Every part of it has its nodes and its surface at one
+/// place of both, but chosen nodes, which come alone.
+struct Boundary<'a> {
+    kind: &'a str,
+    surfaces: Range<usize>,
+    nodes: Range<usize>,
+}
+
+impl Boundary<'_> {
+    /// The nodes of the part whose surface this is.
+    fn nodes_of(&self, surface: usize) -> Option<usize> {
+        let at = self.nodes.start + surface - self.surfaces.start;
+        (self.nodes.len() == self.surfaces.len()).then_some(at)
+    }
+
+    /// The surface of the part whose nodes these are.
+    fn surface_of(&self, nodes: usize) -> usize {
+        self.surfaces.start + nodes - self.nodes.start
+    }
+}
+
+/// Numbers for bodies, the same where bodies meet others alike.
+fn kinds(scene: &FreeScene, bodies: &[Body<Planar>], outer: &[Outer<'_>]) -> Vec<usize> {
+    let grouped = scene.interfaces.iter().any(|interface| !interface.within_groups);
+    let mut known = HashMap::new();
+    let kind = |(body, outer): (&Body<Planar>, &Outer<'_>)| {
+        let surfaces = body.surfaces.iter().map(|placed| discriminant(&placed.surface));
+        let of = |b: &Boundary<'_>| (b.kind.to_owned(), b.surfaces.clone(), b.nodes.clone());
+        let key = (
+            body.motion,
+            outer.group.filter(|_| grouped).map(str::to_owned),
+            outer.boundaries.iter().map(of).collect::<Vec<_>>(),
+            surfaces.collect::<Vec<_>>(),
+            body.nodes.iter().map(discriminant).collect::<Vec<_>>(),
+        );
+        let next = known.len();
+        *known.entry(key).or_insert(next)
+    };
+    bodies.iter().zip(outer).map(kind).collect()
+}
+
+/// The pairs of two bodies.
 ///
 /// Between bodies of one kind both carry nodes, but for two that roll, where one says it all. Convex
 /// boundaries without nodes test each other both ways; against a round one, its rolling node says it all.
-fn join(
+fn pairs(
+    scene: &FreeScene,
+    between: [BodyId; 2],
     bodies: &[Body<Planar>],
-    kinds: &[&str],
-    between: [&str; 2],
-    interface: usize,
-    pairs: &mut Vec<ContactPair>,
-) {
-    let of =
-        |kind: &str| -> Vec<BodyId> { (0..bodies.len()).filter(|i| kinds[*i] == kind).collect() };
-    let mut add = |contactor: BodyId, nodes: usize, target: BodyId, surface: usize| {
-        let counts = Counts::Everywhere;
-        pairs.push(ContactPair { contactor, nodes, target, surface, interface, counts });
-    };
-    for contactor in of(between[0]) {
-        for target in of(between[1]) {
-            let both_fixed = bodies[contactor].motion == Motion::Prescribed
-                && bodies[target].motion == Motion::Prescribed;
-            if contactor == target || both_fixed {
-                continue;
-            }
-            for (own, nodes) in bodies[contactor].nodes.iter().enumerate() {
-                for surface in 0..bodies[target].surfaces.len() {
-                    // Every part of a body has its nodes and its surface at one place in the lists, but
-                    // chosen nodes, which come alone.
-                    let theirs = bodies[target].nodes.get(surface);
-                    match (nodes, theirs) {
-                        (Nodes::Rounds(_), Some(Nodes::Rolling { .. })) => {
-                            add(target, surface, contactor, own);
+    outer: &[Outer<'_>],
+) -> Vec<ContactPair> {
+    let [one, other] = between;
+    let mut pairs = Vec::new();
+    if [one, other].iter().all(|id| bodies[*id].motion == Motion::Prescribed) {
+        return pairs;
+    }
+    let together = outer[one].group.is_some() && outer[one].group == outer[other].group;
+    for (interface, law) in scene.interfaces.iter().enumerate() {
+        if together && !law.within_groups {
+            continue;
+        }
+        for [contactor, target] in [[one, other], [other, one]] {
+            let of = |id: BodyId, kind: &String| {
+                let kind = kind.clone();
+                outer[id].boundaries.iter().filter(move |boundary| boundary.kind == kind)
+            };
+            for own in of(contactor, &law.between[0]) {
+                for theirs in of(target, &law.between[1]) {
+                    let mut add = |contactor, nodes, target, surface| {
+                        let counts = Counts::Everywhere;
+                        pairs.push(ContactPair {
+                            contactor,
+                            nodes,
+                            target,
+                            surface,
+                            interface,
+                            counts,
+                        });
+                    };
+                    for nodes in own.nodes.clone() {
+                        for surface in theirs.surfaces.clone() {
+                            let back = theirs.nodes_of(surface);
+                            let back = back.map(|at| (at, &bodies[target].nodes[at]));
+                            match (&bodies[contactor].nodes[nodes], back) {
+                                (Nodes::Rounds(_), Some((back, Nodes::Rolling { .. }))) => {
+                                    add(target, back, contactor, own.surface_of(nodes));
+                                }
+                                (Nodes::Rounds(_), Some((back, Nodes::Rounds(_)))) => {
+                                    add(contactor, nodes, target, surface);
+                                    add(target, back, contactor, own.surface_of(nodes));
+                                }
+                                (Nodes::Rolling { .. }, Some((_, Nodes::Rolling { .. })))
+                                    if law.between[0] == law.between[1] && contactor > target => {}
+                                _ => add(contactor, nodes, target, surface),
+                            }
                         }
-                        (Nodes::Rounds(_), Some(Nodes::Rounds(_))) => {
-                            add(contactor, own, target, surface);
-                            add(target, surface, contactor, own);
-                        }
-                        (Nodes::Rolling { .. }, Some(Nodes::Rolling { .. }))
-                            if between[0] == between[1] && contactor > target => {}
-                        _ => add(contactor, own, target, surface),
                     }
                 }
             }
         }
     }
+    pairs
 }
 
-fn free_body(body: &FreeBody, scale: Similitude) -> Result<(Body<Planar>, Part), AssembleError> {
+fn free_body(
+    body: &FreeBody,
+    scale: Similitude,
+) -> Result<(Body<Planar>, Part, Outer<'_>), AssembleError> {
     let length = scale.length;
     let vector = |v: [f64; 2]| Vec2::new(v[0], v[1]) * length;
     let center = vector(body.center_of_mass);
     let rotation = <Planar as Space>::rotation(body.angle);
     let mut part = Part::alone(&body.name, PartKind::Body);
     let (mut surfaces, mut node_sets) = (Vec::new(), Vec::new());
-    for piece in body.shape.parts() {
-        let surface = shape(&body.name, &piece.shape, length)?;
-        let offset = vector(piece.offset) - center;
-        let placed = Placed { surface, offset, rotation: <Planar as Space>::rotation(piece.turn) };
-        part.outlines.push(outline_of(&placed));
-        if let Some(nodes) = nodes(&body.nodes, &placed, length) {
-            node_sets.push(nodes);
+    let mut boundaries = Vec::new();
+    for (kind, outline, rule) in body.outer() {
+        let (first_surface, first_nodes) = (surfaces.len(), node_sets.len());
+        for piece in outline.iter().flat_map(|outline| outline.parts()) {
+            let surface = shape(&body.name, &piece.shape, length)?;
+            let offset = vector(piece.offset) - center;
+            let rotation = <Planar as Space>::rotation(piece.turn);
+            let placed = Placed { surface, offset, rotation };
+            part.outlines.push(outline_of(&placed));
+            if let Some(nodes) = nodes(rule, &placed, length) {
+                node_sets.push(nodes);
+            }
+            surfaces.push(placed);
         }
-        surfaces.push(placed);
-    }
-    if let scenario::Nodes::At(list) = &body.nodes {
-        let node = |node: &scenario::ChosenNode| Node {
-            position: vector(node.at) - center,
-            tributary_length: node.tributary_length * length,
-        };
-        node_sets.push(Nodes::Fixed(list.iter().map(node).collect()));
+        if let scenario::Nodes::At(list) = rule {
+            let node = |node: &scenario::ChosenNode| Node {
+                position: vector(node.at) - center,
+                tributary_length: node.tributary_length * length,
+            };
+            node_sets.push(Nodes::Fixed(list.iter().map(node).collect()));
+        }
+        boundaries.push(Boundary {
+            kind,
+            surfaces: first_surface..surfaces.len(),
+            nodes: first_nodes..node_sets.len(),
+        });
     }
     let points = part.outlines.iter().flat_map(|outline| &outline.points);
     part.size = points.map(|p| p.length()).fold(0.0, f64::max);
@@ -125,6 +206,7 @@ fn free_body(body: &FreeBody, scale: Similitude) -> Result<(Body<Planar>, Part),
         let angular = viscous.angular * scale.damping(false) * length * length;
         [[linear, 0.0, 0.0], [0.0, linear, 0.0], [0.0, 0.0, angular]]
     });
+    let outer = Outer { group: body.group.as_deref(), boundaries };
     let body = Body {
         name: body.name.clone(),
         motion: if body.fixed_to_ground { Motion::Prescribed } else { Motion::Free },
@@ -143,7 +225,7 @@ fn free_body(body: &FreeBody, scale: Similitude) -> Result<(Body<Planar>, Part),
         nodes: node_sets,
         faces: Vec::new(),
     };
-    Ok((body, part))
+    Ok((body, part, outer))
 }
 
 fn shape(body: &str, shape: &scenario::Shape, length: f64) -> Result<Shape, AssembleError> {

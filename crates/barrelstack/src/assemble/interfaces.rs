@@ -7,7 +7,7 @@ use super::Similitude;
 use crate::scenario;
 
 /// Penetration (m) at which the laws that stiffen with penetration lend their stiffness to the stick.
-const STICK_REFERENCE: f64 = 1e-3;
+const STICK_REFERENCE: f64 = 2e-4;
 
 /// The stick of a rebound is damped as this share of the critical damping of a mass (kg) on it.
 const STICK_DAMPING_RATIO: f64 = 0.1;

@@ -14,6 +14,7 @@ use barrelstack_dynamics::{BodyId, Model, ModelError, Placed, Planar, Vec2};
 
 use crate::device::{Loose, Words};
 use crate::scenario::{Scenario, Scene, View};
+use crate::step::Pace;
 
 pub use similitude::Similitude;
 
@@ -104,6 +105,8 @@ pub struct Assembly {
     pub parts: Vec<Part>,
     /// Elements of devices that are put on once the stack stands.
     pub(crate) loose: Vec<Loose>,
+    /// The time step (s) that its contacts ask for; impacts divide it.
+    pub step: f64,
     /// The device that every force element of the model belongs to.
     pub devices: Vec<&'static Words>,
     /// Height (m) of the stack from the ground to the top of the highest barrel; zero for a free scene.
@@ -166,10 +169,15 @@ pub enum AssembleError {
 /// When shapes are impossible, bodies overlap, or names repeat.
 pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
     let scale = Similitude::new(scenario.run.similitude);
-    match &scenario.scene {
+    let mut assembly = match &scenario.scene {
         Scene::Stack { stack, .. } => stack::assemble(stack, scenario.run.gravity, scale),
         Scene::Free(scene) => free::assemble(scene, scenario.run.gravity, scale),
-    }
+    }?;
+    let loose = assembly.loose.iter().map(|loose| &loose.element);
+    let pace = Pace::of(&assembly.model, loose, scale.time());
+    assembly.model.follow_impacts(pace.impacts);
+    assembly.step = pace.step;
+    Ok(assembly)
 }
 
 /// The outline of a shape that sits at an offset on a body.

@@ -54,6 +54,7 @@ pub(super) fn assemble(
         model,
         parts: builder.parts,
         loose,
+        step: f64::INFINITY,
         devices: Vec::new(),
         height: height * scale.length,
         levels: spec.levels,

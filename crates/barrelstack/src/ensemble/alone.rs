@@ -6,19 +6,21 @@ use barrelstack_dynamics::{
     EnergyLedger, Model, Observer, Planar, Scratch, Simulation, State, simulate,
 };
 
-use super::{Audience, CaseResult, Run, Stack};
+use super::case::Seen;
+use super::{Audience, CaseResult, Run};
 use crate::run::{Ended, conclude, method, thresholds};
-use crate::watch::{End, Ending, Fates};
+use crate::stand::Stack;
+use crate::watch::{End, Ending, Fates, Joints, Pressing};
 
 /// Runs a group; none when asked to stop.
 pub(super) fn run(
     group: &[Run<'_>],
-    stacks: &[Stack],
+    stacks: &[Stack<'_>],
     audience: &mut Audience<'_>,
 ) -> Option<Vec<(usize, CaseResult)>> {
     let mut results = Vec::with_capacity(group.len());
     for run in group {
-        let Ok((standing, _)) = &stacks[run.stack].standing else { continue };
+        let Ok(standing) = &stacks[run.stack].standing else { continue };
         let scenario = &*run.case.scenario;
         let (mut state, mut scratch) = (standing.state.clone(), standing.scratch.clone());
         let simulation = Simulation {
@@ -28,6 +30,9 @@ pub(super) fn run(
         };
         let mut watch = Watch {
             fates: Fates::new(&standing.assembly, &state, thresholds(scenario)),
+            stresses: Pressing::new(&standing.assembly, &scratch),
+            joints: Joints::new(&standing.assembly),
+            started: false,
             end: run.end(standing),
             stop: audience.stop,
             next_ask: 0.0,
@@ -42,16 +47,21 @@ pub(super) fn run(
         let ending = watch.ending.unwrap_or(Ending::of_time(scenario));
         let ended = ended.map(|totals| Ended::of(&totals));
         let verdict = conclude(&standing.assembly, ground, &watch.fates, ended, state.time, ending);
-        let result = CaseResult::of(&standing.assembly, ground, &watch.fates, verdict, state.time);
+        let stresses = watch.stresses.finish(0);
+        let seen = Seen { fates: &watch.fates, stresses: &stresses, joints: &watch.joints };
+        let result = CaseResult::of(&standing.assembly, ground, &seen, verdict, state.time);
         (audience.tell)(&result);
         results.push((run.index, result));
     }
     Some(results)
 }
 
-/// Watches what becomes of every body, and nothing else.
+/// Watches what becomes of every body and what it bears, and nothing else.
 struct Watch<'a> {
     fates: Fates,
+    stresses: Pressing,
+    joints: Joints,
+    started: bool,
     end: End,
     stop: &'a dyn Fn() -> bool,
     /// When to ask next whether to stop (s).
@@ -68,6 +78,13 @@ impl Observer<Planar> for Watch<'_> {
         _: &EnergyLedger<Planar>,
     ) -> ControlFlow<()> {
         self.fates.observe(state, scratch);
+        self.stresses.observe(self.fates.collapse_time().is_none(), scratch);
+        if self.started {
+            self.joints.observe(state.time, scratch);
+        } else {
+            self.joints.start(state.time, scratch);
+            self.started = true;
+        }
         if state.time >= self.next_ask {
             self.next_ask = state.time + 0.05;
             if (self.stop)() {

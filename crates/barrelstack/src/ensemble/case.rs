@@ -8,7 +8,7 @@ use crate::ground::{Ground, GroundError};
 use crate::outcome::Outcome;
 use crate::run::{CUT, Verdict};
 use crate::scenario::Scenario;
-use crate::watch::{Ending, Fates};
+use crate::watch::{Ending, Fates, Joint, Joints, Stresses};
 
 /// A case that is ready to run.
 #[derive(Clone, Debug)]
@@ -45,6 +45,9 @@ pub struct CaseResult {
     pub fall_heights: Vec<f64>,
     /// Demands on the stack; all none where it could not run or broke down.
     pub demands: Demands,
+    /// Forces between bodies that lean on each other, by name, at rest and at their largest; none where it could
+    /// not run or broke down.
+    pub joints: Vec<(String, Joint)>,
     /// Largest displacement (m) of a barrel along x against the ground, left at the end.
     pub residual_displacement: Option<f64>,
     /// Why the run ended.
@@ -61,20 +64,29 @@ pub struct CaseResult {
     pub warnings: Vec<String>,
 }
 
+/// What was watched of a case.
+pub(super) struct Seen<'a> {
+    pub(super) fates: &'a Fates,
+    pub(super) stresses: &'a Stresses,
+    pub(super) joints: &'a Joints,
+}
+
 impl CaseResult {
     /// What a verdict and the fates of the bodies say of a case that ran until a time (s).
     pub(super) fn of(
         assembly: &Assembly,
         ground: &Ground,
-        fates: &Fates,
+        seen: &Seen<'_>,
         verdict: Verdict,
         time: f64,
     ) -> Self {
+        let Seen { fates, stresses, joints } = *seen;
         let sound = !matches!(verdict.outcome, Outcome::Invalid { .. });
         let barrels: Vec<usize> = assembly.of_kind(PartKind::Barrel).collect();
         let all = || barrels.iter().map(|body| fates.fate(*body));
         let fall = |body: &usize| (assembly.parts[*body].name.clone(), fates.fate(*body).fell_at);
         let heights = || all().filter(|fate| fate.fell_at.is_some()).map(|fate| fate.drop);
+        let named = |joint: &Joint| (joint.name(assembly), joint.clone());
         let residual = all().map(|fate| fate.residual_displacement);
         let largest = |most: f64, value: f64| if value.abs() > most.abs() { value } else { most };
         Self {
@@ -82,7 +94,12 @@ impl CaseResult {
             barrels: barrels.len(),
             falls: if sound { barrels.iter().map(fall).collect() } else { Vec::new() },
             fall_heights: if sound { heights().collect() } else { Vec::new() },
-            demands: if sound { Demands::of(assembly, fates, None) } else { Demands::default() },
+            demands: if sound {
+                Demands::of(assembly, fates, stresses)
+            } else {
+                Demands::default()
+            },
+            joints: if sound { joints.joints.iter().map(named).collect() } else { Vec::new() },
             residual_displacement: (sound && !barrels.is_empty())
                 .then(|| residual.fold(0.0, largest)),
             ending: Some(verdict.ending),
@@ -104,6 +121,7 @@ impl CaseResult {
             falls: Vec::new(),
             fall_heights: Vec::new(),
             demands: Demands::default(),
+            joints: Vec::new(),
             residual_displacement: None,
             ending: None,
             cut: None,

@@ -4,10 +4,12 @@ use barrelstack_dynamics::lanes::{self, Case, End, Lanewise as _, Task, Width, m
 use barrelstack_dynamics::real::{Mask, Real};
 use barrelstack_dynamics::{Finish, Method, Planar, Scratch, State};
 
-use super::{Audience, CaseResult, Run, Stack};
+use super::case::Seen;
+use super::{Audience, CaseResult, Run};
 use crate::ground::Ground;
-use crate::run::{Ended, Standing, conclude, thresholds};
-use crate::watch::{self, Ending, Fates};
+use crate::run::{Ended, conclude, thresholds};
+use crate::stand::{Stack, Standing};
+use crate::watch::{self, Ending, Fates, Joints, Pressing};
 
 /// Steps between two questions whether to stop.
 const PATIENCE: u32 = 1024;
@@ -17,7 +19,7 @@ pub(super) fn run(
     width: Width,
     method: Method,
     group: &[Run<'_>],
-    stacks: &[Stack],
+    stacks: &[Stack<'_>],
     audience: &mut Audience<'_>,
 ) -> Option<Vec<(usize, CaseResult)>> {
     let width = if width.is_here() { width } else { Width::Scalar };
@@ -27,7 +29,7 @@ pub(super) fn run(
 struct Marching<'a, 'b> {
     method: Method,
     group: &'a [Run<'a>],
-    stacks: &'a [Stack],
+    stacks: &'a [Stack<'a>],
     audience: &'a mut Audience<'b>,
 }
 
@@ -43,6 +45,8 @@ impl Task for Marching<'_, '_> {
             next: 0,
             runs: vec![0; R::LANES],
             fates: None,
+            stresses: Pressing::nothing(),
+            joints: None,
             end: None,
             rested: R::Mask::default(),
             steps: 0,
@@ -56,7 +60,7 @@ impl Task for Marching<'_, '_> {
 
 struct Crew<'a, 'b, R: Real> {
     group: &'a [Run<'a>],
-    stacks: &'a [Stack],
+    stacks: &'a [Stack<'a>],
     audience: &'a mut Audience<'b>,
     /// The next run of the group.
     next: usize,
@@ -64,6 +68,10 @@ struct Crew<'a, 'b, R: Real> {
     runs: Vec<usize>,
     /// What becomes of the bodies of every lane; none before the first run is loaded.
     fates: Option<Fates<R>>,
+    /// How hard nodes press in every lane.
+    stresses: Pressing<R>,
+    /// What bodies of every lane bear; none before the first run is loaded.
+    joints: Option<Joints<R>>,
     /// What ends every lane before its time is over; none before the first run is loaded.
     end: Option<watch::End<R>>,
     /// The lanes that had come to rest in the last step.
@@ -77,7 +85,7 @@ struct Crew<'a, 'b, R: Real> {
 impl<R: Real> Crew<'_, '_, R> {
     fn standing(&self, lane: usize) -> Option<(&Run<'_>, &Standing)> {
         let run = &self.group[self.runs[lane]];
-        self.stacks[run.stack].standing.as_ref().ok().map(|(standing, _)| (run, standing))
+        self.stacks[run.stack].standing.as_ref().ok().map(|standing| (run, standing))
     }
 }
 
@@ -88,7 +96,7 @@ impl<'a, R: Real> lanes::Crew<'a, R> for Crew<'a, '_, R> {
         let run = self.group.get(self.next).filter(|_| !self.interrupted)?;
         self.runs[lane] = self.next;
         self.next += 1;
-        let (standing, _) = self.stacks[run.stack].standing.as_ref().ok()?;
+        let standing = self.stacks[run.stack].standing.as_ref().ok()?;
         Some(Case {
             model: &standing.assembly.model,
             state: standing.state.clone(),
@@ -104,6 +112,12 @@ impl<'a, R: Real> lanes::Crew<'a, R> for Crew<'a, '_, R> {
         let rest = &standing.state;
         let mut fates = Fates::new(&standing.assembly, rest, thresholds(&run.case.scenario));
         fates.observe(state, scratch);
+        let mut stresses = Pressing::new(&standing.assembly, &standing.scratch);
+        stresses.observe(fates.collapse_time().is_none(), scratch);
+        let mut joints = Joints::new(&standing.assembly);
+        joints.start(state.time, scratch);
+        self.stresses.begin(lane, stresses);
+        self.joints.get_or_insert_with(|| Joints::in_all(&joints)).put(lane, &joints);
         self.fates.get_or_insert_with(|| Fates::in_all(&fates)).put(lane, &fates);
         self.end.get_or_insert_with(|| watch::End::in_all(&end)).put(lane, &end);
     }
@@ -119,18 +133,26 @@ impl<'a, R: Real> lanes::Crew<'a, R> for Crew<'a, '_, R> {
                 return !R::Mask::default();
             }
         }
-        let (Some(fates), Some(end)) = (&mut self.fates, &mut self.end) else {
+        let (Some(fates), Some(joints), Some(end)) =
+            (&mut self.fates, &mut self.joints, &mut self.end)
+        else {
             return R::Mask::default();
         };
         fates.observe(state, scratch);
+        joints.observe(state.time, scratch);
+        self.stresses.observe(fates.stands(), scratch);
         let (collapsed, rested) = end.observe(state, fates);
         self.rested = rested;
         collapsed | rested
     }
 
     fn end(&mut self, lane: usize, end: End) {
-        let Some(fates) = self.fates.as_ref().filter(|_| !self.interrupted) else { return };
-        let fates = fates.of_lane(lane);
+        let (Some(fates), Some(joints), false) = (&self.fates, &self.joints, self.interrupted)
+        else {
+            return;
+        };
+        let (fates, joints) = (fates.of_lane(lane), joints.of_lane(lane));
+        let stresses = self.stresses.finish(lane);
         let Some((run, standing)) = self.standing(lane) else { return };
         let ending = match &end.finish {
             Ok(Finish::Stopped) if self.rested.lane(lane) => Ending::Rest,
@@ -141,7 +163,8 @@ impl<'a, R: Real> lanes::Crew<'a, R> for Crew<'a, '_, R> {
         let ended = end.finish.map(|_| Ended { energy: end.energy, steps: end.steps });
         let (assembly, ground) = (&standing.assembly, &*run.case.ground);
         let verdict = conclude(assembly, ground, &fates, ended, end.time, ending);
-        let result = CaseResult::of(assembly, ground, &fates, verdict, end.time);
+        let seen = Seen { fates: &fates, stresses: &stresses, joints: &joints };
+        let result = CaseResult::of(assembly, ground, &seen, verdict, end.time);
         let index = run.index;
         (self.audience.tell)(&result);
         self.results.push((index, result));

@@ -1,5 +1,7 @@
 //! A free scene: any planar bodies on a ground, for verification and for teaching.
 
+use std::collections::BTreeSet;
+
 use super::dimension::Dimension;
 use super::error::ScenarioError;
 use super::field::{Default, Field, Kind, Range, Section, names};
@@ -57,10 +59,25 @@ pub struct FreeBody {
     pub spin: f64,
     /// Contact nodes.
     pub nodes: Nodes,
+    /// Further boundaries.
+    pub boundaries: Vec<Boundary>,
+    /// Bodies of one group may be kept from touching each other.
+    pub group: Option<String>,
     /// Whether the body moves with the ground.
     pub fixed_to_ground: bool,
     /// Viscous drag.
     pub viscous: Option<Viscous>,
+}
+
+/// A boundary of a body beside that of its own shape; it weighs nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Boundary {
+    /// Label used by interfaces.
+    pub kind: String,
+    /// Outline that others touch, about the reference point of the body's shape; none where nodes are all.
+    pub shape: Option<Shape>,
+    /// Contact nodes.
+    pub nodes: Nodes,
 }
 
 /// The law between two kinds of a free scene.
@@ -68,6 +85,8 @@ pub struct FreeBody {
 pub struct FreeInterface {
     /// The two kinds; the first carries the nodes (contactor), the second the surface (target).
     pub between: [String; 2],
+    /// Whether bodies of one group meet by it.
+    pub within_groups: bool,
     /// The law.
     pub law: Interface,
 }
@@ -83,8 +102,17 @@ pub struct FreeScene {
     pub interfaces: Vec<FreeInterface>,
 }
 
+impl FreeBody {
+    /// Kind, shape and nodes of all its boundaries, that of its own shape first.
+    pub fn outer(&self) -> impl Iterator<Item = (&str, Option<&Shape>, &Nodes)> {
+        let own = (self.kind.as_str(), Some(&self.shape), &self.nodes);
+        let further = self.boundaries.iter().map(|b| (b.kind.as_str(), b.shape.as_ref(), &b.nodes));
+        std::iter::once(own).chain(further)
+    }
+}
+
 /// Most bodies of a free scene.
-const MOST_BODIES: usize = 500;
+const MOST_BODIES: usize = 5000;
 
 /// The ground.
 pub static GROUND: Section = Section {
@@ -124,6 +152,35 @@ pub static VISCOUS: Section = Section {
     variants: None,
     exclusive: &[],
 };
+
+/// A further boundary.
+pub static BOUNDARY: Section = Section {
+    name: "boundary",
+    help: "A boundary of a body beside that of its own shape; it weighs nothing.",
+    fields: &[
+        Field::new("kind", Kind::Text, Default::Required, "Label used by interfaces."),
+        Field::new(
+            "shape",
+            Kind::Table(&SHAPE),
+            Default::Nothing,
+            "Outline that others touch, from the reference point of the body's shape; without it the boundary is \
+             its nodes.",
+        ),
+        NODES_FIELD,
+    ],
+    variants: None,
+    exclusive: &[],
+};
+
+/// The nodes of a boundary.
+const NODES_FIELD: Field = Field::new(
+    "nodes",
+    Kind::ChoiceOrTable(names::<NodeRule>, "rule", &nodes::NODES),
+    Default::Derived(
+        "rolling for a circle, corners for straight sides, 1 cm apart otherwise; must be given without a shape",
+    ),
+    "Contact nodes.",
+);
 
 /// A body.
 pub static BODY: Section = Section {
@@ -175,13 +232,18 @@ pub static BODY: Section = Section {
             Default::Value("\"0 rad/s\""),
             "Spin at the start, counterclockwise.",
         ),
+        NODES_FIELD,
         Field::new(
-            "nodes",
-            Kind::ChoiceOrTable(names::<NodeRule>, "rule", &nodes::NODES),
-            Default::Derived(
-                "rolling for a circle, corners for straight sides, 1 cm apart otherwise",
-            ),
-            "Contact nodes.",
+            "boundary",
+            Kind::Tables(&BOUNDARY),
+            Default::Nothing,
+            "Further boundaries, each of a kind of its own.",
+        ),
+        Field::new(
+            "group",
+            Kind::Text,
+            Default::Nothing,
+            "Bodies of one group do not meet by an interface that says `within_groups = false`.",
         ),
         Field::new(
             "fixed_to_ground",
@@ -199,13 +261,14 @@ pub static BODY: Section = Section {
 pub(super) fn read(root: &Reader<'_>) -> Result<FreeScene, ScenarioError> {
     let ground = read_ground(root.section("ground")?)?;
     let mut bodies: Vec<FreeBody> = Vec::new();
+    let mut names = BTreeSet::new();
     for reader in root.sections("body")? {
         if bodies.len() == MOST_BODIES {
             let message = format!("a free scene has at most {MOST_BODIES} bodies");
             return Err(reader.inconsistent("name", message));
         }
         let name = reader.text("name")?;
-        if bodies.iter().any(|body| body.name == name) {
+        if !names.insert(name.clone()) {
             let message = format!("two bodies are called \"{name}\"; give each its own name");
             return Err(reader.inconsistent("name", message));
         }
@@ -226,7 +289,17 @@ fn read_ground(reader: Reader<'_>) -> Result<Ground, ScenarioError> {
 
 fn read_body(reader: Reader<'_>, name: String) -> Result<FreeBody, ScenarioError> {
     let shape = shape::read(reader.section("shape")?)?;
-    let nodes = nodes::read(&reader, &shape)?;
+    let nodes = nodes::read(&reader, Some(&shape))?;
+    let mut boundaries = Vec::new();
+    for reader in reader.sections("boundary")? {
+        let shape = match reader.optional_section("shape")? {
+            Some(shape) => Some(shape::read(shape)?),
+            None => None,
+        };
+        let nodes = nodes::read(&reader, shape.as_ref())?;
+        boundaries.push(Boundary { kind: reader.text("kind")?, shape, nodes });
+        reader.finish();
+    }
     let mass = reader.quantity("mass")?;
     let uniform = shape.uniform();
     let center_of_mass = reader.optional_point("center_of_mass")?;
@@ -257,6 +330,8 @@ fn read_body(reader: Reader<'_>, name: String) -> Result<FreeBody, ScenarioError
         velocity: reader.point("velocity")?,
         spin: reader.quantity("spin")?,
         nodes,
+        boundaries,
+        group: reader.optional_text("group")?,
         fixed_to_ground: reader.flag("fixed_to_ground")?,
         viscous,
     };
@@ -277,11 +352,9 @@ fn read_interfaces(
     bodies: &[FreeBody],
 ) -> Result<Vec<FreeInterface>, ScenarioError> {
     let mut kinds: Vec<&str> = Vec::new();
-    for kind in bodies.iter().map(|body| body.kind.as_str()).chain([ground.kind.as_str()]) {
-        if !kinds.contains(&kind) {
-            kinds.push(kind);
-        }
-    }
+    let mut known = BTreeSet::new();
+    let all = bodies.iter().flat_map(FreeBody::outer).map(|(kind, ..)| kind);
+    kinds.extend(all.chain([ground.kind.as_str()]).filter(|kind| known.insert(*kind)));
     let mut interfaces: Vec<FreeInterface> = Vec::new();
     for reader in root.sections("interface")? {
         let between = reader.pair("between")?;
@@ -308,9 +381,19 @@ fn read_interfaces(
             );
             return Err(reader.inconsistent("between", message));
         }
+        if between[1] != ground.kind
+            && of_kind(bodies, &between[1]).all(|(_, shape, _)| shape.is_none())
+        {
+            let message = format!(
+                "nothing of the kind \"{}\" has a shape that nodes could touch; write the kind that carries the nodes \
+                 first",
+                between[1]
+            );
+            return Err(reader.inconsistent("between", message));
+        }
         let whole = |kind: &String| {
-            let mut of_kind = bodies.iter().filter(|body| body.kind == *kind);
-            of_kind.any(|body| matches!(body.nodes, Nodes::Exact | Nodes::Rolling))
+            of_kind(bodies, kind)
+                .any(|(_, _, nodes)| matches!(nodes, Nodes::Exact | Nodes::Rolling))
         };
         let turned = |known: &FreeInterface| known.between.iter().rev().eq(&between);
         if between.iter().all(whole) && interfaces.iter().any(turned) {
@@ -321,10 +404,19 @@ fn read_interfaces(
             );
             return Err(reader.inconsistent("between", message));
         }
+        let within_groups = reader.flag("within_groups")?;
         let law = interface::read(reader, None)?;
-        interfaces.push(FreeInterface { between, law });
+        interfaces.push(FreeInterface { between, within_groups, law });
     }
     Ok(interfaces)
+}
+
+/// Kind, shape and nodes of the boundaries of a kind.
+fn of_kind<'a>(
+    bodies: &'a [FreeBody],
+    kind: &'a str,
+) -> impl Iterator<Item = (&'a str, Option<&'a Shape>, &'a Nodes)> {
+    bodies.iter().flat_map(FreeBody::outer).filter(move |(other, ..)| *other == kind)
 }
 
 /// Writes the fields of a free scene at the top of the file.
@@ -334,9 +426,19 @@ pub(super) fn write(writer: &mut Writer, scene: &FreeScene) {
     ground.text("kind", &scene.ground.kind);
     writer.table("ground", ground.finish());
     writer.tables("body", scene.bodies.iter().map(write_body).collect());
-    let interfaces =
-        scene.interfaces.iter().map(|i| interface::write_free(&i.between, &i.law)).collect();
+    let interfaces = scene.interfaces.iter().map(interface::write_free).collect();
     writer.tables("interface", interfaces);
+}
+
+fn write_boundary(boundary: &Boundary) -> Table {
+    let mut writer = Writer::new(&BOUNDARY);
+    writer.text("kind", &boundary.kind);
+    match &boundary.shape {
+        Some(shape) => writer.table("shape", shape::write(shape)),
+        None => writer.omit(&["shape"]),
+    }
+    writer.table("nodes", nodes::write(&boundary.nodes));
+    writer.finish()
 }
 
 fn write_body(body: &FreeBody) -> Table {
@@ -351,8 +453,13 @@ fn write_body(body: &FreeBody) -> Table {
     writer.point("velocity", body.velocity);
     writer.quantity("spin", body.spin);
     writer.flag("fixed_to_ground", body.fixed_to_ground);
+    match &body.group {
+        Some(group) => writer.text("group", group),
+        None => writer.omit(&["group"]),
+    }
     writer.table("shape", shape::write(&body.shape));
     writer.table("nodes", nodes::write(&body.nodes));
+    writer.tables("boundary", body.boundaries.iter().map(write_boundary).collect());
     match body.viscous {
         Some(viscous) => {
             let mut inner = Writer::new(&VISCOUS);

@@ -64,7 +64,9 @@ use barrelstack_input::{merge, writer};
 
 pub use barrel::{Barrel, Fill};
 pub use error::ScenarioError;
-pub use free::{ChosenNode, FreeBody, FreeInterface, FreeScene, Ground, Nodes, PartShape, Viscous};
+pub use free::{
+    Boundary, ChosenNode, FreeBody, FreeInterface, FreeScene, Ground, Nodes, PartShape, Viscous,
+};
 pub use imperfections::{Imperfection, Imperfections};
 pub use interface::{Basis, Damping, Friction, Interface, NormalLaw};
 pub use motion::{
@@ -74,7 +76,7 @@ pub use motion::{
 pub use pair::{StackInterfaces, StackPair};
 pub use rack::{Cradle, Posts, Rack, RackKind, SeatContact};
 pub use root::ROOT;
-pub use run::{Method, OutcomeSpec, RecordSpec, RunSpec, Until};
+pub use run::{Accuracy, Method, OutcomeSpec, RecordSpec, RunSpec, Until};
 pub use shape::Shape;
 pub use stack::{BodyOverride, StackBody, StackSpec, View};
 pub use uniform::Uniform;

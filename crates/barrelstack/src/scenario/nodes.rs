@@ -104,9 +104,10 @@ static NODE: Section = Section {
     exclusive: &[],
 };
 
-/// Reads the nodes of a body of this shape.
-pub(super) fn read(reader: &Reader<'_>, shape: &Shape) -> Result<Nodes, ScenarioError> {
+/// Reads the nodes of a boundary of this shape; without one they are at chosen places.
+pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, ScenarioError> {
     let Some(nodes) = reader.optional_section("nodes")? else {
+        let Some(shape) = shape else { return Err(reader.missing("nodes")) };
         return Ok(match shape {
             Shape::Circle { .. } => Nodes::Rolling,
             Shape::Rectangle { .. } | Shape::Polygon { .. } => Nodes::Corners,
@@ -136,6 +137,16 @@ pub(super) fn read(reader: &Reader<'_>, shape: &Shape) -> Result<Nodes, Scenario
         .or(count.map(Nodes::Count))
         .or((!list.is_empty()).then_some(Nodes::At(list)))
         .ok_or_else(|| nodes.one_of(&["rule", "spacing", "count", "list"]))?;
+    let Some(shape) = shape else {
+        if !matches!(rule, Nodes::At(_)) {
+            let message = "a boundary without a shape has nodes at chosen places only; write \
+                           `nodes = { list = [{ at = [\"0 m\", \"0 m\"] }] }`, or give it a shape";
+            let found = ["rule", "spacing", "count"].into_iter().find(|field| nodes.has(field));
+            return Err(nodes.inconsistent(found.unwrap_or("rule"), message.to_owned()));
+        }
+        nodes.finish();
+        return Ok(rule);
+    };
     let parts = shape.parts();
     let circle = parts.iter().all(|part| matches!(part.shape, Shape::Circle { .. }));
     let cradle = parts.iter().any(|part| matches!(part.shape, Shape::Cradle { .. }));

@@ -161,7 +161,9 @@ pub fn run(
     }
     let (done, of) = (AtomicUsize::new(0), cases.len());
     let told = |_: &CaseResult| observer(done.fetch_add(1, Ordering::Relaxed) + 1, of);
-    let Some(mut results) = Ensemble { cases }.run_watched(&told) else { return Ok(None) };
+    let Some(mut results) = Ensemble { cases, ..Ensemble::default() }.run_watched(&told) else {
+        return Ok(None);
+    };
     let mut found = Vec::new();
     for (plane, count) in planes.iter().zip(counts) {
         let rest = results.split_off(count);

@@ -241,12 +241,19 @@ impl<R: Real> Fates<R> {
         self.collapse
     }
 
+    /// The lanes in which no body has left its seat.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    pub(crate) fn stands(&self) -> R::Mask {
+        !self.collapse.lt(R::splat(f64::INFINITY))
+    }
+
     /// Looks at an accepted state.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
     pub fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) {
         let ground = state.poses[Assembly::GROUND].position;
-        let standing = !self.collapse.lt(R::splat(f64::INFINITY));
+        let standing = self.stands();
         for i in 0..self.bodies.len() {
             if self.bodies[i].place.kind == PartKind::Ground {
                 continue;

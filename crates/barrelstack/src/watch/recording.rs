@@ -4,6 +4,7 @@ use barrelstack_dynamics::{BodyId, EnergyLedger, Model, Planar, Pose, Scratch, S
 
 use crate::assemble::{Assembly, PartKind};
 use crate::ground::Ground;
+use crate::watch::joints::{Joint, Joints};
 
 /// A quantity over the sample times of a recording.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,10 +74,8 @@ pub struct Recording {
     frame_rate: f64,
     history_rate: f64,
     rest: Vec<Vec2>,
-    /// Which joint a pair of the model belongs to, and whether its contactor is the lower body.
-    joint_of_pair: Vec<Option<(usize, bool)>>,
-    /// Force (N) on the upper body of every joint, in the step at hand.
-    sums: Vec<Vec2>,
+    /// The forces behind `joints`.
+    forces: Joints,
     started: bool,
 }
 
@@ -110,24 +109,17 @@ impl Recording {
             .map(|(name, unit)| Channel { name, unit, values: Vec::new() })
             .collect();
         let ground = state.poses[Assembly::GROUND].position;
-        let joints = joints(assembly);
-        let joint_of_pair = assembly
-            .model
-            .pairs()
-            .iter()
-            .map(|pair| {
-                joints.iter().enumerate().find_map(|(at, joint)| {
-                    let between = (pair.contactor, pair.target);
-                    if between == (joint.upper, joint.lower) {
-                        Some((at, false))
-                    } else if between == (joint.lower, joint.upper) {
-                        Some((at, true))
-                    } else {
-                        None
-                    }
-                })
-            })
-            .collect();
+        let forces = Joints::new(assembly);
+        let named = |joint: &Joint| JointForces {
+            upper: joint.upper,
+            lower: joint.lower,
+            name: joint.name(assembly),
+            peak_vertical: joint.peak_vertical,
+            peak_horizontal: joint.peak_horizontal,
+            at_rest: joint.at_rest,
+            vertical: Vec::new(),
+            horizontal: Vec::new(),
+        };
         Self {
             frames: Frames::default(),
             times: Vec::new(),
@@ -135,9 +127,8 @@ impl Recording {
             frame_rate,
             history_rate,
             rest: state.poses.iter().map(|p| p.position - ground).collect(),
-            sums: vec![Vec2::default(); joints.len()],
-            joints,
-            joint_of_pair,
+            joints: forces.joints.iter().map(named).collect(),
+            forces,
             started: false,
         }
     }
@@ -161,17 +152,15 @@ impl Recording {
         scratch: &Scratch<Planar>,
         energy: &EnergyLedger<Planar>,
     ) {
-        self.sum_joints(scratch);
-        for (joint, force) in self.joints.iter_mut().zip(&self.sums) {
-            if !self.started {
-                joint.at_rest = force.z;
-            }
-            if force.z > joint.peak_vertical.0 {
-                joint.peak_vertical = (force.z, state.time);
-            }
-            if force.x.abs() > joint.peak_horizontal.0.abs() {
-                joint.peak_horizontal = (force.x, state.time);
-            }
+        if self.started {
+            self.forces.observe(state.time, scratch);
+        } else {
+            self.forces.start(state.time, scratch);
+        }
+        for (joint, seen) in self.joints.iter_mut().zip(&self.forces.joints) {
+            joint.at_rest = seen.at_rest;
+            joint.peak_vertical = seen.peak_vertical;
+            joint.peak_horizontal = seen.peak_horizontal;
         }
         self.started = true;
         // A time counts as reached within rounding of the step that reaches it.
@@ -181,16 +170,6 @@ impl Recording {
         }
         if due(self.times.len(), self.history_rate) {
             self.take_sample(assembly, ground, state, energy);
-        }
-    }
-
-    /// Sums the forces of the step on the upper body of every joint.
-    fn sum_joints(&mut self, scratch: &Scratch<Planar>) {
-        self.sums.fill(Vec2::default());
-        for pair in &scratch.pair_forces {
-            if let Some((joint, lower_touches)) = self.joint_of_pair[pair.pair] {
-                self.sums[joint] += if lower_touches { -pair.force } else { pair.force };
-            }
         }
     }
 
@@ -268,9 +247,9 @@ impl Recording {
         for (channel, value) in self.channels.iter_mut().zip(values) {
             channel.values.push(value);
         }
-        for (joint, force) in self.joints.iter_mut().zip(&self.sums) {
-            joint.vertical.push(force.z);
-            joint.horizontal.push(force.x);
+        for (joint, seen) in self.joints.iter_mut().zip(&self.forces.joints) {
+            joint.vertical.push(seen.force.z);
+            joint.horizontal.push(seen.force.x);
         }
     }
 }
@@ -287,30 +266,3 @@ const ENERGIES: [&str; 9] = [
     "ground work",
     "residual",
 ];
-
-/// Every barrel on its rack, every rack on what is below it.
-fn joints(assembly: &Assembly) -> Vec<JointForces> {
-    let mut joints = Vec::new();
-    let mut join = |upper: BodyId, lower: BodyId| {
-        joints.push(JointForces {
-            upper,
-            lower,
-            name: format!("{} on {}", assembly.parts[upper].name, assembly.parts[lower].name),
-            peak_vertical: (0.0, 0.0),
-            peak_horizontal: (0.0, 0.0),
-            at_rest: 0.0,
-            vertical: Vec::new(),
-            horizontal: Vec::new(),
-        });
-    };
-    for (i, part) in assembly.parts.iter().enumerate() {
-        match part.kind {
-            PartKind::Rack if part.supports.is_empty() => join(i, Assembly::GROUND),
-            PartKind::Rack => part.supports.iter().for_each(|support| join(i, *support)),
-            PartKind::Barrel => part.carrier.iter().for_each(|rack| join(i, *rack)),
-            PartKind::Body => join(i, Assembly::GROUND),
-            PartKind::Ground => {}
-        }
-    }
-    joints
-}

@@ -11,7 +11,9 @@ use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
 use barrelstack_dynamics::forces::tributary_length;
-use barrelstack_dynamics::{BodyId, Model, Nodes, Planar, Scratch, Shape, Vec2, math};
+use barrelstack_dynamics::lanes::{Lanewise, put_truth};
+use barrelstack_dynamics::real::{Mask, Real};
+use barrelstack_dynamics::{BodyId, Nodes, Planar, Scratch, Shape, Vec2, lanewise, math};
 
 use crate::assemble::{Assembly, PartKind};
 
@@ -81,7 +83,7 @@ impl StressEnvelope {
 }
 
 /// Stress along all boundaries.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Stresses {
     /// One envelope for every barrel and rack, in the order of the bodies.
     pub envelopes: Vec<StressEnvelope>,
@@ -89,60 +91,97 @@ pub struct Stresses {
     of_body: Vec<Option<usize>>,
     /// Where every node of every pair presses; one entry per node, pair after pair.
     presses: Vec<Press>,
-    /// The first entry of every pair.
-    first_press: Vec<usize>,
 }
 
-/// Where a node presses on a target, and how hard it must press to raise an envelope.
-///
-/// As long as the companion point stays in one place, the node presses on the same cells, and a force
-/// that does not exceed the lowest of their peaks changes nothing: most contacts of most steps are
-/// done with a few comparisons.
+/// Where a node presses.
 #[derive(Clone, Debug)]
 struct Press {
     /// Length (m) that the node stands for.
     length: f64,
-    place: Place,
     /// The cells of the target; past the last one they go on with the first.
     cells: Range<usize>,
     /// The place on a rack: its envelope, and which of its points.
     on_rack: Option<(usize, usize)>,
-    /// No force (N) up to this one raises an envelope.
-    floor: f64,
+}
+
+/// How hard a node has pressed in one place.
+///
+/// As long as the companion point stays there, the node presses on the same cells, and the largest of its
+/// forces tells all: most contacts of most steps are done with a few comparisons.
+#[derive(Clone, Copy, Debug)]
+struct Bounds<R: Real = f64> {
+    place: Place,
+    /// The first point or direction, and that past the last one.
+    from: Vec2<R>,
+    to: Vec2<R>,
+    /// Whether the place is above the axis.
+    above: R::Mask,
+    /// The largest force (N) there.
+    most: R,
 }
 
 /// Companion points that press on the same cells.
 #[derive(Clone, Copy, Debug)]
 enum Place {
-    /// No point yet.
-    Nowhere,
     /// All points: the target has no cells.
     Everywhere,
     /// Those between two directions, counterclockwise.
-    Wedge(Vec2, Vec2),
+    Wedge,
     /// Those between two values of `x` (m) above the axis, or below it.
-    Strip(f64, f64, bool),
+    Strip,
 }
 
-impl Place {
-    #[inline]
-    fn holds(self, point: Vec2) -> bool {
-        match self {
-            Self::Nowhere => false,
-            Self::Everywhere => true,
-            Self::Wedge(from, to) => {
-                from.x * point.z >= from.z * point.x && point.x * to.z > point.z * to.x
+lanewise!(same Place);
+lanewise!(struct Bounds<R> { place, from, to, most } masks { above });
+
+impl Bounds {
+    /// Those of a node that has not pressed yet, so that no place but everywhere holds its point.
+    fn new(cells: Option<Cells>) -> Self {
+        let place = match cells {
+            Some(Cells::Around(_)) => Place::Wedge,
+            Some(Cells::Along(_)) => Place::Strip,
+            // The nodes of a rack press on others; what presses on them leaves no stress.
+            Some(Cells::Nodes) | None => Place::Everywhere,
+        };
+        Self { place, from: Vec2::default(), to: Vec2::default(), above: false, most: 0.0 }
+    }
+}
+
+impl<R: Real> Bounds<R> {
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    fn holds(&self, point: Vec2<R>) -> R::Mask {
+        let Self { from, to, above, .. } = *self;
+        match self.place {
+            Place::Everywhere => !R::Mask::default(),
+            Place::Wedge => {
+                (from.z * point.x).le(from.x * point.z) & (point.z * to.x).lt(point.x * to.z)
             }
-            Self::Strip(from, to, above) => {
-                from <= point.x && point.x < to && (point.z >= 0.0) == above
+            Place::Strip => {
+                let upper = R::zero().le(point.z);
+                let side = (upper & above) | (!upper & !above);
+                from.x.le(point.x) & point.x.lt(to.x) & side
             }
         }
     }
 }
 
-impl Stresses {
+/// Follows the stresses of a run, or of as many runs as there are lanes; sees every step.
+#[derive(Clone, Debug)]
+pub(crate) struct Pressing<R: Real = f64> {
+    /// The stresses in every lane; nothing where there is no run.
+    lanes: Vec<Stresses>,
+    /// The lanes that have a run.
+    watched: R::Mask,
+    /// One for every node of every pair, pair after pair.
+    bounds: Vec<Bounds<R>>,
+    /// The first entry of every pair, and its target.
+    pairs: Vec<(usize, BodyId)>,
+}
+
+impl Pressing {
     /// Starts with the stresses at rest in `scratch`.
-    pub(super) fn new(assembly: &Assembly, scratch: &Scratch<Planar>) -> Self {
+    pub(crate) fn new(assembly: &Assembly, scratch: &Scratch<Planar>) -> Self {
         let model = &assembly.model;
         let mut envelopes = Vec::new();
         let mut of_body = vec![None; assembly.parts.len()];
@@ -158,9 +197,15 @@ impl Stresses {
                 envelopes.push(envelope);
             }
         }
-        let (mut presses, mut first_press) = (Vec::new(), Vec::new());
+        let (mut presses, mut bounds, mut pairs) = (Vec::new(), Vec::new(), Vec::new());
+        if envelopes.is_empty() {
+            // As in a free scene, whose pairs may be more than can be listed.
+            let lanes = vec![Stresses { envelopes, of_body, presses }];
+            return Self { lanes, watched: false, bounds, pairs };
+        }
         for pair in model.pairs() {
-            first_press.push(presses.len());
+            pairs.push((presses.len(), pair.target));
+            let cells = of_body[pair.target].map(|at: usize| envelopes[at].cells);
             let sets = &model.bodies()[pair.contactor].nodes;
             // The points of a rack are those of its fixed nodes, set after set.
             let fixed = |set: &Nodes<Planar>| matches!(set, Nodes::Fixed(_));
@@ -169,16 +214,15 @@ impl Stresses {
             let rack = of_body[pair.contactor]
                 .filter(|at: &usize| fixed(&sets[pair.nodes]) && envelopes[*at].is_on_nodes());
             presses.extend((0..sets[pair.nodes].count()).map(|node| Press {
-                length: tributary_length(model, pair, node),
-                place: Place::Nowhere,
+                length: tributary_length(model, &pair, node),
                 cells: 0..0,
                 on_rack: rack.map(|at| (at, before + node)),
-                floor: 0.0,
             }));
+            bounds.resize(presses.len(), Bounds::new(cells));
         }
         for contact in &scratch.contacts {
-            let pair = &model.pairs()[contact.pair];
-            let press = &mut presses[first_press[contact.pair] + contact.node as usize];
+            let pair = &model.pair(contact.pair);
+            let press = &mut presses[pairs[contact.pair].0 + contact.node as usize];
             let placed = &model.bodies()[pair.target].surfaces[pair.surface];
             let place = placed.offset + placed.rotation.apply(contact.point);
             let normal = placed.rotation.apply(contact.normal);
@@ -202,58 +246,126 @@ impl Stresses {
                 envelope.peak.push(0.0);
             }
         }
-        let mut stresses = Self { envelopes, of_body, presses, first_press };
-        stresses.observe(model, scratch);
-        for envelope in &mut stresses.envelopes {
+        let lanes = vec![Stresses { envelopes, of_body, presses }];
+        let mut pressing = Self { lanes, watched: true, bounds, pairs };
+        pressing.observe(true, scratch);
+        pressing.raise(0);
+        for envelope in &mut pressing.lanes[0].envelopes {
             envelope.at_rest.clone_from(&envelope.peak);
         }
-        stresses
+        pressing
+    }
+}
+
+impl<R: Real> Pressing<R> {
+    /// Watches nothing yet.
+    pub(crate) fn nothing() -> Self {
+        let lanes = vec![Stresses::default(); R::LANES];
+        Self { lanes, watched: R::Mask::default(), bounds: Vec::new(), pairs: Vec::new() }
     }
 
+    /// Puts a run into a lane; all runs that are watched together are of one topology.
+    pub(crate) fn begin(&mut self, lane: usize, mut single: Pressing) {
+        if self.bounds.is_empty() {
+            self.bounds = Lanewise::in_all(&single.bounds);
+        } else {
+            self.bounds.put(lane, &single.bounds);
+        }
+        put_truth(&mut self.watched, lane, single.watched);
+        self.lanes[lane] = single.finish(0);
+        self.pairs = single.pairs;
+    }
+
+    /// The stresses of the run of a lane, which is watched no more.
+    pub(crate) fn finish(&mut self, lane: usize) -> Stresses {
+        self.raise(lane);
+        put_truth(&mut self.watched, lane, false);
+        std::mem::take(&mut self.lanes[lane])
+    }
+
+    /// Raises the envelopes of a lane to what its nodes have pressed where they are.
+    fn raise(&mut self, lane: usize) {
+        for (pair, (first, target)) in self.pairs.iter().enumerate() {
+            let end = self.pairs.get(pair + 1).map_or(self.bounds.len(), |(next, _)| *next);
+            for at in *first..end {
+                self.lanes[lane].raise(at, *target, self.bounds[at].most.lane(lane));
+            }
+        }
+    }
+
+    /// Sees the stresses of an accepted state, in lanes whose stack stands.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    pub(crate) fn observe(&mut self, standing: R::Mask, scratch: &Scratch<Planar<R>>) {
+        let watched = standing & self.watched;
+        if !watched.any() {
+            return;
+        }
+        for pressed in &scratch.pressed {
+            let (first, target) = self.pairs[pressed.pair];
+            let at = first + pressed.node as usize;
+            let bounds = &mut self.bounds[at];
+            let presses = watched & pressed.touching;
+            let here = presses & bounds.holds(pressed.point);
+            let more = here & bounds.most.lt(pressed.normal_force);
+            if more.any() {
+                bounds.most = R::select(more, pressed.normal_force, bounds.most);
+            }
+            let leaves = presses & !here;
+            if leaves.any() {
+                for lane in (0..R::LANES).filter(|lane| leaves.lane(*lane)) {
+                    let (stresses, most) = (&mut self.lanes[lane], bounds.most.lane(lane));
+                    stresses.raise(at, target, most);
+                    let mut single =
+                        Bounds { most: pressed.normal_force.lane(lane), ..Bounds::new(None) };
+                    stresses.place(at, target, pressed.point.of_lane(lane), &mut single);
+                    bounds.put(lane, &single);
+                }
+            }
+        }
+    }
+}
+
+impl Stresses {
     /// The envelope of a body.
     pub fn of(&self, body: BodyId) -> Option<&StressEnvelope> {
         self.of_body.get(body).copied().flatten().map(|at| &self.envelopes[at])
     }
 
-    /// Raises the envelopes to the stresses of an accepted state.
-    pub(super) fn observe(&mut self, model: &Model<Planar>, scratch: &Scratch<Planar>) {
-        for contact in &scratch.contacts {
-            let press = &mut self.presses[self.first_press[contact.pair] + contact.node as usize];
-            let placed = press.place.holds(contact.point);
-            if placed && contact.normal_force <= press.floor {
-                continue;
-            }
-            let pair = &model.pairs()[contact.pair];
-            let stress = contact.normal_force / press.length;
-            let mut lowest = f64::INFINITY;
-            if let Some(at) = self.of_body[pair.target] {
-                let envelope = &mut self.envelopes[at];
-                if !placed {
-                    (press.place, press.cells) = envelope.place(contact.point, press.length);
-                }
-                let count = envelope.peak.len();
-                for cell in press.cells.clone() {
-                    let peak = &mut envelope.peak[if cell < count { cell } else { cell - count }];
-                    *peak = peak.max(stress);
-                    lowest = lowest.min(*peak);
-                }
-            } else {
-                press.place = Place::Everywhere;
-            }
-            if let Some((at, point)) = press.on_rack {
-                let peak = &mut self.envelopes[at].peak[point];
+    /// Finds the cells on which a node presses at a point (m) of its target.
+    fn place(&mut self, at: usize, target: BodyId, point: Vec2, bounds: &mut Bounds) {
+        if let Some(on) = self.of_body[target] {
+            let press = &mut self.presses[at];
+            press.cells = self.envelopes[on].place(point, press.length, bounds);
+        }
+    }
+
+    /// Raises the envelopes to the stress of a node that presses with a force (N).
+    fn raise(&mut self, at: usize, target: BodyId, force: f64) {
+        if force <= 0.0 {
+            return;
+        }
+        let press = &self.presses[at];
+        let stress = force / press.length;
+        if let Some(on) = self.of_body[target] {
+            let peaks = &mut self.envelopes[on].peak;
+            let count = peaks.len();
+            for cell in press.cells.clone() {
+                let peak = &mut peaks[if cell < count { cell } else { cell - count }];
                 *peak = peak.max(stress);
-                lowest = lowest.min(*peak);
             }
-            press.floor = lowest * press.length;
+        }
+        if let Some((on, point)) = press.on_rack {
+            let peak = &mut self.envelopes[on].peak[point];
+            *peak = peak.max(stress);
         }
     }
 }
 
 impl StressEnvelope {
-    /// The cells on which a node of a length (m) presses around a companion point (m), and the points
-    /// for which they stay the same.
-    fn place(&self, point: Vec2, length: f64) -> (Place, Range<usize>) {
+    /// The cells on which a node of a length (m) presses around a companion point (m); `bounds` are left to
+    /// hold the points for which they stay the same.
+    fn place(&self, point: Vec2, length: f64, bounds: &mut Bounds) -> Range<usize> {
         match self.cells {
             Cells::Around(radius) => {
                 let count = self.peak.len() as f64;
@@ -266,7 +378,8 @@ impl StressEnvelope {
                 };
                 let first_cell = whole(first.rem_euclid(count));
                 let cells = whole((last - first + 1.0).min(count));
-                (Place::Wedge(direction(from), direction(to)), first_cell..first_cell + cells)
+                (bounds.from, bounds.to) = (direction(from), direction(to));
+                first_cell..first_cell + cells
             }
             Cells::Along(half_length) => {
                 let cells = self.peak.len() / 2;
@@ -275,13 +388,12 @@ impl StressEnvelope {
                 let (first, last, from, to) = span(point.x + half_length, length, width);
                 let first = whole(first.clamp(0.0, most));
                 let last = whole(last.clamp(0.0, most));
-                let above = point.z >= 0.0;
-                let side = if above { 0 } else { cells };
-                let place = Place::Strip(from - half_length, to - half_length, above);
-                (place, side + first..side + last + 1)
+                bounds.above = point.z >= 0.0;
+                (bounds.from.x, bounds.to.x) = (from - half_length, to - half_length);
+                let side = if bounds.above { 0 } else { cells };
+                side + first..side + last + 1
             }
-            // Its nodes press on others; what presses on them leaves no stress.
-            Cells::Nodes => (Place::Everywhere, 0..0),
+            Cells::Nodes => 0..0,
         }
     }
 }

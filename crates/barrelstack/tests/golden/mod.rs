@@ -3,7 +3,8 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use barrelstack::ensemble::{Audience, CaseResult, Prepared, VERSION, simulate_in};
+pub(crate) use barrelstack::ensemble::VERSION;
+use barrelstack::ensemble::{Audience, CaseResult, Prepared, simulate_in};
 use barrelstack::outcome::Outcome;
 use barrelstack::run::Work;
 use barrelstack::{Run, Scenario};

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use barrelstack::ensemble::{CaseResult, Ensemble, Prepared};
+use barrelstack::ensemble::{CaseResult, Ensemble, Prepared, Width};
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario::{BodyOverride, Scenario, Scene, StackBody};
 use barrelstack_motion::Random;
@@ -52,14 +52,18 @@ impl Seen {
 /// Simulates all cases on all cores, in their order; none where one cannot be simulated.
 ///
 /// `done` hears how many cases are done.
-pub(super) fn simulate(cases: Vec<Prepared>, done: &(dyn Fn(usize) + Sync)) -> Vec<Option<Seen>> {
+pub(super) fn simulate(
+    cases: Vec<Prepared>,
+    lanes: Option<Width>,
+    done: &(dyn Fn(usize) + Sync),
+) -> Vec<Option<Seen>> {
     let finished = AtomicUsize::new(0);
     let observer = |_: &CaseResult| {
         done(finished.fetch_add(1, Ordering::Relaxed) + 1);
         ControlFlow::Continue(())
     };
     // Nobody stops it, so every case has its result.
-    let results = Ensemble { cases }.run_watched(&observer).unwrap_or_default();
+    let results = Ensemble { cases, lanes }.run_watched(&observer).unwrap_or_default();
     results.iter().map(Seen::of).collect()
 }
 

@@ -71,7 +71,7 @@ fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
             scenarios.iter().zip(&grounds).map(built).collect::<Vec<_>>()
         })
         .collect();
-    let seen: Vec<Seen> = simulate(batch, &|_| ()).into_iter().map(Option::unwrap).collect();
+    let seen: Vec<Seen> = simulate(batch, None, &|_| ()).into_iter().map(Option::unwrap).collect();
     let collapsed = seen.iter().filter(|seen| seen.mode != Mode::Stands).count();
     let courses: Vec<&[Seen]> = seen.chunks_exact(TESTS).collect();
     let (table, truths) = courses.split_at(TABLE);

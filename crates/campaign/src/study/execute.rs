@@ -17,7 +17,7 @@ use super::motions::Shelf;
 use super::prepare::Bench;
 use super::stop::{StopRule, Tally};
 use super::table::StudyTable;
-use crate::ensemble::CaseResult;
+use crate::ensemble::{CaseResult, Width};
 use crate::pool;
 
 /// How long (s) to wait for chunks that others have claimed before looking again.
@@ -28,6 +28,8 @@ const LOOK_AGAIN: Duration = Duration::from_millis(200);
 pub struct RunOptions {
     /// Threads; as many as there are cores without.
     pub threads: Option<NonZero<usize>>,
+    /// The vector unit in which cases march; the widest of the machine without. The table does not depend on it.
+    pub lanes: Option<Width>,
 }
 
 /// How far a study is.
@@ -76,6 +78,7 @@ struct Shared<'a> {
     shelf: Shelf,
     /// What tells the motions from all others.
     motions: Vec<u64>,
+    lanes: Width,
     rule: Option<StopRule>,
     stop: AtomicBool,
     state: Mutex<State>,
@@ -153,6 +156,7 @@ impl Study {
             folder: &place,
             shelf,
             motions,
+            lanes: options.lanes.unwrap_or_else(Width::widest),
             rule,
             stop: AtomicBool::new(false),
             state: Mutex::new(state),
@@ -206,7 +210,8 @@ impl Study {
         self.try_motions(&shelf)?;
         let chunks: Vec<usize> = (0..self.chunk_count()).collect();
         let compute = |chunk: &usize| {
-            let mut bench = Bench { shelf: &shelf, tell: &mut |_| {}, stop: &|| false };
+            let mut bench =
+                Bench { shelf: &shelf, lanes: Width::widest(), tell: &mut |_| {}, stop: &|| false };
             self.compute(*chunk, &mut bench)?.ok_or(StudyError::Stopped)
         };
         let rule = self.stop_rule();
@@ -226,7 +231,7 @@ impl Study {
         StudyTable::join(&self.columns(), &parts)
     }
 
-    /// Runs one chunk and writes its shard, unless it is there.
+    /// Runs one chunk in lanes of a width and writes its shard, unless it is there.
     ///
     /// # Errors
     /// When there is no such chunk, or as [`Study::run`].
@@ -234,6 +239,7 @@ impl Study {
         &self,
         folder: &Path,
         chunk: usize,
+        lanes: Width,
         stop: &dyn Fn() -> bool,
     ) -> Result<ChunkRun, StudyError> {
         let chunks = self.chunk_count();
@@ -258,7 +264,7 @@ impl Study {
         if !found.tallies.is_empty() {
             return Ok(ChunkRun::Before);
         }
-        let mut bench = Bench { shelf: &Shelf::default(), tell: &mut |_| {}, stop };
+        let mut bench = Bench { shelf: &Shelf::default(), lanes, tell: &mut |_| {}, stop };
         let table = self.compute(chunk, &mut bench)?.ok_or(StudyError::Stopped)?;
         place.write_shard(chunk, self.chunk_key(chunk, &motions), &table)?;
         Ok(if found.damaged > 0 { ChunkRun::Again } else { ChunkRun::Now })
@@ -364,7 +370,8 @@ impl Shared<'_> {
         drop(state);
         let mut tell = |result: &CaseResult| self.case_done(result);
         let stop = || self.stop.load(Ordering::Relaxed);
-        let mut bench = Bench { shelf: &self.shelf, tell: &mut tell, stop: &stop };
+        let mut bench =
+            Bench { shelf: &self.shelf, lanes: self.lanes, tell: &mut tell, stop: &stop };
         let Some(table) = self.study.compute(chunk, &mut bench)? else { return Ok(()) };
         self.folder.write_shard(chunk, self.study.chunk_key(chunk, &self.motions), &table)?;
         let mut state = self.state();

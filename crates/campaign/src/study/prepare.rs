@@ -11,7 +11,7 @@ use super::motions::{Shaken, Shaking, Shelf, Synthetic};
 use super::setting::Setting;
 use super::table::StudyTable;
 use super::{Study, Value};
-use crate::ensemble::{Audience, CaseResult, Prepared, simulate};
+use crate::ensemble::{Audience, CaseResult, Prepared, Width, simulate_in};
 use crate::outcome::Outcome;
 
 /// Most cases that are built at once: many enough to run in lockstep, few enough to hold their motions.
@@ -21,6 +21,8 @@ const BATCH: usize = 128;
 pub(super) struct Bench<'a> {
     /// Motions that were used before.
     pub(super) shelf: &'a Shelf,
+    /// The vector unit in which cases march.
+    pub(super) lanes: Width,
     /// Hears of every case that is done.
     pub(super) tell: &'a mut dyn FnMut(&CaseResult),
     /// Whether to stop.
@@ -112,7 +114,7 @@ impl Study {
         let ready: Vec<Prepared> =
             built.iter().filter_map(|built| built.prepared.as_ref().ok()).cloned().collect();
         let mut audience = Audience { tell: &mut *bench.tell, stop: bench.stop };
-        let mut results = simulate(&ready, &mut audience)?.into_iter();
+        let mut results = simulate_in(bench.lanes, &ready, &mut audience)?.into_iter();
         let mut done = Vec::with_capacity(cases.len());
         for Built { shaken, prepared } in built {
             let result = match prepared {

@@ -7,13 +7,14 @@ use super::column::{ColumnSpec, Role, Value, ValueKind};
 use super::design::Case;
 use super::motions::{MEASURES, Shaken};
 use crate::ensemble::CaseResult;
+use crate::watch::Joint;
 
 /// Columns of every table before those of the factors.
 const KEYS: [(&str, ValueKind); 3] =
     [("case", ValueKind::Integer), ("id", ValueKind::Text), ("chunk", ValueKind::Integer)];
 
 /// Columns of every table behind the measures: name, unit, role, kind.
-const RESULTS: [(&str, &str, Role, ValueKind); 20] = [
+const RESULTS: [(&str, &str, Role, ValueKind); 24] = [
     ("outcome", "", Role::Outcome, ValueKind::Text),
     ("mode", "", Role::Outcome, ValueKind::Text),
     ("first_loss", "s", Role::Outcome, ValueKind::Number),
@@ -26,6 +27,10 @@ const RESULTS: [(&str, &str, Role, ValueKind); 20] = [
     ("base_slip_residual", "m", Role::Demand, ValueKind::Number),
     ("rack_tilt_peak", "rad", Role::Demand, ValueKind::Number),
     ("rack_walk_peak", "m", Role::Demand, ValueKind::Number),
+    ("stress_amplification", "", Role::Demand, ValueKind::Number),
+    ("mean_stress_amplification", "", Role::Demand, ValueKind::Number),
+    ("vertical_force_peak", "N", Role::Demand, ValueKind::Number),
+    ("horizontal_force_peak", "N", Role::Demand, ValueKind::Number),
     ("residual_displacement", "m", Role::Demand, ValueKind::Number),
     ("ended", "", Role::Run, ValueKind::Text),
     ("motion_left", "s", Role::Run, ValueKind::Number),
@@ -64,6 +69,16 @@ pub(super) fn meaning(spec: &ColumnSpec) -> &'static str {
         (_, "base_slip_residual") => "slip of the bottom rack at the end",
         (_, "rack_tilt_peak") => "largest tilt of a rack, before the collapse",
         (_, "rack_walk_peak") => "largest way of a rack on what it stands on, before the collapse",
+        (_, "stress_amplification") => {
+            "largest normal stress on a bottom barrel over the largest at rest, before the collapse"
+        }
+        (_, "mean_stress_amplification") => {
+            "the same, averaged over the boundary that is loaded at rest"
+        }
+        (_, "vertical_force_peak") => {
+            "largest vertical force of a barrel on its rack, or of a rack on what it stands on"
+        }
+        (_, "horizontal_force_peak") => "largest horizontal force between two of them",
         (_, "residual_displacement") => "largest displacement of a barrel at the end",
         (_, "ended") => "why the case ended: rest, after-collapse, duration, patience or broken",
         (_, "motion_left") => "time of the motion that was left when it ended",
@@ -130,7 +145,7 @@ impl Study {
 }
 
 /// The values of [`RESULTS`].
-fn results(result: &CaseResult) -> [Option<Value>; 20] {
+fn results(result: &CaseResult) -> [Option<Value>; 24] {
     let (kind, mode, first_loss, error) = match &result.outcome {
         Ok(Outcome::Collapse { mode, time, .. }) => {
             ("collapse", text(mode.name()), number(Some(*time)), None)
@@ -146,6 +161,9 @@ fn results(result: &CaseResult) -> [Option<Value>; 20] {
         .map(|height| crate::scenario::quantity::plain(*height))
         .collect();
     let demands = &result.demands;
+    let force = |of: fn(&Joint) -> f64| {
+        number(result.joints.iter().map(|(_, joint)| of(joint)).reduce(f64::max))
+    };
     [
         text(kind),
         mode,
@@ -159,6 +177,10 @@ fn results(result: &CaseResult) -> [Option<Value>; 20] {
         number(demands.base_slip_residual),
         number(demands.rack_tilt_peak),
         number(demands.rack_walk_peak),
+        number(demands.stress_amplification),
+        number(demands.mean_stress_amplification),
+        force(|joint| joint.peak_vertical.0),
+        force(|joint| joint.peak_horizontal.0.abs()),
         number(result.residual_displacement),
         result.ending.and_then(|ending| text(ending.name())),
         number(result.cut),

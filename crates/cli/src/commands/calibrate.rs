@@ -15,6 +15,7 @@ use clap::{Subcommand, ValueEnum};
 use indicatif::ProgressBar;
 
 use crate::args::ScenarioArgs;
+use crate::lanes::LanesArgs;
 use crate::printer;
 use crate::progress::style;
 
@@ -193,6 +194,8 @@ struct CollapseArgs {
     /// Start of the random numbers; the same seed gives the same result.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    #[command(flatten)]
+    lanes: LanesArgs,
     /// Change a value of the scenario, such as stack.levels=2; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
@@ -332,6 +335,7 @@ fn collapsed(args: &CollapseArgs) -> anyhow::Result<Calibration> {
         },
         simulations: args.simulations as usize,
         seed: args.seed,
+        lanes: args.lanes.lanes,
     };
     let of = |name: &str| ScenarioArgs {
         scenario: name.to_owned(),

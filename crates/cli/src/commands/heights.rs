@@ -11,6 +11,7 @@ use barrelstack_campaign::study::{RunOptions, StudyError};
 use indicatif::ProgressBar;
 
 use crate::interrupt::Interrupt;
+use crate::lanes::LanesArgs;
 use crate::printer;
 use crate::progress::style;
 use crate::store::store;
@@ -33,6 +34,8 @@ pub(crate) struct HeightsArgs {
     /// Where to write the page and the studies behind it; run again to go on after a stop.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-heights")]
     out: PathBuf,
+    #[command(flatten)]
+    lanes: LanesArgs,
     /// Print one JSON document in place of the table.
     #[arg(long)]
     json: bool,
@@ -49,7 +52,8 @@ pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
     let interrupt = Interrupt::listen();
     let bar = ProgressBar::new(0)
         .with_style(style("{bar:30} {pos} of {len} runs  {elapsed}, {eta} to go"));
-    let result = heights(&request, &args.out, &RunOptions::default(), &|done, of| {
+    let options = RunOptions { lanes: args.lanes.lanes, ..RunOptions::default() };
+    let result = heights(&request, &args.out, &options, &|done, of| {
         bar.set_length(of);
         bar.set_position(done);
         interrupt.flow()

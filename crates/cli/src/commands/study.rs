@@ -11,10 +11,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context as _;
+use barrelstack::ensemble::Width;
 use barrelstack_campaign::study::{self, ChunkRun, Collected, RunOptions, Study, StudyError};
 use clap::Subcommand;
 use serde_json::json;
 
+use crate::lanes::LanesArgs;
 use crate::printer;
 
 /// What the help ends with.
@@ -62,6 +64,8 @@ struct RunArgs {
     /// Threads; all cores without. The table does not depend on it.
     #[arg(long, value_name = "NUMBER")]
     threads: Option<NonZero<usize>>,
+    #[command(flatten)]
+    lanes: LanesArgs,
     /// Print one JSON document in place of the summary for people.
     #[arg(long)]
     json: bool,
@@ -89,6 +93,8 @@ struct ChunkArgs {
     /// Folder of the results, shared by all chunks.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    #[command(flatten)]
+    lanes: LanesArgs,
 }
 
 #[derive(Debug, clap::Args)]
@@ -172,7 +178,7 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     };
     let study = load(study)?;
     let live = live::Live::new(!args.quiet, study.design.is_sample());
-    let options = RunOptions { threads: args.threads };
+    let options = RunOptions { threads: args.threads, lanes: args.lanes.lanes };
     match study.run_all(out, &options, &|progress| live.at(progress)) {
         Ok(()) => {}
         Err(StudyError::Stopped) => {
@@ -263,7 +269,8 @@ fn plan(args: &PlanArgs) -> anyhow::Result<()> {
 fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
     let study = load(&args.which.study)?;
     let live = live::Live::new(false, false);
-    match study.run_chunk(&args.out, args.chunk, &|| live.stopped()) {
+    let lanes = args.lanes.lanes.unwrap_or_else(Width::widest);
+    match study.run_chunk(&args.out, args.chunk, lanes, &|| live.stopped()) {
         Ok(ChunkRun::Before) => {
             printer::lines([format!("chunk {} was done before", args.chunk)])?;
         }

@@ -225,6 +225,7 @@ impl<R: Real> NormalLaw<R> {
     }
 
     /// The tangent stiffness `∂fₙ/∂δ` (N/m) at a penetration (m), rates left out.
+    #[inline(always)]
     pub fn tangent_stiffness(&self, depth: R) -> R {
         match *self {
             Self::SpeedGap { stiffness, .. }

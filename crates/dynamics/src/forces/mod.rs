@@ -2,7 +2,7 @@
 
 mod press;
 
-use crate::body::{Motion, Nodes};
+use crate::body::{BodyId, Motion, Nodes};
 use crate::contact::{FrictionLaw, Stick};
 use crate::contact_elements::ContactElements;
 use crate::element::{self, Load};
@@ -76,6 +76,10 @@ impl<S: Space> Default for Losses<S> {
 pub struct PairForce<S: Space> {
     /// Which pair of the model.
     pub pair: usize,
+    /// Its contactor.
+    pub contactor: BodyId,
+    /// Its target.
+    pub target: BodyId,
     /// Force (N) on the contactor, in the inertial frame; the target feels its opposite.
     pub force: S::Vector,
 }
@@ -109,22 +113,34 @@ pub struct Scratch<S: Space> {
     pub evaluations: u64,
     /// How many contact elements have been tested in all evaluations.
     pub contact_evaluations: u64,
+    /// Where an impact asks for short steps: within [`Scratch::horizon`] a contact would be deeper than
+    /// [`Impacts::calm`](crate::model::Impacts::calm) at the speed that it has.
+    pub(crate) hurried: <S::Real as Real>::Mask,
+    /// How far (s) impacts are foreseen; zero where steps are never divided.
+    pub(crate) horizon: S::Real,
     /// Accelerations of the state a step started from, for methods that correct.
     pub(crate) old_accelerations: Vec<Twist<S>>,
     /// Slip rates of that state.
     pub(crate) old_slip_rates: Vec<S::Tangent>,
-    /// What of the contacts their sticks must know once the step is accepted.
-    pressed: Vec<Pressed<S>>,
+    /// What of the contacts their sticks must know once the step is accepted, and how hard they press; in
+    /// the order of their elements.
+    pub pressed: Vec<Pressed<S>>,
 }
 
 /// An element that touches in at least one lane.
 #[derive(Clone, Copy, Debug)]
-struct Pressed<S: Space> {
+pub struct Pressed<S: Space> {
     element: usize,
-    pair: usize,
-    touching: <S::Real as Real>::Mask,
-    /// Compressive force (N).
-    normal_force: S::Real,
+    /// Which pair of the model.
+    pub pair: usize,
+    /// Which node of the contactor's node set.
+    pub node: u32,
+    /// Where it touches.
+    pub touching: <S::Real as Real>::Mask,
+    /// The companion point (m), in the frame of the target's surface.
+    pub point: S::Vector,
+    /// Compressive force (N); zero where it does not touch.
+    pub normal_force: S::Real,
     /// What the constants of its laws are multiplied by.
     weight: S::Real,
 }
@@ -146,6 +162,8 @@ impl<S: Space> Scratch<S> {
             slip_rates: Vec::new(),
             evaluations: 0,
             contact_evaluations: 0,
+            hurried: <S::Real as Real>::Mask::default(),
+            horizon: S::Real::zero(),
             old_accelerations: vec![Twist::default(); count],
             old_slip_rates: Vec::new(),
             pressed: Vec::new(),
@@ -234,6 +252,7 @@ fn clear<S: Space>(state: &State<S>, scratch: &mut Scratch<S>) {
     scratch.wrenches.fill(Wrench::default());
     scratch.losses.fill(Losses::default());
     scratch.totals = ContactTotals::default();
+    scratch.hurried = <S::Real as Real>::Mask::default();
     scratch.contacts.clear();
     scratch.pressed.clear();
     scratch.pair_forces.clear();
@@ -288,7 +307,7 @@ fn commit_all<S: Space>(model: &Model<S>, elements: &mut ContactElements<S>, scr
     let ContactElements { sticks, .. } = elements;
     let mut next = 0;
     for pressed in scratch.pressed.chunk_by(|a, b| a.pair == b.pair) {
-        let interface = &model.interfaces[model.pairs[pressed[0].pair].interface];
+        let interface = &model.interfaces[model.pair(pressed[0].pair).interface];
         // Asked once for a pair, not at every contact.
         match interface.friction {
             FrictionLaw::Coulomb {
@@ -355,7 +374,7 @@ pub fn contact_force<S: Space>(
     scratch: &Scratch<S>,
     contact: &Contact<S>,
 ) -> (S::Vector, S::Vector) {
-    let pair = &model.pairs[contact.pair];
+    let pair = &model.pair(contact.pair);
     let placed = &model.bodies[pair.target].surfaces[pair.surface];
     let target = scratch.rotations[pair.target];
     let rotation = S::compose(target, placed.rotation);

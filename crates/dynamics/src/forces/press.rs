@@ -22,7 +22,7 @@ pub(super) fn touch<S: Space>(
     group: &Group,
     scratch: &mut Scratch<S>,
 ) {
-    let interface = &model.interfaces[model.pairs[group.pair].interface];
+    let interface = &model.interfaces[model.pair(group.pair).interface];
     match (interface.normal, interface.friction) {
         (
             NormalLaw::SpeedGap { stiffness, damping },
@@ -57,14 +57,19 @@ fn touch_by<S: Space>(
     group: &Group,
     scratch: &mut Scratch<S>,
 ) {
-    let pair = &model.pairs[group.pair];
+    let pair = &model.pair(group.pair);
     let frame = PairFrame::new(model, pair, &state.poses, &scratch.rotations);
     let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
     let counted = frame.at_face(model, pair);
     if counted.is_some_and(|face| face.never()) {
         return;
     }
+    let calm = model.impacts.calm[pair.interface];
+    let others = scratch.pressed.len();
     let mut press = Press {
+        calm: calm.lt(S::Real::splat(f64::INFINITY)).any().then_some(calm),
+        horizon: scratch.horizon,
+        hurried: scratch.hurried,
         rolling: model.interfaces[pair.interface].rolling,
         stop: model.interfaces[pair.interface].stop,
         counted,
@@ -92,6 +97,7 @@ fn touch_by<S: Space>(
                 |index| frame.to_surface(nodes[index]),
                 #[inline(always)]
                 |index, node, gap| {
+                    press.foresee(node, gap);
                     press.node(group.first + index, node, gap, one);
                 },
             );
@@ -101,13 +107,17 @@ fn touch_by<S: Space>(
             let center = frame.to_surface(*center);
             let mut gap = surface.gap(center);
             gap.distance -= *radius;
+            let node = center - gap.normal * *radius;
+            press.foresee(node, gap);
             if gap.distance.lt(S::Real::zero()).any() {
-                press.node(group.first, center - gap.normal * *radius, gap, one);
+                press.node(group.first, node, gap, one);
             }
         }
     }
-    let Press { meeting, sum, totals, .. } = press;
-    let Some(meeting) = meeting else { return };
+    let Press { meeting, sum, totals, hurried, pressed, .. } = press;
+    let touches = pressed.len() > others;
+    scratch.hurried = hurried;
+    let Some(meeting) = meeting.filter(|_| touches) else { return };
     scratch.totals = totals;
     let damped = meeting.on_bodies(sum.damped);
     let friction = meeting.on_bodies(sum.friction);
@@ -119,11 +129,19 @@ fn touch_by<S: Space>(
     losses[pair.target].damped += damped.1;
     losses[pair.contactor].friction += friction.0;
     losses[pair.target].friction += friction.1;
-    scratch.pair_forces.push(PairForce { pair: group.pair, force: on_contactor.force });
+    let (contactor, target) = (pair.contactor, pair.target);
+    let force = on_contactor.force;
+    scratch.pair_forces.push(PairForce { pair: group.pair, contactor, target, force });
 }
 
 /// Nodes of a pair that press into a surface, one after the other.
 struct Press<'a, S: Space> {
+    /// [`Impacts::calm`](crate::model::Impacts::calm) of the interface; none where it is infinite.
+    calm: Option<S::Real>,
+    /// [`Scratch::horizon`].
+    horizon: S::Real,
+    /// [`Scratch::hurried`].
+    hurried: <S::Real as Real>::Mask,
     /// How normal forces resist rolling, if they do.
     rolling: Option<Rolling<S::Real>>,
     stop: Option<Stop<S::Real>>,
@@ -154,10 +172,13 @@ const SLACK: f64 = 1e-9;
 /// How far (m) from the end of a side a corner is a contact in full, whatever else is inside there.
 const COMPANION: f64 = 0.01;
 
+/// Impacts are foreseen from this way (m) on to the depth that whole steps follow; faster ones later.
+const FORESEEN: f64 = 0.01;
+
 /// How far past the limits of a round piece a normal may point, on the way to another round piece.
 const LIMIT: f64 = 2e-7;
 
-impl<S: Space> Press<'_, S> {
+impl<'a, S: Space> Press<'a, S> {
     /// The round pieces of a convex boundary, each with its deepest point.
     ///
     /// A round piece against a straight side is a contact of this pair wherever it is deepest, or ends
@@ -172,7 +193,7 @@ impl<S: Space> Press<'_, S> {
         surface: &S::Surface,
     ) {
         let zero = S::Real::zero();
-        let pair = &model.pairs[self.pair];
+        let pair = &model.pair(self.pair);
         let first = pair.contactor < pair.target;
         let slack = S::Real::splat(if first { SLACK } else { -SLACK });
         for element in group.first..group.end {
@@ -181,7 +202,8 @@ impl<S: Space> Press<'_, S> {
             let nearest = surface.nearest(center, slack);
             let (mut gap, against_round) = (nearest.gap, nearest.round);
             gap.distance -= round.radius;
-            if !gap.distance.lt(zero).any() {
+            let foreseen = S::Real::splat(if self.calm.is_some() { FORESEEN } else { 0.0 });
+            if !gap.distance.lt(foreseen).any() {
                 continue;
             }
             let toward = self.frame.to_contactor(-gap.normal);
@@ -205,8 +227,9 @@ impl<S: Space> Press<'_, S> {
                 let nearer = gap.distance.lt(center.dot(*outward) - *distance - rounding);
                 counts = counts & !(against_round & nearer);
             }
-            if (counts & gap.distance.lt(zero)).any() {
-                gap.distance = S::Real::select(counts, gap.distance, S::Real::splat(1.0));
+            gap.distance = S::Real::select(counts, gap.distance, S::Real::splat(1.0));
+            self.foresee(center - gap.normal * round.radius, gap);
+            if gap.distance.lt(zero).any() {
                 let share = self.share(round, &nearest, slack);
                 // Both bodies feel the force midway between their boundaries, whichever of them tests.
                 let inset = round.radius - gap.distance * S::Real::splat(0.5);
@@ -218,6 +241,36 @@ impl<S: Space> Press<'_, S> {
                 }
             }
         }
+    }
+
+    /// Tells whether a node at `node` (m) will soon be deeper than whole time steps follow, wherever it
+    /// touches or is about to.
+    #[inline(always)]
+    fn foresee(&mut self, node: S::Vector, gap: Gap<S>) {
+        let Some(calm) = self.calm else { return };
+        let mut near = gap.distance.lt(S::Real::splat(FORESEEN) - calm);
+        if !near.any() {
+            return;
+        }
+        if let Some(face) = self.counted {
+            near = near & face.counts(gap.normal);
+        }
+        let approach = -self.meeting().velocity(node).dot(gap.normal);
+        let ahead = self.horizon * approach.max(S::Real::zero());
+        self.hurried = self.hurried | (near & calm.lt(ahead - gap.distance));
+    }
+
+    /// How the bodies meet, asked for by the first node that is near.
+    #[inline(always)]
+    fn meeting(&mut self) -> Meeting<'a, S> {
+        let (contactor, target) = self.twists;
+        let meeting = match self.meeting {
+            Some(meeting) => meeting,
+            // Not in a closure, which would be compiled outside of the scope of the vector unit.
+            None => Meeting::new(self.frame, contactor, target),
+        };
+        self.meeting = Some(meeting);
+        meeting
     }
 
     /// The share with which a corner counts on a side, near whose end the corner of the other body may
@@ -267,10 +320,7 @@ impl<S: Space> Press<'_, S> {
             gap.distance =
                 S::Real::select(face.counts(gap.normal), gap.distance, S::Real::splat(1.0));
         }
-        if self.meeting.is_none() {
-            self.meeting = Some(Meeting::new(self.frame, self.twists.0, self.twists.1));
-        }
-        let Some(meeting) = &self.meeting else { return S::Real::zero() };
+        let meeting = self.meeting();
         let contact = meeting.contact(self.pair, self.elements, element, node, gap);
         let touching = contact.touching;
         let whole = self.elements.weights[element] * share;
@@ -305,7 +355,9 @@ impl<S: Space> Press<'_, S> {
         self.pressed.push(Pressed {
             element,
             pair: self.pair,
+            node: contact.node,
             touching,
+            point: contact.point,
             normal_force,
             weight: whole,
         });
@@ -335,6 +387,7 @@ struct PairWrench<S: Space> {
 }
 
 /// Two bodies at their contact, seen from the target's surface.
+#[derive(Clone, Copy)]
 struct Meeting<'a, S: Space> {
     frame: &'a PairFrame<S>,
     /// Center of mass of the contactor from that of the target (m).
@@ -359,6 +412,12 @@ impl<'a, S: Space> Meeting<'a, S> {
         }
     }
 
+    /// Velocity (m/s) of the contactor relative to the target at a point (m), in the surface's frame.
+    #[inline(always)]
+    fn velocity(&self, point: S::Vector) -> S::Vector {
+        self.linear + S::velocity_at(self.spin, point - self.frame.contactor)
+    }
+
     /// Where and how fast a node at `node` (m, in the surface's frame) touches; no forces yet.
     ///
     /// Both bodies feel the force at the companion point, and both velocities are taken there:
@@ -375,7 +434,7 @@ impl<'a, S: Space> Meeting<'a, S> {
         let zero = S::Real::zero();
         let touching = gap.distance.lt(zero);
         let point = node - gap.normal * gap.distance;
-        let velocity = self.linear + S::velocity_at(self.spin, point - self.frame.contactor);
+        let velocity = self.velocity(point);
         let counted = S::Real::select(touching, S::Real::splat(1.0), zero);
         Contact {
             element,

@@ -108,7 +108,7 @@ impl<S: Space> Integrator<S> {
         until: S::Real,
     ) -> S::Real {
         let dt = until - state.time;
-        refresh(model, state, scratch, dt);
+        refresh(model, state, scratch, dt + scratch.horizon);
         match self.method {
             Method::SemiImplicitEuler => {
                 verlet::semi_implicit_euler(model, drive, state, scratch, until);
@@ -147,7 +147,11 @@ fn refresh<S: Space>(
 }
 
 /// Puts every prescribed body where the ground carries it at the time of the state.
-fn place_prescribed<S: Space>(model: &Model<S>, drive: &impl Drive<S>, state: &mut State<S>) {
+pub(crate) fn place_prescribed<S: Space>(
+    model: &Model<S>,
+    drive: &impl Drive<S>,
+    state: &mut State<S>,
+) {
     let (displacement, velocity) = drive.at(state.time);
     for (i, body) in model.bodies.iter().enumerate() {
         if body.motion == Motion::Prescribed {

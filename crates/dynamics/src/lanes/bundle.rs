@@ -65,6 +65,11 @@ impl<U: Unit> Real for Bundle<U> {
         Self(f64x8::from_slice(U::TOKEN, &lanes))
     }
     #[inline(always)]
+    fn with_lane(mut self, lane: usize, value: f64) -> Self {
+        self.0[lane] = value;
+        self
+    }
+    #[inline(always)]
     fn scope<T>(work: impl FnOnce() -> T) -> T {
         U::TOKEN.vectorize(work)
     }

@@ -71,6 +71,11 @@ impl Width {
         }
     }
 
+    /// The width of a [`Width::name`].
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|width| width.name() == name)
+    }
+
     /// Does work with the bundles of this width; none where this machine does not have it.
     pub fn run<T: Task>(self, task: T) -> Option<T::Output> {
         if !self.is_here() {

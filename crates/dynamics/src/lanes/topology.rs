@@ -5,7 +5,8 @@ use std::mem::{Discriminant, discriminant};
 use crate::body::{Body, BodyId, Motion, Nodes, Round};
 use crate::contact::{Basis, Exponent, FrictionLaw, Interface, NormalLaw};
 use crate::element::Element;
-use crate::model::{ContactPair, Model};
+use crate::model::Model;
+use crate::pairs::Pairs;
 use crate::shape::Shape;
 use crate::space::Planar;
 
@@ -15,7 +16,7 @@ use crate::space::Planar;
 pub struct Topology {
     bodies: Vec<BodyKind>,
     interfaces: Vec<InterfaceKind>,
-    pairs: Vec<ContactPair>,
+    pairs: Pairs,
     /// Kind of every force element, and the bodies that it joins.
     elements: Vec<(Discriminant<Element<Planar>>, [BodyId; 2])>,
 }

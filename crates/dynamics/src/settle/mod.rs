@@ -4,10 +4,11 @@
 //! masses are chosen for speed and nothing has a speed: dampers, whatever their law, say nothing about
 //! where bodies come to rest, nor whether they do.
 
+mod lanes;
 mod refusal;
 mod relax;
 
-use crate::body::Motion;
+use crate::body::{BodyId, Motion};
 use crate::forces::{Scratch, evaluate};
 use crate::integrate::{Integrator, Still};
 use crate::model::Model;
@@ -15,6 +16,7 @@ use crate::real::{Mask, Real};
 use crate::space::{Linear, Space, Twist};
 use crate::state::State;
 
+pub use lanes::{Stack, settle_all};
 use refusal::Departure;
 pub use refusal::{Lack, SettleError};
 use relax::Relaxation;
@@ -94,12 +96,9 @@ pub fn settle<S: Space>(
     state.time = start_time;
     stop(model, state);
     evaluate(model, state, scratch);
-    let settled = result.map(|(steps, unbalanced)| {
-        let locked = Locked::of(state, scratch);
-        Settled { steps, unbalanced, locked }
-    });
+    let locked = Locked::of(state, scratch);
     scratch.keeps_contacts = keeps_contacts;
-    settled
+    result.map(|(steps, unbalanced)| Settled { steps, unbalanced, locked })
 }
 
 /// Steps until every lane rests, in one way of [`TRIES`]; how many, and what is left unbalanced.
@@ -110,23 +109,26 @@ fn sink<S: Space>(
     tolerance: f64,
     (margin, calm): (f64, u64),
 ) -> Result<(u64, f64), SettleError> {
-    let gravity = gravity(model).largest_lane();
     let mut relaxation = Relaxation::new(model, margin, calm);
     let mut departure = Departure::new(model, state.poses.clone());
     let mut steps = 0;
     loop {
         relaxation.weigh(model, state, scratch);
-        let left_over = unbalanced(model, state, scratch, &relaxation, tolerance * gravity);
-        relaxation.resting = relaxation.resting | left_over.rests;
+        let (rests, worst) = relaxation.left_over(model, state, scratch, tolerance);
+        let unbalanced = worst.largest_lane() / gravity(model).largest_lane();
+        relaxation.resting = relaxation.resting | rests;
         if relaxation.resting.all() {
-            return Ok((steps, left_over.worst / gravity));
+            return Ok((steps, unbalanced));
         }
         if steps % LOOK == 0 {
             departure.watch(model, state, scratch, &relaxation.met)?;
         }
         if steps == MOST_STEPS {
-            let left_over = (steps, left_over.body, left_over.worst / gravity);
-            return Err(departure.unbalanced(model, state, left_over));
+            let left = |body: BodyId| relaxation.acceleration(scratch, body).largest_lane();
+            let free = (0..model.bodies.len()).filter(|i| model.bodies[*i].motion == Motion::Free);
+            let larger = |most, body| if left(body) > left(most) { body } else { most };
+            let body = free.reduce(larger).unwrap_or_default();
+            return Err(departure.unbalanced(model, state, (steps, body, unbalanced)));
         }
         relaxation.advance(model, state, scratch);
         steps += 1;
@@ -140,45 +142,6 @@ fn stop<S: Space>(model: &Model<S>, state: &mut State<S>) {
             *twist = Twist::default();
         }
     }
-}
-
-/// What the forces leave over.
-struct LeftOver<M> {
-    /// The lanes in which it is nothing.
-    rests: M,
-    /// The body that feels it most.
-    body: usize,
-    /// Its acceleration (m/s²), rotation counted at its reach.
-    worst: f64,
-}
-
-/// The accelerations that are left, against what is allowed (m/s²) and what rounding makes of stiff
-/// contacts.
-fn unbalanced<S: Space>(
-    model: &Model<S>,
-    state: &State<S>,
-    scratch: &Scratch<S>,
-    relaxation: &Relaxation<S>,
-    allowed: f64,
-) -> LeftOver<<S::Real as Real>::Mask> {
-    let mut left = LeftOver { rests: !<S::Real as Real>::Mask::default(), body: 0, worst: 0.0 };
-    for (i, body) in model.bodies.iter().enumerate() {
-        if body.motion == Motion::Prescribed {
-            continue;
-        }
-        let length = |v: S::Vector| v.dot(v).sqrt();
-        let reach = S::Real::splat(model.reach[i]);
-        let Twist { linear, angular } = scratch.accelerations[i];
-        let acceleration = length(linear).max(S::spin_magnitude(angular) * reach);
-        let place = length(state.poses[i].position) + reach;
-        let rounding = S::Real::splat(ROUNDING) * place * relaxation.stiffness(i) / body.mass;
-        left.rests = left.rests & acceleration.lt(S::Real::splat(allowed) + rounding);
-        let worst = acceleration.largest_lane();
-        if worst > left.worst {
-            (left.body, left.worst) = (i, worst);
-        }
-    }
-    left
 }
 
 impl Locked {
@@ -207,10 +170,4 @@ impl Locked {
 /// The magnitude of gravity (m/s²), not less than what keeps it fit to divide by.
 fn gravity<S: Space>(model: &Model<S>) -> S::Real {
     model.gravity.dot(model.gravity).sqrt().max(S::Real::splat(1e-12))
-}
-
-/// How far a body extends from its center of mass (m); a meter where it has no boundary.
-fn extent<S: Space>(model: &Model<S>, body: usize) -> f64 {
-    let reach = model.reach[body];
-    if reach > 0.0 { reach } else { 1.0 }
 }

@@ -8,7 +8,7 @@ use crate::real::{Mask, Real};
 use crate::space::{Linear, Pose, Space};
 use crate::state::State;
 
-use super::{extent, gravity};
+use super::gravity;
 
 /// Share of its reach that a body has moved when it is looked at for what it lacks: more than it sinks,
 /// and not so much that all is lost.
@@ -119,12 +119,12 @@ impl<S: Space> Departure<S> {
 
     /// How far every body has strayed (m): sideways, up, or down by more than any body below it, since what
     /// lies on soft contacts sinks with them.
-    fn strayed(&self, model: &Model<S>, state: &State<S>) -> Vec<f64> {
+    fn strayed(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<f64> {
         let down = model.gravity * (S::Real::splat(1.0) / gravity(model));
         let mut strayed = vec![0.0; self.start.len()];
         let mut sunk = S::Real::zero();
         for body in &self.upward {
-            let way = state.poses[*body].position - self.start[*body].position;
+            let way = poses[*body].position - self.start[*body].position;
             let fallen = way.dot(down);
             let sideways = way - down * fallen;
             let sideways = sideways.dot(sideways).sqrt();
@@ -146,9 +146,8 @@ impl<S: Space> Departure<S> {
         scratch: &Scratch<S>,
         met: &[bool],
     ) -> Result<(), SettleError> {
-        let strayed = self.strayed(model, state);
-        let share = |body: &BodyId| strayed[*body] / extent(model, *body);
-        let most = self.upward.iter().map(share).fold(0.0, f64::max);
+        let strayed = self.strayed(model, &state.poses);
+        let most = most(model, &strayed);
         if most < GOING {
             return Ok(());
         }
@@ -165,6 +164,11 @@ impl<S: Space> Departure<S> {
             return Ok(());
         }
         Err(self.refusal(model, state, first, lack))
+    }
+
+    /// Whether [`Departure::watch`] would say that a body has left.
+    pub(super) fn has_left(&self, model: &Model<S>, poses: &[Pose<S>]) -> bool {
+        most(model, &self.strayed(model, poses)) >= LEFT
     }
 
     /// Why there is no rest, though no body has left: for the body that feels most of what is left.
@@ -200,11 +204,11 @@ impl<S: Space> Departure<S> {
         going: &[bool],
     ) -> Lack {
         let of = |contact: &&Contact<S>| {
-            let pair = &model.pairs[contact.pair];
+            let pair = &model.pair(contact.pair);
             contact.touching.any() && (pair.contactor == body || pair.target == body)
         };
         let partner = |contact: &Contact<S>| {
-            let pair = &model.pairs[contact.pair];
+            let pair = &model.pair(contact.pair);
             if pair.contactor == body { pair.target } else { pair.contactor }
         };
         // What bears it stays; where all go, the last that bears it tells as much as any.
@@ -215,7 +219,7 @@ impl<S: Space> Departure<S> {
             return if met[body] { Lack::Place } else { Lack::Support };
         };
         let on = model.bodies[partner(last)].name.clone();
-        let law = |contact: &Contact<S>| &model.interfaces[model.pairs[contact.pair].interface];
+        let law = |contact: &Contact<S>| &model.interfaces[model.pair(contact.pair).interface];
         if let Some(creeping) =
             bearing.iter().find(|c| matches!(law(c).friction, FrictionLaw::Regularized { .. }))
         {
@@ -245,4 +249,16 @@ impl<S: Space> Departure<S> {
         }
         Lack::Place
     }
+}
+
+/// The most that any body has strayed, as a share of its extent.
+fn most<S: Space>(model: &Model<S>, strayed: &[f64]) -> f64 {
+    let shares = strayed.iter().enumerate().map(|(body, far)| far / extent(model, body));
+    shares.fold(0.0, f64::max)
+}
+
+/// How far a body extends from its center of mass (m); a meter where it has no boundary.
+fn extent<S: Space>(model: &Model<S>, body: usize) -> f64 {
+    let reach = model.reach[body];
+    if reach > 0.0 { reach } else { 1.0 }
 }

@@ -2,13 +2,15 @@
 
 use crate::body::Motion;
 use crate::contact::Stick;
+use crate::element::Memory;
 use crate::forces::{self, Scratch, evaluate};
+use crate::lanes::Lanewise;
 use crate::model::Model;
 use crate::real::{Mask, Real};
-use crate::space::{Linear, Space, Twist, Wrench};
+use crate::space::{Linear, Planar, Space, Twist, Wrench};
 use crate::state::State;
 
-use super::{extent, gravity};
+use super::{ROUNDING, gravity};
 
 /// Share of its reach that a body falls in its first step while nothing holds it.
 const FIRST_FALL: f64 = 1e-4;
@@ -42,6 +44,15 @@ struct Held<R> {
     turn: R,
 }
 
+impl<R: Real> Held<R> {
+    /// Adds a spring (N/m) at an arm (m).
+    #[inline(always)]
+    fn by(&mut self, stiffness: R, arm: impl Linear<R>) {
+        self.way += stiffness;
+        self.turn += stiffness * arm.dot(arm);
+    }
+}
+
 /// What relaxation carries from step to step. Lanes decide alone; a lane that rests stays as it is.
 pub(super) struct Relaxation<S: Space> {
     /// Fictitious mass over the stiffness that a body's contacts add up to.
@@ -54,6 +65,8 @@ pub(super) struct Relaxation<S: Space> {
     pub(super) resting: <S::Real as Real>::Mask,
     /// The bodies that have touched something, or hung on something.
     pub(super) met: Vec<bool>,
+    /// How far every body extends from its center of mass (m).
+    pub(super) reach: Vec<S::Real>,
     /// The ways and turns of the last step.
     ways: Vec<Twist<S>>,
     /// The stiffest that every body has been held: a body that leaves its contacts for a moment must not
@@ -61,7 +74,7 @@ pub(super) struct Relaxation<S: Space> {
     held: Vec<Held<S::Real>>,
     touches: Vec<Touch<S>>,
     /// Whether every element of the list touched.
-    touched: Vec<<S::Real as Real>::Mask>,
+    pub(super) touched: Vec<<S::Real as Real>::Mask>,
     /// Steps that are still to be made without momentum.
     calm: u64,
     /// Steps since the last stop.
@@ -75,6 +88,7 @@ impl<S: Space> Relaxation<S> {
             margin,
             resting: Default::default(),
             met: vec![false; model.bodies.len()],
+            reach: model.reach.iter().map(|reach| S::Real::splat(*reach)).collect(),
             ways: vec![Twist::default(); model.bodies.len()],
             held: vec![Held { way: S::Real::zero(), turn: S::Real::zero() }; model.bodies.len()],
             touches: Vec::new(),
@@ -84,9 +98,47 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// The most stiffness (N/m) that a body's contacts have added up to.
-    pub(super) fn stiffness(&self, body: usize) -> S::Real {
-        self.held[body].way
+    /// How far a body extends from its center of mass (m); a meter where it has no boundary.
+    #[inline(always)]
+    fn extent(&self, body: usize) -> S::Real {
+        let reach = self.reach[body];
+        S::Real::select(S::Real::zero().lt(reach), reach, S::Real::splat(1.0))
+    }
+
+    /// The acceleration (m/s²) that is left to a body, rotation counted at its reach.
+    #[inline(always)]
+    pub(super) fn acceleration(&self, scratch: &Scratch<S>, body: usize) -> S::Real {
+        let Twist { linear, angular } = scratch.accelerations[body];
+        length::<S>(linear).max(S::spin_magnitude(angular) * self.reach[body])
+    }
+
+    /// Where what is left to every body is less than a share of gravity, or than rounding makes of stiff
+    /// contacts; and the largest acceleration (m/s²) that is left.
+    pub(super) fn left_over(
+        &self,
+        model: &Model<S>,
+        state: &State<S>,
+        scratch: &Scratch<S>,
+        tolerance: f64,
+    ) -> (<S::Real as Real>::Mask, S::Real) {
+        S::Real::scope(
+            #[inline(always)]
+            || {
+                let allowed = S::Real::splat(tolerance) * gravity(model);
+                let (mut rests, mut worst) = (!<S::Real as Real>::Mask::default(), S::Real::zero());
+                for (i, body) in model.bodies.iter().enumerate() {
+                    if body.motion == Motion::Prescribed {
+                        continue;
+                    }
+                    let acceleration = self.acceleration(scratch, i);
+                    let place = length::<S>(state.poses[i].position) + self.reach[i];
+                    let rounding = S::Real::splat(ROUNDING) * place * self.held[i].way / body.mass;
+                    rests = rests & acceleration.lt(allowed + rounding);
+                    worst = S::Real::select(worst.lt(acceleration), acceleration, worst);
+                }
+                (rests, worst)
+            },
+        )
     }
 
     /// Looks at all that touches in the last evaluation, and at how stiff that holds each body.
@@ -101,16 +153,11 @@ impl<S: Space> Relaxation<S> {
     fn weigh_all(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
         let none = Held { way: S::Real::zero(), turn: S::Real::zero() };
         let mut now = vec![none; model.bodies.len()];
-        let mut hold = |body: usize, stiffness: S::Real, arm: S::Vector| {
-            self.met[body] = true;
-            now[body].way += stiffness;
-            now[body].turn += stiffness * arm.dot(arm);
-        };
         self.touches.clear();
         self.touched.clear();
         self.touched.resize(state.contact_elements.len(), Default::default());
         for contact in &scratch.contacts {
-            let pair = &model.pairs[contact.pair];
+            let pair = &model.pair(contact.pair);
             let interface = &model.interfaces[pair.interface];
             let placed = &model.bodies[pair.target].surfaces[pair.surface];
             let target = scratch.rotations[pair.target];
@@ -118,16 +165,18 @@ impl<S: Space> Relaxation<S> {
             let origin = state.poses[pair.target].position + S::rotate(target, placed.offset);
             let point = origin + S::rotate(rotation, contact.point);
             let bodies = [pair.contactor, pair.target];
-            let arms = bodies.map(
-                #[inline(always)]
-                |body| point - state.poses[body].position,
-            );
+            let arms = [
+                point - state.poses[pair.contactor].position,
+                point - state.poses[pair.target].position,
+            ];
             let zero = S::Real::zero();
             let weight = state.contact_elements.weights[contact.element];
             let weight = S::Real::select(contact.touching, weight, zero);
             let stiffness = interface.stiffness(contact.penetration) * weight;
-            hold(bodies[0], stiffness, arms[0]);
-            hold(bodies[1], stiffness, arms[1]);
+            for (body, arm) in bodies.into_iter().zip(arms) {
+                self.met[body] = true;
+                now[body].by(stiffness, arm);
+            }
             let (element, touching, normal) = (contact.element, contact.touching, contact.normal);
             self.touched[element] = touching;
             self.touches.push(Touch { element, touching, bodies, arms, rotation, normal });
@@ -137,7 +186,8 @@ impl<S: Space> Relaxation<S> {
             if bears.any() {
                 let stiffness = S::Real::select(bears, element.stiffness(), S::Real::zero());
                 for (body, point) in element.ends() {
-                    hold(body, stiffness, point);
+                    self.met[body] = true;
+                    now[body].by(stiffness, point);
                 }
             }
         }
@@ -154,6 +204,12 @@ impl<S: Space> Relaxation<S> {
         state: &mut State<S>,
         scratch: &mut Scratch<S>,
     ) {
+        self.set_out(model, state, scratch);
+        self.arrive(model, state, scratch);
+    }
+
+    /// The first part of a step: bodies and sticks go their ways.
+    pub(super) fn set_out(&mut self, model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
         S::Real::scope(
             #[inline(always)]
             || {
@@ -165,29 +221,57 @@ impl<S: Space> Relaxation<S> {
                 }
             },
         );
+    }
+
+    /// The second part of a step: the forces where the bodies are now, and what sticks keep of their ways.
+    pub(super) fn arrive(
+        &mut self,
+        model: &Model<S>,
+        state: &mut State<S>,
+        scratch: &mut Scratch<S>,
+    ) {
         let still = S::Real::zero();
         if let Some(origins) =
             state.contact_elements.refresh(model, &state.poses, &state.twists, still)
         {
-            scratch.renumber(&origins);
-            let touched =
-                |origin: &Option<usize>| origin.map_or_else(Default::default, |o| self.touched[o]);
-            self.touched = origins.iter().map(touched).collect();
+            self.renumber(&origins, scratch);
         }
         evaluate(model, state, scratch);
         S::Real::scope(
             #[inline(always)]
             || self.slide_fresh(&mut state.contact_elements.sticks, scratch),
         );
-        let kept = self.resting.any().then(|| state.contact_elements.sticks.clone());
+        let kept = self
+            .resting
+            .any()
+            .then(|| (state.contact_elements.sticks.clone(), state.memory.clone()));
         forces::commit(model, state, scratch);
-        for (stick, kept) in
-            state.contact_elements.sticks.iter_mut().zip(kept.into_iter().flatten())
-        {
-            *stick = Stick {
-                displacement: S::choose(self.resting, kept.displacement, stick.displacement),
-                slipping: (self.resting & kept.slipping) | (!self.resting & stick.slipping),
-            };
+        if let Some((sticks, memory)) = kept {
+            S::Real::scope(
+                #[inline(always)]
+                || self.keep(state, &sticks, &memory),
+            );
+        }
+    }
+
+    /// Follows a new list of elements.
+    pub(super) fn renumber(&mut self, origins: &[Option<usize>], scratch: &mut Scratch<S>) {
+        scratch.renumber(origins);
+        let touched =
+            |origin: &Option<usize>| origin.map_or_else(Default::default, |o| self.touched[o]);
+        self.touched = origins.iter().map(touched).collect();
+    }
+
+    /// Gives lanes that rest back what they remembered.
+    #[inline(always)]
+    fn keep(&self, state: &mut State<S>, sticks: &[Stick<S>], memory: &[Memory<S>]) {
+        let rests = self.resting;
+        for (stick, kept) in state.contact_elements.sticks.iter_mut().zip(sticks) {
+            stick.displacement = S::choose(rests, kept.displacement, stick.displacement);
+            stick.slipping = (rests & kept.slipping) | (!rests & stick.slipping);
+        }
+        for (now, kept) in state.memory.iter_mut().zip(memory) {
+            now.broken = (rests & kept.broken) | (!rests & now.broken);
         }
     }
 
@@ -215,7 +299,7 @@ impl<S: Space> Relaxation<S> {
             if body.motion == Motion::Prescribed {
                 continue;
             }
-            let extent = S::Real::splat(extent(model, i));
+            let extent = self.extent(i);
             let (way, held) = (&mut self.ways[i], self.held[i]);
             let falling = body.mass * gravity / (S::Real::splat(FIRST_FALL) * extent);
             let holds = zero.lt(held.way);
@@ -262,6 +346,23 @@ impl<S: Space> Relaxation<S> {
             }
         }
     }
+}
+
+impl<R: Real> Relaxation<Planar<R>> {
+    /// Lets a lane begin anew: nothing moves, and no body has been held.
+    pub(super) fn begin(&mut self, lane: usize) {
+        for (way, held) in self.ways.iter_mut().zip(&mut self.held) {
+            way.put(lane, &Twist::default());
+            held.way.put(lane, &0.0);
+            held.turn.put(lane, &0.0);
+        }
+        self.since.put(lane, &0.0);
+    }
+}
+
+#[inline(always)]
+fn length<S: Space>(vector: S::Vector) -> S::Real {
+    vector.dot(vector).sqrt()
 }
 
 /// The force on every body with gravity, and its moment about the center of mass.

@@ -44,6 +44,7 @@ const END: f64 = 10.0;
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         first_fall(),
+        written(),
         verdict("a-scenario", "scene A (±20°) as a scenario", true, |end| scenario(20.0, end)),
         verdict("c-bodies", "scene C (±35°) from bodies", false, |end| {
             bodies(35.0, end).map(|times| times[0])
@@ -70,6 +71,27 @@ fn first_fall() -> Problem {
             ))),
             _ => Err(Failure::Absent("nothing falls in 3 s".into())),
         }),
+    }
+}
+
+/// The same scene from a file: a free scene whose racks carry chosen nodes.
+fn written() -> Problem {
+    Problem {
+        id: "consensus/a-file".into(),
+        title: "scene A (±20°) as a free scene from a file".into(),
+        run: Box::new(|_| {
+            let text = include_str!("../../cases/five-codes.toml");
+            let run = Scenario::parse("five-codes.toml", text, &[])?.run()?;
+            let frames = &run.recording.frames;
+            let fallen = |poses: &Vec<[f64; 3]>| {
+                let dropped = |body: usize| frames.poses[0][body][1] - poses[body][1];
+                (1..poses.len()).any(|body| !is_rack(body) && dropped(body) > FALLS[0])
+            };
+            let fall = frames.poses.iter().position(fallen);
+            let fall = fall.ok_or(Failure::Absent("nothing falls in 3 s".into()))?;
+            Ok(Outcome::of(frames.times[fall]))
+        }),
+        ..first_fall()
     }
 }
 

@@ -65,7 +65,7 @@ pub(super) fn problems() -> Vec<Problem> {
 /// The sum of normal forces (N) between two bodies, whichever carries the nodes.
 fn force_between(scene: &Scene, a: usize, b: usize) -> f64 {
     let joins = |pair: usize| {
-        let pair = scene.model.pairs()[pair];
+        let pair = scene.model.pair(pair);
         (pair.contactor, pair.target) == (a, b) || (pair.contactor, pair.target) == (b, a)
     };
     scene.scratch.contacts.iter().filter(|c| joins(c.pair)).map(|c| c.normal_force).sum()

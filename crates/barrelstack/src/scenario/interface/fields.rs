@@ -212,6 +212,12 @@ pub static FREE_INTERFACE: Section = Section {
             Default::Required,
             "The two kinds: the first carries the contact nodes, the second the surface.",
         ),
+        Field::new(
+            "within_groups",
+            Kind::Flag,
+            Default::Value("true"),
+            "Whether bodies of one `group` meet by it, as those of different groups and of none do.",
+        ),
         LAW,
         BASIS,
         STIFFNESS,

@@ -3,6 +3,7 @@
 use crate::scenario::dimension::Dimension;
 use crate::scenario::error::{Problem, ScenarioError};
 use crate::scenario::field::Section;
+use crate::scenario::free::FreeInterface;
 use crate::scenario::quantity::QuantityError;
 use crate::scenario::reader::Reader;
 use crate::scenario::tree::Table;
@@ -226,10 +227,11 @@ pub(in crate::scenario) fn write(section: &'static Section, interface: &Interfac
 }
 
 /// Writes an interface of a free scene.
-pub(in crate::scenario) fn write_free(between: &[String; 2], interface: &Interface) -> Table {
-    let mut writer = Writer::variant(&FREE_INTERFACE, law_of(&interface.normal));
-    writer.pair("between", between);
-    write_fields(&mut writer, interface);
+pub(in crate::scenario) fn write_free(interface: &FreeInterface) -> Table {
+    let mut writer = Writer::variant(&FREE_INTERFACE, law_of(&interface.law.normal));
+    writer.pair("between", &interface.between);
+    writer.flag("within_groups", interface.within_groups);
+    write_fields(&mut writer, &interface.law);
     writer.finish()
 }
 

@@ -1,0 +1,104 @@
+//! What a user runs: studies of eight barrels, and single runs.
+
+use std::cell::Cell;
+use std::sync::Arc;
+use std::time::Instant;
+
+use barrelstack::ensemble::{Audience, Ensemble, Prepared, simulate};
+use barrelstack::{Run, Scenario};
+
+use crate::{Failure, time};
+
+/// The stack of the paper.
+const STACK: &str = "candia-8-barrels";
+
+/// Cases of a study whose cost is taken: four bundles.
+const CASES: usize = 32;
+
+/// Simulated time (s) of each.
+const DURATION: f64 = 20.0;
+
+/// Its motions: amplitudes (m) of the paper's sine under which it stands, and under which half of the cases
+/// collapse.
+pub(crate) const STANDING: [f64; 2] = [0.02, 0.05];
+pub(crate) const HALF: [f64; 2] = [0.05, 0.15];
+
+/// What a study takes.
+pub(crate) struct Cost {
+    /// For a simulated second (s).
+    pub(crate) second: f64,
+    /// Share of the cases that collapsed.
+    pub(crate) collapsed: f64,
+}
+
+/// A study of one stack under motions of amplitudes in a range (m), on one core, its fates and demands watched.
+pub(crate) fn study(amplitudes: [f64; 2]) -> Result<Cost, Failure> {
+    let scenario = Arc::new(Scenario::builtin(STACK, &[format!("run.duration=\"{DURATION} s\"")])?);
+    let case = |at: usize| {
+        let amplitude = between(amplitudes, at, CASES);
+        let shaken = Scenario::builtin(STACK, &shaking(amplitude))?;
+        Ok(Prepared { scenario: Arc::clone(&scenario), ground: Arc::new(shaken.ground()?) })
+    };
+    let cases: Vec<Prepared> = (0..CASES).map(case).collect::<Result<_, Failure>>()?;
+    let (simulated, fallen) = (Cell::new(0.0), Cell::new(0));
+    let spent = time::least(|| {
+        let results = on_one_core(&cases);
+        simulated.set(results.iter().filter_map(|result| result.end_time).sum());
+        fallen.set(results.iter().filter(|result| result.first_fall.is_some()).count());
+    });
+    Ok(Cost { second: spent / simulated.get(), collapsed: fallen.get() as f64 / CASES as f64 })
+}
+
+/// What it takes (s) to build and settle a case that differs from others in its friction.
+pub(crate) fn settling() -> Result<f64, Failure> {
+    let cases = differing(CASES, 1e-3)?;
+    Ok(time::least(|| drop(on_one_core(&cases))) / CASES as f64)
+}
+
+/// A study of so many cases that differ in their friction and stand, on all cores: how many those are, and the
+/// time on the clock (s).
+pub(crate) fn on_all_cores(cases: usize) -> Result<(usize, f64), Failure> {
+    let ensemble = Ensemble { cases: differing(cases, DURATION)?, ..Ensemble::default() };
+    let start = Instant::now();
+    let results = ensemble.run();
+    assert!(results.iter().all(|result| result.outcome.is_ok()), "every case runs");
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    Ok((cores, start.elapsed().as_secs_f64()))
+}
+
+/// How many times faster than real time a built-in scenario runs alone, all that a run keeps kept.
+pub(crate) fn single(name: &str) -> Result<f64, Failure> {
+    let scenario = Scenario::builtin(name, &[])?;
+    let run: Run = scenario.run()?;
+    Ok(run.end_time / time::least(|| drop(scenario.run())))
+}
+
+fn on_one_core(cases: &[Prepared]) -> Vec<barrelstack::ensemble::CaseResult> {
+    let mut audience = Audience { tell: &mut |_| {}, stop: &|| false };
+    simulate(cases, &mut audience).unwrap_or_default()
+}
+
+/// Cases of a duration (s) that differ in two frictions, and stand.
+fn differing(cases: usize, duration: f64) -> Result<Vec<Prepared>, Failure> {
+    let case = |at: usize| {
+        let share = |turn: f64| (at as f64 * turn).fract();
+        let settings = [
+            format!("run.duration=\"{duration} s\""),
+            format!("interface.rack-ground.friction.coefficient={}", 0.4 + 0.2 * share(0.618)),
+            format!("interface.barrel-rack.friction.coefficient={}", 0.18 + 0.08 * share(0.755)),
+        ];
+        let amplitude = between(STANDING, at % CASES, CASES);
+        let settings = [&settings[..], &shaking(amplitude)].concat();
+        Ok(Prepared::new(Scenario::builtin(STACK, &settings)?)?)
+    };
+    (0..cases).map(case).collect()
+}
+
+/// The paper's motion with an amplitude (m), as long as the run.
+fn shaking(amplitude: f64) -> Vec<String> {
+    vec![format!("motion.sine.amplitude=\"{amplitude} m\""), "motion.sine.cycles=20".to_owned()]
+}
+
+fn between([low, high]: [f64; 2], at: usize, of: usize) -> f64 {
+    low + (high - low) * at as f64 / of as f64
+}

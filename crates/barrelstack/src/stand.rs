@@ -1,0 +1,170 @@
+//! From scenarios to stacks that stand at rest, ready to be shaken: one, or many side by side.
+
+use barrelstack_dynamics::lanes::{Task, Topology, Width};
+use barrelstack_dynamics::real::Real;
+use barrelstack_dynamics::settle::{self, settle_all};
+use barrelstack_dynamics::{Element, Planar, Scratch, SettleError, Settled, State, evaluate};
+
+use crate::assemble::{AssembleError, Assembly, assemble};
+use crate::overlap::check_overlap;
+use crate::rest::Restless;
+use crate::run::{RunFailure, check_length, time_step};
+use crate::scenario::{Scenario, Scene};
+
+/// Largest share of gravity that may be left unbalanced at rest.
+const TOLERANCE: f64 = 1e-10;
+
+/// Fewer stacks or cases than this of one topology go one after the other: a bundle costs as much as some
+/// three single runs, however few of its lanes are used.
+pub(crate) const FEWEST: usize = 3;
+
+/// A stack that stands at rest, ready to be shaken.
+#[derive(Clone, Debug)]
+pub(crate) struct Standing {
+    pub(crate) assembly: Assembly,
+    pub(crate) state: State<Planar>,
+    pub(crate) scratch: Scratch<Planar>,
+    pub(crate) settled: Option<Settled>,
+    /// The time step (s).
+    pub(crate) step: f64,
+}
+
+/// The stack of a scenario, as built or at rest, or why it is not.
+#[derive(Debug)]
+pub(crate) struct Stack<'a> {
+    pub(crate) scenario: &'a Scenario,
+    pub(crate) standing: Result<Standing, RunFailure>,
+}
+
+impl<'a> Stack<'a> {
+    /// Builds a stack for a run until a time (s); it does not rest yet.
+    pub(crate) fn built(scenario: &'a Scenario, end_time: f64) -> Self {
+        let build = || {
+            let assembly = assemble(scenario)?;
+            let state = State::initial(&assembly.model);
+            let scratch = Scratch::new(&assembly.model);
+            check_overlap(&assembly, &state, scenario.run.similitude)?;
+            let step = time_step(scenario, &assembly)?;
+            check_length(end_time, step)?;
+            Ok(Standing { assembly, state, scratch, settled: None, step })
+        };
+        Self { scenario, standing: build() }
+    }
+
+    /// Whether the stack of another scenario is the same: the two differ in nothing but their motions, their
+    /// ends, and what is seen of them.
+    pub(crate) fn is_of(&self, other: &Scenario) -> bool {
+        let own = self.scenario;
+        let stands = |scenario: &Scenario| {
+            let run = &scenario.run;
+            (run.settle, run.gravity, run.similitude, run.accuracy, run.step, run.method)
+        };
+        let scenes_agree = || match (&own.scene, &other.scene) {
+            (Scene::Stack { stack: a, .. }, Scene::Stack { stack: b, .. }) => a == b,
+            (a, b) => a == b,
+        };
+        std::ptr::eq(own, other) || (stands(own) == stands(other) && scenes_agree())
+    }
+}
+
+/// Builds a stack for a run until a time (s) and lets it come to rest.
+///
+/// # Errors
+/// When it cannot be built, or does not stand.
+pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunFailure> {
+    let mut one = [Stack::built(scenario, end_time)];
+    // Nobody stops it.
+    let _ = stand_all(Width::Scalar, &mut one, &|| false);
+    let [Stack { standing, .. }] = one;
+    standing
+}
+
+/// Lets stacks that were built come to rest and puts their devices on; none when asked to stop.
+///
+/// Those of one topology do so side by side, each to the bits that it comes to alone.
+pub(crate) fn stand_all(
+    width: Width,
+    stacks: &mut [Stack<'_>],
+    stop: &dyn Fn() -> bool,
+) -> Option<()> {
+    rest(width, stacks, stop, |scenario, _| scenario.run.settle)?;
+    for Stack { scenario, standing } in &mut *stacks {
+        let Ok(Standing { assembly, state, scratch, .. }) = standing else { continue };
+        if !scenario.run.settle {
+            evaluate(&assembly.model, state, scratch);
+        }
+        if let Err(error) = assembly.fasten(state) {
+            *standing = Err(AssembleError::from(error).into());
+        }
+    }
+    // Elements that bear something from the start press the stack together.
+    rest(width, stacks, stop, |scenario, standing| {
+        let strained = |element: &Element<Planar>| element.load(&standing.state).force != 0.0;
+        scenario.run.settle && standing.assembly.model.elements().iter().any(strained)
+    })?;
+    for Stack { scenario, standing } in stacks {
+        if let (Scene::Free(_), Ok(standing)) = (&scenario.scene, standing) {
+            // Equilibrium is that of the places; what the scenario sets in motion starts from there.
+            let bodies = standing.assembly.model.bodies();
+            standing.state.twists = bodies.iter().map(|body| body.twist).collect();
+        }
+    }
+    Some(())
+}
+
+/// Lets some of the stacks come to rest; those that do not are refused. None when asked to stop.
+fn rest(
+    width: Width,
+    stacks: &mut [Stack<'_>],
+    stop: &dyn Fn() -> bool,
+    wanted: impl Fn(&Scenario, &Standing) -> bool,
+) -> Option<()> {
+    let mut groups: Vec<(Option<Topology>, Vec<&mut Stack<'_>>)> = Vec::new();
+    for stack in stacks {
+        let Ok(standing) = &stack.standing else { continue };
+        if wanted(stack.scenario, standing) {
+            // One after the other, any will do.
+            let together = width != Width::Scalar;
+            let topology = together.then(|| Topology::of(&standing.assembly.model));
+            match groups.iter_mut().find(|(known, _)| *known == topology) {
+                Some((_, group)) => group.push(stack),
+                None => groups.push((topology, vec![stack])),
+            }
+        }
+    }
+    for (_, mut group) in groups {
+        let width = if group.len() < FEWEST || !width.is_here() { Width::Scalar } else { width };
+        let standing = group.iter_mut().filter_map(|stack| stack.standing.as_mut().ok());
+        let stacks = standing.map(|Standing { assembly, state, scratch, .. }| settle::Stack {
+            model: &assembly.model,
+            state,
+            scratch,
+        });
+        let results = width.run(Settling { stacks: stacks.collect(), stop })??;
+        for (Stack { standing, .. }, result) in group.into_iter().zip(results) {
+            match (standing.as_mut(), result) {
+                (Ok(standing), Ok(found)) => {
+                    let before = standing.settled.map_or(0, |settled| settled.steps);
+                    standing.settled = Some(Settled { steps: before + found.steps, ..found });
+                }
+                (_, Err(error)) => *standing = Err(Restless { error }.into()),
+                (Err(_), Ok(_)) => {}
+            }
+        }
+    }
+    Some(())
+}
+
+/// Stacks of one topology come to rest.
+struct Settling<'a> {
+    stacks: Vec<settle::Stack<'a>>,
+    stop: &'a dyn Fn() -> bool,
+}
+
+impl Task for Settling<'_> {
+    type Output = Option<Vec<Result<Settled, SettleError>>>;
+
+    fn run<R: Real>(mut self) -> Self::Output {
+        settle_all::<R>(&mut self.stacks, TOLERANCE, self.stop)
+    }
+}

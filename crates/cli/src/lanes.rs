@@ -1,0 +1,21 @@
+//! `--lanes`: the vector unit in which the cases of an ensemble march.
+
+use barrelstack::ensemble::Width;
+
+/// The option of all commands that run ensembles.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub(crate) struct LanesArgs {
+    /// Vector unit in which cases march side by side: avx512, avx2, or scalar for one after the other;
+    /// the widest of this machine without. Results do not depend on it.
+    #[arg(long, value_name = "UNIT", value_parser = here)]
+    pub(crate) lanes: Option<Width>,
+}
+
+/// The width of a name, if this machine has it.
+fn here(name: &str) -> Result<Width, String> {
+    Width::named(name).filter(|width| width.is_here()).ok_or_else(|| {
+        let here = Width::ALL.into_iter().filter(|width| width.is_here()).map(Width::name);
+        let what = if Width::named(name).is_some() { "this machine has no" } else { "there is no" };
+        format!("{what} {name}; this machine has {}", here.collect::<Vec<_>>().join(", "))
+    })
+}

@@ -1,0 +1,163 @@
+//! Which boundaries may meet: pair by pair, or by the kinds of the bodies.
+
+use std::ops::Range;
+
+use crate::body::BodyId;
+use crate::model::ContactPair;
+
+/// The contact pairs of a model, in the order in which their forces are summed: two bodies at a time.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Pairs {
+    /// One by one.
+    Listed {
+        /// The pairs.
+        pairs: Vec<ContactPair>,
+        /// The pairs of two bodies, one after the other.
+        couples: Vec<Couple>,
+    },
+    /// Bodies of two kinds meet like any others of these kinds: so thousands of bodies need no list of
+    /// all their pairs, which are as many as the square of their number.
+    OfKinds {
+        /// The kind of every body.
+        kinds: Vec<usize>,
+        /// How two bodies meet, by the kind of that with the lower id and then by that of the other; here the
+        /// former is body 0 and the latter body 1.
+        meetings: Vec<Vec<Vec<ContactPair>>>,
+        /// Numbers of pairs that are kept for two bodies.
+        most: usize,
+    },
+}
+
+/// The pairs of two bodies.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Couple {
+    /// The two bodies, the lower id first.
+    bodies: [BodyId; 2],
+    /// Their pairs.
+    pairs: Range<usize>,
+}
+
+/// The two bodies of a pair, the lower id first.
+fn between(pair: &ContactPair) -> [BodyId; 2] {
+    [pair.contactor.min(pair.target), pair.contactor.max(pair.target)]
+}
+
+impl Pairs {
+    /// Pairs in any order.
+    pub(crate) fn listed(mut pairs: Vec<ContactPair>) -> Self {
+        pairs.sort_unstable_by_key(|pair| (between(pair), *pair));
+        pairs.dedup();
+        let mut couples: Vec<Couple> = Vec::new();
+        for (index, pair) in pairs.iter().enumerate() {
+            match couples.last_mut() {
+                Some(couple) if couple.bodies == between(pair) => couple.pairs.end = index + 1,
+                _ => couples.push(Couple { bodies: between(pair), pairs: index..index + 1 }),
+            }
+        }
+        Self::Listed { pairs, couples }
+    }
+
+    /// Pairs of bodies of these kinds, numbered from 0; `meet` tells those of two bodies, the lower id
+    /// first, and tells the same for any others of their kinds.
+    pub(crate) fn of_kinds(
+        kinds: Vec<usize>,
+        meet: &dyn Fn([BodyId; 2]) -> Vec<ContactPair>,
+    ) -> Self {
+        let count = kinds.iter().max().map_or(0, |most| most + 1);
+        let (mut first, mut last) = (vec![None; count], vec![0; count]);
+        for (body, kind) in kinds.iter().enumerate() {
+            first[*kind].get_or_insert(body);
+            last[*kind] = body;
+        }
+        let of = |lower: usize, higher: usize| {
+            let bodies = first[lower].map(|lower| [lower, last[higher]]);
+            let Some(bodies) = bodies.filter(|[lower, higher]| lower < higher) else {
+                return Vec::new();
+            };
+            let place = |body| usize::from(body == bodies[1]);
+            let placed = |pair: ContactPair| ContactPair {
+                contactor: place(pair.contactor),
+                target: place(pair.target),
+                ..pair
+            };
+            let mut pairs: Vec<ContactPair> = meet(bodies).into_iter().map(placed).collect();
+            pairs.sort_unstable();
+            pairs.dedup();
+            pairs
+        };
+        let meetings: Vec<Vec<Vec<ContactPair>>> =
+            (0..count).map(|a| (0..count).map(|b| of(a, b)).collect()).collect();
+        let most = meetings.iter().flatten().map(Vec::len).max().unwrap_or(0);
+        Self::OfKinds { kinds, meetings, most }
+    }
+
+    /// The pair of a number.
+    #[inline(always)]
+    pub(crate) fn get(&self, index: usize) -> ContactPair {
+        match self {
+            Self::Listed { pairs, .. } => pairs[index],
+            Self::OfKinds { kinds, meetings, most } => {
+                let (couple, at) = (index / most, index % most);
+                let bodies = [couple / kinds.len(), couple % kinds.len()];
+                let pair = meetings[kinds[bodies[0]]][kinds[bodies[1]]][at];
+                ContactPair {
+                    contactor: bodies[pair.contactor],
+                    target: bodies[pair.target],
+                    ..pair
+                }
+            }
+        }
+    }
+
+    /// The numbers of the pairs of two bodies, the lower id first.
+    pub(crate) fn of_couple(&self, bodies: [BodyId; 2]) -> Range<usize> {
+        match self {
+            Self::Listed { couples, .. } => couples
+                .binary_search_by_key(&bodies, |couple| couple.bodies)
+                .map_or(0..0, |at| couples[at].pairs.clone()),
+            Self::OfKinds { kinds, meetings, most } => {
+                let first = (bodies[0] * kinds.len() + bodies[1]) * most;
+                first..first + meetings[kinds[bodies[0]]][kinds[bodies[1]]].len()
+            }
+        }
+    }
+
+    /// The numbers of all pairs in their order.
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = usize> + '_ {
+        let (listed, bodies) = match self {
+            Self::Listed { pairs, .. } => (pairs.len(), 0),
+            Self::OfKinds { kinds, .. } => (0, kinds.len()),
+        };
+        let couples = (0..bodies).flat_map(move |a| (a + 1..bodies).map(move |b| [a, b]));
+        (0..listed).chain(couples.flat_map(|couple| self.of_couple(couple)))
+    }
+
+    /// Tells how bodies meet: a pair, and the bodies that may stand in the place of its contactor and of its
+    /// target, any of them with any other.
+    pub(crate) fn each(&self, tell: &mut dyn FnMut(&ContactPair, &[BodyId], &[BodyId])) {
+        match self {
+            Self::Listed { pairs, .. } => {
+                pairs.iter().for_each(|pair| tell(pair, &[pair.contactor], &[pair.target]));
+            }
+            Self::OfKinds { kinds, meetings, .. } => {
+                let mut members = vec![Vec::new(); meetings.len()];
+                for (body, kind) in kinds.iter().enumerate() {
+                    members[*kind].push(body);
+                }
+                for (lower, row) in meetings.iter().enumerate() {
+                    for (higher, pairs) in row.iter().enumerate() {
+                        for pair in pairs {
+                            // Two of one kind are told apart.
+                            let bodies =
+                                [members[lower][0], members[higher][members[higher].len() - 1]];
+                            let of = [&members[lower], &members[higher]];
+                            let (contactor, target) = (bodies[pair.contactor], bodies[pair.target]);
+                            let placed = ContactPair { contactor, target, ..*pair };
+                            tell(&placed, of[pair.contactor], of[pair.target]);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
