@@ -79,7 +79,12 @@ fn whole_run() -> Result<(), Failure> {
 
 /// The report of a minute of a large stack: what it takes to write, and how large it is.
 fn report() -> Result<(), Failure> {
-    let changes = ["stack.levels=6", "run.duration=60 s", "motion.scale.factor=0.6"];
+    let changes = [
+        "stack.view=longitudinal",
+        "stack.levels=6",
+        "run.duration=60 s",
+        "motion.scale.factor=0.6",
+    ];
     let scenario = Scenario::builtin("demo-napa", &changes.map(str::to_owned))?;
     let run = scenario.run()?;
     let summary = Summary::of(&run, None);

@@ -4,7 +4,7 @@ use barrelstack_report::described;
 
 use crate::assemble::PartKind;
 use crate::run::{RunFailure, check_memory, end_time};
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, View};
 use crate::stand::{Standing, stand};
 use crate::stick::SoftStick;
 use crate::summary::MotionSummary;
@@ -17,6 +17,8 @@ described! {
         pub schema: &'static str ["check/1"],
         /// The scenario's title.
         pub title: String,
+        /// The plane of the model; null for a free scene.
+        pub view: Option<&'static str> ["transverse", "longitudinal"],
         /// Barrels.
         pub barrels: usize,
         /// Racks.
@@ -35,6 +37,8 @@ described! {
         pub warnings: Vec<String>,
         /// Hash of the scenario with every default written out.
         pub scenario_hash: String,
+        /// The same of the other plane, where the scenario looks at its stack in both.
+        pub other_plane: Option<Box<Checked>>,
     }
 
     /// How a stack came to rest.
@@ -139,6 +143,7 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
     Ok(Checked {
         schema: "check/1",
         title: scenario.title.clone(),
+        view: assembly.view.map(View::name),
         barrels: count(PartKind::Barrel),
         racks: count(PartKind::Rack),
         free_bodies: count(PartKind::Body),
@@ -148,5 +153,6 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
         sticks: sticks.iter().map(ToString::to_string).collect(),
         warnings: ground.warnings,
         scenario_hash: format!("{:016x}", scenario.fingerprint()),
+        other_plane: None,
     })
 }

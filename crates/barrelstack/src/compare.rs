@@ -8,6 +8,7 @@ use barrelstack_report::{Document, described};
 use crate::run::Run;
 use crate::scenario::Scenario;
 use crate::summary::Summary;
+use crate::variants::{Answer, Spread};
 
 /// One run among others.
 #[derive(Clone, Debug)]
@@ -18,6 +19,32 @@ pub struct Side {
     pub run: Run,
     /// Its summary.
     pub summary: Summary,
+    /// What all variants of the other plane say, where the scenario looks at both.
+    pub other: Option<Spread>,
+}
+
+/// Runs of answers with their names, all in one plane where all have it: the one in which the worst of them
+/// is worst.
+pub fn sides(answers: Vec<(String, Answer)>) -> Vec<Side> {
+    let share = |answer: &Answer| {
+        answer.decides.summary.ensemble.as_ref().and_then(|spread| spread.share).unwrap_or(0.0)
+    };
+    let worst = answers
+        .iter()
+        .map(|(_, answer)| answer)
+        .reduce(|worst, answer| if share(answer) > share(worst) { answer } else { worst });
+    let plane = worst.and_then(|answer| answer.decides.run.assembly.view);
+    let side = |(name, answer): (String, Answer)| {
+        let Answer { decides, other, .. } = answer;
+        let (shown, other) = match other {
+            Some(other) if other.run.assembly.view == plane => (other, Some(decides)),
+            other => (decides, other),
+        };
+        let summary = Summary { other_plane: None, ..shown.summary };
+        let other = other.and_then(|other| other.summary.ensemble);
+        Side { name, run: shown.run, summary, other }
+    };
+    answers.into_iter().map(side).collect()
 }
 
 /// Why runs cannot be compared.
@@ -85,6 +112,8 @@ described! {
         pub name: String = side.name.clone(),
         /// Its summary.
         pub summary: Summary = side.summary.clone(),
+        /// What its variants say in the other plane; null where it has one plane.
+        pub ensemble_of_other_plane: Option<Spread> = side.other.clone(),
     }
 
     /// One input that is not the same in all runs.

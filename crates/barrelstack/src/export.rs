@@ -6,23 +6,18 @@ use std::time::Duration;
 
 use barrelstack_report::{Document, Paper, csv_field, document_pdf, shortest};
 
+use crate::outcome::Outcome;
 use crate::report;
 use crate::run::Run;
-use crate::summary::Summary;
+use crate::scenario::View;
 use crate::system;
+use crate::variants::{Answer, Shown};
 use crate::verify::Verification;
 
-/// The names of the files that every run writes.
-const FILES: [&str; 8] = [
-    "summary.json",
-    "scenario.toml",
-    "histories.csv",
-    "histories.npz",
-    "forces.csv",
-    "envelopes.csv",
-    "frames.csv",
-    "report.html",
-];
+/// The names of the files that every run writes, those of the run itself also with its plane before them.
+const FILES: [&str; 4] = ["summary.json", "scenario.toml", "variants.csv", "report.html"];
+const FILES_OF_PLANE: [&str; 5] =
+    ["histories.csv", "histories.npz", "forces.csv", "envelopes.csv", "frames.csv"];
 
 /// Longest time between the first and the last file of a run; what was changed later was changed by another.
 const AT_ONCE: Duration = Duration::from_secs(10);
@@ -107,15 +102,17 @@ impl Folder {
         let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
         let written =
             changed(FILES[0]).filter(|_| summary["provenance"]["program"] == "barrelstack");
-        let foreign = |name: &&&str| {
+        let foreign = |name: &String| {
             let Some(at) = changed(name) else { return false };
             written
                 .is_none_or(|written| at.duration_since(written).is_ok_and(|late| late > AT_ONCE))
         };
-        match FILES.iter().find(foreign) {
-            Some(file) => {
-                Err(ExportError::Foreign { folder: path.to_owned(), file: (*file).to_owned() })
-            }
+        let planes = std::iter::once(String::new())
+            .chain(View::ALL.into_iter().map(|view| format!("{}-", view.name())));
+        let of_planes =
+            planes.flat_map(|plane| FILES_OF_PLANE.map(|name| format!("{plane}{name}")));
+        match FILES.into_iter().map(String::from).chain(of_planes).find(foreign) {
+            Some(file) => Err(ExportError::Foreign { folder: path.to_owned(), file }),
             None => Ok(folder),
         }
     }
@@ -130,32 +127,40 @@ impl Folder {
         self.path.join("report.html")
     }
 
-    /// Writes all files: under temporary names first and renamed together, so that none is ever half
+    /// Writes all files, those of a run with the name of its plane before theirs where there are two: under temporary names first and renamed together, so that none is ever half
     /// there and a full disk leaves an earlier run as it was.
     ///
     /// # Errors
     /// When the system refuses.
     pub fn write(
         &self,
-        run: &Run,
-        summary: &Summary,
+        answer: &Answer,
         verification: Option<&Verification>,
     ) -> Result<(), ExportError> {
-        let document = report::verified_document(run, summary, verification);
+        let Shown { run, summary, .. } = &answer.decides;
+        let document = report::answer_document(answer, verification);
         let json =
             verification.map_or_else(|| summary.to_json(), |found| found.with_summary(summary));
-        // In the order of FILES.
-        let contents: [Vec<u8>; FILES.len()] = [
-            (json + "\n").into_bytes(),
-            run.scenario.to_resolved_toml().into_bytes(),
-            histories_csv(run).into_bytes(),
-            self.histories_npz(run)?,
-            forces_csv(run).into_bytes(),
-            envelopes_csv(run).into_bytes(),
-            frames_csv(run).into_bytes(),
-            barrelstack_report::html(&document).into_bytes(),
+        let mut files = vec![
+            ("summary.json".to_owned(), (json + "\n").into_bytes()),
+            ("scenario.toml".to_owned(), answer.scenario.to_resolved_toml().into_bytes()),
+            ("variants.csv".to_owned(), variants_csv(answer).into_bytes()),
         ];
-        self.put(&FILES.iter().copied().zip(contents.iter().map(Vec::as_slice)))
+        let both = answer.other.is_some();
+        for run in std::iter::once(run).chain(answer.other.as_ref().map(|other| &other.run)) {
+            // Of both planes each has its own files.
+            let view = run.assembly.view.filter(|_| both);
+            let plane = view.map_or_else(String::new, |view| format!("{}-", view.name()));
+            files.extend([
+                (format!("{plane}histories.csv"), histories_csv(run).into_bytes()),
+                (format!("{plane}histories.npz"), self.histories_npz(run)?),
+                (format!("{plane}forces.csv"), forces_csv(run).into_bytes()),
+                (format!("{plane}envelopes.csv"), envelopes_csv(run).into_bytes()),
+                (format!("{plane}frames.csv"), frames_csv(run).into_bytes()),
+            ]);
+        }
+        files.push(("report.html".to_owned(), barrelstack_report::html(&document).into_bytes()));
+        self.put(&files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())))
     }
 
     /// Writes the page of a comparison as `report.html`, and as `report.md` with the figures and
@@ -211,12 +216,11 @@ impl Folder {
     /// When the system refuses.
     pub fn write_pdf(
         &self,
-        run: &Run,
-        summary: &Summary,
+        answer: &Answer,
         verification: Option<&Verification>,
         paper: Paper,
     ) -> Result<(), ExportError> {
-        let document = report::verified_document(run, summary, verification);
+        let document = report::answer_document(answer, verification);
         let bytes = document_pdf(&document, paper);
         self.put(&std::iter::once(("report.pdf", bytes.as_slice())))
     }
@@ -274,6 +278,34 @@ fn csv(times: &[f64], columns: &[(String, &[f64])]) -> String {
             }
         }
         text.push('\n');
+    }
+    text
+}
+
+/// One row for the case as it is stated and for every variant, in every plane.
+fn variants_csv(answer: &Answer) -> String {
+    let mut text = String::from(
+        "plane,variant,outcome,mode,first body,collapse (s),first fall (s),barrels fallen,barrels\n",
+    );
+    let planes = std::iter::once(&answer.decides).chain(&answer.other);
+    for found in planes.filter_map(|shown| shown.variants.as_ref()) {
+        let view = found.view.map_or("", View::name);
+        for (number, result) in found.results.iter().enumerate() {
+            let (kind, collapse) = match &result.outcome {
+                Ok(Outcome::Collapse { mode, time, first, .. }) => {
+                    ("collapse", format!("{},{first},{time}", mode.name()))
+                }
+                Ok(outcome) => (outcome.kind(), ",,".to_owned()),
+                Err(_) => ("cannot-stand", ",,".to_owned()),
+            };
+            let first = result.first_fall.map_or_else(String::new, |time| time.to_string());
+            let fallen = result.falls.iter().filter(|(_, at)| at.is_some()).count();
+            let _ = writeln!(
+                text,
+                "{view},{number},{kind},{collapse},{first},{fallen},{}",
+                result.barrels
+            );
+        }
     }
     text
 }

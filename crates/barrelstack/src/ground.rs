@@ -1,6 +1,7 @@
 //! The ground motion of a scenario: read or made, scaled, and ready to drive.
 
 mod formula;
+mod planes;
 
 use std::path::PathBuf;
 
@@ -15,6 +16,8 @@ use crate::scenario::{
     Scale, Scenario, Vertical,
 };
 use crate::system;
+
+pub(crate) use planes::other_component;
 
 /// What moves the ground of a run.
 #[derive(Clone, Debug, Default)]

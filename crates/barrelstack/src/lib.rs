@@ -56,6 +56,7 @@ mod stand;
 pub mod step;
 mod stick;
 pub mod summary;
+pub mod variants;
 pub mod verify;
 pub mod watch;
 

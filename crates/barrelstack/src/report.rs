@@ -2,6 +2,7 @@
 
 mod drawing;
 mod inputs;
+mod planes;
 mod sections;
 mod spectrum;
 mod trust;
@@ -15,12 +16,13 @@ pub use drawing::scene;
 use crate::outcome::Outcome;
 use crate::run::Run;
 use crate::summary::Summary;
+use crate::variants::{self, Answer, Shown};
 use crate::verify::Verification;
 
 pub(crate) use inputs::{readable, setting_row};
 pub(crate) use sections::traces;
 pub use sections::{standing_range, stress_figure};
-pub(crate) use words::{headline, provenance};
+pub(crate) use words::{capital, headline, provenance};
 
 /// What happened, in three plain sentences: the verdict, the why, and how far to trust it.
 pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
@@ -31,31 +33,44 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
 
 /// The whole report as a document, free of any output format.
 pub fn document(run: &Run, summary: &Summary) -> Document {
-    verified_document(run, summary, None)
+    page(run, summary, None, None)
 }
 
-/// As [`document`], with what repeats of the run say about it.
-pub fn verified_document(
+/// The report of an answer: of the plane that decides with the stage of the other beside its own, and with
+/// what repeats of the run that is shown say about it.
+pub fn answer_document(answer: &Answer, verification: Option<&Verification>) -> Document {
+    page(&answer.decides.run, &answer.decides.summary, answer.other.as_ref(), verification)
+}
+
+fn page(
     run: &Run,
     summary: &Summary,
+    other: Option<&Shown>,
     verification: Option<&Verification>,
 ) -> Document {
     let scene = scene(run);
+    let mut warnings = run.warnings.clone();
+    let more = other.into_iter().flat_map(|other| &other.run.warnings);
+    warnings.extend(more.filter(|text| !run.warnings.contains(text)).cloned());
     Document {
         title: run.scenario.title.clone(),
         verdict: Verdict {
             headline: headline(run, summary),
             sentences: words::details(run, summary, verification),
-            tone: tone(run),
+            tone: tone(run, summary),
         },
-        blocks: sections::all(run, summary, verification, &scene),
+        blocks: sections::all(run, summary, other, verification, &scene),
         provenance: provenance(run, summary),
-        warnings: run.warnings.clone(),
+        warnings,
     }
 }
 
 /// The kind of verdict.
-pub(crate) fn tone(run: &Run) -> Tone {
+pub(crate) fn tone(run: &Run, summary: &Summary) -> Tone {
+    let spreads = summary.spreads();
+    if !spreads.is_empty() {
+        return variants::words::tone(&spreads);
+    }
     match run.outcome {
         Outcome::Stable => Tone::Stands,
         Outcome::Collapse { .. } => Tone::Falls,

@@ -10,6 +10,8 @@ use crate::assemble::PartKind;
 use crate::demand::Demands;
 use crate::outcome::Outcome;
 use crate::run::Run;
+use crate::scenario::View;
+use crate::variants::Spread;
 use crate::verify::Verification;
 use crate::watch::StressEnvelope;
 
@@ -21,16 +23,22 @@ described! {
     #[derive(Clone, Debug)]
     pub struct Summary {
         /// Name and version of this layout.
-        pub schema: &'static str ["summary/1"],
+        pub schema: &'static str ["summary/2"],
         /// The scenario's title.
         pub title: String,
+        /// The plane of the model; null for a free scene.
+        pub view: Option<&'static str> ["transverse", "longitudinal"],
+        /// Which variant of the stack this is; 0 as it is stated.
+        pub variant: u32,
+        /// What all variants say together; null where none were run.
+        pub ensemble: Option<Spread>,
         /// What happened.
         pub outcome: OutcomeSummary,
-        /// Every body but the ground.
+        /// Every body but the ground; none where the run is invalid.
         pub bodies: Vec<BodySummary>,
         /// Demands on the stack.
         pub demands: Demands,
-        /// Forces between bodies.
+        /// Forces between bodies; none where the run is invalid.
         pub interfaces: Vec<JointSummary>,
         /// The force elements of every device, where there are any.
         #[serde(flatten)]
@@ -47,6 +55,8 @@ described! {
         pub provenance: Provenance,
         /// What repeats say about it; null where there were none.
         pub verification: Option<Verification>,
+        /// The same of the other plane, where the scenario looks at its stack in both: this one is the worse.
+        pub other_plane: Option<Box<Summary>>,
     }
 
     /// What happened.
@@ -66,8 +76,8 @@ described! {
         pub to_level: Option<u32>,
         /// When the first barrel had fallen.
         pub first_fall: Option<f64> as "s",
-        /// Barrels that had fallen at the end.
-        pub barrels_fallen: usize,
+        /// Barrels that had fallen at the end; null where the run is invalid.
+        pub barrels_fallen: Option<usize>,
         /// Barrels in all.
         pub barrels: usize,
         /// Why the run is invalid.
@@ -242,17 +252,20 @@ impl Summary {
     /// Sums up a run; `wall_seconds` is the time it took on the clock, where it was measured.
     pub fn of(run: &Run, wall_seconds: Option<f64>) -> Self {
         Self {
-            schema: "summary/1",
+            schema: "summary/2",
             title: run.scenario.title.clone(),
+            view: run.assembly.view.map(View::name),
+            variant: 0,
+            ensemble: None,
             outcome: outcome(run),
-            bodies: bodies(run),
-            demands: if matches!(run.outcome, Outcome::Invalid { .. }) {
-                // Numbers of a run that broke down look like results and are none.
-                Demands::default()
-            } else {
+            // Numbers of a run that broke down look like results and are none.
+            bodies: if sound(run) { bodies(run) } else { Vec::new() },
+            demands: if sound(run) {
                 Demands::of(&run.assembly, &run.fates, &run.stresses)
+            } else {
+                Demands::default()
             },
-            interfaces: joints(run),
+            interfaces: if sound(run) { joints(run) } else { Vec::new() },
             devices: Devices::of(run),
             energy: run.energy.as_ref().map(EnergyBooks::of),
             motion: run.ground.motion.as_ref().map(MotionSummary::of),
@@ -283,7 +296,18 @@ impl Summary {
                     .unwrap_or_default(),
             },
             verification: None,
+            other_plane: None,
         }
+    }
+
+    /// What all variants say in each plane in which they were run, across the barrels first.
+    pub fn spreads(&self) -> Vec<(View, &Spread)> {
+        let own = std::iter::once(self).chain(self.other_plane.as_deref());
+        let known = |one: &Self| View::ALL.into_iter().find(|view| Some(view.name()) == one.view);
+        let mut all: Vec<_> =
+            own.filter_map(|one| Some((known(one)?, one.ensemble.as_ref()?))).collect();
+        all.sort_by_key(|(view, _)| *view == View::Longitudinal);
+        all
     }
 
     /// The summary as JSON text, indented.
@@ -293,20 +317,24 @@ impl Summary {
     }
 }
 
+/// Whether the numbers of a run are results.
+fn sound(run: &Run) -> bool {
+    !matches!(run.outcome, Outcome::Invalid { .. })
+}
+
 fn outcome(run: &Run) -> OutcomeSummary {
     let barrels: Vec<usize> = run.assembly.of_kind(PartKind::Barrel).collect();
     let mut summary = OutcomeSummary {
-        kind: run.outcome.kind(),
+        kind: if run.interrupted && sound(run) { "interrupted" } else { run.outcome.kind() },
         mode: None,
         time: None,
         first: None,
         from_level: None,
         to_level: None,
-        first_fall: run.fates.first_fall(),
-        barrels_fallen: barrels
-            .iter()
-            .filter(|body| run.fates.fate(**body).fell_at.is_some())
-            .count(),
+        first_fall: run.fates.first_fall().filter(|_| sound(run)),
+        barrels_fallen: sound(run).then(|| {
+            barrels.iter().filter(|body| run.fates.fate(**body).fell_at.is_some()).count()
+        }),
         barrels: barrels.len(),
         reason: None,
     };

@@ -21,9 +21,6 @@ use crate::summary::{OutcomeSummary, Summary};
 /// Distance (m at full scale) between two runs at which a body counts as gone another way.
 pub const APART: f64 = 0.01;
 
-/// Largest difference (s at full scale) of a fall that is still the same fall.
-pub const SAME_FALL: f64 = 0.01;
-
 /// Largest displacement (m at full scale) of a body at the start of a disturbed repeat.
 pub const DISTURBANCE: f64 = 1e-9;
 
@@ -39,13 +36,27 @@ described! {
         /// Until when no body of any repeat is that far from where the run has it; none where that holds
         /// for all that both ran.
         pub predictable_until: Option<f64> as "s",
-        /// Whether all repeats, of which there are some, end as the run does: the same kind, mode and first
-        /// body, and every fall before they part at the same time.
-        pub robust: bool,
+        /// What all repeats, of which there are some, have in common with the run.
+        pub robust: Robust,
         /// The repeats.
         pub repeats: Vec<Repeat>,
         /// What was not repeated.
         pub skipped: Vec<Skipped>,
+    }
+
+    /// What all repeats have in common with the run; nothing where there are no repeats.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Robust {
+        /// Whether it stands or collapses.
+        pub kind: bool,
+        /// The mode of the collapse.
+        pub mode: bool,
+        /// The first body that leaves its seat.
+        pub first: bool,
+        /// Largest difference of the first fall; none where in some of them no barrel falls.
+        pub first_fall_within: Option<f64> as "s",
+        /// The least and the most barrels that fall in the run or a repeat.
+        pub barrels_fallen: [usize; 2],
     }
 
     /// One repeat.
@@ -61,10 +72,6 @@ described! {
         pub apart_at: Option<f64> as "s",
         /// Largest difference of a fall before any repeat parts from the run; none where nothing falls.
         pub fall_difference: Option<f64> as "s",
-        /// Whether it ends as the run does: the same outcome, and every fall before any repeat parts from
-        /// the run at the same time.
-        #[serde(skip)]
-        alike: bool,
         /// When each barrel had fallen.
         #[serde(skip)]
         falls: Vec<Option<f64>>,
@@ -252,7 +259,6 @@ fn compare(base: &Run, other: &Run, change: &str) -> Repeat {
     Repeat {
         change: change.to_owned(),
         same_outcome,
-        alike: same_outcome,
         apart_at: apart_at(base, other),
         fall_difference: None,
         falls: falls(other),
@@ -321,17 +327,56 @@ fn judge(base: &Run, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verific
             _ => None,
         });
         repeat.fall_difference = differences.reduce(f64::max);
-        let same_falls = repeat.fall_difference.is_none_or(|most| most <= SAME_FALL * scale.sqrt());
-        repeat.alike &= same_falls;
     }
-    let robust = !repeats.is_empty() && repeats.iter().all(|repeat| repeat.alike);
+    let robust = Robust::of(&Summary::of(base, None).outcome, &repeats);
     Verification { apart: APART * scale, predictable_until, robust, repeats, skipped }
+}
+
+impl Robust {
+    /// Whether kind, mode and first body are the same everywhere.
+    pub fn outcome(&self) -> bool {
+        self.kind && self.mode && self.first
+    }
+
+    fn of(own: &OutcomeSummary, repeats: &[Repeat]) -> Self {
+        let all = |same: fn(&OutcomeSummary, &OutcomeSummary) -> bool| {
+            !repeats.is_empty() && repeats.iter().all(|repeat| same(own, &repeat.outcome))
+        };
+        let late = |repeat: &Repeat| Some((repeat.outcome.first_fall? - own.first_fall?).abs());
+        let late: Option<Vec<f64>> = repeats.iter().map(late).collect();
+        let fallen = || {
+            let repeats = repeats.iter().map(|repeat| repeat.outcome.barrels_fallen);
+            repeats.chain(std::iter::once(own.barrels_fallen)).flatten()
+        };
+        Self {
+            kind: all(|a, b| a.kind == b.kind),
+            mode: all(|a, b| a.mode == b.mode),
+            first: all(|a, b| a.first == b.first),
+            first_fall_within: late.and_then(|late| late.into_iter().reduce(f64::max)),
+            barrels_fallen: [fallen().min(), fallen().max()].map(Option::unwrap_or_default),
+        }
+    }
+}
+
+/// A short time (s) for people.
+fn shortly(time: f64) -> String {
+    if time < 1.0 { format!("{:.1} ms", 1e3 * time) } else { format!("{time:.1} s") }
 }
 
 impl Verification {
     /// The summary of the run as JSON text with this as its field `verification`.
     pub fn with_summary(&self, summary: &Summary) -> String {
         Summary { verification: Some(self.clone()), ..summary.clone() }.to_json()
+    }
+
+    fn judged(&self) -> bool {
+        self.repeats.iter().any(|repeat| repeat.outcome.kind != "not-judged")
+    }
+
+    /// What there is of an outcome: of a stack that stands its kind alone.
+    fn parts(&self) -> &'static [&'static str] {
+        let collapses = self.repeats.iter().any(|repeat| repeat.outcome.mode.is_some());
+        if collapses { &["kind", "mode", "first body"] } else { &["kind"] }
     }
 
     /// What was found, in plain sentences.
@@ -341,20 +386,31 @@ impl Verification {
                 "No repeat of this run reached its end, so nothing more is known of it.".into(),
             ];
         }
-        let count = self.repeats.len();
-        let alike = self.repeats.iter().filter(|repeat| repeat.alike).count();
-        let judged = self.repeats.iter().any(|repeat| repeat.outcome.kind != "not-judged");
         let mut sentences = Vec::new();
-        if judged && self.robust {
-            sentences.push(format!(
-                "The outcome is robust: {count} repeats, with a finer step and with barrels a nanometer \
-                 elsewhere, all end alike."
-            ));
-        } else if judged {
-            sentences.push(format!(
-                "The outcome is not robust: only {alike} of {count} repeats, with a finer step or barrels \
-                 a nanometer elsewhere, end alike; judge this stack by many runs."
-            ));
+        if self.judged() {
+            let Robust { first_fall_within, barrels_fallen: [least, most], .. } = self.robust;
+            let count = self.repeats.len();
+            sentences.push(if self.robust.outcome() {
+                format!(
+                    "The outcome is robust in {}: {count} repeats, with a finer step and with barrels a \
+                     nanometer elsewhere, agree.",
+                    self.parts().join(", ")
+                )
+            } else {
+                let others = self.repeats.iter().filter(|repeat| !repeat.same_outcome).count();
+                format!(
+                    "The outcome is not robust: {others} of {count} repeats, with a finer step or barrels \
+                     a nanometer elsewhere, end otherwise; judge this stack by many variants."
+                )
+            });
+            sentences.extend(first_fall_within.map(|late| {
+                format!("The first barrel falls within {} of this run in all.", shortly(late))
+            }));
+            if most > 0 && least == most {
+                sentences.push(format!("{most} barrels fall in all."));
+            } else if most > 0 {
+                sentences.push(format!("How many fall is not robust: {least} to {most}."));
+            }
         }
         let centimeters = barrelstack_report::significant(100.0 * self.apart, 2);
         sentences.push(match self.predictable_until {
@@ -387,19 +443,32 @@ impl Verification {
                 ),
             },
         )];
-        let alike = self.repeats.iter().filter(|repeat| repeat.alike).count();
+        let count = self.repeats.len();
         rows.push((
             "outcome".to_owned(),
             if self.repeats.is_empty() {
                 "not known: no repeat reached its end".to_owned()
-            } else if self.repeats.iter().all(|repeat| repeat.outcome.kind == "not-judged") {
+            } else if !self.judged() {
                 "not judged: a free scene has no verdict that could change".to_owned()
-            } else if self.robust {
-                format!("robust: the same in all {} repeats", self.repeats.len())
+            } else if self.robust.outcome() {
+                format!("robust in {}: the same in all {count} repeats", self.parts().join(", "))
             } else {
-                format!("not robust: the same in {alike} of {} repeats", self.repeats.len())
+                let alike = self.repeats.iter().filter(|repeat| repeat.same_outcome).count();
+                format!("not robust: the same in {alike} of {count} repeats")
             },
         ));
+        if let Some(late) = self.robust.first_fall_within {
+            rows.push(("first fall".to_owned(), format!("within {} in all", shortly(late))));
+        }
+        match self.robust.barrels_fallen {
+            _ if self.repeats.is_empty() || !self.judged() => {}
+            [least, most] if least == most => {
+                rows.push(("barrels fallen".to_owned(), format!("{most} in all")));
+            }
+            [least, most] => {
+                rows.push(("barrels fallen".to_owned(), format!("not robust: {least} to {most}")))
+            }
+        }
         for repeat in &self.repeats {
             let outcome = &repeat.outcome;
             let mut what = match (outcome.mode, outcome.time, &outcome.first) {

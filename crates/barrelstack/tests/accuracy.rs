@@ -29,7 +29,10 @@ fn grounds(count: u64) -> Vec<Arc<Ground>> {
 /// All stacks under all motions until their collapse, with a setting of the run.
 fn results(grounds: &[Arc<Ground>], setting: &str) -> Vec<CaseResult> {
     let cases = STACKS.iter().flat_map(|stack| {
-        let settings = [setting.to_owned(), "run.stop_after_collapse=\"0.5 s\"".to_owned()];
+        let mut settings = vec![setting.to_owned(), "run.stop_after_collapse=\"0.5 s\"".to_owned()];
+        if *stack == "demo-napa" {
+            settings.push("stack.view=longitudinal".to_owned());
+        }
         let scenario = Arc::new(Scenario::builtin(stack, &settings).unwrap());
         grounds.iter().map(move |ground| Prepared {
             scenario: Arc::clone(&scenario),

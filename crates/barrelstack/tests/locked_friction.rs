@@ -139,7 +139,8 @@ fn locked(scratch: &Scratch<Planar>) -> f64 {
 }
 
 fn compare(name: &str, ways: &[Way], runs: bool) -> Vec<(Way, f64, f64, f64)> {
-    let scenario = Scenario::builtin(name, &Vec::<String>::new()).unwrap();
+    let along = (name == "demo-napa").then(|| "stack.view=longitudinal".to_owned());
+    let scenario = Scenario::builtin(name, &Vec::from_iter(along)).unwrap();
     let assembly = assemble(&scenario).unwrap();
     let usual = node_forces(&settled(&assembly, Way::AtOnce).1);
     let mut rows = Vec::new();

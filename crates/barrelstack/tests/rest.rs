@@ -17,6 +17,9 @@ fn results(width: Width, cases: &[Prepared]) -> Vec<CaseResult> {
     simulate_in(width, cases, &mut audience).unwrap()
 }
 
+/// The demo in the plane in which it is weaker.
+const ALONG: &str = "stack.view=longitudinal";
+
 /// Stacks from unharmed to ruined: under the record of Napa, which fades away, and under sines that
 /// break off at their strongest; `seconds` at the most.
 fn shaken(seconds: u32, more: &[&str]) -> Vec<Prepared> {
@@ -27,7 +30,7 @@ fn shaken(seconds: u32, more: &[&str]) -> Vec<Prepared> {
         cases.push(prepared(name, &[changes, &own, more].concat()));
     };
     for factor in [0.5, 0.8, 1.1, 1.4, 1.7, 2.4] {
-        add("demo-napa", &[&format!("motion.scale.factor={factor}")]);
+        add("demo-napa", &[ALONG, &format!("motion.scale.factor={factor}")]);
     }
     for amplitude in [2, 4, 5, 6, 7, 8, 9, 10, 12, 14] {
         let sine = ["motion.sine.cycles=4", "motion.sine.ramp_cycles=0"];
@@ -82,8 +85,10 @@ fn rest_is_the_same_in_every_lane() {
 
 #[test]
 fn a_stack_at_rest_under_a_still_ground_is_finished() {
-    let still =
-        prepared("demo-napa", &["stack.levels=2", "motion.scale.factor=1e-6", "run.until=rest"]);
+    let still = prepared(
+        "demo-napa",
+        &[ALONG, "stack.levels=2", "motion.scale.factor=1e-6", "run.until=rest"],
+    );
     let result = &results(Width::Scalar, std::slice::from_ref(&still))[0];
     let end = still.ground.end();
     assert_eq!(result.ending, Some(Ending::Rest));
@@ -94,7 +99,7 @@ fn a_stack_at_rest_under_a_still_ground_is_finished() {
 
 #[test]
 fn a_run_that_is_cut_says_by_how_much() {
-    let cut = prepared("demo-napa", &["stack.levels=2", "run.duration=\"4 s\""]);
+    let cut = prepared("demo-napa", &[ALONG, "stack.levels=2", "run.duration=\"4 s\""]);
     let result = &results(Width::Scalar, std::slice::from_ref(&cut))[0];
     assert_eq!(result.ending, Some(Ending::Duration));
     assert_eq!(result.cut, Some(cut.ground.end() - 4.0));

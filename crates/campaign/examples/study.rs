@@ -10,6 +10,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         schema = 1
         [base]
         extends = "demo-napa"
+        [base.stack]
+        view = "longitudinal"
         [[factor]]
         field = "stack.levels"
         values = [2, 4, 6]

@@ -17,8 +17,9 @@ use barrelstack_report::Document;
 use crate::decision::{Case, Cases, DecisionError, LimitCurve, LimitState};
 use crate::study::{Collected, Progress, RunOptions, Study, StudyError, Value};
 
+pub use crate::scenario::View;
 pub use json::HeightsDocument;
-pub use plan::{HEIGHTS, VELOCITIES, View};
+pub use plan::{HEIGHTS, VELOCITIES};
 
 /// What is asked for.
 #[derive(Clone, Debug, PartialEq)]

@@ -43,7 +43,6 @@ mod prepare;
 mod rows;
 mod setting;
 mod shard;
-mod sobol;
 mod stop;
 mod table;
 

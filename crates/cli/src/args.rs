@@ -78,12 +78,25 @@ pub(crate) struct ScenarioArgs {
     pub(crate) record: Option<PathBuf>,
 }
 
+/// How many variants are run beside the case as it is stated, and which run is shown.
+#[derive(Clone, Copy, Debug, Default, clap::Args)]
+pub(crate) struct VariantArgs {
+    /// Variants of the stack to run beside it, in place of imperfections.variants; 0 for one run.
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=4096))]
+    pub(crate) variants: Option<u32>,
+    /// The variant to show, in place of the most typical; 0 for the stack as it is stated.
+    #[arg(long, value_name = "NUMBER")]
+    pub(crate) variant: Option<u32>,
+}
+
 /// Arguments of `run`.
 #[derive(Debug, clap::Args)]
 #[expect(clippy::struct_excessive_bools, reason = "one for every switch")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) scenario: ScenarioArgs,
+    #[command(flatten)]
+    pub(crate) variants: VariantArgs,
     /// Write summary, histories, envelopes and report into this folder, which must be new or empty.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -120,6 +133,8 @@ pub(crate) struct DemoArgs {
     /// Change a value of the scenario, such as stack.levels=4; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) set: Vec<String>,
+    #[command(flatten)]
+    pub(crate) variants: VariantArgs,
 }
 
 /// Arguments of `check`.

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use anyhow::Context as _;
 use barrelstack::scenario::ScenarioError;
 use barrelstack::scenario::error::Place;
-use barrelstack::{Run, Summary};
+use barrelstack::variants::{Answer, Shown};
 use barrelstack_report::{Characters, described};
 
 use serde::Serialize;
@@ -167,25 +167,34 @@ pub(crate) fn warning(text: &str) {
 }
 
 /// What the reader of a result should know.
-pub(crate) fn warnings(summary: &Summary) {
-    for warning in &summary.warnings {
-        self::warning(warning);
-    }
+pub(crate) fn warnings(answer: &Answer) {
+    let own = &answer.decides.summary.warnings;
+    let other = answer.other.iter().flat_map(|other| &other.summary.warnings);
+    let all = own.iter().chain(other.filter(|text| !own.contains(text)));
+    all.for_each(|text| warning(text));
 }
 
-/// The summary for people; `changes` are the values changed on the command line.
-pub(crate) fn summary(
-    run: &Run,
-    summary: &Summary,
+/// The answer for people; `changes` are the values changed on the command line.
+pub(crate) fn answer(
+    answer: &Answer,
     changes: &[String],
     characters: Characters,
 ) -> anyhow::Result<()> {
+    let Shown { run, summary, .. } = &answer.decides;
+    let mut all = vec![summary.title.clone()];
     let sentences = barrelstack::report::sentences(run, summary);
-    let rows = crate::rows::rows(run, summary, changes, characters);
-    let picture = crate::rows::picture(run, characters);
-    let title = std::iter::once(summary.title.clone());
-    let sentences = sentences.into_iter().map(|sentence| format!("  {sentence}"));
-    lines(title.chain(sentences).chain(std::iter::once(String::new())).chain(rows).chain(picture))
+    all.extend(sentences.into_iter().map(|sentence| format!("  {sentence}")));
+    for (changes, shown) in std::iter::once((changes, &answer.decides))
+        .chain(answer.other.iter().map(|one| (&[][..], one)))
+    {
+        all.push(String::new());
+        if let (Some(view), true) = (shown.run.assembly.view, answer.other.is_some()) {
+            all.push(format!("  {}", view.words()));
+        }
+        all.extend(crate::rows::rows(&shown.run, &shown.summary, changes, characters));
+        all.extend(crate::rows::picture(&shown.run, characters));
+    }
+    lines(all)
 }
 
 /// What repeats of a run say about it.

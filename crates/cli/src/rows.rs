@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use barrelstack::outcome::Outcome;
 use barrelstack::render::{drift_line, final_picture};
+use barrelstack::variants::words::{course, percent};
 use barrelstack::{Run, Summary};
 use barrelstack_report::Characters;
 
@@ -24,6 +25,29 @@ pub(crate) fn rows(
     for (index, change) in changes.iter().enumerate() {
         row(if index == 0 { "changed" } else { "" }, change.clone());
     }
+    if let Some(spread) = &summary.ensemble {
+        let [low, high] = spread.interval.map(percent);
+        row(
+            "variants",
+            format!(
+                "{} of {} collapse, 95 % interval {low} to {high}",
+                spread.collapsed, spread.variants
+            ),
+        );
+        if spread.first_fall.is_some() {
+            row("", course(spread));
+        }
+        let modes: Vec<String> =
+            spread.modes.iter().map(|(mode, count)| format!("{mode} in {count}")).collect();
+        if !modes.is_empty() {
+            row("", modes.join(", "));
+        }
+        let shown = match summary.variant {
+            0 => "the stack as it is stated".to_owned(),
+            number => format!("variant {number}"),
+        };
+        row("shown below", shown);
+    }
     row("outcome", verdict(summary));
     if matches!(run.outcome, Outcome::Invalid { .. }) {
         row("computed", format!("until {:.3} s", summary.run.end_time));
@@ -31,8 +55,8 @@ pub(crate) fn rows(
         return rows;
     }
     let outcome = &summary.outcome;
-    if outcome.barrels > 0 {
-        row("barrels fallen", format!("{} of {}", outcome.barrels_fallen, outcome.barrels));
+    if let Some(fallen) = outcome.barrels_fallen.filter(|_| outcome.barrels > 0) {
+        row("barrels fallen", format!("{fallen} of {}", outcome.barrels));
     }
     let mut fallen: Vec<(f64, f64, &str)> = summary
         .bodies
@@ -90,8 +114,11 @@ pub(crate) fn picture(run: &Run, characters: Characters) -> Vec<String> {
 fn verdict(summary: &Summary) -> String {
     let outcome = &summary.outcome;
     match (outcome.kind, outcome.mode, outcome.time) {
+        ("interrupted", Some(mode), Some(time)) => {
+            format!("collapse by {mode} at {time:.3} s; then it was stopped")
+        }
         (kind, Some(mode), Some(time)) => format!("{kind} by {mode} at {time:.3} s"),
-        ("stable", ..) if summary.run.interrupted => "stable until it was stopped".to_owned(),
+        ("interrupted", ..) => "stopped before its end, nothing had happened until then".to_owned(),
         ("not-judged", ..) => "not judged: a free scene has no seats to lose".to_owned(),
         (kind, ..) => kind.to_owned(),
     }

@@ -12,11 +12,16 @@ use std::process::Stdio;
 use common::{barrelstack, names, program, refused, stderr, stdout};
 use serde_json::Value;
 
-/// A run that takes a fraction of a second.
-const SHORT: [&str; 3] = ["run", "candia-8-barrels", "--set=run.stop_after_collapse=0.1 s"];
+/// A run with a few variants that takes a fraction of a second.
+const SHORT: [&str; 4] = [
+    "run",
+    "candia-8-barrels",
+    "--set=run.stop_after_collapse=0.1 s",
+    "--set=imperfections.variants=4",
+];
 
 /// All that a run writes.
-const FILES: [&str; 8] = [
+const FILES: [&str; 9] = [
     "envelopes.csv",
     "forces.csv",
     "frames.csv",
@@ -25,7 +30,14 @@ const FILES: [&str; 8] = [
     "report.html",
     "scenario.toml",
     "summary.json",
+    "variants.csv",
 ];
+
+/// One run and no variants.
+const ONE: &str = "--set=imperfections.variants=0";
+
+/// The demo in the plane in which it is weaker.
+const ALONG: &str = "--set=stack.view=longitudinal";
 
 fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap()
@@ -198,16 +210,29 @@ fn changes_that_cannot_be_made_are_shown_as_typed() {
 
 #[test]
 fn a_stack_that_stands_and_a_run_cut_short_say_so() {
-    let output =
-        barrelstack(["run", "demo-napa", "--set=stack.levels=1", "--set=run.duration=1 s"]);
+    let output = barrelstack([
+        "run",
+        "demo-napa",
+        ALONG,
+        ONE,
+        "--set=stack.levels=1",
+        "--set=run.duration=1 s",
+    ]);
     assert_eq!(output.status.code(), Some(0));
     assert!(stdout(&output).contains("  The stack stands.\n"));
     let warning = stderr(&output);
     assert!(warning.starts_with("warning: the run ends at 1.0 s, the motion at "), "{warning}");
     assert_eq!(warning.lines().count(), 1);
     // In JSON the same warning is part of the document, and standard error is silent.
-    let arguments =
-        ["run", "demo-napa", "--set=stack.levels=1", "--set=run.duration=1 s", "--json"];
+    let arguments = [
+        "run",
+        "demo-napa",
+        ALONG,
+        ONE,
+        "--set=stack.levels=1",
+        "--set=run.duration=1 s",
+        "--json",
+    ];
     let output = barrelstack(arguments);
     assert_eq!(stderr(&output), "");
     assert_eq!(json(&stdout(&output))["warnings"].as_array().unwrap().len(), 1);
@@ -221,13 +246,13 @@ fn a_run_that_broke_down_is_no_verdict_and_has_a_status_of_its_own() {
         "--set=run.step=0.6 ms",
         "--set=interface.barrel-rack.damping=\"3000 N s/cm\"",
     ];
-    let output = barrelstack(["run", "candia-8-barrels"].into_iter().chain(broken));
+    let output = barrelstack(["run", "candia-8-barrels", ONE].into_iter().chain(broken));
     let text = stdout(&output);
     assert_eq!(output.status.code(), Some(1), "{text}");
     assert!(text.contains("The run broke down and says nothing about the stack."), "{text}");
     assert!(text.contains("outcome                 invalid\n"), "{text}");
     assert!(!text.contains("fall"), "{text}");
-    let json_run = ["run", "candia-8-barrels", "--json"].into_iter().chain(broken);
+    let json_run = ["run", "candia-8-barrels", ONE, "--json"].into_iter().chain(broken);
     let summary = json(&stdout(&barrelstack(json_run)));
     assert_eq!(summary["outcome"]["kind"], "invalid");
     assert!(summary["outcome"]["reason"].as_str().unwrap().contains("energy books"), "{summary}");
@@ -242,9 +267,61 @@ fn a_free_scene_is_not_judged() {
 }
 
 #[test]
+fn variants_are_told_counted_and_shown_by_their_number() {
+    let text = stdout(&barrelstack(SHORT));
+    let headline = "  This stack falls: in all 4 variants, but no barrel leaves it.\n";
+    assert!(text.contains(headline), "{text}");
+    assert!(text.contains("variants                4 of 4 collapse, 95 % interval "), "{text}");
+    let summary = |more: &[&str]| {
+        let all = SHORT.into_iter().chain(["--json"]).chain(more.iter().copied());
+        json(&stdout(&barrelstack(all)))
+    };
+    let typical = summary(&[]);
+    let ensemble = &typical["ensemble"];
+    assert_eq!((&ensemble["variants"], &ensemble["collapsed"]), (&json("4"), &json("4")));
+    let modes = ensemble["modes"].as_object().unwrap().values();
+    assert_eq!(modes.map(|count| count.as_u64().unwrap()).sum::<u64>(), 4, "{ensemble}");
+    assert_eq!(typical["variant"], ensemble["typical"]);
+    let third = summary(&["--variant=3"]);
+    assert_eq!((&third["variant"], &third["ensemble"]), (&json("3"), ensemble));
+    let alone = summary(&["--variants=0"]);
+    assert_eq!((&alone["variant"], &alone["ensemble"]), (&json("0"), &Value::Null));
+    let beyond = barrelstack(SHORT.into_iter().chain(["--variant=5"]));
+    refused("beyond", &beyond, Path::new("/nowhere"), &["--variant 5", "1 to 4", "--variants 5"]);
+    let free = barrelstack(["run", "sliding-block", "--variants=3"]);
+    refused("free", &free, Path::new("/nowhere"), &["--variants", "free scene"]);
+}
+
+#[test]
+fn both_planes_are_printed_and_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("both");
+    let brief = ["--set=stack.levels=1", "--set=run.duration=1 s", "--variants=3"];
+    let all = ["run", "demo-napa", "--out", out.to_str().unwrap()].into_iter().chain(brief);
+    let output = barrelstack(all);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = stdout(&output);
+    assert!(
+        text.contains("\n  across the barrels\n") && text.contains("\n  along the barrels\n"),
+        "{text}"
+    );
+    let names = names(&out).unwrap();
+    for name in ["longitudinal-histories.csv", "transverse-frames.csv", "variants.csv"] {
+        assert!(names.iter().any(|one| one == name), "{name}: {names:?}");
+    }
+    let rows = fs::read_to_string(out.join("variants.csv")).unwrap();
+    assert_eq!(rows.lines().count(), 1 + 2 * 4, "{rows}");
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("In all variants") && page.contains("player several"));
+    let summary = json(&fs::read_to_string(out.join("summary.json")).unwrap());
+    let views = [&summary["view"], &summary["other_plane"]["view"]];
+    assert_ne!(views[0], views[1], "{views:?}");
+}
+
+#[test]
 fn a_rack_that_walks_takes_the_levels_above_with_it() {
     let stop = "--set=run.stop_after_collapse=0 s";
-    let text = stdout(&barrelstack(["run", "candia-8-barrels-longitudinal", stop]));
+    let text = stdout(&barrelstack(["run", "candia-8-barrels-longitudinal", ONE, stop]));
     let walk = "Rack R2 walks along the barrels below until it is off them, and takes levels 2 to 4 \
                 with it.";
     assert!(text.contains(walk), "{text}");
@@ -255,7 +332,15 @@ fn check_says_what_stands_there() {
     let output = barrelstack(["check", "demo-napa"]);
     let text = stdout(&output);
     assert_eq!(output.status.code(), Some(0));
-    assert!(text.contains("  bodies        10 barrels, 10 racks\n"), "{text}");
+    // Across the barrels, then along them one rack deep.
+    let planes = [
+        "across the barrels:\n",
+        "10 barrels, 5 racks\n",
+        "along the barrels:\n",
+        "5 barrels, 5 racks\n",
+    ];
+    let at = planes.map(|part| text.find(part).unwrap_or_else(|| panic!("{part}: {text}")));
+    assert!(at.is_sorted(), "{text}");
     assert!(text.ends_with("the scenario is sound\n"), "{text}");
 }
 
@@ -284,12 +369,16 @@ fn every_listed_scenario_can_be_shown_checked_and_resolved() {
 fn the_demo_writes_its_report_and_may_be_repeated() {
     let folder = tempfile::tempdir().unwrap();
     for _ in 0..2 {
-        let output = program(["demo", "--set=run.duration=1 s"])
+        let output = program(["demo", "--set=run.duration=1 s", "--variants=4"])
             .current_dir(folder.path())
             .output()
             .unwrap();
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         let report = Path::new("barrelstack-demo").join("report.html");
+        assert!(
+            stdout(&output)
+                .starts_with("Across the barrels it stands in all 4 variants; along them")
+        );
         let open = format!("\n\nOpen {} in a browser to watch it.\n", report.display());
         assert!(stdout(&output).ends_with(&open), "{}", stdout(&output));
         assert!(folder.path().join(report).is_file());
@@ -354,6 +443,7 @@ mod unix {
         assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
         let summary = json(&stdout(&output));
         assert_eq!(summary["run"]["interrupted"], true);
+        assert_eq!(summary["outcome"]["kind"], "interrupted");
         let reached = summary["run"]["end_time"].as_f64().unwrap();
         assert!(reached > 0.0 && reached < 3600.0, "{reached}");
         let warning = summary["warnings"][0].as_str().unwrap();

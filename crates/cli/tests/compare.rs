@@ -12,6 +12,9 @@ use serde_json::Value;
 
 const SHORT: &str = "--set=run.stop_after_collapse=0.1 s";
 
+/// Few variants, for the sake of time.
+const FEW: &str = "--variants=4";
+
 fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap()
 }
@@ -25,6 +28,7 @@ fn two_runs_become_one_page_and_a_few_lines() {
         "candia-8-barrels",
         "--against=interface.rack-ground.friction.coefficient=0.1",
         SHORT,
+        FEW,
         "--out",
         out.to_str().unwrap(),
     ]);
@@ -57,6 +61,7 @@ fn as_json_a_comparison_is_one_document() {
         "candia-8-barrels",
         "candia-8-barrels-half-scale",
         SHORT,
+        FEW,
         "--json",
         "--out",
         folder.path().to_str().unwrap(),
@@ -95,7 +100,7 @@ fn a_verified_run_keeps_its_verification_in_summary_and_report() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
     let output =
-        barrelstack(["run", "candia-8-barrels", SHORT, "--verify", "--json", "--out", out]);
+        barrelstack(["run", "candia-8-barrels", SHORT, FEW, "--verify", "--json", "--out", out]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let summary = fs::read_to_string(folder.path().join("summary.json")).unwrap();
     assert_eq!(summary, stdout(&output));
@@ -106,7 +111,7 @@ fn a_verified_run_keeps_its_verification_in_summary_and_report() {
     assert_eq!(page.matches("<td>disturbed by 1\u{a0}nm, ").count(), 4);
     // Without it there is no such section.
     let other = tempfile::tempdir().unwrap();
-    barrelstack(["run", "candia-8-barrels", SHORT, "--out", other.path().to_str().unwrap()]);
+    barrelstack(["run", "candia-8-barrels", SHORT, FEW, "--out", other.path().to_str().unwrap()]);
     let plain = fs::read_to_string(other.path().join("report.html")).unwrap();
     assert!(!plain.contains("How far to trust this run"));
     assert!(

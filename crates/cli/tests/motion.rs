@@ -329,6 +329,7 @@ fn a_written_motion_drives_a_stack() {
         let output = barrelstack([
             "run",
             "demo-napa",
+            "--variants=2",
             "--record",
             text(&file),
             "--set",

@@ -9,7 +9,8 @@ use std::fs;
 use common::{barrelstack, names, refused, stderr, stdout};
 
 /// A stack that has come down by its end, in a fraction of a second.
-const FALLEN: [&str; 3] = ["run", "candia-8-barrels", "--set=run.stop_after_collapse=0.8 s"];
+const FALLEN: [&str; 4] =
+    ["run", "candia-8-barrels", "--set=run.stop_after_collapse=0.8 s", "--variants=0"];
 
 /// A run of a moment.
 const BLOCK: [&str; 4] = ["render", "rocking-block", "--set=run.duration=0.5 s", "--quiet"];

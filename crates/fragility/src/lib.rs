@@ -60,6 +60,7 @@ mod monotone;
 mod profile;
 mod proportion;
 mod records;
+pub mod sobol;
 
 pub use bootstrap::{Replicates, simulate};
 pub use curve::Lognormal;
@@ -72,7 +73,8 @@ pub use hazard::{Contribution, Hazard, HazardError, Rate, chance_within};
 pub use ida::{Ida, Resurrection};
 pub use indices::{Index, sobol_indices};
 pub use math::{
-    chi_square_above, normal, normal_density, normal_quantile, student_beyond, student_quantile,
+    chi_square_above, normal, normal_density, normal_quantile, quantile, student_beyond,
+    student_quantile,
 };
 pub use measures::{Demanded, Measured, demand_against, failure_against};
 pub use modes::Shares;

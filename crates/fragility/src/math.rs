@@ -148,7 +148,10 @@ pub(crate) fn ln_choose(n: u32, k: u32) -> f64 {
 
 /// The value below which a share of ascending values lies, by linear interpolation between order
 /// statistics (Hyndman and Fan 1996, type 7); infinite values are allowed.
-pub(crate) fn quantile(ascending: &[f64], share: f64) -> f64 {
+///
+/// # Panics
+/// When there are no values.
+pub fn quantile(ascending: &[f64], share: f64) -> f64 {
     let last = ascending.len() - 1;
     let place = share.clamp(0.0, 1.0) * last as f64;
     let (below, part) = (place.floor(), place - place.floor());

@@ -1,7 +1,7 @@
 //! One change of a scenario at a time.
 
 use barrelstack::scenario::{
-    Cradle, Damping, Fill, Friction, Interface, MotionSource, NormalLaw, Scenario, Scene, StackSpec,
+    Cradle, Fill, Friction, Interface, MotionSource, Scenario, Scene, StackSpec,
 };
 
 /// A scenario with its stack changed; a free scene stays as it is.
@@ -30,48 +30,22 @@ fn seats(stack: &mut StackSpec) -> [&mut Interface; 3] {
 
 /// Multiplies the contact stiffness of all seats.
 pub(super) fn stiffness(stack: &mut StackSpec, factor: f64) {
-    for interface in seats(stack) {
-        match &mut interface.normal {
-            NormalLaw::SpeedGap { stiffness, .. }
-            | NormalLaw::KelvinVoigt { stiffness, .. }
-            | NormalLaw::HuntCrossley { stiffness, .. }
-            | NormalLaw::Rebound { stiffness, .. }
-            | NormalLaw::Hertz { stiffness } => *stiffness *= factor,
-        }
-    }
+    seats(stack).into_iter().for_each(|interface| interface.stiffen(factor));
 }
 
 /// Multiplies the contact damping of all seats where it is stated as a coefficient.
 pub(super) fn damping(stack: &mut StackSpec, factor: f64) {
-    for interface in seats(stack) {
-        if let NormalLaw::SpeedGap { damping: Damping::Coefficient(c), .. }
-        | NormalLaw::KelvinVoigt { damping: Damping::Coefficient(c), .. } = &mut interface.normal
-        {
-            *c *= factor;
-        }
-    }
-}
-
-/// Multiplies a friction coefficient, kinetic and static.
-fn friction(interface: &mut Interface, factor: f64) {
-    match &mut interface.friction {
-        Friction::Coulomb { coefficient, static_coefficient, .. } => {
-            *coefficient *= factor;
-            *static_coefficient *= factor;
-        }
-        Friction::Regularized { coefficient, .. } => *coefficient *= factor,
-        Friction::None => {}
-    }
+    seats(stack).into_iter().for_each(|interface| interface.damp(factor));
 }
 
 /// Multiplies the friction between barrels and racks.
 pub(super) fn barrel_rack_friction(stack: &mut StackSpec, factor: f64) {
-    friction(&mut stack.interfaces.barrel_rack, factor);
+    stack.interfaces.barrel_rack.roughen(factor);
 }
 
 /// Multiplies the friction between the bottom rack and the ground.
 pub(super) fn rack_ground_friction(stack: &mut StackSpec, factor: f64) {
-    friction(&mut stack.interfaces.rack_ground, factor);
+    stack.interfaces.rack_ground.roughen(factor);
 }
 
 /// Multiplies the tangential over the normal stiffness of sticks everywhere.

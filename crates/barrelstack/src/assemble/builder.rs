@@ -4,7 +4,7 @@ use barrelstack_dynamics::{Body, BodyId, Motion, Nodes, Planar, Pose, Shape, Twi
 
 use super::solid::{Seat, Solid, Touch, uniform};
 use super::{Part, PartKind, Similitude, outline_of};
-use crate::scenario::{BodyOverride, StackBody, StackSpec};
+use crate::scenario::{StackBody, StackSpec};
 
 /// A stack while it is built up.
 pub(super) struct Builder<'a> {
@@ -89,7 +89,7 @@ impl<'a> Builder<'a> {
     pub(super) fn rack_at(&self, level: u32, column: u32) -> (String, f64, f64) {
         let mut mass = self.spec.rack.mass;
         let mut offset = 0.0;
-        for change in self.overrides(StackBody::Rack, level, column) {
+        for change in self.spec.changes_of(StackBody::Rack, level, column) {
             mass = change.mass.unwrap_or(mass);
             offset += change.offset_x;
         }
@@ -116,7 +116,7 @@ impl<'a> Builder<'a> {
         for (column, place) in (first..).zip(places) {
             let mut barrel = spec.barrel.clone();
             let (mut inertia, mut offset) = (self.inertia, 0.0);
-            for change in self.overrides(StackBody::Barrel, level, column) {
+            for change in self.spec.changes_of(StackBody::Barrel, level, column) {
                 barrel = barrel.altered(change.mass, change.fill);
                 inertia = barrel.inertia(spec.view);
                 offset += change.offset_x;
@@ -136,18 +136,6 @@ impl<'a> Builder<'a> {
             }));
         }
         barrels
-    }
-
-    /// What the scenario changes at one place, later entries last.
-    fn overrides(
-        &self,
-        body: StackBody,
-        level: u32,
-        column: u32,
-    ) -> impl Iterator<Item = &BodyOverride> {
-        self.spec.overrides.iter().filter(move |o| {
-            o.body == body && o.level == level && o.column.is_none_or(|c| c == column)
-        })
     }
 
     /// Turns the stack left to right: everything at `x` goes to `−x`.

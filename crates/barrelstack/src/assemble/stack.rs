@@ -23,6 +23,13 @@ pub(super) fn assemble(
     gravity: f64,
     scale: Similitude,
 ) -> Result<Assembly, AssembleError> {
+    if spec.columns_along.is_some() {
+        return Err(AssembleError::Stack(
+            "the scenario looks at its stack in both planes, and this is about one: set stack.view to \
+             \"transverse\", across the barrels, or to \"longitudinal\", along them"
+                .into(),
+        ));
+    }
     let mut builder = Builder::new(spec, scale);
     let (height, rack_reach) = match spec.view {
         View::Transverse => transverse::build(&mut builder)?,

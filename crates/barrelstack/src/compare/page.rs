@@ -10,6 +10,7 @@ use super::{Difference, Side, differences, letter, tables};
 use crate::assemble::PartKind;
 use crate::outcome::Outcome;
 use crate::report;
+use crate::variants::words;
 
 pub(super) fn document(sides: &[Side]) -> Document {
     let differing = differences(sides.iter().map(|side| &side.run.scenario));
@@ -57,6 +58,9 @@ fn listed(words: impl Iterator<Item = String>) -> String {
 }
 
 fn fate(side: &Side) -> String {
+    if let Some(spread) = &side.summary.ensemble {
+        return words::fate(spread);
+    }
     match &side.run.outcome {
         Outcome::Stable => "stands".into(),
         Outcome::Collapse { time, .. } => format!("gives way after {time:.1} s"),
@@ -72,6 +76,7 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
         let who = if sides.len() == 2 { "Both".to_owned() } else { format!("All {}", sides.len()) };
         let fate = fates.first().map(String::as_str).unwrap_or_default();
         let plural = fate.replacen("stands", "stand", 1).replacen("gives", "give", 1);
+        let plural = plural.replacen("falls", "fall", 1).replacen("has no", "have no", 1);
         let plural = plural.replacen("and says", "and say", 1).replacen("its end", "their ends", 1);
         format!("{who} {plural}.")
     } else {
@@ -93,11 +98,20 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
         ),
         many => format!("They differ in {} inputs, listed below.", many.len()),
     });
-    sentences.push(
+    let view = sides[0].run.assembly.view;
+    if let Some(view) = view.filter(|_| sides.iter().any(|side| side.other.is_some())) {
+        sentences.push(format!(
+            "All this is {}; the other plane is in the table of outcomes.",
+            view.words()
+        ));
+    }
+    sentences.push(if sides.iter().all(|side| side.summary.ensemble.is_some()) {
+        "The run of each that is shown is the most typical of its variants.".into()
+    } else {
         "Each is one run: small changes of friction or gaps can change what falls when, so judge a \
          difference by many runs."
-            .into(),
-    );
+            .into()
+    });
     Verdict { headline, sentences, tone: Tone::Neutral }
 }
 
@@ -115,7 +129,7 @@ fn players(sides: &[Side]) -> Players {
                 mark: letter(at).into(),
                 name: side.name.clone(),
                 verdict: report::headline(&side.run, &side.summary),
-                tone: report::tone(&side.run),
+                tone: report::tone(&side.run, &side.summary),
                 scene: report::scene(&side.run),
                 traces: report::traces(&side.run),
             })

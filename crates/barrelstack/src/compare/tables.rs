@@ -5,6 +5,8 @@ use barrelstack_report::{Cell, Column, Table};
 use super::{Difference, Side, letter};
 use crate::demand::DEMANDS;
 use crate::report;
+use crate::variants::Spread;
+use crate::variants::words::{course, percent};
 
 /// An empty table: first columns, then one for each run.
 fn table(caption: &str, first: &[(&str, &str)], sides: &[Side], last: &[(&str, &str)]) -> Table {
@@ -63,6 +65,29 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
     let seconds =
         |time: Option<f64>| time.map_or(Cell::Missing, |time| Cell::text(format!("{time:.2} s")));
     row("run", &|side| Cell::text(&side.name));
+    let collapse = |spread: Option<&Spread>| {
+        spread.map_or(Cell::Missing, |spread| {
+            let [low, high] = spread.interval.map(percent);
+            let Spread { collapsed, variants, .. } = spread;
+            Cell::text(format!("{collapsed} of {variants} ({low} to {high})"))
+        })
+    };
+    if sides.iter().any(|side| side.summary.ensemble.is_some()) {
+        row("variants that collapse, with the 95 % interval of their share", &|side| {
+            collapse(side.summary.ensemble.as_ref())
+        });
+        row("first fall, and barrels fallen, in these", &|side| {
+            let spread = side.summary.ensemble.as_ref().filter(|spread| spread.collapsed > 0);
+            spread.map_or(Cell::Missing, |spread| Cell::text(course(spread)))
+        });
+        row("shown", &|side| match side.summary.variant {
+            0 => Cell::text("as stated"),
+            number => Cell::text(format!("variant {number}")),
+        });
+    }
+    if sides.iter().any(|side| side.other.is_some()) {
+        row("variants that collapse in the other plane", &|side| collapse(side.other.as_ref()));
+    }
     row("outcome", &|side| Cell::text(side.summary.outcome.kind));
     row("mode", &|side| side.summary.outcome.mode.map_or(Cell::Missing, Cell::text));
     row("first loss of seat", &|side| seconds(side.summary.outcome.time));
@@ -70,7 +95,9 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
     row("first fall", &|side| seconds(side.summary.outcome.first_fall));
     row("barrels fallen", &|side| {
         let outcome = &side.summary.outcome;
-        Cell::text(format!("{} of {}", outcome.barrels_fallen, outcome.barrels))
+        let fallen = outcome.barrels_fallen;
+        fallen
+            .map_or(Cell::Missing, |fallen| Cell::text(format!("{fallen} of {}", outcome.barrels)))
     });
     row("end of the run", &|side| seconds(Some(side.run.end_time)));
     table

@@ -8,11 +8,12 @@ use barrelstack_report::{
     Series, Strip, Table, Trace, significant,
 };
 
-use super::{drawing, inputs, spectrum, trust, words};
+use super::{drawing, inputs, planes, spectrum, trust, words};
 use crate::assemble::PartKind;
 use crate::demand::DEMANDS;
 use crate::run::Run;
 use crate::summary::{Device, Summary};
+use crate::variants::Shown;
 use crate::verify::Verification;
 use crate::watch::{BoundaryPoint, StressEnvelope};
 
@@ -20,10 +21,15 @@ use crate::watch::{BoundaryPoint, StressEnvelope};
 pub(super) fn all(
     run: &Run,
     summary: &Summary,
+    other: Option<&Shown>,
     verification: Option<&Verification>,
     scene: &Arc<Scene>,
 ) -> Vec<Block> {
-    let mut blocks = vec![Block::Player(player(run, scene))];
+    let mut blocks = vec![match other {
+        None => Block::Player(player(run, scene)),
+        Some(other) => Block::Players(planes::players((run, summary, scene), other)),
+    }];
+    section(&mut blocks, "In all variants", planes::variants(summary));
     section(&mut blocks, "Collapse sequence", sequence(run, scene));
     let trusted = verification.map(trust::trust).unwrap_or_default();
     section(&mut blocks, "How far to trust this run", trusted);

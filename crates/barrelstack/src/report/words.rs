@@ -7,10 +7,20 @@ use crate::assemble::PartKind;
 use crate::outcome::{CollapseMode, Outcome};
 use crate::run::Run;
 use crate::summary::{Device, MotionSummary, Summary};
+use crate::variants;
 use crate::verify::Verification;
 
-/// The answer in one sentence.
+/// The answer in one sentence: that of all variants, where they were run.
 pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
+    let spreads = summary.spreads();
+    if !spreads.is_empty() {
+        return variants::words::headline(&spreads);
+    }
+    alone(run, summary)
+}
+
+/// What became of the run that is shown, in one sentence.
+pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
     let until = run.interrupted.then(|| format!("the run was stopped at {:.1} s", run.end_time));
     match (&run.outcome, until) {
         (Outcome::Stable, None) => "The stack stands.".into(),
@@ -22,7 +32,8 @@ pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
         }
         (Outcome::Collapse { time, .. }, until) => {
             let until = until.map(|until| format!("; {until}")).unwrap_or_default();
-            let (fallen, barrels) = (summary.outcome.barrels_fallen, summary.outcome.barrels);
+            let (fallen, barrels) =
+                (summary.outcome.barrels_fallen.unwrap_or(0), summary.outcome.barrels);
             if fallen == 0 {
                 return format!(
                     "The stack comes apart after {time:.1} s, but no barrel falls{until}."
@@ -136,9 +147,10 @@ pub(super) fn details(
     sentences.extend(summary.devices.0.iter().filter_map(device));
     sentences.extend(summary.motion.as_ref().map(shaking));
     let judged = matches!(run.outcome, Outcome::Stable | Outcome::Collapse { .. });
+    sentences.extend(variants::words::sentences(summary, run.scenario.imperfections()));
     if let Some(found) = verification {
         sentences.extend(found.sentences());
-    } else if judged {
+    } else if judged && summary.ensemble.is_none() {
         sentences.push(
             "One run is one possible course: small changes of friction or gaps can change what falls \
              when, so judge a stack by many runs."
@@ -148,7 +160,7 @@ pub(super) fn details(
     sentences
 }
 
-pub(super) fn capital(text: &str) -> String {
+pub(crate) fn capital(text: &str) -> String {
     let mut chars = text.chars();
     chars
         .next()

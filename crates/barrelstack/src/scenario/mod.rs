@@ -38,6 +38,7 @@ pub mod barrel;
 pub mod builtin;
 pub mod catalog;
 pub mod free;
+pub mod imperfections;
 pub mod interface;
 mod load;
 pub mod motion;
@@ -68,6 +69,7 @@ pub use error::ScenarioError;
 pub use free::{
     Boundary, ChosenNode, FreeBody, FreeInterface, FreeScene, Ground, Nodes, PartShape, Viscous,
 };
+pub use imperfections::{Imperfection, Imperfections};
 pub use interface::{Basis, Damping, Friction, Interface, NormalLaw};
 pub use motion::{
     Amplitude, Direction, MeasuredOn, MotionSource, MotionSpec, Processing, Pulse, PulseKind,
@@ -128,6 +130,8 @@ pub enum Scene {
         stack: StackSpec,
         /// Thresholds that tell a collapse.
         outcome: OutcomeSpec,
+        /// How its variants differ from it.
+        imperfections: Imperfections,
     },
     /// Any planar bodies.
     Free(FreeScene),
@@ -156,6 +160,14 @@ impl Scenario {
         };
         let found = fields.iter().filter_map(origin).filter(|origin| rank(origin) < 3);
         found.min_by_key(rank).map(|origin| sources.place(origin))
+    }
+
+    /// How the variants of the stack differ from it, unless the scene is free.
+    pub fn imperfections(&self) -> Option<&Imperfections> {
+        match &self.scene {
+            Scene::Stack { imperfections, .. } => Some(imperfections),
+            Scene::Free(_) => None,
+        }
     }
 
     /// The scenario as text that reads back equal: every default written out, every quantity in SI. Paths are kept as written.

@@ -9,7 +9,8 @@ use super::run::Until;
 use super::tree::Table;
 use super::writer::Writer;
 use super::{
-    OutcomeSpec, RecordSpec, Scenario, Scene, Written, free, interface, motion, pair, run, stack,
+    Imperfections, OutcomeSpec, RecordSpec, Scenario, Scene, Written, free, imperfections,
+    interface, motion, pair, run, stack,
 };
 
 /// Version of the scenario language.
@@ -83,6 +84,12 @@ pub static ROOT: Section = Section {
                         Default::Nothing,
                         "Thresholds that tell a collapse.",
                     ),
+                    Field::new(
+                        "imperfections",
+                        Kind::Table(&imperfections::IMPERFECTIONS),
+                        Default::Nothing,
+                        "How the variants of the stack differ from what is stated here.",
+                    ),
                 ],
             },
             Variant {
@@ -130,7 +137,8 @@ pub(super) fn read(reader: Reader<'_>, fallback_title: &str) -> Result<Scenario,
             let interfaces = pair::read_interfaces(reader.section("interface")?)?;
             let stack = stack::read(reader.section("stack")?, interfaces)?;
             let outcome = OutcomeSpec::read(reader.section("outcome")?)?;
-            Scene::Stack { stack, outcome }
+            let imperfections = Imperfections::read(reader.section("imperfections")?)?;
+            Scene::Stack { stack, outcome, imperfections }
         }
         SceneKind::Free => Scene::Free(free::read(&reader)?),
     };
@@ -154,13 +162,14 @@ pub(super) fn write(scenario: &Scenario) -> Table {
     writer.text("title", &scenario.title);
     writer.omit(&["extends"]);
     match &scenario.scene {
-        Scene::Stack { stack, outcome } => {
+        Scene::Stack { stack, outcome, imperfections } => {
             writer.table("stack", stack::write(stack));
             writer.table("interface", pair::write_interfaces(&stack.interfaces));
             writer.table("motion", motion::write(&scenario.motion));
             writer.table("run", run::write_run(&scenario.run));
             writer.table("record", scenario.record.write());
             writer.table("outcome", outcome.write());
+            writer.table("imperfections", imperfections.write());
         }
         Scene::Free(scene) => {
             free::write(&mut writer, scene);

@@ -32,6 +32,9 @@ pub struct StackSpec {
     pub levels: u32,
     /// Barrels per level in this view.
     pub columns: u32,
+    /// Barrels per level along the barrels, where the stack is looked at in both planes and `view` is
+    /// the one across them; none where it is looked at in one.
+    pub columns_along: Option<u32>,
     /// The barrel used everywhere unless overridden.
     pub barrel: Barrel,
     /// The rack used everywhere unless overridden.
@@ -55,6 +58,33 @@ impl StackSpec {
             View::Transverse => self.rack.barrels,
             View::Longitudinal => self.rack.barrels_deep,
         }
+    }
+
+    /// What differs at one place, later entries last.
+    pub fn changes_of(
+        &self,
+        body: StackBody,
+        level: u32,
+        column: u32,
+    ) -> impl Iterator<Item = &BodyOverride> {
+        self.overrides.iter().filter(move |o| {
+            o.body == body && o.level == level && o.column.is_none_or(|c| c == column)
+        })
+    }
+
+    /// The stack across its barrels alone, where it is looked at in both planes.
+    pub fn across(&self) -> Option<Self> {
+        self.columns_along.map(|_| Self { columns_along: None, ..self.clone() })
+    }
+
+    /// The stack along its barrels, where it is looked at in both planes; of the bodies that differ those
+    /// of whole levels, since columns count barrels across.
+    pub fn along(&self) -> Option<Self> {
+        let columns = self.columns_along?;
+        let mut along =
+            Self { view: View::Longitudinal, columns, columns_along: None, ..self.clone() };
+        along.overrides.retain(|change| change.column.is_none());
+        Some(along)
     }
 
     /// Racks side by side on one level in this view.
@@ -90,9 +120,41 @@ pub struct BodyOverride {
     pub offset_x: f64,
 }
 
-impl Named for View {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("transverse", Self::Transverse), ("longitudinal", Self::Longitudinal)];
+impl View {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Transverse, Self::Longitudinal];
+
+    /// The word used in files and results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Transverse => "transverse",
+            Self::Longitudinal => "longitudinal",
+        }
+    }
+
+    /// For people.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Transverse => "across the barrels",
+            Self::Longitudinal => "along the barrels",
+        }
+    }
+}
+
+/// In which planes a stack is looked at, as files say it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Planes {
+    Transverse,
+    Longitudinal,
+    Both,
+}
+
+impl Named for Planes {
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("transverse", Self::Transverse),
+        ("longitudinal", Self::Longitudinal),
+        ("both", Self::Both),
+    ];
 }
 
 impl Named for StackBody {
@@ -105,19 +167,29 @@ const LEVELS: Kind = Kind::Integer(1, 12);
 const COLUMNS: Kind = Kind::Integer(1, 40);
 
 /// The fields of a stack of its own.
-const OWN: [Field; 7] = [
+const OWN: [Field; 8] = [
     Field::new(
         "view",
-        Kind::Choice(names::<View>),
+        Kind::Choice(names::<Planes>),
         Default::Value("\"transverse\""),
-        "Plane of the model: across the barrels or along them.",
+        "Plane of the model: across the barrels, along them, or one after the other, each with a horizontal \
+         component of the record.",
     ),
     Field::new("levels", LEVELS, Default::Required, "Levels of barrels."),
     Field::new(
         "columns",
         COLUMNS,
         Default::Required,
-        "Barrels per level in this view, a multiple of those that one rack carries.",
+        "Barrels per level in this view, a multiple of those that one rack carries; across the barrels where \
+         it is looked at in both planes.",
+    ),
+    Field::new(
+        "columns_along",
+        COLUMNS,
+        Default::Derived(
+            "in both planes, those that one rack carries; must not be given otherwise",
+        ),
+        "Barrels per level along the barrels, where the stack is looked at in both planes.",
     ),
     Field::new(
         "barrel",
@@ -196,7 +268,8 @@ pub static OVERRIDE: Section = Section {
             "column",
             COLUMNS,
             Default::Derived("every column of the level"),
-            "Column, 1 at the left before mirroring: of barrels, or of racks for a rack.",
+            "Column, 1 at the left before mirroring: of barrels, or of racks for a rack; across the barrels where \
+             the stack is looked at in both planes.",
         ),
         Field::new(
             "mass",
@@ -229,10 +302,22 @@ pub(super) fn read(
     let rack = rack::read(reader.section("rack")?)?;
     let barrel = barrel::read(reader.section("barrel")?, rack.rail_half_spacing)?;
     let levels = reader.integer("levels")?;
+    let planes: Planes = reader.choice("view")?;
+    let columns_along = match (planes, reader.optional_integer("columns_along")?) {
+        (Planes::Both, along) => Some(along.unwrap_or(rack.barrels_deep)),
+        (Planes::Transverse | Planes::Longitudinal, None) => None,
+        (Planes::Transverse | Planes::Longitudinal, Some(_)) => {
+            let message = "`stack.columns_along` is for `stack.view = \"both\"`; in one plane \
+                           `stack.columns` says how many barrels stand side by side"
+                .to_owned();
+            return Err(reader.inconsistent("columns_along", message));
+        }
+    };
     let mut stack = StackSpec {
-        view: reader.choice("view")?,
+        view: if planes == Planes::Longitudinal { View::Longitudinal } else { View::Transverse },
         levels,
         columns: reader.integer("columns")?,
+        columns_along,
         barrel,
         rack,
         mirror: reader.flag("mirror")?,
@@ -241,7 +326,10 @@ pub(super) fn read(
         overrides: Vec::new(),
         interfaces,
     };
-    check_geometry(&reader, &stack)?;
+    check_geometry(&reader, &stack, "columns")?;
+    if let Some(along) = stack.along() {
+        check_geometry(&reader, &along, "columns_along")?;
+    }
     for item in reader.sections("override")? {
         let body = read_override(item, &stack)?;
         stack.overrides.push(body);
@@ -250,14 +338,18 @@ pub(super) fn read(
     Ok(stack)
 }
 
-fn check_geometry(reader: &Reader<'_>, stack: &StackSpec) -> Result<(), ScenarioError> {
+fn check_geometry(
+    reader: &Reader<'_>,
+    stack: &StackSpec,
+    field: &'static str,
+) -> Result<(), ScenarioError> {
     let per_rack = stack.barrels_per_rack();
     let StackSpec { rack, barrel, columns, .. } = stack;
     if columns % per_rack != 0 {
         let below = (columns / per_rack) * per_rack;
         let nearest = if below == 0 { per_rack } else { below };
         let message = format!(
-            "`stack.columns` is {columns}, but one `{}` rack carries {per_rack} barrels in this view; take {nearest} \
+            "`stack.{field}` is {columns}, but one `{}` rack carries {per_rack} barrels in this view; take {nearest} \
              columns or set `stack.rack.{}`",
             rack.base,
             match stack.view {
@@ -265,7 +357,7 @@ fn check_geometry(reader: &Reader<'_>, stack: &StackSpec) -> Result<(), Scenario
                 View::Longitudinal => "barrels_deep",
             }
         );
-        return Err(reader.inconsistent("columns", message));
+        return Err(reader.inconsistent(field, message));
     }
     if rack.barrels > 1 && barrel.section_diameter > rack.pitch {
         let message = format!(
@@ -332,9 +424,18 @@ fn read_override(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride, 
 /// Writes a stack.
 pub(super) fn write(stack: &StackSpec) -> Table {
     let mut writer = Writer::new(&STACK);
-    writer.choice("view", stack.view);
+    let planes = match (stack.columns_along, stack.view) {
+        (Some(_), _) => Planes::Both,
+        (None, View::Transverse) => Planes::Transverse,
+        (None, View::Longitudinal) => Planes::Longitudinal,
+    };
+    writer.choice("view", planes);
     writer.integer("levels", stack.levels);
     writer.integer("columns", stack.columns);
+    match stack.columns_along {
+        Some(along) => writer.integer("columns_along", along),
+        None => writer.omit(&["columns_along"]),
+    }
     writer.flag("mirror", stack.mirror);
     writer.quantity("gap", stack.gap);
     writer.table("barrel", barrel::write(&stack.barrel));

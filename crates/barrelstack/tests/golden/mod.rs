@@ -23,11 +23,14 @@ const RUNS: [(&str, &str, &[&str]); 12] = [
         "candia-6-barrels",
         &["motion={ bundled = 'napa-college-2014', component = 'horizontal-1' }"],
     ),
-    ("demo-heap", "demo-napa", &[]),
+    ("demo-heap", "demo-napa", &["stack.view='longitudinal'"]),
     (
         "demo-strapped",
         "demo-napa",
-        &["stack.strap={ levels = 5, ties = 'levels-together', pretension = '3 kN' }"],
+        &[
+            "stack.view='longitudinal'",
+            "stack.strap={ levels = 5, ties = 'levels-together', pretension = '3 kN' }",
+        ],
     ),
     (
         "straps-that-tear",

@@ -2,9 +2,10 @@
 
 use barrelstack_report::{Block, Cell, Table};
 
-use super::plan::{HEIGHTS, VELOCITIES, View};
+use super::plan::{HEIGHTS, VELOCITIES};
 use super::{AtLevel, Heights};
 use crate::decision::percent;
+use crate::scenario::View;
 
 /// Ours beside the field.
 pub(super) fn napa(all: &Heights) -> Vec<Block> {

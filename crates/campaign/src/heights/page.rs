@@ -6,9 +6,10 @@ use barrelstack_report::{
     Tone, Verdict, significant,
 };
 
-use super::plan::{HEIGHTS, VELOCITIES, View};
+use super::plan::{HEIGHTS, VELOCITIES};
 use super::{AtLevel, Heights, field};
 use crate::decision::{LimitCurve, bars, chance_axis, heading, percent, refusal, text};
+use crate::scenario::View;
 use crate::scenario::catalog;
 
 /// Largest share of collapse that is called low, and the largest upper bound of its interval.

@@ -3,43 +3,13 @@
 use std::fmt::Write as _;
 
 use super::{HeightsError, Request};
-use crate::scenario::catalog;
+use crate::scenario::{View, catalog};
 
 /// Levels of the stacks.
 pub const HEIGHTS: [u32; 5] = [2, 3, 4, 5, 6];
 
 /// Levels of peak ground velocity (m/s) to which every motion is scaled.
 pub const VELOCITIES: [f64; 6] = [0.12, 0.24, 0.36, 0.50, 0.70, 1.00];
-
-/// Direction of the shaking.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum View {
-    /// Across the barrels.
-    Transverse,
-    /// Along them.
-    Longitudinal,
-}
-
-impl View {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Transverse, Self::Longitudinal];
-
-    /// As scenarios name it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Transverse => "transverse",
-            Self::Longitudinal => "longitudinal",
-        }
-    }
-
-    /// For people.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Transverse => "across the barrels",
-            Self::Longitudinal => "along the barrels",
-        }
-    }
-}
 
 /// Name of a study and of its folder.
 pub(super) fn name(view: View, recorded: bool) -> String {

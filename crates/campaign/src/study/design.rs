@@ -1,12 +1,12 @@
 //! Which cases a study has: the designs, each a deterministic list.
 
+use barrelstack_fragility::sobol::Axis;
 use barrelstack_motion::Random;
 
 use crate::scenario::fnv1a;
 
 use super::column::Value;
 use super::setting::Setting;
-use super::sobol::Axis;
 use super::{Factor, Levels, Study, Variation};
 
 /// The cases of a study.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use barrelstack_fragility::sobol;
 use barrelstack_motion::IntensityMeasure;
 
 use crate::scenario::field::Range;
@@ -89,6 +90,12 @@ fn read(opened: &Opened) -> Result<Study, StudyError> {
     // How long a scenario is run was chosen for its own motion and for a film of it.
     template.forget_inherited("run", &ENDS);
     let scenario = template.with([])?;
+    if scenario.stack().is_some_and(|stack| stack.columns_along.is_some()) {
+        let message = "a study looks at one plane: set `base.stack.view` to \"transverse\" or to \
+                       \"longitudinal\", in a study for each"
+            .to_owned();
+        return Err(top.inconsistent("base", message).into());
+    }
 
     let mut motions = Vec::new();
     for (number, set) in (1..).zip(sets) {
@@ -430,7 +437,7 @@ fn read_design(
         }
         DesignKind::LatinHypercube => Design::LatinHypercube { count: reader.integer("count")? },
         DesignKind::Sobol => {
-            let most = super::sobol::DIMENSIONS - 2;
+            let most = sobol::DIMENSIONS - 2;
             if factors.len() > most {
                 return refuse(&format!(
                     "the points of Sobol' here have at most {most} factors, this study has {}; take \
@@ -441,7 +448,7 @@ fn read_design(
             Design::Sobol { count: reader.integer("count")? }
         }
         DesignKind::Saltelli => {
-            let most = super::sobol::DIMENSIONS / 2 - 2;
+            let most = sobol::DIMENSIONS / 2 - 2;
             if factors.len() > most {
                 return refuse(&format!(
                     "the blocks of Saltelli here have at most {most} factors, this study has {}; leave out those that \

@@ -2,17 +2,30 @@
 
 use std::process::ExitCode;
 
+use barrelstack::check::Checked;
+use barrelstack::variants;
+
 use crate::args::CheckArgs;
 use crate::printer;
 
 /// Reads, builds and settles, and prints what was found.
 pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     let scenario = super::load(&args.scenario)?;
-    let found = barrelstack::check(&scenario)
-        .map_err(|error| super::placed(error, &scenario, &args.scenario))?;
+    let placed = |error| super::placed(error, &scenario, &args.scenario);
+    let planes = variants::planes(&scenario).map_err(|error| placed(error.into()))?;
+    let found: Result<Vec<_>, _> =
+        planes.iter().map(|plane| barrelstack::check(&plane.scenario)).collect();
+    let mut found = found.map_err(placed)?;
     if args.json {
-        printer::document(&found)?;
-    } else {
+        let other = found.split_off(1).pop();
+        let document = found.pop().map(|one| Checked { other_plane: other.map(Box::new), ..one });
+        printer::document(&document)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    for (plane, found) in planes.iter().zip(&found) {
+        if let (Some(view), true) = (plane.view(), planes.len() > 1) {
+            printer::lines([format!("{}:", view.words())])?;
+        }
         printer::lines(found.lines())?;
     }
     Ok(ExitCode::SUCCESS)

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::bail;
-use barrelstack::compare::{self, Comparison, Difference, Side, differences};
+use barrelstack::compare::{self, Comparison, Difference, differences};
 use barrelstack::export::Folder;
 use barrelstack::outcome::Outcome;
+use barrelstack::variants::Asked;
 
-use crate::args::ScenarioArgs;
+use crate::args::{ScenarioArgs, VariantArgs};
 use crate::interrupt::{STATUS, Stopped};
 use crate::printer;
 
@@ -35,6 +36,9 @@ pub(crate) struct CompareArgs {
     /// The file of the ground motion of all runs, in place of the scenarios' own.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
+    /// Variants of each stack to run beside it, in place of imperfections.variants; 0 for one run.
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=4096))]
+    variants: Option<u32>,
     /// Where to write report.html, report.md and figures/; must be new or empty.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-compare")]
     out: PathBuf,
@@ -59,30 +63,34 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     }
     let mut scenarios = Vec::new();
     for (name, one) in &asked {
-        scenarios.push((name.clone(), super::load(one)?));
+        let mut scenario = super::load(one)?;
+        let variants = VariantArgs { variants: args.variants, variant: None };
+        super::run::asked(&mut scenario, variants)?;
+        scenarios.push((name.clone(), scenario));
     }
     compare::check(&scenarios)?;
     let folder = Folder::prepare(&args.out, args.overwrite)?;
-    let mut sides = Vec::new();
+    let mut answers = Vec::new();
     for ((name, scenario), (_, one)) in scenarios.iter().zip(&asked) {
-        let (run, summary) = super::run::watched(scenario, !args.quiet)
+        let answer = super::run::answered(scenario, Asked::Typical, !args.quiet)
             .map_err(|error| super::placed(error, scenario, one))?;
-        let stopped = run.interrupted;
-        sides.push(Side { name: name.clone(), run, summary });
+        let stopped = answer.decides.run.interrupted;
+        answers.push((name.clone(), answer));
         if stopped {
             break;
         }
     }
-    if sides.len() < 2 {
+    if answers.len() < 2 {
         return Err(Stopped.into());
     }
-    if sides.len() < scenarios.len() {
+    if answers.len() < scenarios.len() {
         printer::note(&format!(
             "stopped; {} of {} runs are compared",
-            sides.len(),
+            answers.len(),
             scenarios.len()
         ));
     }
+    let sides = compare::sides(answers);
     let document = compare::document(&sides);
     crate::interrupt::writes_to(folder.path());
     // The verdict is printed even where it cannot be written.

@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 use barrelstack::Scenario;
 use barrelstack::export::Folder;
+use barrelstack::variants::Shown;
 
 use crate::args::{DemoArgs, ScenarioArgs};
 use crate::printer;
@@ -13,19 +14,21 @@ const NAME: &str = "demo-napa";
 
 /// Runs the demo scenario and says in a few sentences what happened.
 pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
-    let scenario = Scenario::builtin(NAME, &args.set)?;
+    let mut scenario = Scenario::builtin(NAME, &args.set)?;
+    let asked = super::run::asked(&mut scenario, args.variants)?;
     let folder = Folder::prepare_again(&args.out)?;
     crate::interrupt::writes_to(folder.path());
-    let (run, summary) = super::run::watched(&scenario, true).map_err(|error| {
+    let answer = super::run::answered(&scenario, asked, true).map_err(|error| {
         let args = ScenarioArgs { scenario: NAME.to_owned(), set: args.set.clone(), record: None };
         super::placed(error, &scenario, &args)
     })?;
     // The verdict is printed even where it cannot be written.
-    let written = folder.write(&run, &summary, None);
-    printer::lines(barrelstack::report::sentences(&run, &summary))?;
-    printer::warnings(&summary);
+    let written = folder.write(&answer, None);
+    let Shown { run, summary, .. } = &answer.decides;
+    printer::lines(barrelstack::report::sentences(run, summary))?;
+    printer::warnings(&answer);
     written?;
     let report = folder.report();
     printer::lines(["", &format!("Open {} in a browser to watch it.", report.display())])?;
-    Ok(super::run::status(&run))
+    Ok(super::run::status(&answer))
 }

@@ -5,8 +5,9 @@ use std::process::ExitCode;
 
 use anyhow::bail;
 use barrelstack::render::{Part, RenderFolder, Rendering};
+use barrelstack::variants::Shown;
 
-use crate::args::ScenarioArgs;
+use crate::args::{ScenarioArgs, VariantArgs};
 use crate::figures::{FigureArgs, PaperName};
 use crate::interrupt::keeps;
 use crate::printer;
@@ -16,6 +17,8 @@ use crate::printer;
 pub(crate) struct RenderArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
+    #[command(flatten)]
+    variants: VariantArgs,
     /// Where to write: figures/ with report.md beside it, report.pdf, animation/, frames/, paraview/.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
@@ -104,7 +107,8 @@ impl RenderArgs {
 
 /// Runs the scenario and writes its parts.
 pub(crate) fn render(args: &RenderArgs) -> anyhow::Result<ExitCode> {
-    let scenario = super::load(&args.scenario)?;
+    let mut scenario = super::load(&args.scenario)?;
+    let asked = super::run::asked(&mut scenario, args.variants)?;
     let how = Rendering {
         formats: args.figures.formats(),
         dpi: args.figures.dpi,
@@ -119,19 +123,20 @@ pub(crate) fn render(args: &RenderArgs) -> anyhow::Result<ExitCode> {
         crate::interrupt::writes_to(&args.out.join(part.place()));
     }
     crate::interrupt::writes_to(&args.out);
-    let (run, summary) = super::run::watched(&scenario, !args.quiet)
+    let answer = super::run::answered(&scenario, asked, !args.quiet)
         .map_err(|error| super::placed(error, &scenario, &args.scenario))?;
+    let Shown { run, summary, .. } = &answer.decides;
     if let Some([from, _]) = how.between
         && from > run.end_time
     {
         bail!("--from {from}: the run ends at {:.2} s, and there is nothing to film", run.end_time);
     }
     keeps(format!("the parts that are whole are in {}", args.out.display()));
-    let written = folder.write(&run, &summary, &how)?;
+    let written = folder.write(run, summary, &how)?;
     printer::lines(written.iter().map(|part| match part.files {
         1 => part.place.display().to_string(),
         files => format!("{}: {files} files", part.place.display()),
     }))?;
-    printer::warnings(&summary);
-    Ok(super::run::status(&run))
+    printer::warnings(&answer);
+    Ok(super::run::status(&answer))
 }

@@ -3,42 +3,44 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
+use anyhow::bail;
 use barrelstack::export::{ExportError, Folder};
 use barrelstack::outcome::Outcome;
+use barrelstack::scenario::Scene;
+use barrelstack::variants::{self, Answer, Asked, Shown, Told};
 use barrelstack::verify::{Verification, verify};
 use barrelstack::{Run, RunFailure, Scenario, Summary};
 use barrelstack_report::Characters;
 
-use crate::args::RunArgs;
+use crate::args::{RunArgs, VariantArgs};
 use crate::printer;
 use crate::progress::Progress;
 
 /// Runs and reports.
 pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
-    let scenario = super::load(&args.scenario)?;
+    let mut scenario = super::load(&args.scenario)?;
+    let asked = asked(&mut scenario, args.variants)?;
     // The folder is looked at before the work is done, not after.
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
-    let (run, summary) = watched(&scenario, !args.quiet)
-        .map_err(|error| super::placed(error, &scenario, &args.scenario))?;
-    let verification = args
-        .verify
-        .then(|| repeated(&run, !args.quiet))
-        .transpose()
-        .map_err(|error| super::placed(error, &scenario, &args.scenario))?;
+    let placed = |error| super::placed(error, &scenario, &args.scenario);
+    let answer = answered(&scenario, asked, !args.quiet).map_err(placed)?;
+    let Shown { run, summary, .. } = &answer.decides;
+    let verification =
+        args.verify.then(|| repeated(run, !args.quiet)).transpose().map_err(placed)?;
     // The verdict is printed even where it cannot be written.
     let written = folder.as_ref().map_or(Ok::<(), ExportError>(()), |folder| {
         crate::interrupt::writes_to(folder.path());
-        folder.write(&run, &summary, verification.as_ref())?;
+        folder.write(&answer, verification.as_ref())?;
         if args.pdf {
-            folder.write_pdf(&run, &summary, verification.as_ref(), args.paper.into())?;
+            folder.write_pdf(&answer, verification.as_ref(), args.paper.into())?;
         }
         Ok(())
     });
     if args.json {
-        printer::document(&Summary { verification, ..summary })?;
+        printer::document(&Summary { verification, ..summary.clone() })?;
     } else {
         let characters = if args.plain { Characters::Ascii } else { Characters::Unicode };
-        printer::summary(&run, &summary, &args.scenario.set, characters)?;
+        printer::answer(&answer, &args.scenario.set, characters)?;
         if let Some(verification) = &verification {
             printer::verification(verification)?;
         }
@@ -46,19 +48,48 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
             let paper = if args.pdf { ", and report.pdf beside it" } else { "" };
             printer::lines(["", &format!("report: {}{paper}", folder.report().display())])?;
         }
-        printer::warnings(&summary);
+        printer::warnings(&answer);
     }
     written?;
-    Ok(status(&run))
+    Ok(status(&answer))
 }
 
-/// Runs a scenario with a progress bar and Ctrl-C.
-pub(super) fn watched(scenario: &Scenario, show: bool) -> Result<(Run, Summary), RunFailure> {
+/// Which run is to be shown; the number of variants is set as it was asked for.
+pub(super) fn asked(scenario: &mut Scenario, args: VariantArgs) -> anyhow::Result<Asked> {
+    let count = match &mut scenario.scene {
+        Scene::Stack { imperfections, .. } => {
+            imperfections.variants = args.variants.unwrap_or(imperfections.variants);
+            imperfections.variants
+        }
+        Scene::Free(_) if args.variants.is_some_and(|variants| variants > 0) => {
+            bail!("--variants: a free scene has no variants, since nothing says how it may differ");
+        }
+        Scene::Free(_) => 0,
+    };
+    match args.variant {
+        Some(number) if number > count => bail!(
+            "--variant {number}: there are variants 1 to {count}, and 0 is the stack as it is stated; \
+             --variants {number} makes more"
+        ),
+        Some(number) => Ok(Asked::Number(number)),
+        None => Ok(Asked::Typical),
+    }
+}
+
+/// Runs a scenario and its variants with a progress bar and Ctrl-C.
+pub(super) fn answered(
+    scenario: &Scenario,
+    asked: Asked,
+    show: bool,
+) -> Result<Answer, RunFailure> {
     let start = Instant::now();
     let progress = Progress::new(show);
-    let run = scenario.run_watched(&mut |reached| progress.at(reached))?;
-    let summary = Summary::of(&run, Some(start.elapsed().as_secs_f64()));
-    Ok((run, summary))
+    let mut answer = variants::answer(scenario, asked, &mut |told| match told {
+        Told::Run(reached) => progress.at(reached),
+        Told::Variants { done, of } => progress.counted(done as u64, of as u64, "variants"),
+    })?;
+    answer.decides.summary.run.wall_seconds = Some(start.elapsed().as_secs_f64());
+    Ok(answer)
 }
 
 /// Repeats a run with a progress bar and Ctrl-C.
@@ -67,11 +98,12 @@ fn repeated(run: &Run, show: bool) -> Result<Verification, RunFailure> {
     verify(run, &mut |reached| progress.at(reached))
 }
 
-/// The exit status of a run, as the help of the program lists them.
-pub(super) fn status(run: &Run) -> ExitCode {
-    if matches!(run.outcome, Outcome::Invalid { .. }) {
+/// The exit status of runs, as the help of the program lists them.
+pub(super) fn status(answer: &Answer) -> ExitCode {
+    let mut runs = std::iter::once(&answer.decides).chain(&answer.other).map(|shown| &shown.run);
+    if runs.clone().any(|run| matches!(run.outcome, Outcome::Invalid { .. })) {
         ExitCode::FAILURE
-    } else if run.interrupted {
+    } else if runs.any(|run| run.interrupted) {
         ExitCode::from(130)
     } else {
         ExitCode::SUCCESS

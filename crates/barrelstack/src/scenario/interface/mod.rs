@@ -108,3 +108,37 @@ pub struct Interface {
     /// Tangential force.
     pub friction: Friction,
 }
+
+impl Interface {
+    /// Multiplies its stiffness.
+    pub fn stiffen(&mut self, factor: f64) {
+        match &mut self.normal {
+            NormalLaw::SpeedGap { stiffness, .. }
+            | NormalLaw::KelvinVoigt { stiffness, .. }
+            | NormalLaw::HuntCrossley { stiffness, .. }
+            | NormalLaw::Rebound { stiffness, .. }
+            | NormalLaw::Hertz { stiffness } => *stiffness *= factor,
+        }
+    }
+
+    /// Multiplies the damping of a linear law where it is stated as a coefficient.
+    pub fn damp(&mut self, factor: f64) {
+        if let NormalLaw::SpeedGap { damping: Damping::Coefficient(c), .. }
+        | NormalLaw::KelvinVoigt { damping: Damping::Coefficient(c), .. } = &mut self.normal
+        {
+            *c *= factor;
+        }
+    }
+
+    /// Multiplies its coefficients of friction, kinetic and static.
+    pub fn roughen(&mut self, factor: f64) {
+        match &mut self.friction {
+            Friction::Coulomb { coefficient, static_coefficient, .. } => {
+                *coefficient *= factor;
+                *static_coefficient *= factor;
+            }
+            Friction::Regularized { coefficient, .. } => *coefficient *= factor,
+            Friction::None => {}
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! A stack in all its variants and in both its planes, on its page.
+
+use std::sync::Arc;
+
+use barrelstack_report::{Block, Cell, History, Pane, Players, Scene, Table};
+
+use super::{capital, drawing, sections, tone, words};
+use crate::run::Run;
+use crate::scenario::View;
+use crate::summary::Summary;
+use crate::variants::words::percent;
+use crate::variants::{Range, Shown, Spread};
+
+/// Both planes beside each other on one clock, the one across the barrels first.
+pub(super) fn players(
+    (run, summary, scene): (&Run, &Summary, &Arc<Scene>),
+    other: &Shown,
+) -> Players {
+    let pane = |run: &Run, summary: &Summary, scene: Arc<Scene>| {
+        let alone = Summary { ensemble: None, other_plane: None, ..summary.clone() };
+        Pane {
+            mark: mark(run).to_owned(),
+            name: run.assembly.view.map_or_else(String::new, |view| capital(view.words())),
+            verdict: words::alone(run, summary),
+            tone: tone(run, &alone),
+            scene,
+            traces: sections::traces(run),
+        }
+    };
+    let mut both = [
+        pane(run, summary, Arc::clone(scene)),
+        pane(&other.run, &other.summary, drawing::scene(&other.run)),
+    ];
+    let mut runs = [run, &other.run];
+    if run.assembly.view == Some(View::Longitudinal) {
+        both.reverse();
+        runs.reverse();
+    }
+    Players {
+        id: "players".into(),
+        caption: "The stack across its barrels and along them as computed, on one clock and to one scale. \
+                  Arrows are contact forces, each on the body that it pushes up."
+            .into(),
+        panes: both.into(),
+        ground: runs.into_iter().filter_map(ground).collect(),
+    }
+}
+
+/// A letter that stands for a plane.
+fn mark(run: &Run) -> &'static str {
+    match run.assembly.view {
+        Some(View::Transverse) => "X",
+        Some(View::Longitudinal) => "Y",
+        None => "",
+    }
+}
+
+/// The acceleration of the ground in a plane.
+fn ground(run: &Run) -> Option<History> {
+    let first = drawing::ground_histories(run).into_iter().next()?;
+    let view = run.assembly.view?;
+    Some(History { label: format!("{}, {}", first.label, view.words()), ..first })
+}
+
+/// What all variants say, as a table with a column for every plane.
+pub(super) fn variants(summary: &Summary) -> Vec<Block> {
+    let planes = summary.spreads();
+    if planes.is_empty() {
+        return Vec::new();
+    }
+    let mut table = Table::new(
+        "Ranges are those of 5 to 95 % of the variants, with all of them in brackets.",
+        &[("", "")],
+    );
+    table.columns.extend(
+        planes.iter().map(|(view, _)| barrelstack_report::Column::new(capital(view.words()), "")),
+    );
+    let mut row = |name: &str, cell: &dyn Fn(&Spread) -> Option<String>| {
+        let cells: Vec<Option<String>> = planes.iter().map(|(_, spread)| cell(spread)).collect();
+        if cells.iter().any(Option::is_some) {
+            let shown = cells.into_iter().map(|cell| cell.map_or(Cell::Missing, Cell::text));
+            table.rows.push(std::iter::once(Cell::text(name)).chain(shown).collect());
+        }
+    };
+    row("variants with a verdict", &|spread| Some(spread.variants.to_string()));
+    row("collapse", &|spread| Some(spread.collapsed.to_string()));
+    row("share, with its 95 % interval", &|spread| {
+        let [low, high] = spread.interval.map(percent);
+        spread.share.map(|share| format!("{} ({low} to {high})", percent(share)))
+    });
+    row("first fall", &|spread| {
+        spread.first_fall.map(|Range { p05, p95, least, most, .. }| {
+            format!("{} s ({} s)", span(p05, p95, 1), span(least, most, 1))
+        })
+    });
+    row("barrels fallen where it collapses", &|spread| {
+        spread.barrels_fallen.map(|Range { p05, p95, least, most, .. }| {
+            let within = format!("{} of {}", span(p05, p95, 0), spread.barrels);
+            format!("{within} ({})", span(least, most, 0))
+        })
+    });
+    row("by mode", &|spread| {
+        let modes = spread.modes.iter().map(|(mode, count)| format!("{mode} {count}"));
+        Some(modes.collect::<Vec<_>>().join(", ")).filter(|text| !text.is_empty())
+    });
+    row("do not stand before they are shaken", &|spread| {
+        (spread.cannot_stand > 0).then(|| spread.cannot_stand.to_string())
+    });
+    row("broke down", &|spread| (spread.broken > 0).then(|| spread.broken.to_string()));
+    let number = |number: u32| if number == 0 { "as stated".into() } else { number.to_string() };
+    row("most typical", &|spread| Some(number(spread.typical)));
+    row("gentlest", &|spread| Some(number(spread.gentlest)));
+    row("worst", &|spread| Some(number(spread.worst)));
+    let mut blocks = vec![Block::Table(table)];
+    blocks.extend(
+        planes.iter().find_map(|(_, spread)| spread.reason.as_ref()).map(|reason| {
+            Block::Paragraph(format!("The first variant without a verdict: {reason}."))
+        }),
+    );
+    blocks
+}
+
+/// From one number to another, once where they look the same.
+fn span(from: f64, to: f64, decimals: usize) -> String {
+    let [from, to] = [from, to].map(|value| format!("{value:.decimals$}"));
+    if from == to { from } else { format!("{from} to {to}") }
+}

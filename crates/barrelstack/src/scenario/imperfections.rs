@@ -1,0 +1,54 @@
+//! What no cellar can exclude and nobody knows to the last digit.
+
+use barrelstack_input::section;
+
+use super::dimension::Dimension;
+use super::field::{Default, Kind, Named, Range, names};
+
+/// What variants differ in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Imperfection {
+    /// Places and masses, which no cellar has twice.
+    Hair,
+    /// Friction and contact constants, which nobody has measured on this stack.
+    Ignorance,
+    /// Both.
+    Both,
+}
+
+impl Named for Imperfection {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("both", Self::Both), ("hair", Self::Hair), ("ignorance", Self::Ignorance)];
+}
+
+const SHARE: Kind = Kind::Number(Range::between(0.0, 0.1));
+const DISPERSION: Kind = Kind::Number(Range::between(0.0, 1.0));
+
+section! {
+    /// How the variants of a stack differ from what the scenario states.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Imperfections;
+    /// How the variants of a stack differ from what the scenario states, which is always their middle.
+    pub static IMPERFECTIONS = "imperfections";
+    /// Variants of the stack that are run beside it, in each plane; 0 for the stated case alone.
+    variants: u32 = Kind::Integer(0, 4096), Default::Value("64");
+    /// Seed of the sequence that they are drawn by.
+    seed: u32 = Kind::Integer(0, u32::MAX as i64), Default::Value("1");
+    /// What they differ in: "hair", places and masses, which no cellar has twice; "ignorance", friction and contact constants, which nobody has measured on this stack; or both.
+    kind: Imperfection = Kind::Choice(names::<Imperfection>), Default::Value("\"both\"");
+    /// Hair: every rack on what is below and every barrel in its cradle lies up to this far to either side, each place as likely (assumption: forklifts set down no nearer).
+    placement: f64 =
+        Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 0.02)), Default::Value("\"1 mm\"");
+    /// Hair: standard deviation of the mass of every barrel and rack over that mass, normal up to three of them (assumption: 3 L of ullage or of wet wood in a full barrel).
+    mass: f64 = SHARE, Default::Value("0.01");
+    /// Ignorance: standard deviation of ln μ where racks or barrels touch each other, lognormal, one draw for each pair of materials (wood on steel goes from 0.2 wet to 0.6 dry by engineers' lists, pallets on steel racks from 0.37 to 0.45 by test; the number is an assumption).
+    friction: f64 = DISPERSION, Default::Value("0.25");
+    /// Ignorance: the same on the ground (floors are washed daily; steel on concrete goes from 0.4 in design to 0.65 by test; the number is an assumption).
+    friction_ground: f64 = DISPERSION, Default::Value("0.2");
+    /// Ignorance: standard deviation of ln k, lognormal, one draw for all seats and one for all impacts (Candia, de la Llera and Almazán 2008 calibrated k 10 % above their tests).
+    stiffness: f64 = DISPERSION, Default::Value("0.1");
+    /// Ignorance: standard deviation of ln c of seats with a damper, lognormal, one draw for all (the same authors calibrated c 16 % above their tests).
+    damping: f64 = DISPERSION, Default::Value("0.16");
+    /// Whether half of the variants are shaken the other way round, as stacks that face the other way are.
+    sign: bool = Kind::Flag, Default::Value("false");
+}

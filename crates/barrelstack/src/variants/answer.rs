@@ -1,0 +1,161 @@
+//! The answer to a scenario: what its variants say, and the run that shows it best.
+
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+
+use super::{Plane, Spread, Variants, planes, run};
+use crate::pool;
+use crate::report::headline;
+use crate::run::{Progress, Run, RunFailure};
+use crate::scenario::Scenario;
+use crate::summary::Summary;
+
+/// How far the work is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Told {
+    /// So many of so many variants are done.
+    Variants {
+        /// Done.
+        done: usize,
+        /// Of so many.
+        of: usize,
+    },
+    /// The runs that are shown are this far, in sum.
+    Run(Progress),
+}
+
+/// Which run is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asked {
+    /// The one that is most like all others.
+    Typical,
+    /// That of a number; 0 is the case as it is stated.
+    Number(u32),
+}
+
+/// What became of a scenario.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// The scenario.
+    pub scenario: Scenario,
+    /// The plane that decides: of both the one in which more variants collapse.
+    pub decides: Shown,
+    /// The other plane, where the scenario looks at both.
+    pub other: Option<Shown>,
+}
+
+impl Answer {
+    /// The answer in one sentence.
+    pub fn headline(&self) -> String {
+        headline(&self.decides.run, &self.decides.summary)
+    }
+}
+
+/// One plane of an answer.
+#[derive(Clone, Debug)]
+pub struct Shown {
+    /// The run that is shown.
+    pub run: Run,
+    /// Its summary, with what all variants say; that of the plane which decides with the other's in it.
+    pub summary: Summary,
+    /// What became of all variants; none where there are none, or they were stopped.
+    pub variants: Option<Variants>,
+}
+
+/// Runs all variants of a scenario and then, with everything that can be seen, the run to be shown, in one
+/// plane or in both, before an observer, who may stop it: what was seen until then is returned.
+///
+/// # Errors
+/// As [`Scenario::run`].
+pub fn answer(
+    scenario: &Scenario,
+    asked: Asked,
+    observer: &mut (dyn FnMut(Told) -> ControlFlow<()> + Send),
+) -> Result<Answer, RunFailure> {
+    let planes = planes(scenario)?;
+    let observer = Mutex::new(observer);
+    let told = |told: Told| match observer.lock() {
+        Ok(mut observer) => observer(told),
+        // Another thread has panicked; this work is of no use any more.
+        Err(_) => ControlFlow::Break(()),
+    };
+    let varied = planes.iter().any(|plane| plane.count() > 0);
+    let found =
+        if varied { run(&planes, &|done, of| told(Told::Variants { done, of }))? } else { None };
+    let stopped = varied && found.is_none();
+    let variants: Vec<Option<Variants>> = match found {
+        Some(found) => found.into_iter().map(Some).collect(),
+        None => planes.iter().map(|_| None).collect(),
+    };
+    let tasks: Vec<(&Plane, u32)> = planes
+        .iter()
+        .zip(&variants)
+        .map(|(plane, variants)| (plane, number(asked, variants.as_ref())))
+        .collect();
+    let mut shown = Vec::new();
+    for (((plane, number), run), variants) in tasks.iter().zip(seen(&tasks, &told)?).zip(variants) {
+        let mut run = run;
+        run.warnings.extend(plane.warning(planes.len()));
+        if stopped {
+            run.warnings.push(
+                "the variants were stopped before all were done, so nothing is said of the share that \
+                 collapses"
+                    .to_owned(),
+            );
+        }
+        let mut summary = Summary::of(&run, None);
+        summary.variant = *number;
+        summary.ensemble = variants.as_ref().map(|variants| variants.spread.clone());
+        shown.push(Shown { run, summary, variants });
+    }
+    // Of equals the first, which is the plane across the barrels.
+    let worst = (1..shown.len())
+        .fold(0, |worst, at| if weight(&shown[at]) > weight(&shown[worst]) { at } else { worst });
+    let mut decides = shown.remove(worst);
+    let other = shown.pop();
+    decides.summary.other_plane = other.as_ref().map(|other| Box::new(other.summary.clone()));
+    Ok(Answer { scenario: scenario.clone(), decides, other })
+}
+
+/// The number of the run that is shown; the case as it is stated where that does not stand, so that it is
+/// told why.
+fn number(asked: Asked, variants: Option<&Variants>) -> u32 {
+    let stated = variants.and_then(|variants| variants.results.first());
+    match (asked, variants) {
+        (Asked::Number(number), _) => number,
+        (Asked::Typical, Some(variants)) if stated.is_some_and(|one| one.outcome.is_ok()) => {
+            variants.spread.typical
+        }
+        (Asked::Typical, _) => 0,
+    }
+}
+
+/// Runs what is shown, each on a core of its own.
+fn seen(
+    tasks: &[(&Plane, u32)],
+    told: &(dyn Fn(Told) -> ControlFlow<()> + Sync),
+) -> Result<Vec<Run>, RunFailure> {
+    let reached = Mutex::new(vec![Progress { time: 0.0, end_time: 0.0 }; tasks.len()]);
+    let indexed: Vec<(usize, &(&Plane, u32))> = tasks.iter().enumerate().collect();
+    let run = |(at, (plane, number)): &(usize, &(&Plane, u32))| {
+        plane.variant(*number).run_watched(&mut |now| {
+            let Ok(mut all) = reached.lock() else { return ControlFlow::Break(()) };
+            all[*at] = now;
+            let sum = |of: fn(&Progress) -> f64| all.iter().map(of).sum();
+            let (time, end_time) = (sum(|one| one.time), sum(|one| one.end_time));
+            told(Told::Run(Progress { time, end_time }))
+        })
+    };
+    pool::map(&indexed, run, &|_| ()).into_iter().collect()
+}
+
+/// How bad a plane is: the share that collapses, or whether the one run does, and the share that falls.
+fn weight(shown: &Shown) -> (f64, f64) {
+    let outcome = &shown.summary.outcome;
+    let barrels = outcome.barrels.max(1) as f64;
+    let spread: Option<&Spread> = shown.summary.ensemble.as_ref();
+    let alone = if outcome.mode.is_some() { 1.0 } else { 0.0 };
+    let share = spread.and_then(|spread| spread.share).unwrap_or(alone);
+    let median = spread.and_then(|spread| spread.barrels_fallen).map(|fallen| fallen.p50);
+    (share, median.unwrap_or(outcome.barrels_fallen.unwrap_or(0) as f64) / barrels)
+}

@@ -1,0 +1,206 @@
+//! One variant of a stack: the scenario with everything that is not known of it drawn.
+
+use barrelstack_fragility::{normal_quantile, sobol};
+
+use crate::scenario::{
+    BodyOverride, Imperfection, Imperfections, Interface, Scenario, Scene, StackBody,
+    StackInterfaces, StackSpec,
+};
+
+/// The quantities that a whole stack shares, in the order of their axes; bodies come after them, two axes
+/// each.
+#[derive(Clone, Copy)]
+enum Shared {
+    FrictionGround,
+    FrictionBarrelRack,
+    FrictionRackRack,
+    FrictionBarrelBarrel,
+    FrictionBarrelGround,
+    SeatStiffness,
+    ImpactStiffness,
+    SeatDamping,
+    Sign,
+    Count,
+}
+
+/// Largest deviate of what is normal, in standard deviations.
+const FARTHEST: f64 = 3.0;
+
+/// A point of the unit cube whose axes are all that is drawn.
+struct Point {
+    number: u32,
+    seed: u64,
+}
+
+impl Point {
+    fn uniform(&self, axis: usize) -> f64 {
+        sobol::padded(axis, self.number, self.seed)
+    }
+
+    fn normal(&self, axis: usize) -> f64 {
+        normal_quantile(self.uniform(axis)).clamp(-FARTHEST, FARTHEST)
+    }
+
+    /// A factor with the median 1 whose logarithm has a standard deviation.
+    fn lognormal(&self, axis: Shared, dispersion: f64) -> f64 {
+        libm::exp(dispersion * self.normal(axis as usize))
+    }
+}
+
+/// A variant by its number, from 1; a free scene has none and stays as it is.
+pub(super) fn variant(scenario: &Scenario, number: u32) -> Scenario {
+    let mut changed = scenario.clone();
+    let Scene::Stack { stack, imperfections, .. } = &mut changed.scene else { return changed };
+    let point = Point { number: number.saturating_sub(1), seed: u64::from(imperfections.seed) };
+    if imperfections.sign && point.uniform(Shared::Sign as usize) < 0.5 {
+        stack.mirror = !stack.mirror;
+    }
+    if imperfections.kind != Imperfection::Hair {
+        ignorance(&mut stack.interfaces, imperfections, &point);
+    }
+    if imperfections.kind != Imperfection::Ignorance {
+        hair(stack, imperfections, &point);
+    }
+    changed
+}
+
+/// Friction and contact constants: one draw for what is of the same materials.
+fn ignorance(laws: &mut StackInterfaces, spread: &Imperfections, point: &Point) {
+    let roughen = |axis: Shared, dispersion: f64, interfaces: &mut [&mut Interface]| {
+        let factor = point.lognormal(axis, dispersion);
+        interfaces.iter_mut().for_each(|interface| interface.roughen(factor));
+    };
+    let (ground, others) = (spread.friction_ground, spread.friction);
+    let steel = &mut [&mut laws.rack_ground, &mut laws.fallen_rack_ground];
+    roughen(Shared::FrictionGround, ground, steel);
+    roughen(Shared::FrictionBarrelGround, ground, &mut [&mut laws.barrel_ground]);
+    let wood = &mut [&mut laws.barrel_rack, &mut laws.fallen_barrel_rack];
+    roughen(Shared::FrictionBarrelRack, others, wood);
+    let steel = &mut [&mut laws.rack_rack, &mut laws.fallen_rack_rack];
+    roughen(Shared::FrictionRackRack, others, steel);
+    roughen(Shared::FrictionBarrelBarrel, others, &mut [&mut laws.barrel_barrel]);
+    let stiffness = [Shared::SeatStiffness, Shared::ImpactStiffness]
+        .map(|axis| point.lognormal(axis, spread.stiffness));
+    let damping = point.lognormal(Shared::SeatDamping, spread.damping);
+    for seat in [&mut laws.rack_ground, &mut laws.barrel_rack, &mut laws.rack_rack] {
+        seat.stiffen(stiffness[0]);
+        seat.damp(damping);
+    }
+    for impact in [
+        &mut laws.barrel_barrel,
+        &mut laws.barrel_ground,
+        &mut laws.fallen_barrel_rack,
+        &mut laws.fallen_rack_ground,
+        &mut laws.fallen_rack_rack,
+    ] {
+        impact.stiffen(stiffness[1]);
+    }
+}
+
+/// Place and mass of every rack and barrel.
+fn hair(stack: &mut StackSpec, spread: &Imperfections, point: &Point) {
+    let mut axis = Shared::Count as usize;
+    let mut drawn = Vec::new();
+    for (body, columns) in
+        [(StackBody::Rack, stack.racks_per_level()), (StackBody::Barrel, stack.columns)]
+    {
+        for level in 1..=stack.levels {
+            for column in 1..=columns {
+                let factor = 1.0 + spread.mass * point.normal(axis + 1);
+                drawn.push(BodyOverride {
+                    body,
+                    level,
+                    column: Some(column),
+                    mass: Some(mass(stack, body, level, column) * factor),
+                    fill: None,
+                    offset_x: spread.placement * (2.0 * point.uniform(axis) - 1.0),
+                });
+                axis += 2;
+            }
+        }
+    }
+    stack.overrides.extend(drawn);
+}
+
+/// The mass (kg) that the scenario states for a body.
+fn mass(stack: &StackSpec, body: StackBody, level: u32, column: u32) -> f64 {
+    let changes = stack.changes_of(body, level, column);
+    match body {
+        StackBody::Rack => changes.fold(stack.rack.mass, |mass, one| one.mass.unwrap_or(mass)),
+        StackBody::Barrel => {
+            let stated = stack.barrel.clone();
+            changes.fold(stated, |barrel, one| barrel.altered(one.mass, one.fill)).mass
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::variant;
+    use crate::Scenario;
+    use crate::scenario::{Friction, Scene};
+
+    fn drawn(changes: &[&str], number: u32) -> Scenario {
+        let changes: Vec<String> = changes.iter().map(|&change| change.to_owned()).collect();
+        variant(&Scenario::builtin("candia-8-barrels", &changes).unwrap(), number)
+    }
+
+    fn friction(scenario: &Scenario) -> f64 {
+        let Friction::Coulomb { coefficient, .. } =
+            scenario.stack().unwrap().interfaces.barrel_rack.friction
+        else {
+            panic!("no Coulomb friction")
+        };
+        coefficient
+    }
+
+    #[test]
+    fn variants_lie_around_what_is_stated_and_as_far_as_is_stated() {
+        let all: Vec<Scenario> = (1..=64).map(|number| drawn(&[], number)).collect();
+        let logs: Vec<f64> = all.iter().map(|one| (friction(one) / 0.22).ln()).collect();
+        let mean = logs.iter().sum::<f64>() / 64.0;
+        let deviation = (logs.iter().map(|log| log * log).sum::<f64>() / 64.0).sqrt();
+        assert!(mean.abs() < 0.01, "{mean}"); // measured 2e-3
+        assert!((deviation / 0.25 - 1.0).abs() < 0.05, "{deviation}");
+        for one in &all {
+            let stack = one.stack().unwrap();
+            // Four racks and eight barrels.
+            assert_eq!(stack.overrides.len(), 12);
+            assert!(stack.overrides.iter().all(|body| body.offset_x.abs() <= 1e-3));
+            let off = stack.overrides[4].mass.unwrap() / stack.barrel.mass - 1.0;
+            // Three standard deviations, and the rounding of their sum.
+            assert!(off.abs() < 0.03 + 1e-12, "{off}");
+        }
+        let places: Vec<f64> =
+            all.iter().map(|one| one.stack().unwrap().overrides[7].offset_x).collect();
+        assert!(places.iter().any(|x| *x > 0.9e-3) && places.iter().any(|x| *x < -0.9e-3));
+    }
+
+    #[test]
+    fn hair_leaves_what_is_not_known_and_ignorance_what_is_placed() {
+        let stated = Scenario::builtin("candia-8-barrels", &[]).unwrap();
+        let hair = drawn(&["imperfections.kind=hair"], 3);
+        assert_eq!(hair.stack().unwrap().interfaces, stated.stack().unwrap().interfaces);
+        let ignorance = drawn(&["imperfections.kind=ignorance"], 3);
+        assert!(ignorance.stack().unwrap().overrides.is_empty());
+        let both = drawn(&[], 3);
+        assert_eq!(both.stack().unwrap().overrides, hair.stack().unwrap().overrides);
+        assert_eq!(both.stack().unwrap().interfaces, ignorance.stack().unwrap().interfaces);
+        assert_ne!(both, drawn(&["imperfections.seed=2"], 3));
+    }
+
+    #[test]
+    fn half_of_the_variants_face_the_other_way_when_asked() {
+        let mirrored = |number| drawn(&["imperfections.sign=true"], number).stack().unwrap().mirror;
+        assert_eq!((1..=64).filter(|number| mirrored(*number)).count(), 32);
+        assert!(!(1..=64).any(|number| drawn(&[], number).stack().unwrap().mirror));
+    }
+
+    #[test]
+    fn a_variant_is_a_scenario_that_reads_back() {
+        let one = drawn(&[], 5);
+        let again = Scenario::from_str(&one.to_resolved_toml()).unwrap();
+        assert_eq!(again, one);
+        assert!(matches!(one.scene, Scene::Stack { .. }));
+    }
+}

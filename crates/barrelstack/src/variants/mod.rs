@@ -1,0 +1,188 @@
+//! Every answer a distribution: a stack and its variants, run together.
+//!
+//! Collapse is chaotic, and friction is hardly known: one run is an anecdote.
+//! A stack is therefore run as it is stated (number 0) and in variants (from number 1) that differ in what no
+//! cellar can exclude and nobody knows ([`Imperfections`](crate::scenario::Imperfections)), in one plane or
+//! in both.
+//!
+//! ```
+//! use std::ops::ControlFlow;
+//!
+//! use barrelstack::{Scenario, variants};
+//!
+//! let changes = ["imperfections.variants=4", "stack.levels=2", "run.duration='6 s'"];
+//! let scenario = Scenario::builtin("candia-8-barrels", &changes.map(str::to_owned))?;
+//! let planes = variants::planes(&scenario)?;
+//! let found = variants::run(&planes, &|_, _| ControlFlow::Continue(()))?;
+//! let spread = found.and_then(|all| all.into_iter().next()).map(|one| one.spread);
+//! assert_eq!(spread.map(|spread| (spread.variants, spread.collapsed)), Some((4, 0)));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod answer;
+mod draw;
+mod spread;
+mod typical;
+pub mod words;
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use crate::ensemble::{CaseResult, Ensemble, Prepared};
+use crate::ground::{Ground, GroundError, other_component};
+use crate::scenario::{Imperfections, MotionSource, MotionSpec, Scenario, Scene, View};
+
+pub use answer::{Answer, Asked, Shown, Told, answer};
+pub use spread::{LEVEL, Range, Spread};
+
+/// A scenario in one plane, with all its variants.
+#[derive(Clone, Debug)]
+pub struct Plane {
+    /// The case as it is stated.
+    pub scenario: Scenario,
+    /// The motion by the other horizontal component, which shakes the second half of the variants of a stack
+    /// that is looked at in both planes.
+    exchanged: Option<MotionSpec>,
+}
+
+/// A scenario in each plane in which it looks at its stack: across the barrels first.
+///
+/// Of both planes each has its own horizontal component of the record, across the barrels that of the
+/// scenario; in the second half of the variants they are exchanged, as in a stack turned by a right angle.
+///
+/// # Errors
+/// When the motion cannot be read.
+pub fn planes(scenario: &Scenario) -> Result<Vec<Plane>, GroundError> {
+    let both = scenario.stack().and_then(|stack| Some((stack.across()?, stack.along()?)));
+    let Some((across, along)) = both else {
+        return Ok(vec![Plane { scenario: scenario.clone(), exchanged: None }]);
+    };
+    let other = other_component(&scenario.motion)?;
+    let plane = |plane, motion: MotionSpec, exchanged| {
+        let mut scenario = scenario.clone();
+        scenario.motion = motion;
+        if let Scene::Stack { stack, .. } = &mut scenario.scene {
+            *stack = plane;
+        }
+        Plane { scenario, exchanged }
+    };
+    let own = &scenario.motion;
+    let turned = other.as_ref().map(|_| own.clone());
+    Ok(vec![
+        plane(across, own.clone(), other.clone()),
+        plane(along, other.unwrap_or_else(|| own.clone()), turned),
+    ])
+}
+
+impl Plane {
+    /// The plane; none for a free scene.
+    pub fn view(&self) -> Option<View> {
+        self.scenario.stack().map(|stack| stack.view)
+    }
+
+    /// How many variants there are beside the case as it is stated.
+    pub fn count(&self) -> u32 {
+        self.scenario.imperfections().map_or(0, |imperfections| imperfections.variants)
+    }
+
+    /// A variant by its number; the case as it is stated for 0.
+    pub fn variant(&self, number: u32) -> Scenario {
+        if number == 0 {
+            return self.scenario.clone();
+        }
+        let mut variant = draw::variant(&self.scenario, number);
+        if let Some(motion) = self.exchanged.as_ref().filter(|_| self.is_exchanged(number)) {
+            variant.motion = motion.clone();
+        }
+        variant
+    }
+
+    /// Whether a variant is of the second half, whose components are exchanged.
+    fn is_exchanged(&self, number: u32) -> bool {
+        number > self.count().div_ceil(2)
+    }
+
+    /// What the reader of a result should know of its motion.
+    fn warning(&self, planes: usize) -> Option<String> {
+        let recorded = matches!(self.scenario.motion.source, MotionSource::Record(_));
+        (planes > 1 && recorded && self.exchanged.is_none()).then(|| {
+            "the record has one horizontal component, which shakes the stack across its barrels and along \
+             them"
+                .to_owned()
+        })
+    }
+
+    /// The case as it is stated and all variants, ready to run.
+    fn prepared(&self) -> Result<Vec<Prepared>, GroundError> {
+        let own = Arc::new(self.scenario.ground()?);
+        let exchanged = match &self.exchanged {
+            Some(motion) => {
+                let mut scenario = self.scenario.clone();
+                scenario.motion = motion.clone();
+                Some(Arc::new(scenario.ground()?))
+            }
+            None => None,
+        };
+        let ground = |number| -> &Arc<Ground> {
+            exchanged.as_ref().filter(|_| self.is_exchanged(number)).unwrap_or(&own)
+        };
+        let case = |number| Prepared {
+            scenario: Arc::new(self.variant(number)),
+            ground: Arc::clone(ground(number)),
+        };
+        Ok((0..=self.count()).map(case).collect())
+    }
+}
+
+/// What became of the variants of a stack in one plane.
+#[derive(Clone, Debug)]
+pub struct Variants {
+    /// The plane; none for a free scene.
+    pub view: Option<View>,
+    /// What became of the case as it is stated and of every variant, each at the place of its number.
+    pub results: Vec<CaseResult>,
+    /// What they say together.
+    pub spread: Spread,
+}
+
+/// Runs the case as it is stated and all variants in all planes on all cores, before an observer, who hears
+/// how many of how many are done, from several threads, and may stop them; then there is nothing.
+///
+/// # Errors
+/// When a motion cannot be read.
+pub fn run(
+    planes: &[Plane],
+    observer: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
+) -> Result<Option<Vec<Variants>>, GroundError> {
+    let mut cases = Vec::new();
+    let mut counts = Vec::new();
+    for plane in planes {
+        let prepared = plane.prepared()?;
+        counts.push(prepared.len());
+        cases.extend(prepared);
+    }
+    let (done, of) = (AtomicUsize::new(0), cases.len());
+    let told = |_: &CaseResult| observer(done.fetch_add(1, Ordering::Relaxed) + 1, of);
+    let Some(mut results) = Ensemble { cases, ..Ensemble::default() }.run_watched(&told) else {
+        return Ok(None);
+    };
+    let mut found = Vec::new();
+    for (plane, count) in planes.iter().zip(counts) {
+        let rest = results.split_off(count);
+        let own = std::mem::replace(&mut results, rest);
+        let Some(imperfections) = plane.scenario.imperfections() else { continue };
+        found.push(Variants::of(plane.view(), imperfections, own));
+    }
+    let all: Vec<&[CaseResult]> = found.iter().map(|one| one.results.as_slice()).collect();
+    let typical = typical::typical(&all);
+    found.iter_mut().for_each(|one| one.spread.typical = typical);
+    Ok(Some(found))
+}
+
+impl Variants {
+    fn of(view: Option<View>, imperfections: &Imperfections, results: Vec<CaseResult>) -> Self {
+        let spread = Spread::of(imperfections, &results);
+        Self { view, results, spread }
+    }
+}

@@ -1,0 +1,159 @@
+//! What all variants of a stack say together, in numbers.
+
+use std::collections::BTreeMap;
+
+use barrelstack_fragility::{quantile, wilson};
+use barrelstack_report::described;
+
+use super::typical::Order;
+use crate::ensemble::CaseResult;
+use crate::outcome::Outcome;
+use crate::scenario::Imperfections;
+use crate::scenario::field::Named as _;
+
+/// Level of all intervals.
+pub const LEVEL: f64 = 0.95;
+
+described! {
+    /// What all variants say together; the case as it is stated is none of them.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Spread {
+        /// What they differ in.
+        pub kind: &'static str ["hair", "ignorance", "both"],
+        /// Seed that they were drawn by.
+        pub seed: u32,
+        /// Variants that have a verdict.
+        pub variants: u32,
+        /// Those of them that collapse.
+        pub collapsed: u32,
+        /// The share of those; null where no variant has a verdict.
+        pub share: Option<f64> as "1",
+        /// Wilson's interval of that share, 95 %.
+        pub interval: [f64; 2] as "1",
+        /// When the first barrel had fallen, of the variants in which one falls.
+        pub first_fall: Option<Range> as "s",
+        /// Barrels that fall in variants that collapse.
+        pub barrels_fallen: Option<Range> as "1",
+        /// Barrels in all.
+        pub barrels: usize,
+        /// The earliest end of a variant that stood while some of the motion was left; null where none was cut
+        /// short so.
+        pub standing_until: Option<f64> as "s",
+        /// Variants by the mode of their collapse.
+        pub modes: BTreeMap<&'static str, u32>,
+        /// Variants that do not stand before they are shaken.
+        pub cannot_stand: u32,
+        /// Variants whose numbers broke down.
+        pub broken: u32,
+        /// Why the first of those has no verdict.
+        pub reason: Option<String>,
+        /// What happens to the case as it is stated.
+        pub stated: &'static str ["stable", "collapse", "not-judged", "invalid"],
+        /// The number of the run that is most like all others, by outcome, mode, time and what falls, in all
+        /// planes together; 0 is the case as it is stated.
+        pub typical: u32,
+        /// The number of the run in which least happens.
+        pub gentlest: u32,
+        /// The number of the run in which most happens.
+        pub worst: u32,
+    }
+
+    /// How values are spread: shares of 5, 50 and 95 % lie below, and the ends.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Range {
+        /// A share of 5 % lies below.
+        pub p05: f64,
+        /// Half lies below.
+        pub p50: f64,
+        /// A share of 95 % lies below.
+        pub p95: f64,
+        /// The least.
+        pub least: f64,
+        /// The greatest.
+        pub most: f64,
+    }
+}
+
+impl Range {
+    /// Of values; none where there are none.
+    pub fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
+        let mut values: Vec<f64> = values.collect();
+        values.sort_by(f64::total_cmp);
+        let (least, most) = (*values.first()?, *values.last()?);
+        let [p05, p50, p95] = [0.05, 0.5, 0.95].map(|share| quantile(&values, share));
+        Some(Self { p05, p50, p95, least, most })
+    }
+}
+
+impl Spread {
+    /// Of the results of the case as it is stated and of its variants, in this order.
+    pub(super) fn of(imperfections: &Imperfections, results: &[CaseResult]) -> Self {
+        let variants = results.get(1..).unwrap_or_default();
+        let judged = || variants.iter().filter(|result| judged(result));
+        let falling = || judged().filter(|result| collapsed(result));
+        let mut modes = BTreeMap::new();
+        for result in falling() {
+            if let Ok(Outcome::Collapse { mode, .. }) = &result.outcome {
+                *modes.entry(mode.name()).or_default() += 1;
+            }
+        }
+        let (count, falls) = (number(judged().count()), number(falling().count()));
+        let interval = wilson(falls, count, LEVEL);
+        let order = Order::of(results);
+        Self {
+            kind: imperfections.kind.name(),
+            seed: imperfections.seed,
+            variants: count,
+            collapsed: falls,
+            share: (count > 0).then(|| f64::from(falls) / f64::from(count)),
+            interval: [interval.low, interval.high],
+            first_fall: Range::of(judged().filter_map(|result| result.first_fall)),
+            barrels_fallen: Range::of(falling().map(|result| fallen(result) as f64)),
+            barrels: results.iter().map(|result| result.barrels).max().unwrap_or(0),
+            standing_until: judged()
+                .filter(|result| !collapsed(result) && result.cut.is_some_and(|left| left > 0.0))
+                .filter_map(|result| result.end_time)
+                .reduce(f64::min),
+            modes,
+            cannot_stand: number(variants.iter().filter(|one| one.outcome.is_err()).count()),
+            broken: number(
+                variants.iter().filter(|one| one.outcome.is_ok() && !self::judged(one)).count(),
+            ),
+            reason: variants.iter().find_map(|one| match &one.outcome {
+                Err(reason) | Ok(Outcome::Invalid { reason }) => Some(reason.clone()),
+                Ok(Outcome::Stable | Outcome::Collapse { .. } | Outcome::NotJudged) => None,
+            }),
+            stated: results.first().map_or("invalid", |result| match &result.outcome {
+                Ok(outcome) => outcome.kind(),
+                Err(_) => "invalid",
+            }),
+            typical: order.typical,
+            gentlest: order.gentlest,
+            worst: order.worst,
+        }
+    }
+
+    /// The variants that were run, whatever became of them.
+    pub fn run(&self) -> u32 {
+        self.variants + self.cannot_stand + self.broken
+    }
+}
+
+/// Whether a case has a verdict.
+pub(super) fn judged(result: &CaseResult) -> bool {
+    matches!(result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }))
+}
+
+/// Whether it collapsed.
+pub(super) fn collapsed(result: &CaseResult) -> bool {
+    matches!(result.outcome, Ok(Outcome::Collapse { .. }))
+}
+
+/// How many barrels fell.
+pub(super) fn fallen(result: &CaseResult) -> usize {
+    result.falls.iter().filter(|(_, at)| at.is_some()).count()
+}
+
+fn number(count: usize) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
+}

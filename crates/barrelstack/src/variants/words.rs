@@ -1,0 +1,379 @@
+//! What variants say, in sentences.
+
+use barrelstack_report::Tone;
+
+use super::{Range, Spread};
+use crate::report::capital;
+use crate::scenario::{Imperfection, Imperfections, View};
+use crate::summary::Summary;
+
+/// Share of variants that collapse from which a stack is said to fall.
+const FALLS: f64 = 0.9;
+
+/// Share up to which it is said to stand.
+const STANDS: f64 = 0.05;
+
+/// What the reader of a verdict that is neither is told.
+const UNSAFE: &str = "treat it as not safe";
+
+/// The answer in one sentence: of one plane, or of both, the one across the barrels first.
+pub fn headline(planes: &[(View, &Spread)]) -> String {
+    match planes {
+        [] => String::new(),
+        [(_, spread)] => alone(spread) + &unjudged(spread),
+        [(first_view, first), (second_view, second), ..] => {
+            let both = together([(*first_view, first), (*second_view, second)]);
+            both + &unjudged(first) + &unjudged(second)
+        }
+    }
+}
+
+/// The kind of the verdict: what is not safe counts as falling.
+pub(crate) fn tone(planes: &[(View, &Spread)]) -> Tone {
+    match planes.iter().filter_map(|(_, spread)| spread.share).reduce(f64::max) {
+        None => Tone::Invalid,
+        Some(share) if share <= STANDS => Tone::Stands,
+        Some(_) => Tone::Falls,
+    }
+}
+
+/// The verdict of one plane.
+fn alone(spread: &Spread) -> String {
+    let Spread { variants, collapsed, interval, .. } = spread;
+    let Some(share) = spread.share else {
+        return "None of the variants of this stack has a verdict.".to_owned();
+    };
+    let course = course(spread);
+    let standing = variants - collapsed;
+    // What stands in the middle of a motion has not stood it.
+    if let Some(until) = spread.standing_until.filter(|_| share <= STANDS) {
+        let count = if standing == *variants { "all".to_owned() } else { format!("{standing} of") };
+        return format!(
+            "Until {until:.1} s, where the runs end and the motion does not, this stack stands in {count} \
+             {variants} variants."
+        );
+    }
+    match (*collapsed, share) {
+        (0, _) => format!(
+            "This stack stands in all {variants} variants: of stacks like it at most {} fall.",
+            percent(interval[1])
+        ),
+        (all, _) if all == *variants => {
+            format!("This stack falls: in all {variants} variants, {course}.")
+        }
+        (_, share) if share >= FALLS => {
+            format!("This stack falls: in {collapsed} of {variants} variants, {course}.")
+        }
+        (_, share) if share <= STANDS => format!(
+            "This stack stands: in {standing} of {variants} variants; in {collapsed} it falls, {course}."
+        ),
+        (_, share) if (0.4..=0.6).contains(&share) => format!(
+            "This stack falls in half of the variants, {collapsed} of {variants}, {course}: {UNSAFE}."
+        ),
+        (_, share) if share > 0.6 => format!(
+            "This stack falls in most variants, {collapsed} of {variants}, {course}: {UNSAFE}."
+        ),
+        _ => format!("This stack falls in {collapsed} of {variants} variants, {course}: {UNSAFE}."),
+    }
+}
+
+/// The verdict of both planes, which is that of the worse.
+fn together(planes: [(View, &Spread); 2]) -> String {
+    let mut parts = Vec::new();
+    for (at, (view, spread)) in planes.into_iter().enumerate() {
+        // The barrels were named the first time.
+        let place = if at == 0 {
+            capital(view.words())
+        } else {
+            view.words().replace("the barrels", "them")
+        };
+        let fate = fate(spread);
+        let fate = if at == 0 { &fate } else { fate.trim_end_matches(" of variants") };
+        parts.push(match spread.share {
+            None => format!("{place} no variant has a verdict"),
+            Some(_) => format!("{place} it {fate}"),
+        });
+    }
+    let worst = planes.iter().filter_map(|(_, spread)| spread.share).reduce(f64::max);
+    let verdict = match worst {
+        None => return format!("{}.", parts.join("; ")),
+        Some(share) if share >= FALLS => "it falls",
+        Some(share) if share > STANDS => UNSAFE,
+        Some(_) if planes.iter().any(|(_, spread)| spread.standing_until.is_some()) => {
+            "but the runs end before the motion does"
+        }
+        Some(_) => "it stands",
+    };
+    format!("{}: {verdict}.", parts.join("; "))
+}
+
+/// The sentences that back the headline of a run and its variants, that of the plane which decides.
+pub(crate) fn sentences(summary: &Summary, imperfections: Option<&Imperfections>) -> Vec<String> {
+    let (Some(spread), Some(imperfections)) = (&summary.ensemble, imperfections) else {
+        return Vec::new();
+    };
+    let mut sentences = Vec::new();
+    let planes = summary.spreads();
+    if planes.len() > 1 {
+        let falls = planes.iter().filter(|(_, spread)| spread.collapsed > 0);
+        sentences.extend(
+            falls.map(|(view, spread)| {
+                format!("Where it falls {}: {}.", view.words(), course(spread))
+            }),
+        );
+    }
+    let typical = if summary.variant == spread.typical { ", the most typical of all" } else { "" };
+    let named = |number: u32| match number {
+        0 => "the stack as it is stated".to_owned(),
+        number => format!("variant {number}"),
+    };
+    let decides = planes.iter().find(|(view, _)| Some(view.name()) == summary.view);
+    let plane = decides.filter(|_| planes.len() > 1).map(|(view, _)| format!("{} ", view.words()));
+    sentences.push(format!(
+        "Shown is {}{typical}; {}the gentlest is {}, the worst {}.",
+        named(summary.variant),
+        plane.unwrap_or_default(),
+        named(spread.gentlest),
+        named(spread.worst)
+    ));
+    let stated = match spread.stated {
+        "collapse" => "falls",
+        "stable" => "stands",
+        _ => "has no verdict",
+    };
+    let places = format!(
+        "in places by up to {} mm, in masses by {} %",
+        tenths(1e3 * imperfections.placement),
+        tenths(100.0 * imperfections.mass)
+    );
+    let constants = "in friction and contact constants as far as those are not known";
+    sentences.push(format!(
+        "As it is stated the stack {stated}; the variants differ from that {}.",
+        match imperfections.kind {
+            Imperfection::Hair => places,
+            Imperfection::Ignorance => constants.to_owned(),
+            Imperfection::Both => format!("{places}, and {constants}"),
+        }
+    ));
+    sentences
+}
+
+/// What a stack does: "falls in 97 % of variants".
+pub fn fate(spread: &Spread) -> String {
+    let variants = spread.variants;
+    match (spread.share, spread.collapsed) {
+        (None, _) => "has no verdict".to_owned(),
+        (Some(_), 0) => format!("stands in all {variants} variants"),
+        (Some(_), all) if all == variants => format!("falls in all {variants} variants"),
+        (Some(share), _) if share >= 0.5 => format!("falls in {} of variants", percent(share)),
+        (Some(share), _) => format!("stands in {} of variants", percent(1.0 - share)),
+    }
+}
+
+/// When the first barrel falls, and how many do: "first between 5.6 and 6.4 s; 4 to 8 of 10 barrels".
+pub fn course(spread: &Spread) -> String {
+    let Some(first) = spread.first_fall else { return "but no barrel leaves it".to_owned() };
+    let [from, to] = [first.p05, first.p95].map(|time| format!("{time:.1}"));
+    let when = if from == to {
+        format!("first after {from} s")
+    } else {
+        format!("first between {from} and {to} s")
+    };
+    match spread.barrels_fallen {
+        Some(fallen) => format!("{when}; {}", barrels(fallen, spread.barrels)),
+        None => when,
+    }
+}
+
+/// How many barrels fall: "4 to 8 of 10 barrels".
+fn barrels(fallen: Range, all: usize) -> String {
+    let Range { least, most, .. } = fallen;
+    if least < most {
+        format!("{least:.0} to {most:.0} of {all} barrels")
+    } else if most == all as f64 {
+        format!("all {all} barrels")
+    } else {
+        format!("{most:.0} of {all} barrels")
+    }
+}
+
+/// Variants without a verdict, as sentences that follow another; empty where there are none.
+fn unjudged(spread: &Spread) -> String {
+    let one = |count: u32, single: &str, several: &str| match count {
+        0 => String::new(),
+        1 => format!(" One more variant {single}."),
+        _ => format!(" {count} more variants {several}."),
+    };
+    one(
+        spread.cannot_stand,
+        "does not stand before it is shaken",
+        "do not stand before they are shaken",
+    ) + &one(
+        spread.broken,
+        "has no verdict: its numbers broke down",
+        "have no verdict: their numbers broke down",
+    )
+}
+
+/// A number to a tenth, in the shortest form.
+fn tenths(value: f64) -> f64 {
+    (10.0 * value).round() / 10.0
+}
+
+/// A share in percent, with as many digits as mean something: whole ones, short of 0 and 100.
+pub fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent < 1.0 && percent > 0.0 {
+        "1 %".to_owned()
+    } else if percent > 99.0 && percent < 100.0 {
+        "99 %".to_owned()
+    } else {
+        format!("{percent:.0} %")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::{Range, Spread, View, headline};
+
+    fn range(p05: f64, p95: f64, least: f64, most: f64) -> Range {
+        Range { p05, p50: 0.5 * (p05 + p95), p95, least, most }
+    }
+
+    fn spread(variants: u32, collapsed: u32) -> Spread {
+        let interval = barrelstack_fragility::wilson(collapsed, variants, 0.95);
+        let falls = collapsed > 0;
+        Spread {
+            kind: "both",
+            seed: 1,
+            variants,
+            collapsed,
+            share: (variants > 0).then(|| f64::from(collapsed) / f64::from(variants)),
+            interval: [interval.low, interval.high],
+            first_fall: falls.then(|| range(5.6, 6.4, 5.0, 7.0)),
+            barrels_fallen: falls.then(|| range(4.0, 8.0, 4.0, 8.0)),
+            barrels: 10,
+            standing_until: None,
+            modes: BTreeMap::new(),
+            cannot_stand: 0,
+            broken: 0,
+            reason: None,
+            stated: "collapse",
+            typical: 0,
+            gentlest: 0,
+            worst: 0,
+        }
+    }
+
+    fn of(variants: u32, collapsed: u32) -> String {
+        headline(&[(View::Transverse, &spread(variants, collapsed))])
+    }
+
+    #[test]
+    fn one_plane_has_a_sentence_for_every_share() {
+        let cases = [
+            (
+                61,
+                "This stack falls: in 61 of 64 variants, first between 5.6 and 6.4 s; 4 to 8 of 10 barrels.",
+            ),
+            (
+                64,
+                "This stack falls: in all 64 variants, first between 5.6 and 6.4 s; 4 to 8 of 10 barrels.",
+            ),
+            (0, "This stack stands in all 64 variants: of stacks like it at most 6 % fall."),
+            (
+                2,
+                "This stack stands: in 62 of 64 variants; in 2 it falls, first between 5.6 and 6.4 s; 4 to 8 of 10 barrels.",
+            ),
+            (
+                10,
+                "This stack falls in 10 of 64 variants, first between 5.6 and 6.4 s; 4 to 8 of 10 barrels: treat it as not safe.",
+            ),
+            (
+                30,
+                "This stack falls in half of the variants, 30 of 64, first between 5.6 and 6.4 s; 4 to 8 of 10 barrels: treat it as not safe.",
+            ),
+            (
+                50,
+                "This stack falls in most variants, 50 of 64, first between 5.6 and 6.4 s; 4 to 8 of 10 barrels: treat it as not safe.",
+            ),
+        ];
+        for (collapsed, sentence) in cases {
+            assert_eq!(of(64, collapsed), sentence);
+        }
+        assert_eq!(of(0, 0), "None of the variants of this stack has a verdict.");
+    }
+
+    #[test]
+    fn times_and_numbers_that_are_all_the_same_are_told_once() {
+        let mut one = spread(64, 64);
+        one.first_fall = Some(range(6.01, 6.04, 6.0, 6.1));
+        one.barrels_fallen = Some(range(8.0, 8.0, 8.0, 8.0));
+        let of = |one: &Spread| headline(&[(View::Longitudinal, one)]);
+        assert_eq!(
+            of(&one),
+            "This stack falls: in all 64 variants, first after 6.0 s; 8 of 10 barrels."
+        );
+        one.barrels_fallen = Some(range(10.0, 10.0, 10.0, 10.0));
+        assert!(of(&one).ends_with("first after 6.0 s; all 10 barrels."));
+        one.first_fall = None;
+        assert_eq!(of(&one), "This stack falls: in all 64 variants, but no barrel leaves it.");
+    }
+
+    #[test]
+    fn variants_without_a_verdict_are_told() {
+        let mut one = spread(61, 0);
+        (one.cannot_stand, one.broken) = (2, 1);
+        let said = headline(&[(View::Transverse, &one)]);
+        let end = " 2 more variants do not stand before they are shaken. One more variant has no verdict: its \
+                   numbers broke down.";
+        assert!(said.ends_with(end), "{said}");
+    }
+
+    #[test]
+    fn a_motion_that_is_cut_has_not_been_stood() {
+        let mut one = spread(64, 0);
+        one.standing_until = Some(1.0);
+        assert_eq!(
+            headline(&[(View::Transverse, &one)]),
+            "Until 1.0 s, where the runs end and the motion does not, this stack stands in all 64 variants."
+        );
+        let both = headline(&[(View::Transverse, &one), (View::Longitudinal, &one)]);
+        assert!(both.ends_with("variants: but the runs end before the motion does."), "{both}");
+    }
+
+    #[test]
+    fn both_planes_have_the_verdict_of_the_worse() {
+        let both = |across, along| {
+            headline(&[
+                (View::Transverse, &spread(64, across)),
+                (View::Longitudinal, &spread(64, along)),
+            ])
+        };
+        assert_eq!(
+            both(25, 62),
+            "Across the barrels it stands in 61 % of variants; along them it falls in 97 %: it falls."
+        );
+        assert_eq!(
+            both(0, 0),
+            "Across the barrels it stands in all 64 variants; along them it stands in all 64 variants: it \
+             stands."
+        );
+        assert_eq!(
+            both(64, 1),
+            "Across the barrels it falls in all 64 variants; along them it stands in 98 %: it falls."
+        );
+        assert!(both(3, 20).ends_with("it stands in 69 %: treat it as not safe."));
+        let none =
+            headline(&[(View::Transverse, &spread(0, 0)), (View::Longitudinal, &spread(64, 64))]);
+        assert_eq!(
+            none,
+            "Across the barrels no variant has a verdict; along them it falls in all 64 variants: it falls."
+        );
+        let none =
+            headline(&[(View::Transverse, &spread(0, 0)), (View::Longitudinal, &spread(0, 0))]);
+        assert!(none.ends_with("along them no variant has a verdict."), "{none}");
+    }
+}
