@@ -473,7 +473,7 @@ impl Verification {
                 rows.push(("barrels fallen".to_owned(), format!("{most} in all")));
             }
             [least, most] => {
-                rows.push(("barrels fallen".to_owned(), format!("not robust: {least} to {most}")))
+                rows.push(("barrels fallen".to_owned(), format!("not robust: {least} to {most}")));
             }
         }
         for repeat in &self.repeats {
