@@ -413,11 +413,10 @@ impl Verification {
             sentences.extend(first_fall_within.map(|late| {
                 format!("The first barrel falls within {} of this run in all.", shortly(late))
             }));
-            if most > 0 && least == most {
-                sentences.push(format!("{most} barrels fall in all."));
-            } else if most > 0 {
-                sentences.push(format!("How many fall is not robust: {least} to {most}."));
-            }
+            sentences.extend((most > 0).then(|| match least {
+                _ if least == most => format!("{most} barrels fall in all."),
+                _ => format!("How many fall is not robust: {least} to {most}."),
+            }));
         }
         let centimeters = barrelstack_report::significant(100.0 * self.apart, 2);
         sentences.push(match self.predictable_until {
@@ -469,12 +468,14 @@ impl Verification {
         }
         match self.robust.barrels_fallen {
             _ if self.repeats.is_empty() || !self.judged() => {}
-            [least, most] if least == most => {
-                rows.push(("barrels fallen".to_owned(), format!("{most} in all")));
-            }
-            [least, most] => {
-                rows.push(("barrels fallen".to_owned(), format!("not robust: {least} to {most}")));
-            }
+            [least, most] => rows.push((
+                "barrels fallen".to_owned(),
+                if least == most {
+                    format!("{most} in all")
+                } else {
+                    format!("not robust: {least} to {most}")
+                },
+            )),
         }
         for repeat in &self.repeats {
             let outcome = &repeat.outcome;

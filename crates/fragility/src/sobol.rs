@@ -224,7 +224,7 @@ mod tests {
             })
             .collect();
         let mut random = barrelstack_motion::Random::new(1);
-        let found = barrelstack_fragility::sobol_indices(&blocks, 100, 0.95, || random.uniform());
+        let found = crate::sobol_indices(&blocks, 100, 0.95, || random.uniform());
         for (index, (first, total)) in found.unwrap().iter().zip(exact) {
             // Shares of what they are, and of the whole variance where they are nothing.
             let off = [(index.first, first), (index.total, total)]
