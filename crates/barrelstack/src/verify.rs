@@ -4,6 +4,8 @@
 //! What a run says before they part is predicted; what it says later is one possible course.
 //! A verdict that all repeats share is robust even so.
 
+mod robust;
+
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -17,6 +19,8 @@ use crate::scenario::{
     Basis, BodyOverride, Method, Nodes, Scenario, Scene, SeatContact, StackBody, StackSpec, View,
 };
 use crate::summary::{OutcomeSummary, Summary};
+
+pub use robust::Robust;
 
 /// Distance (m at full scale) between two runs at which a body counts as gone another way.
 pub const APART: f64 = 0.01;
@@ -42,21 +46,6 @@ described! {
         pub repeats: Vec<Repeat>,
         /// What was not repeated.
         pub skipped: Vec<Skipped>,
-    }
-
-    /// What all repeats have in common with the run; nothing where there are no repeats.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct Robust {
-        /// Whether it stands or collapses.
-        pub kind: bool,
-        /// The mode of the collapse.
-        pub mode: bool,
-        /// The first body that leaves its seat.
-        pub first: bool,
-        /// Largest difference of the first fall; none where in some of them no barrel falls.
-        pub first_fall_within: Option<f64> as "s",
-        /// The least and the most barrels that fall in the run or a repeat.
-        pub barrels_fallen: [usize; 2],
     }
 
     /// One repeat.
@@ -332,32 +321,6 @@ fn judge(base: &Run, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verific
     Verification { apart: APART * scale, predictable_until, robust, repeats, skipped }
 }
 
-impl Robust {
-    /// Whether kind, mode and first body are the same everywhere.
-    pub fn outcome(&self) -> bool {
-        self.kind && self.mode && self.first
-    }
-
-    fn of(own: &OutcomeSummary, repeats: &[Repeat]) -> Self {
-        let all = |same: fn(&OutcomeSummary, &OutcomeSummary) -> bool| {
-            !repeats.is_empty() && repeats.iter().all(|repeat| same(own, &repeat.outcome))
-        };
-        let late = |repeat: &Repeat| Some((repeat.outcome.first_fall? - own.first_fall?).abs());
-        let late: Option<Vec<f64>> = repeats.iter().map(late).collect();
-        let fallen = || {
-            let repeats = repeats.iter().map(|repeat| repeat.outcome.barrels_fallen);
-            repeats.chain(std::iter::once(own.barrels_fallen)).flatten()
-        };
-        Self {
-            kind: all(|a, b| a.kind == b.kind),
-            mode: all(|a, b| a.mode == b.mode),
-            first: all(|a, b| a.first == b.first),
-            first_fall_within: late.and_then(|late| late.into_iter().reduce(f64::max)),
-            barrels_fallen: [fallen().min(), fallen().max()].map(Option::unwrap_or_default),
-        }
-    }
-}
-
 /// A short time (s) for people.
 fn shortly(time: f64) -> String {
     if time < 1.0 { format!("{:.1} ms", 1e3 * time) } else { format!("{time:.1} s") }
@@ -406,11 +369,10 @@ impl Verification {
             sentences.extend(first_fall_within.map(|late| {
                 format!("The first barrel falls within {} of this run in all.", shortly(late))
             }));
-            if most > 0 && least == most {
-                sentences.push(format!("{most} barrels fall in all."));
-            } else if most > 0 {
-                sentences.push(format!("How many fall is not robust: {least} to {most}."));
-            }
+            sentences.extend((most > 0).then(|| match least {
+                _ if least == most => format!("{most} barrels fall in all."),
+                _ => format!("How many fall is not robust: {least} to {most}."),
+            }));
         }
         let centimeters = barrelstack_report::significant(100.0 * self.apart, 2);
         sentences.push(match self.predictable_until {
@@ -462,12 +424,14 @@ impl Verification {
         }
         match self.robust.barrels_fallen {
             _ if self.repeats.is_empty() || !self.judged() => {}
-            [least, most] if least == most => {
-                rows.push(("barrels fallen".to_owned(), format!("{most} in all")));
-            }
-            [least, most] => {
-                rows.push(("barrels fallen".to_owned(), format!("not robust: {least} to {most}")))
-            }
+            [least, most] => rows.push((
+                "barrels fallen".to_owned(),
+                if least == most {
+                    format!("{most} in all")
+                } else {
+                    format!("not robust: {least} to {most}")
+                },
+            )),
         }
         for repeat in &self.repeats {
             let outcome = &repeat.outcome;

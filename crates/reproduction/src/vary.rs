@@ -30,12 +30,16 @@ fn seats(stack: &mut StackSpec) -> [&mut Interface; 3] {
 
 /// Multiplies the contact stiffness of all seats.
 pub(super) fn stiffness(stack: &mut StackSpec, factor: f64) {
-    seats(stack).into_iter().for_each(|interface| interface.stiffen(factor));
+    for interface in seats(stack) {
+        interface.stiffen(factor);
+    }
 }
 
 /// Multiplies the contact damping of all seats where it is stated as a coefficient.
 pub(super) fn damping(stack: &mut StackSpec, factor: f64) {
-    seats(stack).into_iter().for_each(|interface| interface.damp(factor));
+    for interface in seats(stack) {
+        interface.damp(factor);
+    }
 }
 
 /// Multiplies the friction between barrels and racks.

@@ -171,8 +171,8 @@ fn read(
         Reader::open(&sources, &root::ROOT, String::new(), Some(&table), Origin::Whole(0))?;
     let mut scenario = root::read(reader, &stem(name))?;
     // A title of another file, or of a scenario before it was changed, may say what is no longer so.
-    const KEPT: [&str; 3] = ["run.", "record.", "imperfections."];
-    let kept = |change: &String| KEPT.iter().any(|part| change.starts_with(part));
+    let parts = ["run.", "record.", "imperfections."];
+    let kept = |change: &String| parts.iter().any(|part| change.starts_with(part));
     let unchanged = overrides.iter().all(kept);
     let written = table.get("title").map(|title| title.node.origin);
     let own = match written {

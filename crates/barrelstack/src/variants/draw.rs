@@ -68,7 +68,9 @@ pub(super) fn variant(scenario: &Scenario, number: u32) -> Scenario {
 fn ignorance(laws: &mut StackInterfaces, spread: &Imperfections, point: &Point) {
     let roughen = |axis: Shared, dispersion: f64, interfaces: &mut [&mut Interface]| {
         let factor = point.lognormal(axis, dispersion);
-        interfaces.iter_mut().for_each(|interface| interface.roughen(factor));
+        for interface in interfaces {
+            interface.roughen(factor);
+        }
     };
     let (ground, others) = (spread.friction_ground, spread.friction);
     let steel = &mut [&mut laws.rack_ground, &mut laws.fallen_rack_ground];

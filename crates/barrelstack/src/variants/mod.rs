@@ -176,7 +176,9 @@ pub fn run(
     }
     let all: Vec<&[CaseResult]> = found.iter().map(|one| one.results.as_slice()).collect();
     let typical = typical::typical(&all);
-    found.iter_mut().for_each(|one| one.spread.typical = typical);
+    for one in &mut found {
+        one.spread.typical = typical;
+    }
     Ok(Some(found))
 }
 

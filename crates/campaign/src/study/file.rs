@@ -19,6 +19,7 @@ use super::fields::{DesignKind, STUDY};
 use super::ida::Hunt;
 use super::motions::{Motion, Shaking, hash_files};
 use super::plan::{Chunks, Sizes};
+use super::prepare::one_plane;
 use super::setting::{Domain, Setting};
 use super::{Factor, Intensity, Levels, Study, Variation, ensembles};
 
@@ -90,13 +91,7 @@ fn read(opened: &Opened) -> Result<Study, StudyError> {
     // How long a scenario is run was chosen for its own motion and for a film of it.
     template.forget_inherited("run", &ENDS);
     let scenario = template.with([])?;
-    if scenario.stack().is_some_and(|stack| stack.columns_along.is_some()) {
-        let message = "a study looks at one plane: set `base.stack.view` to \"transverse\" or to \
-                       \"longitudinal\", in a study for each"
-            .to_owned();
-        return Err(top.inconsistent("base", message).into());
-    }
-
+    one_plane(&top, &scenario)?;
     let mut motions = Vec::new();
     for (number, set) in (1..).zip(sets) {
         motions.extend(ensembles::read(&set, opened, number, seed)?);

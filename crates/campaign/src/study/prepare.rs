@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::scenario::reader::Reader;
 use crate::scenario::{Scenario, ScenarioError};
 
 use super::design::{Case, Design, seed_of};
@@ -217,4 +218,14 @@ impl Study {
         }
         Ok(())
     }
+}
+
+/// Refuses a scenario that looks at its stack in both planes.
+pub(super) fn one_plane(top: &Reader<'_>, scenario: &Scenario) -> Result<(), ScenarioError> {
+    if scenario.stack().is_none_or(|stack| stack.columns_along.is_none()) {
+        return Ok(());
+    }
+    let message = "a study looks at one plane: set `base.stack.view` to \"transverse\" or to \
+                   \"longitudinal\", in a study for each";
+    Err(top.inconsistent("base", message.to_owned()))
 }

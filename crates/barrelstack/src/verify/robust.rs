@@ -1,0 +1,49 @@
+//! Of what an outcome is robust.
+
+use barrelstack_report::described;
+
+use super::Repeat;
+use crate::summary::OutcomeSummary;
+
+described! {
+    /// What all repeats have in common with the run; nothing where there are no repeats.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Robust {
+        /// Whether it stands or collapses.
+        pub kind: bool,
+        /// The mode of the collapse.
+        pub mode: bool,
+        /// The first body that leaves its seat.
+        pub first: bool,
+        /// Largest difference of the first fall; none where in some of them no barrel falls.
+        pub first_fall_within: Option<f64> as "s",
+        /// The least and the most barrels that fall in the run or a repeat.
+        pub barrels_fallen: [usize; 2],
+    }
+}
+
+impl Robust {
+    /// Whether kind, mode and first body are the same everywhere.
+    pub fn outcome(&self) -> bool {
+        self.kind && self.mode && self.first
+    }
+
+    pub(super) fn of(own: &OutcomeSummary, repeats: &[Repeat]) -> Self {
+        let all = |same: fn(&OutcomeSummary, &OutcomeSummary) -> bool| {
+            !repeats.is_empty() && repeats.iter().all(|repeat| same(own, &repeat.outcome))
+        };
+        let late = |repeat: &Repeat| Some((repeat.outcome.first_fall? - own.first_fall?).abs());
+        let late: Option<Vec<f64>> = repeats.iter().map(late).collect();
+        let fallen = || {
+            let repeats = repeats.iter().map(|repeat| repeat.outcome.barrels_fallen);
+            repeats.chain(std::iter::once(own.barrels_fallen)).flatten()
+        };
+        Self {
+            kind: all(|a, b| a.kind == b.kind),
+            mode: all(|a, b| a.mode == b.mode),
+            first: all(|a, b| a.first == b.first),
+            first_fall_within: late.and_then(|late| late.into_iter().reduce(f64::max)),
+            barrels_fallen: [fallen().min(), fallen().max()].map(Option::unwrap_or_default),
+        }
+    }
+}
