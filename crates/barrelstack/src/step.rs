@@ -53,7 +53,7 @@ impl Pace {
     /// `time_scale` is that of similitude.
     pub fn of<'a>(
         model: &'a Model<Planar>,
-        loose: impl Iterator<Item = &'a Element<Planar>> + Clone,
+        loose: &(impl Iterator<Item = &'a Element<Planar>> + Clone),
         time_scale: f64,
     ) -> Self {
         let depth = REFERENCE * time_scale * time_scale;

@@ -4,11 +4,15 @@
 //! cargo test --release -p barrelstack --test accuracy -- --ignored --nocapture
 //! ```
 
+#![allow(clippy::print_stdout, reason = "the table of errors")]
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
 use std::sync::Arc;
 
 use barrelstack::ensemble::{CaseResult, Ensemble, Prepared};
 use barrelstack::outcome::Outcome;
 use barrelstack::{Ground, Scenario};
+use barrelstack_fragility::quantile;
 use barrelstack_motion::{BooreSource, IntensityMeasure};
 
 const STACKS: [&str; 3] = ["candia-8-barrels", "candia-8-barrels-longitudinal", "demo-napa"];
@@ -49,8 +53,7 @@ fn falls(result: &CaseResult) -> bool {
 /// The median and the 95th of a hundred of sizes.
 fn middle_and_most(mut sizes: Vec<f64>) -> [f64; 2] {
     sizes.sort_by(f64::total_cmp);
-    let at = |share: f64| sizes[((sizes.len() - 1) as f64 * share).round() as usize];
-    [at(0.5), at(0.95)]
+    [0.5, 0.95].map(|share| quantile(&sizes, share))
 }
 
 /// How a setting differs from the exact results: verdicts, and median and 95th of a hundred of the errors

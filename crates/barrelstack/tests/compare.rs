@@ -127,7 +127,7 @@ fn what_falls_leaves_the_picture_whichever_run_comes_first() {
     let stack = side("stack", &scenario("candia-8-barrels", &changes));
     assert!(stack.run.fates.collapse_time().is_some());
     let range = |sides: &[Side], id: &str| plot(&compare::document(sides), id).y.range;
-    let orders = [[disc.clone(), stack.clone()], [stack, disc]];
+    let orders = [vec![disc.clone(), stack.clone()], vec![stack, disc]];
     let [first, second] = orders.each_ref().map(|sides| range(sides, "top-displacements"));
     assert!(first.is_some() && first == second, "{first:?} {second:?}");
     // What shook the ground after the collapse is no less worth seeing.

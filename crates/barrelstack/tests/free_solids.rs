@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![allow(clippy::print_stdout, reason = "what was refused")]
 
+use std::fmt::Write as _;
+
 use barrelstack::scenario::Scene;
 use barrelstack::{Run, Scenario};
 
@@ -162,7 +164,8 @@ fn heap(count: usize, across: usize) -> String {
         let (row, column) = (at / across, at % across);
         let x = 0.4 * (column as f64 + 0.5 * (row % 2) as f64);
         let z = 0.2 + 0.4 * 0.75_f64.sqrt() * row as f64;
-        bodies += &format!(
+        let _ = write!(
+            bodies,
             "[[body]]\nname = \"b{at}\"\nkind = \"box\"\nshape = {{ type = \"circle\", radius = \"0.2 m\" }}\n\
              mass = \"100 kg\"\nposition = [\"{x} m\", \"{z} m\"]\n"
         );

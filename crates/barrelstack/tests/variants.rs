@@ -1,6 +1,7 @@
 //! A stack and its variants: which they are, what becomes of them, and what is said of them.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+#![allow(clippy::print_stdout, reason = "the shares at every step")]
 
 use std::ops::ControlFlow;
 

@@ -4,6 +4,7 @@ use crate::body::{Body, BodyId, Motion, Nodes};
 use crate::contact::Interface;
 use crate::element::Element;
 use crate::pairs::Pairs;
+pub use crate::pairs::TellMeeting;
 use crate::real::Real;
 use crate::space::Space;
 
@@ -55,6 +56,9 @@ pub struct Impacts<R> {
     /// they follow any.
     pub calm: Vec<R>,
 }
+
+/// Tells the pairs of two bodies, the lower id first.
+pub type Meet<'a, S> = dyn Fn(&[Body<S>], [BodyId; 2]) -> Vec<ContactPair> + 'a;
 
 /// Bodies, interfaces and pairs; constant during a run and shared between threads.
 #[derive(Clone, Debug)]
@@ -154,7 +158,7 @@ impl<S: Space> Model<S> {
         bodies: Vec<Body<S>>,
         interfaces: Vec<Interface<S>>,
         kinds: Vec<usize>,
-        meet: &dyn Fn(&[Body<S>], [BodyId; 2]) -> Vec<ContactPair>,
+        meet: &Meet<'_, S>,
         gravity: S::Vector,
     ) -> Result<Self, ModelError> {
         assert_eq!(kinds.len(), bodies.len(), "one kind for each body");
@@ -284,7 +288,7 @@ impl<S: Space> Model<S> {
 
     /// Tells how bodies meet: a pair, and the bodies that may stand in the place of its contactor and of its
     /// target, any of them with any other.
-    pub fn each_meeting(&self, tell: &mut dyn FnMut(&ContactPair, &[BodyId], &[BodyId])) {
+    pub fn each_meeting(&self, tell: &mut TellMeeting<'_>) {
         self.pairs.each(tell);
     }
 

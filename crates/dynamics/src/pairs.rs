@@ -28,6 +28,9 @@ pub(crate) enum Pairs {
     },
 }
 
+/// Hears of pairs that are alike: one of them, the bodies that may be its contactor, and those that may be its target.
+pub type TellMeeting<'a> = dyn FnMut(&ContactPair, &[BodyId], &[BodyId]) + 'a;
+
 /// The pairs of two bodies.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Couple {
@@ -134,10 +137,12 @@ impl Pairs {
 
     /// Tells how bodies meet: a pair, and the bodies that may stand in the place of its contactor and of its
     /// target, any of them with any other.
-    pub(crate) fn each(&self, tell: &mut dyn FnMut(&ContactPair, &[BodyId], &[BodyId])) {
+    pub(crate) fn each(&self, tell: &mut TellMeeting<'_>) {
         match self {
             Self::Listed { pairs, .. } => {
-                pairs.iter().for_each(|pair| tell(pair, &[pair.contactor], &[pair.target]));
+                for pair in pairs {
+                    tell(pair, &[pair.contactor], &[pair.target]);
+                }
             }
             Self::OfKinds { kinds, meetings, .. } => {
                 let mut members = vec![Vec::new(); meetings.len()];

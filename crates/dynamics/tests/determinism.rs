@@ -83,7 +83,7 @@ fn bodies_of_kinds_have_the_pairs_and_the_bits_of_a_list() {
     };
     let laws = vec![rough(1.0, 1.0)];
     let listed = Model::new(bodies.clone(), laws.clone(), pairs.clone(), DOWN).unwrap();
-    let of_kinds = Model::of_kinds(bodies.clone(), laws, kinds, &meet, DOWN).unwrap();
+    let of_kinds = Model::of_kinds(bodies, laws, kinds, &meet, DOWN).unwrap();
     assert!(listed.pairs().eq(of_kinds.pairs()));
     let (mut here, mut there) = (Scene::of(listed), Scene::of(of_kinds));
     here.by(Method::VelocityVerlet).run(&Still, 2e-4, 0.5).unwrap();

@@ -174,7 +174,7 @@ pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
         Scene::Free(scene) => free::assemble(scene, scenario.run.gravity, scale),
     }?;
     let loose = assembly.loose.iter().map(|loose| &loose.element);
-    let pace = Pace::of(&assembly.model, loose, scale.time());
+    let pace = Pace::of(&assembly.model, &loose, scale.time());
     assembly.model.follow_impacts(pace.impacts);
     assembly.step = pace.step;
     Ok(assembly)
