@@ -75,6 +75,15 @@ impl Ensemble {
         &self,
         observer: &(dyn Fn(&CaseResult) -> ControlFlow<()> + Sync),
     ) -> Option<Vec<CaseResult>> {
+        self.run_until(observer, &|| false)
+    }
+
+    /// As [`Ensemble::run_watched`], and asks many times a second whether to stop.
+    pub fn run_until(
+        &self,
+        observer: &(dyn Fn(&CaseResult) -> ControlFlow<()> + Sync),
+        asked_to_stop: &(dyn Fn() -> bool + Sync),
+    ) -> Option<Vec<CaseResult>> {
         let stopped = AtomicBool::new(false);
         let lanes = self.lanes.unwrap_or_else(Width::widest);
         let together = |cases: &&[Prepared]| {
@@ -83,7 +92,7 @@ impl Ensemble {
                     stopped.store(true, Ordering::Relaxed);
                 }
             };
-            let stop = || stopped.load(Ordering::Relaxed);
+            let stop = || stopped.load(Ordering::Relaxed) || asked_to_stop();
             simulate_in(lanes, cases, &mut Audience { tell: &mut tell, stop: &stop })
         };
         let batches: Vec<&[Prepared]> = self.cases.chunks(BATCH).collect();

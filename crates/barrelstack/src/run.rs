@@ -26,8 +26,10 @@ pub use failure::RunFailure;
 /// Everything that was seen of a run.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// What was asked for.
+    /// What was run.
     pub scenario: Scenario,
+    /// What was asked for, of which a variant may have been run.
+    pub stated: Scenario,
     /// What stood there.
     pub assembly: Assembly,
     /// What shook it.
@@ -193,6 +195,7 @@ impl Scenario {
         let end_time = state.time;
         Ok(Run {
             scenario: self.clone(),
+            stated: self.clone(),
             outcome,
             fates,
             elements: elements.0,

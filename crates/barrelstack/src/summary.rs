@@ -253,7 +253,7 @@ impl Summary {
     pub fn of(run: &Run, wall_seconds: Option<f64>) -> Self {
         Self {
             schema: "summary/2",
-            title: run.scenario.title.clone(),
+            title: run.stated.title.clone(),
             view: run.assembly.view.map(View::name),
             variant: 0,
             ensemble: None,
@@ -287,7 +287,7 @@ impl Summary {
             provenance: Provenance {
                 program: "barrelstack",
                 version: env!("CARGO_PKG_VERSION"),
-                scenario_hash: format!("{:016x}", run.scenario.fingerprint()),
+                scenario_hash: format!("{:016x}", run.stated.fingerprint()),
                 motion: run
                     .ground
                     .motion

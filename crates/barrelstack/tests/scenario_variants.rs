@@ -196,7 +196,6 @@ fn pulses() {
     ];
     for (fields, expected) in cases {
         let mut changes = vec![
-            "motion.pulse.kind=ricker".to_owned(),
             "motion.pulse.amplitude=0.5 m/s".to_owned(),
             "motion.pulse.frequency=2 Hz".to_owned(),
             "motion.pulse.direction=vertical".to_owned(),
@@ -371,7 +370,7 @@ fn a_title_says_what_is_run() {
     assert_eq!(title(own, &["title=Yours", "stack.levels=4"]), "Yours");
     assert_eq!(
         title(own, &["stack.levels=4"]),
-        "Eight barrels on four levels, along the barrels, South Napa 2014-08-24 M6.0"
+        "Eight barrels on four levels, South Napa 2014-08-24 M6.0"
     );
     let inherited = "schema = 1\nextends = \"candia-8-barrels\"\n[stack]\nlevels = 3";
     assert_eq!(title(inherited, &[]), "Six barrels on three levels, sine of 1.07 s");

@@ -84,7 +84,7 @@ fn every_command_ends_within_a_second_and_says_what_is_kept() {
     let commands: Vec<Vec<&str>> = vec![
         runs(&["run", "demo-napa", "--out=run"]),
         runs(&["demo", "--out=demo"]),
-        runs(&["compare", "demo-napa", "--against=stack.columns=3", "--out=compared"]),
+        runs(&["compare", "demo-napa", "--against=run.gravity=9.8 m/s^2", "--out=compared"]),
         runs(&["render", "demo-napa", "--out=rendered"]),
         vec!["run", "-"],
         vec!["heights", "--out=heights"],

@@ -13,7 +13,7 @@ use crate::report;
 use crate::variants::words;
 
 pub(super) fn document(sides: &[Side]) -> Document {
-    let differing = differences(sides.iter().map(|side| &side.run.scenario));
+    let differing = differences(sides.iter().map(|side| &side.run.stated));
     let mut blocks = vec![Block::Players(players(sides))];
     let mut section = |title: &str, content: Vec<Block>| {
         if !content.is_empty() {
@@ -141,7 +141,7 @@ fn players(sides: &[Side]) -> Players {
 /// Whether one motion shakes all; a length scale of the run stretches its time.
 fn one_motion(sides: &[Side]) -> bool {
     let asked = |side: &Side| {
-        let scenario = &side.run.scenario;
+        let scenario = &side.run.stated;
         (scenario.motion.clone(), scenario.run.similitude)
     };
     sides.iter().all(|side| asked(side) == asked(&sides[0]))

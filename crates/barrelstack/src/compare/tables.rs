@@ -46,7 +46,7 @@ pub(super) fn common(sides: &[Side], differing: &[Difference]) -> Table {
         &[("input", ""), ("value", ""), ("source", ""), ("meaning", "")],
     );
     let Some(first) = sides.first() else { return table };
-    for setting in first.run.scenario.settings() {
+    for setting in first.run.stated.settings() {
         if differing.iter().all(|one| one.path != setting.path) {
             table.rows.push(report::setting_row(&setting).to_vec());
         }

@@ -44,7 +44,7 @@ pub(super) fn inputs(run: &Run) -> Vec<Block> {
         &[("input", ""), ("value", ""), ("meaning", "")],
     );
     let mut all = Table::new("Every input.", &columns);
-    for setting in run.scenario.settings() {
+    for setting in run.stated.settings() {
         let row = setting_row(&setting);
         if setting.source == Source::Given {
             let [input, value, _, meaning] = &row;

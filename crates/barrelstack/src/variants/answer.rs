@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 use super::{Plane, Spread, Variants, planes, run};
+use crate::check::check;
 use crate::pool;
 use crate::report::headline;
 use crate::run::{Progress, Run, RunFailure};
@@ -80,6 +81,10 @@ pub fn answer(
         Err(_) => ControlFlow::Break(()),
     };
     let varied = planes.iter().any(|plane| plane.count() > 0);
+    // What cannot be run as it is stated, or not be kept, is told before the work.
+    for plane in planes.iter().filter(|_| varied) {
+        check(&plane.scenario)?;
+    }
     let found =
         if varied { run(&planes, &|done, of| told(Told::Variants { done, of }))? } else { None };
     let stopped = varied && found.is_none();
@@ -138,13 +143,14 @@ fn seen(
     let reached = Mutex::new(vec![Progress { time: 0.0, end_time: 0.0 }; tasks.len()]);
     let indexed: Vec<(usize, &(&Plane, u32))> = tasks.iter().enumerate().collect();
     let run = |(at, (plane, number)): &(usize, &(&Plane, u32))| {
-        plane.variant(*number).run_watched(&mut |now| {
+        let run = plane.variant(*number).run_watched(&mut |now| {
             let Ok(mut all) = reached.lock() else { return ControlFlow::Break(()) };
             all[*at] = now;
             let sum = |of: fn(&Progress) -> f64| all.iter().map(of).sum();
             let (time, end_time) = (sum(|one| one.time), sum(|one| one.end_time));
             told(Told::Run(Progress { time, end_time }))
-        })
+        })?;
+        Ok(Run { stated: plane.variant(0), ..run })
     };
     pool::map(&indexed, run, &|_| ()).into_iter().collect()
 }

@@ -15,7 +15,7 @@
 //! let planes = variants::planes(&scenario)?;
 //! let found = variants::run(&planes, &|_, _| ControlFlow::Continue(()))?;
 //! let spread = found.and_then(|all| all.into_iter().next()).map(|one| one.spread);
-//! assert_eq!(spread.map(|spread| (spread.variants, spread.collapsed)), Some((4, 0)));
+//! assert_eq!(spread.map(|spread| (spread.variants, spread.collapsed)), Some((4, 4)));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -164,7 +164,9 @@ pub fn run(
     }
     let (done, of) = (AtomicUsize::new(0), cases.len());
     let told = |_: &CaseResult| observer(done.fetch_add(1, Ordering::Relaxed) + 1, of);
-    let Some(mut results) = Ensemble { cases, ..Ensemble::default() }.run_watched(&told) else {
+    let stop = || observer(done.load(Ordering::Relaxed), of).is_break();
+    let ensemble = Ensemble { cases, ..Ensemble::default() };
+    let Some(mut results) = ensemble.run_until(&told, &stop) else {
         return Ok(None);
     };
     let mut found = Vec::new();

@@ -62,15 +62,15 @@ described! {
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Range {
         /// A share of 5 % lies below.
-        pub p05: f64,
+        pub p05: f64 as "that of the field",
         /// Half lies below.
-        pub p50: f64,
+        pub p50: f64 as "that of the field",
         /// A share of 95 % lies below.
-        pub p95: f64,
+        pub p95: f64 as "that of the field",
         /// The least.
-        pub least: f64,
+        pub least: f64 as "that of the field",
         /// The greatest.
-        pub most: f64,
+        pub most: f64 as "that of the field",
     }
 }
 
