@@ -91,8 +91,8 @@ fn every_command_ends_within_a_second_and_says_what_is_kept() {
         vec!["reproduce", "--out=reproduced"],
         vec!["study", "study.toml", "--out=study"],
         vec!["study", "run-chunk", "study.toml", "--chunk=0", "--out=chunk"],
-        vec!["calibrate", "collapse", "demo-napa", "seen.csv", "--simulations=100000"],
-        vec!["calibrate", "response", "demo-napa", "response.csv"],
+        vec!["calibrate", "collapse", "candia-8-barrels", "seen.csv", "--simulations=100000"],
+        vec!["calibrate", "response", "candia-8-barrels", "response.csv"],
         vec![
             "motion",
             "match",
