@@ -102,7 +102,7 @@ described! {
         /// The runs, in order.
         pub runs: Vec<Compared> = sides.iter().map(Compared::of).collect(),
         /// The inputs that differ.
-        pub differences: Vec<Difference> = differences(sides.iter().map(|side| &side.run.stated)),
+        pub differences: Vec<Difference> = differences(sides.iter().map(|side| &*side.run.stated)),
     }
 
     /// One of them.

@@ -29,7 +29,7 @@ pub struct Run {
     /// What was run.
     pub scenario: Scenario,
     /// What was asked for, of which a variant may have been run.
-    pub stated: Scenario,
+    pub stated: Box<Scenario>,
     /// What stood there.
     pub assembly: Assembly,
     /// What shook it.
@@ -195,7 +195,7 @@ impl Scenario {
         let end_time = state.time;
         Ok(Run {
             scenario: self.clone(),
-            stated: self.clone(),
+            stated: Box::new(self.clone()),
             outcome,
             fates,
             elements: elements.0,

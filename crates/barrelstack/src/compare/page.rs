@@ -13,7 +13,7 @@ use crate::report;
 use crate::variants::words;
 
 pub(super) fn document(sides: &[Side]) -> Document {
-    let differing = differences(sides.iter().map(|side| &side.run.stated));
+    let differing = differences(sides.iter().map(|side| &*side.run.stated));
     let mut blocks = vec![Block::Players(players(sides))];
     let mut section = |title: &str, content: Vec<Block>| {
         if !content.is_empty() {

@@ -150,7 +150,7 @@ fn seen(
             let (time, end_time) = (sum(|one| one.time), sum(|one| one.end_time));
             told(Told::Run(Progress { time, end_time }))
         })?;
-        Ok(Run { stated: plane.variant(0), ..run })
+        Ok(Run { stated: Box::new(plane.variant(0)), ..run })
     };
     pool::map(&indexed, run, &|_| ()).into_iter().collect()
 }
