@@ -45,7 +45,9 @@ pub(crate) fn print(cases: usize) -> Result<(), Failure> {
     let half = user::study(user::HALF)?;
     let settling = user::settling()?;
     let (cores, clock) = user::on_all_cores(cases)?;
-    let (eight, demo) = (user::single("candia-8-barrels")?, user::single("demo-napa")?);
+    // The demo looks at both planes; alone runs the one in which it falls.
+    let along = ["stack.view=longitudinal".to_owned()];
+    let (eight, demo) = (user::single("candia-8-barrels", &[])?, user::single("demo-napa", &along)?);
     let all = clock * MANY / cases as f64;
 
     let (peers, users) = (peers_single.min(peers_double), users_single.min(users_double));

@@ -21,7 +21,7 @@ const DURATION: f64 = 20.0;
 /// Its motions: amplitudes (m) of the paper's sine under which it stands, and under which half of the cases
 /// collapse.
 pub(crate) const STANDING: [f64; 2] = [0.02, 0.05];
-pub(crate) const HALF: [f64; 2] = [0.05, 0.15];
+pub(crate) const HALF: [f64; 2] = [0.03, 0.06];
 
 /// What a study takes.
 pub(crate) struct Cost {
@@ -67,8 +67,8 @@ pub(crate) fn on_all_cores(cases: usize) -> Result<(usize, f64), Failure> {
 }
 
 /// How many times faster than real time a built-in scenario runs alone, all that a run keeps kept.
-pub(crate) fn single(name: &str) -> Result<f64, Failure> {
-    let scenario = Scenario::builtin(name, &[])?;
+pub(crate) fn single(name: &str, settings: &[String]) -> Result<f64, Failure> {
+    let scenario = Scenario::builtin(name, settings)?;
     let run: Run = scenario.run()?;
     Ok(run.end_time / time::least(|| drop(scenario.run())))
 }

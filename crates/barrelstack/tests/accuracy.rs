@@ -57,10 +57,11 @@ fn middle_and_most(mut sizes: Vec<f64>) -> [f64; 2] {
 }
 
 /// How a setting differs from the exact results: verdicts, and median and 95th of a hundred of the errors
-/// of drifts (of what stands, as a share) and of the times of the first fall (s).
+/// of drifts and largest forces and stresses (of what stands, as a share) and of the times of the first fall (s).
 struct Errors {
     verdicts: usize,
     drift: [f64; 2],
+    force: [f64; 2],
     fall: [f64; 2],
 }
 
@@ -71,10 +72,22 @@ fn errors(found: &[CaseResult], exact: &[CaseResult]) -> Errors {
         let [a, b] = [a, b].map(|result| result.demands.top_drift_ratio.unwrap());
         (a / b - 1.0).abs()
     });
+    // The largest of every force at an interface, over the weight that it bears at rest, and of every stress.
+    let forces = |result: &CaseResult| {
+        let joints = result.joints.iter().flat_map(|(_, joint)| {
+            [joint.peak_vertical.0, joint.peak_horizontal.0].map(|peak| peak / joint.at_rest)
+        });
+        joints.chain(result.demands.stress_amplification).collect::<Vec<f64>>()
+    };
+    let force = both(false).flat_map(|(a, b)| {
+        let (a, b) = (forces(a), forces(b));
+        a.into_iter().zip(b).map(|(a, b)| (a - b).abs()).collect::<Vec<f64>>()
+    });
     let fall = both(true).filter_map(|(a, b)| Some((a.first_fall? - b.first_fall?).abs()));
     Errors {
         verdicts: pairs().filter(|(a, b)| falls(a) != falls(b)).count(),
         drift: middle_and_most(drift.collect()),
+        force: middle_and_most(force.collect()),
         fall: middle_and_most(fall.collect()),
     }
 }
@@ -85,17 +98,19 @@ fn table(seeds: u64, settings: &[&str], exact: &str) -> Vec<Errors> {
     let fell = exact.iter().filter(|result| falls(result)).count();
     println!("{} cases, {fell} collapse", exact.len());
     println!(
-        "setting  other verdicts  drift, % (median, 95 %)  first fall, ms (median, 95 %)  steps"
+        "setting  other verdicts  drift, % (median, 95 %)  forces, % of weight  first fall, ms  steps"
     );
     let row = |setting: &&str| {
         let found = results(&grounds, setting);
         let errors = errors(&found, &exact);
         let steps: u64 = found.iter().filter_map(|result| result.steps).sum();
         println!(
-            "{setting}  {}  {:.3} {:.3}  {:.2} {:.2}  {steps}",
+            "{setting}  {}  {:.3} {:.3}  {:.2} {:.2}  {:.2} {:.2}  {steps}",
             errors.verdicts,
             100.0 * errors.drift[0],
             100.0 * errors.drift[1],
+            100.0 * errors.force[0],
+            100.0 * errors.force[1],
             1e3 * errors.fall[0],
             1e3 * errors.fall[1],
         );
@@ -107,9 +122,10 @@ fn table(seeds: u64, settings: &[&str], exact: &str) -> Vec<Errors> {
 #[test]
 fn standard_steps_are_as_good_as_ten_times_shorter_ones() {
     let errors = table(3, &["run.accuracy=standard"], "run.step=\"0.03 ms\"");
-    let Errors { verdicts, drift, fall } = &errors[0];
+    let Errors { verdicts, drift, force, fall } = &errors[0];
     assert_eq!(*verdicts, 0);
     assert!(drift[1] < 0.01, "{drift:?}"); // measured 6.3e-4
+    assert!(force[1] < 0.1, "{force:?} of the weight"); // measured FORCE
     assert!(fall[1] < 0.01, "{fall:?} s"); // measured 3.2e-3
 }
 
