@@ -10,6 +10,7 @@ use crate::body::{Body, Motion, Nodes, Round};
 use crate::contact::Stick;
 use crate::lanes::Lanewise;
 use crate::model::{ContactPair, Counts, Model};
+use crate::pair_frame::PairFrame;
 use crate::real::{Mask, Real};
 use crate::shape::Surface;
 use crate::space::{Linear, Planar, Pose, Space, Twist};
@@ -413,121 +414,5 @@ impl<S: Space> Remembered<'_, S> {
         let group = groups.get(self.group).filter(|group| group.pair == pair)?;
         let nodes = &self.old.nodes[group.first..group.end];
         nodes.binary_search(&node).ok().map(|at| group.first + at)
-    }
-}
-
-/// Where two bodies are, seen from the frame of the target's surface.
-///
-/// Contacts of a pair are computed in this frame and their sum is turned back once.
-pub(crate) struct PairFrame<S: Space> {
-    /// From the surface's frame to the inertial frame.
-    pub(crate) rotation: S::Rotation,
-    /// From the contactor's body frame to the surface's frame.
-    relative: S::Rotation,
-    /// Center of mass of the contactor (m) in the surface's frame.
-    pub(crate) contactor: S::Vector,
-    /// Center of mass of the target (m) in the surface's frame.
-    pub(crate) target: S::Vector,
-    /// From the frame of the target's body to that of its surface.
-    placed: S::Rotation,
-}
-
-/// Whether a contact belongs to a face that carries nodes, and whether this pair is the one of its nodes.
-#[derive(Clone, Copy)]
-pub(crate) struct AtFace<S: Space> {
-    /// The other body lies before the face.
-    before: <S::Real as Real>::Mask,
-    /// The face's outward normal as a contact's normal in the frame of the target's surface.
-    out: S::Vector,
-    /// [`Face::widest`](crate::body::Face::widest).
-    widest: S::Real,
-    of_nodes: bool,
-}
-
-impl<S: Space> AtFace<S> {
-    /// Whether no contact can count.
-    #[inline(always)]
-    pub(crate) fn never(&self) -> bool {
-        let all = S::Real::splat(-1.0);
-        if self.of_nodes { !self.before.any() } else { (self.before & self.widest.lt(all)).all() }
-    }
-
-    /// Where a contact with this normal counts.
-    #[inline(always)]
-    pub(crate) fn counts(&self, normal: S::Vector) -> <S::Real as Real>::Mask {
-        let of_face = self.before & self.widest.le(normal.dot(self.out));
-        if self.of_nodes { of_face } else { !of_face }
-    }
-}
-
-impl<S: Space> PairFrame<S> {
-    #[inline(always)]
-    pub(crate) fn new(
-        model: &Model<S>,
-        pair: &ContactPair,
-        poses: &[Pose<S>],
-        rotations: &[S::Rotation],
-    ) -> Self {
-        let placed = &model.bodies[pair.target].surfaces[pair.surface];
-        let target_rotation = rotations[pair.target];
-        let rotation = S::compose(target_rotation, placed.rotation);
-        let origin = poses[pair.target].position + S::rotate(target_rotation, placed.offset);
-        let apart = poses[pair.contactor].position - origin;
-        Self {
-            rotation,
-            relative: S::relative(rotation, rotations[pair.contactor]),
-            contactor: S::unrotate(rotation, apart),
-            target: -S::unrotate(placed.rotation, placed.offset),
-            placed: placed.rotation,
-        }
-    }
-
-    /// How far (m) the center of mass of the other body lies before the face that decides where the
-    /// contacts of a pair count; none where they count everywhere.
-    #[inline(always)]
-    pub(crate) fn before(&self, model: &Model<S>, pair: &ContactPair) -> Option<S::Real> {
-        let apart = self.target - self.contactor;
-        let (face, other) = match pair.counts {
-            Counts::Everywhere => return None,
-            Counts::BeforeFace(face) | Counts::BehindFace(face) => {
-                (&model.bodies[pair.contactor].faces[face], S::unrotate(self.relative, apart))
-            }
-            Counts::BehindFaceOfTarget(face) => {
-                (&model.bodies[pair.target].faces[face], S::rotate(self.placed, -apart))
-            }
-        };
-        Some((other - face.point).dot(face.outward))
-    }
-
-    /// Where the contacts of a pair count by the face that decides; none where they count everywhere.
-    #[inline(always)]
-    pub(crate) fn at_face(&self, model: &Model<S>, pair: &ContactPair) -> Option<AtFace<S>> {
-        let before = S::Real::zero().lt(self.before(model, pair)?);
-        let (face, out, of_nodes) = match pair.counts {
-            Counts::Everywhere => return None,
-            Counts::BeforeFace(face) | Counts::BehindFace(face) => {
-                let face = &model.bodies[pair.contactor].faces[face];
-                // What points out of the contactor points into the target.
-                let out = -S::rotate(self.relative, face.outward);
-                (face, out, matches!(pair.counts, Counts::BeforeFace(_)))
-            }
-            Counts::BehindFaceOfTarget(face) => {
-                let face = &model.bodies[pair.target].faces[face];
-                (face, S::unrotate(self.placed, face.outward), false)
-            }
-        };
-        Some(AtFace { before, out, widest: face.widest, of_nodes })
-    }
-
-    /// A direction of the surface's frame, in the contactor's body frame.
-    #[inline(always)]
-    pub(crate) fn to_contactor(&self, direction: S::Vector) -> S::Vector {
-        S::unrotate(self.relative, direction)
-    }
-
-    /// A point of the contactor's body frame, in the surface's frame.
-    #[inline(always)]
-    pub(crate) fn to_surface(&self, position: S::Vector) -> S::Vector {
-        self.contactor + S::rotate(self.relative, position)
     }
 }

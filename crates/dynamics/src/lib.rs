@@ -42,6 +42,7 @@ pub mod integrate;
 pub mod lanes;
 pub mod math;
 pub mod model;
+mod pair_frame;
 mod pairs;
 pub mod real;
 pub mod settle;

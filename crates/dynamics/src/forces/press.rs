@@ -2,8 +2,9 @@
 
 use crate::body::{Nodes, Round};
 use crate::contact::{FrictionLaw, NormalLaw, Rolling, Stop};
-use crate::contact_elements::{AtFace, ContactElements, Group, PairFrame};
+use crate::contact_elements::{ContactElements, Group};
 use crate::model::Model;
+use crate::pair_frame::{AtFace, PairFrame};
 use crate::real::{Mask, Real};
 use crate::shape::{Gap, Nearest, Surface};
 use crate::space::{Linear, Space, Twist, Wrench};
