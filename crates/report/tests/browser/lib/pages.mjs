@@ -7,11 +7,12 @@ import { missing } from "./browser.mjs";
 const FRICTION = "interface.rack-ground.friction.coefficient";
 
 /**
- * Pages by name: the arguments of the program without `--out`, whether several runs share the
- * page, and the looks of it that are kept as pictures.
+ * Pages by name: the arguments of the program without `--out`, whether several runs or planes share
+ * the page, and the looks of it that are kept as pictures.
  */
 export const PAGES = {
   demo: {
+    several: true,
     args: ["run", "demo-napa", "--quiet"],
     looks: ["desktop-light", "desktop-dark", "phone-light", "phone-dark", "print"],
   },
@@ -38,14 +39,14 @@ export const PAGES = {
     looks: [],
   },
   disc: { args: ["run", "rolling-disc", "--quiet"], looks: [] },
-  // A stack that stands for a minute, and one that falls early and goes on.
+  // A stack that stands for a minute, and one that falls early and goes on, each alone.
   minute: {
-    args: ["run", "demo-napa", "--set", "stack.levels=6", "--set", "run.duration=60 s",
+    args: ["run", "demo-napa", "--variants=0", "--set", "stack.view=transverse", "--set", "stack.levels=6", "--set", "run.duration=60 s",
       "--set", "motion.scale.factor=0.6", "--quiet"],
     looks: [],
   },
   heap: {
-    args: ["run", "demo-napa", "--set", "stack.levels=6", "--set", "run.duration=60 s",
+    args: ["run", "demo-napa", "--variants=0", "--set", "stack.view=transverse", "--set", "stack.levels=6", "--set", "run.duration=60 s",
       "--set", "run.stop_after_collapse=60 s", "--set", "motion.scale.factor=1.3", "--quiet"],
     looks: [],
   },
