@@ -2,8 +2,8 @@
 
 use barrelstack_dynamics::body::Motion;
 use barrelstack_dynamics::{
-    Body, BodyId, ContactPair, Element, Impacts, Linear as _, Model, Node, Nodes, NormalLaw,
-    Planar, Shape, Space as _, math,
+    Body, BodyId, ContactPair, Element, Linear as _, Model, Node, Nodes, NormalLaw, Planar, Shape,
+    Space as _, Substepping, math,
 };
 
 use crate::assemble::Assembly;
@@ -20,17 +20,17 @@ const DAMPING_SHARE: f64 = 0.33;
 const REFERENCE: f64 = 0.01;
 
 /// Share of the critical time step of impacts that is taken while they last, some milliseconds. With it the
-/// cases of the paper close their energy books to 5e-5, and half the step moves none of their falls by more
+/// cases of the paper close their energy books to 3e-5, and half the step moves none of their falls by more
 /// than 0.3 ms (`tests/paper.rs`).
 const IMPACT_SHARE: f64 = 0.4;
 
 /// Share of [`REFERENCE`] to which impacts are followed with whole steps: what lies still is pressed by less.
-/// With it the energy books of the cases of the paper miss 7e-5, with four times as much 1.4e-4.
-const CALM: f64 = 0.05;
+/// With it the energy books of the demo along the barrels miss 1.1e-5, with four times as much 2.4e-4.
+const WHOLE_STEP: f64 = 0.05;
 
 /// Share of the critical time step at that penetration, sticks included, that is taken at most: what lies
 /// still asks for stability alone.
-const CALM_SHARE: f64 = 0.6;
+const WHOLE_STEP_SHARE: f64 = 0.6;
 
 /// Weights of the heaviest body under which the lightest one may lie on contacts for impacts. What they damp
 /// grows with the load: more than [`LOADED_SHARE`] of the time in which they then stop that body, and heaps
@@ -40,15 +40,15 @@ const LOADED_SHARE: f64 = 1.2;
 
 /// How a stack is stepped.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pace {
+pub struct TimeStepping {
     /// The time step (s) while no impact is under way, rounded down to a number that is easily said at full
     /// scale.
     pub step: f64,
     /// When it is divided, and by how much.
-    pub impacts: Impacts<f64>,
+    pub substepping: Substepping<f64>,
 }
 
-impl Pace {
+impl TimeStepping {
     /// What the contacts of a model, and the force elements (also those that are `loose` yet), ask for;
     /// `time_scale` is that of similitude.
     pub fn of<'a>(
@@ -60,35 +60,32 @@ impl Pace {
         let elements = |constant| of_elements(model, loose.clone(), constant);
         let damping = fastest(model, |pair, body| damping_rate(model, pair, body, depth))
             + elements(Element::damping);
-        let critical = |depth: f64, of: fn(&Model<Planar>, &ContactPair) -> bool| {
-            let rate = fastest(model, |pair, body| {
-                let rate = per_stiffness(model, pair, body) * stiffness(model, pair, depth);
-                if of(model, pair) { rate } else { 0.0 }
-            });
-            2.0 / (rate + elements(Element::stiffness)).sqrt()
-        };
-        let calm = CALM * depth;
-        let impact = IMPACT_SHARE * critical(depth, |_, _| true);
-        let step = (SHARE * critical(depth, |model, pair| !is_impact(model, pair)))
-            .min(CALM_SHARE * critical(calm, |_, _| true))
+        let held = elements(Element::stiffness);
+        let critical = |depth, of| critical(model, held, depth, of);
+        let whole_step_depth = WHOLE_STEP * depth;
+        let impact = IMPACT_SHARE * critical(depth, &|_| true);
+        let step = (SHARE * critical(depth, &|pair| !is_impact(model, pair)))
+            .min(WHOLE_STEP_SHARE * critical(whole_step_depth, &|_| true))
             .min(DAMPING_SHARE / damping)
             .min(LOADED_SHARE / loaded(model));
         let full_scale = step / time_scale;
         let full_scale = if full_scale.is_finite() { round_down(full_scale) } else { 1e-3 };
         let step = full_scale * time_scale;
         // Rounding may not divide a step that is as short as impacts ask for.
-        let divisions = (step / impact * (1.0 - 1e-9)).ceil().max(1.0);
-        let mut impacts =
-            Impacts { divisions, calm: vec![f64::INFINITY; model.interfaces().len()] };
+        let substeps = (step / impact * (1.0 - 1e-9)).ceil().max(1.0);
+        let mut substepping = Substepping {
+            substeps,
+            whole_step_depth: vec![f64::INFINITY; model.interfaces().len()],
+        };
         model.each_meeting(&mut |pair, _, _| {
             let stop = model.interfaces()[pair.interface].stop;
             if let Some(stop) = stop {
-                impacts.calm[pair.interface] = stop.depth + calm;
+                substepping.whole_step_depth[pair.interface] = stop.depth + whole_step_depth;
             } else if is_impact(model, pair) {
-                impacts.calm[pair.interface] = calm;
+                substepping.whole_step_depth[pair.interface] = whole_step_depth;
             }
         });
-        Self { step, impacts }
+        Self { step, substepping }
     }
 }
 
@@ -127,16 +124,24 @@ pub fn critical_time_step(assembly: &Assembly, time_scale: f64) -> f64 {
     let model = &assembly.model;
     let depth = REFERENCE * time_scale * time_scale;
     let loose = assembly.loose.iter().map(|loose| &loose.element);
-    let elements = of_elements(model, loose, Element::stiffness);
-    let of = |impacts: bool| {
-        let rate = fastest(model, |pair, body| {
-            let counts = is_impact(model, pair) == impacts;
-            let share = per_stiffness(model, pair, body);
-            if counts { share * stiffness(model, pair, depth) } else { 0.0 }
-        });
-        2.0 / (rate + elements).sqrt()
-    };
-    of(false).min(model.impacts().divisions * of(true))
+    let held = of_elements(model, loose, Element::stiffness);
+    let seats = critical(model, held, depth, &|pair| !is_impact(model, pair));
+    let impacts = critical(model, held, depth, &|pair| is_impact(model, pair));
+    seats.min(model.substepping().substeps * impacts)
+}
+
+/// The same for some pairs at a penetration (m), with bodies that force elements hold at a rate (1/s²).
+fn critical(
+    model: &Model<Planar>,
+    held: f64,
+    depth: f64,
+    of: &dyn Fn(&ContactPair) -> bool,
+) -> f64 {
+    let rate = fastest(model, |pair, body| {
+        let rate = per_stiffness(model, pair, body) * stiffness(model, pair, depth);
+        if of(pair) { rate } else { 0.0 }
+    });
+    2.0 / (rate + held).sqrt()
 }
 
 /// The largest rate that the force elements of any body give it: the sum of a constant of theirs over its mass,

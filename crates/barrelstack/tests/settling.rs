@@ -153,9 +153,9 @@ fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push
     };
     let bodies = model.bodies().iter().map(damped).collect();
     let (interfaces, pairs) = (model.interfaces().to_vec(), model.pairs().collect());
-    let impacts = model.impacts().clone();
+    let substepping = model.substepping().clone();
     let mut model = Model::new(bodies, interfaces, pairs, model.gravity()).unwrap();
-    model.follow_impacts(impacts);
+    model.set_substepping(substepping);
     let mut state = state.clone();
     for (twist, body) in state.twists.iter_mut().zip(model.bodies()) {
         if body.motion == Motion::Free {

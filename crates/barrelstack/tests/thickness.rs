@@ -41,7 +41,7 @@ fn what_falls_from_six_levels_passes_through_nothing() {
             let thinnest = thinnest.fold(f64::INFINITY, f64::min);
             // What falls all the way, against what leaves the floor with the restitution of a fall.
             let speed = 1.3 * (2.0 * 9.80665 * assembly.height).sqrt();
-            let way = speed * assembly.step / assembly.model.impacts().divisions;
+            let way = speed * assembly.step / assembly.model.substepping().substeps;
             println!(
                 "{name}, {view}: {:.1} mm in a step, thinnest solid {:.1} mm",
                 1e3 * way,

@@ -9,26 +9,7 @@ use std::path::Path;
 use std::process::Stdio;
 use std::time::Duration;
 
-use common::{HEAD, barrelstack, names, program, refused, stderr, stdout, there};
-
-/// Forty short cases in ten chunks, behind [`HEAD`].
-const STUDY: &str = "\
-duration = \"0.4 s\"
-[base.motion.pulse]
-kind = \"one-sine\"
-amplitude = \"1 g\"
-period = \"0.3 s\"
-[[factor]]
-name = \"friction\"
-field = \"interface.rack-ground.friction.coefficient\"
-range = { from = 0.2, to = 0.6, count = 10 }
-[[factor]]
-field = \"motion.pulse.amplitude\"
-values = [\"0.3 g\", \"0.6 g\", \"0.9 g\", \"1.2 g\"]
-[design]
-kind = \"full-factorial\"
-chunk = 4
-";
+use common::{HEAD, STUDY, barrelstack, names, program, refused, stderr, stdout, there};
 
 fn study(folder: &Path) -> String {
     let file = folder.join("study.toml");

@@ -15,9 +15,9 @@ use crate::real::{Mask, Real};
 use crate::shape::Surface;
 use crate::space::{Linear, Planar, Pose, Space, Twist};
 
-/// Impacts are foreseen to the same bits whatever else is in the list: so no element outside it may be
+/// Substepping are foreseen to the same bits whatever else is in the list: so no element outside it may be
 /// nearer than bodies come in the time that is foreseen, and this (m) for what changes their velocities.
-const FORESIGHT: f64 = 1e-3;
+const LOOKAHEAD_SLACK: f64 = 1e-3;
 
 /// How far (m) every body may move before the list is built anew.
 const LEAST_ALLOWANCE: f64 = 0.015;
@@ -145,7 +145,7 @@ impl<S: Space> ContactElements<S> {
             let way = S::at_most(moved)
                 + S::at_most(velocity) * ahead
                 + (turned + spin * ahead) * S::Real::splat(model.reach[i]);
-            stale = stale | !way.lt(S::Real::splat(self.allowances[i] - FORESIGHT));
+            stale = stale | !way.lt(S::Real::splat(self.allowances[i] - LOOKAHEAD_SLACK));
         }
         stale.any()
     }

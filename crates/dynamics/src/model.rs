@@ -48,13 +48,13 @@ pub enum Counts {
 
 /// How closely impacts are followed: their laws are the stiffest, but only while they are deep.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Impacts<R> {
+pub struct Substepping<R> {
     /// Into how many short steps a time step is divided while an impact asks for it; a whole number, one or
     /// more.
-    pub divisions: R,
+    pub substeps: R,
     /// Of every interface the penetration (m) that whole time steps follow well enough; infinite where
     /// they follow any.
-    pub calm: Vec<R>,
+    pub whole_step_depth: Vec<R>,
 }
 
 /// Tells the pairs of two bodies, the lower id first.
@@ -69,7 +69,7 @@ pub struct Model<S: Space> {
     pub(crate) elements: Vec<Element<S>>,
     pub(crate) gravity: S::Vector,
     pub(crate) reach: Vec<f64>,
-    pub(crate) impacts: Impacts<S::Real>,
+    pub(crate) substepping: Substepping<S::Real>,
 }
 
 /// Why bodies and pairs do not make a model.
@@ -224,28 +224,28 @@ impl<S: Space> Model<S> {
         });
         dangling?;
         let reach = bodies.iter().map(Body::reach).collect();
-        let calm = vec![S::Real::splat(f64::INFINITY); interfaces.len()];
-        let impacts = Impacts { divisions: S::Real::splat(1.0), calm };
+        let whole_step_depth = vec![S::Real::splat(f64::INFINITY); interfaces.len()];
+        let substepping = Substepping { substeps: S::Real::splat(1.0), whole_step_depth };
         let elements = Vec::new();
-        Ok(Self { bodies, interfaces, pairs, elements, gravity, reach, impacts })
+        Ok(Self { bodies, interfaces, pairs, elements, gravity, reach, substepping })
     }
 
     /// Divides time steps while impacts ask for it; without this no step is divided.
     ///
     /// # Panics
     /// When there are not as many penetrations as interfaces.
-    pub fn follow_impacts(&mut self, impacts: Impacts<S::Real>) {
+    pub fn set_substepping(&mut self, substepping: Substepping<S::Real>) {
         assert_eq!(
-            impacts.calm.len(),
+            substepping.whole_step_depth.len(),
             self.interfaces.len(),
             "one penetration for every interface"
         );
-        self.impacts = impacts;
+        self.substepping = substepping;
     }
 
     /// How closely impacts are followed.
-    pub fn impacts(&self) -> &Impacts<S::Real> {
-        &self.impacts
+    pub fn substepping(&self) -> &Substepping<S::Real> {
+        &self.substepping
     }
 
     /// Puts force elements between the bodies, in place of those before, in the order in which their

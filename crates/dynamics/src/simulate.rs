@@ -66,7 +66,7 @@ where
 pub struct Simulation {
     /// The method.
     pub method: Method,
-    /// The time step (s), which impacts divide where the model says so ([`Impacts`](crate::model::Impacts));
+    /// The time step (s), which impacts divide where the model says so ([`Substepping`](crate::model::Substepping));
     /// for an adaptive method, the first and the longest.
     pub time_step: f64,
     /// When the run ends (s).
@@ -116,7 +116,7 @@ pub struct RunTotals<S: Space> {
 /// Runs `state` to the end time, or until the observer stops it.
 ///
 /// The observer also sees the state at the start.
-/// With a fixed step the times are whole multiples of it, or of its divisions, counted from the start, so
+/// With a fixed step the times are whole multiples of it, or of its substeps, counted from the start, so
 /// that no rounding adds up; the last step is shortened to end on time.
 ///
 /// # Errors
@@ -130,11 +130,11 @@ pub fn simulate<S: Space<Real = f64>>(
     observer: &mut impl Observer<S>,
 ) -> Result<RunTotals<S>, RunError> {
     let mut integrator = Integrator::new(simulation.method);
-    let mut ticks = Ticks::new(model, simulation.time_step);
+    let mut times = StepTimes::new(model, simulation.time_step);
     if simulation.method.is_adaptive() {
-        ticks.divisions = 1.0;
+        times.substeps = 1.0;
     }
-    scratch.horizon = ticks.horizon();
+    scratch.lookahead = times.lookahead();
     Integrator::start(model, drive, state, scratch);
     let mut energy = EnergyLedger::new(model, state, scratch);
     let start = state.time;
@@ -150,7 +150,7 @@ pub fn simulate<S: Space<Real = f64>>(
         let target = if simulation.method.is_adaptive() {
             state.time + next_step.min(simulation.time_step)
         } else {
-            start + ticks.next(scratch.hurried)
+            start + times.next(scratch.needs_substeps)
         };
         let until =
             if target < simulation.end_time - sliver { target } else { simulation.end_time };
@@ -169,41 +169,41 @@ pub fn simulate<S: Space<Real = f64>>(
 
 /// The times of the steps of a run: whole numbers of the short steps into which impacts divide a step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ticks<R> {
+pub(crate) struct StepTimes<R> {
     /// Short steps since the start.
     count: R,
     /// Short steps in a step.
-    divisions: R,
+    substeps: R,
     /// The short step (s).
     short: R,
     time_step: R,
 }
 
 /// How much longer than a step impacts are foreseen, since velocities change within it.
-const FORESIGHT: f64 = 1.25;
+const LOOKAHEAD: f64 = 1.25;
 
-impl<R: Real> Ticks<R> {
+impl<R: Real> StepTimes<R> {
     /// Those of a model, by a time step (s).
     pub(crate) fn new<S: Space<Real = R>>(model: &Model<S>, time_step: R) -> Self {
-        let divisions = model.impacts.divisions;
-        Self { count: R::zero(), divisions, short: time_step / divisions, time_step }
+        let substeps = model.substepping.substeps;
+        Self { count: R::zero(), substeps, short: time_step / substeps, time_step }
     }
 
     /// How far (s) impacts are foreseen; zero where no step is divided.
-    pub(crate) fn horizon(&self) -> R {
-        let divided = R::splat(1.0).lt(self.divisions);
-        R::select(divided, R::splat(FORESIGHT) * self.time_step, R::zero())
+    pub(crate) fn lookahead(&self) -> R {
+        let divided = R::splat(1.0).lt(self.substeps);
+        R::select(divided, R::splat(LOOKAHEAD) * self.time_step, R::zero())
     }
 
     /// The time (s) since the start at which the next step ends.
     #[inline(always)]
-    pub(crate) fn next(&mut self, hurried: R::Mask) -> R {
-        self.count += R::select(hurried, R::splat(1.0), self.divisions);
+    pub(crate) fn next(&mut self, needs_substeps: R::Mask) -> R {
+        self.count += R::select(needs_substeps, R::splat(1.0), self.substeps);
         self.count * self.short
     }
 }
 
-lanewise!(struct Ticks<R> { count, divisions, short, time_step });
+lanewise!(struct StepTimes<R> { count, substeps, short, time_step });
 
 /// Names the first body of a lane that is not where a finite number says, or else the one that moves
 /// most: its energy is the first to leave the finite numbers.

@@ -14,7 +14,7 @@ use barrelstack_dynamics::{BodyId, Model, ModelError, Placed, Planar, Vec2};
 
 use crate::device::{Loose, Words};
 use crate::scenario::{Scenario, Scene, View};
-use crate::step::Pace;
+use crate::step::TimeStepping;
 
 pub use similitude::Similitude;
 
@@ -174,9 +174,9 @@ pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
         Scene::Free(scene) => free::assemble(scene, scenario.run.gravity, scale),
     }?;
     let loose = assembly.loose.iter().map(|loose| &loose.element);
-    let pace = Pace::of(&assembly.model, &loose, scale.time());
-    assembly.model.follow_impacts(pace.impacts);
-    assembly.step = pace.step;
+    let stepping = TimeStepping::of(&assembly.model, &loose, scale.time());
+    assembly.model.set_substepping(stepping.substepping);
+    assembly.step = stepping.step;
     Ok(assembly)
 }
 

@@ -18,6 +18,25 @@ columns = 2
 [base.run]
 ";
 
+/// Forty short cases in ten chunks, behind [`HEAD`].
+pub(crate) const STUDY: &str = "\
+duration = \"0.4 s\"
+[base.motion.pulse]
+kind = \"one-sine\"
+amplitude = \"1 g\"
+period = \"0.3 s\"
+[[factor]]
+name = \"friction\"
+field = \"interface.rack-ground.friction.coefficient\"
+range = { from = 0.2, to = 0.6, count = 10 }
+[[factor]]
+field = \"motion.pulse.amplitude\"
+values = [\"0.3 g\", \"0.6 g\", \"0.9 g\", \"1.2 g\"]
+[design]
+kind = \"full-factorial\"
+chunk = 4
+";
+
 /// Says what was not tested.
 pub(crate) fn skipped(why: &str) {
     // Straight to the terminal: the runner keeps what tests that pass print by the usual way.

@@ -113,11 +113,11 @@ pub struct Scratch<S: Space> {
     pub evaluations: u64,
     /// How many contact elements have been tested in all evaluations.
     pub contact_evaluations: u64,
-    /// Where an impact asks for short steps: within [`Scratch::horizon`] a contact would be deeper than
-    /// [`Impacts::calm`](crate::model::Impacts::calm) at the speed that it has.
-    pub(crate) hurried: <S::Real as Real>::Mask,
+    /// Where an impact asks for short steps: within [`Scratch::lookahead`] a contact would be deeper than
+    /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) at the speed that it has.
+    pub(crate) needs_substeps: <S::Real as Real>::Mask,
     /// How far (s) impacts are foreseen; zero where steps are never divided.
-    pub(crate) horizon: S::Real,
+    pub(crate) lookahead: S::Real,
     /// Accelerations of the state a step started from, for methods that correct.
     pub(crate) old_accelerations: Vec<Twist<S>>,
     /// Slip rates of that state.
@@ -162,8 +162,8 @@ impl<S: Space> Scratch<S> {
             slip_rates: Vec::new(),
             evaluations: 0,
             contact_evaluations: 0,
-            hurried: <S::Real as Real>::Mask::default(),
-            horizon: S::Real::zero(),
+            needs_substeps: <S::Real as Real>::Mask::default(),
+            lookahead: S::Real::zero(),
             old_accelerations: vec![Twist::default(); count],
             old_slip_rates: Vec::new(),
             pressed: Vec::new(),
@@ -252,7 +252,7 @@ fn clear<S: Space>(state: &State<S>, scratch: &mut Scratch<S>) {
     scratch.wrenches.fill(Wrench::default());
     scratch.losses.fill(Losses::default());
     scratch.totals = ContactTotals::default();
-    scratch.hurried = <S::Real as Real>::Mask::default();
+    scratch.needs_substeps = <S::Real as Real>::Mask::default();
     scratch.contacts.clear();
     scratch.pressed.clear();
     scratch.pair_forces.clear();

@@ -65,12 +65,15 @@ fn touch_by<S: Space>(
     if counted.is_some_and(|face| face.never()) {
         return;
     }
-    let calm = model.impacts.calm[pair.interface];
+    let whole_step_depth = model.substepping.whole_step_depth[pair.interface];
     let others = scratch.pressed.len();
     let mut press = Press {
-        calm: calm.lt(S::Real::splat(f64::INFINITY)).any().then_some(calm),
-        horizon: scratch.horizon,
-        hurried: scratch.hurried,
+        whole_step_depth: whole_step_depth
+            .lt(S::Real::splat(f64::INFINITY))
+            .any()
+            .then_some(whole_step_depth),
+        lookahead: scratch.lookahead,
+        needs_substeps: scratch.needs_substeps,
         rolling: model.interfaces[pair.interface].rolling,
         stop: model.interfaces[pair.interface].stop,
         counted,
@@ -98,7 +101,7 @@ fn touch_by<S: Space>(
                 |index| frame.to_surface(nodes[index]),
                 #[inline(always)]
                 |index, node, gap| {
-                    press.foresee(node, gap);
+                    press.look_ahead(node, gap);
                     press.node(group.first + index, node, gap, one);
                 },
             );
@@ -109,15 +112,15 @@ fn touch_by<S: Space>(
             let mut gap = surface.gap(center);
             gap.distance -= *radius;
             let node = center - gap.normal * *radius;
-            press.foresee(node, gap);
+            press.look_ahead(node, gap);
             if gap.distance.lt(S::Real::zero()).any() {
                 press.node(group.first, node, gap, one);
             }
         }
     }
-    let Press { meeting, sum, totals, hurried, pressed, .. } = press;
+    let Press { meeting, sum, totals, needs_substeps, pressed, .. } = press;
     let touches = pressed.len() > others;
-    scratch.hurried = hurried;
+    scratch.needs_substeps = needs_substeps;
     let Some(meeting) = meeting.filter(|_| touches) else { return };
     scratch.totals = totals;
     let damped = meeting.on_bodies(sum.damped);
@@ -137,12 +140,12 @@ fn touch_by<S: Space>(
 
 /// Nodes of a pair that press into a surface, one after the other.
 struct Press<'a, S: Space> {
-    /// [`Impacts::calm`](crate::model::Impacts::calm) of the interface; none where it is infinite.
-    calm: Option<S::Real>,
-    /// [`Scratch::horizon`].
-    horizon: S::Real,
-    /// [`Scratch::hurried`].
-    hurried: <S::Real as Real>::Mask,
+    /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) of the interface; none where it is infinite.
+    whole_step_depth: Option<S::Real>,
+    /// [`Scratch::lookahead`].
+    lookahead: S::Real,
+    /// [`Scratch::needs_substeps`].
+    needs_substeps: <S::Real as Real>::Mask,
     /// How normal forces resist rolling, if they do.
     rolling: Option<Rolling<S::Real>>,
     stop: Option<Stop<S::Real>>,
@@ -173,8 +176,8 @@ const SLACK: f64 = 1e-9;
 /// How far (m) from the end of a side a corner is a contact in full, whatever else is inside there.
 const COMPANION: f64 = 0.01;
 
-/// Impacts are foreseen from this way (m) on to the depth that whole steps follow; faster ones later.
-const FORESEEN: f64 = 0.01;
+/// Substepping are foreseen from this way (m) on to the depth that whole steps follow; faster ones later.
+const LOOKAHEAD_GAP: f64 = 0.01;
 
 /// How far past the limits of a round piece a normal may point, on the way to another round piece.
 const LIMIT: f64 = 2e-7;
@@ -203,7 +206,8 @@ impl<'a, S: Space> Press<'a, S> {
             let nearest = surface.nearest(center, slack);
             let (mut gap, against_round) = (nearest.gap, nearest.round);
             gap.distance -= round.radius;
-            let foreseen = S::Real::splat(if self.calm.is_some() { FORESEEN } else { 0.0 });
+            let foreseen =
+                S::Real::splat(if self.whole_step_depth.is_some() { LOOKAHEAD_GAP } else { 0.0 });
             if !gap.distance.lt(foreseen).any() {
                 continue;
             }
@@ -229,7 +233,7 @@ impl<'a, S: Space> Press<'a, S> {
                 counts = counts & !(against_round & nearer);
             }
             gap.distance = S::Real::select(counts, gap.distance, S::Real::splat(1.0));
-            self.foresee(center - gap.normal * round.radius, gap);
+            self.look_ahead(center - gap.normal * round.radius, gap);
             if gap.distance.lt(zero).any() {
                 let share = self.share(round, &nearest, slack);
                 // Both bodies feel the force midway between their boundaries, whichever of them tests.
@@ -247,9 +251,9 @@ impl<'a, S: Space> Press<'a, S> {
     /// Tells whether a node at `node` (m) will soon be deeper than whole time steps follow, wherever it
     /// touches or is about to.
     #[inline(always)]
-    fn foresee(&mut self, node: S::Vector, gap: Gap<S>) {
-        let Some(calm) = self.calm else { return };
-        let mut near = gap.distance.lt(S::Real::splat(FORESEEN) - calm);
+    fn look_ahead(&mut self, node: S::Vector, gap: Gap<S>) {
+        let Some(whole_step_depth) = self.whole_step_depth else { return };
+        let mut near = gap.distance.lt(S::Real::splat(LOOKAHEAD_GAP) - whole_step_depth);
         if !near.any() {
             return;
         }
@@ -257,8 +261,9 @@ impl<'a, S: Space> Press<'a, S> {
             near = near & face.counts(gap.normal);
         }
         let approach = -self.meeting().velocity(node).dot(gap.normal);
-        let ahead = self.horizon * approach.max(S::Real::zero());
-        self.hurried = self.hurried | (near & calm.lt(ahead - gap.distance));
+        let ahead = self.lookahead * approach.max(S::Real::zero());
+        self.needs_substeps =
+            self.needs_substeps | (near & whole_step_depth.lt(ahead - gap.distance));
     }
 
     /// How the bodies meet, asked for by the first node that is near.

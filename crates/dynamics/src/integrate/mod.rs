@@ -108,7 +108,7 @@ impl<S: Space> Integrator<S> {
         until: S::Real,
     ) -> S::Real {
         let dt = until - state.time;
-        refresh(model, state, scratch, dt + scratch.horizon);
+        refresh(model, state, scratch, dt + scratch.lookahead);
         match self.method {
             Method::SemiImplicitEuler => {
                 verlet::semi_implicit_euler(model, drive, state, scratch, until);

@@ -3,7 +3,7 @@
 use crate::body::{Body, Face, Motion, Node, Nodes, Placed, Round};
 use crate::contact::{Basis, Exponent, FrictionLaw, Interface, NormalLaw, Rolling, Stick, Stop};
 use crate::forces::Losses;
-use crate::model::{Impacts, Model};
+use crate::model::{Model, Substepping};
 use crate::real::{Mask, Real};
 use crate::shape::{BarrelProfile, Circle, Cradle, HalfPlane, Shape};
 use crate::space::{Planar, Pose, Rotation2, Twist, Vec2, Wrench};
@@ -297,7 +297,7 @@ lanewise!(struct Body<Planar<R>> {
     name, motion, mass, inertia, damping, pose, twist, surfaces, nodes, faces
 });
 
-lanewise!(struct Impacts<R> { divisions, calm });
+lanewise!(struct Substepping<R> { substeps, whole_step_depth });
 
 impl<R: Real> Model<Planar<R>> {
     /// The model of one case in every lane.
@@ -309,7 +309,7 @@ impl<R: Real> Model<Planar<R>> {
             elements: Lanewise::in_all(&single.elements),
             gravity: Lanewise::in_all(&single.gravity),
             reach: single.reach.clone(),
-            impacts: Lanewise::in_all(&single.impacts),
+            substepping: Lanewise::in_all(&single.substepping),
         }
     }
 
@@ -319,7 +319,7 @@ impl<R: Real> Model<Planar<R>> {
         self.interfaces.put(lane, &single.interfaces);
         self.elements.put(lane, &single.elements);
         self.gravity.put(lane, &single.gravity);
-        self.impacts.put(lane, &single.impacts);
+        self.substepping.put(lane, &single.substepping);
         for (reach, single) in self.reach.iter_mut().zip(&single.reach) {
             // Balls that hold the body of every lane.
             *reach = reach.max(*single);

@@ -6,7 +6,7 @@ use crate::forces::Scratch;
 use crate::integrate::{Drive, Integrator, Method};
 use crate::model::Model;
 use crate::real::{Mask, Real};
-use crate::simulate::{Finish, RunError, Ticks, lost_body};
+use crate::simulate::{Finish, RunError, StepTimes, lost_body};
 use crate::space::{Planar, Twist, Vec2};
 use crate::state::State;
 
@@ -106,7 +106,7 @@ struct Lanes<R: Real, D> {
     stopped: R::Mask,
     start: R,
     steps: R,
-    ticks: Ticks<R>,
+    times: StepTimes<R>,
     time_step: R,
     end_time: R,
 }
@@ -148,7 +148,7 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         let energy = EnergyLedger::new(&model, &state, &scratch);
         let time_step = R::splat(case.time_step);
         Self {
-            ticks: Ticks::new(&model, time_step),
+            times: StepTimes::new(&model, time_step),
             model,
             state,
             scratch,
@@ -167,15 +167,15 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
     fn load<'a>(&mut self, lane: usize, case: Case<'a, D>, crew: &mut impl Crew<'a, R, Drive = D>) {
         let Case { model, mut state, drive, time_step, end_time } = case;
         let mut scratch = Scratch::new(model);
-        let ticks = Ticks::new(model, time_step);
-        scratch.horizon = ticks.horizon();
+        let times = StepTimes::new(model, time_step);
+        scratch.lookahead = times.lookahead();
         Integrator::start(model, &drive, &mut state, &mut scratch);
         crew.start(lane, &state, &scratch);
         self.put(lane, model, &state, &scratch);
         self.drives.0[lane] = Some(drive);
         self.start.put(lane, &state.time);
         self.steps.put(lane, &0.0);
-        self.ticks.put(lane, &ticks);
+        self.times.put(lane, &times);
         self.time_step.put(lane, &time_step);
         self.end_time.put(lane, &end_time);
         self.busy = R::Mask::from_lanes(|l| l == lane || self.busy.lane(l));
@@ -217,10 +217,11 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         self.state.twists.put(lane, &state.twists);
         self.state.memory.put(lane, &state.memory);
         self.scratch.accelerations.put(lane, &scratch.accelerations);
-        self.scratch.horizon.put(lane, &scratch.horizon);
-        let hurried = self.scratch.hurried;
-        self.scratch.hurried =
-            R::Mask::from_lanes(|l| if l == lane { scratch.hurried } else { hurried.lane(l) });
+        self.scratch.lookahead.put(lane, &scratch.lookahead);
+        let needs_substeps = self.scratch.needs_substeps;
+        self.scratch.needs_substeps = R::Mask::from_lanes(|l| {
+            if l == lane { scratch.needs_substeps } else { needs_substeps.lane(l) }
+        });
         let origins =
             self.state.contact_elements.rebuild(&self.model, &self.state.poses, &self.state.twists);
         self.scratch.renumber(&origins);
@@ -243,7 +244,7 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
     ) -> R::Mask {
         // As `simulate` counts: whole multiples of the step, the last one cut short.
         let sliver = R::splat(1e-9) * self.time_step;
-        let target = self.start + self.ticks.next(self.scratch.hurried);
+        let target = self.start + self.times.next(self.scratch.needs_substeps);
         let early = target.lt(self.end_time - sliver);
         let until = R::select(early, target, self.end_time);
         let until = R::select(self.busy, until, self.state.time);
