@@ -20,8 +20,8 @@ const DURATION: f64 = 20.0;
 
 /// Its motions: amplitudes (m) of the paper's sine under which it stands, and under which half of the cases
 /// collapse.
-pub(crate) const STANDING: [f64; 2] = [0.02, 0.05];
-pub(crate) const HALF: [f64; 2] = [0.03, 0.06];
+pub(crate) const STANDING: [f64; 2] = [0.01, 0.02];
+pub(crate) const HALF: [f64; 2] = [0.0165, 0.0265];
 
 /// What a study takes.
 pub(crate) struct Cost {

@@ -37,6 +37,11 @@ impl Ground {
         Ok(())
     }
 
+    /// From when on (s) none of its accelerations exceeds a limit (m/s²).
+    pub fn calm_from(&self, limit: f64) -> f64 {
+        self.motion.as_ref().map_or(0.0, |motion| motion.calm_from(limit))
+    }
+
     /// When (s) it is still: the end of its motion.
     pub fn end(&self) -> f64 {
         self.motion.as_ref().map_or(0.0, |motion| motion.duration)

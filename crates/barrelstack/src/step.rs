@@ -9,7 +9,7 @@ use barrelstack_dynamics::{
 use crate::assemble::Assembly;
 
 /// Share of the critical time step of seats that is taken: accuracy asks for more than stability.
-const SHARE: f64 = 0.2;
+const SHARE: f64 = 0.3;
 
 /// Share of the time 1/γ in which dampers stop a body: beyond the whole of it, velocities predicted
 /// from the last step overshoot. With 0.7 some of a thousand random stacks that had come to rest
@@ -30,13 +30,13 @@ const WHOLE_STEP: f64 = 0.05;
 
 /// Share of the critical time step at that penetration, sticks included, that is taken at most: what lies
 /// still asks for stability alone.
-const WHOLE_STEP_SHARE: f64 = 0.6;
+const WHOLE_STEP_SHARE: f64 = 0.7;
 
 /// Weights of the heaviest body under which the lightest one may lie on contacts for impacts. What they damp
 /// grows with the load: more than [`LOADED_SHARE`] of the time in which they then stop that body, and heaps
 /// of racks under barrels do not come to rest.
 const LOAD: f64 = 3.0;
-const LOADED_SHARE: f64 = 1.2;
+const LOADED_SHARE: f64 = 1.4;
 
 /// How a stack is stepped.
 #[derive(Clone, Debug, PartialEq)]
@@ -277,7 +277,7 @@ fn mean_square(arms: impl ExactSizeIterator<Item = f64>) -> f64 {
 
 /// The largest of these digits times a power of ten that is not above a number.
 fn round_down(value: f64) -> f64 {
-    const DIGITS: [f64; 8] = [1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
+    const DIGITS: [f64; 10] = [1.2, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0];
     let power = math::pow(10.0, math::log10(value).floor());
     let digit = value / power;
     power * DIGITS.into_iter().rev().find(|kept| digit >= *kept).unwrap_or(1.0)

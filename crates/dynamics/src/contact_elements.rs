@@ -40,6 +40,10 @@ pub(crate) struct Group {
     pub(crate) end: usize,
 }
 
+/// How much further (m) than its bodies are foreseen to come in a step a group has to be apart to be passed
+/// over: forces may turn velocities within the step.
+const ASLEEP_SLACK: f64 = 2.0 * LOOKAHEAD_SLACK;
+
 /// The contact elements within reach, in the order in which their forces are summed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactElements<S: Space> {
@@ -53,6 +57,10 @@ pub struct ContactElements<S: Space> {
     pub(crate) weights: Vec<S::Real>,
     /// Memory of every element.
     pub(crate) sticks: Vec<Stick<S>>,
+    /// How far apart (m) the bodies of every group were when the list was built: the least gap of its elements.
+    apart: Vec<S::Real>,
+    /// How far (m) every body may be from there at the end of the step under way; infinite where none is.
+    ways: Vec<S::Real>,
     /// The poses for which the list was built.
     built_for: Vec<Pose<S>>,
     /// How far (m) every body may move from there: the list holds all elements that are not further
@@ -70,6 +78,8 @@ impl<S: Space> Default for ContactElements<S> {
             positions: Vec::new(),
             weights: Vec::new(),
             sticks: Vec::new(),
+            apart: Vec::new(),
+            ways: Vec::new(),
             built_for: Vec::new(),
             allowances: Vec::new(),
             exhaustive: false,
@@ -86,6 +96,19 @@ impl<S: Space> ContactElements<S> {
     /// Whether no node is near any surface.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
+    }
+
+    /// Whether nothing of a group comes within a gap (m) in the step under way, in any lane: testing its
+    /// elements would find nothing.
+    #[inline(always)]
+    pub(crate) fn sleeps(&self, group: usize, pair: &ContactPair, gap: f64) -> bool {
+        let way = self.ways[pair.contactor] + self.ways[pair.target];
+        (way + S::Real::splat(gap + ASLEEP_SLACK)).lt(self.apart[group]).all()
+    }
+
+    /// No step is under way: bodies may be put anywhere, and nothing sleeps.
+    pub(crate) fn end_step(&mut self) {
+        self.ways.fill(S::Real::splat(f64::INFINITY));
     }
 
     /// What an element remembers; elements are numbered as in
@@ -110,17 +133,27 @@ impl<S: Space> ContactElements<S> {
         twists: &[Twist<S>],
         dt: S::Real,
     ) -> Option<Vec<Option<usize>>> {
-        let stale = !self.exhaustive
-            && S::Real::scope(
+        if self.exhaustive {
+            return None;
+        }
+        let moves = |list: &mut Self| {
+            S::Real::scope(
                 #[inline(always)]
-                || self.is_stale(model, poses, twists, dt),
-            );
-        stale.then(|| self.rebuild(model, poses, twists))
+                || list.has_moved_out(model, poses, twists, dt),
+            )
+        };
+        let stale = moves(self);
+        stale.then(|| {
+            let origins = self.rebuild(model, poses, twists);
+            moves(self);
+            origins
+        })
     }
 
+    /// Follows the ways of all bodies; whether one may leave what the list was built for.
     #[inline(always)]
-    fn is_stale(
-        &self,
+    fn has_moved_out(
+        &mut self,
         model: &Model<S>,
         poses: &[Pose<S>],
         twists: &[Twist<S>],
@@ -136,6 +169,7 @@ impl<S: Space> ContactElements<S> {
         let mut stale = <S::Real as Real>::Mask::default();
         for (i, body) in model.bodies.iter().enumerate() {
             if body.motion == Motion::Prescribed {
+                self.ways[i] = S::Real::zero();
                 continue;
             }
             let moved = poses[i].position - self.built_for[i].position - carried;
@@ -145,6 +179,7 @@ impl<S: Space> ContactElements<S> {
             let way = S::at_most(moved)
                 + S::at_most(velocity) * ahead
                 + (turned + spin * ahead) * S::Real::splat(model.reach[i]);
+            self.ways[i] = way;
             stale = stale | !way.lt(S::Real::splat(self.allowances[i] - LOOKAHEAD_SLACK));
         }
         stale.any()
@@ -162,6 +197,7 @@ impl<S: Space> ContactElements<S> {
         let old = std::mem::replace(self, Self { exhaustive: self.exhaustive, ..Self::default() });
         self.built_for = poses.to_vec();
         self.allowances = allowances(model, twists);
+        self.ways = vec![S::Real::splat(f64::INFINITY); poses.len()];
         let rotations: Vec<S::Rotation> = S::Real::scope(
             #[inline(always)]
             || {
@@ -177,15 +213,16 @@ impl<S: Space> ContactElements<S> {
         for index in self.pairs_in_reach(model, poses) {
             let pair = &model.pair(index);
             let first = self.nodes.len();
-            S::Real::scope(
+            let apart = S::Real::scope(
                 #[inline(always)]
                 || {
                     let frame = PairFrame::new(model, pair, poses, &rotations);
-                    self.list_pair(model, pair, &frame);
+                    self.list_pair(model, pair, &frame)
                 },
             );
             let end = self.nodes.len();
             if end > first {
+                self.apart.push(apart);
                 self.groups.push(Group { pair: index, first, end });
                 for element in first..end {
                     let origin = remembered.origin(index, self.nodes[element]);
@@ -246,11 +283,18 @@ impl<S: Space> ContactElements<S> {
         couples.into_iter().flatten().collect()
     }
 
-    /// Whether a ball (m) about a point comes within a margin (m) of a surface in any lane.
+    /// How far (m) a ball about a point is from a surface, if it comes within a margin (m) in any lane.
     #[inline(always)]
-    fn near(&self, surface: &S::Surface, point: S::Vector, radius: S::Real, margin: f64) -> bool {
+    fn near(
+        &self,
+        surface: &S::Surface,
+        point: S::Vector,
+        radius: S::Real,
+        margin: f64,
+    ) -> Option<S::Real> {
         let distance = surface.gap(point).distance - radius;
-        self.exhaustive || (!S::Real::splat(margin).lt(distance)).any()
+        let near = self.exhaustive || (!S::Real::splat(margin).lt(distance)).any();
+        near.then_some(distance)
     }
 
     /// Whether a surface stays so deep within a round piece in all lanes that no contact is meant
@@ -277,8 +321,10 @@ impl<S: Space> ContactElements<S> {
         !self.exhaustive && (round.greatest_depth + ways).lt(depth).all()
     }
 
+    /// Lists the elements of a pair that are within reach; the least gap (m) of them in every lane.
     #[inline(always)]
-    fn list_pair(&mut self, model: &Model<S>, pair: &ContactPair, frame: &PairFrame<S>) {
+    fn list_pair(&mut self, model: &Model<S>, pair: &ContactPair, frame: &PairFrame<S>) -> S::Real {
+        let mut least = S::Real::splat(f64::INFINITY);
         let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
         let margin = self.allowances[pair.contactor] + self.allowances[pair.target];
         // Balls about the bodies first: most pairs are far apart.
@@ -289,7 +335,7 @@ impl<S: Space> ContactElements<S> {
             + frame.target.dot(frame.target).sqrt().largest_lane();
         let far = S::Real::splat(touch * touch).lt(apart.dot(apart));
         if !self.exhaustive && !(!far).any() {
-            return;
+            return least;
         }
         let undecided = frame.before(model, pair).is_none_or(|before| {
             let margin = S::Real::splat(margin);
@@ -302,18 +348,19 @@ impl<S: Space> ContactElements<S> {
             }
         });
         if !self.exhaustive && !undecided {
-            return;
+            return least;
         }
         let basis = model.interfaces[pair.interface].basis;
         match model.pair_nodes(pair) {
             Nodes::Fixed(nodes) => {
                 let reach = S::Real::splat(model.reach[pair.contactor]);
-                if !self.near(surface, frame.contactor, reach, margin) {
-                    return;
+                if self.near(surface, frame.contactor, reach, margin).is_none() {
+                    return least;
                 }
                 for (index, node) in nodes.iter().enumerate() {
-                    if self.near(surface, frame.to_surface(node.position), S::Real::zero(), margin)
-                    {
+                    let (place, zero) = (frame.to_surface(node.position), S::Real::zero());
+                    if let Some(gap) = self.near(surface, place, zero, margin) {
+                        least = least.min(gap);
                         self.nodes.push(u32::try_from(index).unwrap_or(u32::MAX));
                         self.positions.push(node.position);
                         self.weights.push(basis.weight(node.tributary_length));
@@ -323,8 +370,11 @@ impl<S: Space> ContactElements<S> {
             Nodes::Rounds(rounds) => {
                 for (index, round) in rounds.iter().enumerate() {
                     let center = frame.to_surface(round.center);
-                    let reaches = self.near(surface, center, round.radius, margin);
-                    if reaches && !self.behind(model, pair, surface, round, center, frame) {
+                    let Some(gap) = self.near(surface, center, round.radius, margin) else {
+                        continue;
+                    };
+                    if !self.behind(model, pair, surface, round, center, frame) {
+                        least = least.min(gap);
                         self.nodes.push(u32::try_from(index).unwrap_or(u32::MAX));
                         self.positions.push(round.center);
                         self.weights.push(basis.weight(round.tributary_length));
@@ -332,13 +382,16 @@ impl<S: Space> ContactElements<S> {
                 }
             }
             Nodes::Rolling { center, radius, tributary_length } => {
-                if self.near(surface, frame.to_surface(*center), *radius, margin) {
+                let place = frame.to_surface(*center);
+                if let Some(gap) = self.near(surface, place, *radius, margin) {
+                    least = least.min(gap);
                     self.nodes.push(0);
                     self.positions.push(*center);
                     self.weights.push(basis.weight(*tributary_length));
                 }
             }
         }
+        least
     }
 }
 

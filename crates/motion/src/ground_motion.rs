@@ -127,6 +127,12 @@ impl GroundMotion {
         measure.of_history(&self.horizontal)
     }
 
+    /// The time (s) from which on the acceleration of no component exceeds a limit (m/s²).
+    pub fn calm_from(&self, limit: f64) -> f64 {
+        let vertical = self.vertical.as_ref().map_or(0.0, |vertical| vertical.calm_from(limit));
+        self.horizontal.calm_from(limit).max(vertical)
+    }
+
     /// Peak ground acceleration of the horizontal component (m/s²).
     pub fn pga(&self) -> f64 {
         self.horizontal.pga()

@@ -129,6 +129,23 @@ impl History {
         Sampled::with_initial_velocity(even, acceleration, self.at(0.0).velocity)
     }
 
+    /// The time (s) from which on its acceleration stays below a limit (m/s²): that of the sample after the last one
+    /// above it; the end of a closed form, whose shaking breaks off.
+    pub fn calm_from(&self, limit: f64) -> f64 {
+        match self {
+            Self::Sampled(sampled) => {
+                let last = sampled.acceleration().iter().rposition(|a| a.abs() > limit);
+                last.map_or(0.0, |last| (last + 1) as f64 * sampled.time_step())
+                    .min(self.duration())
+            }
+            Self::Analytic(_) => self.duration(),
+            Self::Sum(parts) => {
+                let share = limit / parts.len() as f64;
+                parts.iter().map(|p| p.delay + p.history.calm_from(share)).fold(0.0, f64::max)
+            }
+        }
+    }
+
     /// Largest absolute acceleration (m/s²).
     pub fn pga(&self) -> f64 {
         match self {

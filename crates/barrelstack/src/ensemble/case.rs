@@ -89,6 +89,7 @@ impl CaseResult {
         let named = |joint: &Joint| (joint.name(assembly), joint.clone());
         let residual = all().map(|fate| fate.residual_displacement);
         let largest = |most: f64, value: f64| if value.abs() > most.abs() { value } else { most };
+        let left = ground.end() - time;
         Self {
             first_fall: fates.first_fall().filter(|_| sound),
             barrels: barrels.len(),
@@ -103,7 +104,7 @@ impl CaseResult {
             residual_displacement: (sound && !barrels.is_empty())
                 .then(|| residual.fold(0.0, largest)),
             ending: Some(verdict.ending),
-            cut: Some(ground.end() - time).map(|left| if left > CUT { left } else { 0.0 }),
+            cut: Some(if verdict.ending == Ending::Rest || left <= CUT { 0.0 } else { left }),
             end_time: Some(time),
             steps: Some(verdict.steps),
             energy_residual_ratio: verdict.energy.map(|energy| energy.residual_ratio()),

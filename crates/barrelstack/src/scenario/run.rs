@@ -54,7 +54,7 @@ impl Accuracy {
     /// Its time step in those of the standard accuracy.
     pub(crate) fn step(self) -> f64 {
         match self {
-            Self::Screening => 1.5,
+            Self::Screening => 1.25,
             Self::Standard => 1.0,
             Self::Fine => 0.25,
         }
@@ -125,7 +125,7 @@ pub static RUN: Section = Section {
             "until",
             Kind::Choice(names::<Until>),
             Default::Derived("\"rest\" for a stack, \"duration\" for a free scene"),
-            "What ends the run by itself: the ground is still and what moves has come to rest, or the duration is over.",
+            "What ends the run by itself: the ground stays below 0.02 g and what moves has come to rest, or the duration is over.",
         ),
         Field::new(
             "patience",

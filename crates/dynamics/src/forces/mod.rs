@@ -213,7 +213,7 @@ pub(crate) fn evaluate_within<S: Space>(
         #[inline(always)]
         || clear(state, scratch),
     );
-    for group in &state.contact_elements.groups {
+    for group in 0..state.contact_elements.groups.len() {
         S::Real::scope(
             #[inline(always)]
             || touch(model, state, step, group, scratch),
@@ -259,7 +259,6 @@ fn clear<S: Space>(state: &State<S>, scratch: &mut Scratch<S>) {
     scratch.slip_rates.clear();
     scratch.slip_rates.resize(state.contact_elements.len(), S::Tangent::default());
     scratch.evaluations += 1;
-    scratch.contact_evaluations += state.contact_elements.len() as u64;
 }
 
 /// Newton's law for every free body: contact, gravity and viscous damping (eq. 2.8).

@@ -20,10 +20,20 @@ pub(super) fn touch<S: Space>(
     model: &Model<S>,
     state: &State<S>,
     step: S::Real,
-    group: &Group,
+    group: usize,
     scratch: &mut Scratch<S>,
 ) {
-    let interface = &model.interfaces[model.pair(group.pair).interface];
+    let elements = &state.contact_elements;
+    let (number, group) = (group, &elements.groups[group]);
+    let pair = model.pair(group.pair);
+    let impacts = model.substepping.whole_step_depth[pair.interface];
+    let foreseen =
+        if impacts.lt(S::Real::splat(f64::INFINITY)).any() { LOOKAHEAD_GAP } else { 0.0 };
+    if elements.sleeps(number, &pair, foreseen) {
+        return;
+    }
+    scratch.contact_evaluations += (group.end - group.first) as u64;
+    let interface = &model.interfaces[pair.interface];
     match (interface.normal, interface.friction) {
         (
             NormalLaw::SpeedGap { stiffness, damping },

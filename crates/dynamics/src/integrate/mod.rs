@@ -109,7 +109,7 @@ impl<S: Space> Integrator<S> {
     ) -> S::Real {
         let dt = until - state.time;
         refresh(model, state, scratch, dt + scratch.lookahead);
-        match self.method {
+        let next = match self.method {
             Method::SemiImplicitEuler => {
                 verlet::semi_implicit_euler(model, drive, state, scratch, until);
                 dt
@@ -127,7 +127,9 @@ impl<S: Space> Integrator<S> {
                 let tableau = &runge_kutta::BOGACKI_SHAMPINE;
                 self.stages.adaptive(tableau, tolerance, model, drive, state, scratch, until)
             }
-        }
+        };
+        state.contact_elements.end_step();
+        next
     }
 }
 
