@@ -73,7 +73,7 @@ impl<R: Real> End<R> {
         state: &State<Planar<R>>,
         fates: &Fates<R>,
     ) -> (R::Mask, R::Mask) {
-        let rest = self.rest.observe(state);
+        let rest = self.rest.observe(state, !fates.stands());
         ((fates.collapse() + self.after_collapse).le(state.time), rest)
     }
 }

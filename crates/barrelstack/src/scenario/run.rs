@@ -125,7 +125,7 @@ pub static RUN: Section = Section {
             "until",
             Kind::Choice(names::<Until>),
             Default::Derived("\"rest\" for a stack, \"duration\" for a free scene"),
-            "What ends the run by itself: the ground stays below 0.02 g and what moves has come to rest, or the duration is over.",
+            "What ends the run by itself: the ground is still, or below 0.02 g after a collapse, and what moves has come to rest, or the duration is over.",
         ),
         Field::new(
             "patience",

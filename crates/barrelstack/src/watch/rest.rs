@@ -1,4 +1,5 @@
-//! Rest: the ground is calm, and nothing moves fast enough to change what became of the stack.
+//! Rest: the ground is still, or calm where the stack has collapsed, and nothing moves fast enough to change what
+//! became of the stack.
 
 use barrelstack_dynamics::real::{Mask, Real};
 use barrelstack_dynamics::{BodyId, FrictionLaw, Linear, Motion, Planar, State, lanewise};
@@ -19,8 +20,8 @@ const HOLD: f64 = 3.0;
 
 /// Acceleration of calm ground over gravity, and over the least friction that holds.
 ///
-/// What has come to rest neither slides nor tips by that: twelve levels on the narrowest rack of the catalog tip
-/// at several times as much. The last third of many records is weaker.
+/// What lies after a collapse neither slides nor tips by that, and the last third of many records is weaker.
+/// What still stands is followed to the end: swaying on round barrels gathers what little comes.
 const CALM: f64 = 0.02;
 const CALM_OF_FRICTION: f64 = 0.1;
 
@@ -30,7 +31,7 @@ const ON_FLOOR: f64 = 1.05;
 /// Why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// The ground was calm, and what moved had come to rest.
+    /// The ground was still, or calm after a collapse, and what moved had come to rest.
     Rest,
     /// The time that the scenario gives to a collapse was over.
     AfterCollapse,
@@ -73,7 +74,9 @@ impl Ending {
 /// 0.2 m/s² and reaches nothing any more.
 #[derive(Clone, Debug)]
 pub struct Rest<R: Real = f64> {
-    /// From when on (s) the ground is calm; infinite where the run does not end by rest.
+    /// From when on (s) the ground is still; infinite where the run does not end by rest.
+    still_from: R,
+    /// From when on (s) it is calm; infinite where the run does not end by rest.
     calm_from: R,
     /// Largest kinetic energy of a body at rest over its mass (m²/s²).
     slow: R,
@@ -95,7 +98,7 @@ struct Mover<R: Real> {
 }
 
 lanewise!(struct Mover<R> { body, inertia, floor });
-lanewise!(struct Rest<R> { calm_from, slow, hold, bodies, moved });
+lanewise!(struct Rest<R> { still_from, calm_from, slow, hold, bodies, moved });
 
 impl Rest {
     /// What a scenario asks for, on its ground; nothing rests before it has been observed.
@@ -112,11 +115,13 @@ impl Rest {
                 },
             })
         };
+        let by_rest = |time: f64| match scenario.run.until {
+            Until::Rest => time,
+            Until::Duration => f64::INFINITY,
+        };
         Self {
-            calm_from: match scenario.run.until {
-                Until::Rest => ground.calm_from(scenario.run.gravity * calm(assembly)),
-                Until::Duration => f64::INFINITY,
-            },
+            still_from: by_rest(ground.end()),
+            calm_from: by_rest(ground.calm_from(scenario.run.gravity * calm(assembly))),
             slow: scenario.run.gravity * CLIMB * scale,
             hold: HOLD * scale.sqrt(),
             bodies: assembly.parts.iter().enumerate().filter_map(mover).collect(),
@@ -136,11 +141,11 @@ fn calm(assembly: &Assembly) -> f64 {
 }
 
 impl<R: Real> Rest<R> {
-    /// Looks at an accepted state; whether all have come to rest.
+    /// Looks at an accepted state, and whether the stack has collapsed; whether all have come to rest.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
-    pub fn observe(&mut self, state: &State<Planar<R>>) -> R::Mask {
-        let mut moves = state.time.lt(self.calm_from);
+    pub fn observe(&mut self, state: &State<Planar<R>>, collapsed: R::Mask) -> R::Mask {
+        let mut moves = state.time.lt(R::select(collapsed, self.calm_from, self.still_from));
         let ground = state.twists[Assembly::GROUND].linear;
         for at in 0..self.bodies.len() {
             // Where the ground moves or something else does, the others need no look.

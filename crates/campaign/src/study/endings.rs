@@ -18,7 +18,7 @@ use crate::watch::Ending;
 pub struct Endings {
     /// All of them.
     pub judged: u64,
-    /// Those that were followed until the ground was calm and nothing moved.
+    /// Those that were followed until the ground was still, or calm after a collapse, and nothing moved.
     pub followed: u64,
     /// Those that were stopped a while after their collapse, because the study says so.
     pub stopped: u64,
@@ -169,7 +169,7 @@ impl Following {
     pub fn words(&self, motions: usize) -> String {
         let mut said = match self.duration {
             None if self.to_rest => format!(
-                "every case is followed until its ground stays below 0.02 g and nothing moves, at most {} s after its motion",
+                "every case is followed through its motion (what has collapsed until the ground stays below 0.02 g) and until nothing moves, at most {} s longer",
                 self.patience
             ),
             None => "every case is followed through its motion and 5 s more".to_owned(),
