@@ -31,6 +31,7 @@ fn players(scenes: Vec<Scene>) -> Players {
         caption: "Two runs.".into(),
         panes: panes.collect(),
         ground: vec![history],
+        overlay: None,
     }
 }
 

@@ -135,6 +135,7 @@ fn players(sides: &[Side]) -> Players {
             })
             .collect(),
         ground: lanes(sides),
+        overlay: Some("A in the others".into()),
     }
 }
 

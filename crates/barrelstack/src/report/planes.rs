@@ -29,7 +29,11 @@ pub(super) fn players(
     };
     let mut both = [
         pane(run, summary, Arc::clone(scene)),
-        pane(&other.run, &other.summary, drawing::scene(&other.run)),
+        pane(
+            &other.run,
+            &other.summary,
+            drawing::scene_among(&other.run, other.variants.as_ref()),
+        ),
     ];
     let mut runs = [run, &other.run];
     if run.assembly.view == Some(View::Longitudinal) {
@@ -42,6 +46,7 @@ pub(super) fn players(
                   Arrows are contact forces, each on the body that it pushes up."
             .into(),
         panes: both.into(),
+        overlay: None,
         ground: runs.into_iter().filter_map(ground).collect(),
     }
 }

@@ -1,6 +1,7 @@
 // The pages that are checked: what is run for each, and how each is looked at.
 
 import { spawn } from "node:child_process";
+import { rmSync } from "node:fs";
 import { join } from "node:path";
 import { missing } from "./browser.mjs";
 
@@ -8,7 +9,8 @@ const FRICTION = "interface.rack-ground.friction.coefficient";
 
 /**
  * Pages by name: the arguments of the program without `--out`, whether several runs or planes share
- * the page, and the looks of it that are kept as pictures.
+ * the page, whether it is looked at for readers of screens only (`plain`), its file where that is not
+ * report.html, and the looks of it that are kept as pictures.
  */
 export const PAGES = {
   demo: {
@@ -38,6 +40,11 @@ export const PAGES = {
     args: ["compare", "demo-napa", "--set", `${FRICTION}=0.4`, "--against", `${FRICTION}=0.1`, "--quiet"],
     looks: [],
   },
+  // Pages without a player, or with others around it, for readers of screens.
+  verify: { plain: true, args: ["run", "candia-8-barrels", "--verify", "--variants=8", "--quiet"], looks: [] },
+  heights: { plain: true, file: "index.html", args: ["heights", "--synthetic=0", "--quiet"], looks: [] },
+  study: { plain: true, file: "index.html", args: ["study", "napa-four-levels", "--quiet"], looks: [] },
+  reproduce: { plain: true, file: "index.html", args: ["reproduce", "--no-studies"], looks: [] },
   disc: { args: ["run", "rolling-disc", "--quiet"], looks: [] },
   // A stack that stands for a minute, and one that falls early and goes on, each alone.
   minute: {
@@ -54,7 +61,7 @@ export const PAGES = {
 
 /** Where the report of a page is. */
 export function reportOf(folder, name) {
-  return join(folder, name, "report.html");
+  return join(folder, name, PAGES[name].file ?? "report.html");
 }
 
 function run(program, args) {
@@ -75,7 +82,8 @@ export async function make(folder) {
   const names = Object.keys(PAGES).reverse();
   const work = async () => {
     for (let name = names.shift(); name; name = names.shift()) {
-      const fault = await run(program, [...PAGES[name].args, "--out", join(folder, name), "--overwrite"]);
+      rmSync(join(folder, name), { recursive: true, force: true });
+      const fault = await run(program, [...PAGES[name].args, "--out", join(folder, name)]);
       if (fault) throw new Error(`the page ${name} was not made: ${fault}`);
     }
   };

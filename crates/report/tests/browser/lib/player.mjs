@@ -36,7 +36,7 @@ export async function scrubbing(page, path) {
       const player = window.barrelstack.player;
       if (bySlider) {
         const slider = document.querySelector(".player input.scrub");
-        slider.value = wish;
+        slider.value = player.times()[wish];
         slider.dispatchEvent(new Event("input", { bubbles: true }));
       } else {
         player.seek(wish);
