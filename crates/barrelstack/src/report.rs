@@ -61,7 +61,7 @@ fn page(
             sentences: words::details(run, summary, verification),
             tone: tone(run, summary),
         },
-        blocks: sections::all(run, summary, other, verification, &scene),
+        blocks: sections::all(run, summary, (variants, other), verification, &scene),
         provenance: provenance(run, summary),
         warnings,
     }

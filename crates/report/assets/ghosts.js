@@ -1,6 +1,7 @@
 // Other runs over the one that is shown: where top barrels went, where all ended, or how another run stands.
 
 const MOST_INK = 0.85; // opacity where all runs have a body
+const AROUND = 60; // reach of the picture of ends beyond the stage, which moves with the ground (px)
 
 // The lines of all runs, against the ground.
 function drawWays({ context, toX, toY, paint }, { ways: [xs, zs] }, [gx, gz]) {
@@ -31,21 +32,22 @@ function drawEnds(pen, ghosts, shapes, at, cache) {
     cache.picture = sumOfEnds(pen, ghosts, shapes);
   }
   context.globalAlpha = MOST_INK;
-  context.drawImage(cache.picture, at[0] * view.scale, -at[1] * view.scale, width, height);
+  const [x, y] = [at[0] * view.scale - AROUND, -at[1] * view.scale - AROUND];
+  context.drawImage(cache.picture, x, y, width + 2 * AROUND, height + 2 * AROUND);
   context.globalAlpha = 1;
 }
 
 function sumOfEnds({ width, height, view, toX, toY, paint }, { count, bodies, ends: [xs, zs, angles] }, shapes) {
   const picture = document.createElement("canvas");
   const dpr = Math.min(window.devicePixelRatio || 1, 3);
-  [picture.width, picture.height] = [Math.round(width * dpr), Math.round(height * dpr)];
+  [picture.width, picture.height] = [width, height].map((side) => Math.round((side + 2 * AROUND) * dpr));
   const context = picture.getContext("2d");
   // Opacities add up to that of all runs.
   context.globalCompositeOperation = "lighter";
   context.globalAlpha = 1 / Math.max(count, 1);
   bodies.forEach((body, k) => {
     context.setTransform(dpr, 0, 0, dpr, 0, 0);
-    context.translate(toX(xs[k]), toY(zs[k]));
+    context.translate(toX(xs[k]) + AROUND, toY(zs[k]) + AROUND);
     context.rotate(-angles[k]);
     context.scale(view.scale, -view.scale);
     for (const { path, closed } of shapes[body].outlines) if (closed) context.fill(path);

@@ -292,6 +292,7 @@ function fitStages(panes, figure) {
   if (!first) return;
   // A player that opens the page fills the first screen, controls included; others take less.
   const above = screen.getBoundingClientRect().top + window.scrollY;
+  const used = figure.querySelector(".controls").getBoundingClientRect().bottom - screen.getBoundingClientRect().top;
   // Slender stages have no room beside their bodies.
   for (const { stage } of panes) {
     const slender = stage.canvas.parentElement.clientWidth < 260 && panes.some(({ data }) => data.moment);
@@ -299,15 +300,15 @@ function fitStages(panes, figure) {
   }
   const canvases = panes.map(({ stage }) => stage.canvas);
   const rows = new Set(canvases.map((canvas) => Math.round(canvas.parentElement.getBoundingClientRect().top))).size || 1;
-  const rest = screen.offsetHeight - rows * first.stage.canvas.offsetHeight;
+  const rest = used - rows * first.stage.canvas.offsetHeight;
   const opens = above < 0.5 * window.innerHeight;
   const full = document.fullscreenElement === screen;
-  const free = full ? window.innerHeight - rest : opens ? window.innerHeight - above - rest - 8 : 0.6 * window.innerHeight;
+  const free = full ? window.innerHeight - rest : opens ? window.innerHeight - above - rest - 10 : 0.6 * window.innerHeight;
   const room = free / rows;
   const least = rows > 1 ? 210 : 320;
   for (const { stage } of panes) {
     stage.most = Infinity;
-    stage.resize(Math.max(room, least), full ? Infinity : 640);
+    stage.resize(Math.max(room, least), full);
   }
   // Panes may differ by the width of a border.
   const common = Math.min(...panes.map(({ stage }) => stage.scale()));

@@ -52,11 +52,11 @@ function makeStage(data, canvas) {
     paint = Object.fromEntries(names.map((name) => [name, color(name)]));
   }
 
-  // `most` is the height (px) that there is room for, of which `limit` is taken.
-  function resize(most, limit) {
+  // `most` is the height (px) that there is room for, all of which is taken on the `full` screen.
+  function resize(most, full) {
     width = Math.max(120, Math.floor(canvas.parentElement.getBoundingClientRect().width));
     const wanted = (width * (top - bottom)) / (right - left) + FOOT + stage.head;
-    height = Math.round(Math.min(most, limit, Math.max(wanted, 220)));
+    height = Math.round(full ? most : Math.min(most, 640, Math.max(wanted, 220)));
     dpr = Math.min(window.devicePixelRatio || 1, 3);
     canvas.width = Math.round(width * dpr);
     canvas.height = Math.round(height * dpr);

@@ -5,7 +5,8 @@ use std::cmp::Ordering;
 use serde_json::{Value, json};
 
 use crate::{
-    ContactForce, Ghosts, History, Moment, Player, Players, Point, Polyline, Pose2, Scene, Tint, Trace,
+    ContactForce, Ghosts, History, Moment, Player, Players, Point, Polyline, Pose2, Scene, Tint,
+    Trace,
     pack::{self, POSE_QUANTUM, TIME_QUANTUM},
     scene::{Extent, window},
     simplify::simplify,
@@ -30,7 +31,9 @@ pub(crate) fn of_player(player: &Player, id: &str) -> Value {
 /// Which pane a player opens on: the first to fall, or else the first that has a moment.
 fn opens<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<usize> {
     let moments = scenes.into_iter().map(|scene| scene.moment.as_ref()).enumerate();
-    let known = moments.filter_map(|(at, moment)| Some((at, moment?)));
+    let known = moments
+        .filter_map(|(at, moment)| Some((at, moment?)))
+        .filter(|(_, moment)| moment.time.is_finite());
     let key = |moment: &Moment| (!moment.falls, moment.time);
     known
         .min_by(|(_, a), (_, b)| key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal))
@@ -134,10 +137,12 @@ fn pane(mark: &str, scene: &Scene, traces: &[Trace], view: &Extent) -> Value {
         .filter(|tie| tie.bodies.iter().all(|body| *body < scene.bodies.len()))
         .map(|tie| json!({ "bodies": tie.bodies, "points": tie.points, "torn": tie.torn_at }))
         .collect();
-    let moment = scene.moment.as_ref().filter(|moment| {
-        moment.time.is_finite() && moment.body < scene.bodies.len() && count > 0
-    });
-    let moment = moment.map(|moment| json!({ "t": moment.time, "body": moment.body, "text": moment.text }));
+    let moment = scene
+        .moment
+        .as_ref()
+        .filter(|moment| moment.time.is_finite() && moment.body < scene.bodies.len() && count > 0);
+    let moment =
+        moment.map(|moment| json!({ "t": moment.time, "body": moment.body, "text": moment.text }));
     json!({
         "mark": mark,
         "bodies": bodies,
@@ -185,7 +190,8 @@ fn ghosts(ghosts: &Ghosts, bodies: usize) -> Value {
         line.extend(simplify(way, GHOST_TOLERANCE));
         line.push([f64::NAN; 2]);
     }
-    let ends: Vec<&(usize, Pose2)> = ghosts.ends.iter().filter(|(body, _)| *body < bodies).collect();
+    let ends: Vec<&(usize, Pose2)> =
+        ghosts.ends.iter().filter(|(body, _)| *body < bodies).collect();
     let ways = [0, 1].map(|axis| line.iter().map(|point| point[axis]).collect::<Vec<f64>>());
     let poses = [0, 1, 2].map(|axis| ends.iter().map(|(_, pose)| pose[axis]).collect::<Vec<f64>>());
     json!({

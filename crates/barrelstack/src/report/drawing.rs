@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use barrelstack_dynamics::Shape;
 use barrelstack_report::{
-    ContactForce, Event, EventKind, Frames, Ghosts, History, Moment, Point, Polyline, Role, Scene, SceneBody, Tie, Tint,
-    significant,
+    ContactForce, Event, EventKind, Frames, Ghosts, History, Moment, Point, Polyline, Role, Scene,
+    SceneBody, Tie, Tint, significant,
 };
 
 use crate::assemble::{Assembly, Part, PartKind};
@@ -68,6 +68,18 @@ fn ghosts(variants: &Variants) -> Option<Ghosts> {
         ways,
         ends: ends.collect(),
     })
+}
+
+/// What ghosts of a scene mean, as a sentence that follows another; empty where it has none.
+pub(super) fn legend(scene: &Scene) -> String {
+    let sentence = |ghosts: &Ghosts| {
+        format!(
+            " With “{}” thin lines are the ways of the barrels of the top level in each, and the darker a \
+             place, the more often a barrel ends there.",
+            ghosts.label
+        )
+    };
+    scene.ghosts.as_ref().map(sentence).unwrap_or_default()
 }
 
 /// Displacement (m) below which nothing is worth opening a page on.

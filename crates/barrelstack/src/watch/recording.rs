@@ -213,8 +213,7 @@ impl Recording {
             for body in [pair.contactor, pair.target] {
                 stresses[body] = stresses[body].max(stress);
             }
-            let (force, point) =
-                contact_force(model, state, scratch, contact);
+            let (force, point) = contact_force(model, state, scratch, contact);
             if contact.pair != last {
                 forces.push([0.0; 4]);
                 (weight, last) = (0.0, contact.pair);

@@ -14,6 +14,7 @@ import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { accessible, spoiled } from "./lib/access.mjs";
 import { launch, missing, open } from "./lib/browser.mjs";
+import { overlay, variants } from "./lib/ghosts.mjs";
 import { Goldens, looks } from "./lib/golden.mjs";
 import { darkness, linkedZoom, opening, paper, phone } from "./lib/layout.mjs";
 import { PAGES, make, reportOf } from "./lib/pages.mjs";
@@ -66,6 +67,8 @@ for (const [name, { several, plain }] of Object.entries(PAGES)) {
     ...(["demo", "eight", "levels"].includes(name) ? [["zooms its histories together", linkedZoom]] : []),
     ["zooms and pans by wheel, drag and keys", zooming],
     ...(moved ? [["shows the value of a force beside its arrow", values], ["tints barrels by their stress", tints]] : []),
+    ...(name === "demo" || name === "eight" ? [["lays all variants over the run", variants]] : []),
+    ...(name === "levels" ? [["lays the first run over the others", overlay]] : []),
     ["keeps cursor and slider together", agreement],
     ["lists its keys and fills the screen", panels],
     ["has no finding of axe", accessible],

@@ -9,12 +9,13 @@ export async function zooming(page) {
   await page.evaluate(() => window.scrollTo(0, 0));
   const canvas = page.locator(".player canvas.scene").first();
   const box = await canvas.boundingBox();
-  const at = [box.x + 0.4 * box.width, box.y + 0.5 * box.height];
+  // The pointer stands on whole pixels.
+  const at = [box.x + 0.4 * box.width, box.y + 0.5 * box.height].map(Math.round);
   const under = () => page.evaluate(([px, py]) => {
     const { stage } = window.barrelstack.player.panes[0];
     const { scale, x, z } = stage.viewAt(0), [middle, foot] = stage.origin();
     return [x + (px - middle) / scale, z + (foot - py) / scale];
-  }, [0.4 * box.width, 0.5 * box.height]);
+  }, [at[0] - box.x, at[1] - box.y]);
   await page.mouse.move(...at);
   // Alone the wheel scrolls the page.
   await page.mouse.wheel(0, 60);
@@ -67,7 +68,7 @@ export async function panels(page) {
   });
   demand(fits, "on the full screen the player must be scrolled");
   await page.evaluate(() => document.exitFullscreen());
-  await page.waitForFunction((high) => Math.abs(document.querySelector(".player canvas.scene").getBoundingClientRect().height - high) < 2, high, { timeout: 3000 });
+  await page.waitForFunction((high) => Math.abs(document.querySelector(".player canvas.scene").getBoundingClientRect().height - high) < 0.05 * high, high, { timeout: 3000 });
 }
 
 /** Over an arrow the pointer shows its force, and never over a name. */
