@@ -47,6 +47,8 @@ function makeLens(screen, stages, changed) {
     }, { passive: false });
     canvas.addEventListener("pointerdown", (event) => {
       held.set(event.pointerId, place(event));
+      stage.hover = place(event);
+      changed();
       if (event.pointerType !== "touch" || screen.classList.contains("zoomed")) canvas.setPointerCapture(event.pointerId);
     });
     canvas.addEventListener("pointermove", (event) => {

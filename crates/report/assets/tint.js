@@ -7,11 +7,13 @@ function between(from, to, share) {
   return `rgb(${mixed.join(" ")})`;
 }
 
-// The top of the scale: few frames go beyond.
+// The end of the scale, at which the values are cut.
 function fullTint(data) {
-  if (!data.tint) return 0;
-  const values = data.tint.values.flatMap((channel) => Array.from(channel).filter((v) => v > 0));
-  return shareBelow(values, 0.99);
+  let most = 0;
+  for (const channel of data.tint ? data.tint.values : []) {
+    for (const value of channel) if (value > most) most = value;
+  }
+  return most;
 }
 
 // The color of a body; none where the quantity does not hold for it.
@@ -34,5 +36,5 @@ function drawTintScale({ context, paint }, tint, full) {
   context.font = "11px system-ui, sans-serif";
   context.textBaseline = "top";
   context.textAlign = "left";
-  context.fillText(`${tint.label}, 0 to ${withUnit(full, 2, tint.unit)}`, x, y + 12);
+  context.fillText(`${tint.label}, 0 to ${withUnit(full, 2, tint.unit)} and more`, x, y + 12);
 }

@@ -203,15 +203,29 @@ fn ghosts(ghosts: &Ghosts, bodies: usize) -> Value {
     })
 }
 
-/// A tint in steps of a 64th of its largest value, or finer.
+/// Share of all values above zero at which the scale of a tint ends: impacts go far beyond what else happens.
+const TINT_ENDS: f64 = 0.99;
+
+/// A tint, cut at the end of its scale, in steps of a 64th of that, or finer.
 fn tint(tint: &Tint, bodies: usize, count: usize) -> Value {
     let value = |frame: usize, body: usize| {
         tint.values.get(frame).and_then(|list| list.get(body)).map_or(f64::NAN, |v| v.max(0.0))
     };
-    let channels: Vec<Vec<f64>> =
+    let mut channels: Vec<Vec<f64>> =
         (0..bodies).map(|body| (0..count).map(|frame| value(frame, body)).collect()).collect();
-    let peak = channels.iter().flatten().filter(|v| v.is_finite()).fold(0.0, |a: f64, b| a.max(*b));
-    let quantum = pack::quantum_for(&[0.0, peak]) * 1024.0;
+    let mut above: Vec<f64> = channels.iter().flatten().copied().filter(|v| *v > 0.0).collect();
+    above.sort_by(f64::total_cmp);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a share of a count"
+    )]
+    let last = (TINT_ENDS * above.len().saturating_sub(1) as f64) as usize;
+    let end = above.get(last).copied().unwrap_or(0.0);
+    for value in channels.iter_mut().flatten().filter(|value| **value > end) {
+        *value = end;
+    }
+    let quantum = pack::quantum_for(&[0.0, end]) * 1024.0;
     json!({ "label": tint.label, "unit": tint.unit, "v": pack::channels(&channels, count, quantum) })
 }
 
