@@ -152,7 +152,8 @@ export async function keyboard(page) {
   for (const [key, name] of [["n", "names"], ["f", "forces"], ["p", "traces"]]) {
     const was = (await state(page))[name];
     now = await press(key);
-    demand(now[name] !== was, `${key} does not change ${name}`);
+    const there = await page.locator(`.player [data-act="${name}"]`).first().isVisible();
+    demand((now[name] !== was) === there, `${key} ${there ? "does not change" : "changes what is not there:"} ${name}`);
     await press(key);
   }
   const seen = new Set([now.camera]);
