@@ -223,7 +223,8 @@ fn band(run: &Run, variants: &Variants) -> Vec<Series> {
     let count = (0..longest).take_while(seen).count();
     let displacement = |way: &&[[f32; 2]], at: usize| {
         let now = way.get(at).or(way.last())?;
-        Some(100.0 * f64::from(now[0] - way.first()?[0]))
+        // To a tenth of a millimeter, which keeps the page short.
+        Some((1e4 * f64::from(now[0] - way.first()?[0])).round() / 100.0)
     };
     let times: Vec<f64> = (0..count).map(|at| at as f64 / RATE).collect();
     let ranges: Vec<Option<Range>> = (0..count)
