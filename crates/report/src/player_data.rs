@@ -187,7 +187,9 @@ const GHOST_TOLERANCE: f64 = 0.01;
 fn ghosts(ghosts: &Ghosts, bodies: usize) -> Value {
     let mut line: Vec<Point> = Vec::new();
     for way in &ghosts.ways {
-        line.extend(simplify(way, GHOST_TOLERANCE));
+        // The rule counts in steps that no line need show: here tolerances, on a screen pixels.
+        let steps: Vec<Point> = way.iter().map(|p| p.map(|v| v / GHOST_TOLERANCE)).collect();
+        line.extend(simplify(&steps, 1.0).into_iter().map(|p| p.map(|v| v * GHOST_TOLERANCE)));
         line.push([f64::NAN; 2]);
     }
     let ends: Vec<&(usize, Pose2)> =
