@@ -45,7 +45,7 @@ impl Check {
         let modules = Command::new("node")
             .args([
                 "--eval",
-                "for (const m of ['playwright-core', '@fontsource/roboto']) require.resolve(m)",
+                "for (const m of ['playwright-core', '@fontsource/roboto', 'axe-core']) require.resolve(m)",
             ])
             .current_dir(script.parent().unwrap_or(&self.root))
             .stdout(Stdio::null())

@@ -8,6 +8,7 @@
 mod alone;
 mod case;
 mod crew;
+mod trail;
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,6 +24,7 @@ use crate::watch::End;
 
 pub use barrelstack_dynamics::lanes::Width;
 pub use case::{CaseResult, Prepared};
+pub use trail::{RATE, Trail};
 
 /// Version of what an ensemble computes: raised whenever the same case may give other bits, so that
 /// results of two versions are never put together.

@@ -16,7 +16,7 @@ pub use drawing::scene;
 use crate::outcome::Outcome;
 use crate::run::Run;
 use crate::summary::Summary;
-use crate::variants::{self, Answer, Shown};
+use crate::variants::{self, Answer, Shown, Variants};
 use crate::verify::Verification;
 
 pub(crate) use inputs::{readable, setting_row};
@@ -33,22 +33,24 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
 
 /// The whole report as a document, free of any output format.
 pub fn document(run: &Run, summary: &Summary) -> Document {
-    page(run, summary, None, None)
+    page(run, summary, (None, None), None)
 }
 
 /// The report of an answer: of the plane that decides with the stage of the other beside its own, and with
 /// what repeats of the run that is shown say about it.
 pub fn answer_document(answer: &Answer, verification: Option<&Verification>) -> Document {
-    page(&answer.decides.run, &answer.decides.summary, answer.other.as_ref(), verification)
+    let Answer { decides, other, .. } = answer;
+    let seen = (decides.variants.as_ref(), other.as_ref());
+    page(&decides.run, &decides.summary, seen, verification)
 }
 
 fn page(
     run: &Run,
     summary: &Summary,
-    other: Option<&Shown>,
+    (variants, other): (Option<&Variants>, Option<&Shown>),
     verification: Option<&Verification>,
 ) -> Document {
-    let scene = scene(run);
+    let scene = drawing::scene_among(run, variants);
     let mut warnings = run.warnings.clone();
     let more = other.into_iter().flat_map(|other| &other.run.warnings);
     warnings.extend(more.filter(|text| !run.warnings.contains(text)).cloned());
@@ -59,7 +61,7 @@ fn page(
             sentences: words::details(run, summary, verification),
             tone: tone(run, summary),
         },
-        blocks: sections::all(run, summary, other, verification, &scene),
+        blocks: sections::all(run, summary, (variants, other), verification, &scene),
         provenance: provenance(run, summary),
         warnings,
     }

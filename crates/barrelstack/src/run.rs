@@ -363,8 +363,8 @@ pub(crate) fn check_memory(
     let bodies = assembly.parts.len();
     let channels = Recording::histories(assembly);
     let (samples, frames) = (end_time * history_rate + 1.0, end_time * frame_rate + 1.0);
-    // A frame holds the pose of every body, and the forces of about four contacts of each.
-    let kept = NUMBER * (samples * channels as f64 + frames * (bodies * (3 + 4 * 4)) as f64);
+    // A frame holds the pose and the stress of every body, and the forces of about four contacts of each.
+    let kept = NUMBER * (samples * channels as f64 + frames * (bodies * (3 + 1 + 4 * 4)) as f64);
     if kept <= MOST_KEPT {
         return Ok(());
     }

@@ -29,6 +29,13 @@ if (board.player) {
   });
 }
 
+listenEverywhere(players);
+if (board.player) {
+  const linked = linkedTime();
+  if (linked !== null) board.player.seek(linked);
+  board.player.onRest(makeLink(board.player.seek));
+}
+
 function refresh() {
   for (const player of players) player.refresh();
   for (const plot of board.plots) if (plot.plot) plot.build();

@@ -4,7 +4,9 @@ function readPane(raw, dashes) {
   const forces = raw.forces && Object.fromEntries(
     ["x", "z", "fx", "fz"].map((name) => [name, unpack(raw.forces[name])]));
   const times = unpack(raw.times)[0];
-  return { ...raw, dashes, forces, times, count: times.length, poses: unpack(raw.poses) };
+  const tint = raw.tint && { ...raw.tint, values: unpack(raw.tint.v) };
+  const ghosts = raw.ghosts && { ...raw.ghosts, ways: unpack(raw.ghosts.ways), ends: unpack(raw.ghosts.ends) };
+  return { ...raw, dashes, forces, tint, ghosts, times, count: times.length, poses: unpack(raw.poses) };
 }
 
 function makePlayer(raw, figure, dashes) {
@@ -13,41 +15,75 @@ function makePlayer(raw, figure, dashes) {
   const ground = raw.ground.map((h) => ({ ...h, t: columnOf(h.t), v: columnOf(h.v) }));
   const boxes = [...figure.querySelectorAll(".screen .stage")];
   const panes = raw.panes.map((one, at) => makePane(readPane(one, dashes), boxes[at]));
-  // Arrows of all panes have one scale.
-  const strong = Math.max(0, ...panes.map(({ stage }) => stage.strong));
-  for (const { stage } of panes) stage.strong = strong;
+  // Arrows and tints of all panes have one scale each.
+  for (const scale of ["strong", "full"]) {
+    const common = Math.max(0, ...panes.map(({ stage }) => stage[scale]));
+    for (const { stage } of panes) stage[scale] = common;
+  }
+  // The bodies of the first pane, to be drawn over the others.
+  if (raw.overlay) for (const { data } of panes.slice(1)) data.overlay = panes[0].data;
   const any = (test) => panes.some(({ data }) => test(data));
   // The pane that lasts longest beats time; the others show their frame nearest to it.
   const last = (pane) => (pane.data.count > 0 ? pane.data.times[pane.data.count - 1] : -Infinity);
   const lead = panes.reduce((a, b) => (last(b) > last(a) ? b : a), panes[0]);
   const { times, count } = lead ? lead.data : { times: [], count: 0 };
   const start = count > 0 ? times[0] : 0, end = count > 0 ? times[count - 1] : 0;
-  const scrub = find("input.scrub");
+  // Where play starts: not with the stillness before the ground moves.
+  const begins = Math.min(Math.max(raw.begins ?? start, start), end);
+  const screen = find(".screen"), scrub = find("input.scrub");
   const timeline = makeTimeline(find("canvas.timeline"), panes.map((p) => p.data), ground, start, end);
-  let frame = 0, head = start, playing = false, speed = 1, before = 0, request = 0;
-  const listeners = [];
+  let frame = 0, head = begins, playing = false, speed = 1, before = 0, request = 0;
+  const listeners = [], rests = [];
   const rate = { frames: 0, since: 0, fps: 0 };
 
-  scrub.max = Math.max(0, count - 1);
-  for (const name of ["forces", "traces"]) {
-    const has = any((data) => (name === "forces" ? data.forces : data.traces.length > 0));
-    if (!has) act(name).closest("label").hidden = true;
+  scrub.min = start;
+  scrub.max = end;
+  const shown = { forces: (data) => data.forces, traces: (data) => data.traces.length > 0, tint: (data) => data.tint, ghosts: (data) => data.ghosts || data.overlay };
+  for (const [name, has] of Object.entries(shown)) {
+    if (!any(has)) act(name).closest("label").hidden = true;
   }
+  const known = panes.find(({ data }) => data.ghosts);
+  act("ghosts").nextElementSibling.textContent = raw.overlay || (known ? known.data.ghosts.label : "");
   if (!any((data) => data.bodies.some((body) => body.role === "ground"))) act("camera").options[1].remove();
+
+  // `opens` while the player is as the page opened it, and nobody has taken over.
+  let opens = true;
+  const moment = typeof raw.opens === "number" ? panes[raw.opens].data.moment : null;
+  const loop = moment && makeLoop(screen, moment.t, [start, end], (time) => show(nearest(times, time)), (looping) => {
+    act("moment").setAttribute("aria-pressed", looping);
+  });
+  if (!loop) act("moment").hidden = true;
 
   function show(k) {
     frame = Math.min(Math.max(k, 0), Math.max(0, count - 1));
     const time = count > 0 ? times[frame] : 0;
-    for (const pane of panes) pane.show(pane === lead ? frame : nearest(pane.data.times, time), time);
+    for (const pane of panes) pane.show(pane === lead ? frame : nearest(pane.data.times, time), time, opens);
     timeline.cursor(time);
-    scrub.value = frame;
+    scrub.value = time;
     scrub.setAttribute("aria-valuetext", `${time.toFixed(2)} seconds`);
     for (const listener of listeners) listener(time);
   }
 
+  // The reader takes over from the opening.
+  function take() {
+    if (loop) loop.stop();
+    opens = false;
+  }
+
+  function open() {
+    opens = true;
+    pause();
+    head = begins;
+    show(nearest(times, moment ? moment.t : begins));
+  }
+
+  const settled = () => { if (!playing && !opens) for (const listener of rests) listener(times[frame] ?? 0); };
+
   function seek(time) {
+    take();
     head = Math.min(Math.max(Number(time) || 0, start), end);
     show(nearest(times, head));
+    settled();
     return frame;
   }
 
@@ -69,7 +105,8 @@ function makePlayer(raw, figure, dashes) {
 
   function play() {
     if (playing || count < 2) return;
-    if (head >= end) head = start;
+    take();
+    if (head >= end) head = begins;
     playing = true;
     before = rate.since = performance.now();
     rate.frames = 0;
@@ -81,6 +118,7 @@ function makePlayer(raw, figure, dashes) {
     playing = false;
     cancelAnimationFrame(request);
     mark();
+    settled();
   }
 
   function mark() {
@@ -90,17 +128,33 @@ function makePlayer(raw, figure, dashes) {
 
   function stepTo(k) {
     pause();
+    take();
     show(k);
     if (count > 0) head = times[frame];
+    settled();
   }
 
-  const actions = {
-    play: () => (playing ? pause() : play()),
+  const toggle = () => (playing ? pause() : play());
+  const buttons = {
+    play: toggle,
     first: () => stepTo(0),
     back: () => stepTo(frame - 1),
     forward: () => stepTo(frame + 1),
+    moment: () => {
+      if (!loop) return;
+      const stops = loop.isLooping();
+      loop.stop();
+      open();
+      if (!stops) loop.run();
+    },
+    keys: makePanel(find("dialog")),
+    fullscreen: () => (document.fullscreenElement ? document.exitFullscreen() : screen.requestFullscreen()),
   };
-  for (const [name, action] of Object.entries(actions)) act(name).addEventListener("click", action);
+  act("fullscreen").hidden = !document.fullscreenEnabled;
+  screen.addEventListener("fullscreenchange", () => refresh());
+  const lens = makeLens(screen, panes.map(({ stage }) => stage), () => show(frame));
+  buttons.whole = lens.reset;
+  for (const [name, action] of Object.entries(buttons)) act(name).addEventListener("click", action);
   const onStages = (change) => {
     for (const pane of panes) change(pane.stage);
     show(frame);
@@ -110,18 +164,20 @@ function makePlayer(raw, figure, dashes) {
   const follow = panes.length > 0 && panes.every(({ stage }) => stage.camera === "stack");
   for (const { stage } of panes) stage.camera = follow ? "stack" : "fixed";
   act("camera").value = follow ? "stack" : "fixed";
-  for (const name of ["names", "forces", "traces"]) {
+  for (const name of ["names", "forces", "traces", "tint", "ghosts"]) {
     if (panes.length === 0) break;
     act(name).checked = panes[0].stage[name];
     act(name).addEventListener("change", () => onStages((stage) => { stage[name] = act(name).checked; }));
   }
-  scrub.addEventListener("input", () => stepTo(Number(scrub.value)));
+  scrub.addEventListener("input", () => {
+    pause();
+    seek(scrub.value);
+  });
   for (const button of figure.querySelectorAll(".events button")) {
     button.addEventListener("click", () => {
       pause();
-      seek(Number(button.dataset.time));
-      const box = find(".screen").getBoundingClientRect();
-      if (box.top < 0) find(".screen").scrollIntoView({ block: "start" });
+      seek(button.dataset.time);
+      if (screen.getBoundingClientRect().top < 0) screen.scrollIntoView({ block: "start" });
     });
   }
 
@@ -131,8 +187,10 @@ function makePlayer(raw, figure, dashes) {
     select.selectedIndex = to;
     select.dispatchEvent(new Event("change"));
   }
-  const keys = {
-    " ": actions.play,
+  const click = (name) => () => { if (!act(name).closest("[hidden]")) act(name).click(); };
+  const step = 40; // px
+  listen(screen, {
+    " ": toggle,
     ArrowLeft: (shift) => stepTo(frame - (shift ? 10 : 1)),
     ArrowRight: (shift) => stepTo(frame + (shift ? 10 : 1)),
     Home: () => stepTo(0),
@@ -143,20 +201,10 @@ function makePlayer(raw, figure, dashes) {
       const final = act("camera").selectedIndex === act("camera").length - 1;
       cycle(act("camera"), final ? -act("camera").selectedIndex : 1);
     },
-    f: () => act("forces").click(),
-    n: () => act("names").click(),
-    p: () => act("traces").click(),
-  };
-  find(".screen").addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const tag = event.target.tagName;
-    // A focused control keeps the keys that work it.
-    if (tag === "SELECT" || (tag === "BUTTON" && event.key === " ")) return;
-    if (tag === "INPUT" && event.target.type === "checkbox" && event.key === " ") return;
-    const action = keys[event.key];
-    if (!action) return;
-    event.preventDefault();
-    action(event.shiftKey);
+    m: click("moment"), f: click("forces"), n: click("names"), p: click("traces"), t: click("tint"), g: click("ghosts"),
+    F: click("fullscreen"), "?": click("keys"),
+    "+": () => lens.zoom(1.25), "=": () => lens.zoom(1.25), "-": () => lens.zoom(0.8), 0: lens.reset,
+    w: () => lens.pan(0, step), s: () => lens.pan(0, -step), a: () => lens.pan(step, 0), d: () => lens.pan(-step, 0),
   });
   let dragging = false;
   const toPointer = (event) => {
@@ -177,12 +225,21 @@ function makePlayer(raw, figure, dashes) {
   function refresh() {
     fitStages(panes, figure);
     timeline.resize();
+    // The thumb, 16 px wide, stands under the cursor.
+    const [left, right] = timeline.ends();
+    scrub.style.margin = `0 ${right - 8}px 0 ${left - 8}px`;
     show(frame);
   }
 
+  fitStages(panes, figure);
+  open();
   refresh();
+  if (loop && !window.matchMedia("(prefers-reduced-motion: reduce)").matches) loop.run();
   return {
-    seek, play, pause, refresh,
+    seek, play, pause, toggle, refresh, screen,
+    onRest: (listener) => rests.push(listener),
+    isLooping: () => Boolean(loop && loop.isLooping()),
+    moment, begins, lens: lens.lens,
     onTime: (listener) => { listeners.push(listener); listener(times[frame] ?? 0); },
     time: () => times[frame] ?? 0,
     frame: () => frame,
@@ -198,21 +255,24 @@ function makePlayer(raw, figure, dashes) {
 // One scene: its stage, its clock and what it announces.
 function makePane(data, box) {
   const stage = makeStage(data, box.querySelector("canvas.scene"));
+  if (data.moment) stage.canvas.setAttribute("aria-label", `The bodies at the time shown; ${data.moment.text}, at ${data.moment.t.toFixed(2)}\u00a0s`);
   const clock = box.querySelector(".clock"), news = box.querySelector(".news");
   const end = data.count > 0 ? data.times[data.count - 1] : 0;
   let shown = 0, said = null;
   return {
     data, stage,
-    show(k, time) {
+    // While the player opens, the moment has its callout and nothing is announced.
+    show(k, time, opens) {
       shown = Math.min(Math.max(k, 0), Math.max(0, data.count - 1));
       const own = data.count > 0 ? data.times[shown] : 0;
+      stage.callout = data.moment && time >= data.moment.t - (opens ? BEFORE : 1e-6) && time < data.moment.t + 0.8;
       stage.draw(shown, own);
       // A run that ended holds its last frame and says so.
       const ended = time > end + 0.02;
       clock.textContent = ended ? `ended at ${end.toFixed(2)}\u00a0s` : `${own.toFixed(2)}\u00a0s`;
       clock.classList.toggle("ended", ended);
       const current = currentEvents(data, time);
-      const event = current.length > 0 ? current[current.length - 1] : null;
+      const event = current.length > 0 && !opens ? current[current.length - 1] : null;
       if (event !== said) {
         said = event;
         news.textContent = event ? event.text : "";
@@ -232,17 +292,25 @@ function fitStages(panes, figure) {
   if (!first) return;
   // A player that opens the page fills the first screen, controls included; others take less.
   const above = screen.getBoundingClientRect().top + window.scrollY;
+  const used = figure.querySelector(".controls").getBoundingClientRect().bottom - screen.getBoundingClientRect().top;
+  // Slender stages have no room beside their bodies.
+  for (const { stage } of panes) {
+    const slender = stage.canvas.parentElement.clientWidth < 260 && panes.some(({ data }) => data.moment);
+    stage.head = HEAD + (slender ? ABOVE : 0);
+  }
   const canvases = panes.map(({ stage }) => stage.canvas);
   const rows = new Set(canvases.map((canvas) => Math.round(canvas.parentElement.getBoundingClientRect().top))).size || 1;
-  const rest = screen.offsetHeight - rows * first.stage.canvas.offsetHeight;
+  const rest = used - rows * first.stage.canvas.offsetHeight;
   const opens = above < 0.5 * window.innerHeight;
-  const room = (opens ? window.innerHeight - above - rest - 8 : 0.6 * window.innerHeight) / rows;
+  const full = document.fullscreenElement === screen;
+  const free = full ? window.innerHeight - rest : opens ? window.innerHeight - above - rest - 10 : 0.6 * window.innerHeight;
+  const room = free / rows;
   const least = rows > 1 ? 210 : 320;
   for (const { stage } of panes) {
     stage.most = Infinity;
-    stage.resize(Math.max(room, least));
+    stage.resize(Math.max(room, least), full);
   }
   // Panes may differ by the width of a border.
-  const common = Math.min(...panes.map(({ stage }) => stage.viewAt(0).scale));
+  const common = Math.min(...panes.map(({ stage }) => stage.scale()));
   for (const { stage } of panes) stage.most = common;
 }

@@ -3,7 +3,7 @@
 const FOOT = 36; // room below the lowest body for the hatch of the ground and the scales (px)
 const HATCH = 12; // distance of the strokes of the hatch (px)
 const HEAD = 34; // room above the highest body for the clock and the news (px)
-const FORCE_SHARE = 0.3; // length of a strong force over the height of the view
+const ABOVE = 64; // and for a callout, where there is none beside the bodies
 
 function bodyShape(body) {
   const trace = (line) => {
@@ -30,11 +30,19 @@ function makeStage(data, canvas) {
   const moving = data.bodies.map((body, at) => at).filter((at) => data.bodies[at].role !== "ground");
   const [left, bottom, right, top] = data.view;
   const stage = {
-    camera: "fixed", names: true, forces: false, traces: true,
+    camera: "fixed", names: true, forces: false, traces: true, tint: false, ghosts: false,
+    // Whether the sentence of the moment is shown, and where the pointer is (px).
+    callout: false, hover: null, valued: null,
+    head: HEAD,
+    lens: { factor: 1, x: 0, z: 0 },
     // The largest scale (px/m) that may be drawn to: panes side by side are drawn to one.
     most: Infinity,
-    strong: strongForce(data), canvas, draw, resize, retheme, viewAt,
+    strong: strongForce(data), full: fullTint(data), canvas, draw, resize, retheme, viewAt, scale,
+    // The point of the canvas (px) about which the view is, and the size of the view (m).
+    origin: () => [0.5 * width, height - FOOT],
+    size: () => [right - left, top - bottom],
   };
+  const place = {}, density = {};
   let paint = {};
   let width = 0, height = 0, dpr = 1;
 
@@ -44,20 +52,24 @@ function makeStage(data, canvas) {
     paint = Object.fromEntries(names.map((name) => [name, color(name)]));
   }
 
-  // `most` is the height (px) that there is room for.
-  function resize(most) {
+  // `most` is the height (px) that there is room for, all of which is taken on the `full` screen.
+  function resize(most, full) {
     width = Math.max(120, Math.floor(canvas.parentElement.getBoundingClientRect().width));
-    const wanted = (width * (top - bottom)) / (right - left) + FOOT + HEAD;
-    height = Math.round(Math.min(most, 640, Math.max(wanted, 220)));
+    const wanted = (width * (top - bottom)) / (right - left) + FOOT + stage.head;
+    height = Math.round(full ? most : Math.min(most, 640, Math.max(wanted, 220)));
     dpr = Math.min(window.devicePixelRatio || 1, 3);
     canvas.width = Math.round(width * dpr);
     canvas.height = Math.round(height * dpr);
     canvas.style.height = height + "px";
   }
 
+  // The scale (px/m) of the whole picture.
+  function scale() {
+    return Math.min(width / (right - left), (height - FOOT - stage.head) / (top - bottom), stage.most);
+  }
+
   // Meters to pixels: scale and the world point at the middle of the foot of the canvas.
   function viewAt(frame) {
-    const scale = Math.min(width / (right - left), (height - FOOT - HEAD) / (top - bottom), stage.most);
     let x = 0.5 * (left + right), z = bottom;
     const pose = (body, k) => [data.poses[3 * body][k], data.poses[3 * body + 1][k]];
     if (stage.camera === "ground" && ground >= 0) {
@@ -75,7 +87,8 @@ function makeStage(data, canvas) {
       const fall = moving.length === 1 ? pose(moving[0], frame)[1] - pose(moving[0], 0)[1] : 0;
       if (isFinite(fall)) z += fall;
     }
-    return { scale, x, z };
+    const { factor, x: aside, z: above } = stage.lens;
+    return { scale: scale() * factor, x: x + aside, z: z + above };
   }
 
   function draw(frame, time) {
@@ -92,16 +105,48 @@ function makeStage(data, canvas) {
     const view = viewAt(frame);
     const toX = (x) => 0.5 * width + (x - view.x) * view.scale;
     const toY = (z) => height - FOOT - (z - view.z) * view.scale;
-    for (let body = 0; body < shapes.length; body++) drawBody(context, body, frame, view, toX, toY);
+    const pen = { context, width, height, paint, frame, time, view, toX, toY };
+    const at = groundAt(frame);
+    if (stage.ghosts && data.ghosts) drawEnds(pen, data.ghosts, shapes, at, density);
+    const tinted = stage.tint && data.tint;
+    for (let body = 0; body < shapes.length; body++) drawBody(context, body, frame, view, toX, toY, tinted);
     drawTies(context, frame, time, toX, toY);
+    if (stage.ghosts && data.ghosts) drawWays(pen, data.ghosts, at);
+    if (stage.ghosts && data.overlay) drawOverlay(pen, data.overlay);
     if (stage.traces) drawTraces(context, frame, toX, toY);
-    if (stage.names) drawNames(context, frame, view, toX, toY);
-    if (stage.forces && data.forces) drawForces(context, frame, toX, toY);
-    drawEvents(context, frame, time, view, toX, toY);
-    drawScales(context, view);
+    // Names stand over arrows, and values where no name is.
+    const arrows = stage.forces ? drawForces(pen, data, stage.strong) : [];
+    const names = stage.names ? drawNames(context, frame, view, toX, toY, tinted) : [];
+    drawEvents(pen);
+    if (tinted) drawTintScale(pen, data.tint, stage.full);
+    if (stage.callout && data.moment) drawMoment(pen);
+    drawScales(pen);
+    stage.valued = stage.hover ? drawForceValue(pen, arrows, stage.hover, names) : null;
   }
 
-  function drawBody(context, body, frame, view, toX, toY) {
+  // The place of the ground (m).
+  function groundAt(frame) {
+    return ground < 0 ? [0, 0] : [data.poses[3 * ground][frame], data.poses[3 * ground + 1][frame]];
+  }
+
+  // The places of the bodies as [x, y, radius] (px).
+  function circle(pen, body, frame) {
+    const [x, z] = [data.poses[3 * body][frame], data.poses[3 * body + 1][frame]];
+    return [pen.toX(x), pen.toY(z), shapes[body].reach * pen.view.scale];
+  }
+
+  function drawMoment(pen) {
+    const { body, text, t } = data.moment;
+    const at = circle(pen, body, pen.frame);
+    if (!isFinite(at[0] + at[1])) return;
+    ring(pen, body);
+    // What moves does so for about a second; the place is free before and after.
+    const frames = [t - 0.5, t, t + 0.5, t + 1.1].map((time) => nearest(data.times, time));
+    const circles = frames.flatMap((frame) => moving.map((one) => circle(pen, one, frame))).filter((one) => isFinite(one[0] + one[1]));
+    drawCallout(pen, text, at, circles, place);
+  }
+
+  function drawBody(context, body, frame, view, toX, toY, tinted) {
     const [x, z, angle] = [0, 1, 2].map((c) => data.poses[3 * body + c][frame]);
     if (!isFinite(x + z + angle)) return;
     const role = data.bodies[body].role;
@@ -115,7 +160,7 @@ function makeStage(data, canvas) {
     for (const { path, closed, points } of shapes[body].outlines) {
       context.lineWidth = (closed ? 1.2 : 2) / s;
       if (closed) {
-        context.fillStyle = paint[role];
+        context.fillStyle = (tinted && tintOf(data, body, frame, stage.full, paint)) || paint[role];
         context.fill(path);
       }
       context.stroke(path);
@@ -169,7 +214,9 @@ function makeStage(data, canvas) {
     context.stroke();
   }
 
-  function drawNames(context, frame, view, toX, toY) {
+  // Gives the boxes of the names.
+  function drawNames(context, frame, view, toX, toY, tinted) {
+    const boxes = [];
     context.textAlign = "center";
     context.textBaseline = "middle";
     for (const body of moving) {
@@ -182,11 +229,14 @@ function makeStage(data, canvas) {
       const y = toY(z) + (stage.traces && data.traces.length > 0 ? 1.15 * size : 0);
       context.lineWidth = 3;
       context.lineJoin = "round";
-      context.strokeStyle = paint[role];
+      context.strokeStyle = tinted ? paint.paper : paint[role];
       context.strokeText(name, toX(x), y);
       context.fillStyle = paint.line;
       context.fillText(name, toX(x), y);
+      const half = 0.5 * context.measureText(name).width + 2;
+      boxes.push([toX(x) - half, y - 0.6 * size, toX(x) + half, y + 0.6 * size]);
     }
+    return boxes;
   }
 
   function drawTraces(context, frame, toX, toY) {
@@ -226,75 +276,29 @@ function makeStage(data, canvas) {
     });
   }
 
-  function drawForces(context, frame, toX, toY) {
-    const perNewton = stage.strong > 0 ? FORCE_SHARE * height / stage.strong : 0;
-    context.strokeStyle = context.fillStyle = paint.s1;
-    context.lineWidth = 2;
-    context.lineCap = "butt";
-    for (const force of forcesAt(data, frame)) {
-      const x = toX(force.x), y = toY(force.z);
-      arrow(context, x, y, x + force.fx * perNewton, y - force.fz * perNewton);
-    }
-    const bar = roundLength(0.7 * stage.strong);
-    if (bar > 0) {
-      const length = bar * perNewton, y = height - 12;
-      arrow(context, width - 14 - length, y, width - 14, y);
-      context.fillStyle = paint.ink;
-      context.font = "12px system-ui, sans-serif";
-      context.textAlign = "right";
-      context.textBaseline = "middle";
-      const [value, unit] = bar >= 1000 ? [bar / 1000, "kN"] : [bar, "N"];
-      halo(context, `${readable(value, 1)}\u00a0${unit}`, width - 20 - length, y);
-    }
-  }
-
-  function arrow(context, x0, y0, x1, y1) {
-    const length = Math.hypot(x1 - x0, y1 - y0);
-    if (!(length > 1.5)) return;
-    const head = Math.min(8, 0.6 * length);
-    const ux = (x1 - x0) / length, uy = (y1 - y0) / length;
-    const bx = x1 - ux * head, by = y1 - uy * head;
-    context.beginPath();
-    context.moveTo(x0, y0);
-    context.lineTo(bx, by);
-    context.stroke();
-    context.beginPath();
-    context.moveTo(x1, y1);
-    context.lineTo(bx - uy * head * 0.45, by + ux * head * 0.45);
-    context.lineTo(bx + uy * head * 0.45, by - ux * head * 0.45);
-    context.fill();
-  }
-
-  function halo(context, text, x, y) {
+  // Marks a body by its outline.
+  function ring({ context, frame, view, toX, toY }, body) {
+    const [x, z, angle] = [0, 1, 2].map((c) => data.poses[3 * body + c][frame]);
+    if (!isFinite(x + z + angle)) return;
     context.save();
-    context.lineWidth = 4;
+    context.translate(toX(x), toY(z));
+    context.rotate(-angle);
+    context.scale(view.scale, -view.scale);
+    context.strokeStyle = paint.accent;
     context.lineJoin = "round";
-    context.strokeStyle = paint.paper;
-    context.strokeText(text, x, y);
+    context.lineWidth = 3.5 / view.scale;
+    for (const { path } of shapes[body].outlines) context.stroke(path);
     context.restore();
-    context.fillText(text, x, y);
   }
 
-  function drawEvents(context, frame, time, view, toX, toY) {
-    for (const event of currentEvents(data, time)) {
-      if (event.body === null) continue;
-      const [x, z] = [data.poses[3 * event.body][frame], data.poses[3 * event.body + 1][frame]];
-      if (!isFinite(x + z) || data.bodies[event.body].role === "ground") continue;
-      const angle = data.poses[3 * event.body + 2][frame];
-      if (!isFinite(angle)) continue;
-      context.save();
-      context.translate(toX(x), toY(z));
-      context.rotate(-angle);
-      context.scale(view.scale, -view.scale);
-      context.strokeStyle = paint.accent;
-      context.lineJoin = "round";
-      context.lineWidth = 3.5 / view.scale;
-      for (const { path } of shapes[event.body].outlines) context.stroke(path);
-      context.restore();
+  function drawEvents(pen) {
+    for (const { body } of currentEvents(data, pen.time)) {
+      if (body !== null && data.bodies[body].role !== "ground") ring(pen, body);
     }
   }
 
-  function drawScales(context, view) {
+  function drawScales(pen) {
+    const { context, view } = pen;
     const bar = roundLength(0.18 * width / view.scale);
     const length = bar * view.scale, y = height - 12;
     context.strokeStyle = context.fillStyle = paint.ink;
@@ -308,7 +312,7 @@ function makeStage(data, canvas) {
     context.font = "12px system-ui, sans-serif";
     context.textAlign = "left";
     context.textBaseline = "middle";
-    halo(context, bar >= 1 ? `${bar}\u00a0m` : `${readable(bar * 100, 1)}\u00a0cm`, 20 + length, y - 2);
+    halo(pen, bar >= 1 ? `${bar}\u00a0m` : `${readable(bar * 100, 1)}\u00a0cm`, 20 + length, y - 2);
   }
 
   // Where everything leaves the picture, the camera goes with it.
@@ -324,27 +328,4 @@ function makeStage(data, canvas) {
 // Events within the last 0.8 s of the run.
 function currentEvents(data, time) {
   return data.events.filter((event) => event.t <= time + 1e-6 && event.t > time - 0.8);
-}
-
-function forcesAt(data, frame) {
-  const list = [];
-  if (!data.forces) return list;
-  const { x, z, fx, fz } = data.forces;
-  for (let slot = 0; slot < x.length; slot++) {
-    if (isFinite(fx[slot][frame] + fz[slot][frame] + x[slot][frame] + z[slot][frame])) {
-      list.push({ x: x[slot][frame], z: z[slot][frame], fx: fx[slot][frame], fz: fz[slot][frame] });
-    }
-  }
-  return list;
-}
-
-// The force that 95 of 100 stay below: a short impact may leave the picture, the rest is legible.
-function strongForce(data) {
-  const sizes = [];
-  const stride = Math.max(1, Math.floor(data.count / 300));
-  for (let k = 0; k < data.count; k += stride) {
-    for (const force of forcesAt(data, k)) sizes.push(Math.hypot(force.fx, force.fz));
-  }
-  sizes.sort((a, b) => a - b);
-  return sizes.length > 0 ? sizes[Math.floor(0.95 * (sizes.length - 1))] : 0;
 }

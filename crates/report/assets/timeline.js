@@ -131,9 +131,12 @@ function makeTimeline(canvas, panes, ground, start, end) {
     return start + share * (end - start);
   }
 
+  // Distances (px) from the left edge and from the right one between which time runs.
+  const ends = () => [left, SIDE];
+
   canvas.hidden = ground.length === 0 && lanes.length === 0;
   resize();
-  return { resize, cursor, timeAt };
+  return { resize, cursor, timeAt, ends };
 }
 
 // One shape for each kind of event, the same in the strip and (by style) in the list.

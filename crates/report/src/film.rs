@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::{
-    Frames, Scene,
+    Frames, Scene, Tint,
     drawing::{Anchor, Drawing},
     number, raster,
     strip::{View, define_bodies, picture},
@@ -84,7 +84,11 @@ impl Scene {
             poses: kept.iter().map(|at| frames.poses[*at].clone()).collect(),
             forces: kept.iter().filter_map(|at| frames.forces.get(*at).cloned()).collect(),
         };
-        Self { frames, ..self.clone() }
+        let tint = self.tint.as_ref().map(|tint| Tint {
+            values: kept.iter().filter_map(|at| tint.values.get(*at).cloned()).collect(),
+            ..tint.clone()
+        });
+        Self { frames, tint, ..self.clone() }
     }
 }
 

@@ -200,7 +200,12 @@ impl<'a> Writer<'a> {
                 format!(" <span class=\"unit\">({})</span>", escape::html(&column.unit))
             };
             let name = escape::html(&column.name);
-            self.put(&format!("<th scope=\"col\"{}>{name}{unit}</th>", class(at)));
+            // A cell without words heads nothing.
+            if name.is_empty() && unit.is_empty() {
+                self.put("<td></td>");
+            } else {
+                self.put(&format!("<th scope=\"col\"{}>{name}{unit}</th>", class(at)));
+            }
         }
         self.put("</tr></thead>\n<tbody>\n");
         for row in &table.rows {

@@ -86,8 +86,8 @@ pub use panels::Panels;
 pub use player::{Pane, Player, Players};
 pub use plot::{Axis, Band, Mark, Plot, Scale, Series, SeriesStyle};
 pub use scene::{
-    ContactForce, Event, EventKind, Frames, History, Point, Polyline, Pose2, Role, Scene,
-    SceneBody, Tie, Trace,
+    ContactForce, Event, EventKind, Frames, Ghosts, History, Moment, Point, Polyline, Pose2, Role,
+    Scene, SceneBody, Tie, Tint, Trace,
 };
 pub use strip::{Panel, Strip};
 pub use table::{Cell, Column, Rating, Table};

@@ -15,10 +15,18 @@ const UPLOT_JS: &str = include_str!("../assets/vendor/uPlot.iife.min.js");
 const UPLOT_LICENSE: &str = include_str!("../assets/vendor/uPlot-LICENSE");
 
 /// The page's own scripts, in the order they depend on each other.
-const SCRIPTS: [&str; 6] = [
+const SCRIPTS: [&str; 14] = [
     include_str!("../assets/decode.js"),
+    include_str!("../assets/forces.js"),
+    include_str!("../assets/tint.js"),
+    include_str!("../assets/callout.js"),
+    include_str!("../assets/ghosts.js"),
     include_str!("../assets/stage.js"),
     include_str!("../assets/timeline.js"),
+    include_str!("../assets/lens.js"),
+    include_str!("../assets/moment.js"),
+    include_str!("../assets/keys.js"),
+    include_str!("../assets/link.js"),
     include_str!("../assets/player.js"),
     include_str!("../assets/plots.js"),
     include_str!("../assets/page.js"),

@@ -43,6 +43,8 @@ pub struct Players {
     pub panes: Vec<Pane>,
     /// Histories shown in the strip under the stages, in place of those of the scenes.
     pub ground: Vec<History>,
+    /// What a switch is called that draws the bodies of the first scene over all others; none without it.
+    pub overlay: Option<String>,
 }
 
 /// One scene among others.

@@ -1,11 +1,15 @@
 //! The page's form of a player: panes with bodies, packed frames and events, and what they share.
 
+use std::cmp::Ordering;
+
 use serde_json::{Value, json};
 
 use crate::{
-    ContactForce, History, Player, Players, Polyline, Scene, Trace,
+    ContactForce, Ghosts, History, Moment, Player, Players, Point, Polyline, Pose2, Scene, Tint,
+    Trace,
     pack::{self, POSE_QUANTUM, TIME_QUANTUM},
     scene::{Extent, window},
+    simplify::simplify,
 };
 
 /// A single player.
@@ -19,7 +23,37 @@ pub(crate) fn of_player(player: &Player, id: &str) -> Value {
         "id": id,
         "panes": [pane("", &player.scene, &player.traces, &view)],
         "ground": lanes,
+        "opens": opens([&*player.scene]),
+        "begins": begins(&player.scene.ground),
     })
+}
+
+/// Which pane a player opens on: the first to fall, or else the first that has a moment.
+fn opens<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<usize> {
+    let moments = scenes.into_iter().map(|scene| scene.moment.as_ref()).enumerate();
+    let known = moments
+        .filter_map(|(at, moment)| Some((at, moment?)))
+        .filter(|(_, moment)| moment.time.is_finite());
+    let key = |moment: &Moment| (!moment.falls, moment.time);
+    known
+        .min_by(|(_, a), (_, b)| key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal))
+        .map(|(at, _)| at)
+}
+
+/// Time (s) before the ground moves strongly at which the player starts.
+const LEAD_IN: f64 = 1.0;
+
+/// Share of the peak of a history at which the ground moves strongly.
+const STRONG: f64 = 0.1;
+
+/// Where a player starts (s): shortly before the first of the histories of the ground is strong.
+fn begins(ground: &[History]) -> Option<f64> {
+    let strong = ground.iter().filter_map(|history| {
+        let peak = history.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        let mut both = history.times.iter().zip(&history.values);
+        both.find(|(_, value)| peak > 0.0 && value.abs() >= STRONG * peak).map(|(time, _)| *time)
+    });
+    strong.reduce(f64::min).map(|time| time - LEAD_IN)
 }
 
 /// Several panes, all to one scale: every window is as large as the largest, their feet level.
@@ -42,7 +76,14 @@ pub(crate) fn of_players(players: &Players, id: &str) -> Value {
         })
         .collect();
     let lanes: Vec<Value> = players.ground.iter().map(history).collect();
-    json!({ "id": id, "panes": panes, "ground": lanes })
+    json!({
+        "id": id,
+        "panes": panes,
+        "ground": lanes,
+        "opens": opens(players.panes.iter().map(|pane| &*pane.scene)),
+        "begins": begins(&players.ground),
+        "overlay": players.overlay,
+    })
 }
 
 fn whole_window(scene: &Scene) -> Extent {
@@ -96,6 +137,12 @@ fn pane(mark: &str, scene: &Scene, traces: &[Trace], view: &Extent) -> Value {
         .filter(|tie| tie.bodies.iter().all(|body| *body < scene.bodies.len()))
         .map(|tie| json!({ "bodies": tie.bodies, "points": tie.points, "torn": tie.torn_at }))
         .collect();
+    let moment = scene
+        .moment
+        .as_ref()
+        .filter(|moment| moment.time.is_finite() && moment.body < scene.bodies.len() && count > 0);
+    let moment =
+        moment.map(|moment| json!({ "t": moment.time, "body": moment.body, "text": moment.text }));
     json!({
         "mark": mark,
         "bodies": bodies,
@@ -105,6 +152,9 @@ fn pane(mark: &str, scene: &Scene, traces: &[Trace], view: &Extent) -> Value {
         "forces": forces(&scene.frames.forces, count),
         "events": events,
         "traces": traces,
+        "moment": moment,
+        "ghosts": scene.ghosts.as_ref().map(|ghosts| self::ghosts(ghosts, scene.bodies.len())),
+        "tint": scene.tint.as_ref().map(|tint| self::tint(tint, scene.bodies.len(), count)),
         "view": [view.lower[0], view.lower[1], view.upper[0], view.upper[1]],
     })
 }
@@ -125,6 +175,60 @@ fn history(history: &History) -> Value {
         "t": pack::column(&history.times[..count], false),
         "v": pack::column(&history.values[..count], false),
     })
+}
+
+/// Quantum of ghosts (m, rad): four millimeters, which no line of theirs shows.
+const GHOST_QUANTUM: f64 = 1.0 / 256.0;
+
+/// How far (m) the line of a ghost may be from its way.
+const GHOST_TOLERANCE: f64 = 0.01;
+
+/// Ways as two channels with gaps between them; ends as three channels and a list of bodies.
+fn ghosts(ghosts: &Ghosts, bodies: usize) -> Value {
+    let mut line: Vec<Point> = Vec::new();
+    for way in &ghosts.ways {
+        // The rule counts in steps that no line need show: here tolerances, on a screen pixels.
+        let steps: Vec<Point> = way.iter().map(|p| p.map(|v| v / GHOST_TOLERANCE)).collect();
+        line.extend(simplify(&steps, 1.0).into_iter().map(|p| p.map(|v| v * GHOST_TOLERANCE)));
+        line.push([f64::NAN; 2]);
+    }
+    let ends: Vec<&(usize, Pose2)> =
+        ghosts.ends.iter().filter(|(body, _)| *body < bodies).collect();
+    let ways = [0, 1].map(|axis| line.iter().map(|point| point[axis]).collect::<Vec<f64>>());
+    let poses = [0, 1, 2].map(|axis| ends.iter().map(|(_, pose)| pose[axis]).collect::<Vec<f64>>());
+    json!({
+        "label": ghosts.label,
+        "count": ghosts.count,
+        "ways": pack::channels(&ways, line.len(), GHOST_QUANTUM),
+        "ends": pack::channels(&poses, ends.len(), GHOST_QUANTUM),
+        "bodies": ends.iter().map(|(body, _)| body).collect::<Vec<_>>(),
+    })
+}
+
+/// Share of all values above zero at which the scale of a tint ends: impacts go far beyond what else happens.
+const TINT_ENDS: f64 = 0.99;
+
+/// A tint, cut at the end of its scale, in steps of a 64th of that, or finer.
+fn tint(tint: &Tint, bodies: usize, count: usize) -> Value {
+    let value = |frame: usize, body: usize| {
+        tint.values.get(frame).and_then(|list| list.get(body)).map_or(f64::NAN, |v| v.max(0.0))
+    };
+    let mut channels: Vec<Vec<f64>> =
+        (0..bodies).map(|body| (0..count).map(|frame| value(frame, body)).collect()).collect();
+    let mut above: Vec<f64> = channels.iter().flatten().copied().filter(|v| *v > 0.0).collect();
+    above.sort_by(f64::total_cmp);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a share of a count"
+    )]
+    let last = (TINT_ENDS * above.len().saturating_sub(1) as f64) as usize;
+    let end = above.get(last).copied().unwrap_or(0.0);
+    for value in channels.iter_mut().flatten().filter(|value| **value > end) {
+        *value = end;
+    }
+    let quantum = pack::quantum_for(&[0.0, end]) * 1024.0;
+    json!({ "label": tint.label, "unit": tint.unit, "v": pack::channels(&channels, count, quantum) })
 }
 
 /// Forces as four channels with a slot for each place in the longest list; absent ones are gaps.

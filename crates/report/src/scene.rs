@@ -240,6 +240,43 @@ pub struct Tie {
     pub torn_at: Option<f64>,
 }
 
+/// The instant that says most about a scene, on which its player opens.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    /// When (s).
+    pub time: f64,
+    /// The body to look at, by its place in [`Scene::bodies`].
+    pub body: usize,
+    /// What it does there, such as "here rack R3 leaves its seat".
+    pub text: String,
+    /// Whether something comes down then; of several scenes, one that falls opens them all.
+    pub falls: bool,
+}
+
+/// A quantity of every body over the frames, by which bodies are tinted when the reader asks for it.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Tint {
+    /// Name.
+    pub label: String,
+    /// Unit of the values, for people.
+    pub unit: String,
+    /// For each frame, the value of each body in the order of [`Scene::bodies`], none below zero.
+    pub values: Vec<Vec<f64>>,
+}
+
+/// Other runs of the same scene, which can be laid over it: where points went and where bodies ended.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Ghosts {
+    /// What they are, for the switch that shows them.
+    pub label: String,
+    /// How many runs.
+    pub count: usize,
+    /// Ways (m) against the body of the role [`Role::Ground`].
+    pub ways: Vec<Vec<Point>>,
+    /// Bodies by their places in [`Scene::bodies`], each with where it ended, against the same body.
+    pub ends: Vec<(usize, Pose2)>,
+}
+
 /// Bodies, their motion, events and the ground motion under them.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Scene {
@@ -253,6 +290,12 @@ pub struct Scene {
     pub events: Vec<Event>,
     /// Histories shown in the strip under the player.
     pub ground: Vec<History>,
+    /// The instant on which its player opens; the first frame without.
+    pub moment: Option<Moment>,
+    /// What bodies are tinted by on request.
+    pub tint: Option<Tint>,
+    /// Other runs, shown on request.
+    pub ghosts: Option<Ghosts>,
 }
 
 impl Scene {

@@ -7,7 +7,8 @@ mod common;
 use std::sync::Arc;
 
 use barrelstack_report::{
-    Block, Event, EventKind, History, Pane, Players, Scene, Tone, attachments, html, markdown,
+    Block, Event, EventKind, Ghosts, History, Moment, Pane, Players, Scene, Tone, attachments,
+    html, markdown,
 };
 use common::{HOSTILE, document, payload, scene};
 
@@ -31,6 +32,7 @@ fn players(scenes: Vec<Scene>) -> Players {
         caption: "Two runs.".into(),
         panes: panes.collect(),
         ground: vec![history],
+        overlay: None,
     }
 }
 
@@ -108,6 +110,52 @@ fn markdown_shows_every_pane_and_all_events() {
     }
     let names: Vec<String> = attachments(&document).into_iter().map(|file| file.name).collect();
     assert_eq!(names, ["both-1.svg", "both-1.csv", "both-2.svg", "both-2.csv"]);
+}
+
+#[test]
+fn a_player_opens_on_the_first_that_falls_and_starts_before_the_ground_is_strong() {
+    let moment = |time: f64, falls: bool| Moment { time, body: 0, text: "here".into(), falls };
+    let mut both = low_and_high();
+    let with = |at: &mut Pane, moment: Option<Moment>| {
+        at.scene = Arc::new(Scene { moment, ..(*at.scene).clone() });
+    };
+    let opens = |both: &Players| {
+        payload(&html(&document(vec![Block::Players(both.clone())])))["players"][0].clone()
+    };
+    assert!(opens(&both)["opens"].is_null());
+    with(&mut both.panes[0], Some(moment(0.1, false)));
+    assert_eq!(opens(&both)["opens"], 0);
+    with(&mut both.panes[1], Some(moment(0.3, true)));
+    assert_eq!(opens(&both)["opens"], 1, "what sways earlier is not what falls");
+    with(&mut both.panes[0], Some(moment(f64::NAN, true)));
+    let data = opens(&both);
+    assert!(data["panes"][0]["moment"].is_null());
+    // The ground reaches a tenth of its peak at 5 s.
+    both.ground[0].times = vec![0.0, 4.9, 5.0, 8.0];
+    both.ground[0].values = vec![0.0, 0.02, -0.03, 0.3];
+    assert_eq!(opens(&both)["begins"], 4.0);
+    both.ground[0].values = vec![0.0; 4];
+    assert!(opens(&both)["begins"].is_null());
+}
+
+#[test]
+fn ghosts_come_back_from_the_page_within_a_centimeter() {
+    let mut both = low_and_high();
+    let straight: Vec<[f64; 2]> = (0..100).map(|k| [0.01 * f64::from(k), 1.0]).collect();
+    let ghosts = Ghosts {
+        label: "all".into(),
+        count: 2,
+        ways: vec![straight, vec![[0.0, 0.0], [0.3, 0.7], [0.9, 0.1]]],
+        ends: vec![(1, [0.5, 0.25, 1.0]), (9, [0.0; 3])],
+    };
+    both.panes[0].scene =
+        Arc::new(Scene { ghosts: Some(ghosts), ..(*both.panes[0].scene).clone() });
+    let data = payload(&html(&document(vec![Block::Players(both)])));
+    let ghosts = &data["players"][0]["panes"][0]["ghosts"];
+    // The straight way keeps its two ends, the other its corner; each is followed by a gap.
+    assert_eq!(ghosts["ways"]["n"], 7, "{ghosts}");
+    assert_eq!(ghosts["bodies"], serde_json::json!([1]), "a body that is not there has no end");
+    assert!(data["players"][0]["panes"][1]["ghosts"].is_null());
 }
 
 #[test]

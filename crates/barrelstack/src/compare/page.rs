@@ -120,7 +120,8 @@ fn players(sides: &[Side]) -> Players {
         id: "players".into(),
         caption:
             "The runs as computed, on one clock and to one scale. A run that has ended holds its \
-                  last frame."
+                  last frame. With “A in the others” the dashed outlines are those of A at the same \
+                  time."
                 .into(),
         panes: sides
             .iter()
@@ -135,6 +136,7 @@ fn players(sides: &[Side]) -> Players {
             })
             .collect(),
         ground: lanes(sides),
+        overlay: Some("A in the others".into()),
     }
 }
 

@@ -7,6 +7,7 @@ use barrelstack_dynamics::{
 };
 
 use super::case::Seen;
+use super::trail::Trail;
 use super::{Audience, CaseResult, Run};
 use crate::run::{Ended, conclude, method, thresholds};
 use crate::stand::Stack;
@@ -32,6 +33,7 @@ pub(super) fn run(
             fates: Fates::new(&standing.assembly, &state, thresholds(scenario)),
             stresses: Pressing::new(&standing.assembly, &scratch),
             joints: Joints::new(&standing.assembly),
+            trail: Trail::new(&standing.assembly),
             started: false,
             end: run.end(standing),
             stop: audience.stop,
@@ -48,8 +50,10 @@ pub(super) fn run(
         let ended = ended.map(|totals| Ended::of(&totals));
         let verdict = conclude(&standing.assembly, ground, &watch.fates, ended, state.time, ending);
         let stresses = watch.stresses.finish(0);
-        let seen = Seen { fates: &watch.fates, stresses: &stresses, joints: &watch.joints };
-        let result = CaseResult::of(&standing.assembly, ground, &seen, verdict, state.time);
+        watch.trail.see_state(&state);
+        let Watch { fates, joints, trail, .. } = watch;
+        let seen = Seen { fates: &fates, stresses: &stresses, joints: &joints, trail };
+        let result = CaseResult::of(&standing.assembly, ground, seen, verdict, state.time);
         (audience.tell)(&result);
         results.push((run.index, result));
     }
@@ -61,6 +65,7 @@ struct Watch<'a> {
     fates: Fates,
     stresses: Pressing,
     joints: Joints,
+    trail: Trail,
     started: bool,
     end: End,
     stop: &'a dyn Fn() -> bool,
@@ -84,6 +89,9 @@ impl Observer<Planar> for Watch<'_> {
         } else {
             self.joints.start(state.time, scratch);
             self.started = true;
+        }
+        if state.time >= self.trail.due() {
+            self.trail.see_state(state);
         }
         if state.time >= self.next_ask {
             self.next_ask = state.time + 0.05;

@@ -10,6 +10,8 @@ use crate::run::{CUT, Verdict};
 use crate::scenario::Scenario;
 use crate::watch::{Ending, Fates, Joint, Joints, Stresses};
 
+use super::trail::Trail;
+
 /// A case that is ready to run.
 #[derive(Clone, Debug)]
 pub struct Prepared {
@@ -62,6 +64,8 @@ pub struct CaseResult {
     pub energy_residual_ratio: Option<f64>,
     /// What the reader of the result should know.
     pub warnings: Vec<String>,
+    /// Where its barrels were; empty where it could not run or broke down.
+    pub trail: Trail,
 }
 
 /// What was watched of a case.
@@ -69,6 +73,7 @@ pub(super) struct Seen<'a> {
     pub(super) fates: &'a Fates,
     pub(super) stresses: &'a Stresses,
     pub(super) joints: &'a Joints,
+    pub(super) trail: Trail,
 }
 
 impl CaseResult {
@@ -76,11 +81,11 @@ impl CaseResult {
     pub(super) fn of(
         assembly: &Assembly,
         ground: &Ground,
-        seen: &Seen<'_>,
+        seen: Seen<'_>,
         verdict: Verdict,
         time: f64,
     ) -> Self {
-        let Seen { fates, stresses, joints } = *seen;
+        let Seen { fates, stresses, joints, trail } = seen;
         let sound = !matches!(verdict.outcome, Outcome::Invalid { .. });
         let barrels: Vec<usize> = assembly.of_kind(PartKind::Barrel).collect();
         let all = || barrels.iter().map(|body| fates.fate(*body));
@@ -109,6 +114,7 @@ impl CaseResult {
             steps: Some(verdict.steps),
             energy_residual_ratio: verdict.energy.map(|energy| energy.residual_ratio()),
             warnings: verdict.warnings,
+            trail: if sound { trail } else { Trail::default() },
             outcome: Ok(verdict.outcome),
         }
     }
@@ -130,6 +136,7 @@ impl CaseResult {
             steps: None,
             energy_residual_ratio: None,
             warnings: Vec::new(),
+            trail: Trail::default(),
         }
     }
 }

@@ -5,6 +5,7 @@ use barrelstack_dynamics::real::{Mask, Real};
 use barrelstack_dynamics::{Finish, Method, Planar, Scratch, State};
 
 use super::case::Seen;
+use super::trail::Trail;
 use super::{Audience, CaseResult, Run};
 use crate::ground::Ground;
 use crate::run::{Ended, conclude, thresholds};
@@ -48,6 +49,8 @@ impl Task for Marching<'_, '_> {
             stresses: Pressing::nothing(),
             joints: None,
             end: None,
+            trails: vec![Trail::default(); R::LANES],
+            due: R::splat(f64::INFINITY),
             rested: R::Mask::default(),
             steps: 0,
             interrupted: false,
@@ -74,6 +77,9 @@ struct Crew<'a, 'b, R: Real> {
     joints: Option<Joints<R>>,
     /// What ends every lane before its time is over; none before the first run is loaded.
     end: Option<watch::End<R>>,
+    /// Where the barrels of every lane were, and when (s) they are looked at next.
+    trails: Vec<Trail>,
+    due: R,
     /// The lanes that had come to rest in the last step.
     rested: R::Mask,
     /// Steps since the audience was asked.
@@ -116,6 +122,10 @@ impl<'a, R: Real> lanes::Crew<'a, R> for Crew<'a, '_, R> {
         stresses.observe(fates.collapse_time().is_none(), scratch);
         let mut joints = Joints::new(&standing.assembly);
         joints.start(state.time, scratch);
+        let mut trail = Trail::new(&standing.assembly);
+        trail.see_state(state);
+        self.due.put(lane, &trail.due());
+        self.trails[lane] = trail;
         self.stresses.begin(lane, stresses);
         self.joints.get_or_insert_with(|| Joints::in_all(&joints)).put(lane, &joints);
         self.fates.get_or_insert_with(|| Fates::in_all(&fates)).put(lane, &fates);
@@ -143,7 +153,17 @@ impl<'a, R: Real> lanes::Crew<'a, R> for Crew<'a, '_, R> {
         self.stresses.observe(fates.stands(), scratch);
         let (collapsed, rested) = end.observe(state, fates);
         self.rested = rested;
-        collapsed | rested
+        let ended = collapsed | rested;
+        // Lanes without a case have ended, too.
+        let seen = self.due.le(state.time) | (ended & self.due.lt(R::splat(f64::INFINITY)));
+        if seen.any() {
+            for lane in (0..R::LANES).filter(|lane| seen.lane(*lane)) {
+                let trail = &mut self.trails[lane];
+                trail.see(state.time.lane(lane), |body| state.poses[body].of_lane(lane));
+                self.due.put(lane, &trail.due());
+            }
+        }
+        ended
     }
 
     fn end(&mut self, lane: usize, end: End) {
@@ -153,6 +173,9 @@ impl<'a, R: Real> lanes::Crew<'a, R> for Crew<'a, '_, R> {
         };
         let (fates, joints) = (fates.of_lane(lane), joints.of_lane(lane));
         let stresses = self.stresses.finish(lane);
+        // A lane without a case stands still and is not looked at.
+        self.due.put(lane, &f64::INFINITY);
+        let trail = std::mem::take(&mut self.trails[lane]);
         let Some((run, standing)) = self.standing(lane) else { return };
         let ending = match &end.finish {
             Ok(Finish::Stopped) if self.rested.lane(lane) => Ending::Rest,
@@ -163,8 +186,8 @@ impl<'a, R: Real> lanes::Crew<'a, R> for Crew<'a, '_, R> {
         let ended = end.finish.map(|_| Ended { energy: end.energy, steps: end.steps });
         let (assembly, ground) = (&standing.assembly, &*run.case.ground);
         let verdict = conclude(assembly, ground, &fates, ended, end.time, ending);
-        let seen = Seen { fates: &fates, stresses: &stresses, joints: &joints };
-        let result = CaseResult::of(assembly, ground, &seen, verdict, end.time);
+        let seen = Seen { fates: &fates, stresses: &stresses, joints: &joints, trail };
+        let result = CaseResult::of(assembly, ground, seen, verdict, end.time);
         let index = run.index;
         (self.audience.tell)(&result);
         self.results.push((index, result));

@@ -4,15 +4,23 @@ use std::sync::Arc;
 
 use barrelstack_dynamics::Shape;
 use barrelstack_report::{
-    ContactForce, Event, EventKind, Frames, History, Polyline, Role, Scene, SceneBody, Tie,
+    ContactForce, Event, EventKind, Frames, Ghosts, History, Moment, Point, Polyline, Role, Scene,
+    SceneBody, Tie, Tint, significant,
 };
 
-use crate::assemble::{Assembly, PartKind};
+use crate::assemble::{Assembly, Part, PartKind};
+use crate::outcome::Outcome;
 use crate::run::Run;
+use crate::variants::Variants;
 use crate::watch::Loss;
 
 /// The scene of a run.
 pub fn scene(run: &Run) -> Arc<Scene> {
+    scene_among(run, None)
+}
+
+/// The scene of a run, with what became of its variants.
+pub(super) fn scene_among(run: &Run, variants: Option<&Variants>) -> Arc<Scene> {
     let frames = &run.recording.frames;
     Arc::new(Scene {
         bodies: (0..run.assembly.parts.len()).map(|i| body(&run.assembly, i)).collect(),
@@ -36,7 +44,100 @@ pub fn scene(run: &Run) -> Arc<Scene> {
         },
         events: events(run),
         ground: ground_histories(run),
+        moment: moment(run),
+        tint: run.assembly.of_kind(PartKind::Barrel).next().map(|_| tint(run)),
+        ghosts: variants.and_then(ghosts),
     })
+}
+
+/// Most variants whose ways are drawn; more would only be black.
+const DRAWN: usize = 128;
+
+/// The ways of the top barrels of all variants, and where their barrels came to lie.
+fn ghosts(variants: &Variants) -> Option<Ghosts> {
+    let trails = || variants.results.iter().skip(1).take(DRAWN).map(|result| &result.trail);
+    let wide = |place: &[f32; 2]| place.map(f64::from);
+    let ways: Vec<Vec<Point>> =
+        trails().flat_map(|trail| &trail.ways).map(|way| way.iter().map(wide).collect()).collect();
+    let ends = trails().flat_map(|trail| {
+        trail.barrels.iter().zip(&trail.last).map(|(body, last)| (*body, last.map(f64::from)))
+    });
+    (!ways.is_empty()).then(|| Ghosts {
+        label: "all variants".into(),
+        count: trails().filter(|trail| !trail.barrels.is_empty()).count(),
+        ways,
+        ends: ends.collect(),
+    })
+}
+
+/// What ghosts of a scene mean, as a sentence that follows another; empty where it has none.
+pub(super) fn legend(scene: &Scene) -> String {
+    let sentence = |ghosts: &Ghosts| {
+        format!(
+            " With “{}” thin lines are the ways of the barrels of the top level in each, and the darker a \
+             place, the more often a barrel ends there.",
+            ghosts.label
+        )
+    };
+    scene.ghosts.as_ref().map(sentence).unwrap_or_default()
+}
+
+/// Displacement (m) below which nothing is worth opening a page on.
+const STILL: f64 = 1e-3;
+
+/// The instant that says most about a run: the first loss of seat, or, of what kept its seats, the
+/// furthest that a body went to a side or up.
+fn moment(run: &Run) -> Option<Moment> {
+    match &run.outcome {
+        Outcome::Collapse { time, first, .. } => {
+            let body = run.assembly.parts.iter().position(|part| part.name == *first)?;
+            let (_, loss) = run.fates.fate(body).left_seat?;
+            let text = match loss {
+                Loss::Displaced => format!("here {first} leaves its cradle"),
+                Loss::Slid => format!("here rack {first} slides off the barrels below"),
+                Loss::Tilted => format!("here rack {first} leaves its seat"),
+                Loss::Dropped => format!("here {first} loses its support"),
+            };
+            Some(Moment { time: *time, body, text, falls: true })
+        }
+        Outcome::Stable => furthest(run),
+        Outcome::NotJudged | Outcome::Invalid { .. } => None,
+    }
+}
+
+/// When which body was furthest from its place at rest, to a side or up.
+fn furthest(run: &Run) -> Option<Moment> {
+    let mut furthest: Option<(f64, f64, usize, &str)> = None;
+    for (body, part) in run.assembly.parts.iter().enumerate() {
+        for (axis, word) in [("x", "sways furthest"), ("z", "is lifted highest")] {
+            let channel = run.recording.channel(&format!("{} displacement {axis}", part.name));
+            let values = channel.map_or(&[][..], |channel| &channel.values);
+            for (time, value) in run.recording.times.iter().zip(values) {
+                let way = if axis == "x" { value.abs() } else { *value };
+                if furthest.is_none_or(|(most, ..)| way > most) {
+                    furthest = Some((way, *time, body, word));
+                }
+            }
+        }
+    }
+    let (way, time, body, word) = furthest.filter(|(way, ..)| *way > STILL)?;
+    let name = &run.assembly.parts[body].name;
+    let text = format!("here {name} {word}, by {} cm", significant(100.0 * way, 2));
+    Some(Moment { time, body, text, falls: false })
+}
+
+/// How hard every barrel is pressed where it touches another body.
+fn tint(run: &Run) -> Tint {
+    let parts = &run.assembly.parts;
+    let of = |(part, stress): (&Part, &f64)| {
+        if part.kind == PartKind::Barrel { 1e-3 * stress } else { f64::NAN }
+    };
+    let frames = run.recording.frames.stresses.iter();
+    Tint {
+        label: "contact stress".into(),
+        unit: "kN/m".into(),
+        values: frames.map(|frame| parts.iter().zip(frame).map(of).collect()).collect(),
+    }
 }
 
 /// The outlines of a body as lines in its own frame.

@@ -29,7 +29,7 @@ pub(super) fn players(
     };
     let mut both = [
         pane(run, summary, Arc::clone(scene)),
-        pane(&other.run, &other.summary, drawing::scene(&other.run)),
+        pane(&other.run, &other.summary, drawing::scene_among(&other.run, other.variants.as_ref())),
     ];
     let mut runs = [run, &other.run];
     if run.assembly.view == Some(View::Longitudinal) {
@@ -38,10 +38,13 @@ pub(super) fn players(
     }
     Players {
         id: "players".into(),
-        caption: "The stack across its barrels and along them as computed, on one clock and to one scale. \
-                  Arrows are contact forces, each on the body that it pushes up."
-            .into(),
+        caption: format!(
+            "The stack across its barrels and along them as computed, on one clock and to one scale. \
+             Arrows are contact forces, each on the body that it pushes up.{}",
+            drawing::legend(scene)
+        ),
         panes: both.into(),
+        overlay: None,
         ground: runs.into_iter().filter_map(ground).collect(),
     }
 }

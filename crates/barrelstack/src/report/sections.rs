@@ -11,9 +11,10 @@ use barrelstack_report::{
 use super::{drawing, inputs, planes, spectrum, trust, words};
 use crate::assemble::PartKind;
 use crate::demand::DEMANDS;
+use crate::ensemble::RATE;
 use crate::run::Run;
 use crate::summary::{Device, Summary};
-use crate::variants::Shown;
+use crate::variants::{Range, Shown, Variants};
 use crate::verify::Verification;
 use crate::watch::{BoundaryPoint, StressEnvelope};
 
@@ -21,7 +22,7 @@ use crate::watch::{BoundaryPoint, StressEnvelope};
 pub(super) fn all(
     run: &Run,
     summary: &Summary,
-    other: Option<&Shown>,
+    (variants, other): (Option<&Variants>, Option<&Shown>),
     verification: Option<&Verification>,
     scene: &Arc<Scene>,
 ) -> Vec<Block> {
@@ -34,7 +35,7 @@ pub(super) fn all(
     let trusted = verification.map(trust::trust).unwrap_or_default();
     section(&mut blocks, "How far to trust this run", trusted);
     section(&mut blocks, "What became of every body", vec![Block::Table(fates(summary))]);
-    section(&mut blocks, "Displacements", displacements(run));
+    section(&mut blocks, "Displacements", displacements(run, variants));
     let table = demand_table(summary);
     let shown = if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] };
     section(&mut blocks, "Demands", shown);
@@ -59,10 +60,11 @@ fn section(blocks: &mut Vec<Block>, title: &str, content: Vec<Block>) {
 fn player(run: &Run, scene: &Arc<Scene>) -> Player {
     Player {
         id: "player".into(),
-        caption:
-            "The run as computed, to scale. Arrows are contact forces, each on the body that it \
-                  pushes up."
-                .into(),
+        caption: format!(
+            "The run as computed, to scale. Arrows are contact forces, each on the body that it pushes \
+             up.{}",
+            drawing::legend(scene)
+        ),
         scene: Arc::clone(scene),
         traces: traces(run),
     }
@@ -173,7 +175,7 @@ pub fn standing_range(run: &Run, series: &[Series]) -> Option<[f64; 2]> {
     (pad > 0.0).then_some([range[0] - pad, range[1] + pad])
 }
 
-fn displacements(run: &Run) -> Vec<Block> {
+fn displacements(run: &Run, variants: Option<&Variants>) -> Vec<Block> {
     let recording = &run.recording;
     let mut series = Vec::new();
     let stack = run.assembly.levels > 0;
@@ -192,13 +194,50 @@ fn displacements(run: &Run) -> Vec<Block> {
     if series.is_empty() {
         return Vec::new();
     }
-    vec![history(
-        run,
-        "displacements",
-        "Horizontal displacement relative to the ground.",
-        Axis { range: standing_range(run, &series), ..Axis::new("displacement", "cm") },
-        series,
-    )]
+    let range = standing_range(run, &series);
+    let band = variants.map(|variants| band(run, variants)).unwrap_or_default();
+    let mut caption = "Horizontal displacement relative to the ground.".to_owned();
+    if !band.is_empty() {
+        caption += " Between the thin lines are 90 % of all variants.";
+    }
+    series.extend(band);
+    let axis = Axis { range, ..Axis::new("displacement", "cm") };
+    vec![history(run, "displacements", &caption, axis, series)]
+}
+
+/// What 5 and 95 % of all variants stay below, of the displacement (cm) of the first barrel of the top level.
+///
+/// A variant that has ended stays where it was.
+fn band(run: &Run, variants: &Variants) -> Vec<Series> {
+    let trails = variants.results.iter().skip(1).map(|result| &result.trail);
+    let ways: Vec<&[[f32; 2]]> =
+        trails.filter_map(|trail| trail.ways.first()).map(Vec::as_slice).collect();
+    let name = variants.results.iter().find_map(|result| result.trail.top.first());
+    let (Some(name), true) = (name.map(|body| &run.assembly.parts[*body].name), ways.len() > 1)
+    else {
+        return Vec::new();
+    };
+    let longest = ways.iter().map(|way| way.len()).max().unwrap_or(0);
+    // The histories of the run end with it.
+    let seen = |at: &usize| *at as f64 <= RATE * run.end_time;
+    let count = (0..longest).take_while(seen).count();
+    let displacement = |way: &&[[f32; 2]], at: usize| {
+        let now = way.get(at).or(way.last())?;
+        // To a tenth of a millimeter, which keeps the page short.
+        Some((1e4 * f64::from(now[0] - way.first()?[0])).round() / 100.0)
+    };
+    let times: Vec<f64> = (0..count).map(|at| at as f64 / RATE).collect();
+    let ranges: Vec<Option<Range>> = (0..count)
+        .map(|at| Range::of(ways.iter().filter_map(|way| displacement(way, at))))
+        .collect();
+    let line = |percent: u32, value: fn(&Range) -> f64| {
+        let values = ranges.iter().map(|range| range.as_ref().map_or(f64::NAN, value)).collect();
+        let label = format!("{name}: {percent} % of all variants are below");
+        let mut series = Series::new(label, times.clone(), values);
+        series.style.muted = true;
+        series
+    };
+    vec![line(5, |range| range.p05), line(95, |range| range.p95)]
 }
 
 fn stresses(run: &Run) -> Vec<Block> {

@@ -1,5 +1,6 @@
 //! Frames of the motion and histories of displacements, forces and energies, thinned to stated rates.
 
+use barrelstack_dynamics::forces::{contact_force, tributary_length};
 use barrelstack_dynamics::{BodyId, EnergyLedger, Model, Planar, Pose, Scratch, State, Vec2};
 
 use crate::assemble::{Assembly, PartKind};
@@ -26,6 +27,9 @@ pub struct Frames {
     pub poses: Vec<Vec<[f64; 3]>>,
     /// For every frame, contact forces as `x` (m), `z` (m), and the force (N) on the contactor.
     pub forces: Vec<Vec<[f64; 4]>>,
+    /// For every frame and body, the largest normal stress (N/m) at a contact node that presses on it, or
+    /// with which it presses; zero where none does.
+    pub stresses: Vec<Vec<f64>>,
 }
 
 impl Frames {
@@ -201,9 +205,15 @@ impl Recording {
         let mut forces: Vec<[f64; 4]> = Vec::new();
         let mut weight = 0.0;
         let mut last = usize::MAX;
+        let mut stresses = vec![0.0_f64; state.poses.len()];
         for contact in &scratch.contacts {
-            let (force, point) =
-                barrelstack_dynamics::forces::contact_force(model, state, scratch, contact);
+            let pair = model.pair(contact.pair);
+            let stress =
+                contact.normal_force / tributary_length(model, &pair, contact.node as usize);
+            for body in [pair.contactor, pair.target] {
+                stresses[body] = stresses[body].max(stress);
+            }
+            let (force, point) = contact_force(model, state, scratch, contact);
             if contact.pair != last {
                 forces.push([0.0; 4]);
                 (weight, last) = (0.0, contact.pair);
@@ -221,6 +231,7 @@ impl Recording {
             }
         }
         self.frames.forces.push(forces);
+        self.frames.stresses.push(stresses);
     }
 
     fn take_sample(

@@ -12,12 +12,16 @@
 import { existsSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
+import { accessible, spoiled } from "./lib/access.mjs";
 import { launch, missing, open } from "./lib/browser.mjs";
+import { overlay, variants } from "./lib/ghosts.mjs";
 import { Goldens, looks } from "./lib/golden.mjs";
 import { darkness, linkedZoom, opening, paper, phone } from "./lib/layout.mjs";
 import { PAGES, make, reportOf } from "./lib/pages.mjs";
+import { links, loops, still } from "./lib/opening.mjs";
 import { cameras, drawing, frameRate, keyboard, scrubbing, together } from "./lib/player.mjs";
 import { Suite, demand } from "./lib/suite.mjs";
+import { agreement, panels, tints, values, zooming } from "./lib/view.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const words = process.argv.slice(2);
@@ -51,14 +55,22 @@ for (const name of ["minute", "heap"]) {
   await suite.check(`${name}: a minute of twelve barrels is small and opens at once`, () =>
     opening((use) => on(name, {}, use), reportOf(pages, name)));
 }
-for (const [name, { several }] of Object.entries(PAGES)) {
+for (const [name, { several, plain }] of Object.entries(PAGES)) {
   const long = ["minute", "heap"].includes(name);
-  const checks = [
+  const moved = name !== "disc";
+  const checks = plain ? [["has no finding of axe", accessible]] : [
     ...(several ? [["all panes keep one time and one scale", together]] : [["shows the recording at ten random times", scrubbing]]),
     ["draws what it shows", drawing],
     ["heeds the keyboard, and every control has a name", keyboard],
     ...(["demo", "eight"].includes(name) ? [["has cameras that stand, ride and follow", cameras]] : []),
     ...(["demo", "eight", "levels"].includes(name) ? [["zooms its histories together", linkedZoom]] : []),
+    ["zooms and pans by wheel, drag and keys", zooming],
+    ...(moved ? [["shows the value of a force beside its arrow", values], ["tints barrels by their stress", tints]] : []),
+    ...(name === "demo" || name === "eight" ? [["lays all variants over the run", variants]] : []),
+    ...(name === "levels" ? [["lays the first run over the others", overlay]] : []),
+    ["keeps cursor and slider together", agreement],
+    ["lists its keys and fills the screen", panels],
+    ["has no finding of axe", accessible],
     ["is dark where that is asked for", darkness],
     ["has no sideways scroll on a phone", phone],
     ["prints all its sections", paper],
@@ -75,6 +87,14 @@ for (const [name, { several }] of Object.entries(PAGES)) {
   }
   await suite.check(`${name}: writes no error and asks for nothing but itself`, () => demand(faults.length === 0, faults.join("\n")));
 }
+for (const name of ["demo", "eight", "half", "along", "levels"]) {
+  await checkOn("opens on a still of what matters, where motion is unwanted", name, still);
+}
+for (const name of ["demo", "eight", "levels"]) {
+  await suite.check(`${name}: loops slowly around what matters until somebody takes over`, () => loops(browser, reportOf(pages, name)));
+}
+await suite.check("demo: an instant has an address", () => links(browser, reportOf(pages, "demo")));
+await suite.check("axe finds what is wrong with a spoiled page", () => on("eight", {}, spoiled));
 // Pictures, two at a time.
 const queue = looks();
 const compareLooks = async () => {

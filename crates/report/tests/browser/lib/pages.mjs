@@ -1,14 +1,17 @@
 // The pages that are checked: what is run for each, and how each is looked at.
 
 import { spawn } from "node:child_process";
+import { mkdirSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { missing } from "./browser.mjs";
 
 const FRICTION = "interface.rack-ground.friction.coefficient";
 
 /**
- * Pages by name: the arguments of the program without `--out`, whether several runs or planes share
- * the page, and the looks of it that are kept as pictures.
+ * Pages by name: the arguments of the program without `--out`, what is run before it (`{folder}` is that of all
+ * pages), whether several runs or planes share
+ * the page, whether it is looked at for readers of screens only (`plain`), its file where that is not
+ * report.html, and the looks of it that are kept as pictures.
  */
 export const PAGES = {
   demo: {
@@ -38,6 +41,18 @@ export const PAGES = {
     args: ["compare", "demo-napa", "--set", `${FRICTION}=0.4`, "--against", `${FRICTION}=0.1`, "--quiet"],
     looks: [],
   },
+  // Pages without a player, or with others around it, for readers of screens.
+  verify: { plain: true, args: ["run", "candia-8-barrels", "--verify", "--variants=8", "--quiet"], looks: [] },
+  heights: { plain: true, file: "index.html", args: ["heights", "--synthetic=0", "--quiet"], looks: [] },
+  study: { plain: true, file: "index.html", args: ["study", "napa-four-levels", "--quiet"], looks: [] },
+  reproduce: { plain: true, file: "index.html", args: ["reproduce", "--no-studies"], looks: [] },
+  select: {
+    plain: true,
+    file: "index.html",
+    before: [1, 2].map((seed) => ["motion", "synth", "boore", "--magnitude", "6", "--distance", "8 km", `--seed=${seed}`, "--output", `{folder}/records/${seed}.at2`, "--overwrite"]),
+    args: ["motion", "select", "{folder}/records", "--target", "ec8:ag=0.3,site=B", "--spectrum", "h1", "--count", "2", "--scale", "0.01..100"],
+    looks: [],
+  },
   disc: { args: ["run", "rolling-disc", "--quiet"], looks: [] },
   // A stack that stands for a minute, and one that falls early and goes on, each alone.
   minute: {
@@ -54,7 +69,7 @@ export const PAGES = {
 
 /** Where the report of a page is. */
 export function reportOf(folder, name) {
-  return join(folder, name, "report.html");
+  return join(folder, name, PAGES[name].file ?? "report.html");
 }
 
 function run(program, args) {
@@ -71,11 +86,16 @@ function run(program, args) {
 export async function make(folder) {
   const program = process.env.BARRELSTACK;
   if (!program) missing("set BARRELSTACK to the program, or give the folder of pages made before");
+  mkdirSync(join(folder, "records"), { recursive: true });
   // The longest runs first.
   const names = Object.keys(PAGES).reverse();
   const work = async () => {
     for (let name = names.shift(); name; name = names.shift()) {
-      const fault = await run(program, [...PAGES[name].args, "--out", join(folder, name), "--overwrite"]);
+      rmSync(join(folder, name), { recursive: true, force: true });
+      const { before = [], args } = PAGES[name];
+      const steps = [...before, [...args, "--out", join(folder, name)]];
+      let fault = null;
+      for (const step of steps) fault ??= await run(program, step.map((word) => word.replace("{folder}", folder)));
       if (fault) throw new Error(`the page ${name} was not made: ${fault}`);
     }
   };

@@ -36,7 +36,7 @@ export async function scrubbing(page, path) {
       const player = window.barrelstack.player;
       if (bySlider) {
         const slider = document.querySelector(".player input.scrub");
-        slider.value = wish;
+        slider.value = player.times()[wish];
         slider.dispatchEvent(new Event("input", { bubbles: true }));
       } else {
         player.seek(wish);
@@ -152,7 +152,8 @@ export async function keyboard(page) {
   for (const [key, name] of [["n", "names"], ["f", "forces"], ["p", "traces"]]) {
     const was = (await state(page))[name];
     now = await press(key);
-    demand(now[name] !== was, `${key} does not change ${name}`);
+    const there = await page.locator(`.player [data-act="${name}"]`).first().isVisible();
+    demand((now[name] !== was) === there, `${key} ${there ? "does not change" : "changes what is not there:"} ${name}`);
     await press(key);
   }
   const seen = new Set([now.camera]);

@@ -1,0 +1,37 @@
+// The opening of a player: a slow loop around the moment that says most; a still where motion is unwanted.
+
+const BEFORE = 0.5, AFTER = 1.0; // reach of the loop around the moment (s of the run)
+const SLOW = 0.25; // speed of the loop
+const HOLD = 0.9; // how long it stands on its last picture (s)
+
+// `show` draws a time of the run; `marked` hears whether the loop runs.
+function makeLoop(screen, time, [start, end], show, marked) {
+  const from = Math.max(time - BEFORE, start), to = Math.min(time + AFTER, end);
+  const whole = (to - from) / SLOW + HOLD;
+  let looping = false, request = 0, since = 0, seen = true;
+
+  function tick(now) {
+    const passed = ((now - since) / 1000) % whole;
+    show(Math.min(from + passed * SLOW, to));
+    request = looping && seen ? requestAnimationFrame(tick) : 0;
+  }
+  function run() {
+    looping = true;
+    since = performance.now();
+    if (!request) request = requestAnimationFrame(tick);
+    marked(true);
+  }
+  function stop() {
+    if (!looping) return;
+    looping = false;
+    cancelAnimationFrame(request);
+    request = 0;
+    marked(false);
+  }
+  // Out of sight it costs nothing.
+  new IntersectionObserver(([entry]) => {
+    seen = entry.isIntersecting;
+    if (seen && looping && !request) request = requestAnimationFrame(tick);
+  }).observe(screen);
+  return { run, stop, isLooping: () => looping, from, to };
+}
