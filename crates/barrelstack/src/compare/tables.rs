@@ -31,7 +31,7 @@ pub(super) fn inputs(sides: &[Side], differing: &[Difference]) -> Table {
     );
     for one in differing {
         let mut row = vec![Cell::text(&one.path)];
-        let shown = |value: &String| Cell::text(report::readable(value));
+        let shown = |value: &String| Cell::text(report::shown(&one.path, value));
         row.extend(one.values.iter().map(|v| v.as_ref().map_or(Cell::Missing, shown)));
         row.push(Cell::text(one.help));
         table.rows.push(row);

@@ -26,6 +26,7 @@ pub(super) fn document(all: &Heights) -> Document {
             headline: headline(all),
             sentences: sentences(all),
             tone: Tone::Neutral,
+            ..Verdict::default()
         },
         blocks: blocks(all),
         provenance: vec![
@@ -36,6 +37,7 @@ pub(super) fn document(all: &Heights) -> Document {
             ("program".into(), format!("barrelstack {}", env!("CARGO_PKG_VERSION"))),
         ],
         warnings: all.warnings.clone(),
+        ..Document::default()
     }
 }
 
