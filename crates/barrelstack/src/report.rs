@@ -22,7 +22,7 @@ use crate::verify::Verification;
 
 pub use glossary::WORDS;
 pub(crate) use inputs::{setting_row, shown};
-pub(crate) use sections::traces;
+pub(crate) use sections::{legend, traces};
 pub use sections::{standing_range, stress_figure};
 pub(crate) use words::{capital, headline, provenance};
 

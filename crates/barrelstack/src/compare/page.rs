@@ -205,24 +205,26 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
 }
 
 fn players(sides: &[Side]) -> Players {
+    let panes: Vec<Pane> = sides
+        .iter()
+        .enumerate()
+        .map(|(at, side)| Pane {
+            mark: letter(at).into(),
+            name: side.name.clone(),
+            verdict: report::headline(&side.run, &side.summary),
+            tone: report::tone(&side.run, &side.summary),
+            scene: report::scene(&side.run),
+            traces: report::traces(&side.run),
+        })
+        .collect();
     Players {
         id: "players".into(),
-        caption:
-            "The runs as computed, on one clock and to one scale. A run that has ended holds its \
-                  last frame."
-                .into(),
-        panes: sides
-            .iter()
-            .enumerate()
-            .map(|(at, side)| Pane {
-                mark: letter(at).into(),
-                name: side.name.clone(),
-                verdict: report::headline(&side.run, &side.summary),
-                tone: report::tone(&side.run, &side.summary),
-                scene: report::scene(&side.run),
-                traces: report::traces(&side.run),
-            })
-            .collect(),
+        caption: format!(
+            "The runs as computed, on one clock and to one scale. A run that has ended holds its last \
+             frame.{}",
+            panes.iter().map(|pane| report::legend(&pane.scene)).max().unwrap_or_default()
+        ),
+        panes,
         ground: lanes(sides),
     }
 }

@@ -38,9 +38,11 @@ pub(super) fn players(
     }
     Players {
         id: "players".into(),
-        caption: "The stack across its barrels and along them as computed, on one clock and to one scale. \
-                  Arrows are contact forces, each on the body that it pushes up."
-            .into(),
+        caption: format!(
+            "The stack across its barrels and along them as computed, on one clock and to one scale. \
+             Arrows are contact forces, each on the body that it pushes up.{}",
+            sections::legend(scene)
+        ),
         panes: both.into(),
         ground: runs.into_iter().filter_map(ground).collect(),
     }

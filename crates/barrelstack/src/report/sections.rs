@@ -72,12 +72,22 @@ fn section(blocks: &mut Vec<Block>, level: u8, title: &str, content: Vec<Block>)
 fn player(run: &Run, scene: &Arc<Scene>) -> Player {
     Player {
         id: "player".into(),
-        caption:
+        caption: format!(
             "The run as computed, to scale. Arrows are contact forces, each on the body that it \
-                  pushes up."
-                .into(),
+             pushes up.{}",
+            legend(scene)
+        ),
         scene: Arc::clone(scene),
         traces: traces(run),
+    }
+}
+
+/// What the bands between bodies are; empty where there are none.
+pub(crate) fn legend(scene: &Scene) -> &'static str {
+    if scene.ties.is_empty() {
+        ""
+    } else {
+        " Bands with a buckle are straps; one that tears is gone."
     }
 }
 

@@ -151,7 +151,7 @@ fn search(
         let middle = usize::midpoint(from, to);
         let ran = trials[middle].run(SCOUTS, observer);
         if ran.is_break() {
-            found.tried.extend(trials.iter().filter(|one| one.ran() > 0).map(Trial::told));
+            found.tried.extend(trials.iter().filter(|one| one.until > 0).map(Trial::told));
             return Ok(ran);
         }
         if trials[middle].failed() { from = middle + 1 } else { to = middle }
@@ -166,7 +166,7 @@ fn search(
             break;
         }
     }
-    found.tried.extend(trials.iter().filter(|one| one.ran() > 0).map(Trial::told));
+    found.tried.extend(trials.iter().filter(|one| one.until > 0).map(Trial::told));
     Ok(ran)
 }
 

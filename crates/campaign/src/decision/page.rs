@@ -25,7 +25,7 @@ pub(super) fn document(decision: &Decision, made: &Provenance) -> Document {
         blocks: blocks(decision, made),
         provenance: provenance(made),
         warnings: decision.warnings.clone(),
-        ..Document::default()
+        words: barrelstack::report::WORDS.to_vec(),
     }
 }
 
