@@ -107,7 +107,7 @@ pub(crate) struct RunArgs {
     /// long it is predictable and whether its outcome is robust.
     #[arg(long)]
     pub(crate) verify: bool,
-    /// Do not look for what would have kept a stack up that falls, which takes about as long again.
+    /// Do not look for what would have kept a stack up that falls, which may take as long again.
     #[arg(long)]
     pub(crate) no_remedy: bool,
     /// Write the report on paper too, report.pdf in the same folder.
@@ -138,7 +138,7 @@ pub(crate) struct DemoArgs {
     pub(crate) set: Vec<String>,
     #[command(flatten)]
     pub(crate) variants: VariantArgs,
-    /// Do not look for what would have kept the stack up, which takes about as long again.
+    /// Do not look for what would have kept the stack up, which may take as long again.
     #[arg(long)]
     pub(crate) no_remedy: bool,
 }

@@ -90,7 +90,7 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
     }
     row("outcome", &|side| Cell::text(side.summary.outcome.kind));
     row("mode", &|side| side.summary.outcome.mode.map_or(Cell::Missing, Cell::text));
-    row("first loss of seat", &|side| seconds(side.summary.outcome.time));
+    row("gives way", &|side| seconds(side.summary.outcome.time));
     row("first body", &|side| text(side.summary.outcome.first.as_ref()));
     row("first fall", &|side| seconds(side.summary.outcome.first_fall));
     row("barrels fallen", &|side| {

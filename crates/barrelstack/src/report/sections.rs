@@ -166,7 +166,7 @@ fn demand_table(summary: &Summary) -> Table {
 
 /// A figure of histories over time with the collapse marked.
 fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> Block {
-    let mark = run.fates.collapse_time().map(|at| Mark { at, label: "loss of seat".into() });
+    let mark = run.fates.collapse_time().map(|at| Mark { at, label: "gives way".into() });
     Block::Figure(Figure {
         id: id.to_owned(),
         caption: caption.to_owned(),

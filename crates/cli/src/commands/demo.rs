@@ -30,6 +30,7 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
     let written = folder.write(&answer, None);
     let Shown { run, summary, .. } = &answer.decides;
     printer::lines(barrelstack::report::sentences(run, summary))?;
+    printer::lines(printer::side_by_side(summary))?;
     printer::warnings(&answer);
     written?;
     let report = folder.report();
