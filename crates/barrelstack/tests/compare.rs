@@ -160,11 +160,18 @@ fn runs_are_called_by_what_differs_between_them_in_words() {
     };
     for (changes, names) in [
         (&[&[][..], &["stack.levels=3"]][..], &["five levels", "three levels"][..]),
-        (&[&[], &[strap]], &["no straps", "with straps"]),
-        (&[&[], &[strap], &[tight]], &["no straps", "with straps at 3 kN", "with straps at 4 kN"]),
+        (&[&[], &[strap]], &["without straps", "with straps"]),
+        (
+            &[&[], &[strap], &[tight]],
+            &["without straps", "with straps at 3 kN", "with straps at 4 kN"],
+        ),
         (
             &[&[], &["stack.levels=3"], &[strap]],
-            &["five levels, no straps", "three levels, no straps", "five levels, with straps"],
+            &[
+                "five levels without straps",
+                "three levels without straps",
+                "five levels with straps",
+            ],
         ),
         (
             &[&[], &["interface.rack-ground.friction.coefficient=0.1"]],

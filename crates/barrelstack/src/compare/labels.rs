@@ -47,7 +47,7 @@ pub fn labels(runs: &[(String, Scenario)]) -> Vec<String> {
                 Topic::Other => other(one, at),
             })
             .collect();
-        words.join(", ")
+        words.join(", ").replace(", with", " with")
     });
     let mut named: Vec<String> = Vec::new();
     for name in names {
@@ -71,7 +71,7 @@ fn topic(path: &str) -> Topic {
 fn straps(scenario: &Scenario, runs: &[(String, Scenario)]) -> String {
     let of = |scenario: &Scenario| scenario.stack().map(|stack| stack.devices.strap);
     let Some(own) = of(scenario).filter(|straps| straps.levels > 0) else {
-        return "no straps".to_owned();
+        return "without straps".to_owned();
     };
     let others = runs.iter().filter_map(|(_, other)| of(other)).filter(|other| other.levels > 0);
     let mut said = vec!["with straps".to_owned()];

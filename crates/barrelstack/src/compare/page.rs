@@ -128,20 +128,7 @@ fn headline(sides: &[Side]) -> String {
         }
         ([], _) => format!("{} fall: {}.", capital(&all), names(&down)),
         (_, []) => format!("{} stand: {}.", capital(&all), names(&up)),
-        (up, down) => {
-            let verb = |some: &[&Side], one: &str, more: &str| {
-                // "Three levels" are many, "with straps" is one stack.
-                let many = some.len() > 1 || some[0].name.ends_with('s');
-                if many { more.to_owned() } else { one.to_owned() }
-            };
-            format!(
-                "{} {}; {} {}.",
-                capital(&names(up)),
-                verb(up, "stands", "stand"),
-                names(down),
-                verb(down, "falls", "fall")
-            )
-        }
+        (up, down) => format!("Stands: {}. Falls: {}.", names(up), names(down)),
     }
 }
 
