@@ -1,5 +1,6 @@
 //! Two or more runs side by side: what differs in what was asked for, and in what came of it.
 
+mod labels;
 mod page;
 mod tables;
 
@@ -9,6 +10,8 @@ use crate::run::Run;
 use crate::scenario::Scenario;
 use crate::summary::Summary;
 use crate::variants::{Answer, Spread};
+
+pub use labels::labels;
 
 /// One run among others.
 #[derive(Clone, Debug)]

@@ -203,6 +203,14 @@ pub fn scaled(
     Ok(motion)
 }
 
+/// The event of the record that shakes a scenario, as people say it; none where no file says.
+pub(crate) fn event(spec: &MotionSpec) -> Result<Option<String>, GroundError> {
+    match &spec.source {
+        MotionSource::Record(record) => Ok(read(record)?.event_name()),
+        MotionSource::None | MotionSource::Sine(_) | MotionSource::Pulse(_) => Ok(None),
+    }
+}
+
 /// What the readers of files should know that a scenario states.
 fn read_options(spec: &RecordMotion) -> Result<ReadOptions, GroundError> {
     Ok(ReadOptions {
@@ -279,7 +287,8 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
             joined
         }
     };
-    let motion = scaled_by_both(motion, record, &processing, scale)?;
+    let mut motion = scaled_by_both(motion, record, &processing, scale)?;
+    motion.name = record.name_of(&record.component(&horizontal)?);
     Ok(Ground { motion: Some(motion), warnings })
 }
 
@@ -363,7 +372,12 @@ fn read_file(
         obtain: obtain.to_owned(),
     })?;
     let record = barrelstack_motion::read(&bytes, &path.display().to_string(), options);
-    record.map_err(|error| {
+    // A page says which file it was, and not where it lies.
+    let named = |record: Record| {
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+        Record { file: name.unwrap_or_else(|| record.file.clone()), ..record }
+    };
+    record.map(named).map_err(|error| {
         let mut failure: ReadFailure = (*error).clone();
         // The reader knows what is missing, the scenario where to state it.
         if let Refusal::Missing(given) = failure.refusal {

@@ -1,6 +1,7 @@
 //! The report of a run: which sections, in which order, with which words.
 
 mod drawing;
+mod glossary;
 mod inputs;
 mod planes;
 mod sections;
@@ -16,10 +17,12 @@ pub use drawing::scene;
 use crate::outcome::Outcome;
 use crate::run::Run;
 use crate::summary::Summary;
-use crate::variants::{self, Answer, Shown, Variants};
+use crate::variants::{self, Answer, Remedy, Shown, Variants};
 use crate::verify::Verification;
 
-pub(crate) use inputs::{readable, setting_row};
+pub(crate) use drawing::legend;
+pub use glossary::WORDS;
+pub(crate) use inputs::{setting_row, shown};
 pub(crate) use sections::traces;
 pub use sections::{standing_range, stress_figure};
 pub(crate) use words::{capital, headline, provenance};
@@ -27,8 +30,14 @@ pub(crate) use words::{capital, headline, provenance};
 /// What happened, in three plain sentences: the verdict, the why, and how far to trust it.
 pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     let mut sentences = vec![headline(run, summary)];
+    sentences.extend(summary.remedy.as_ref().map(Remedy::sentence));
     sentences.extend(words::details(run, summary, None));
     sentences
+}
+
+/// The sentences with the numbers behind those.
+pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
+    words::fine(run, summary)
 }
 
 /// The whole report as a document, free of any output format.
@@ -58,11 +67,15 @@ fn page(
         title: run.scenario.title.clone(),
         verdict: Verdict {
             headline: headline(run, summary),
+            advice: summary.remedy.as_ref().map(Remedy::sentence).unwrap_or_default(),
+            command: words::command(summary),
+            fine: words::fine(run, summary),
             sentences: words::details(run, summary, verification),
             tone: tone(run, summary),
         },
         blocks: sections::all(run, summary, (variants, other), verification, &scene),
         provenance: provenance(run, summary),
+        words: WORDS.to_vec(),
         warnings,
     }
 }

@@ -11,7 +11,7 @@ use crate::demand::Demands;
 use crate::outcome::Outcome;
 use crate::run::Run;
 use crate::scenario::View;
-use crate::variants::Spread;
+use crate::variants::{Remedy, Spread};
 use crate::verify::Verification;
 use crate::watch::StressEnvelope;
 
@@ -32,6 +32,8 @@ described! {
         pub variant: u32,
         /// What all variants say together; null where none were run.
         pub ensemble: Option<Spread>,
+        /// What would have kept the stack up; null where it stands, or nothing was looked for.
+        pub remedy: Option<Remedy>,
         /// What happened.
         pub outcome: OutcomeSummary,
         /// Every body but the ground; none where the run is invalid.
@@ -257,6 +259,7 @@ impl Summary {
             view: run.assembly.view.map(View::name),
             variant: 0,
             ensemble: None,
+            remedy: None,
             outcome: outcome(run),
             // Numbers of a run that broke down look like results and are none.
             bodies: if sound(run) { bodies(run) } else { Vec::new() },

@@ -117,7 +117,7 @@ fn the_page_sets_outcomes_and_demands_side_by_side() {
     assert_eq!(inputs.rows.len(), 1);
     let text = markdown(&document, "figures").text;
     assert!(text.contains("They differ in one input: stack.levels, 4 and 2."), "{text}");
-    assert!(text.contains("A is four.\nB is two.\n"), "{text}");
+    assert!(text.contains("A, four: ") && text.contains("B, two: "), "{text}");
 }
 
 #[test]
@@ -147,4 +147,46 @@ fn a_length_scale_makes_another_motion() {
     assert_eq!(lanes(&document), ["A: ground acceleration", "B: ground acceleration"]);
     let shared = compare::document(&[sides[0].clone(), sides[2].clone()]);
     assert_eq!(lanes(&shared), ["ground acceleration", "ground velocity"]);
+}
+
+#[test]
+fn runs_are_called_by_what_differs_between_them_in_words() {
+    let strap = "stack.strap={ levels = 5, ties = \"levels-together\", pretension = \"3 kN\" }";
+    let tight = "stack.strap={ levels = 5, ties = \"levels-together\", pretension = \"4 kN\" }";
+    let named = |changes: &[&[&str]]| {
+        let runs: Vec<_> =
+            changes.iter().map(|one| ("file".to_owned(), scenario("demo-napa", one))).collect();
+        compare::labels(&runs)
+    };
+    for (changes, names) in [
+        (&[&[][..], &["stack.levels=3"]][..], &["five levels", "three levels"][..]),
+        (&[&[], &[strap]], &["without straps", "with straps"]),
+        (
+            &[&[], &[strap], &[tight]],
+            &["without straps", "with straps at 3 kN", "with straps at 4 kN"],
+        ),
+        (
+            &[&[], &["stack.levels=3"], &[strap]],
+            &[
+                "five levels without straps",
+                "three levels without straps",
+                "five levels with straps",
+            ],
+        ),
+        (
+            &[&[], &["interface.rack-ground.friction.coefficient=0.1"]],
+            &["rack-ground friction 0.5", "rack-ground friction 0.1"],
+        ),
+        (
+            &[&[], &["motion.scale.factor=0.8"]],
+            &["South Napa 2014-08-24 M6.0", "South Napa 2014-08-24 M6.0, times 0.8"],
+        ),
+    ] {
+        let found = named(changes);
+        assert_eq!(found, names);
+        assert!(found.iter().all(|name| !name.contains(['=', '{', '"'])));
+    }
+    // What differs in more than a name can tell keeps the name of its file.
+    let many = ["stack.levels=3", "stack.columns=4", "run.gravity=9 m/s^2"];
+    assert_eq!(named(&[&[], &many]), ["file", "file"]);
 }

@@ -38,6 +38,16 @@ fn every_path_that_a_document_names_exists() {
     assert!(checked > 40, "only {checked} paths found: has the way of naming them changed?");
 }
 
+#[test]
+fn the_words_that_pages_explain_are_those_of_the_glossary() {
+    let text = std::fs::read_to_string(root().join("GLOSSARY.md")).unwrap();
+    let section = text.split("## Words of the pages").nth(1).unwrap();
+    let rows = section.lines().filter(|line| line.starts_with("| ")).skip(1);
+    let explained = barrelstack::report::WORDS;
+    let own = explained.iter().map(|one| format!("| {} | {} |", one.word, one.meaning));
+    assert_eq!(rows.collect::<Vec<_>>(), own.collect::<Vec<_>>());
+}
+
 /// Lines of code of a crate, with the file they stand in; comments are left out.
 fn code_of(folder: &Path, lines: &mut Vec<(PathBuf, String)>) {
     for entry in std::fs::read_dir(folder).unwrap() {

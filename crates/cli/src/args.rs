@@ -107,6 +107,9 @@ pub(crate) struct RunArgs {
     /// long it is predictable and whether its outcome is robust.
     #[arg(long)]
     pub(crate) verify: bool,
+    /// Do not look for what would have kept a stack up that falls, which may take as long again.
+    #[arg(long)]
+    pub(crate) no_remedy: bool,
     /// Write the report on paper too, report.pdf in the same folder.
     #[arg(long, requires = "out")]
     pub(crate) pdf: bool,
@@ -135,6 +138,9 @@ pub(crate) struct DemoArgs {
     pub(crate) set: Vec<String>,
     #[command(flatten)]
     pub(crate) variants: VariantArgs,
+    /// Do not look for what would have kept the stack up, which may take as long again.
+    #[arg(long)]
+    pub(crate) no_remedy: bool,
 }
 
 /// Arguments of `check`.

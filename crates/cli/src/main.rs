@@ -4,6 +4,7 @@
 
 mod args;
 mod commands;
+mod comparison;
 mod figures;
 mod interrupt;
 mod lanes;

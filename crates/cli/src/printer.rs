@@ -6,6 +6,7 @@ use std::io::{ErrorKind, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::Context as _;
+use barrelstack::Summary;
 use barrelstack::scenario::ScenarioError;
 use barrelstack::scenario::error::Place;
 use barrelstack::variants::{Answer, Shown};
@@ -174,6 +175,12 @@ pub(crate) fn warnings(answer: &Answer) {
     all.for_each(|text| warning(text));
 }
 
+/// The command that sets what would have helped beside the stack.
+pub(crate) fn side_by_side(summary: &Summary) -> Option<String> {
+    let command = summary.remedy.as_ref()?.comparison.as_ref()?;
+    Some(format!("To see it side by side: {command}"))
+}
+
 /// The answer for people; `changes` are the values changed on the command line.
 pub(crate) fn answer(
     answer: &Answer,
@@ -183,7 +190,9 @@ pub(crate) fn answer(
     let Shown { run, summary, .. } = &answer.decides;
     let mut all = vec![summary.title.clone()];
     let sentences = barrelstack::report::sentences(run, summary);
-    all.extend(sentences.into_iter().map(|sentence| format!("  {sentence}")));
+    let fine = barrelstack::report::fine(run, summary);
+    all.extend(sentences.into_iter().chain(fine).map(|sentence| format!("  {sentence}")));
+    all.extend(side_by_side(summary).map(|line| format!("  {line}")));
     for (changes, shown) in std::iter::once((changes, &answer.decides))
         .chain(answer.other.iter().map(|one| (&[][..], one)))
     {

@@ -75,6 +75,7 @@ mod matched;
 mod matching;
 mod math;
 mod normal_equations;
+mod people;
 mod process;
 mod pulse;
 mod pulse_class;

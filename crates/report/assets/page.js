@@ -49,6 +49,10 @@ window.addEventListener("resize", () => {
   waiting = setTimeout(refresh, 120);
 });
 window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", refresh);
+// What a word means goes away without a move of the pointer.
+document.addEventListener("keydown", (event) => {
+  if (event.key === "Escape" && document.activeElement?.matches(".term")) document.activeElement.blur();
+});
 window.addEventListener("beforeprint", () => {
   for (const fold of document.querySelectorAll("details:not([open])")) {
     fold.open = true;

@@ -175,7 +175,7 @@ function makeStage(data, canvas) {
 
   // Straps, until they tear.
   function drawTies(context, frame, time, toX, toY) {
-    context.lineCap = "round";
+    context.lineCap = "butt";
     for (const { bodies, points, torn } of data.ties) {
       if (torn !== null && time >= torn) continue;
       const [a, b] = bodies.map((body, end) => {
@@ -185,14 +185,19 @@ function makeStage(data, canvas) {
       });
       if (!isFinite(a[0] + a[1] + b[0] + b[1])) continue;
       // A dark line under a light one shows on wood, on steel and on paper.
-      for (const [style, wide] of [[paint.line, 4.4], [paint.device, 2.6]]) {
+      const line = (from, to, style, wide) => {
         context.beginPath();
-        context.moveTo(...a);
-        context.lineTo(...b);
+        context.moveTo(a[0] + from * (b[0] - a[0]), a[1] + from * (b[1] - a[1]));
+        context.lineTo(a[0] + to * (b[0] - a[0]), a[1] + to * (b[1] - a[1]));
         context.strokeStyle = style;
         context.lineWidth = wide;
         context.stroke();
-      }
+      };
+      line(0, 1, paint.line, 5);
+      line(0, 1, paint.device, 3.2);
+      // The buckle, by which a band is told from a rod.
+      const half = 4 / Math.max(8, Math.hypot(b[0] - a[0], b[1] - a[1]));
+      line(0.5 - half, 0.5 + half, paint.line, 8);
     }
   }
 

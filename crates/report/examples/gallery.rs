@@ -460,6 +460,7 @@ fn document() -> Document {
                 "The other seven stay on their racks; the bottom rack ends 2 cm from where it stood.".into(),
             ],
             tone: Tone::Falls,
+            ..Verdict::default()
         },
         blocks,
         provenance: vec![
@@ -468,6 +469,7 @@ fn document() -> Document {
             ("time step".into(), "0.1 ms".into()),
         ],
         warnings: vec!["The motions of this page are formulas; nothing was computed.".into()],
+        ..Document::default()
     }
 }
 

@@ -16,8 +16,20 @@ pub struct Document {
     pub blocks: Vec<Block>,
     /// What made the result: pairs of name and value, shown at the end.
     pub provenance: Vec<(String, String)>,
+    /// Words that not every reader knows, with what they mean: explained where they stand, and listed at the
+    /// end where they were used.
+    pub words: Vec<Word>,
     /// What the reader must know before trusting the result; shown right after the first player.
     pub warnings: Vec<String>,
+}
+
+/// A word that not every reader knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Word {
+    /// As it stands within a sentence.
+    pub word: &'static str,
+    /// What it means, in words that everybody knows.
+    pub meaning: &'static str,
 }
 
 /// The answer in plain language.
@@ -25,8 +37,14 @@ pub struct Document {
 pub struct Verdict {
     /// One short sentence, the largest text of the page.
     pub headline: String,
-    /// Sentences that back it, in order.
+    /// What the reader may do about it, in a sentence of its own; may be empty.
+    pub advice: String,
+    /// A command that shows more of that; may be empty.
+    pub command: String,
+    /// Sentences that back the headline, in order.
     pub sentences: Vec<String>,
+    /// Sentences with the numbers behind it, folded away on screen.
+    pub fine: Vec<String>,
     /// Sets the sign and the color beside the headline.
     pub tone: Tone,
 }
@@ -65,6 +83,9 @@ impl Tone {
         }
     }
 }
+
+/// The summary of the fold that holds [`Verdict::fine`].
+pub(crate) const FINE: &str = "The numbers behind it";
 
 /// One piece of content. All text is plain: it is escaped, never interpreted.
 #[expect(

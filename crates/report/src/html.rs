@@ -3,8 +3,11 @@
 use std::fmt::Write as _;
 
 use crate::{
-    Block, Document, Figure, FigureKind, Strip, Table, Tone, escape,
+    Block, Document, Figure, FigureKind, Strip, Table, Tone,
+    document::FINE,
+    escape,
     figure::Names,
+    glossary::Glossary,
     number,
     page::{Payload, assemble},
 };
@@ -26,6 +29,7 @@ pub fn html(document: &Document) -> String {
     writer.warnings(&document.warnings);
     writer.contents(&sections, !document.provenance.is_empty());
     writer.blocks(&document.blocks[split..]);
+    writer.words();
     writer.provenance(&document.provenance);
     writer.out.push_str("</main>\n");
     assemble(&document.title, &writer.out, writer.payload)
@@ -56,6 +60,7 @@ pub(crate) struct Writer<'a> {
     tables: usize,
     figures: usize,
     folded: usize,
+    glossary: Glossary,
 }
 
 impl<'a> Writer<'a> {
@@ -69,6 +74,7 @@ impl<'a> Writer<'a> {
             tables: 0,
             figures: 0,
             folded: 0,
+            glossary: Glossary::of(&document.words),
         }
     }
 
@@ -83,6 +89,18 @@ impl<'a> Writer<'a> {
         let _ = writeln!(self.out, "{open}{text}{close}");
     }
 
+    /// As [`Writer::element`], with the words that the document explains marked.
+    fn explained(&mut self, open: &str, text: &str, close: &str) {
+        let text = self.glossary.marked(&number::tied(text));
+        let _ = writeln!(self.out, "{open}{text}{close}");
+    }
+
+    /// What the words mean that were marked.
+    fn words(&mut self) {
+        let list = self.glossary.list();
+        self.put(&list);
+    }
+
     fn header(&mut self, document: &Document) {
         let verdict = &document.verdict;
         let tone = verdict.tone;
@@ -95,8 +113,23 @@ impl<'a> Writer<'a> {
             escape::html(tone.word())
         ));
         self.element("<h1>", &verdict.headline, "</h1>");
+        if !verdict.advice.is_empty() {
+            self.element("<p class=\"advice\">", &verdict.advice, "</p>");
+        }
         if !verdict.sentences.is_empty() {
-            self.element("<p class=\"lead\">", &verdict.sentences.join(" "), "</p>");
+            self.explained("<p class=\"lead\">", &verdict.sentences.join(" "), "</p>");
+        }
+        if !verdict.command.is_empty() {
+            // Not tied: it is to be copied.
+            let command = escape::html(&verdict.command);
+            self.put(&format!(
+                "<p class=\"command\">To see it side by side: <code>{command}</code></p>\n"
+            ));
+        }
+        if !verdict.fine.is_empty() {
+            self.put(&format!("<details class=\"fine\">\n<summary>{FINE}</summary>\n"));
+            self.explained("<p>", &verdict.fine.join(" "), "</p>");
+            self.put("</details>\n");
         }
         let count = document.warnings.len();
         if count > 0 {
@@ -151,6 +184,7 @@ impl<'a> Writer<'a> {
             match block {
                 Block::Heading { level, text } => {
                     let level = (*level).clamp(2, 4);
+                    self.glossary.again();
                     // Headings that are folded away are not listed and need no anchor.
                     let open = if level == 2 && self.folded == 0 {
                         format!("<h2 id=\"{}\">", anchor(&mut self.anchors, text))
@@ -159,11 +193,11 @@ impl<'a> Writer<'a> {
                     };
                     self.element(&open, text, &format!("</h{level}>"));
                 }
-                Block::Paragraph(text) => self.element("<p class=\"text\">", text, "</p>"),
+                Block::Paragraph(text) => self.explained("<p class=\"text\">", text, "</p>"),
                 Block::List(items) => {
                     self.put("<ul class=\"text\">\n");
                     for item in items {
-                        self.element("<li>", item, "</li>");
+                        self.explained("<li>", item, "</li>");
                     }
                     self.put("</ul>\n");
                 }
@@ -189,7 +223,7 @@ impl<'a> Writer<'a> {
         let label = escape::html(&table.caption);
         self.put(&format!(" aria-label=\"Table {}. {label}\">\n<table>\n", self.tables));
         let number = format!("<caption><span><b>Table {}.</b> ", self.tables);
-        self.element(&number, &table.caption, "</span></caption>");
+        self.explained(&number, &table.caption, "</span></caption>");
         let numeric: Vec<bool> = (0..table.columns.len()).map(|c| table.is_numeric(c)).collect();
         let class = |column: usize| if numeric[column] { " class=\"number\"" } else { "" };
         self.put("<thead><tr>");
@@ -199,11 +233,11 @@ impl<'a> Writer<'a> {
             } else {
                 format!(" <span class=\"unit\">({})</span>", escape::html(&column.unit))
             };
-            let name = escape::html(&column.name);
             // A cell without words heads nothing.
-            if name.is_empty() && unit.is_empty() {
+            if column.name.is_empty() && unit.is_empty() {
                 self.put("<td></td>");
             } else {
+                let name = self.glossary.marked(&column.name);
                 self.put(&format!("<th scope=\"col\"{}>{name}{unit}</th>", class(at)));
             }
         }
@@ -216,7 +250,8 @@ impl<'a> Writer<'a> {
                     Some(crate::Cell::Rated(rating, _)) => format!(" class=\"{}\"", rating.class()),
                     _ => class(at).to_owned(),
                 };
-                self.put(&format!("<td{class}>{}</td>", escape::html(&number::tied(&text))));
+                let text = self.glossary.marked(&number::tied(&text));
+                self.put(&format!("<td{class}>{text}</td>"));
             }
             self.put("</tr>\n");
         }
@@ -261,7 +296,7 @@ impl<'a> Writer<'a> {
     pub(crate) fn caption(&mut self, caption: &str) {
         self.figures += 1;
         let number = format!("<figcaption><b>Figure {}.</b> ", self.figures);
-        self.element(&number, caption, "</figcaption>");
+        self.explained(&number, caption, "</figcaption>");
     }
 
     pub(crate) fn strip(&mut self, strip: &Strip, id: &str) {

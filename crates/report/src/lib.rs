@@ -19,10 +19,12 @@
 //!         headline: "The stack stands.".into(),
 //!         sentences: vec!["It slid 2 cm.".into()],
 //!         tone: Tone::Stands,
+//!         ..Verdict::default()
 //!     },
 //!     blocks: vec![Block::Table(table)],
 //!     provenance: vec![],
 //!     warnings: vec![],
+//!     ..Document::default()
 //! };
 //! assert!(html(&document).contains("<td class=\"number\">2.0</td>"));
 //! ```
@@ -44,6 +46,7 @@ mod escape;
 mod figure;
 mod film;
 mod font;
+mod glossary;
 mod html;
 mod markdown;
 mod number;
@@ -72,7 +75,7 @@ mod vtk;
 
 pub use animation::Animation;
 pub use diagram::{Arrow, Diagram};
-pub use document::{Block, Document, Tone, Verdict};
+pub use document::{Block, Document, Tone, Verdict, Word};
 pub use envelope::{BoundarySample, Envelope};
 pub use escape::csv as csv_field;
 pub use figure::{Attachment, Figure, FigureKind, Format, attachments, figures};

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use crate::{
-    Attachment, Block, Document, Event, Player, Players, Table, attachments, escape, figure::Names,
-    number,
+    Attachment, Block, Document, Event, Player, Players, Table, Word, attachments, document::FINE,
+    escape, figure::Names, glossary, number,
 };
 
 /// Markdown text and the files it refers to.
@@ -32,15 +32,37 @@ pub fn markdown(document: &Document, figure_dir: &str) -> MarkdownBundle {
     writer.line(&format!("# {}\n", escape::markdown(&document.title)));
     let headline = escape::markdown(&verdict.headline);
     writer.line(&format!("**{}: {headline}**\n", verdict.tone.word()));
+    if !verdict.advice.is_empty() {
+        writer.line(&format!("**{}**\n", escape::markdown(&verdict.advice)));
+    }
     for sentence in &verdict.sentences {
         writer.line(&escape::markdown(sentence));
     }
     writer.line("");
+    if !verdict.command.is_empty() {
+        writer.line(&format!("To see it side by side:\n\n    {}\n", verdict.command));
+    }
     if !document.warnings.is_empty() {
         writer.line("## Warnings\n");
         writer.list(&document.warnings);
     }
+    if !verdict.fine.is_empty() {
+        writer.line(&format!("## {FINE}\n"));
+        for sentence in &verdict.fine {
+            writer.line(&escape::markdown(sentence));
+        }
+        writer.line("");
+    }
     writer.blocks(&document.blocks, 0);
+    let words = glossary::used(&document.words, &writer.out);
+    if !words.is_empty() {
+        writer.line(&format!("## {}\n", glossary::TITLE));
+        let line = |one: &&Word| format!("**{}**: {}", one.word, escape::markdown(one.meaning));
+        for one in words.iter().map(line) {
+            writer.line(&format!("- {one}"));
+        }
+        writer.line("");
+    }
     if !document.provenance.is_empty() {
         writer.line("## Provenance\n\n| what | value |\n| :--- | :--- |");
         for (name, value) in &document.provenance {

@@ -2,6 +2,7 @@
 
 use crate::{
     Block, Document, Figure, Player, Table, Tone,
+    document::FINE,
     drawing::{Anchor, Drawing, Item},
     escape,
     figure::Names,
@@ -174,8 +175,18 @@ impl<'a> Flow<'a> {
         self.text(class, 0.0, &verdict.tone.word().to_uppercase());
         self.text("page-headline", 0.0, &verdict.headline);
         self.y += 4.0;
+        if !verdict.advice.is_empty() {
+            self.paragraph("page-bold", &verdict.advice);
+        }
         if !verdict.sentences.is_empty() {
             self.paragraph("page-text", &verdict.sentences.join(" "));
+        }
+        if !verdict.command.is_empty() {
+            self.paragraph("page-text", &format!("To see it side by side: {}", verdict.command));
+        }
+        if !verdict.fine.is_empty() {
+            self.heading("page-part", FINE, 28.0);
+            self.paragraph("page-text", &verdict.fine.join(" "));
         }
     }
 

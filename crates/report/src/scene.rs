@@ -186,7 +186,7 @@ impl EventKind {
         match self {
             Self::Uplift => "uplift",
             Self::Slip => "slip",
-            Self::LossOfSeat => "loss of seat",
+            Self::LossOfSeat => "gives way",
             Self::Fall => "fall",
             Self::Note => "note",
         }

@@ -5,7 +5,8 @@ mod common;
 use std::sync::Arc;
 
 use barrelstack_report::{
-    Axis, Block, Cell, Figure, FigureKind, Frames, Plot, Scene, Series, Strip, Table, Tone, html,
+    Axis, Block, Cell, Figure, FigureKind, Frames, Plot, Scene, Series, Strip, Table, Tone, Word,
+    html, markdown,
 };
 use common::{HOSTILE, document, payload, player, scene};
 
@@ -48,9 +49,37 @@ fn hostile_page() -> String {
     doc.title = HOSTILE.into();
     doc.verdict.headline = HOSTILE.into();
     doc.verdict.sentences = vec![HOSTILE.into()];
+    doc.verdict.advice = HOSTILE.into();
+    doc.verdict.command = HOSTILE.into();
+    doc.verdict.fine = vec![HOSTILE.into()];
     doc.warnings = vec![HOSTILE.into()];
     doc.provenance = vec![(HOSTILE.into(), HOSTILE.into())];
     html(&doc)
+}
+
+#[test]
+fn advice_stands_under_the_headline_and_the_numbers_behind_it_are_folded() {
+    let mut doc = document(vec![Block::Paragraph("Its drift is 2 %.".into())]);
+    doc.verdict.advice = "Three levels would have stood.".into();
+    doc.verdict.command = "barrelstack compare 'a b'".into();
+    doc.verdict.fine = vec!["The motion reaches 0.37 g.".into()];
+    doc.words = vec![
+        Word { word: "drift", meaning: "how far the top moves" },
+        Word { word: "uplift", meaning: "how far a body rises" },
+    ];
+    let page = markup(&html(&doc));
+    let at = |text: &str| page.find(text).unwrap_or_else(|| panic!("no {text} in {page}"));
+    assert!(at("<h1>") < at("Three levels would have stood."));
+    assert!(at("Three levels would have stood.") < at("class=\"lead\""));
+    assert!(at("<code>barrelstack compare &#39;a b&#39;</code>") < at("<details class=\"fine\">"));
+    assert!(at("<details class=\"fine\">") < at("0.37\u{a0}g"));
+    // A word that does not stand in the page is not explained.
+    assert!(page.contains("id=\"word-0\">how far the top moves") && !page.contains("uplift"));
+    let text = markdown(&doc, "").text;
+    let at = |part: &str| text.find(part).unwrap_or_else(|| panic!("no {part} in {text}"));
+    assert!(at("**Three levels would have stood.**") < at("## The numbers behind it"));
+    assert!(at("## The numbers behind it") < at("0.37"));
+    assert!(at("- **drift**: how far the top moves") > at("Its drift") && !text.contains("uplift"));
 }
 
 #[test]

@@ -26,10 +26,12 @@ pub(super) fn document(results: &Results, rows: &[Comparison]) -> Document {
                     .into(),
             ],
             tone: Tone::Neutral,
+            ..Headline::default()
         },
         blocks: blocks(results, rows),
         provenance: provenance(results),
         warnings: warnings(&results.motion),
+        ..Document::default()
     }
 }
 

@@ -145,6 +145,7 @@ pub fn document(problems: &[Problem], rows: &[Row], effort: Effort, seconds: f64
                     .into(),
             ],
             tone: if failed == 0 { Tone::Neutral } else { Tone::Invalid },
+            ..Verdict::default()
         },
         blocks,
         provenance: vec![
@@ -153,6 +154,7 @@ pub fn document(problems: &[Problem], rows: &[Row], effort: Effort, seconds: f64
             ("time on the clock".into(), format!("{seconds:.0} s")),
         ],
         warnings: failures,
+        ..Document::default()
     }
 }
 

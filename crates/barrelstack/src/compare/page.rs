@@ -3,14 +3,15 @@
 use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
     Axis, Block, Document, Figure, FigureKind, History, Mark, Pane, Players, Plot, Series,
-    SeriesStyle, Tone, Verdict,
+    SeriesStyle, Verdict, significant,
 };
 
 use super::{Difference, Side, differences, letter, tables};
 use crate::assemble::PartKind;
 use crate::outcome::Outcome;
-use crate::report;
-use crate::variants::words;
+use crate::report::{self, capital};
+use crate::scenario::title;
+use crate::variants::{Spread, words};
 
 pub(super) fn document(sides: &[Side]) -> Document {
     let differing = differences(sides.iter().map(|side| &*side.run.stated));
@@ -33,10 +34,11 @@ pub(super) fn document(sides: &[Side]) -> Document {
         }],
     );
     Document {
-        title: format!("Comparison of {}", listed(sides.iter().map(|s| s.name.clone()))),
+        title: heading(sides),
         verdict: verdict(sides, &differing),
         blocks,
         provenance: provenance(sides),
+        words: report::WORDS.to_vec(),
         warnings: sides
             .iter()
             .enumerate()
@@ -69,31 +71,105 @@ fn fate(side: &Side) -> String {
     }
 }
 
-fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
-    let fates: Vec<String> = sides.iter().map(fate).collect();
-    let alike = fates.iter().all(|one| *one == fates[0]);
-    let headline = if alike {
-        let who = if sides.len() == 2 { "Both".to_owned() } else { format!("All {}", sides.len()) };
-        let fate = fates.first().map(String::as_str).unwrap_or_default();
-        let plural = fate.replacen("stands", "stand", 1).replacen("gives", "give", 1);
-        let plural = plural.replacen("falls", "fall", 1).replacen("has no", "have no", 1);
-        let plural = plural.replacen("and says", "and say", 1).replacen("its end", "their ends", 1);
-        format!("{who} {plural}.")
-    } else {
-        let parts = fates.iter().enumerate().map(|(at, fate)| format!("{} {fate}", letter(at)));
-        format!("{}.", listed(parts))
+/// What is compared, and what all of them share: their height and columns where those are the same.
+fn heading(sides: &[Side]) -> String {
+    let names = format!("Comparison of {}", listed(sides.iter().map(|side| side.name.clone())));
+    let first = sides.first().map(|side| &side.run.stated.title);
+    match first.filter(|first| sides.iter().all(|side| side.run.stated.title == **first)) {
+        Some(title) => format!("{names}: {title}"),
+        None => names,
+    }
+}
+
+/// The share that falls of the worse plane, with its interval and how many were run; none for a single run.
+fn share(side: &Side) -> Option<&Spread> {
+    let all = side.summary.ensemble.iter().chain(&side.other);
+    all.filter(|spread| spread.share.is_some())
+        .reduce(|worst, one| if one.share > worst.share { one } else { worst })
+}
+
+fn stands(side: &Side) -> bool {
+    match share(side) {
+        Some(spread) => words::stands(spread),
+        None => side.run.outcome == Outcome::Stable,
+    }
+}
+
+/// What the difference comes to, in one sentence.
+fn headline(sides: &[Side]) -> String {
+    let judged = |side: &Side| {
+        share(side).is_some()
+            || matches!(side.run.outcome, Outcome::Stable | Outcome::Collapse { .. })
     };
-    let mut sentences: Vec<String> = sides
-        .iter()
-        .enumerate()
-        .map(|(at, side)| format!("{} is {}.", letter(at), side.name))
-        .collect();
-    sentences.push(match differing {
+    if !sides.iter().all(judged) {
+        let parts = sides.iter().map(|side| format!("{}: {}", capital(&side.name), fate(side)));
+        return format!("{}.", listed(parts));
+    }
+    let (up, down): (Vec<&Side>, Vec<&Side>) = sides.iter().partition(|side| stands(side));
+    let straps = |side: &Side| side.run.stated.stack().is_some_and(|s| s.devices.strap.levels > 0);
+    let levels = |side: &Side| side.run.stated.stack().map(|stack| stack.levels);
+    let one_height = sides.iter().all(|side| levels(side) == levels(&sides[0]));
+    let all =
+        if sides.len() == 2 { "both".to_owned() } else { format!("all {}", number(sides.len())) };
+    let names = |some: &[&Side]| listed(some.iter().map(|side| side.name.clone()));
+    match (up.as_slice(), down.as_slice()) {
+        ([up], [down]) if one_height && straps(up) && !straps(down) => {
+            let barrels = up.summary.outcome.barrels;
+            let fallen = share(up).map_or(0, |spread| spread.collapsed);
+            match (up.other.is_some(), fallen) {
+                (false, 0) if barrels > 1 => {
+                    format!("Straps keep all {} barrels up.", number(barrels))
+                }
+                _ => "Straps keep the stack up.".to_owned(),
+            }
+        }
+        ([up], [down]) if one_height && !straps(up) && straps(down) => {
+            format!("Straps bring the stack down: it stands with {}.", up.name)
+        }
+        ([], _) => format!("{} fall: {}.", capital(&all), names(&down)),
+        (_, []) => format!("{} stand: {}.", capital(&all), names(&up)),
+        (up, down) => format!("Stands: {}. Falls: {}.", names(up), names(down)),
+    }
+}
+
+/// What became of one of them, with the interval of its share, and how far what stands still sways.
+fn told(at: usize, side: &Side) -> String {
+    let name = format!("{}, {}", letter(at), side.name);
+    let Some(spread) = share(side) else { return format!("{name}: {}.", fate(side)) };
+    let [low, high] = spread.interval.map(words::percent);
+    let Spread { collapsed, variants, .. } = spread;
+    let told = format!(
+        "{name}: falls in {collapsed} of {variants} variants ({low} to {high} of all such stacks)"
+    );
+    let drift = side.summary.demands.top_drift_ratio.filter(|_| stands(side));
+    match drift {
+        Some(drift) => format!(
+            "{told}; where it stands it still sways, its top by up to {} % of its height in the run that is shown.",
+            significant(100.0 * drift, 2)
+        ),
+        None => format!("{told}."),
+    }
+}
+
+fn number(count: usize) -> String {
+    title::number(u32::try_from(count).unwrap_or(u32::MAX))
+}
+
+fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
+    let mut sentences: Vec<String> =
+        sides.iter().enumerate().map(|(at, side)| told(at, side)).collect();
+    if sides.iter().any(|side| side.other.is_some()) {
+        sentences.push("Of both planes the worse one counts.".to_owned());
+    }
+    let mut fine = Vec::new();
+    fine.push(match differing {
         [one] => format!(
             "They differ in one input: {}, {}.",
             one.path,
             listed(one.values.iter().map(|value| {
-                value.as_deref().map_or_else(|| "absent".into(), report::readable)
+                value
+                    .as_ref()
+                    .map_or_else(|| "absent".into(), |value| report::shown(&one.path, value))
             }))
         ),
         many => format!("They differ in {} inputs, listed below.", many.len()),
@@ -101,40 +177,41 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
     let view = sides[0].run.assembly.view;
     if let Some(view) = view.filter(|_| sides.iter().any(|side| side.other.is_some())) {
         sentences.push(format!(
-            "All this is {}; the other plane is in the table of outcomes.",
+            "What is shown is {}; the other plane is in the table of outcomes.",
             view.words()
         ));
     }
-    sentences.push(if sides.iter().all(|side| side.summary.ensemble.is_some()) {
+    fine.push(if sides.iter().all(|side| side.summary.ensemble.is_some()) {
         "The run of each that is shown is the most typical of its variants.".into()
     } else {
         "Each is one run: small changes of friction or gaps can change what falls when, so judge a \
          difference by many runs."
             .into()
     });
-    Verdict { headline, sentences, tone: Tone::Neutral }
+    Verdict { headline: headline(sides), sentences, fine, ..Verdict::default() }
 }
 
 fn players(sides: &[Side]) -> Players {
+    let panes: Vec<Pane> = sides
+        .iter()
+        .enumerate()
+        .map(|(at, side)| Pane {
+            mark: letter(at).into(),
+            name: side.name.clone(),
+            verdict: report::headline(&side.run, &side.summary),
+            tone: report::tone(&side.run, &side.summary),
+            scene: report::scene(&side.run),
+            traces: report::traces(&side.run),
+        })
+        .collect();
     Players {
         id: "players".into(),
-        caption:
-            "The runs as computed, on one clock and to one scale. A run that has ended holds its \
-                  last frame. With “A in the others” the dashed outlines are those of A at the same \
-                  time."
-                .into(),
-        panes: sides
-            .iter()
-            .enumerate()
-            .map(|(at, side)| Pane {
-                mark: letter(at).into(),
-                name: side.name.clone(),
-                verdict: report::headline(&side.run, &side.summary),
-                tone: report::tone(&side.run, &side.summary),
-                scene: report::scene(&side.run),
-                traces: report::traces(&side.run),
-            })
-            .collect(),
+        caption: format!(
+            "The runs as computed, on one clock and to one scale. A run that has ended holds its last \
+             frame. With “A in the others” the dashed outlines are those of A at the same time.{}",
+            panes.iter().map(|pane| report::legend(&pane.scene)).max().unwrap_or_default()
+        ),
+        panes,
         ground: lanes(sides),
         overlay: Some("A in the others".into()),
     }

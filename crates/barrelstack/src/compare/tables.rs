@@ -31,7 +31,7 @@ pub(super) fn inputs(sides: &[Side], differing: &[Difference]) -> Table {
     );
     for one in differing {
         let mut row = vec![Cell::text(&one.path)];
-        let shown = |value: &String| Cell::text(report::readable(value));
+        let shown = |value: &String| Cell::text(report::shown(&one.path, value));
         row.extend(one.values.iter().map(|v| v.as_ref().map_or(Cell::Missing, shown)));
         row.push(Cell::text(one.help));
         table.rows.push(row);
@@ -90,7 +90,7 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
     }
     row("outcome", &|side| Cell::text(side.summary.outcome.kind));
     row("mode", &|side| side.summary.outcome.mode.map_or(Cell::Missing, Cell::text));
-    row("first loss of seat", &|side| seconds(side.summary.outcome.time));
+    row("gives way", &|side| seconds(side.summary.outcome.time));
     row("first body", &|side| text(side.summary.outcome.first.as_ref()));
     row("first fall", &|side| seconds(side.summary.outcome.first_fall));
     row("barrels fallen", &|side| {

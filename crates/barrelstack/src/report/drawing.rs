@@ -70,16 +70,20 @@ fn ghosts(variants: &Variants) -> Option<Ghosts> {
     })
 }
 
-/// What ghosts of a scene mean, as a sentence that follows another; empty where it has none.
-pub(super) fn legend(scene: &Scene) -> String {
-    let sentence = |ghosts: &Ghosts| {
-        format!(
+/// What of a scene a caption has to explain: straps, and the ghosts of variants.
+pub(crate) fn legend(scene: &Scene) -> String {
+    let mut legend = String::new();
+    if !scene.ties.is_empty() {
+        legend += " Bands with a buckle are straps; one that tears is gone.";
+    }
+    if let Some(ghosts) = &scene.ghosts {
+        legend += &format!(
             " With “{}” thin lines are the ways of the barrels of the top level in each, and the darker a \
              place, the more often a barrel ends there.",
             ghosts.label
-        )
-    };
-    scene.ghosts.as_ref().map(sentence).unwrap_or_default()
+        );
+    }
+    legend
 }
 
 /// Displacement (m) below which nothing is worth opening a page on.

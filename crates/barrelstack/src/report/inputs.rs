@@ -9,10 +9,17 @@ use crate::scenario::{Setting, Source, catalog};
 pub(crate) fn setting_row(setting: &Setting) -> [Cell; 4] {
     [
         Cell::text(&setting.path),
-        Cell::text(readable(&setting.value)),
+        Cell::text(shown(&setting.path, &setting.value)),
         Cell::text(setting.source.words()),
         Cell::text(setting.help),
     ]
+}
+
+/// The value of an input as a page shows it: of a file its name, and not where it lies.
+pub(crate) fn shown(path: &str, value: &str) -> String {
+    let file = ["motion.record", "motion.vertical_record"].contains(&path);
+    let name = value.rsplit(['/', '\\']).next().filter(|_| file);
+    name.map_or_else(|| readable(value), str::to_owned)
 }
 
 /// A value as people read it: numbers, also before a unit, to six significant digits.

@@ -30,29 +30,42 @@ pub(super) fn all(
         None => Block::Player(player(run, scene)),
         Some(other) => Block::Players(planes::players((run, summary, scene), other)),
     }];
-    section(&mut blocks, "In all variants", planes::variants(summary));
-    section(&mut blocks, "Collapse sequence", sequence(run, scene));
+    let remedy = summary.remedy.iter().map(|found| Block::Table(found.table())).collect();
+    section(&mut blocks, 2, "What would have kept it up", remedy);
+    section(&mut blocks, 2, "In all variants", planes::variants(summary));
+    section(&mut blocks, 2, "Collapse sequence", sequence(run, scene));
     let trusted = verification.map(trust::trust).unwrap_or_default();
-    section(&mut blocks, "How far to trust this run", trusted);
-    section(&mut blocks, "What became of every body", vec![Block::Table(fates(summary))]);
-    section(&mut blocks, "Displacements", displacements(run, variants));
-    let table = demand_table(summary);
-    let shown = if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] };
-    section(&mut blocks, "Demands", shown);
-    section(&mut blocks, "Normal stress on barrels and racks", stresses(run));
-    section(&mut blocks, "Forces between bodies", forces(run, summary));
-    for one in &summary.devices.0 {
-        section(&mut blocks, &words::capital(one.words.many), device(one));
-    }
-    section(&mut blocks, "Ground motion", motion(run));
-    section(&mut blocks, "Energy books", energy(run, summary));
-    section(&mut blocks, "Inputs", inputs::inputs(run));
+    section(&mut blocks, 2, "How far to trust this run", trusted);
+    let folded = vec![Block::Details {
+        summary: "Bodies, demands, stresses, forces, motion, energies and inputs".into(),
+        blocks: engineering(run, summary, variants),
+    }];
+    section(&mut blocks, 2, "For the engineer", folded);
     blocks
 }
 
-fn section(blocks: &mut Vec<Block>, title: &str, content: Vec<Block>) {
+/// What only a reader who calculates asks for.
+fn engineering(run: &Run, summary: &Summary, variants: Option<&Variants>) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    section(&mut blocks, 3, "What became of every body", vec![Block::Table(fates(summary))]);
+    section(&mut blocks, 3, "Displacements", displacements(run, variants));
+    let table = demand_table(summary);
+    let shown = if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] };
+    section(&mut blocks, 3, "Demands", shown);
+    section(&mut blocks, 3, "Normal stress on barrels and racks", stresses(run));
+    section(&mut blocks, 3, "Forces between bodies", forces(run, summary));
+    for one in &summary.devices.0 {
+        section(&mut blocks, 3, &words::capital(one.words.many), device(one));
+    }
+    section(&mut blocks, 3, "Ground motion", motion(run));
+    section(&mut blocks, 3, "Energy books", energy(run, summary));
+    section(&mut blocks, 3, "Inputs", inputs::inputs(run));
+    blocks
+}
+
+fn section(blocks: &mut Vec<Block>, level: u8, title: &str, content: Vec<Block>) {
     if !content.is_empty() {
-        blocks.push(Block::Heading { level: 2, text: title.to_owned() });
+        blocks.push(Block::Heading { level, text: title.to_owned() });
         blocks.extend(content);
     }
 }
@@ -145,7 +158,7 @@ fn demand_table(summary: &Summary) -> Table {
 
 /// A figure of histories over time with the collapse marked.
 fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> Block {
-    let mark = run.fates.collapse_time().map(|at| Mark { at, label: "loss of seat".into() });
+    let mark = run.fates.collapse_time().map(|at| Mark { at, label: "gives way".into() });
     Block::Figure(Figure {
         id: id.to_owned(),
         caption: caption.to_owned(),

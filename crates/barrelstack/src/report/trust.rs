@@ -14,7 +14,7 @@ pub(super) fn trust(found: &Verification) -> Vec<Block> {
             ("change", ""),
             ("outcome", ""),
             ("first body", ""),
-            ("loss of seat", "s"),
+            ("gives way", "s"),
             ("parts from the run", "s"),
             ("falls differ by", "ms"),
         ],

@@ -64,16 +64,13 @@ fn course(run: &Run, mode: CollapseMode, first: &str, part: &str) -> String {
     let barrel = run.assembly.parts.iter().any(|p| p.name == first && p.kind == PartKind::Barrel);
     match mode {
         CollapseMode::Ejection if barrel => {
-            format!(
-                "Barrel {first} is thrown out of its cradle, the first of {part} to leave its seat."
-            )
+            format!("Barrel {first} is thrown out of its cradle, the first of {part} to go.")
         }
         CollapseMode::Ejection => {
             format!("The barrels of {part} are thrown off the stack with their rack, {first}.")
         }
         CollapseMode::Rocking => format!(
-            "The part above, {part}, rocks on the barrels below and topples; rack {first} leaves its \
-             seat first."
+            "The part above, {part}, rocks on the barrels below and topples; rack {first} goes first."
         ),
         CollapseMode::RackSliding => format!(
             "Rack {first} walks along the barrels below until it is off them, and takes {part} with \
@@ -99,18 +96,63 @@ fn device(Device { words, elements }: &Device) -> Option<String> {
     })
 }
 
-/// What shook the ground, and how much.
+/// What shook the ground.
 fn shaking(motion: &MotionSummary) -> String {
     let name = &motion.name;
-    if motion.pga == 0.0 {
-        return format!("The ground moves vertically only ({name}).");
+    match (motion.pga == 0.0, motion.vertical) {
+        (true, _) => format!("The ground moves up and down only: {name}."),
+        (false, true) => format!("The ground moves as in {name}, sideways and up and down."),
+        (false, false) => format!("The ground moves as in {name}, sideways."),
     }
-    format!(
-        "The ground motion ({name}{}) reaches {:.2} g and {:.0} cm/s.",
-        if motion.vertical { ", with its vertical component" } else { "" },
-        motion.pga / STANDARD_GRAVITY,
-        100.0 * motion.pgv,
-    )
+}
+
+/// The numbers behind the sentences: how strong the motion is, which variant is shown, how variants differ.
+pub(super) fn fine(run: &Run, summary: &Summary) -> Vec<String> {
+    let strength = |motion: &MotionSummary| {
+        format!(
+            "The motion that is shown reaches {:.2} g and {:.0} cm/s.",
+            motion.pga / STANDARD_GRAVITY,
+            100.0 * motion.pgv
+        )
+    };
+    let mut sentences: Vec<String> =
+        summary.motion.iter().filter(|motion| motion.pga > 0.0).map(strength).collect();
+    sentences.extend(variants::words::fine(summary, run.scenario.imperfections()));
+    sentences
+}
+
+/// The command that sets what would have helped beside the stack: of files their names, not where they lie.
+pub(super) fn command(summary: &Summary) -> String {
+    let command = summary.remedy.as_ref().and_then(|found| found.comparison.as_deref());
+    let word = |word: &str| {
+        let path = word.trim_start_matches('\'');
+        let quote = &word[..word.len() - path.len()];
+        let whole = path.starts_with(['/', '~', '\\']) || path.get(1..3) == Some(":\\");
+        let name = path.rsplit(['/', '\\']).next().filter(|_| whole);
+        name.map_or_else(|| word.to_owned(), |name| format!("{quote}{name}"))
+    };
+    command.map(|text| text.split(' ').map(word).collect::<Vec<_>>().join(" ")).unwrap_or_default()
+}
+
+/// Which of several runs a sentence is about: "Along the barrels, in the run that is shown, ".
+fn shown(run: &Run, summary: &Summary) -> String {
+    let view = run.assembly.view.filter(|_| summary.other_plane.is_some());
+    match (view, summary.ensemble.is_some()) {
+        (None, false) => String::new(),
+        (None, true) => "In the run that is shown, ".to_owned(),
+        (Some(view), false) => format!("{}, ", capital(view.words())),
+        (Some(view), true) => format!("{}, in the run that is shown, ", capital(view.words())),
+    }
+}
+
+/// A sentence behind words that it begins with.
+fn behind(begin: &str, sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    let first = letters.next().filter(|_| !begin.is_empty());
+    match first {
+        Some(first) => format!("{begin}{}{}", first.to_lowercase(), letters.as_str()),
+        None => format!("{begin}{sentence}"),
+    }
 }
 
 /// The sentences that back the headline.
@@ -124,7 +166,8 @@ pub(super) fn details(
     let mut sentences = Vec::new();
     match &run.outcome {
         Outcome::Collapse { mode, first, from_level, to_level, .. } => {
-            sentences.push(course(run, *mode, first, &levels(*from_level, *to_level)));
+            let course = course(run, *mode, first, &levels(*from_level, *to_level));
+            sentences.push(behind(&shown(run, summary), &course));
         }
         Outcome::Stable => {
             let drift = summary.demands.top_drift_ratio.unwrap_or(0.0);
@@ -139,7 +182,7 @@ pub(super) fn details(
             } else {
                 format!("Its top moves by up to {:.1} % of the height of the stack", 100.0 * drift)
             };
-            sentences.push(format!("{top}, and {foot}."));
+            sentences.push(behind(&shown(run, summary), &format!("{top}, and {foot}.")));
         }
         Outcome::NotJudged => {}
         Outcome::Invalid { reason } => sentences.push(format!("{}.", capital(reason))),
@@ -147,7 +190,7 @@ pub(super) fn details(
     sentences.extend(summary.devices.0.iter().filter_map(device));
     sentences.extend(summary.motion.as_ref().map(shaking));
     let judged = matches!(run.outcome, Outcome::Stable | Outcome::Collapse { .. });
-    sentences.extend(variants::words::sentences(summary, run.scenario.imperfections()));
+    sentences.extend(variants::words::sentences(summary));
     if let Some(found) = verification {
         sentences.extend(found.sentences());
     } else if judged && summary.ensemble.is_none() {

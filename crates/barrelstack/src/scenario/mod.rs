@@ -52,7 +52,7 @@ pub mod schema;
 pub mod shape;
 pub mod stack;
 pub mod template;
-mod title;
+pub(crate) mod title;
 pub mod uniform;
 
 pub use barrelstack_input::{

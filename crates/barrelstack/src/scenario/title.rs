@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::catalog::RECORDS;
-use super::{MotionSource, RecordSource, Scenario, Scene, StackSpec, View};
+use super::{MotionSource, RecordSource, Scale, Scenario, Scene, StackSpec, View};
+use crate::ground::{self, GroundError};
 
 /// Numbers in words, from zero.
 const WORDS: [&str; 13] = [
@@ -17,7 +18,21 @@ pub(super) fn of(scenario: &Scenario) -> String {
     let Scene::Stack { stack, .. } = &scenario.scene else {
         return format!("{}, changed", scenario.title);
     };
-    format!("{}, {}", stands(stack), shakes(&scenario.motion.source))
+    format!("{}, {}", stands(stack), shakes(scenario, None))
+}
+
+impl Scenario {
+    /// The same with the event of its record in its title, where nobody wrote one; a file is read for that.
+    pub(crate) fn with_event(&self) -> Result<Self, GroundError> {
+        let mut named = self.clone();
+        let Scene::Stack { stack, .. } = &self.scene else { return Ok(named) };
+        if self.title == of(self)
+            && let Some(event) = ground::event(&self.motion)?
+        {
+            named.title = format!("{}, {}", stands(stack), shakes(self, Some(&event)));
+        }
+        Ok(named)
+    }
 }
 
 fn stands(stack: &StackSpec) -> String {
@@ -28,11 +43,29 @@ fn stands(stack: &StackSpec) -> String {
         View::Transverse => "",
         View::Longitudinal => ", along the barrels",
     };
-    format!("{barrels} on {levels}{view}")
+    let strapped = stack.devices.strap.levels;
+    let straps = match strapped {
+        0 => String::new(),
+        all if all == stack.levels => ", strapped".to_owned(),
+        some => format!(", {} strapped", number(some)),
+    };
+    format!("{barrels} on {levels}{straps}{view}")
 }
 
-fn shakes(motion: &MotionSource) -> String {
-    match motion {
+/// What shakes it, how strongly: a record by its event, where that is known.
+pub(crate) fn shakes(scenario: &Scenario, event: Option<&str>) -> String {
+    let motion = &scenario.motion.source;
+    let scaled = match scenario.motion.scale {
+        Scale::Factor(1.0) => String::new(),
+        Scale::Factor(factor) => format!(", times {factor}"),
+        Scale::Pga(peak) => format!(", at {:.2} g", peak / barrelstack_motion::STANDARD_GRAVITY),
+        Scale::Pgv(peak) => format!(", at {:.0} cm/s", 100.0 * peak),
+        Scale::Measure { .. } => ", scaled".to_owned(),
+    };
+    if let Some(event) = event {
+        return event.to_owned() + &scaled;
+    }
+    let name = match motion {
         MotionSource::None => "ground at rest".to_owned(),
         MotionSource::Record(record) => match &record.source {
             RecordSource::File(file) => {
@@ -47,10 +80,16 @@ fn shakes(motion: &MotionSource) -> String {
         },
         MotionSource::Sine(sine) => format!("sine of {:.2} s", sine.period),
         MotionSource::Pulse(pulse) => format!("pulse of {:.2} s", pulse.period),
-    }
+    };
+    name + &scaled
 }
 
-fn counted(count: u32, one: &str) -> String {
-    let number = WORDS.get(count as usize).map_or_else(|| count.to_string(), ToString::to_string);
-    format!("{number} {one}{}", if count == 1 { "" } else { "s" })
+/// A number in words, where those are short.
+pub(crate) fn number(count: u32) -> String {
+    WORDS.get(count as usize).map_or_else(|| count.to_string(), ToString::to_string)
+}
+
+/// A number of things in words.
+pub(crate) fn counted(count: u32, one: &str) -> String {
+    format!("{} {one}{}", number(count), if count == 1 { "" } else { "s" })
 }

@@ -73,6 +73,7 @@ pub fn answer(
     asked: Asked,
     observer: &mut (dyn FnMut(Told) -> ControlFlow<()> + Send),
 ) -> Result<Answer, RunFailure> {
+    let scenario = &scenario.with_event()?;
     let planes = planes(scenario)?;
     let observer = Mutex::new(observer);
     let told = |told: Told| match observer.lock() {

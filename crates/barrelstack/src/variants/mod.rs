@@ -19,8 +19,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod advice;
 mod answer;
 mod draw;
+mod remedy;
 mod spread;
 mod typical;
 pub mod words;
@@ -34,6 +36,7 @@ use crate::ground::{Ground, GroundError, other_component};
 use crate::scenario::{Imperfections, MotionSource, MotionSpec, Scenario, Scene, View};
 
 pub use answer::{Answer, Asked, Shown, Told, answer};
+pub use remedy::{ENOUGH, PRETENSIONS, Remedy, Searched, Tried, remedy};
 pub use spread::{LEVEL, Range, Spread};
 
 /// A scenario in one plane, with all its variants.

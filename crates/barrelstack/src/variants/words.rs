@@ -107,21 +107,26 @@ fn together(planes: [(View, &Spread); 2]) -> String {
     format!("{}: {verdict}.", parts.join("; "))
 }
 
-/// The sentences that back the headline of a run and its variants, that of the plane which decides.
-pub(crate) fn sentences(summary: &Summary, imperfections: Option<&Imperfections>) -> Vec<String> {
+/// The sentences that back the headline of a run and its variants.
+pub(crate) fn sentences(summary: &Summary) -> Vec<String> {
+    let planes = summary.spreads();
+    if planes.len() < 2 {
+        return Vec::new();
+    }
+    let falls = planes.iter().filter(|(_, spread)| spread.collapsed > 0);
+    let told = |(view, spread): &(View, &Spread)| {
+        format!("Where it falls {}: {}.", view.words(), course(spread))
+    };
+    falls.map(told).collect()
+}
+
+/// Which run is shown, and how variants differ: of the plane which decides.
+pub(crate) fn fine(summary: &Summary, imperfections: Option<&Imperfections>) -> Vec<String> {
     let (Some(spread), Some(imperfections)) = (&summary.ensemble, imperfections) else {
         return Vec::new();
     };
     let mut sentences = Vec::new();
     let planes = summary.spreads();
-    if planes.len() > 1 {
-        let falls = planes.iter().filter(|(_, spread)| spread.collapsed > 0);
-        sentences.extend(
-            falls.map(|(view, spread)| {
-                format!("Where it falls {}: {}.", view.words(), course(spread))
-            }),
-        );
-    }
     let typical = if summary.variant == spread.typical { ", the most typical of all" } else { "" };
     let named = |number: u32| match number {
         0 => "the stack as it is stated".to_owned(),
@@ -156,6 +161,11 @@ pub(crate) fn sentences(summary: &Summary, imperfections: Option<&Imperfections>
         }
     ));
     sentences
+}
+
+/// Whether a stack is said to stand.
+pub(crate) fn stands(spread: &Spread) -> bool {
+    spread.share.is_some_and(|share| share <= STANDS)
 }
 
 /// What a stack does: "falls in 97 % of variants".

@@ -20,10 +20,12 @@ pub(super) fn document(decision: &Decision, made: &Provenance) -> Document {
             headline: words::headline(decision),
             sentences: words::sentences(decision),
             tone: Tone::Neutral,
+            ..Verdict::default()
         },
         blocks: blocks(decision, made),
         provenance: provenance(made),
         warnings: decision.warnings.clone(),
+        words: barrelstack::report::WORDS.to_vec(),
     }
 }
 

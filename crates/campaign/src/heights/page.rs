@@ -26,6 +26,7 @@ pub(super) fn document(all: &Heights) -> Document {
             headline: headline(all),
             sentences: sentences(all),
             tone: Tone::Neutral,
+            ..Verdict::default()
         },
         blocks: blocks(all),
         provenance: vec![
@@ -36,6 +37,7 @@ pub(super) fn document(all: &Heights) -> Document {
             ("program".into(), format!("barrelstack {}", env!("CARGO_PKG_VERSION"))),
         ],
         warnings: all.warnings.clone(),
+        words: barrelstack::report::WORDS.to_vec(),
     }
 }
 
@@ -58,6 +60,12 @@ fn felt(velocity: f64) -> &'static str {
 
 fn shaking(velocity: f64) -> String {
     format!("{:.0} cm/s", 100.0 * velocity)
+}
+
+/// Shaking as it is felt: "severe shaking (40 cm/s)".
+fn named(velocity: f64) -> String {
+    let felt = felt(velocity).split(' ').take_while(|word| !word.starts_with('('));
+    format!("{} shaking ({})", felt.collect::<Vec<_>>().join(" "), shaking(velocity))
 }
 
 /// A height at a level of PGV (m/s) in the direction in which more stacks collapse.
@@ -107,16 +115,16 @@ fn headline(all: &Heights) -> String {
     match strongest {
         Some((at, levels)) => {
             let next = (at + 1 < VELOCITIES.len()).then(|| {
-                format!("; from {} on not even two levels are", shaking(VELOCITIES[at + 1]))
+                format!("; from {} on not even two levels are", named(VELOCITIES[at + 1]))
             });
             format!(
-                "Up to {levels} levels are low in risk in shaking of {}{}.",
-                shaking(VELOCITIES[at]),
+                "Up to {levels} levels are low in risk in {}{}.",
+                named(VELOCITIES[at]),
                 next.unwrap_or_default()
             )
         }
         None => {
-            format!("Not even two levels are low in risk in shaking of {}.", shaking(VELOCITIES[0]))
+            format!("Not even two levels are low in risk in {}.", named(VELOCITIES[0]))
         }
     }
 }
@@ -176,7 +184,7 @@ fn blocks(all: &Heights) -> Vec<Block> {
 
 fn height_columns() -> Vec<(&'static str, &'static str)> {
     let names = ["2 levels", "3 levels", "4 levels", "5 levels", "6 levels"];
-    [("shaking (PGV)", ""), ("felt as", "")].into_iter().chain(names.map(|n| (n, ""))).collect()
+    [("shaking, by PGV", ""), ("felt as", "")].into_iter().chain(names.map(|n| (n, ""))).collect()
 }
 
 fn judged(at: &AtLevel) -> Cell {

@@ -39,6 +39,9 @@ pub(crate) struct CompareArgs {
     /// Variants of each stack to run beside it, in place of imperfections.variants; 0 for one run.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=4096))]
     variants: Option<u32>,
+    /// What to call a run, in the order of the runs, in place of words for what differs; may be repeated.
+    #[arg(long, value_name = "WORDS")]
+    label: Vec<String>,
     /// Where to write report.html, report.md and figures/; must be new or empty.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-compare")]
     out: PathBuf,
@@ -69,6 +72,14 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         scenarios.push((name.clone(), scenario));
     }
     compare::check(&scenarios)?;
+    if args.label.len() > scenarios.len() {
+        bail!("--label: there are {} names for {} runs", args.label.len(), scenarios.len());
+    }
+    let mut names = compare::labels(&scenarios);
+    names.splice(..args.label.len(), args.label.iter().cloned());
+    for ((name, _), label) in scenarios.iter_mut().zip(names) {
+        *name = label;
+    }
     let folder = Folder::prepare(&args.out, args.overwrite)?;
     let mut answers = Vec::new();
     for ((name, scenario), (_, one)) in scenarios.iter().zip(&asked) {

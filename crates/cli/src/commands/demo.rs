@@ -7,6 +7,7 @@ use barrelstack::export::Folder;
 use barrelstack::variants::Shown;
 
 use crate::args::{DemoArgs, ScenarioArgs};
+use crate::comparison::Command;
 use crate::printer;
 
 /// The scenario.
@@ -18,14 +19,18 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
     let asked = super::run::asked(&mut scenario, args.variants)?;
     let folder = Folder::prepare_again(&args.out)?;
     crate::interrupt::writes_to(folder.path());
-    let answer = super::run::answered(&scenario, asked, true).map_err(|error| {
-        let args = ScenarioArgs { scenario: NAME.to_owned(), set: args.set.clone(), record: None };
-        super::placed(error, &scenario, &args)
-    })?;
+    let typed = ScenarioArgs { scenario: NAME.to_owned(), set: args.set.clone(), record: None };
+    let placed = |error| super::placed(error, &scenario, &typed);
+    let mut answer = super::run::answered(&scenario, asked, true).map_err(placed)?;
+    if !args.no_remedy {
+        let command = Command::of(&typed, args.variants);
+        super::run::remedied(&mut answer, &command, true).map_err(placed)?;
+    }
     // The verdict is printed even where it cannot be written.
     let written = folder.write(&answer, None);
     let Shown { run, summary, .. } = &answer.decides;
     printer::lines(barrelstack::report::sentences(run, summary))?;
+    printer::lines(printer::side_by_side(summary))?;
     printer::warnings(&answer);
     written?;
     let report = folder.report();

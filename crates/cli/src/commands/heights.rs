@@ -109,7 +109,7 @@ fn print(found: &Heights) -> anyhow::Result<()> {
     for view in View::ALL {
         lines.push(format!("  collapsed, shaken {}", view.words()));
         let heads = HEIGHTS.map(|levels| format!("{:>9}", format!("{levels} levels")));
-        lines.push(format!("  {:>10}{}", "PGV", heads.concat()));
+        lines.push(format!("  {:>10}{}", "shaking", heads.concat()));
         for velocity in VELOCITIES {
             let cells = HEIGHTS.map(|levels| {
                 let at = found.of(levels, view).and_then(|height| height.at(velocity));

@@ -7,12 +7,13 @@ use anyhow::bail;
 use barrelstack::export::{ExportError, Folder};
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario::Scene;
-use barrelstack::variants::{self, Answer, Asked, Shown, Told};
+use barrelstack::variants::{self, Answer, Asked, Searched, Shown, Told};
 use barrelstack::verify::{Verification, verify};
 use barrelstack::{Run, RunFailure, Scenario, Summary};
 use barrelstack_report::Characters;
 
 use crate::args::{RunArgs, VariantArgs};
+use crate::comparison::Command;
 use crate::printer;
 use crate::progress::Progress;
 
@@ -23,7 +24,11 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     // The folder is looked at before the work is done, not after.
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
     let placed = |error| super::placed(error, &scenario, &args.scenario);
-    let answer = answered(&scenario, asked, !args.quiet).map_err(placed)?;
+    let mut answer = answered(&scenario, asked, !args.quiet).map_err(placed)?;
+    if !args.no_remedy {
+        let command = Command::of(&args.scenario, args.variants);
+        remedied(&mut answer, &command, !args.quiet).map_err(placed)?;
+    }
     let Shown { run, summary, .. } = &answer.decides;
     let verification =
         args.verify.then(|| repeated(run, !args.quiet)).transpose().map_err(placed)?;
@@ -92,6 +97,23 @@ pub(super) fn answered(
     Ok(answer)
 }
 
+/// Looks for what would have kept the stack up, with a progress bar and Ctrl-C.
+pub(super) fn remedied(
+    answer: &mut Answer,
+    command: &Command<'_>,
+    show: bool,
+) -> Result<(), RunFailure> {
+    let progress = Progress::new(show);
+    let mut found = variants::remedy(answer, &|Searched { done, of }| {
+        progress.counted(done as u64, of as u64, "runs of what may help")
+    })?;
+    if let Some(found) = &mut found {
+        found.comparison = command.against(found);
+    }
+    answer.decides.summary.remedy = found;
+    Ok(())
+}
+
 /// Repeats a run with a progress bar and Ctrl-C.
 fn repeated(run: &Run, show: bool) -> Result<Verification, RunFailure> {
     let progress = Progress::new(show);
@@ -100,10 +122,11 @@ fn repeated(run: &Run, show: bool) -> Result<Verification, RunFailure> {
 
 /// The exit status of runs, as the help of the program lists them.
 pub(super) fn status(answer: &Answer) -> ExitCode {
+    let unfinished = answer.decides.summary.remedy.as_ref().is_some_and(|found| !found.complete);
     let mut runs = std::iter::once(&answer.decides).chain(&answer.other).map(|shown| &shown.run);
     if runs.clone().any(|run| matches!(run.outcome, Outcome::Invalid { .. })) {
         ExitCode::FAILURE
-    } else if runs.any(|run| run.interrupted) {
+    } else if runs.any(|run| run.interrupted) || unfinished {
         ExitCode::from(130)
     } else {
         ExitCode::SUCCESS

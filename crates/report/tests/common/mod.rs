@@ -21,10 +21,12 @@ pub(crate) fn document(blocks: Vec<Block>) -> Document {
             headline: "The stack stands.".into(),
             sentences: vec!["It slid 2 cm.".into()],
             tone: Tone::Stands,
+            ..Verdict::default()
         },
         blocks,
         provenance: vec![("program".into(), "test".into())],
         warnings: vec![],
+        ..Document::default()
     }
 }
 

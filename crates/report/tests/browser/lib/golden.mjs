@@ -45,6 +45,7 @@ async function look(browser, path, name, change) {
       await page.evaluate(() => {
         const { player } = window.barrelstack;
         player?.seek(0.66 * player.times().at(-1));
+        for (const fold of document.querySelectorAll("details:has(figure)")) fold.open = true;
       });
       await unroll(page);
     }
@@ -162,7 +163,7 @@ export class Goldens {
     const spoilers = {
       "the lines of a plot are gone": () => { document.querySelector("#figure-displacements .live .canvas").style.visibility = "hidden"; },
       "the player shows another time": () => window.barrelstack.player.seek(0),
-      "a table has lost its numbers": () => { for (const cell of document.querySelectorAll("table")[1].querySelectorAll("td.number")) cell.style.color = "transparent"; },
+      "a table has lost its numbers": () => { for (const cell of document.querySelectorAll("details:has(figure) td.number")) cell.style.color = "transparent"; },
       "a figure is twice as high": () => { document.querySelectorAll("main > figure")[1].style.height = "900px"; },
       "the verdict says something else": () => { document.querySelector(".verdict h1").textContent = "The stack stands."; },
     };

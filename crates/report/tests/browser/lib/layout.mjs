@@ -6,6 +6,7 @@ import { demand } from "./suite.mjs";
 
 /** A zoom of one history is that of all, the cursor follows the player, and a click seeks. */
 export async function linkedZoom(page) {
+  await page.evaluate(() => { for (const fold of document.querySelectorAll("details:has(figure)")) fold.open = true; });
   await unroll(page);
   const lines = await page.evaluate(() => window.barrelstack.plots.filter((plot) => plot.timeline).length);
   demand(lines >= 2, `${lines} histories, at least two are needed`);

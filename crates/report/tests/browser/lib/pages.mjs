@@ -24,11 +24,11 @@ export const PAGES = {
     looks: ["desktop-light", "desktop-dark", "phone-light", "print"],
   },
   half: {
-    args: ["run", "candia-8-barrels-half-scale", "--quiet"],
+    args: ["run", "candia-8-barrels-half-scale", "--no-remedy", "--quiet"],
     looks: ["desktop-light", "phone-dark"],
   },
   along: {
-    args: ["run", "candia-8-barrels-longitudinal", "--quiet"],
+    args: ["run", "candia-8-barrels-longitudinal", "--no-remedy", "--quiet"],
     looks: ["desktop-light", "phone-light", "print"],
   },
   levels: {

@@ -72,6 +72,7 @@ fn document(
         blocks,
         provenance: provenance.into_iter().map(|(k, v)| (k.to_owned(), v)).collect(),
         warnings: Vec::new(),
+        ..Document::default()
     }
 }
 

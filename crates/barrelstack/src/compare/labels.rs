@@ -1,0 +1,101 @@
+//! What people call the runs of a comparison: by what differs between them.
+
+use super::{Difference, differences};
+use crate::report::shown;
+use crate::scenario::Scenario;
+use crate::scenario::title::{counted, shakes};
+
+/// Most differences that a name tells; runs that differ in more keep the name of their file.
+const MOST: usize = 2;
+
+/// What runs differ in, of what a name can tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Topic {
+    Levels,
+    Columns,
+    Straps,
+    Motion,
+    Other,
+}
+
+/// A name for every run, in words: "five levels", "with straps"; the one at hand where runs differ in more than
+/// a name can tell.
+pub fn labels(runs: &[(String, Scenario)]) -> Vec<String> {
+    let differing = differences(runs.iter().map(|(_, scenario)| scenario));
+    let mut topics: Vec<(Topic, &Difference)> = Vec::new();
+    for one in &differing {
+        let topic = topic(&one.path);
+        if topic == Topic::Other || topics.iter().all(|(known, _)| *known != topic) {
+            topics.push((topic, one));
+        }
+    }
+    let names = runs.iter().enumerate().map(|(at, (name, scenario))| {
+        if topics.is_empty() || topics.len() > MOST {
+            return name.clone();
+        }
+        let words: Vec<String> = topics
+            .iter()
+            .map(|(topic, one)| match topic {
+                Topic::Levels => {
+                    scenario.stack().map_or_else(String::new, |s| counted(s.levels, "level"))
+                }
+                Topic::Columns => {
+                    scenario.stack().map_or_else(String::new, |s| counted(s.columns, "column"))
+                }
+                Topic::Straps => straps(scenario, runs),
+                Topic::Motion => shakes(scenario, None),
+                Topic::Other => other(one, at),
+            })
+            .collect();
+        words.join(", ").replace(", with", " with")
+    });
+    let mut named: Vec<String> = Vec::new();
+    for name in names {
+        let again = named.iter().filter(|known| **known == name).count();
+        named.push(if again > 0 { format!("{name} ({})", again + 1) } else { name });
+    }
+    named
+}
+
+fn topic(path: &str) -> Topic {
+    match path {
+        "stack.levels" => Topic::Levels,
+        "stack.columns" => Topic::Columns,
+        _ if path.starts_with("stack.strap.") => Topic::Straps,
+        _ if path.starts_with("motion.") => Topic::Motion,
+        _ => Topic::Other,
+    }
+}
+
+/// Straps, told as far as those of others are otherwise.
+fn straps(scenario: &Scenario, runs: &[(String, Scenario)]) -> String {
+    let of = |scenario: &Scenario| scenario.stack().map(|stack| stack.devices.strap);
+    let Some(own) = of(scenario).filter(|straps| straps.levels > 0) else {
+        return "without straps".to_owned();
+    };
+    let others = runs.iter().filter_map(|(_, other)| of(other)).filter(|other| other.levels > 0);
+    let mut said = vec!["with straps".to_owned()];
+    let (mut levels, mut tight) = (false, false);
+    for other in others {
+        levels |= other.levels != own.levels;
+        tight |= other.pretension != own.pretension;
+    }
+    if levels {
+        said.push(format!("on {}", counted(own.levels, "level")));
+    }
+    if tight {
+        said.push(format!("at {} kN", 1e-3 * own.pretension));
+    }
+    said.join(" ")
+}
+
+/// An input in words: "rack-ground friction 0.1".
+fn other(one: &Difference, at: usize) -> String {
+    // What every field of a kind has in its path says nothing.
+    let empty = ["interface", "coefficient", "stack", "run"];
+    let parts: Vec<&str> = one.path.split('.').filter(|part| !empty.contains(part)).collect();
+    let name = parts.join(" ").replace('_', " ");
+    let value = one.values.get(at).and_then(Option::as_deref);
+    value
+        .map_or_else(|| format!("no {name}"), |value| format!("{name} {}", shown(&one.path, value)))
+}

@@ -1,0 +1,148 @@
+//! What would have kept a stack up: whether it does, and what is said of it.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use barrelstack::Scenario;
+use barrelstack::variants::{self, Answer, Asked, Remedy, Tried, answer};
+
+fn scenario(changes: &[&str]) -> Scenario {
+    // Brief, and of few variants; of three levels one or two may stand.
+    let own = [
+        "stack.levels=3",
+        "motion.sine.cycles=4",
+        "run.stop_after_collapse=0.1 s",
+        "imperfections.variants=8",
+    ];
+    let changes: Vec<String> = own.iter().chain(changes).map(|&change| change.to_owned()).collect();
+    Scenario::builtin("candia-8-barrels", &changes).unwrap()
+}
+
+fn answered(scenario: &Scenario) -> Answer {
+    answer(scenario, Asked::Number(0), &mut |_| ControlFlow::Continue(())).unwrap()
+}
+
+fn remedy(answer: &Answer) -> Option<Remedy> {
+    variants::remedy(answer, &|_| ControlFlow::Continue(())).unwrap()
+}
+
+/// The share that collapses of a change that was tried, run by itself.
+fn alone(base: &[&str], tried: &Tried) -> (u32, u32) {
+    let changes: Vec<&str> =
+        base.iter().copied().chain(tried.changes.iter().map(String::as_str)).collect();
+    let spread = answered(&scenario(&changes)).decides.summary.ensemble.unwrap();
+    (spread.collapsed + spread.broken + spread.cannot_stand, spread.run())
+}
+
+#[test]
+fn what_is_said_to_suffice_is_what_its_command_makes_and_stands_in_as_many_variants() {
+    let mut kinds = Vec::new();
+    for base in [&[][..], &["motion.scale.factor=0.7"][..]] {
+        let answer = answered(&scenario(base));
+        let Some(found) = remedy(&answer) else { panic!("{base:?} stands") };
+        assert!(found.complete && !found.tried.is_empty());
+        for one in found.height.iter().chain(&found.straps) {
+            let (failed, run) = alone(base, one);
+            assert_eq!((failed, run), (one.failed, one.variants), "{one:?}");
+            assert!(one.suffices && run == 8 && failed == 0, "{one:?}");
+            kinds.push(one.kind);
+        }
+        // What does not suffice was not dropped for less than it may fail.
+        for one in found.tried.iter().filter(|one| !one.suffices && one.variants == 8) {
+            assert_eq!(alone(base, one), (one.failed, 8), "{one:?}");
+        }
+        // The smallest change: the next level up was tried, and fails.
+        if let Some(height) = &found.height {
+            let above =
+                found.tried.iter().filter(|one| one.kind == "height" && one.levels > height.levels);
+            assert!(above.clone().all(|one| !one.suffices));
+            assert_eq!(above.count() as u32, 2 - height.levels);
+        }
+    }
+    assert!(kinds.contains(&"height"), "{kinds:?}");
+}
+
+#[test]
+fn nothing_is_looked_for_where_the_stack_stands_or_its_motion_is_cut_short() {
+    assert_eq!(remedy(&answered(&scenario(&["motion.scale.factor=0.01"]))), None);
+    assert_eq!(remedy(&answered(&scenario(&["imperfections.variants=0"]))), None);
+    assert_eq!(remedy(&answered(&scenario(&["run.duration=2 s"]))), None);
+}
+
+#[test]
+fn a_search_that_is_stopped_says_so_and_states_nothing() {
+    let answer = answered(&scenario(&[]));
+    let asked = AtomicUsize::new(0);
+    let found = variants::remedy(&answer, &|_| {
+        asked.fetch_add(1, Ordering::Relaxed);
+        ControlFlow::Break(())
+    });
+    let found = found.unwrap().unwrap();
+    assert!(!found.complete && found.height.is_none() && found.straps.is_none());
+    assert_eq!(
+        found.sentence(),
+        "What would have kept it up is not known: the search was stopped."
+    );
+    assert!(asked.into_inner() < 100);
+}
+
+#[test]
+fn sentences_say_what_suffices_and_what_does_not() {
+    let tried = |kind, levels, pretension, failed| Tried {
+        kind,
+        levels,
+        pretension,
+        changes: Vec::new(),
+        suffices: failed < 4,
+        variants: 64,
+        failed,
+        interval: [0.0, 1.0],
+    };
+    let height = |failed| tried("height", 3, None, failed);
+    let straps = |failed| tried("straps", 5, Some(4e3), failed);
+    let said = |height: Option<Tried>, straps: Option<Tried>, all: &[Tried]| {
+        let (tried, comparison) = (all.to_vec(), None);
+        Remedy { required_share: 0.95, height, straps, tried, complete: true, comparison }
+            .sentence()
+    };
+    let both = [height(1), straps(1)];
+    for (height, straps, all, words) in [
+        (
+            Some(height(1)),
+            Some(straps(1)),
+            &both[..],
+            "Three levels, or five levels strapped together at 4 kN, would have stood in 63 of 64 variants.",
+        ),
+        (
+            Some(height(1)),
+            Some(straps(0)),
+            &both,
+            "Three levels would have stood in 63 of 64 variants, five levels strapped together at 4 kN in all 64 \
+             variants.",
+        ),
+        (
+            Some(height(0)),
+            None,
+            &both,
+            "Three levels would have stood in all 64 variants; straps tightened to at most 5 kN would not suffice.",
+        ),
+        (
+            None,
+            Some(straps(0)),
+            &both,
+            "Five levels strapped together at 4 kN would have stood in all 64 variants; fewer levels without them \
+             would not suffice.",
+        ),
+        (
+            None,
+            None,
+            &both,
+            "Nothing that was tried would have kept it up: neither fewer levels, down to one, nor straps tightened \
+             to at most 5 kN.",
+        ),
+    ] {
+        assert_eq!(said(height, straps, all), words);
+    }
+}

@@ -1,0 +1,75 @@
+//! The command line that sets what would have helped beside the stack as it is.
+
+use barrelstack::variants::Remedy;
+
+use crate::args::{ScenarioArgs, VariantArgs};
+
+/// What was typed to make the run that something is set beside.
+pub(crate) struct Command<'a> {
+    scenario: &'a ScenarioArgs,
+    variants: VariantArgs,
+}
+
+impl<'a> Command<'a> {
+    pub(crate) fn of(scenario: &'a ScenarioArgs, variants: VariantArgs) -> Self {
+        Self { scenario, variants }
+    }
+
+    /// The command for all that suffices; none where nothing does, where one change is not enough to say it, or
+    /// where the scenario was read from standard input.
+    pub(crate) fn against(&self, found: &Remedy) -> Option<String> {
+        let ScenarioArgs { scenario, set, record } = self.scenario;
+        let all = [&found.height, &found.straps].into_iter().flatten();
+        let against: Vec<String> = all
+            .filter_map(|one| match one.changes.as_slice() {
+                [change] => Some(format!(" --against {}", quoted(change))),
+                _ => None,
+            })
+            .collect();
+        if against.is_empty() || scenario == "-" {
+            return None;
+        }
+        let mut command = format!("barrelstack compare {}", quoted(scenario));
+        for change in set {
+            command += &format!(" --set {}", quoted(change));
+        }
+        if let Some(record) = record {
+            command += &format!(" --record {}", quoted(&record.to_string_lossy()));
+        }
+        if let Some(variants) = self.variants.variants {
+            command += &format!(" --variants {variants}");
+        }
+        Some(command + &against.concat())
+    }
+}
+
+/// A word as a shell takes it for one.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./=:,+".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quoted;
+
+    #[test]
+    fn a_word_stays_one_word_in_a_shell() {
+        let said = |word: &str| {
+            let output = std::process::Command::new("sh")
+                .args(["-c", &format!("printf %s {}", quoted(word))])
+                .output();
+            output.map(|output| String::from_utf8_lossy(&output.stdout).into_owned())
+        };
+        for word in
+            ["stack.levels=3", "a b", "stack.strap={ ties = \"x\" }", "it's", "", "$HOME `x`"]
+        {
+            // Where there is no shell there is nothing to disturb.
+            assert!(said(word).map_or(true, |said| said == word), "{word}");
+        }
+    }
+}

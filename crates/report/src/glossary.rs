@@ -1,0 +1,126 @@
+//! Words that not every reader knows: marked where they first stand in a section, listed at the end.
+
+use crate::{Word, escape};
+
+/// The heading of the list.
+pub(crate) const TITLE: &str = "Words";
+
+/// The words of a page, and which of them stand in it.
+pub(crate) struct Glossary {
+    words: Vec<Word>,
+    /// Whether a word was marked since the last heading, and anywhere.
+    marked: Vec<[bool; 2]>,
+}
+
+impl Glossary {
+    pub(crate) fn of(words: &[Word]) -> Self {
+        Self { words: words.to_vec(), marked: vec![[false; 2]; words.len()] }
+    }
+
+    /// A new section begins, in which words are marked once more.
+    pub(crate) fn again(&mut self) {
+        for [here, _] in &mut self.marked {
+            *here = false;
+        }
+    }
+
+    /// Text as markup, with the words in it marked that were not yet in this section.
+    ///
+    /// A mark can be reached by pointer, finger and keyboard, and says what the word means without a script.
+    pub(crate) fn marked(&mut self, text: &str) -> String {
+        let mut out = String::new();
+        let mut rest = text;
+        loop {
+            let new = (0..self.words.len()).filter(|at| !self.marked[*at][0]);
+            // Of two that begin at one place the longer one.
+            let found = new
+                .filter_map(|at| Some((find(rest, self.words[at].word)?, at)))
+                .min_by_key(|(place, at)| (*place, usize::MAX - self.words[*at].word.len()));
+            let Some((place, at)) = found else { break };
+            let Word { word, meaning } = self.words[at];
+            self.marked[at] = [true; 2];
+            let (before, from) = rest.split_at(place);
+            let (shown, after) = from.split_at(word.len());
+            out += &escape::html(before);
+            out += &format!(
+                "<button type=\"button\" class=\"term\" aria-describedby=\"word-{at}\" data-meaning=\"{}\">{}</button>",
+                escape::html(meaning),
+                escape::html(shown)
+            );
+            rest = after;
+        }
+        out + &escape::html(rest)
+    }
+
+    /// All words that were marked, with what they mean; empty where none was.
+    pub(crate) fn list(&self) -> String {
+        let used = self.marked.iter().enumerate().filter(|(_, [_, anywhere])| *anywhere);
+        let rows: Vec<String> = used
+            .map(|(at, _)| {
+                let Word { word, meaning } = self.words[at];
+                format!(
+                    "<div><dt>{word}</dt><dd id=\"word-{at}\">{}</dd></div>\n",
+                    escape::html(meaning)
+                )
+            })
+            .collect();
+        if rows.is_empty() {
+            return String::new();
+        }
+        format!(
+            "<section class=\"provenance\" id=\"words\">\n<h2>{TITLE}</h2>\n<dl>\n{}</dl>\n</section>\n",
+            rows.concat()
+        )
+    }
+}
+
+/// The words that stand in a text.
+pub(crate) fn used<'a>(words: &'a [Word], text: &str) -> Vec<&'a Word> {
+    words.iter().filter(|one| find(text, one.word).is_some()).collect()
+}
+
+/// Where a word stands in a text, as a whole or with the ending of its plural.
+fn find(text: &str, word: &str) -> Option<usize> {
+    let (lower, word) = (text.to_ascii_lowercase(), word.to_ascii_lowercase());
+    let letter = |c: char| c.is_alphanumeric() || c == '-';
+    let whole = |at: &usize| {
+        let after = &lower[at + word.len()..];
+        !lower[..*at].ends_with(letter)
+            && (!after.starts_with(letter)
+                || (after.starts_with('s') && !after[1..].starts_with(letter)))
+    };
+    lower.match_indices(&word).map(|(at, _)| at).find(whole)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Glossary, find};
+    use crate::Word;
+
+    const WORDS: [Word; 2] = [
+        Word { word: "rack", meaning: "what barrels lie on" },
+        Word { word: "rack sliding", meaning: "a rack < off \"its\" barrels" },
+    ];
+
+    #[test]
+    fn words_are_found_whole_and_in_the_plural() {
+        assert_eq!(find("A Rack", "rack"), Some(2));
+        assert_eq!(find("Two racks.", "rack"), Some(4));
+        assert_eq!(find("The tracks crack; rack-ground", "rack"), None);
+        assert_eq!(find("é rack", "rack"), Some(3));
+    }
+
+    #[test]
+    fn a_word_is_marked_once_in_a_section_and_listed_once() {
+        let mut glossary = Glossary::of(&WORDS);
+        let text = glossary.marked("a rack & a rack, by rack sliding");
+        assert_eq!(text.matches("<button").count(), 2);
+        assert!(text.contains(">rack</button> &amp; a rack, by <button"), "{text}");
+        assert!(text.contains("a rack &lt; off &quot;its&quot; barrels"), "{text}");
+        assert!(!glossary.marked("rack").contains("button"));
+        glossary.again();
+        assert!(glossary.marked("rack").contains("button"));
+        assert_eq!(glossary.list().matches("<dt>").count(), 2);
+        assert_eq!(Glossary::of(&WORDS).list(), "");
+    }
+}
