@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use crate::{
-    Block, Document, Figure, FigureKind, Strip, Table, Tone, escape,
+    Block, Document, Figure, FigureKind, Strip, Table, Tone,
+    drawing::Room,
+    escape,
     figure::Names,
     number,
     page::{Payload, assemble},
@@ -247,6 +249,11 @@ impl<'a> Writer<'a> {
             | FigureKind::Diagram(_) => {
                 let drawing = figure.draw(&id).inline();
                 self.put(&format!("<div class=\"drawing\">{drawing}</div>\n"));
+                // What is drawn live fits any width by itself.
+                if live.is_none() {
+                    let drawing = figure.draw_in(&format!("{id}-phone"), Room::Phone).inline();
+                    self.put(&format!("<div class=\"drawing phone\">{drawing}</div>\n"));
+                }
             }
         }
         self.caption(&figure.caption);

@@ -79,7 +79,7 @@ pub use figure::{Attachment, Figure, FigureKind, Format, attachments, figures};
 pub use film::Film;
 pub use html::html;
 pub use markdown::{MarkdownBundle, markdown};
-pub use number::{shortest, significant};
+pub use number::{measured, shortest, significant};
 pub use pack::{POSE_QUANTUM, TIME_QUANTUM};
 pub use pages::{Paper, document_pdf};
 pub use panels::Panels;

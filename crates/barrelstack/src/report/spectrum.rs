@@ -2,7 +2,7 @@
 
 use barrelstack_motion::{GroundMotion, ResponseSpectrum, STANDARD_GRAVITY, standard_periods};
 use barrelstack_report::{
-    Axis, Band, Block, Figure, FigureKind, Mark, Plot, Series, SeriesStyle, significant,
+    Axis, Band, Block, Figure, FigureKind, Mark, Plot, Series, SeriesStyle, measured, significant,
 };
 
 use crate::period::{Drift, RigidBlock, Swing, drift};
@@ -59,7 +59,7 @@ pub(super) fn figures(run: &Run, motion: &GroundMotion) -> Vec<Block> {
 }
 
 fn centimeters(amplitude: f64) -> String {
-    format!("{} cm", significant(100.0 * amplitude, 2))
+    format!("{} cm", measured(100.0 * amplitude, 1))
 }
 
 fn words(rocking: &Rocking) -> String {
