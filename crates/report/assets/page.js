@@ -101,7 +101,9 @@ for (const figure of document.querySelectorAll("figure.plot, figure.envelope")) 
 // A table as a spreadsheet takes it: a line for each row, tabs between cells, plain minus signs.
 function tabbed(table) {
   const cell = (of) => of.textContent.trim().replace(/\s+/g, " ").replace(/^–$/, "").replace(/^−(?=\d)/, "-");
-  return [...table.rows].map((row) => [...row.cells].map(cell).join("\t")).join("\n") + "\n";
+  // What has one column is text, whose head is no part of it.
+  const rows = [...table.rows].filter((row) => row.cells.length > 1 || !row.parentElement.matches("thead"));
+  return rows.map((row) => [...row.cells].map(cell).join("\t")).join("\n") + "\n";
 }
 
 // Browsers keep the clipboard to pages from a safe place; the old way works everywhere else.

@@ -66,6 +66,7 @@ mod strip;
 mod style;
 mod svg;
 mod table;
+mod tags;
 mod terminal;
 mod ticks;
 mod vtk;
