@@ -30,7 +30,7 @@ fn the_eye_can_close_the_books_of_energy() {
     let line = |label: &str| &plot.series.iter().find(|series| series.label == label).unwrap().y;
     let parts = ["motion", "height", "contacts and devices", "lost to friction", "lost to damping"]
         .map(line);
-    let (all, given) = (line("all of these"), line("work of the ground"));
+    let (all, given) = (line("all of these together"), line("work of the ground"));
     let largest =
         parts.iter().flat_map(|part| part.iter()).fold(0.0_f64, |most, e| most.max(e.abs()));
     assert!(largest > 10.0, "barrels fall: {largest} kJ");

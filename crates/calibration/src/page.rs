@@ -93,7 +93,7 @@ impl Calibration {
             std::iter::once("parameter").chain(names).map(|name| (name, "")).collect();
         let mut table = Table::new("Correlations between the parameters.", &columns);
         let row = |(estimate, values): (&Estimate, &Vec<f64>)| {
-            let values = values.iter().map(|value| Cell::Measured(*value, 2));
+            let values = values.iter().map(|value| Cell::text(format!("{value:+.2}")));
             std::iter::once(Cell::text(&estimate.name)).chain(values).collect()
         };
         table.rows = self.estimates.iter().zip(&self.correlation).map(row).collect();

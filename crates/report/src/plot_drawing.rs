@@ -59,6 +59,9 @@ impl Plot {
     pub(crate) fn draw(&self, id: &str, title: &str, room: Room) -> Drawing {
         let width = room.of(WIDTH[0], WIDTH[1]);
         let x_range = self.x.data_range(self.series.iter().map(|s| &s.x[..s.len()]), false);
+        // A dot on the frame would be cut in two.
+        let spare = self.series.iter().any(|s| s.style.points || s.style.bar);
+        let x_range = if spare { self.x.with_air(x_range) } else { x_range };
         let areas = self.series.iter().any(|s| s.style.area);
         let ordinates = self.series.iter().flat_map(|s| [&s.y[..s.len()], s.range.as_flattened()]);
         let y_range = self.y.with_air(self.y.data_range(ordinates, areas));
@@ -150,7 +153,8 @@ impl Plot {
     }
 
     fn dot(&self, at: usize, center: [f64; 2]) -> Item {
-        Item::Circle { class: format!("dot s{}", self.look(at)), center, radius: 2.6 }
+        let radius = if self.series[at].style.points { 3.4 } else { 2.6 };
+        Item::Circle { class: format!("dot s{}", self.look(at)), center, radius }
     }
 
     /// Where each legend entry goes, its words in lines, and the height they take together; entries

@@ -397,21 +397,24 @@ fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
         let sum = |at: usize| channels.iter().map(|values| values[at] - values[0]).sum::<f64>();
         (0..recording.times.len()).map(|at| 1e-3 * sum(at)).collect()
     };
-    let line = |label: &str, values| Series::new(label, recording.times.clone(), values);
-    let parts: [(&str, &[&str]); 5] = [
-        ("motion", &["kinetic"]),
-        ("height", &["potential"]),
-        ("contacts and devices", &["elastic", "stick"]),
-        ("lost to friction", &["friction"]),
-        ("lost to damping", &["damped", "viscous"]),
+    let line = |label: &str, names: &[&str], style: SeriesStyle| Series {
+        style,
+        ..Series::new(label, recording.times.clone(), gained(names))
+    };
+    let color = |index: usize| SeriesStyle { index: Some(index), ..SeriesStyle::default() };
+    let parts: [(&str, &[&str], usize); 5] = [
+        ("motion", &["kinetic"], 0),
+        ("height", &["potential"], 1),
+        ("contacts and devices", &["elastic", "stick"], 3),
+        ("lost to friction", &["friction"], 2),
+        ("lost to damping", &["damped", "viscous"], 5),
     ];
-    let mut series: Vec<Series> =
-        parts.iter().map(|(label, names)| line(label, gained(names))).collect();
-    let all: Vec<&str> = parts.iter().flat_map(|(_, names)| names.iter().copied()).collect();
-    series.push(line("all of these", gained(&all)));
-    let given = line("work of the ground", gained(&["ground work"]));
-    let style = SeriesStyle { dots: false, muted: true, ..SeriesStyle::default() };
-    series.push(Series { style, ..given });
+    // The shade of the work of the ground lies under everything, and all together on its edge.
+    let ground = SeriesStyle { area: true, ..color(4) };
+    let mut series = vec![line("work of the ground", &["ground work"], ground)];
+    series.extend(parts.iter().map(|(label, names, index)| line(label, names, color(*index))));
+    let all: Vec<&str> = parts.iter().flat_map(|(_, names, _)| names.iter().copied()).collect();
+    series.push(line("all of these together", &all, color(10)));
     vec![
         Block::Paragraph(format!(
             "What the ground gave and what the stack lost in height equals what is stored and what is \
@@ -422,8 +425,9 @@ fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
         history(
             run,
             "energy",
-            "Energy gained since the start. The books close where all of these lie on the work of the \
-             ground: what falls gives up its height to motion, and that to friction and damping.",
+            "Energy gained since the start. The books close where all of these together run along the \
+             shaded work of the ground: what falls gives up its height to motion, and that to friction \
+             and damping.",
             Axis::new("energy", "kJ"),
             series,
         ),

@@ -215,7 +215,7 @@ pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
         x.extend([low, high, f64::NAN]);
         y.extend([Axis::row(row); 3]);
     }
-    let bars = SeriesStyle { dots: true, bar: true, ..style(0) };
+    let bars = SeriesStyle { bar: true, ..style(0) };
     let series =
         vec![Series { style: bars, ..Series::new("lowest to highest share of collapse", x, y) }];
     plot(

@@ -56,7 +56,7 @@ fn document(panels: &Panels, after: &Record, told: Told) -> Document {
         blocks.extend(told.tables.into_iter().map(Block::Table));
         for (row, plots) in components.iter().enumerate() {
             let name = plots.first().and_then(|plot| plot.y.label.split_once(": "));
-            blocks.push(heading(name.map_or("Component", |(name, _)| name)));
+            blocks.push(heading(&format!("Component {}", name.map_or("", |(name, _)| name))));
             let id = format!("component-{}", row + 1);
             blocks.extend(plots.iter().enumerate().map(|(at, plot)| live(&id, at, plot)));
         }
@@ -77,10 +77,17 @@ fn document(panels: &Panels, after: &Record, told: Told) -> Document {
 
 /// A plot that can be looked at closely.
 fn live(id: &str, at: usize, plot: &Plot) -> Block {
-    let lines: Vec<&str> = plot.series.iter().map(|series| series.label.as_str()).collect();
+    let what = match plot.y.label.split_once(": ") {
+        Some((channel, quantity)) => format!("{quantity} of {channel}"),
+        None => plot.y.label.clone(),
+    };
+    let mut lines: Vec<&str> = plot.series.iter().map(|series| series.label.as_str()).collect();
+    let last = lines.pop().unwrap_or_default();
+    let lines =
+        if lines.is_empty() { last.into() } else { format!("{} and {last}", lines.join(", ")) };
     Block::Figure(Figure {
         id: format!("{id}-{}", at + 1),
-        caption: format!("{}: {}.", capital(&plot.y.label), lines.join(", ")),
+        caption: format!("{}: {lines}.", capital(&what)),
         kind: FigureKind::Plot(Plot { interactive: true, ..plot.clone() }),
     })
 }
@@ -96,8 +103,13 @@ pub(super) fn table(caption: &str, rows: &[Vec<String>]) -> Table {
     let Some((head, rows)) = rows.split_first() else { return Table::new(caption, &[]) };
     let columns: Vec<(&str, &str)> = head.iter().map(|name| (name.as_str(), "")).collect();
     let mut table = Table::new(caption, &columns);
+    // With the digits that it is told with.
+    let digits = |text: &str| {
+        let told = text.trim_start_matches(['-', '0', '.']);
+        told.chars().filter(char::is_ascii_digit).count()
+    };
     let cell = |text: &String| match text.parse::<f64>() {
-        Ok(value) => Cell::Number(value, 4),
+        Ok(value) => Cell::Number(value, digits(text)),
         Err(_) => Cell::text(text),
     };
     table.rows = rows.iter().map(|row| row.iter().map(cell).collect()).collect();
