@@ -3,7 +3,7 @@
 use pdf_writer::types::StructRole;
 
 use crate::{
-    Block, Document, Figure, FigureKind, Player, Strip, Table, Tone,
+    Block, Document, EventKind, Figure, FigureKind, Panel, Player, Strip, Table, Tone,
     drawing::{Anchor, Drawing, Item},
     escape,
     figure::Names,
@@ -39,8 +39,8 @@ impl Paper {
 /// words as words, a list of sections, the title and the number of the page at every foot, and tags by
 /// which a reader of the screen finds its way.
 ///
-/// A player that opens the document is shown as the moments that matter, on the first page; what the
-/// page folds away is in an appendix.
+/// A player that opens the document is shown amid its falls, on the first page; what the page folds
+/// away is in an appendix.
 pub fn document_pdf(document: &Document, paper: Paper) -> Vec<u8> {
     let mut flow = Flow::new(document, paper);
     flow.verdict();
@@ -72,8 +72,6 @@ const POINTS_PER_PX: f64 = 0.75;
 const MARGIN: [f64; 3] = [54.0, 52.0, 60.0];
 /// From one baseline to the next, over the size of the letters.
 const LEADING: f64 = 1.4;
-/// Pictures of the run that open a document.
-const OPENING: usize = 4;
 /// Between one block and the next (points).
 const GAP: f64 = 8.0;
 
@@ -344,15 +342,21 @@ impl<'a> Flow<'a> {
         self.y += GAP;
     }
 
-    /// A player as a picture: the moments that matter where it opens the document.
+    /// A player as a picture: amid its falls where it opens the document and anything falls.
     fn still(&self, player: &Player) -> Figure {
-        let opens = self.figures == 0 && player.scene.frames.len() > 1;
-        let kind = if opens {
-            FigureKind::Strip(Strip::of_run(player.scene.clone(), OPENING))
-        } else {
+        let mut falls = player.scene.events.iter().filter(|event| event.kind == EventKind::Fall);
+        // At the second fall the first can be seen, too.
+        let first = falls.next();
+        let Some(fall) = falls.next().or(first).filter(|_| self.figures == 0) else {
             return player.paper_figure(&self.document.blocks);
         };
-        Figure { id: player.id.clone(), caption: player.caption.clone(), kind }
+        let panel = Panel { time: fall.time, note: fall.text.clone() };
+        let strip = Strip { scene: player.scene.clone(), panels: vec![panel] };
+        Figure {
+            id: player.id.clone(),
+            caption: player.caption.clone(),
+            kind: FigureKind::Strip(strip),
+        }
     }
 
     fn player(&mut self, player: &Player) {
