@@ -180,7 +180,8 @@ impl<'a> Flow<'a> {
         const INDENT: f64 = 11.0;
         self.tagged(StructRole::L, None, |flow| {
             for item in items {
-                flow.need(LEADING * 9.5);
+                // The dot stays with the first two lines.
+                flow.need(LEADING * 9.5 * 2.0);
                 let dot = [MARGIN[0] + 2.0, flow.y + 9.5];
                 flow.tagged(StructRole::LI, None, |flow| {
                     flow.tagged(StructRole::Lbl, None, |flow| {
