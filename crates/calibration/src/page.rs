@@ -70,10 +70,8 @@ impl Calibration {
             "What the test gives, with 95 % intervals.",
             &[("parameter", ""), ("value", ""), ("from", ""), ("to", ""), ("unit", "")],
         );
-        let bound = |value: f64| match value.is_finite() {
-            true => Cell::Number(value, 4),
-            false => Cell::Missing,
-        };
+        let bound =
+            |value: f64| if value.is_finite() { Cell::Number(value, 4) } else { Cell::Missing };
         let cells = |estimate: &Estimate| {
             vec![
                 Cell::text(&estimate.name),

@@ -49,6 +49,9 @@ fn anchor(names: &mut Names, text: &str) -> String {
     names.take(&format!("section {text}"))
 }
 
+/// Letters of a cell that are not set one word below the other where there is little room.
+const LONG: usize = 60;
+
 pub(crate) struct Writer<'a> {
     pub(crate) document: &'a Document,
     out: String,
@@ -211,6 +214,7 @@ impl<'a> Writer<'a> {
                 let text = row.get(at).map_or_else(|| number::MISSING.into(), crate::Cell::shown);
                 let class = match row.get(at) {
                     Some(crate::Cell::Rated(rating, _)) => format!(" class=\"{}\"", rating.class()),
+                    Some(crate::Cell::Text(text)) if text.len() > LONG => " class=\"long\"".into(),
                     _ => class(at).to_owned(),
                 };
                 self.put(&format!("<td{class}>{}</td>", escape::html(&number::tied(&text))));

@@ -127,6 +127,7 @@ impl Series {
 }
 
 /// How a series is drawn.
+#[expect(clippy::struct_excessive_bools, reason = "each is a trait that goes with most others")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct SeriesStyle {
     /// Which color and dash pattern, from 0; the place in the plot when `None`. Colors repeat after

@@ -55,6 +55,13 @@ struct PlacedMark<'a> {
     row: Option<usize>,
 }
 
+/// A series in the legend: where its words begin, and its lines of words.
+struct Entry {
+    series: usize,
+    corner: [f64; 2],
+    lines: Vec<String>,
+}
+
 impl Plot {
     pub(crate) fn draw(&self, id: &str, title: &str, room: Room) -> Drawing {
         let width = room.of(WIDTH[0], WIDTH[1]);
@@ -111,8 +118,8 @@ impl Plot {
             items: self.draw_series(&x, &y),
         });
         self.draw_marks(&mut drawing, &marks, &x, &y);
-        for (at, corner, lines) in legend {
-            self.draw_sample(&mut drawing, at, [corner[0], corner[1] - 4.0]);
+        for Entry { series, corner, lines } in legend {
+            self.draw_sample(&mut drawing, series, [corner[0], corner[1] - 4.0]);
             for (line, text) in lines.iter().enumerate() {
                 let at = [corner[0] + SAMPLE + 6.0, corner[1] + LINE * line as f64];
                 drawing.text("label", at, Anchor::Start, text);
@@ -159,12 +166,7 @@ impl Plot {
 
     /// Where each legend entry goes, its words in lines, and the height they take together; entries
     /// that would not fit beside the axis start at `edge`.
-    fn legend_layout(
-        &self,
-        edge: f64,
-        left: f64,
-        right: f64,
-    ) -> (Vec<(usize, [f64; 2], Vec<String>)>, f64) {
+    fn legend_layout(&self, edge: f64, left: f64, right: f64) -> (Vec<Entry>, f64) {
         let named = || self.series.iter().filter(|series| !series.label.is_empty());
         let wide = |label: &str| SAMPLE + 6.0 + text_width(label, FONT);
         let longest = named().map(|series| wide(&series.label)).fold(0.0, f64::max);
@@ -182,7 +184,7 @@ impl Plot {
                 pen = [left, height + 17.0];
             }
             height = height.max(pen[1] + LINE * (lines.len() - 1) as f64);
-            entries.push((at, pen, lines));
+            entries.push(Entry { series: at, corner: pen, lines });
             pen[0] += wide + 18.0;
         }
         let height = if entries.is_empty() { 0.0 } else { height + 2.0 };

@@ -24,9 +24,10 @@ pub(crate) fn readable(value: &str) -> String {
             let shown = significant(number, DIGITS);
             let end = shown.find('×').unwrap_or(shown.len());
             let (digits, power) = shown.split_at(end);
-            let short = match digits.contains('.') {
-                true => digits.trim_end_matches('0').trim_end_matches('.'),
-                false => digits,
+            let short = if digits.contains('.') {
+                digits.trim_end_matches('0').trim_end_matches('.')
+            } else {
+                digits
             };
             format!("{short}{power} {rest}").trim_end().to_owned()
         }
