@@ -6,7 +6,7 @@ use std::path::Path;
 use barrelstack::export::ExportError;
 use barrelstack::render::{Part, RenderFolder, Rendering, drift_line, final_picture};
 use barrelstack::{Run, Scenario, Summary};
-use barrelstack_report::{Block, Characters, Figure, FigureKind, Format};
+use barrelstack_report::{Characters, FigureKind, Format, figures};
 
 fn rocking_block() -> (Run, Summary) {
     let scenario = Scenario::builtin("rocking-block", &["run.duration=1 s".to_owned()]).unwrap();
@@ -20,13 +20,8 @@ fn the_eye_can_close_the_books_of_energy() {
     let words = ["run.duration=4 s".to_owned()];
     let run = Scenario::builtin("candia-8-barrels", &words).unwrap().run().unwrap();
     let document = barrelstack::report::document(&run, &Summary::of(&run, None));
-    let plot = document.blocks.iter().find_map(|block| match block {
-        Block::Figure(Figure { id, kind: FigureKind::Plot(plot), .. }) if id == "energy" => {
-            Some(plot)
-        }
-        _ => None,
-    });
-    let plot = plot.unwrap();
+    let (_, figure) = figures(&document).into_iter().find(|(name, _)| name == "energy").unwrap();
+    let FigureKind::Plot(plot) = figure.kind else { panic!("no plot") };
     let line = |label: &str| &plot.series.iter().find(|series| series.label == label).unwrap().y;
     let parts = ["motion", "height", "contacts and devices", "lost to friction", "lost to damping"]
         .map(line);

@@ -188,26 +188,24 @@ fn weighted(
 
 /// Every channel as it was recorded and as the fitted parameters give it.
 fn pictures(measured: &Measured, residuals: &[f64], scatter: &[f64]) -> Vec<Figure> {
-    let rows = measured.times.len();
-    let picture =
-        |((name, recorded), (residuals, scatter)): (&(String, Vec<f64>), (&[f64], &f64))| {
-            let (unit, factor) =
-                if name.ends_with("rotation") { ("deg", 1f64.to_degrees()) } else { ("cm", 100.0) };
-            let line = |label: &str, values: Vec<f64>, index| {
-                let shown = values.iter().map(|value| factor * value).collect();
-                fitted(label, measured.times.clone(), shown, index)
-            };
-            let simulated =
-                recorded.iter().zip(residuals).map(|(r, off)| r + scatter * off).collect();
-            let series = vec![line("fitted", simulated, 0), line("recorded", recorded.clone(), 1)];
-            let caption =
-                format!("{name}: as recorded, and as the stack moves with the fitted values.");
-            let what = name.split_once(' ').map_or(name.as_str(), |(_, what)| what);
-            let axes = [Axis::new("time", "s"), Axis::new(what, unit)];
-            figure(&format!("response-{name}"), &caption, axes, series)
+    let fits = by_channel(residuals, measured.times.len()).zip(scatter);
+    let mut figures = Vec::new();
+    for ((name, recorded), (residuals, scatter)) in measured.channels.iter().zip(fits) {
+        let (unit, factor) =
+            if name.ends_with("rotation") { ("deg", 1f64.to_degrees()) } else { ("cm", 100.0) };
+        let line = |label: &str, values: Vec<f64>, index| {
+            let shown = values.iter().map(|value| factor * value).collect();
+            fitted(label, measured.times.clone(), shown, index)
         };
-    let fits = by_channel(residuals, rows).zip(scatter);
-    measured.channels.iter().zip(fits).map(picture).collect()
+        let simulated = recorded.iter().zip(residuals).map(|(r, off)| r + scatter * off).collect();
+        let series = vec![line("fitted", simulated, 0), line("recorded", recorded.clone(), 1)];
+        let caption =
+            format!("{name}: as recorded, and as the stack moves with the fitted values.");
+        let what = name.split_once(' ').map_or(name.as_str(), |(_, what)| what);
+        let axes = [Axis::new("time", "s"), Axis::new(what, unit)];
+        figures.push(figure(&format!("response-{name}"), &caption, axes, series));
+    }
+    figures
 }
 
 /// Estimates and their correlations, both in the order of `parameters`.
