@@ -37,12 +37,10 @@ pub(super) fn write(
     after: &Record,
     told: Told,
 ) -> anyhow::Result<()> {
-    match &figure.kind {
-        FigureKind::Panels(panels) if is_page(path) => {
-            store(path, html(&document(panels, after, told)).as_bytes())
-        }
-        _ => panels::write(path, figure),
+    if let (FigureKind::Panels(panels), true) = (&figure.kind, is_page(path)) {
+        return store(path, html(&document(panels, after, told)).as_bytes());
     }
+    panels::write(path, figure)
 }
 
 fn document(panels: &Panels, after: &Record, told: Told) -> Document {
