@@ -21,6 +21,8 @@ pub struct Demand {
     pub shown_unit: &'static str,
     /// What a value in files is multiplied by in print.
     pub factor: f64,
+    /// Most decimals in print: what is finer than these means nothing.
+    pub decimals: usize,
     /// Its value in files; none where it does not apply.
     pub get: fn(&Demands) -> Option<f64>,
 }
@@ -32,11 +34,11 @@ impl Demand {
     }
 }
 
-/// Each line: the doc comment, the key, unit, label, factor and unit in print, and where the value comes from.
+/// Each line: the doc comment, the key, unit, label, factor, unit and decimals in print, and where the value comes from.
 macro_rules! demands {
     ($(
         $(#[doc = $doc:literal])+
-        $name:ident $unit:literal: $label:literal, $factor:literal $shown:literal, $of:expr;
+        $name:ident $unit:literal: $label:literal, $factor:literal $shown:literal $decimals:literal, $of:expr;
     )*) => {
         /// Demands on the stack, while it stood unless said otherwise; all null where the run is invalid.
         #[derive(Clone, Debug, Default, Serialize)]
@@ -52,6 +54,7 @@ macro_rules! demands {
             unit: $unit,
             shown_unit: $shown,
             factor: $factor,
+            decimals: $decimals,
             get: |demands| demands.$name,
         }),*];
 
@@ -71,33 +74,33 @@ macro_rules! demands {
 
 demands! {
     /// Largest displacement of the top barrels against the ground, over the height of the stack.
-    top_drift_ratio "1": "drift of the top against the ground, of the height", 100.0 "%", |seen, body| {
+    top_drift_ratio "1": "drift of the top against the ground, of the height", 100.0 "%" 1, |seen, body| {
         let height = seen.assembly.height;
         let drift = seen.fate(body, PartKind::Barrel, Some(seen.assembly.levels))?.peak_displacement;
         (height > 0.0).then_some(drift / height)
     };
     /// Largest normal stress on a bottom-level barrel over the largest at rest.
-    stress_amplification "1": "stress amplification, largest on a bottom barrel", 1.0 "× at rest",
+    stress_amplification "1": "stress amplification, largest on a bottom barrel", 1.0 "× at rest" 2,
         |seen, body| seen.stress(body)?.amplification();
     /// Average stress amplification over the loaded boundary of the bottom-level barrels.
-    mean_stress_amplification "1": "stress amplification, average over the loaded boundary", 1.0 "× at rest",
+    mean_stress_amplification "1": "stress amplification, average over the loaded boundary", 1.0 "× at rest" 2,
         |seen, body| seen.stress(body)?.mean_amplification();
     /// Largest slip of the bottom rack on the ground.
-    base_slip_peak "m": "slip of the bottom rack on the ground, largest", 100.0 "cm",
+    base_slip_peak "m": "slip of the bottom rack on the ground, largest", 100.0 "cm" 1,
         |seen, body| Some(seen.fate(body, PartKind::Rack, Some(1))?.peak_slip);
     /// Slip of the bottom rack on the ground, at the moment of the collapse (at the end if there was none).
-    base_slip_at_collapse "m": "slip of the bottom rack, at the collapse", 100.0 "cm",
+    base_slip_at_collapse "m": "slip of the bottom rack, at the collapse", 100.0 "cm" 1,
         |seen, body| Some(seen.fate(body, PartKind::Rack, Some(1))?.displacement_at_collapse);
     /// The same at the end of the run.
-    base_slip_residual "m": "slip of the bottom rack, at the end of the run", 100.0 "cm",
+    base_slip_residual "m": "slip of the bottom rack, at the end of the run", 100.0 "cm" 1,
         |seen, body| Some(seen.fate(body, PartKind::Rack, Some(1))?.residual_slip);
     /// Largest walk of any rack on the barrels below.
-    rack_walk_peak "m": "walk of a rack on the barrels below, largest", 100.0 "cm", |seen, body| {
+    rack_walk_peak "m": "walk of a rack on the barrels below, largest", 100.0 "cm" 1, |seen, body| {
         let fate = seen.fate(body, PartKind::Rack, None)?;
         (!seen.assembly.parts[body].supports.is_empty()).then_some(fate.peak_slip)
     };
     /// Largest tilt of any rack.
-    rack_tilt_peak "rad": "tilt of a rack, largest", 57.295_779_513_082_32 "deg",
+    rack_tilt_peak "rad": "tilt of a rack, largest", 57.295_779_513_082_32 "deg" 1,
         |seen, body| Some(seen.fate(body, PartKind::Rack, None)?.peak_tilt);
 }
 

@@ -163,12 +163,12 @@ impl Folder {
         self.put(&files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())))
     }
 
-    /// Writes the page of a comparison as `report.html`, and as `report.md` with the figures and
+    /// Writes a page as `report.html`, and as `report.md` with the figures and
     /// tables of it in `figures/`.
     ///
     /// # Errors
     /// When the system refuses.
-    pub fn write_comparison(&self, document: &Document) -> Result<(), ExportError> {
+    pub fn write_page(&self, document: &Document) -> Result<(), ExportError> {
         const FIGURES: &str = "figures";
         let page = barrelstack_report::html(document);
         let bundle = barrelstack_report::markdown(document, FIGURES);

@@ -111,7 +111,7 @@ fn the_page_sets_outcomes_and_demands_side_by_side() {
     // The numbers are those of the summaries.
     for (cell, side) in drift[2..].iter().zip(&sides) {
         let own = 100.0 * side.summary.demands.top_drift_ratio.unwrap();
-        assert_eq!(*cell, barrelstack_report::Cell::Number(own, 3));
+        assert_eq!(*cell, barrelstack_report::Cell::Measured(own, 1));
     }
     let inputs = table(&document, "What is different");
     assert_eq!(inputs.rows.len(), 1);

@@ -6,13 +6,36 @@ use std::path::Path;
 use barrelstack::export::ExportError;
 use barrelstack::render::{Part, RenderFolder, Rendering, drift_line, final_picture};
 use barrelstack::{Run, Scenario, Summary};
-use barrelstack_report::{Characters, Format};
+use barrelstack_report::{Characters, FigureKind, Format, figures};
 
 fn rocking_block() -> (Run, Summary) {
     let scenario = Scenario::builtin("rocking-block", &["run.duration=1 s".to_owned()]).unwrap();
     let run = scenario.run().unwrap();
     let summary = Summary::of(&run, None);
     (run, summary)
+}
+
+#[test]
+fn the_eye_can_close_the_books_of_energy() {
+    let words = ["run.duration=4 s".to_owned()];
+    let run = Scenario::builtin("candia-8-barrels", &words).unwrap().run().unwrap();
+    let document = barrelstack::report::document(&run, &Summary::of(&run, None));
+    let (_, figure) = figures(&document).into_iter().find(|(name, _)| name == "energy").unwrap();
+    let FigureKind::Plot(plot) = figure.kind else { panic!("no plot") };
+    let line = |label: &str| &plot.series.iter().find(|series| series.label == label).unwrap().y;
+    let parts = ["motion", "height", "contacts and devices", "lost to friction", "lost to damping"]
+        .map(line);
+    let (all, given) = (line("all of these together"), line("work of the ground"));
+    let largest =
+        parts.iter().flat_map(|part| part.iter()).fold(0.0_f64, |most, e| most.max(e.abs()));
+    assert!(largest > 10.0, "barrels fall: {largest} kJ");
+    for at in 0..all.len() {
+        let sum: f64 = parts.iter().map(|part| part[at]).sum();
+        assert!((sum - all[at]).abs() < 1e-9 * largest);
+        // Less than a tenth of a pixel of the picture.
+        let off = (all[at] - given[at]).abs() / largest;
+        assert!(off < 4e-4, "{off} at sample {at}"); // measured below 1e-4
+    }
 }
 
 fn names(folder: &Path) -> Vec<String> {

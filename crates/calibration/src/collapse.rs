@@ -3,6 +3,7 @@
 mod ensemble;
 mod likelihood;
 mod observed;
+mod picture;
 mod sampler;
 
 use std::sync::Arc;
@@ -219,6 +220,7 @@ pub fn collapse(
         estimates,
         correlation,
         condition: None,
+        figures: picture::pictures(&trials, &courses, &posterior),
         facts,
         warnings,
     })

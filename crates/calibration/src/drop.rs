@@ -4,7 +4,9 @@ use barrelstack::scenario::Dimension;
 use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::math;
 use barrelstack_fragility::student_quantile;
+use barrelstack_report::{Axis, Figure};
 
+use super::figures::{curve, figure, fitted, measured};
 use super::least_squares::{self, Fit, Start};
 use super::result::{quoted, rounded, short};
 use super::statistics::mean;
@@ -52,6 +54,7 @@ pub fn drop(
         if table.has("time") { from_times(table, striker)? } else { from_heights(table, striker)? };
     let mut warnings = table.unused(&["time", "drop height", "rebound height"]);
     warnings.extend(found.warnings);
+    let figures = vec![found.figure];
     let e = found.restitution.value;
     let mut estimates = vec![found.restitution];
     let mut facts = vec![("impacts".to_owned(), found.impacts.to_string())];
@@ -95,7 +98,15 @@ pub fn drop(
         );
     }
     let title = format!("drop test {}: rebound of the speed-gap law", table.file());
-    Ok(Calibration { title, estimates, facts, scenario, warnings, ..Calibration::default() })
+    Ok(Calibration {
+        title,
+        estimates,
+        figures,
+        facts,
+        scenario,
+        warnings,
+        ..Calibration::default()
+    })
 }
 
 /// What either form of the test gives.
@@ -104,6 +115,8 @@ struct Found {
     /// ln ζ and half its interval.
     log_ratio: Option<(f64, f64)>,
     impacts: usize,
+    /// What rebounds, beside what the fit lets rebound.
+    figure: Figure,
     warnings: Vec<String>,
 }
 
@@ -136,8 +149,10 @@ fn from_heights(table: &Table, striker: Option<Striker>) -> Result<Found, Calibr
     let (e, half) = mean(&shown);
     let restitution = Estimate::symmetric("restitution", e, half, Dimension::NONE);
     let mut warnings = Vec::new();
+    let impacts = from.len();
     let Some(striker) = striker else {
-        return Ok(Found { restitution, log_ratio: None, impacts: from.len(), warnings });
+        let figure = heights(&from, &to, &|height| e * e * height);
+        return Ok(Found { restitution, log_ratio: None, impacts, figure, warnings });
     };
     let start = start_ratio(e);
     let residuals = |point: &Vec<f64>| -> Option<Vec<f64>> {
@@ -152,7 +167,45 @@ fn from_heights(table: &Table, striker: Option<Striker>) -> Result<Found, Calibr
         log_interval(found.as_ref(), 0).ok_or_else(|| table.unsuited(no_rebound(&striker)))?;
     let slow = from.iter().fold(f64::INFINITY, |least, from| least.min(*from));
     warnings.extend(gravity_warning(&striker, log_ratio.0, (2.0 * striker.gravity * slow).sqrt()));
-    Ok(Found { restitution, log_ratio: Some(log_ratio), impacts: from.len(), warnings })
+    let rebound = |height: f64| {
+        let speed = (2.0 * striker.gravity * height).sqrt();
+        let after = striker.strike(log_ratio.0, speed).speed;
+        0.5 * after * after / striker.gravity
+    };
+    let figure = heights(&from, &to, &rebound);
+    Ok(Found { restitution, log_ratio: Some(log_ratio), impacts, figure, warnings })
+}
+
+/// Rebounds (m) over drops (m), measured and as the fit gives them.
+fn heights(from: &[f64], to: &[f64], rebound: &dyn Fn(f64) -> f64) -> Figure {
+    let centimeters = |values: &[f64]| values.iter().map(|v| 100.0 * v).collect::<Vec<f64>>();
+    // Between the drops that were measured: of slower ones the mass may stay where it falls.
+    let lowest = from.iter().copied().fold(f64::INFINITY, f64::min);
+    let highest = from.iter().copied().fold(0.0, f64::max);
+    let series = vec![
+        curve("fitted", [100.0 * lowest, 100.0 * highest], |x| 100.0 * rebound(0.01 * x)),
+        measured("measured", centimeters(from), centimeters(to), 1),
+    ];
+    let caption =
+        "The drops: how high it rebounds against how high it falls from, and what the fit gives.";
+    let axes = [Axis::new("drop height", "cm"), Axis::new("rebound height", "cm")];
+    figure("drops", caption, axes, series)
+}
+
+/// Flights between the impacts at `times` (s), measured and as the fit has them, whose residuals are in
+/// flights of the length `unit` (s).
+fn bounces(times: &[f64], residuals: &[f64], unit: f64) -> Figure {
+    let found: Vec<f64> = times.iter().zip(residuals).map(|(t, r)| t + unit * r).collect();
+    let between = |times: &[f64]| times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let number: Vec<f64> = (1..times.len()).map(|flight| flight as f64).collect();
+    let series = vec![
+        fitted("fitted", number.clone(), between(&found), 0),
+        measured("measured", number, between(times), 1),
+    ];
+    let caption =
+        "The bounces: how long each flight lasts between two impacts, and what the fit gives.";
+    let axes = [Axis::new("flight", ""), Axis::new("duration", "s")];
+    figure("bounces", caption, axes, series)
 }
 
 fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, CalibrateError> {
@@ -202,8 +255,11 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, Calibrat
         dimension: Dimension::NONE,
     };
     let mut warnings = Vec::new();
+    let picture =
+        |fit: Option<Fit>| bounces(&times, &fit.map(|fit| fit.residuals).unwrap_or_default(), unit);
     let Some(striker) = striker else {
-        return Ok(Found { restitution, log_ratio: None, impacts: times.len(), warnings });
+        let (figure, impacts) = (picture(plain), times.len());
+        return Ok(Found { restitution, log_ratio: None, impacts, figure, warnings });
     };
     // The speed before the first impact from the first flight, which starts with the speed after it.
     let first_speed = 0.5 * striker.gravity * unit / restitution.value;
@@ -224,7 +280,8 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, Calibrat
         log_interval(found.as_ref(), 2).ok_or_else(|| table.unsuited(no_rebound(&striker)))?;
     let last = 0.5 * striker.gravity * flights[flights.len() - 1];
     warnings.extend(gravity_warning(&striker, log_ratio.0, last));
-    Ok(Found { restitution, log_ratio: Some(log_ratio), impacts: times.len(), warnings })
+    let (figure, impacts) = (picture(found), times.len());
+    Ok(Found { restitution, log_ratio: Some(log_ratio), impacts, figure, warnings })
 }
 
 /// ln ζ without gravity, from which the fit with gravity starts.

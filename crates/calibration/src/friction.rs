@@ -5,8 +5,10 @@ use std::fmt::Write as _;
 use barrelstack::scenario::Dimension;
 use barrelstack_dynamics::math;
 use barrelstack_fragility::student_quantile;
+use barrelstack_report::{Axis, Figure};
 
 use super::drop::GRAVITY;
+use super::figures::{figure, level, measured, span};
 use super::result::{rounded, short};
 use super::statistics::{line, mean};
 use super::{CalibrateError, Calibration, Estimate, Table};
@@ -55,6 +57,7 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
     let mut estimates = vec![static_estimate];
     let mut scenario = format!("[interface.{interface}.friction]\n");
     let at_rest = estimates[0].value;
+    let coefficients = [Some(rest.clone()), slide.clone()];
     if let Some(slide) = slide {
         let kinetic = coefficient("kinetic friction", &slide);
         if kinetic.value <= 0.0 {
@@ -87,12 +90,37 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
     }));
     Ok(Calibration {
         title: format!("{test} test {}: friction", table.file()),
+        figures: vec![picture(table, &coefficients, &estimates)?],
         facts: vec![("tests".to_owned(), rest.len().to_string())],
         estimates,
         scenario,
         warnings,
         ..Calibration::default()
     })
+}
+
+/// The coefficient of every test, over the load where it was measured, and the means.
+fn picture(
+    table: &Table,
+    coefficients: &[Option<Vec<f64>>; 2],
+    estimates: &[Estimate],
+) -> Result<Figure, CalibrateError> {
+    let (x, axis) = if table.has("angle") {
+        let count = coefficients[0].as_ref().map_or(0, Vec::len);
+        ((1..=count).map(|test| test as f64).collect(), Axis::new("test", ""))
+    } else {
+        let load = table.positive("normal force", Dimension::FORCE)?;
+        (load.iter().map(|force| 1e-3 * force).collect::<Vec<f64>>(), Axis::new("load", "kN"))
+    };
+    let mut series = Vec::new();
+    for (index, (values, estimate)) in coefficients.iter().flatten().zip(estimates).enumerate() {
+        series.push(level(estimate, span(&x), index));
+        let label = format!("{}, single tests", estimate.name);
+        series.push(measured(&label, x.clone(), values.clone(), index));
+    }
+    let caption =
+        "The coefficient of friction that every test gives, and their mean with its 95 % interval.";
+    Ok(figure("friction-tests", caption, [axis, Axis::new("coefficient of friction", "")], series))
 }
 
 /// Static coefficients, and kinetic ones where they were measured.

@@ -16,6 +16,9 @@ pub struct Impact {
 /// Steps of the approach per radian of the undamped oscillation.
 const STEPS: f64 = 100.0;
 
+/// Speed over that of the free oscillation through the depth below which the mass lies still.
+const CREEP: f64 = 1e-9;
+
 /// Lets `mass` (kg) strike the speed-gap law of `stiffness` (N/m) and `damping` (N·s/m) at `speed`
 /// (m/s) under `gravity` (m/s²).
 ///
@@ -47,8 +50,9 @@ pub fn impact(mass: f64, stiffness: f64, damping: f64, gravity: f64, speed: f64)
     let (mut state, mut time) = ((0.0, speed), 0.0);
     loop {
         let next = advance(state, step);
-        // Not a number ends the approach as well.
-        if next.1.is_nan() || next.1 <= 0.0 {
+        // Not a number ends the approach as well, and so does creep into a strong damper, whose speed is
+        // never quite zero.
+        if next.1.is_nan() || next.1 <= CREEP * omega * next.0 {
             break;
         }
         (state, time) = (next, time + step);

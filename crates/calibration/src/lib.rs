@@ -20,9 +20,11 @@
 pub mod collapse;
 pub mod drop;
 mod error;
+mod figures;
 pub mod friction;
 mod impact;
 pub mod least_squares;
+mod page;
 mod parameters;
 pub mod response;
 mod result;

@@ -6,8 +6,10 @@ use barrelstack::run::RunFailure;
 use barrelstack::scenario::Scenario;
 use barrelstack_dynamics::math;
 use barrelstack_fragility::student_quantile;
+use barrelstack_report::{Axis, Figure};
 
 use self::simulate::{Measured, Simulator};
+use super::figures::{figure, fitted};
 use super::least_squares::{Fit, Start, condition, fit, normalized};
 use super::result::{inseparable, short};
 use super::{CalibrateError, Calibration, Estimate, Parameter, Table};
@@ -153,6 +155,7 @@ pub fn response(
         estimates,
         correlation,
         condition: Some(condition),
+        figures: pictures(&measured, &found.residuals, &scatter),
         facts,
         warnings,
     })
@@ -181,6 +184,28 @@ fn weighted(
                 .to_owned(),
         ))
     })
+}
+
+/// Every channel as it was recorded and as the fitted parameters give it.
+fn pictures(measured: &Measured, residuals: &[f64], scatter: &[f64]) -> Vec<Figure> {
+    let fits = by_channel(residuals, measured.times.len()).zip(scatter);
+    let mut figures = Vec::new();
+    for ((name, recorded), (residuals, scatter)) in measured.channels.iter().zip(fits) {
+        let (unit, factor) =
+            if name.ends_with("rotation") { ("deg", 1f64.to_degrees()) } else { ("cm", 100.0) };
+        let line = |label: &str, values: Vec<f64>, index| {
+            let shown = values.iter().map(|value| factor * value).collect();
+            fitted(label, measured.times.clone(), shown, index)
+        };
+        let simulated = recorded.iter().zip(residuals).map(|(r, off)| r + scatter * off).collect();
+        let series = vec![line("fitted", simulated, 0), line("recorded", recorded.clone(), 1)];
+        let caption =
+            format!("{name}: as recorded, and as the stack moves with the fitted values.");
+        let what = name.split_once(' ').map_or(name.as_str(), |(_, what)| what);
+        let axes = [Axis::new("time", "s"), Axis::new(what, unit)];
+        figures.push(figure(&format!("response-{name}"), &caption, axes, series));
+    }
+    figures
 }
 
 /// Estimates and their correlations, both in the order of `parameters`.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use barrelstack::scenario::Dimension;
-use barrelstack_report::described;
+use barrelstack_report::{Figure, described};
 
 /// A parameter with its 95 % interval.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +32,9 @@ pub struct Calibration {
     /// Ratio of the largest to the smallest eigenvalue of the correlation of the sensitivities; none
     /// where parameters are not fitted together.
     pub condition: Option<f64>,
-    /// Further figures for people, name and value.
+    /// What was measured beside the fit.
+    pub figures: Vec<Figure>,
+    /// Further numbers for people, name and value.
     pub facts: Vec<(String, String)>,
     /// Lines to paste into a scenario.
     pub scenario: String,
@@ -53,7 +55,7 @@ impl Estimate {
     }
 
     /// The unit; nothing for a plain number.
-    fn unit(&self) -> String {
+    pub(super) fn unit(&self) -> String {
         if self.dimension == Dimension::NONE { String::new() } else { self.dimension.si_unit() }
     }
 

@@ -2,7 +2,9 @@
 
 use barrelstack::scenario::Dimension;
 use barrelstack_fragility::student_quantile;
+use barrelstack_report::{Axis, Figure};
 
+use super::figures::{curve, figure, measured, span};
 use super::result::{quoted, short};
 use super::statistics::line;
 use super::{CalibrateError, Calibration, Estimate, Table};
@@ -94,11 +96,27 @@ pub fn stiffness(
     Ok(Calibration {
         title: format!("press test {}: force in proportion to penetration", table.file()),
         estimates: vec![stiffness, seating],
+        figures: vec![picture(&penetration, &force, slope, offset)],
         facts,
         scenario,
         warnings,
         ..Calibration::default()
     })
+}
+
+/// The readings and the line through them.
+fn picture(penetration: &[f64], force: &[f64], slope: f64, offset: f64) -> Figure {
+    let scaled = |values: &[f64], by: f64| values.iter().map(|v| by * v).collect::<Vec<f64>>();
+    let depth = scaled(penetration, 1e3);
+    let line = |x: f64| 1e-3 * slope * (1e-3 * x - offset);
+    let series = vec![
+        curve("force in proportion to penetration", span(&depth), line),
+        measured("measured", depth, scaled(force, 1e-3), 1),
+    ];
+    let caption = "The press test: force against penetration, and the straight line of least squares, whose slope is the \
+                   stiffness.";
+    let axes = [Axis::new("penetration", "mm"), Axis::new("force", "kN")];
+    figure("press-test", caption, axes, series)
 }
 
 /// `k` (N/m^1.5) of `F = k (δ − δ₀)^1.5`, and by how much its information criterion (Akaike 1974) is

@@ -13,6 +13,7 @@ use barrelstack_calibration::response::response;
 use barrelstack_calibration::stiffness::stiffness;
 use barrelstack_calibration::{CalibrateError, Calibration, Parameter, Table, impact};
 use barrelstack_motion::Random;
+use barrelstack_report::FigureKind;
 
 /// How many of 100 campaigns state an interval that holds each true value.
 ///
@@ -92,6 +93,67 @@ const STRIKER: Striker = Striker { mass: 275.0, stiffness: 9.8e5, nodes: 2, grav
 
 /// Damping (N·s/m) of one node.
 const DAMPING: f64 = 2200.0;
+
+#[test]
+fn a_mass_that_creeps_into_a_strong_damper_comes_to_rest() {
+    // Laid down, and dropped slowly: nothing rebounds, and the approach ends.
+    for speed in [0.0, 1e-6, 1e-3] {
+        let found = impact(275.0, 3.92e6, 1e6, GRAVITY, speed);
+        assert_eq!((found.speed, found.duration), (0.0, 0.0));
+        let rest = 275.0 * GRAVITY / 3.92e6;
+        assert!((found.depth / rest - 1.0).abs() < 0.01, "{}", found.depth); // measured below 1e-3
+    }
+}
+
+/// Points of the series of a figure, by its label.
+fn drawn(found: &Calibration, figure: usize, label: &str) -> Vec<(f64, f64)> {
+    let FigureKind::Plot(plot) = &found.figures[figure].kind else { panic!("no plot") };
+    let series = plot.series.iter().find(|series| series.label == label).unwrap();
+    series.x.iter().copied().zip(series.y.iter().copied()).collect()
+}
+
+#[test]
+fn what_was_measured_is_drawn_beside_the_fit() {
+    let press = "penetration (mm),force (kN)\n0.5,0.21\n1.1,1.42\n1.7,2.61\n2.3,3.75\n";
+    let found = stiffness(&Table::parse("press.csv", press).unwrap(), 1, "barrel-rack").unwrap();
+    let points = drawn(&found, 0, "measured");
+    for ((x, y), (depth, force)) in points.iter().zip([(0.5, 0.21), (1.1, 1.42), (1.7, 2.61)]) {
+        assert!((x - depth).abs() < 1e-9 && (y - force).abs() < 1e-9, "{x} {y}");
+    }
+    let line = drawn(&found, 0, "force in proportion to penetration");
+    let slope = (line[9].1 - line[0].1) / (line[9].0 - line[0].0);
+    let told = found.estimate("stiffness k").unwrap().value;
+    assert!((1e6 * slope / told - 1.0).abs() < 1e-9, "{slope} {told}");
+
+    // Heights that the law itself gives: the curve passes through them.
+    let striker = Striker { mass: 275.0, stiffness: 9.8e5, nodes: 4, gravity: GRAVITY };
+    let mut heights = String::from("drop height (m),rebound height (m)\n");
+    for height in [0.1_f64, 0.2, 0.3] {
+        let back = impact(275.0, 3.92e6, 12e3, GRAVITY, (2.0 * GRAVITY * height).sqrt()).speed;
+        writeln!(heights, "{height},{}", 0.5 * back * back / GRAVITY).unwrap();
+    }
+    let table = Table::parse("drops.csv", &heights).unwrap();
+    let found = drop(&table, Some(striker), "barrel-rack").unwrap();
+    let (curve, points) = (drawn(&found, 0, "fitted"), drawn(&found, 0, "measured"));
+    for (at, point) in [(0, 0), (30, 1), (60, 2)] {
+        assert!((curve[at].0 - points[point].0).abs() < 1e-9);
+        assert!((curve[at].1 / points[point].1 - 1.0).abs() < 1e-3, "{curve:?} {points:?}"); // measured 1e-7
+    }
+
+    let bounces = "time (s)\n0.143\n0.351\n0.49\n0.588\n0.655\n0.70\n";
+    let found = drop(&Table::parse("bounce.csv", bounces).unwrap(), None, "barrel-rack").unwrap();
+    let (fitted, measured) = (drawn(&found, 0, "fitted"), drawn(&found, 0, "measured"));
+    assert!((measured[0].1 - 0.208).abs() < 1e-9 && fitted.len() == 5);
+    let e = found.estimate("restitution").unwrap().value;
+    assert!((fitted[1].1 / fitted[0].1 - e).abs() < 1e-9); // measured 1e-15
+
+    let tilt = "angle (deg)\n24.1\n25.3\n23.6\n";
+    let found = friction(&Table::parse("tilt.csv", tilt).unwrap(), "rack-ground").unwrap();
+    let points = drawn(&found, 0, "static friction, single tests");
+    assert!((points[0].1 - 24.1_f64.to_radians().tan()).abs() < 1e-12 && points[2].0 == 3.0);
+    let page = found.document();
+    assert!(page.verdict.headline.starts_with("Static friction 0.4"), "{}", page.verdict.headline);
+}
 
 #[test]
 fn damping_lies_within_its_interval_from_heights() {
@@ -364,6 +426,15 @@ fn two_collapses_tell_little_and_say_so() {
     // Measured: 5 % and 9 % off, within intervals of a factor of three.
     assert!((stiffness.value / 1.2e6 - 1.0).abs() < 0.15, "{stiffness:?}");
     assert!((friction.value / 0.18 - 1.0).abs() < 0.15, "{friction:?}");
+    // How often each test goes as it was seen, and when: a row with a name for each.
+    for figure in &found.figures {
+        let FigureKind::Plot(plot) = &figure.kind else { panic!("no plot") };
+        let bars = plot.series[0].x.iter().filter(|x| x.is_nan()).count();
+        assert_eq!(plot.y.names.len(), bars, "{}", figure.id);
+        assert!(plot.y.names.iter().all(|name| name.starts_with("test ")), "{:?}", plot.y.names);
+    }
+    let ids: Vec<&str> = found.figures.iter().map(|figure| figure.id.as_str()).collect();
+    assert_eq!(ids, ["collapse-modes", "collapse-times"]);
     let few = "too few simulations came near";
     assert!(found.warnings.iter().any(|warning| warning.contains(few)), "{:?}", found.warnings);
 }

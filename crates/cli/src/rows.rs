@@ -6,7 +6,7 @@ use barrelstack::outcome::Outcome;
 use barrelstack::render::{drift_line, final_picture};
 use barrelstack::variants::words::{course, percent};
 use barrelstack::{Run, Summary};
-use barrelstack_report::Characters;
+use barrelstack_report::{Characters, measured};
 
 /// Width of the name of a row.
 const NAME: usize = 24;
@@ -70,8 +70,7 @@ pub(crate) fn rows(
     }
     let demands = &summary.demands;
     if let Some(drift) = demands.top_drift_ratio {
-        let drift =
-            if drift < 1e-4 { "under 0.01".to_owned() } else { three_digits(100.0 * drift) };
+        let drift = measured(100.0 * drift, 1);
         row("drift of the top", format!("{drift} % of the height"));
         if let Some((line, [until, peak])) = drift_line(run, SPARKS, characters) {
             row("  while it stood", format!("{line} {until:.1} s"));
@@ -115,9 +114,9 @@ fn verdict(summary: &Summary) -> String {
     let outcome = &summary.outcome;
     match (outcome.kind, outcome.mode, outcome.time) {
         ("interrupted", Some(mode), Some(time)) => {
-            format!("collapse by {mode} at {time:.3} s; then it was stopped")
+            format!("collapse by {mode} at {time:.2} s; then it was stopped")
         }
-        (kind, Some(mode), Some(time)) => format!("{kind} by {mode} at {time:.3} s"),
+        (kind, Some(mode), Some(time)) => format!("{kind} by {mode} at {time:.2} s"),
         ("interrupted", ..) => "stopped before its end, nothing had happened until then".to_owned(),
         ("not-judged", ..) => "not judged: a free scene has no seats to lose".to_owned(),
         (kind, ..) => kind.to_owned(),

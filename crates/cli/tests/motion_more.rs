@@ -246,3 +246,37 @@ fn components_of_two_stations_are_taken_together_only_where_told() {
     let said = refused(&all.iter().map(String::as_str).collect::<Vec<_>>());
     assert!(said.contains("not perpendicular") || said.contains("two horizontal"), "{said}");
 }
+
+#[test]
+fn matching_and_processing_are_drawn_beside_what_they_start_from() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = record(folder.path());
+    let page = folder.path().join("match.html");
+    let out = folder.path().join("matched.txt");
+    told(&[
+        "match",
+        "napa-college-2014",
+        "--to",
+        "ec8:ag=0.3,site=B",
+        "-o",
+        text(&out),
+        "--figure",
+        text(&page),
+    ]);
+    let written = fs::read_to_string(&page).unwrap();
+    for wanted in
+        ["follows ec8:ag=0.3,site=B within 5", "target, ", " before and ", " after.", "period (s)"]
+    {
+        assert!(written.contains(wanted), "{wanted}");
+    }
+    let page = folder.path().join("process.html");
+    let out = folder.path().join("processed.txt");
+    let arguments = ["--high-pass", "0.1 Hz", "-o", text(&out), "--figure", text(&page)];
+    told(&[&["process", text(&first)], &arguments[..]].concat());
+    let written = fs::read_to_string(&page).unwrap();
+    assert!(written.contains("before and after processing") && written.contains("high-pass"));
+    // The page is checked before the work, as the motion is.
+    let again =
+        barrelstack(["motion", "process", text(&first), "-o", "x.txt", "--figure", text(&page)]);
+    assert!(stderr(&again).contains("is there already"), "{}", stderr(&again));
+}

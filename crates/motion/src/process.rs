@@ -321,8 +321,13 @@ impl Residuals {
     }
 
     fn sentence(self) -> String {
-        let values =
-            format!("ends with {:.1e} of PGV and {:.1e} of PGD", self.velocity, self.displacement);
+        // What rounding leaves at rest is nothing.
+        let share = |value: f64| match value {
+            v if v < 1e-6 => "less than 1e-6".to_owned(),
+            v => format!("{v:.1e}"),
+        };
+        let [velocity, displacement] = [self.velocity, self.displacement].map(share);
+        let values = format!("ends with {velocity} of PGV and {displacement} of PGD");
         if self.acceptable() {
             values
         } else {

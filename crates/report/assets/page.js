@@ -93,19 +93,55 @@ function csvOf(plot) {
   return rows.join("\n") + "\n";
 }
 
+function button(text, label, action) {
+  const element = make("button", { type: "button", "aria-label": label }, text);
+  element.addEventListener("click", () => action(element));
+  return element;
+}
+
 for (const figure of document.querySelectorAll("figure.plot, figure.envelope")) {
   const name = figure.id.replace("figure-", "");
-  const button = (text, label, action) => {
-    const element = make("button", { type: "button", "aria-label": label }, text);
-    element.addEventListener("click", action);
-    return element;
-  };
   const number = figure.querySelector("figcaption b").textContent.replace(/\.$/, "");
   const files = make("span", { class: "files" }, button("SVG", `Save ${number} as SVG`, () =>
     save(`${name}.svg`, "image/svg+xml", standalone(figure.querySelector(".drawing > svg")))));
   const plot = board.plots.find((p) => p.id === name);
   if (plot) files.append(button("CSV", `Save the data of ${number} as CSV`, () => save(`${name}.csv`, "text/csv", csvOf(plot))));
   figure.querySelector("figcaption").append(" ", files);
+}
+
+// A table as a spreadsheet takes it: a line for each row, tabs between cells, plain minus signs.
+function tabbed(table) {
+  const cell = (of) => of.textContent.trim().replace(/\s+/g, " ").replace(/^–$/, "").replace(/^−(?=\d)/, "-");
+  // What has one column is text, whose head is no part of it.
+  const rows = [...table.rows].filter((row) => row.cells.length > 1 || !row.parentElement.matches("thead"));
+  return rows.map((row) => [...row.cells].map(cell).join("\t")).join("\n") + "\n";
+}
+
+// Browsers keep the clipboard to pages from a safe place; the old way works everywhere else.
+async function copy(text) {
+  try {
+    await navigator.clipboard.writeText(text);
+    return true;
+  } catch {
+    const box = make("textarea", { "aria-hidden": "true", style: "position:fixed;opacity:0" });
+    box.value = text;
+    document.body.append(box);
+    box.select();
+    const done = document.execCommand("copy");
+    box.remove();
+    return done;
+  }
+}
+
+for (const table of document.querySelectorAll(".table > table")) {
+  const words = table.querySelector("caption > span");
+  const number = words.querySelector("b").textContent.replace(/\.$/, "");
+  words.append(" ", make("span", { class: "files" }, button("Copy", `Copy ${number}`, async (element) => {
+    const had = document.activeElement;
+    element.textContent = (await copy(tabbed(table))) ? "Copied" : "Not copied";
+    if (had) had.focus();
+    setTimeout(() => { element.textContent = "Copy"; }, 1500);
+  })));
 }
 
 window.barrelstack = { player: board.player, players, plots: board.plots, opened: null };

@@ -37,9 +37,9 @@ function makePlot(raw, columns, figure, page) {
     const value = make("span", { class: "value" });
     values.push(value);
     const swatch = svg("svg", { viewBox: "0 0 28 8", class: "swatch", "aria-hidden": "true" },
-      svg("line", { x1: 1, y1: 4, x2: 27, y2: 4, class: s.muted ? "series muted" : `series s${s.look}`,
-        "stroke-dasharray": s.dash }),
-      ...(s.dots ? [svg("circle", { cx: 14, cy: 4, r: 2.6, class: `dot s${s.look}` })] : []));
+      ...(s.points ? [] : [svg("line", { x1: 1, y1: 4, x2: 27, y2: 4, class: s.muted ? "series muted" : `series s${s.look}`,
+        "stroke-dasharray": s.dash })]),
+      ...(s.dots || s.points ? [svg("circle", { cx: 14, cy: 4, r: 2.6, class: `dot s${s.look}` })] : []));
     const button = make("button", { type: "button", "aria-pressed": "true" }, swatch, s.label, value);
     button.addEventListener("click", () => {
       s.shown = !s.shown;
@@ -57,9 +57,9 @@ function makePlot(raw, columns, figure, page) {
       for (const value of values) value.textContent = "";
       return;
     }
-    at.textContent = `${raw.x.label ? raw.x.label + " " : ""}${withUnit(x, 4, raw.x.unit)}`;
+    at.textContent = `${raw.x.label ? raw.x.label + " " : ""}${told(x, raw.x, plot && plot.scales.x, 4)}`;
     series.forEach((s, k) => {
-      values[k].textContent = s.xs.length ? withUnit(s.ys[nearest(s.xs, x)], 3, raw.y.unit) : "";
+      values[k].textContent = s.xs.length ? told(s.ys[nearest(s.xs, x)], raw.y, plot && plot.scales.y, 3) : "";
     });
   }
 
@@ -89,7 +89,8 @@ function makePlot(raw, columns, figure, page) {
         alpha: s.muted ? 0.6 : 1,
         dash: s.dash.split(" ").filter(Boolean).map(Number),
         fill: s.area ? color("s" + s.look) + "28" : undefined,
-        points: { show: s.dots, size: 6 },
+        points: { show: s.dots || s.points, size: 6 },
+        ...(s.points ? { paths: () => null } : {}),
       }))],
       cursor: {
         drag: { x: true, y: false, dist: 4 },
@@ -279,6 +280,16 @@ function makePlot(raw, columns, figure, page) {
     range: () => (plot ? [plot.scales.x.min, plot.scales.x.max] : wanted || full),
   };
   return api;
+}
+
+// A value of an axis as finely as the picture shows it: what is less than a pixel is nothing.
+function told(value, axis, scale, digits) {
+  const span = scale ? scale.max - scale.min : 0;
+  if (!isFinite(value) || axis.log || !(span > 0)) return withUnit(value, digits, axis.unit);
+  const power = Math.floor(Math.log10(span / 500));
+  const near = Number((Math.round(value / 10 ** power) * 10 ** power).toPrecision(12));
+  const places = near === 0 ? 1 : Math.floor(Math.log10(Math.abs(near)) + 1e-9) - power + 1;
+  return withUnit(near, Math.max(1, Math.min(digits, places)), axis.unit);
 }
 
 function svg(tag, attributes, ...children) {

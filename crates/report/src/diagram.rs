@@ -4,7 +4,7 @@ use std::{fmt::Write as _, sync::Arc};
 
 use crate::{
     Point, Scene,
-    drawing::{Anchor, Drawing, Item},
+    drawing::{Anchor, Drawing, Item, Room},
     escape, number,
     strip::{View, define_bodies, picture},
 };
@@ -33,16 +33,17 @@ pub struct Arrow {
     pub meaning: String,
 }
 
-/// Largest width and height (px).
+/// Largest width and height (px), and the width on a phone.
 const MOST: [f64; 2] = [620.0, 520.0];
+const PHONE: f64 = 358.0;
 /// Length and half width of an arrow's head (px).
 const HEAD: [f64; 2] = [8.0, 3.6];
 
 impl Diagram {
-    pub(crate) fn draw(&self, id: &str, title: &str) -> Drawing {
+    pub(crate) fn draw(&self, id: &str, title: &str, room: Room) -> Drawing {
         let frame = self.scene.frames.nearest(self.time);
         let shown: Vec<usize> = frame.into_iter().collect();
-        let view = View::of(&self.scene, &shown, MOST, false);
+        let view = View::of(&self.scene, &shown, [room.of(MOST[0], PHONE), MOST[1]], false);
         let mut drawing = Drawing::new(view.width, view.height, title);
         drawing.push(define_bodies(&self.scene, id, &view, &shown));
         drawing.nest([0.0, 0.0], picture(&self.scene, id, frame, &view));

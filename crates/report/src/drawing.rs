@@ -143,7 +143,41 @@ impl Drawing {
     }
 }
 
+/// How much room a drawing has across; letters are as large in either.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Room {
+    /// A page on a desk, or on paper.
+    Page,
+    /// A page on a phone.
+    Phone,
+}
+
+impl Room {
+    /// The length for this room.
+    pub(crate) fn of(self, page: f64, phone: f64) -> f64 {
+        match self {
+            Self::Page => page,
+            Self::Phone => phone,
+        }
+    }
+}
+
 /// Width of a line of text at `size` px, on the generous side.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     0.56 * size * text.chars().count() as f64
+}
+
+/// Lines of a text at `size` px that are no wider than `width` where it can be broken: after spaces
+/// and after the signs that join words.
+pub(crate) fn broken(text: &str, size: f64, width: f64) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for piece in text.split_inclusive([' ', '.', '-', '_', '/']) {
+        let line = lines.last_mut().expect("a line");
+        if !line.is_empty() && text_width(&format!("{line}{}", piece.trim_end()), size) > width {
+            lines.push(piece.to_owned());
+        } else {
+            line.push_str(piece);
+        }
+    }
+    lines.iter().map(|line| line.trim_end().to_owned()).collect()
 }

@@ -1,8 +1,8 @@
-//! Stress around a body: self-weight shaded, the largest during shaking as a line.
+//! Stress around a body: at rest, before the largest during shaking.
 
 use crate::{
     Polyline,
-    drawing::{Anchor, Drawing, Runs, text_width},
+    drawing::{Anchor, Drawing, Room, Runs, text_width},
     escape, number,
     scene::Extent,
     ticks::round_length,
@@ -44,9 +44,10 @@ pub struct BoundarySample {
     pub coordinate: f64,
 }
 
-const WIDTH: f64 = 520.0;
+/// Width (px) on a page and on a phone.
+const WIDTH: [f64; 2] = [520.0, 358.0];
 const SIDE: f64 = 24.0;
-const LEGEND: f64 = 58.0;
+const LEGEND: f64 = 62.0;
 /// Longest stress over the larger side of the body.
 const REACH: f64 = 0.38;
 
@@ -55,7 +56,9 @@ impl Envelope {
         self.samples.len().min(self.static_stress.len()).min(self.dynamic_stress.len())
     }
 
-    pub(crate) fn draw(&self, title: &str) -> Drawing {
+    pub(crate) fn draw(&self, title: &str, room: Room) -> Drawing {
+        let width = room.of(WIDTH[0], WIDTH[1]);
+        let legend = room.of(LEGEND, 2.0 * LEGEND - 24.0);
         let mut extent = Extent::EMPTY;
         for point in self.outline.iter().flat_map(|line| &line.points) {
             extent.add(*point);
@@ -75,21 +78,21 @@ impl Envelope {
                 extent.add(self.tip(at, stress, per_stress));
             }
         }
-        let scale = ((WIDTH - 2.0 * SIDE) / extent.width().max(1e-6))
+        let scale = ((width - 2.0 * SIDE) / extent.width().max(1e-6))
             .min(360.0 / extent.height().max(1e-6));
-        let height = LEGEND + extent.height() * scale + SIDE;
-        let x0 = 0.5 * (WIDTH - extent.width() * scale) - extent.lower[0] * scale;
+        let height = legend + extent.height() * scale + SIDE;
+        let x0 = 0.5 * (width - extent.width() * scale) - extent.lower[0] * scale;
         let z0 = height - SIDE + extent.lower[1] * scale;
         let map = |p: [f64; 2]| [x0 + p[0] * scale, z0 - p[1] * scale];
 
-        let mut drawing = Drawing::new(WIDTH, height, title);
+        let mut drawing = Drawing::new(width, height, title);
         for line in &self.outline {
             let points = line.points.iter().map(|p| map(*p)).collect();
             let class = if line.closed { "outline" } else { "outline open" };
             drawing.path(class, "", vec![points], line.closed);
         }
         for (stresses, class) in
-            [(&self.static_stress, "static"), (&self.dynamic_stress, "dynamic")]
+            [(&self.dynamic_stress, "dynamic"), (&self.static_stress, "static")]
         {
             let shapes: Runs = self
                 .runs(stresses)
@@ -102,7 +105,7 @@ impl Envelope {
                 .collect();
             drawing.path(class, "", shapes, true);
         }
-        self.legend(&mut drawing, peak, per_stress * scale);
+        self.legend(&mut drawing, peak, per_stress * scale, room);
         drawing
     }
 
@@ -149,28 +152,40 @@ impl Envelope {
         runs
     }
 
-    fn legend(&self, drawing: &mut Drawing, peak: f64, per_stress: f64) {
-        drawing.rect("static", [SIDE, 8.0], [26.0, 11.0]);
-        drawing.text("label", [SIDE + 33.0, 18.0], Anchor::Start, "self-weight");
-        drawing.path("dynamic", "", vec![vec![[SIDE, 34.0], [SIDE + 26.0, 34.0]]], false);
-        drawing.text("label", [SIDE + 33.0, 38.0], Anchor::Start, "largest during shaking");
-        let right = WIDTH - SIDE;
+    /// What the shapes are, and what their length says: beside each other, on a phone one below the
+    /// other.
+    fn legend(&self, drawing: &mut Drawing, peak: f64, per_stress: f64, room: Room) {
+        drawing.rect("dynamic", [SIDE, 8.5], [26.0, 10.0]);
+        drawing.text("label", [SIDE + 33.0, 18.0], Anchor::Start, "largest during shaking");
+        drawing.rect("static", [SIDE, 28.5], [26.0, 10.0]);
+        drawing.text("label", [SIDE + 33.0, 38.0], Anchor::Start, "at rest");
+        let (edge, top, anchor) = match room {
+            Room::Page => (WIDTH[0] - SIDE, 18.0, Anchor::End),
+            Room::Phone => (SIDE, 58.0, Anchor::Start),
+        };
         if let Some(ratio) = self.amplification {
             let text = format!("amplification {}", number::significant(ratio, 2));
-            drawing.text("label strong", [right, 18.0], Anchor::End, &text);
+            drawing.text("label strong", [edge, top], anchor, &text);
         }
         let bar = round_length(0.6 * peak);
         if bar > 0.0 {
-            let text = format!("{} {}", number::significant(bar, 1), self.unit);
-            let from = right - text_width(&text, 12.0) - 8.0 - bar * per_stress;
-            let to = from + bar * per_stress;
-            drawing.line("axis", [from, 34.0], [to, 34.0]);
-            for x in [from, to] {
-                drawing.line("axis", [x, 30.0], [x, 38.0]);
+            let text = format!("normal stress: {} {}", number::significant(bar, 1), self.unit);
+            let (length, y) = (bar * per_stress, top + 16.0);
+            let from = match room {
+                Room::Page => edge - text_width(&text, 12.0) - 8.0 - length,
+                Room::Phone => edge,
+            };
+            drawing.line("axis", [from, y], [from + length, y]);
+            for x in [from, from + length] {
+                drawing.line("axis", [x, y - 4.0], [x, y + 4.0]);
             }
-            drawing.text("label", [right, 38.0], Anchor::End, text.trim_end());
+            let at = match room {
+                Room::Page => edge,
+                Room::Phone => from + length + 8.0,
+            };
+            drawing.text("label", [at, y + 4.0], anchor, text.trim_end());
         } else {
-            drawing.text("note", [right, 38.0], Anchor::End, "no stress");
+            drawing.text("note", [edge, top + 20.0], anchor, "no stress");
         }
     }
 

@@ -3,8 +3,9 @@
 use std::collections::HashSet;
 
 use crate::{
-    Block, Diagram, Document, Envelope, Panels, Plot, Strip, drawing::Drawing, escape, pages,
-    raster,
+    Block, Diagram, Document, Envelope, Panels, Plot, Strip,
+    drawing::{Drawing, Room},
+    escape, pages, raster,
 };
 
 /// One picture with a caption.
@@ -76,12 +77,17 @@ impl Figure {
     }
 
     pub(crate) fn draw(&self, id: &str) -> Drawing {
+        self.draw_in(id, Room::Page)
+    }
+
+    /// The picture as it fits its room; a strip is one and the same in any, for its panels part.
+    pub(crate) fn draw_in(&self, id: &str, room: Room) -> Drawing {
         match &self.kind {
-            FigureKind::Plot(plot) => plot.draw(id, &self.caption),
-            FigureKind::Panels(panels) => panels.draw(id, &self.caption),
+            FigureKind::Plot(plot) => plot.draw(id, &self.caption, room),
+            FigureKind::Panels(panels) => panels.draw(id, &self.caption, room),
             FigureKind::Strip(strip) => strip.draw(id, &self.caption),
-            FigureKind::Envelope(envelope) => envelope.draw(&self.caption),
-            FigureKind::Diagram(diagram) => diagram.draw(id, &self.caption),
+            FigureKind::Envelope(envelope) => envelope.draw(&self.caption, room),
+            FigureKind::Diagram(diagram) => diagram.draw(id, &self.caption, room),
         }
     }
 }

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use crate::{
     Block, Document, Figure, FigureKind, Strip, Table, Tone,
     document::FINE,
+    drawing::Room,
     escape,
     figure::Names,
     glossary::Glossary,
@@ -50,6 +51,9 @@ fn sections(blocks: &[Block]) -> Vec<(String, String)> {
 fn anchor(names: &mut Names, text: &str) -> String {
     names.take(&format!("section {text}"))
 }
+
+/// Letters of a cell that are not set one word below the other where there is little room.
+const LONG: usize = 60;
 
 pub(crate) struct Writer<'a> {
     pub(crate) document: &'a Document,
@@ -248,6 +252,7 @@ impl<'a> Writer<'a> {
                 let text = row.get(at).map_or_else(|| number::MISSING.into(), crate::Cell::shown);
                 let class = match row.get(at) {
                     Some(crate::Cell::Rated(rating, _)) => format!(" class=\"{}\"", rating.class()),
+                    Some(crate::Cell::Text(text)) if text.len() > LONG => " class=\"long\"".into(),
                     _ => class(at).to_owned(),
                 };
                 let text = self.glossary.marked(&number::tied(&text));
@@ -287,6 +292,11 @@ impl<'a> Writer<'a> {
             | FigureKind::Diagram(_) => {
                 let drawing = figure.draw(&id).inline();
                 self.put(&format!("<div class=\"drawing\">{drawing}</div>\n"));
+                // What is drawn live fits any width by itself.
+                if live.is_none() {
+                    let drawing = figure.draw_in(&format!("{id}-phone"), Room::Phone).inline();
+                    self.put(&format!("<div class=\"drawing phone\">{drawing}</div>\n"));
+                }
             }
         }
         self.caption(&figure.caption);

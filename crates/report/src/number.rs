@@ -40,6 +40,31 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
+/// `value` to three significant digits and at most `decimals` places after the point, so that no digit
+/// is shown that means nothing; what is less than half of the last place is said to be less than it.
+///
+/// ```
+/// use barrelstack_report::measured;
+/// assert_eq!(measured(20.34, 1), "20.3");
+/// assert_eq!(measured(642.3, 1), "642");
+/// assert_eq!(measured(0.003_62, 1), "< 0.1");
+/// assert_eq!(measured(-0.003_62, 1), "> −0.1");
+/// assert_eq!(measured(0.0, 1), "0");
+/// ```
+pub fn measured(value: f64, decimals: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return significant(value, 3);
+    }
+    let coarse = fixed(value, decimals);
+    if coarse.bytes().all(|b| b == b'0' || b == b'.') {
+        let last = format!("0.{:0>decimals$}", 1);
+        let last = if decimals == 0 { "1" } else { &last };
+        return if value > 0.0 { format!("< {last}") } else { format!("> −{last}") };
+    }
+    let fine = significant(value, 3);
+    if fine.chars().count() < coarse.chars().count() { fine } else { coarse }
+}
+
 /// `value` with a fixed count of decimals and a real minus sign; "–" when not finite.
 pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {

@@ -71,6 +71,7 @@ impl Payload {
                     "muted": s.style.muted,
                     "area": s.style.area,
                     "dots": s.style.dots,
+                    "points": s.style.points,
                 })
             })
             .collect();
@@ -135,7 +136,10 @@ fn axis(axis: &Axis) -> Value {
 /// The whole file.
 pub(crate) fn assemble(title: &str, body: &str, payload: Payload) -> String {
     let live = !payload.plots.is_empty();
-    let scripted = live || !payload.players.is_empty();
+    // Tables and figures that stand still are scripted, too: they can be saved and copied.
+    let scripted = live
+        || !payload.players.is_empty()
+        || ["<table", "<figure"].iter().any(|element| body.contains(element));
     let mut out = String::new();
     let title = escape::html(title);
     out.push_str("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");

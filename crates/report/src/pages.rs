@@ -1,7 +1,9 @@
 //! A document on pages: text, tables and figures set one below the other, with numbered feet.
 
+use pdf_writer::types::StructRole;
+
 use crate::{
-    Block, Document, Figure, Player, Table, Tone,
+    Block, Document, EventKind, Figure, FigureKind, Panel, Player, Strip, Table, Tone,
     document::FINE,
     drawing::{Anchor, Drawing, Item},
     escape,
@@ -11,6 +13,7 @@ use crate::{
     pdf::{Page, pdf},
     sheet::{Sheet, baseline, row_height, wrap},
     style::{Style, Tag},
+    tags::Tags,
 };
 
 /// The paper of a printed document.
@@ -34,22 +37,35 @@ impl Paper {
 }
 
 /// The document as a PDF: the same words and numbers as [`html`](crate::html), figures as lines,
-/// words as words, a list of sections, the title and the number of the page at every foot.
+/// words as words, a list of sections, the title and the number of the page at every foot, and tags by
+/// which a reader of the screen finds its way.
 ///
-/// A player is shown as it is on paper; what the page folds away is open.
+/// A player that opens the document is shown amid its falls, on the first page; what the page folds
+/// away is in an appendix.
 pub fn document_pdf(document: &Document, paper: Paper) -> Vec<u8> {
     let mut flow = Flow::new(document, paper);
     flow.verdict();
+    let first = document
+        .blocks
+        .iter()
+        .position(|block| matches!(block, Block::Player(_) | Block::Players(_)));
+    let (opening, rest) = document.blocks.split_at(first.map_or(0, |at| at + 1));
+    flow.blocks(opening);
     flow.warnings();
-    flow.blocks(&document.blocks);
+    flow.blocks(rest);
     flow.provenance();
-    pdf(&document.title, &flow.finish(), 1.0)
+    flow.appendix();
+    let (pages, tags) = flow.finish();
+    pdf(&document.title, &pages, tags, 1.0)
 }
 
 /// A figure alone on a page of its size; a px of it is three quarters of a point.
 pub(crate) fn figure_pdf(figure: &Figure) -> Vec<u8> {
     let drawing = figure.draw(&escape::slug(&figure.id));
-    pdf(&figure.caption, &[Page { drawing, sections: Vec::new() }], POINTS_PER_PX)
+    let mut structure = Tags::new();
+    let place = structure.open(0, StructRole::Figure, Some(&figure.caption));
+    let tags = vec![Some(place); drawing.items.len()];
+    pdf(&figure.caption, &[Page { drawing, sections: Vec::new(), tags }], structure, POINTS_PER_PX)
 }
 
 const POINTS_PER_PX: f64 = 0.75;
@@ -69,6 +85,11 @@ struct Flow<'a> {
     names: Names,
     tables: usize,
     figures: usize,
+    /// What the page folds away, for the appendix.
+    folded: Vec<(&'a str, &'a [Block])>,
+    tags: Tags,
+    /// The element that is being written.
+    current: usize,
 }
 
 impl<'a> Flow<'a> {
@@ -81,6 +102,9 @@ impl<'a> Flow<'a> {
             names: Names::default(),
             tables: 0,
             figures: 0,
+            folded: Vec::new(),
+            tags: Tags::new(),
+            current: 0,
         };
         flow.turn();
         flow
@@ -95,10 +119,28 @@ impl<'a> Flow<'a> {
         self.size[1] - MARGIN[2]
     }
 
+    /// Writes an element: what is painted meanwhile, and by no element in it, is part of it.
+    fn tagged(&mut self, role: StructRole, words: Option<&str>, write: impl FnOnce(&mut Self)) {
+        self.settle(Some(self.current));
+        let before = self.current;
+        self.current = self.tags.open(before, role, words);
+        write(self);
+        self.settle(Some(self.current));
+        self.current = before;
+    }
+
+    /// Says whose is what was painted since this was said last.
+    fn settle(&mut self, element: Option<usize>) {
+        if let Some(page) = self.pages.last_mut() {
+            page.tags.resize(page.drawing.items.len(), element);
+        }
+    }
+
     /// Starts a page.
     fn turn(&mut self) {
+        self.settle(Some(self.current));
         let drawing = Drawing::new(self.size[0], self.size[1], "");
-        self.pages.push(Page { drawing, sections: Vec::new() });
+        self.pages.push(Page { drawing, sections: Vec::new(), tags: Vec::new() });
         self.y = MARGIN[1];
     }
 
@@ -131,19 +173,27 @@ impl<'a> Flow<'a> {
     }
 
     fn paragraph(&mut self, class: &'static str, text: &str) {
-        self.text(class, 0.0, text);
+        self.tagged(StructRole::P, None, |flow| flow.text(class, 0.0, text));
         self.y += GAP;
     }
 
     fn list(&mut self, items: &[String]) {
         const INDENT: f64 = 11.0;
-        for item in items {
-            self.need(LEADING * 9.5);
-            let dot = [MARGIN[0] + 2.0, self.y + 9.5];
-            self.page().drawing.text("page-text", dot, Anchor::Start, "•");
-            self.text("page-text", INDENT, item);
-            self.y += 1.5;
-        }
+        self.tagged(StructRole::L, None, |flow| {
+            for item in items {
+                // The dot stays with the first two lines.
+                flow.need(LEADING * 9.5 * 2.0);
+                let dot = [MARGIN[0] + 2.0, flow.y + 9.5];
+                flow.tagged(StructRole::LI, None, |flow| {
+                    flow.tagged(StructRole::Lbl, None, |flow| {
+                        flow.page().drawing.text("page-text", dot, Anchor::Start, "•");
+                    });
+                    let body = |flow: &mut Self| flow.text("page-text", INDENT, item);
+                    flow.tagged(StructRole::LBody, None, body);
+                });
+                flow.y += 1.5;
+            }
+        });
         self.y += GAP - 1.5;
     }
 
@@ -157,14 +207,15 @@ impl<'a> Flow<'a> {
             let y = self.y;
             self.page().sections.push((text.to_owned(), y));
         }
-        self.text(class, 0.0, text);
+        let role = if class == "page-section" { StructRole::H2 } else { StructRole::H3 };
+        self.tagged(role, None, |flow| flow.text(class, 0.0, text));
         self.y += 3.0;
     }
 
     fn verdict(&mut self) {
         let document = self.document;
         let verdict = &document.verdict;
-        self.text("page-title", 0.0, &document.title);
+        self.tagged(StructRole::P, None, |flow| flow.text("page-title", 0.0, &document.title));
         self.y += 6.0;
         let class = match verdict.tone {
             Tone::Stands => "page-bold page-stands",
@@ -172,8 +223,10 @@ impl<'a> Flow<'a> {
             Tone::Invalid => "page-bold page-invalid",
             Tone::Neutral => "page-bold page-neutral",
         };
-        self.text(class, 0.0, &verdict.tone.word().to_uppercase());
-        self.text("page-headline", 0.0, &verdict.headline);
+        let tone = verdict.tone.word().to_uppercase();
+        self.tagged(StructRole::P, None, |flow| flow.text(class, 0.0, &tone));
+        let headline = |flow: &mut Self| flow.text("page-headline", 0.0, &verdict.headline);
+        self.tagged(StructRole::H1, None, headline);
         self.y += 4.0;
         if !verdict.advice.is_empty() {
             self.paragraph("page-bold", &verdict.advice);
@@ -212,7 +265,21 @@ impl<'a> Flow<'a> {
         self.rows(&Sheet::new(Vec::new(), rows, vec![false; 2], self.width()));
     }
 
-    fn blocks(&mut self, blocks: &[Block]) {
+    /// What was folded away, and what is folded away in it.
+    fn appendix(&mut self) {
+        if self.folded.is_empty() {
+            return;
+        }
+        self.heading("page-section", "Appendix", 60.0);
+        let mut at = 0;
+        while let Some(&(summary, blocks)) = self.folded.get(at) {
+            self.heading("page-part", summary, self.least(blocks));
+            self.blocks(blocks);
+            at += 1;
+        }
+    }
+
+    fn blocks(&mut self, blocks: &'a [Block]) {
         for (at, block) in blocks.iter().enumerate() {
             match block {
                 Block::Heading { level, text } => {
@@ -231,8 +298,8 @@ impl<'a> Flow<'a> {
                     }
                 }
                 Block::Details { summary, blocks } => {
-                    self.heading("page-part", summary, self.least(blocks));
-                    self.blocks(blocks);
+                    self.paragraph("page-small", &format!("{summary}: see the appendix."));
+                    self.folded.push((summary, blocks));
                 }
             }
         }
@@ -244,11 +311,11 @@ impl<'a> Flow<'a> {
         let figure = |figure: &Figure| self.picture(figure, "measured").1 + 24.0;
         let least = match first {
             Block::Figure(shown) => figure(shown),
-            Block::Player(player) => figure(&player.paper_figure(&self.document.blocks)),
+            Block::Player(player) => figure(&self.still(player)),
             Block::Players(players) => players.paper_figures().first().map_or(0.0, figure),
             Block::Table(_) => 66.0,
             Block::Heading { .. } => 24.0 + self.least(rest),
-            Block::Details { blocks, .. } => 24.0 + self.least(blocks),
+            Block::Details { .. } => 24.0,
             // A paragraph in front of a figure leads over to it.
             Block::Paragraph(_) if matches!(rest.first(), Some(Block::Figure(_))) => {
                 40.0 + self.least(rest)
@@ -279,13 +346,33 @@ impl<'a> Flow<'a> {
         let (drawing, height, scale) = self.picture(figure, &id);
         self.need(height + 4.0 + lines as f64 * LEADING * style.font_size);
         let at = [MARGIN[0], self.y];
-        self.page().drawing.push(Item::Nested { at, scale, drawing });
+        self.tagged(StructRole::Figure, Some(&figure.caption), |flow| {
+            flow.page().drawing.push(Item::Nested { at, scale, drawing });
+        });
         self.y += height + 4.0;
-        self.paragraph("page-small", &caption);
+        self.tagged(StructRole::Caption, None, |flow| flow.text("page-small", 0.0, &caption));
+        self.y += GAP;
+    }
+
+    /// A player as a picture: amid its falls where it opens the document and anything falls.
+    fn still(&self, player: &Player) -> Figure {
+        let mut falls = player.scene.events.iter().filter(|event| event.kind == EventKind::Fall);
+        // At the second fall the first can be seen, too.
+        let first = falls.next();
+        let Some(fall) = falls.next().or(first).filter(|_| self.figures == 0) else {
+            return player.paper_figure(&self.document.blocks);
+        };
+        let panel = Panel { time: fall.time, note: fall.text.clone() };
+        let strip = Strip { scene: player.scene.clone(), panels: vec![panel] };
+        Figure {
+            id: player.id.clone(),
+            caption: player.caption.clone(),
+            kind: FigureKind::Strip(strip),
+        }
     }
 
     fn player(&mut self, player: &Player) {
-        self.figure(&player.paper_figure(&self.document.blocks));
+        self.figure(&self.still(player));
         let events = player.scene.events.iter().filter(|event| event.time.is_finite());
         let rows: Vec<Vec<String>> = events
             .map(|event| {
@@ -313,13 +400,19 @@ impl<'a> Flow<'a> {
             .map(|row| columns.clone().map(|at| shown(row, at)).collect())
             .collect();
         self.need(66.0);
-        self.text("page-small", 0.0, &format!("Table {}. {}", self.tables, table.caption));
+        let caption = format!("Table {}. {}", self.tables, table.caption);
+        self.tagged(StructRole::P, None, |flow| flow.text("page-small", 0.0, &caption));
         self.y += 3.0;
         self.rows(&Sheet::new(head, rows, numeric, self.width()));
     }
 
     /// The rows of a table, its head again on every page.
     fn rows(&mut self, sheet: &Sheet) {
+        self.tagged(StructRole::Table, None, |flow| flow.tagged_rows(sheet));
+        self.y += GAP + 2.0;
+    }
+
+    fn tagged_rows(&mut self, sheet: &Sheet) {
         let head = sheet.head();
         let head_height = head.as_ref().map_or(0.0, |cells| row_height(cells));
         let mut open = false;
@@ -332,24 +425,43 @@ impl<'a> Flow<'a> {
                 open = false;
             }
             if let (false, Some(head)) = (open, &head) {
-                self.row(sheet, head, "page-small-bold");
+                // A head that comes again on a further page says nothing new.
+                self.row(sheet, head, "page-small-bold", (at == 0).then_some(StructRole::TH));
                 self.rule("page-line");
             }
             open = true;
-            self.row(sheet, &cells, "page-small");
+            self.row(sheet, &cells, "page-small", Some(StructRole::TD));
             self.rule("page-rule");
         }
-        self.y += GAP + 2.0;
     }
 
-    fn row(&mut self, sheet: &Sheet, cells: &[Vec<String>], class: &'static str) {
+    /// A row of cells of a role; without one it only decorates.
+    fn row(
+        &mut self,
+        sheet: &Sheet,
+        cells: &[Vec<String>],
+        class: &'static str,
+        role: Option<StructRole>,
+    ) {
         let top = self.y;
-        for (column, lines) in cells.iter().enumerate() {
+        let cell = |flow: &mut Self, column: usize, lines: &[String]| {
             let (x, anchor) = sheet.place(column);
             for (line, text) in lines.iter().enumerate() {
                 let at = [MARGIN[0] + x, top + baseline(line)];
-                self.page().drawing.text(class, at, anchor, text);
+                flow.page().drawing.text(class, at, anchor, text);
             }
+        };
+        if let Some(role) = role {
+            self.tagged(StructRole::TR, None, |flow| {
+                for (column, lines) in cells.iter().enumerate() {
+                    flow.tagged(role, None, |flow| cell(flow, column, lines));
+                }
+            });
+        } else {
+            for (column, lines) in cells.iter().enumerate() {
+                cell(self, column, lines);
+            }
+            self.settle(None);
         }
         self.y += row_height(cells);
     }
@@ -358,10 +470,12 @@ impl<'a> Flow<'a> {
         let (left, y) = (MARGIN[0], self.y);
         let right = left + self.width();
         self.page().drawing.line(class, [left, y], [right, y]);
+        self.settle(None);
     }
 
-    /// The pages with their feet.
-    fn finish(mut self) -> Vec<Page> {
+    /// The pages with their feet, and the structure.
+    fn finish(mut self) -> (Vec<Page>, Tags) {
+        self.settle(Some(self.current));
         let (right, y) = (MARGIN[0] + self.width(), self.size[1] - 34.0);
         let of = self.pages.len();
         let size = Style::of(Tag::Text, "page-foot").font_size;
@@ -377,7 +491,8 @@ impl<'a> Flow<'a> {
             drawing.text("page-foot", [MARGIN[0], y], Anchor::Start, &title);
             let number = format!("{} of {of}", at + 1);
             drawing.text("page-foot", [right, y], Anchor::End, &number);
+            page.tags.resize(page.drawing.items.len(), None);
         }
-        self.pages
+        (self.pages, self.tags)
     }
 }

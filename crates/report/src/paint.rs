@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::{
-    drawing::{Anchor, Body, Drawing, Item, Placed, Runs},
+    drawing::{Anchor, Body, Item, Placed, Runs},
     font::Font,
     style::{Ink, Style, Tag, dashes},
 };
@@ -34,10 +34,10 @@ pub(crate) struct Word<'a> {
     pub(crate) ink: Ink,
 }
 
-/// Paints a drawing `scale` times as large, its upper left corner at the origin.
-pub(crate) fn paint(drawing: &Drawing, scale: f64, painter: &mut dyn Painter) {
+/// Paints what a drawing holds, `scale` times as large, its upper left corner at the origin.
+pub(crate) fn paint(items: &[Item], scale: f64, painter: &mut dyn Painter) {
     let mut walk = Walk { painter, bodies: HashMap::new(), styles: HashMap::new() };
-    walk.items(&drawing.items, &Place { origin: [0.0; 2], scale, turn: [1.0, 0.0], up: false });
+    walk.items(items, &Place { origin: [0.0; 2], scale, turn: [1.0, 0.0], up: false });
 }
 
 /// From the coordinates of an item to those of the picture.

@@ -2,7 +2,7 @@
 
 use crate::{
     Plot,
-    drawing::{Anchor, Drawing, text_width},
+    drawing::{Anchor, Drawing, Room, broken, text_width},
 };
 
 /// Height (px) of the title above everything, and of that above a row.
@@ -22,28 +22,41 @@ pub struct Panels {
 }
 
 impl Panels {
-    pub(crate) fn draw(&self, id: &str, caption: &str) -> Drawing {
+    /// The plots in their rows; on a phone all below each other.
+    pub(crate) fn draw(&self, id: &str, caption: &str, room: Room) -> Drawing {
         let drawn: Vec<Vec<Drawing>> = self
             .rows
             .iter()
             .enumerate()
             .map(|(row, plots)| {
-                let one = |(k, plot): (usize, &Plot)| plot.draw(&format!("{id}-{row}-{k}"), "");
+                let one =
+                    |(k, plot): (usize, &Plot)| plot.draw(&format!("{id}-{row}-{k}"), "", room);
                 plots.iter().enumerate().map(one).collect()
             })
             .collect();
+        let drawn = match room {
+            Room::Page => drawn,
+            Room::Phone => drawn.into_iter().flatten().map(|plot| vec![plot]).collect(),
+        };
         let wide = |row: &Vec<Drawing>| {
             let gaps = GAP * row.len().saturating_sub(1) as f64;
             row.iter().map(|plot| plot.width).sum::<f64>() + gaps
         };
-        let words = self.lines.iter().map(|line| text_width(line, 12.0) + 20.0);
-        let width = drawn.iter().map(wide).chain(words).fold(0.0, f64::max);
-        let head = TITLE + 16.0 * self.lines.len() as f64;
+        let across = drawn.iter().map(wide).fold(0.0, f64::max);
+        let lines: Vec<String> = match room {
+            Room::Page => self.lines.clone(),
+            Room::Phone => {
+                self.lines.iter().flat_map(|line| broken(line, 11.0, across - 20.0)).collect()
+            }
+        };
+        let words = lines.iter().map(|line| text_width(line, 11.0) + 20.0);
+        let width = words.fold(across, f64::max);
+        let head = TITLE + 16.0 * lines.len() as f64;
         let tall = |row: &Vec<Drawing>| row.iter().map(|plot| plot.height).fold(0.0, f64::max);
         let height = head + drawn.iter().map(|row| tall(row) + GAP).sum::<f64>();
         let mut drawing = Drawing::new(width, height, caption);
         drawing.text("label", [10.0, 18.0], Anchor::Start, &self.title);
-        for (k, line) in self.lines.iter().enumerate() {
+        for (k, line) in lines.iter().enumerate() {
             drawing.text("note", [10.0, 34.0 + 16.0 * k as f64], Anchor::Start, line);
         }
         let mut top = head;

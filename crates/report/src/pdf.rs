@@ -15,6 +15,7 @@ use crate::{
     font::Font,
     paint::{Painter, Word, paint},
     style::{Ink, Style},
+    tags::Tags,
 };
 
 /// A page: a drawing, and the headings that a reader's list of sections leads to.
@@ -22,17 +23,26 @@ pub(crate) struct Page {
     pub(crate) drawing: Drawing,
     /// Words and height (in the drawing, from its top) of each.
     pub(crate) sections: Vec<(String, f64)>,
+    /// The element that each item of the drawing belongs to; none for what only decorates.
+    pub(crate) tags: Vec<Option<usize>>,
 }
 
-/// Pages as a PDF with a title; `scale` is the count of points for a unit of the drawings.
-pub(crate) fn pdf(title: &str, pages: &[Page], scale: f64) -> Vec<u8> {
+/// Pages as a PDF with a title, whose structure is `tags`; `scale` is the count of points for a unit of
+/// the drawings.
+pub(crate) fn pdf(title: &str, pages: &[Page], mut tags: Tags, scale: f64) -> Vec<u8> {
     let mut file = File { pdf: Pdf::new(), last: 0, ink: Used::default() };
     let (catalog, tree, info) = (file.next(), file.next(), file.next());
-    let resources = file.next();
+    let (resources, structure) = (file.next(), file.next());
     let ids: Vec<Ref> = pages.iter().map(|_| file.next()).collect();
-    for (page, id) in pages.iter().zip(&ids) {
-        file.page(page, *id, tree, resources, scale);
+    let mut painted = Vec::new();
+    for (at, page) in pages.iter().enumerate() {
+        painted.push(file.page((at, page, ids[at]), tree, resources, &mut tags, scale));
     }
+    let File { pdf, last, .. } = &mut file;
+    tags.write(pdf, structure, &ids, &painted, &mut || {
+        *last += 1;
+        Ref::new(*last)
+    });
     let count = i32::try_from(ids.len()).unwrap_or(i32::MAX);
     file.pdf.pages(tree).kids(ids.iter().copied()).count(count);
     file.resources(resources);
@@ -41,6 +51,8 @@ pub(crate) fn pdf(title: &str, pages: &[Page], scale: f64) -> Vec<u8> {
     let mut root = file.pdf.catalog(catalog);
     root.pages(tree).lang(TextStr("en-US"));
     root.viewer_preferences().display_doc_title(true);
+    root.mark_info().marked(true);
+    root.pair(Name(b"StructTreeRoot"), structure);
     if let Some(sections) = sections {
         root.outlines(sections);
     }
@@ -77,18 +89,49 @@ impl File {
         Ref::new(self.last)
     }
 
-    fn page(&mut self, page: &Page, id: Ref, tree: Ref, resources: Ref, scale: f64) {
+    /// Writes a page, and gives the elements that are painted on it by their numbers.
+    fn page(
+        &mut self,
+        (at, page, id): (usize, &Page, Ref),
+        tree: Ref,
+        resources: Ref,
+        tags: &mut Tags,
+        scale: f64,
+    ) -> Vec<usize> {
         let [width, height] = [page.drawing.width, page.drawing.height].map(|side| side * scale);
         let mut painter = Writer { content: Content::new(), height, used: &mut self.ink };
-        paint(&page.drawing, scale, &mut painter);
+        let mut painted: Vec<usize> = Vec::new();
+        let mut items = page.drawing.items.as_slice();
+        for run in page.tags.chunk_by(|a, b| a == b) {
+            let (here, rest) = items.split_at(run.len().min(items.len()));
+            items = rest;
+            match run[0] {
+                Some(place) => {
+                    let number = i32::try_from(painted.len()).unwrap_or(i32::MAX);
+                    let role = tags.role(place).to_name();
+                    let mut mark = painter.content.begin_marked_content_with_properties(role);
+                    mark.properties().identify(number);
+                    mark.finish();
+                    tags.paint(place, at, number);
+                    painted.push(place);
+                }
+                None => {
+                    painter.content.begin_marked_content(Name(b"Artifact"));
+                }
+            }
+            paint(here, scale, &mut painter);
+            painter.content.end_marked_content();
+        }
         let bytes = deflated(&painter.content.finish());
         let content = self.next();
         let mut written = self.pdf.page(id);
         written.parent(tree).contents(content);
         written.media_box(Rect::new(0.0, 0.0, short(width), short(height)));
         written.pair(Name(b"Resources"), resources);
+        written.struct_parents(i32::try_from(at).unwrap_or(i32::MAX));
         written.finish();
         self.pdf.stream(content, &bytes).filter(Filter::FlateDecode);
+        painted
     }
 
     /// What all pages share.

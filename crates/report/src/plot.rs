@@ -36,6 +36,9 @@ pub struct Axis {
     pub scale: Scale,
     /// Shown range; from the data when `None`, or when it is empty, reversed or not finite.
     pub range: Option<[f64; 2]>,
+    /// Names of an upright axis that stand for numbers: the first is 1, on top, the next below it is
+    /// 2. They take the place of ticks, and nothing else is shown of the axis.
+    pub names: Vec<String>,
 }
 
 impl Axis {
@@ -49,6 +52,26 @@ impl Axis {
     pub fn log(mut self) -> Self {
         self.scale = Scale::Log;
         self
+    }
+
+    /// An axis of names from top to bottom; what belongs to the name at `place` (from 0) is drawn at
+    /// [`Axis::row`].
+    pub fn named(names: Vec<String>) -> Self {
+        Self { range: Some([-(names.len() as f64) - 0.5, -0.5]), names, ..Self::default() }
+    }
+
+    /// The ordinate of the name at a place (from 0).
+    pub fn row(place: usize) -> f64 {
+        -(place as f64) - 1.0
+    }
+
+    /// What an ordinate is told as: the nearest name, where there are names.
+    fn told(&self, value: f64) -> String {
+        let rows = (0..self.names.len()).filter(|place| (value - Self::row(*place)).abs() <= 0.5);
+        match rows.map(|place| escape::csv(&self.names[place])).next() {
+            Some(name) => name,
+            None => number::csv_number(value),
+        }
     }
 
     /// Name and unit as printed.
@@ -85,6 +108,9 @@ pub struct Series {
     pub x: Vec<f64>,
     /// Ordinates; a value that is not finite makes a gap.
     pub y: Vec<f64>,
+    /// How far each ordinate may be off, from and to: a filled band about a line, a bar through each
+    /// of [`SeriesStyle::points`]. Empty where nothing is known.
+    pub range: Vec<[f64; 2]>,
     /// How it is drawn.
     pub style: SeriesStyle,
 }
@@ -92,7 +118,7 @@ pub struct Series {
 impl Series {
     /// A plain line.
     pub fn new(label: impl Into<String>, x: Vec<f64>, y: Vec<f64>) -> Self {
-        Self { label: label.into(), x, y, style: SeriesStyle::default() }
+        Self { label: label.into(), x, y, ..Self::default() }
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -101,6 +127,7 @@ impl Series {
 }
 
 /// How a series is drawn.
+#[expect(clippy::struct_excessive_bools, reason = "each is a trait that goes with most others")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct SeriesStyle {
     /// Which color and dash pattern, from 0; the place in the plot when `None`. Colors repeat after
@@ -110,6 +137,10 @@ pub struct SeriesStyle {
     pub area: bool,
     /// Draw a dot at every point, for measured or sparse data.
     pub dots: bool,
+    /// Dots alone, which no line joins: single measurements, raw fractions.
+    pub points: bool,
+    /// A line as thick as a bar, for stretches of an axis with names.
+    pub bar: bool,
     /// Thin and gray: context, such as single motions behind their mean.
     pub muted: bool,
 }
@@ -135,9 +166,11 @@ pub struct Band {
 }
 
 impl Plot {
-    /// Whether the page may draw it live: asked for, and x never decreases.
+    /// Whether the page may draw it live: asked for, x never decreases, and no names or ranges.
     pub(crate) fn is_live(&self) -> bool {
         self.interactive
+            && self.y.names.is_empty()
+            && self.series.iter().all(|s| s.range.is_empty())
             && self.series.iter().any(|s| s.len() > 1)
             && self.series.iter().all(|s| {
                 let x = &s.x[..s.len()];
@@ -157,7 +190,8 @@ impl Plot {
     /// The dash pattern of a series, which differs where a color comes again.
     pub(crate) fn dash(&self, at: usize) -> &'static str {
         let round = self.index(at) / 6;
-        if self.series[at].style.muted { "" } else { DASHES[(self.look(at) + round) % 6] }
+        let style = &self.series[at].style;
+        if style.muted || style.bar { "" } else { DASHES[(self.look(at) + round) % 6] }
     }
 
     pub(crate) fn to_csv(&self) -> String {
@@ -175,7 +209,14 @@ impl Plot {
         let mut header = Vec::new();
         for (_, members) in &groups {
             header.push(with_unit(&self.x.label, &self.x.unit));
-            header.extend(members.iter().map(|s| with_unit(&s.label, &self.y.unit)));
+            for series in members {
+                header.push(with_unit(&series.label, &self.y.unit));
+                if !series.range.is_empty() {
+                    let end =
+                        |end: &str| with_unit(&format!("{}, {end}", series.label), &self.y.unit);
+                    header.extend([end("from"), end("to")]);
+                }
+            }
         }
         let mut out = header.join(",");
         out.push('\n');
@@ -183,11 +224,15 @@ impl Plot {
         for row in 0..rows {
             let mut cells = Vec::new();
             for (x, members) in &groups {
-                let cell = |values: &[f64]| {
-                    values.get(row).map_or(String::new(), |v| number::csv_number(*v))
-                };
-                cells.push(cell(x));
-                cells.extend(members.iter().map(|s| cell(&s.y[..s.len()])));
+                let cell = |value: Option<&f64>| value.map_or(String::new(), |v| self.y.told(*v));
+                cells.push(x.get(row).map_or(String::new(), |v| number::csv_number(*v)));
+                for series in members {
+                    cells.push(cell(series.y[..series.len()].get(row)));
+                    if !series.range.is_empty() {
+                        let ends = series.range.get(row);
+                        cells.extend([0, 1].map(|end| cell(ends.map(|ends| &ends[end]))));
+                    }
+                }
             }
             out.push_str(&cells.join(","));
             out.push('\n');

@@ -2,16 +2,24 @@
 
 use crate::{
     Axis, Mark, Plot, Scale,
-    drawing::{Anchor, Drawing, Item, Runs, text_width},
+    drawing::{Anchor, Drawing, Item, Room, Runs, broken, text_width},
     simplify::simplify,
     ticks::{Ticks, linear_ticks, log_ticks},
 };
 
-const WIDTH: f64 = 680.0;
+/// Width (px) on a page and on a phone.
+const WIDTH: [f64; 2] = [680.0, 358.0];
 const PLOT_HEIGHT: f64 = 230.0;
+/// Height (px) of a row of an axis with names, and most of the width that they take.
+const ROW: f64 = 36.0;
+const NAMES: f64 = 0.4;
+/// Height (px) of a line of words.
+const LINE: f64 = 15.0;
 const FONT: f64 = 12.0;
 /// Height of a row of notes above the plot: marks lowest, bands above them.
 const NOTE: f64 = 16.0;
+/// Width of the sample of a series before its name.
+const SAMPLE: f64 = 26.0;
 /// Most rows of labels of marks; what finds no room in them is left to the caption.
 const MARK_ROWS: usize = 3;
 
@@ -47,28 +55,62 @@ struct PlacedMark<'a> {
     row: Option<usize>,
 }
 
+/// A series in the legend: where its words begin, and its lines of words.
+struct Entry {
+    series: usize,
+    corner: [f64; 2],
+    lines: Vec<String>,
+}
+
 impl Plot {
-    pub(crate) fn draw(&self, id: &str, title: &str) -> Drawing {
+    pub(crate) fn draw(&self, id: &str, title: &str, room: Room) -> Drawing {
+        let width = room.of(WIDTH[0], WIDTH[1]);
         let x_range = self.x.data_range(self.series.iter().map(|s| &s.x[..s.len()]), false);
+        // A dot on the frame would be cut in two.
+        let spare = self.series.iter().any(|s| s.style.points || s.style.bar);
+        let x_range = if spare { self.x.with_air(x_range) } else { x_range };
         let areas = self.series.iter().any(|s| s.style.area);
-        let y_range =
-            self.y.with_air(self.y.data_range(self.series.iter().map(|s| &s.y[..s.len()]), areas));
-        let y_ticks = self.y.ticks(y_range, 7);
+        let ordinates = self.series.iter().flat_map(|s| [&s.y[..s.len()], s.range.as_flattened()]);
+        let y_range = self.y.with_air(self.y.data_range(ordinates, areas));
+        let names: Vec<Vec<String>> =
+            self.y.names.iter().map(|name| broken(name, FONT, NAMES * width)).collect();
+        let y_ticks = if names.is_empty() {
+            self.y.ticks(y_range, 7)
+        } else {
+            Ticks { values: Vec::new(), labels: names.concat() }
+        };
         let widest = y_ticks.labels.iter().map(|l| text_width(l, FONT)).fold(0.0, f64::max);
-        let left = 34.0 + widest;
-        let right = WIDTH - 14.0;
-        let (legend, legend_height) = self.legend_layout(left, right);
+        let title_room = if self.y.title().is_empty() { 14.0 } else { 34.0 };
+        let left = title_room + widest;
+        let right = width - 14.0;
+        let (legend, legend_height) = self.legend_layout(8.0_f64.max(left - widest), left, right);
         let x = Map { range: x_range, pixels: [left, right], log: self.x.scale == Scale::Log };
         let marks = self.mark_layout(&x);
         let mark_rows = marks.iter().filter_map(|mark| mark.row).max().map_or(0, |row| row + 1);
         let rows = mark_rows + usize::from(!self.bands.is_empty());
         let top = 12.0 + legend_height + NOTE * rows as f64;
-        let bottom = top + PLOT_HEIGHT;
+        let tallest = names.iter().map(Vec::len).max().unwrap_or(0) as f64;
+        let bottom = top
+            + if names.is_empty() {
+                PLOT_HEIGHT
+            } else {
+                names.len() as f64 * ROW.max(LINE * tallest + 6.0)
+            };
         let y = Map { range: y_range, pixels: [bottom, top], log: self.y.scale == Scale::Log };
 
-        let mut drawing = Drawing::new(WIDTH, bottom + 46.0, title);
+        let x_title = broken(&self.x.title(), FONT, width - 16.0);
+        let foot = 31.0 + LINE * x_title.len() as f64;
+        let mut drawing = Drawing::new(width, bottom + foot, title);
         self.draw_bands(&mut drawing, &x, [top, bottom], top - 7.0 - NOTE * mark_rows as f64);
         self.draw_axes(&mut drawing, &x, &y, &y_ticks);
+        draw_names(&mut drawing, &names, &x, &y);
+        for (line, text) in x_title.iter().enumerate() {
+            // Under the plot's middle, as far as the words stay in the picture.
+            let half = 0.5 * text_width(text, FONT);
+            let middle = (0.5 * (left + right)).min(width - half).max(half);
+            let at = [middle, bottom + 37.0 + LINE * line as f64];
+            drawing.text("label", at, Anchor::Middle, text);
+        }
         drawing.push(Item::Clip {
             id: format!("{id}-clip"),
             lower: [left, top - 1.0],
@@ -76,49 +118,76 @@ impl Plot {
             items: self.draw_series(&x, &y),
         });
         self.draw_marks(&mut drawing, &marks, &x, &y);
-        for (at, corner, label) in legend {
-            let height = corner[1] - 4.0;
-            // As it is drawn: a line, dots on a line, or dots alone.
-            if !self.series[at].style.dots || self.runs(at, &x, &y).iter().any(|r| r.len() > 1) {
-                let sample = vec![[corner[0], height], [corner[0] + 26.0, height]];
-                drawing.path(&self.class(at), self.dash(at), vec![sample], false);
+        for Entry { series, corner, lines } in legend {
+            self.draw_sample(&mut drawing, series, [corner[0], corner[1] - 4.0]);
+            for (line, text) in lines.iter().enumerate() {
+                let at = [corner[0] + SAMPLE + 6.0, corner[1] + LINE * line as f64];
+                drawing.text("label", at, Anchor::Start, text);
             }
-            if self.series[at].style.dots {
-                drawing.push(self.dot(at, [corner[0] + 13.0, height]));
-            }
-            drawing.text("label", [corner[0] + 32.0, corner[1]], Anchor::Start, &label);
         }
         drawing
     }
 
+    /// What a series looks like, for its name: its left end is `from`.
+    fn draw_sample(&self, drawing: &mut Drawing, at: usize, [x, y]: [f64; 2]) {
+        let series = &self.series[at];
+        let (style, look) = (series.style, self.look(at));
+        let middle = x + 0.5 * SAMPLE;
+        if !series.range.is_empty() && style.points {
+            let bar = vec![[middle, y - 6.0], [middle, y + 6.0]];
+            drawing.path(&format!("whisker s{look}"), "", vec![bar], false);
+        } else if !series.range.is_empty() || style.area {
+            let corners =
+                vec![[x, y - 5.0], [x + SAMPLE, y - 5.0], [x + SAMPLE, y + 5.0], [x, y + 5.0]];
+            drawing.path(&format!("area s{look}"), "", vec![corners], true);
+        }
+        if !style.points {
+            let line = vec![[x, y], [x + SAMPLE, y]];
+            drawing.path(&self.class(at), self.dash(at), vec![line], false);
+        }
+        if style.dots || style.points {
+            drawing.push(self.dot(at, [middle, y]));
+        }
+    }
+
     fn class(&self, at: usize) -> String {
-        if self.series[at].style.muted {
+        let style = &self.series[at].style;
+        if style.muted {
             "series muted".into()
         } else {
-            format!("series s{}", self.look(at))
+            format!("series s{}{}", self.look(at), if style.bar { " bar" } else { "" })
         }
     }
 
     fn dot(&self, at: usize, center: [f64; 2]) -> Item {
-        Item::Circle { class: format!("dot s{}", self.look(at)), center, radius: 2.6 }
+        let radius = if self.series[at].style.points { 3.4 } else { 2.6 };
+        Item::Circle { class: format!("dot s{}", self.look(at)), center, radius }
     }
 
-    /// Where each legend entry goes, and the height they take together.
-    fn legend_layout(&self, left: f64, right: f64) -> (Vec<(usize, [f64; 2], String)>, f64) {
+    /// Where each legend entry goes, its words in lines, and the height they take together; entries
+    /// that would not fit beside the axis start at `edge`.
+    fn legend_layout(&self, edge: f64, left: f64, right: f64) -> (Vec<Entry>, f64) {
+        let named = || self.series.iter().filter(|series| !series.label.is_empty());
+        let wide = |label: &str| SAMPLE + 6.0 + text_width(label, FONT);
+        let longest = named().map(|series| wide(&series.label)).fold(0.0, f64::max);
+        let left = if left + longest > right { edge } else { left };
         let mut entries = Vec::new();
         let mut pen = [left, 14.0];
+        let mut height: f64 = 0.0;
         for (at, series) in self.series.iter().enumerate() {
             if series.label.is_empty() {
                 continue;
             }
-            let wide = 32.0 + text_width(&series.label, FONT) + 18.0;
+            let lines = broken(&series.label, FONT, right - left - SAMPLE - 6.0);
+            let wide = lines.iter().map(|line| wide(line)).fold(0.0, f64::max);
             if pen[0] > left && pen[0] + wide > right {
-                pen = [left, pen[1] + 17.0];
+                pen = [left, height + 17.0];
             }
-            entries.push((at, pen, series.label.clone()));
-            pen[0] += wide;
+            height = height.max(pen[1] + LINE * (lines.len() - 1) as f64);
+            entries.push(Entry { series: at, corner: pen, lines });
+            pen[0] += wide + 18.0;
         }
-        let height = if entries.is_empty() { 0.0 } else { pen[1] + 2.0 };
+        let height = if entries.is_empty() { 0.0 } else { height + 2.0 };
         (entries, height)
     }
 
@@ -130,7 +199,9 @@ impl Plot {
             drawing.line("grid", [left, at], [right, at]);
             drawing.text("tick", [left - 7.0, at + 4.0], Anchor::End, label);
         }
-        let x_ticks = self.x.ticks(x.range, 8);
+        // A label and the gap to the next take some fifty pixels.
+        let most = if right - left < 400.0 { 5 } else { 8 };
+        let x_ticks = self.x.ticks(x.range, most);
         for (value, label) in x_ticks.values.iter().zip(&x_ticks.labels) {
             let at = x.at(*value);
             drawing.line("grid", [at, top], [at, bottom]);
@@ -141,12 +212,6 @@ impl Plot {
         if !y.log && y.range[0] < 0.0 && y.range[1] > 0.0 {
             drawing.line("zero", [left, y.at(0.0)], [right, y.at(0.0)]);
         }
-        drawing.text(
-            "label",
-            [0.5 * (left + right), bottom + 37.0],
-            Anchor::Middle,
-            &self.x.title(),
-        );
         let middle = 0.5 * (top + bottom);
         drawing.turned_text("label", [13.0, middle], Anchor::Middle, -90.0, &self.y.title());
     }
@@ -192,8 +257,11 @@ impl Plot {
                 let class = format!("area s{}", self.look(at));
                 items.push(Item::Path { class, dash: "", runs: shapes, closed: true });
             }
-            items.push(Item::Path { class, dash: self.dash(at), runs, closed: false });
-            if series.style.dots {
+            items.extend(self.draw_range(at, x, y));
+            if !series.style.points {
+                items.push(Item::Path { class, dash: self.dash(at), runs, closed: false });
+            }
+            if series.style.dots || series.style.points {
                 for k in 0..series.len() {
                     if self.x.shows(series.x[k]) && self.y.shows(series.y[k]) {
                         items.push(self.dot(at, [x.at(series.x[k]), y.at(series.y[k])]));
@@ -202,6 +270,36 @@ impl Plot {
             }
         }
         items
+    }
+
+    /// The band about a line, or the bars through points.
+    fn draw_range(&self, at: usize, x: &Map, y: &Map) -> Option<Item> {
+        let series = &self.series[at];
+        let count = series.len().min(series.range.len());
+        let shown = |k: usize| {
+            let [low, high] = series.range[k];
+            self.x.shows(series.x[k]) && self.y.shows(low) && self.y.shows(high)
+        };
+        let spot = |k: usize, end: usize| {
+            let point = [x.at(series.x[k]), y.at(series.range[k][end])];
+            point.map(|v: f64| v.clamp(-9999.0, 9999.0))
+        };
+        let known: Vec<usize> = (0..count).filter(|k| shown(*k)).collect();
+        if known.is_empty() {
+            return None;
+        }
+        let look = self.look(at);
+        if series.style.points {
+            let bars = known.iter().map(|&k| vec![spot(k, 0), spot(k, 1)]).collect();
+            let class = format!("whisker s{look}");
+            return Some(Item::Path { class, dash: "", runs: bars, closed: false });
+        }
+        let bands = known.chunk_by(|a, b| b - a == 1).map(|run| {
+            let up = run.iter().map(|&k| spot(k, 1));
+            up.chain(run.iter().rev().map(|&k| spot(k, 0))).collect()
+        });
+        let class = format!("area s{look}");
+        Some(Item::Path { class, dash: "", runs: bands.collect(), closed: true })
     }
 
     /// Runs of points between gaps, in pixels.
@@ -234,7 +332,8 @@ impl Plot {
         let place = |mark: &'a Mark| {
             let half = 0.5 * text_width(&mark.label, 11.0);
             let at = x.at(mark.at);
-            let center = at.clamp(left + half, (right - half).max(left + half));
+            // What is wider than the plot may begin before it, and never ends behind it.
+            let center = at.clamp((left + half).min(right - half), right - half);
             let free = ends.iter().position(|end| center - half > *end);
             let row = free.or(Some(ends.len()).filter(|row| *row < MARK_ROWS));
             if let Some(row) = row {
@@ -259,6 +358,22 @@ impl Plot {
             let at = y.at(level.at);
             drawing.line("mark", [left, at], [right, at]);
             drawing.text("note", [right - 4.0, at - 4.0], Anchor::End, &level.label);
+        }
+    }
+}
+
+/// Names of the rows, each before its own.
+fn draw_names(drawing: &mut Drawing, names: &[Vec<String>], x: &Map, y: &Map) {
+    let ([left, right], height) = (x.pixels, 0.5 * (y.at(-1.0) - y.at(-2.0)).abs());
+    for (place, lines) in names.iter().enumerate() {
+        let middle = y.at(Axis::row(place));
+        if place > 0 {
+            drawing.line("grid", [left, middle - height], [right, middle - height]);
+        }
+        let first = middle + 4.0 - 0.5 * LINE * (lines.len() - 1) as f64;
+        for (line, text) in lines.iter().enumerate() {
+            let at = [left - 7.0, first + LINE * line as f64];
+            drawing.text("label", at, Anchor::End, text);
         }
     }
 }

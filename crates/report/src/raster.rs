@@ -56,7 +56,7 @@ pub(crate) fn rasterize(drawing: &Drawing, scale: f64) -> Pixmap {
     pixels.fill(Color::WHITE);
     let mut painter =
         Pixels { canvas: pixels, mask: None, clips: Vec::new(), glyphs: HashMap::new() };
-    paint(drawing, scale, &mut painter);
+    paint(&drawing.items, scale, &mut painter);
     painter.canvas
 }
 

@@ -116,6 +116,7 @@ impl Style {
                     "stroke-width" => style.stroke_width = length(value),
                     "stroke-dasharray" => style.dash = dashes(value),
                     "stroke-linejoin" => style.round = value == "round",
+                    "stroke-linecap" => style.round &= value == "round",
                     "font-size" => style.font_size = length(value),
                     "font-weight" => style.strong = length(value) >= 600.0,
                     // Families, caps and digits are settled by the bundled font and by the joins.

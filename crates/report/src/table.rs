@@ -67,6 +67,9 @@ pub enum Cell {
     Rated(Rating, String),
     /// A number and the count of significant digits to show; CSV keeps every digit.
     Number(f64, usize),
+    /// A number as it was measured, shown to at most so many decimals by [`measured`](crate::measured);
+    /// CSV keeps every digit.
+    Measured(f64, usize),
     /// No value: shown as a dash, empty in CSV.
     Missing,
 }
@@ -81,6 +84,7 @@ impl Cell {
         match self {
             Self::Text(text) | Self::Rated(_, text) => text.clone(),
             Self::Number(value, digits) => number::significant(*value, *digits),
+            Self::Measured(value, decimals) => number::measured(*value, *decimals),
             Self::Missing => number::MISSING.into(),
         }
     }
@@ -103,7 +107,9 @@ impl Table {
             let cells: Vec<_> = (0..self.columns.len())
                 .map(|at| match row.get(at) {
                     Some(Cell::Text(text) | Cell::Rated(_, text)) => escape::csv(text),
-                    Some(Cell::Number(value, _)) => number::csv_number(*value),
+                    Some(Cell::Number(value, _) | Cell::Measured(value, _)) => {
+                        number::csv_number(*value)
+                    }
                     Some(Cell::Missing) | None => String::new(),
                 })
                 .collect();
@@ -116,7 +122,7 @@ impl Table {
     /// A column is numeric when it holds a number and no text.
     pub(crate) fn is_numeric(&self, column: usize) -> bool {
         let cells = || self.rows.iter().filter_map(move |row| row.get(column));
-        cells().any(|cell| matches!(cell, Cell::Number(..)))
+        cells().any(|cell| matches!(cell, Cell::Number(..) | Cell::Measured(..)))
             && !cells().any(|cell| matches!(cell, Cell::Text(_) | Cell::Rated(..)))
     }
 }

@@ -271,3 +271,96 @@ fn attachments_have_names_that_differ_and_are_safe() {
         assert!(name.chars().all(safe) && !name.starts_with('.'), "{name}");
     }
 }
+
+/// Where a word of a drawing stands, and by which end.
+fn word<'a>(svg: &roxmltree::Document<'a>, text: &str) -> ([f64; 2], &'static str) {
+    let node =
+        svg.descendants().find(|node| node.text() == Some(text) && node.has_tag_name("text"));
+    let node = node.unwrap_or_else(|| panic!("no word {text:?}"));
+    let number = |name: &str| node.attribute(name).unwrap().parse::<f64>().unwrap();
+    let anchor = match node.attribute("text-anchor") {
+        Some("end") => "end",
+        Some("middle") => "middle",
+        _ => "start",
+    };
+    ([number("x"), number("y")], anchor)
+}
+
+fn named() -> Plot {
+    let (x, y) = (vec![0.1, 0.4, f64::NAN, 0.2, 0.9], vec![Axis::row(0), Axis::row(0), 0.0]);
+    let y = [y, vec![Axis::row(1), Axis::row(1)]].concat();
+    let style = SeriesStyle { bar: true, ..SeriesStyle::default() };
+    let names =
+        vec!["friction".to_owned(), "interface.rack-ground.friction.coefficient".to_owned()];
+    Plot {
+        x: Axis::new("share", ""),
+        y: Axis::named(names),
+        series: vec![Series { style, ..Series::new("lowest to highest", x, y) }],
+        ..Plot::default()
+    }
+}
+
+#[test]
+fn a_name_stands_left_of_its_bar_and_at_its_height() {
+    let svg = figure(FigureKind::Plot(named())).to_svg();
+    let parsed = parsed(&svg);
+    let bars = parsed.descendants().find(|n| n.attribute("class") == Some("series s0 bar"));
+    let data = bars.unwrap().attribute("d").unwrap();
+    let starts: Vec<Vec<f64>> = data
+        .split('M')
+        .skip(1)
+        .map(|run| {
+            let start = run.split('l').next().unwrap();
+            start.split(' ').map(|number| number.parse().unwrap()).collect()
+        })
+        .collect();
+    let ([x, y], anchor) = word(&parsed, "friction");
+    assert_eq!(anchor, "end");
+    assert!(x < starts[0][0] && (y - 4.0 - starts[0][1]).abs() < 1.0, "{x} {y} {starts:?}");
+    // A long name is broken where its words are joined, and its lines lie about its bar.
+    let ([_, first], _) = word(&parsed, "interface.rack-ground.friction.");
+    let ([_, last], _) = word(&parsed, "coefficient");
+    assert!((0.5 * (first + last) - 4.0 - starts[1][1]).abs() < 1.0, "{first} {last} {starts:?}");
+    // There are no numbers beside names.
+    assert!(
+        !parsed
+            .descendants()
+            .any(|n| n.attribute("text-anchor") == Some("end")
+                && n.attribute("class") == Some("tick"))
+    );
+}
+
+#[test]
+fn a_table_of_bars_names_its_rows() {
+    let csv = figure(FigureKind::Plot(named())).to_csv();
+    assert!(csv.contains("\n0.9,interface.rack-ground.friction.coefficient\n"), "{csv}");
+}
+
+#[test]
+fn single_values_are_not_joined_and_have_bars_of_their_own() {
+    let range = vec![[0.0, 0.3], [0.2, 0.8]];
+    let style = SeriesStyle { points: true, ..SeriesStyle::default() };
+    let raw = Series { range, style, ..Series::new("raw", vec![1.0, 2.0], vec![0.1, 0.5]) };
+    let figure = figure(FigureKind::Plot(plot(vec![raw])));
+    let svg = figure.to_svg();
+    let parsed = parsed(&svg);
+    let of =
+        |class: &str| parsed.descendants().filter(|n| n.attribute("class") == Some(class)).count();
+    // Two dots and one in the legend; two bars in one path and one in the legend; no line.
+    assert_eq!([of("dot s0"), of("whisker s0"), of("series s0")], [3, 2, 0]);
+    assert_eq!(
+        figure.to_csv(),
+        "time (s),raw (cm),\"raw, from (cm)\",\"raw, to (cm)\"\n1,0.1,0,0.3\n2,0.5,0.2,0.8\n"
+    );
+}
+
+#[test]
+fn a_band_is_filled_and_its_bounds_are_in_sight() {
+    let range = vec![[0.0, 7.0], [0.2, 9.0]];
+    let line = Series { range, ..Series::new("fit", vec![1.0, 2.0], vec![0.1, 0.5]) };
+    let svg = figure(FigureKind::Plot(plot(vec![line]))).to_svg();
+    let parsed = parsed(&svg);
+    assert_eq!(parsed.descendants().filter(|n| n.attribute("class") == Some("area s0")).count(), 2);
+    // The axis reaches beyond the band, which is higher than the line.
+    word(&parsed, "8");
+}

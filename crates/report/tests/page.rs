@@ -214,3 +214,33 @@ fn on_paper_a_player_beside_a_strip_of_the_same_scene_is_one_picture() {
     // The single picture is large enough for names.
     assert!(with.contains(">B1</text>"));
 }
+
+#[test]
+fn what_stands_still_has_a_drawing_for_a_phone_with_letters_as_large() {
+    let label =
+        "a label that is far too long for one line on the screen of a phone, whatever it says";
+    let series = Series::new(label, vec![0.0, 1.0, 0.5], vec![0.0, 1.0, 0.0]);
+    let plot = Plot { series: vec![series], interactive: true, ..Plot::default() };
+    let kind = FigureKind::Plot(plot);
+    let page =
+        html(&document(vec![Block::Figure(Figure { id: "a".into(), caption: "A.".into(), kind })]));
+    let drawing = |class: &str| {
+        let start = page.find(&format!("<div class=\"{class}\"><svg")).unwrap();
+        let svg = &page[start..][page[start..].find("<svg").unwrap()..];
+        svg[..svg.find("</svg>").unwrap() + 6].to_owned()
+    };
+    for (class, most) in [("drawing", 680.0), ("drawing phone", 358.0)] {
+        let svg = drawing(class);
+        let parsed = roxmltree::Document::parse(&svg).unwrap();
+        let width: f64 = parsed.root_element().attribute("width").unwrap().parse().unwrap();
+        assert!(width <= most, "{width}");
+        for word in parsed.descendants().filter(|node| node.attribute("class") == Some("label")) {
+            let x: f64 = word.attribute("x").unwrap().parse().unwrap();
+            if word.attribute("text-anchor") == Some("start") {
+                // Half a letter's size for each letter is more than they take.
+                let wide = 0.5 * 12.0 * word.text().unwrap().len() as f64;
+                assert!(x + wide <= width, "{:?} leaves the picture", word.text());
+            }
+        }
+    }
+}

@@ -237,3 +237,88 @@ fn ten_seconds_of_a_moving_stack_fit_a_mail() {
     // Measured 185 and 181 kB.
     assert!(sizes.iter().all(|size| *size < 300_000), "{sizes:?}");
 }
+
+/// An element of the structure of a PDF: its role, what it is in words, and the pages that it is
+/// painted on.
+struct Element {
+    role: String,
+    words: Option<String>,
+    pages: Vec<lopdf::ObjectId>,
+}
+
+/// The elements in reading order.
+fn elements(pdf: &lopdf::Document) -> Vec<Element> {
+    fn walk(pdf: &lopdf::Document, id: lopdf::ObjectId, found: &mut Vec<Element>) {
+        let element = pdf.get_dictionary(id).unwrap();
+        let role = element.get(b"S").unwrap().as_name().unwrap();
+        let words = element.get(b"Alt").ok().map(|alt| lopdf::decode_text_string(alt).unwrap());
+        let role = String::from_utf8(role.to_vec()).unwrap();
+        found.push(Element { role, words, pages: Vec::new() });
+        let place = found.len() - 1;
+        for kid in element.get(b"K").unwrap().as_array().unwrap() {
+            match kid {
+                lopdf::Object::Reference(id) => walk(pdf, *id, found),
+                painted => {
+                    let painted = painted.as_dict().unwrap();
+                    assert!(painted.has(b"MCID"));
+                    found[place].pages.push(painted.get(b"Pg").unwrap().as_reference().unwrap());
+                }
+            }
+        }
+    }
+    let catalog = pdf.catalog().unwrap();
+    let root = catalog.get(b"StructTreeRoot").unwrap().as_reference().unwrap();
+    let root = pdf.get_dictionary(root).unwrap();
+    let mut found = Vec::new();
+    walk(pdf, root.get(b"K").unwrap().as_reference().unwrap(), &mut found);
+    found
+}
+
+#[test]
+fn paper_is_tagged_from_the_headline_to_the_last_cell() {
+    let mut table = Table::new("Peak values", &[("quantity", ""), ("value", "cm")]);
+    table.rows = vec![vec![Cell::text("slip"), Cell::Number(2.04, 3)]; 70];
+    let folded = Block::Details { summary: "All inputs".into(), blocks: vec![Block::Table(table)] };
+    let list = Block::List(vec!["one".into(), "two".into()]);
+    let pdf = on_paper(&document(vec![player(scene(2, 60)), folded, list]), Paper::A4);
+    let found = elements(&pdf);
+    let count = |role: &str| found.iter().filter(|element| element.role == role).count();
+    assert_eq!(["TH", "LI", "H1"].map(count), [2, 2, 1]);
+    // Two cells of each row, and what provenance and events have.
+    assert!(count("TD") >= 142, "{}", count("TD"));
+    let figure = found.iter().find(|element| element.role == "Figure").unwrap();
+    assert!(figure.words.as_ref().is_some_and(|words| !words.is_empty()));
+    // The picture is on the first page, the table that is folded away behind everything else.
+    assert_eq!(Some(&figure.pages[0]), pdf.get_pages().get(&1));
+    let first_head = found.iter().position(|element| element.role == "TH").unwrap();
+    let last_list = found.iter().rposition(|element| element.role == "L").unwrap();
+    assert!(first_head > last_list, "{first_head} {last_list}");
+    let text = words(&pdf);
+    let at = |words: &str| text.find(words).unwrap_or_else(|| panic!("{words}: {text}"));
+    assert!(
+        at("All inputs: see the appendix.") < at("Appendix") && at("Appendix") < at("Peak values")
+    );
+}
+
+#[test]
+fn everything_painted_is_an_element_or_decorates() {
+    let mut table = Table::new("Peak values", &[("quantity", ""), ("value", "cm")]);
+    table.rows = vec![vec![Cell::text("slip"), Cell::Number(2.04, 3)]; 90];
+    let pdf = on_paper(&document(vec![player(scene(2, 60)), Block::Table(table)]), Paper::A4);
+    for (number, page) in pdf.get_pages() {
+        let content = pdf.get_and_decode_page_content(page).unwrap();
+        let mut open = 0;
+        for operation in &content.operations {
+            match operation.operator.as_str() {
+                "BDC" | "BMC" => {
+                    assert_eq!(open, 0, "page {number}");
+                    open += 1;
+                }
+                "EMC" => open -= 1,
+                "f" | "S" | "Tj" => assert_eq!(open, 1, "page {number} paints what has no tag"),
+                _ => {}
+            }
+        }
+        assert_eq!(open, 0, "page {number}");
+    }
+}

@@ -8,7 +8,7 @@ use barrelstack_report::{
 use super::study::{Clock, Study};
 
 /// The three quantities of a tornado, with their place in a row.
-const PLACES: [f64; 3] = [0.18, -0.04, -0.26];
+const PLACES: [f64; 3] = [0.26, 0.0, -0.26];
 
 /// Picture and table of a study.
 pub(super) fn blocks(study: &Study, id: &str, published: [Option<f64>; 3]) -> Vec<Block> {
@@ -26,19 +26,23 @@ fn figure(study: &Study, id: &str, published: [Option<f64>; 3]) -> Figure {
     let change = |quantity: usize, summary: &Summary| -> Option<f64> {
         Some(100.0 * (values(clock, summary)[quantity]? / base[quantity]? - 1.0))
     };
-    let count = study.effects.len();
     let mut series: Vec<Series> = [clock.words(), "drift of the top", "stress amplification"]
         .into_iter()
         .enumerate()
         .map(|(quantity, label)| Series {
-            style: SeriesStyle { dots: true, index: Some(quantity), ..SeriesStyle::default() },
+            style: SeriesStyle {
+                dots: true,
+                bar: true,
+                index: Some(quantity),
+                ..SeriesStyle::default()
+            },
             ..Series::new(label, Vec::new(), Vec::new())
         })
         .collect();
     let (mut low, mut high) = (0.0_f64, 0.0_f64);
     for (row, effect) in study.effects.iter().enumerate() {
         for (quantity, line) in series.iter_mut().enumerate() {
-            let y = (count - row) as f64 + PLACES[quantity];
+            let y = Axis::row(row) + PLACES[quantity];
             for x in effect.ends.iter().filter_map(|(_, summary)| change(quantity, summary)) {
                 (low, high) = (low.min(x), high.max(x));
                 // Every bar starts from the case as stated; the gap parts it from the next.
@@ -62,31 +66,22 @@ fn figure(study: &Study, id: &str, published: [Option<f64>; 3]) -> Figure {
         (low, high) = (low.min(mark.at), high.max(mark.at));
     }
     let span = (high - low).max(1.0);
-    // The names of the rows stand at the right, clear of the bars.
-    let range = [low - 0.05 * span, high + 0.45 * span];
-    let levels = study
-        .effects
-        .iter()
-        .enumerate()
-        .map(|(row, effect)| Mark { at: (count - row) as f64 - 0.45, label: effect.name.clone() });
+    let range = [low - 0.05 * span, high + 0.05 * span];
+    let names = study.effects.iter().map(|effect| effect.name.clone()).collect();
     Figure {
         id: id.to_owned(),
         caption: format!(
             "What moves the {}: change against the case as stated, one quantity changed at a time, the \
-             largest effect on the {} on top. Rows are numbered as in the table below, which names both \
-             ends. Upright lines: where the published values stand.",
+             largest effect on the {} on top; the table below names both ends. Upright lines: where the \
+             published values stand.",
             study.subject.name(),
             clock.words()
         ),
         kind: FigureKind::Plot(Plot {
             x: Axis { range: Some(range), ..Axis::new("change", "%") },
-            y: Axis {
-                range: Some([0.4, count as f64 + 0.65]),
-                ..Axis::new("row of the table", "")
-            },
+            y: Axis::named(names),
             series,
             marks,
-            levels: levels.collect(),
             ..Plot::default()
         }),
     }
@@ -101,7 +96,6 @@ fn table(study: &Study) -> Table {
             clock.words()
         ),
         &[
-            ("row", ""),
             ("quantity", ""),
             ("changed", ""),
             ("outcome", ""),
@@ -123,18 +117,14 @@ fn table(study: &Study) -> Table {
             number(stress),
         ]
     };
-    let mut base = vec![Cell::text(""), Cell::text("as stated"), Cell::text("")];
+    let mut base = vec![Cell::text("as stated"), Cell::text("")];
     base.extend(cells(&study.base));
     table.rows.push(base);
-    let count = study.effects.len();
-    for (row, effect) in study.effects.iter().enumerate() {
+    for effect in &study.effects {
         for (at, (label, summary)) in effect.ends.iter().enumerate() {
             let first = at == 0;
-            let mut line = vec![
-                Cell::text(if first { (count - row).to_string() } else { String::new() }),
-                Cell::text(if first { effect.name.as_str() } else { "" }),
-                Cell::text(label),
-            ];
+            let mut line =
+                vec![Cell::text(if first { effect.name.as_str() } else { "" }), Cell::text(label)];
             line.extend(cells(summary));
             table.rows.push(line);
         }

@@ -118,7 +118,8 @@ pub(super) fn demands(sides: &[Side]) -> Table {
             continue;
         }
         let mut row = vec![Cell::text(demand.label), Cell::text(demand.shown_unit)];
-        row.extend(values.into_iter().map(|v| v.map_or(Cell::Missing, |v| Cell::Number(v, 3))));
+        let cell = |value: f64| Cell::Measured(value, demand.decimals);
+        row.extend(values.into_iter().map(|value| value.map_or(Cell::Missing, cell)));
         table.rows.push(row);
     }
     table

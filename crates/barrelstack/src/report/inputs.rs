@@ -29,12 +29,14 @@ pub(crate) fn readable(value: &str) -> String {
         Ok(number) if first.len() > DIGITS && number != 0.0 => {
             // Zeros behind the digits that count say nothing.
             let shown = significant(number, DIGITS);
-            let short = if shown.contains('.') && !shown.contains('×') {
-                shown.trim_end_matches('0').trim_end_matches('.')
+            let end = shown.find('×').unwrap_or(shown.len());
+            let (digits, power) = shown.split_at(end);
+            let short = if digits.contains('.') {
+                digits.trim_end_matches('0').trim_end_matches('.')
             } else {
-                &shown
+                digits
             };
-            format!("{short} {rest}").trim_end().to_owned()
+            format!("{short}{power} {rest}").trim_end().to_owned()
         }
         _ => value.to_owned(),
     }
@@ -88,6 +90,7 @@ mod tests {
         assert_eq!(readable("0.6428363673489367 m"), "0.642836 m");
         assert_eq!(readable("980000 N/m"), "980000 N/m");
         assert_eq!(readable("12345678 N"), "1.23457×10⁷ N");
+        assert_eq!(readable("1200000000 N/m^1.5"), "1.2×10⁹ N/m^1.5");
         assert_eq!(readable("9.806650000001 m/s^2"), "9.80665 m/s^2");
         assert_eq!(readable("transverse"), "transverse");
         assert_eq!(readable("napa-college-2014 E"), "napa-college-2014 E");

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
     Axis, Block, BoundarySample, Cell, Envelope, Figure, FigureKind, Mark, Player, Plot, Scene,
-    Series, Strip, Table, Trace, significant,
+    Series, SeriesStyle, Strip, Table, Trace, significant,
 };
 
 use super::{drawing, inputs, planes, spectrum, trust, words};
@@ -108,12 +108,19 @@ fn sequence(run: &Run, scene: &Arc<Scene>) -> Vec<Block> {
     })]
 }
 
-fn number(value: f64) -> Cell {
-    Cell::Number(value, 3)
+/// A time (s) or a height (m): hundredths can be seen.
+fn hundredths(value: Option<f64>) -> Cell {
+    value.map_or(Cell::Missing, |value| Cell::Measured(value, 2))
 }
 
-fn optional(value: Option<f64>) -> Cell {
-    value.map_or(Cell::Missing, number)
+/// A length (m) in centimeters, to the millimeter.
+fn centimeters(value: f64) -> Cell {
+    Cell::Measured(100.0 * value, 1)
+}
+
+/// A force (N) in kilonewtons, to the weight of a kilogram.
+fn kilonewtons(value: f64) -> Cell {
+    Cell::Measured(1e-3 * value, 2)
 }
 
 fn fates(summary: &Summary) -> Table {
@@ -132,11 +139,11 @@ fn fates(summary: &Summary) -> Table {
     for body in &summary.bodies {
         table.rows.push(vec![
             Cell::text(&body.name),
-            optional(body.left_seat_at),
-            optional(body.fell_at),
-            optional(body.fall_height),
-            number(100.0 * body.peak_slip),
-            number(100.0 * body.residual_displacement),
+            hundredths(body.left_seat_at),
+            hundredths(body.fell_at),
+            hundredths(body.fall_height),
+            centimeters(body.peak_slip),
+            centimeters(body.residual_displacement),
         ]);
     }
     table
@@ -150,7 +157,7 @@ fn demand_table(summary: &Summary) -> Table {
     for demand in DEMANDS {
         if let Some(value) = demand.shown(&summary.demands) {
             let (label, unit) = (Cell::text(demand.label), Cell::text(demand.shown_unit));
-            table.rows.push(vec![label, number(value), unit]);
+            table.rows.push(vec![label, Cell::Measured(value, demand.decimals), unit]);
         }
     }
     table
@@ -266,8 +273,8 @@ fn stresses(run: &Run) -> Vec<Block> {
         blocks.insert(
             0,
             Block::Paragraph(
-                "Stress is force per meter of boundary in the plane of the model. Shaded: at rest. \
-                 Line: the largest while the stack stood."
+                "Stress is force per meter of boundary in the plane of the model, drawn outward from where \
+                 it acts. Gray: at rest. Behind it: the largest while the stack stood."
                     .into(),
             ),
         );
@@ -313,7 +320,7 @@ pub fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
     }
     Figure {
         id: format!("stress-{name}"),
-        caption: format!("Normal stress on {name}."),
+        caption: format!("Normal stress on {name}, at rest and at its largest."),
         kind: FigureKind::Envelope(Envelope {
             outline: drawing::outlines(&run.assembly, envelope.body),
             samples,
@@ -344,9 +351,9 @@ fn device(Device { words, elements }: &Device) -> Vec<Block> {
         let at = (element.peak != 0.0).then_some(element.peak_at);
         table.rows.push(vec![
             Cell::text(&element.name),
-            number(1e-3 * element.peak),
-            at.map_or(Cell::Missing, number),
-            element.broken_at.map_or(Cell::Missing, number),
+            kilonewtons(element.peak),
+            hundredths(at),
+            hundredths(element.broken_at),
         ]);
     }
     if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] }
@@ -371,11 +378,11 @@ fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
     for joint in &summary.interfaces {
         table.rows.push(vec![
             Cell::text(&joint.name),
-            number(1e-3 * joint.at_rest),
-            number(1e-3 * joint.peak_vertical),
-            number(joint.peak_vertical_at),
-            number(1e-3 * joint.peak_horizontal),
-            number(joint.peak_horizontal_at),
+            kilonewtons(joint.at_rest),
+            kilonewtons(joint.peak_vertical),
+            hundredths(Some(joint.peak_vertical_at)),
+            kilonewtons(joint.peak_horizontal),
+            hundredths(Some(joint.peak_horizontal_at)),
         ]);
     }
     let recording = &run.recording;
@@ -427,17 +434,39 @@ fn motion(run: &Run) -> Vec<Block> {
     blocks
 }
 
+/// The energies of the books that change in a run, with what is stored and lost together, which must
+/// lie on the work of the ground.
 fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
     let recording = &run.recording;
-    let series = ["kinetic", "elastic", "damped", "friction", "ground work"]
-        .iter()
-        .filter_map(|name| {
-            let channel = recording.channel(&format!("energy {name}"))?;
-            let values = channel.values.iter().map(|v| 1e-3 * v).collect();
-            Some(Series::new(*name, recording.times.clone(), values))
-        })
-        .collect();
     let Some(books) = &summary.energy else { return Vec::new() };
+    // Each by what it has gained since the start, in kJ.
+    let gained = |names: &[&str]| -> Vec<f64> {
+        let channels: Vec<&[f64]> = names
+            .iter()
+            .filter_map(|name| recording.channel(&format!("energy {name}")))
+            .map(|channel| channel.values.as_slice())
+            .collect();
+        let sum = |at: usize| channels.iter().map(|values| values[at] - values[0]).sum::<f64>();
+        (0..recording.times.len()).map(|at| 1e-3 * sum(at)).collect()
+    };
+    let line = |label: &str, names: &[&str], style: SeriesStyle| Series {
+        style,
+        ..Series::new(label, recording.times.clone(), gained(names))
+    };
+    let color = |index: usize| SeriesStyle { index: Some(index), ..SeriesStyle::default() };
+    let parts: [(&str, &[&str], usize); 5] = [
+        ("motion", &["kinetic"], 0),
+        ("height", &["potential"], 1),
+        ("contacts and devices", &["elastic", "stick"], 3),
+        ("lost to friction", &["friction"], 2),
+        ("lost to damping", &["damped", "viscous"], 5),
+    ];
+    // The shade of the work of the ground lies under everything, and all together on its edge.
+    let ground = SeriesStyle { area: true, ..color(4) };
+    let mut series = vec![line("work of the ground", &["ground work"], ground)];
+    series.extend(parts.iter().map(|(label, names, index)| line(label, names, color(*index))));
+    let all: Vec<&str> = parts.iter().flat_map(|(_, names, _)| names.iter().copied()).collect();
+    series.push(line("all of these together", &all, color(10)));
     vec![
         Block::Paragraph(format!(
             "What the ground gave and what the stack lost in height equals what is stored and what is \
@@ -445,6 +474,14 @@ fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
             significant(books.residual_ratio, 2),
             significant(1e-3 * books.input, 3)
         )),
-        history(run, "energy", "Energies since the start.", Axis::new("energy", "kJ"), series),
+        history(
+            run,
+            "energy",
+            "Energy gained since the start. The books close where all of these together run along the \
+             shaded work of the ground: what falls gives up its height to motion, and that to friction \
+             and damping.",
+            Axis::new("energy", "kJ"),
+            series,
+        ),
     ]
 }

@@ -2,7 +2,7 @@
 
 use barrelstack_motion::{GroundMotion, ResponseSpectrum, STANDARD_GRAVITY, standard_periods};
 use barrelstack_report::{
-    Axis, Band, Block, Figure, FigureKind, Mark, Plot, Series, SeriesStyle, significant,
+    Axis, Band, Block, Figure, FigureKind, Mark, Plot, Series, SeriesStyle, measured, significant,
 };
 
 use crate::period::{Drift, RigidBlock, Swing, drift};
@@ -59,7 +59,7 @@ pub(super) fn figures(run: &Run, motion: &GroundMotion) -> Vec<Block> {
 }
 
 fn centimeters(amplitude: f64) -> String {
-    format!("{} cm", significant(100.0 * amplitude, 2))
+    format!("{} cm", measured(100.0 * amplitude, 1))
 }
 
 fn words(rocking: &Rocking) -> String {
@@ -157,16 +157,11 @@ fn periods(rocking: &Rocking) -> Figure {
     let mut series =
         vec![Series::new("rigid block", amplitudes.iter().map(|a| 100.0 * a).collect(), curve)];
     if rocking.widest().is_some() {
-        // A gap after every point, half way to the next, keeps measurements from being joined.
         let swings = &rocking.drift.swings;
-        let (mut x, mut y) = (Vec::new(), Vec::new());
-        for (at, swing) in swings.iter().enumerate() {
-            let next = swings.get(at + 1).map_or(1.01 * swing.amplitude, |next| next.amplitude);
-            x.extend([100.0 * swing.amplitude, 50.0 * (swing.amplitude + next)]);
-            y.extend([swing.period, f64::NAN]);
-        }
-        let dots = SeriesStyle { dots: true, ..SeriesStyle::default() };
-        series.push(Series { style: dots, ..Series::new("swings of the stack", x, y) });
+        let x = swings.iter().map(|swing| 100.0 * swing.amplitude).collect();
+        let y = swings.iter().map(|swing| swing.period).collect();
+        let style = SeriesStyle { points: true, ..SeriesStyle::default() };
+        series.push(Series { style, ..Series::new("swings of the stack", x, y) });
     }
     Figure {
         id: "periods".into(),

@@ -20,25 +20,17 @@ fn muted() -> SeriesStyle {
     SeriesStyle { muted: true, ..SeriesStyle::default() }
 }
 
-/// Upright bars from one bound to the other, as one series with gaps.
-pub(crate) fn bars(
+/// Single values, each with the bounds of what it may be.
+pub(crate) fn points(
     label: &str,
-    places: impl IntoIterator<Item = (f64, Interval)>,
-    style: SeriesStyle,
+    x: &[f64],
+    y: impl Iterator<Item = f64>,
+    bounds: impl Iterator<Item = Interval>,
+    index: usize,
 ) -> Series {
-    let (mut x, mut y) = (Vec::new(), Vec::new());
-    for (at, bounds) in places {
-        x.extend([at, at, f64::NAN]);
-        y.extend([bounds.low, bounds.high, f64::NAN]);
-    }
-    Series { label: label.to_owned(), x, y, style }
-}
-
-/// Dots that no line joins.
-fn dots(label: &str, x: &[f64], y: impl Iterator<Item = f64>, index: usize) -> Series {
-    let gaps = |values: Vec<f64>| values.into_iter().flat_map(|v| [v, f64::NAN]).collect();
-    let style = SeriesStyle { dots: true, ..style(index) };
-    Series { style, ..Series::new(label, gaps(x.to_vec()), gaps(y.collect())) }
+    let style = SeriesStyle { points: true, ..style(index) };
+    let range = bounds.map(|bounds| [bounds.low, bounds.high]).collect();
+    Series { range, style, ..Series::new(label, x.to_vec(), y.collect()) }
 }
 
 fn axis(measure: &Measure) -> Axis {
@@ -62,26 +54,20 @@ pub(super) fn fragility(curve: &LimitCurve, measure: &Measure) -> Figure {
     let mut series = Vec::new();
     if let Ok(fit) = &curve.fit {
         let line = curve.grid.iter().map(|x| fit.curve.probability(*x)).collect();
-        series.push(Series { style: style(0), ..Series::new("fitted curve", grid.clone(), line) });
-        if !curve.band.is_empty() {
-            let bound = |label: &str, of: fn(&Interval) -> f64| Series {
-                style: muted(),
-                ..Series::new(label, grid.clone(), curve.band.iter().map(of).collect())
-            };
-            series.push(bound("95 % band of the curve", |band| band.low));
-            series.push(bound("", |band| band.high));
-        }
+        let range: Vec<[f64; 2]> = curve.band.iter().map(|band| [band.low, band.high]).collect();
+        let label = if range.is_empty() { "fitted curve" } else { "fitted curve, 95 % band" };
+        series.push(Series { range, style: style(0), ..Series::new(label, grid, line) });
     }
-    series.push(dots("raw fractions", &at, curve.stripes.iter().map(Stripe::fraction), 1));
-    let intervals = at.iter().copied().zip(curve.intervals.iter().copied());
-    series.push(bars("95 % interval of each", intervals, style(1)));
+    let fractions = curve.stripes.iter().map(Stripe::fraction);
+    let intervals = curve.intervals.iter().copied();
+    series.push(points("raw fractions, 95 % interval of each", &at, fractions, intervals, 1));
     let caption = format!(
         "Chance of {} against {}. Dots: the share of the cases at each level or in each bin, with Wilson's interval; they stand for \
          themselves and are not smoothed.{}",
         curve.limit.words(),
         measure.label,
         if curve.fit.is_ok() {
-            " Line: the lognormal curve of greatest likelihood, thin lines its 95 % band."
+            " Line: the lognormal curve of greatest likelihood, shaded its 95 % band."
         } else {
             ""
         }
@@ -104,18 +90,18 @@ pub(super) fn limits(curves: &[LimitCurve], measure: &Measure) -> Figure {
                 let y = curve.grid.iter().map(|x| fit.curve.probability(*x)).collect();
                 Series { style: style(index), ..Series::new(curve.limit.words(), x, y) }
             } else {
-                let x = curve.stripes.iter().map(|s| measure.shown(s.intensity)).collect();
-                let y = curve.stripes.iter().map(Stripe::fraction).collect();
-                let dots = SeriesStyle { dots: true, ..style(index) };
+                let x: Vec<f64> =
+                    curve.stripes.iter().map(|s| measure.shown(s.intensity)).collect();
+                let y = curve.stripes.iter().map(Stripe::fraction);
                 let label = format!("{} (raw)", curve.limit.words());
-                Series { style: dots, ..Series::new(label, x, y) }
+                points(&label, &x, y, curve.intervals.iter().copied(), index)
             }
         })
         .collect();
     plot(
         "limit-states",
-        "Chance of each limit state. Smooth lines are fitted curves; where the cases determine none, the raw fractions \
-         are joined instead."
+        "Chance of each limit state. Lines are fitted curves; where the cases determine none, dots are the raw \
+         fractions with their 95 % intervals."
             .to_owned(),
         Plot { x: axis(measure), y: chance_axis("chance"), series, ..Plot::default() },
     )
@@ -129,7 +115,7 @@ pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Me
         let name = mode.mode.replace('-', " ");
         let at: Vec<f64> = mode.stripes.iter().map(|s| measure.shown(s.intensity)).collect();
         let raw = mode.stripes.iter().map(Stripe::fraction);
-        series.push(dots(&format!("{name} (raw)"), &at, raw, index + 1));
+        series.push(points(&format!("{name} (raw)"), &at, raw, std::iter::empty(), index + 1));
         if !mode.fitted.is_empty() {
             let line = Series::new(name, grid(), mode.fitted.clone());
             series.push(Series { style: style(index + 1), ..line });
@@ -221,23 +207,17 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
 
 /// What factors change.
 pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
-    let count = effects.len();
-    let mut series = Vec::new();
     let (mut x, mut y) = (Vec::new(), Vec::new());
     for (row, effect) in effects.iter().enumerate() {
-        let at = (count - row) as f64;
         let shares = || effect.groups.iter().map(Group::share);
         let (low, high) = (shares().fold(1.0, f64::min), shares().fold(0.0, f64::max));
+        // The gap parts every bar from the next.
         x.extend([low, high, f64::NAN]);
-        y.extend([at, at, f64::NAN]);
+        y.extend([Axis::row(row); 3]);
     }
-    let dots = SeriesStyle { dots: true, ..style(0) };
-    series
-        .push(Series { style: dots, ..Series::new("lowest and highest share of collapse", x, y) });
-    let levels = effects.iter().enumerate().map(|(row, effect)| Mark {
-        at: (count - row) as f64 - 0.45,
-        label: effect.factor.clone(),
-    });
+    let bars = SeriesStyle { bar: true, ..style(0) };
+    let series =
+        vec![Series { style: bars, ..Series::new("lowest to highest share of collapse", x, y) }];
     plot(
         "tornado",
         "What the varied quantities change: the share of collapse at the least and the most favorable of their values, \
@@ -245,13 +225,9 @@ pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
             .to_owned(),
         Plot {
             x: Axis { range: Some([0.0, 1.0]), ..Axis::new("share of collapse", "") },
-            y: Axis {
-                range: Some([0.4, count as f64 + 0.65]),
-                ..Axis::new("row of the table from below", "")
-            },
+            y: Axis::named(effects.iter().map(|effect| effect.factor.clone()).collect()),
             series,
             marks: vec![Mark { at: overall, label: "all cases".into() }],
-            levels: levels.collect(),
             ..Plot::default()
         },
     )
@@ -260,23 +236,18 @@ pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
 /// Barrels fallen and burst against the measure.
 pub(super) fn losses(losses: &Losses, measure: &Measure) -> Figure {
     let x: Vec<f64> = losses.levels.iter().map(|loss| measure.shown(loss.intensity)).collect();
-    let dots = |index| SeriesStyle { dots: true, ..style(index) };
-    let fallen = losses.levels.iter().map(|loss| loss.fallen).collect();
-    let intervals = losses.levels.iter().zip(&x).map(|(loss, x)| (*x, loss.interval));
-    let burst = |i: usize| losses.levels.iter().map(|loss| loss.burst[i]).collect::<Vec<f64>>();
-    let places = x.iter().copied().zip(burst(0).into_iter().zip(burst(2)));
+    let levels = || losses.levels.iter();
+    let burst = |i: usize| levels().map(move |loss| loss.burst[i]);
+    let assumed = burst(0).zip(burst(2)).map(|(low, high)| Interval { low, high });
     let series = vec![
-        Series { style: dots(0), ..Series::new("barrels that fall", x.clone(), fallen) },
-        bars("95 % interval of the mean", intervals, style(0)),
-        Series {
-            style: dots(1),
-            ..Series::new("barrels that burst (assumed)", x.clone(), burst(1))
-        },
-        bars(
-            "range of the assumption",
-            places.map(|(x, (low, high))| (x, Interval { low, high })),
-            style(1),
+        points(
+            "barrels that fall, 95 % interval of the mean",
+            &x,
+            levels().map(|loss| loss.fallen),
+            levels().map(|loss| loss.interval),
+            0,
         ),
+        points("barrels that burst, range of the assumption", &x, burst(1), assumed, 1),
     ];
     plot(
         "losses",

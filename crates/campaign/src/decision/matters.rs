@@ -12,21 +12,12 @@ use super::words::{count, percent};
 pub(super) fn effects(decision: &Decision) -> Table {
     let mut table = Table::new(
         "Share of collapse at the values of every varied quantity, over all motions and levels.",
-        &[
-            ("row", ""),
-            ("quantity", ""),
-            ("value", ""),
-            ("cases", ""),
-            ("collapsed", ""),
-            ("95 % interval", ""),
-        ],
+        &[("quantity", ""), ("value", ""), ("cases", ""), ("collapsed", ""), ("95 % interval", "")],
     );
-    let rows = decision.effects.len();
-    for (row, effect) in decision.effects.iter().enumerate() {
+    for effect in &decision.effects {
         for (at, group) in effect.groups.iter().enumerate() {
             let first = |text: String| Cell::text(if at == 0 { text } else { String::new() });
             table.rows.push(vec![
-                first((rows - row).to_string()),
                 first(effect.factor.clone()),
                 Cell::text(&group.label),
                 count(group.cases),

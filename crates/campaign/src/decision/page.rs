@@ -1,7 +1,7 @@
 //! The page of a study: the answer first, then what it rests on.
 
 use barrelstack_fragility::clopper_pearson;
-use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, significant};
+use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, measured, significant};
 
 use super::cases::{Cases, Measure};
 use super::curve::{BandKind, LEVEL, LimitCurve};
@@ -289,15 +289,15 @@ fn losses(losses: &Losses, measure: &Measure) -> Table {
         table.rows.push(vec![
             Cell::Number(measure.shown(loss.intensity), 3),
             count(loss.cases as f64),
-            Cell::Number(loss.fallen, 2),
+            Cell::Measured(loss.fallen, 1),
             Cell::text(format!(
                 "{} to {}",
-                significant(loss.interval.low, 2),
-                significant(loss.interval.high, 2)
+                measured(loss.interval.low, 1),
+                measured(loss.interval.high, 1)
             )),
-            Cell::Number(central, 2),
-            Cell::text(format!("{} to {}", significant(few, 2), significant(many, 2))),
-            Cell::Number(1000.0 * WINE * central, 2),
+            Cell::Measured(central, 1),
+            Cell::text(format!("{} to {}", measured(few, 1), measured(many, 1))),
+            Cell::Measured(1000.0 * WINE * central, 0),
         ]);
     }
     table
@@ -370,12 +370,12 @@ fn at_site(site: &Site, measure: &Measure) -> Vec<Block> {
     let lost = site.lost.as_ref().map_or_else(
         || "What a stack is expected to lose in a year is not known, since the study does not tell what falls.".to_owned(),
         |lost| {
-            let [few, central, many] = lost.burst.map(|rate| significant(rate.low, 2));
-            let wine = lost.wine.map(|wine| significant(1000.0 * wine, 2));
+            let [few, central, many] = lost.burst.map(|rate| measured(rate.low, 2));
+            let wine = lost.wine.map(|wine| measured(1000.0 * wine, 0));
             format!(
                 "Expected for one stack in an average year: {} barrels fallen, {central} burst ({few} to {many}), {} L of \
                  wine lost ({} to {} L). Multiply by the number of stacks.",
-                significant(lost.fallen.low, 2),
+                measured(lost.fallen.low, 2),
                 wine[1],
                 wine[0],
                 wine[2]

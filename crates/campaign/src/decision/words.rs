@@ -1,7 +1,7 @@
 //! What the page says in words: verdict and warnings.
 
 use barrelstack_fragility::{FitError, wilson};
-use barrelstack_report::{Cell, significant};
+use barrelstack_report::{Cell, measured, significant};
 
 use super::Decision;
 use super::cases::Cases;
@@ -158,9 +158,9 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
             "At {} a stack of {} barrels loses {} of them on average ({} to {} with 95 % confidence).",
             measure.words(last.intensity),
             losses.barrels,
-            significant(last.fallen, 2),
-            significant(last.interval.low, 2),
-            significant(last.interval.high, 2)
+            measured(last.fallen, 1),
+            measured(last.interval.low, 1),
+            measured(last.interval.high, 1)
         ));
     }
     if let Some(site) = &decision.site {
@@ -174,7 +174,7 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
             site.years,
             site.lost.as_ref().map_or_else(String::new, |lost| format!(
                 ", and {} barrels on the floor a year",
-                significant(lost.fallen.low, 2)
+                measured(lost.fallen.low, 2)
             ))
         ));
     }

@@ -2,13 +2,13 @@
 
 use barrelstack_fragility::{Interval, wilson};
 use barrelstack_report::{
-    Axis, Block, Cell, Document, Figure, FigureKind, Plot, Rating, Series, SeriesStyle, Table,
-    Tone, Verdict, significant,
+    Axis, Block, Cell, Document, Figure, FigureKind, Plot, Rating, Table, Tone, Verdict,
+    significant,
 };
 
 use super::plan::{HEIGHTS, VELOCITIES};
 use super::{AtLevel, Heights, field};
-use crate::decision::{LimitCurve, bars, chance_axis, heading, percent, refusal, text};
+use crate::decision::{LimitCurve, chance_axis, heading, percent, points, refusal, text};
 use crate::scenario::View;
 use crate::scenario::catalog;
 
@@ -254,18 +254,16 @@ fn chart(all: &Heights) -> Figure {
     for (index, at) in [1, 3, 5].into_iter().enumerate() {
         // Beside each other, so that the bars can be told apart.
         let shift = 0.07 * (index as f64 - 1.0);
-        let points: Vec<(f64, f64, Interval)> = HEIGHTS
+        let found: Vec<(f64, f64, Interval)> = HEIGHTS
             .into_iter()
             .filter_map(|levels| {
                 let found = worse(all, levels, VELOCITIES[at])?;
                 Some((f64::from(levels) + shift, found.stripe.fraction(), found.interval))
             })
             .collect();
-        let (x, y) = points.iter().map(|(x, y, _)| (*x, *y)).unzip();
-        let style = SeriesStyle { index: Some(index), dots: true, ..SeriesStyle::default() };
-        series.push(Series { style, ..Series::new(shaking(VELOCITIES[at]), x, y) });
-        let plain = SeriesStyle { dots: false, ..style };
-        series.push(bars("", points.iter().map(|(x, _, interval)| (*x, *interval)), plain));
+        let x: Vec<f64> = found.iter().map(|(x, _, _)| *x).collect();
+        let (y, bounds) = (found.iter().map(|f| f.1), found.iter().map(|f| f.2));
+        series.push(points(&shaking(VELOCITIES[at]), &x, y, bounds, index));
     }
     Figure {
         id: "height-chart".into(),
@@ -286,25 +284,23 @@ fn medians(all: &Heights) -> Figure {
     let mut series = Vec::new();
     for (index, view) in View::ALL.into_iter().enumerate() {
         let shift = 0.05 * (2.0 * index as f64 - 1.0);
-        let points: Vec<(f64, f64, Option<Interval>)> = all
+        let found: Vec<(f64, f64, Interval)> = all
             .heights
             .iter()
             .filter(|height| height.view == view)
             .filter_map(|height| {
                 let fit = height.by_velocity.fit.as_ref().ok()?;
                 let at = f64::from(height.levels) + shift;
-                Some((at, 100.0 * fit.curve.median, height.by_velocity.median))
+                // A bar that has no end is not drawn.
+                let bounds = height.by_velocity.median.filter(|bounds| bounds.high.is_finite());
+                let bounds = bounds.unwrap_or(Interval { low: f64::NAN, high: f64::NAN });
+                let [low, high] = [bounds.low, bounds.high].map(|bound| 100.0 * bound);
+                Some((at, 100.0 * fit.curve.median, Interval { low, high }))
             })
             .collect();
-        let (x, y) = points.iter().map(|(x, y, _)| (*x, *y)).unzip();
-        let style = SeriesStyle { index: Some(index), dots: true, ..SeriesStyle::default() };
-        series.push(Series { style, ..Series::new(view.words(), x, y) });
-        let bounds = points.iter().filter_map(|(x, _, bounds)| {
-            let bounds = (*bounds)?;
-            let bounds = Interval { low: 100.0 * bounds.low, high: 100.0 * bounds.high };
-            bounds.high.is_finite().then_some((*x, bounds))
-        });
-        series.push(bars("", bounds, SeriesStyle { dots: false, ..style }));
+        let x: Vec<f64> = found.iter().map(|(x, _, _)| *x).collect();
+        let (y, bounds) = (found.iter().map(|f| f.1), found.iter().map(|f| f.2));
+        series.push(points(view.words(), &x, y, bounds, index));
     }
     Figure {
         id: "medians".into(),

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Context as _;
 use barrelstack::Scenario;
+use barrelstack::export::Folder;
 use barrelstack::scenario::{Dimension, Quantity};
 use barrelstack_calibration::collapse::{Errors, Observations, Settings};
 use barrelstack_calibration::drop::{GRAVITY, Striker};
@@ -76,6 +77,13 @@ struct ResultArgs {
     /// Print one JSON document, in SI units, in place of the table.
     #[arg(long)]
     json: bool,
+    /// Write a page that draws the measurements beside the fit into this folder, which must be new or
+    /// empty.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Let the folder hold files, and replace those of an earlier page.
+    #[arg(long, requires = "out")]
+    overwrite: bool,
 }
 
 /// The pair of bodies that was tested.
@@ -225,37 +233,49 @@ impl Fitted {
     }
 }
 
-/// Reads the test, fits, prints.
+/// Reads the test, fits, prints, draws.
 pub(crate) fn calibrate(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
-    let (found, json) = match &args.test {
+    let result = match &args.test {
+        Test::Stiffness(args) => &args.result,
+        Test::Drop(args) => &args.result,
+        Test::Friction(args) => &args.result,
+        Test::Response(args) => &args.result,
+        Test::Collapse(args) => &args.result,
+    };
+    // A folder that cannot be written is told before the work.
+    let folder = result.out.as_ref().map(|out| Folder::prepare(out, result.overwrite));
+    let folder = folder.transpose()?;
+    let found = match &args.test {
         Test::Stiffness(args) => {
             let table = Table::load(&args.file)?;
-            let found = stiffness::stiffness(&table, args.nodes, args.interface.name())?;
-            (found, args.result.json)
+            stiffness::stiffness(&table, args.nodes, args.interface.name())?
         }
         Test::Drop(args) => {
             let striker = striker(args)?;
             let table = Table::load(&args.file)?;
-            (drop::drop(&table, striker, args.interface.name())?, args.result.json)
+            drop::drop(&table, striker, args.interface.name())?
         }
         Test::Friction(args) => {
             let table = Table::load(&args.file)?;
-            (friction::friction(&table, args.interface.name())?, args.result.json)
+            friction::friction(&table, args.interface.name())?
         }
-        Test::Response(args) => (fitted(args)?, args.result.json),
-        Test::Collapse(args) => (collapsed(args)?, args.result.json),
+        Test::Response(args) => fitted(args)?,
+        Test::Collapse(args) => collapsed(args)?,
     };
-    print(&found, json)?;
-    Ok(ExitCode::SUCCESS)
-}
-
-fn print(found: &Calibration, json: bool) -> anyhow::Result<()> {
-    if json {
-        return printer::document(&found.to_document());
+    let written = folder.as_ref().map(|folder| {
+        crate::interrupt::writes_to(folder.path());
+        folder.write_page(&found.document())
+    });
+    if result.json {
+        printer::document(&found.to_document())?;
+    } else {
+        let page = folder.map(|folder| format!("page: {}", folder.report().display()));
+        let page = page.into_iter().flat_map(|page| [String::new(), page]);
+        printer::lines(found.lines().into_iter().chain(page))?;
+        found.warnings.iter().for_each(|warning| printer::warning(warning));
     }
-    printer::lines(found.lines())?;
-    found.warnings.iter().for_each(|warning| printer::warning(warning));
-    Ok(())
+    written.transpose()?;
+    Ok(ExitCode::SUCCESS)
 }
 
 fn striker(args: &DropArgs) -> anyhow::Result<Option<Striker>> {

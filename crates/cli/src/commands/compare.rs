@@ -105,7 +105,7 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let document = compare::document(&sides);
     crate::interrupt::writes_to(folder.path());
     // The verdict is printed even where it cannot be written.
-    let written = folder.write_comparison(&document);
+    let written = folder.write_page(&document);
     let differing = differences(sides.iter().map(|side| &*side.run.stated));
     if args.json {
         printer::document(&Comparison::of(&sides))?;

@@ -14,6 +14,7 @@ use clap::ValueEnum;
 use super::input::{self, Chain, Choice, Input, quantity};
 use super::measures::{self, sampled};
 use super::output::Output;
+use super::page::{self, Told};
 use super::panels;
 use super::process::share;
 use super::table::{Table, number, percent};
@@ -53,7 +54,7 @@ pub(super) struct MatchArgs {
     accept_misfit: bool,
     #[command(flatten)]
     output: Output,
-    /// Draw target, before and after as panels, as .png, .svg or .pdf.
+    /// Draw target, before and after: as panels (.png, .svg, .pdf), or as a page (.html).
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
 }
@@ -74,7 +75,7 @@ enum Method {
 pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
     let target = args.output.prepare()?;
     if let Some(figure) = &args.figure {
-        panels::vacant_picture(figure, args.output.overwrite)?;
+        page::vacant_figure(figure, args.output.overwrite)?;
     }
     let spectrum = target::target(&args.to)?;
     let settings = Matching {
@@ -90,14 +91,30 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
     let read = args.input.read()?;
     let before = args.choice.take(&read, Chain::Default)?;
     let (after, missed) = matched(args, &before, &spectrum, &settings)?;
-    let mut lines = measures::before_after(&before, &after)?.lines();
+    let measured = measures::before_after(&before, &after)?;
+    let compared = comparison(args, &before, &after, &spectrum, &settings)?;
+    let mut lines = measured.lines();
     lines.push(String::new());
-    lines.extend(comparison(args, &before, &after, &spectrum, &settings)?.lines());
+    lines.extend(compared.lines());
     super::change::finish(&target, &read, &after, lines)?;
     if let Some(figure) = &args.figure {
         let place = place(args, &before)?;
         let one = |record| panels::only(record, place);
-        panels::write(figure, &panels::compared(&one(&before)?, &one(&after)?, Some(&spectrum))?)?;
+        let drawn = panels::compared(&one(&before)?, &one(&after)?, Some(&spectrum))?;
+        let name = &before.channels[place].name;
+        let headline = match &missed {
+            None => format!(
+                "The spectrum of {name} follows {} within {}.",
+                args.to,
+                percent(settings.tolerance)
+            ),
+            Some(words) => format!("The spectrum of {name} misses {} {words}.", args.to),
+        };
+        let tables = vec![
+            compared.on_page("The spectrum that was asked for, and those before and after."),
+            measured.on_page("Measures of the motion, before and after."),
+        ];
+        page::write(figure, &drawn, &after, Told { headline, tables })?;
         printer::lines([format!("written: {}", figure.display())])?;
     }
     match missed {

@@ -7,6 +7,7 @@ mod input;
 mod matching;
 mod measures;
 mod output;
+mod page;
 mod panels;
 mod plot;
 mod process;

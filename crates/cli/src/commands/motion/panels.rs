@@ -155,9 +155,10 @@ pub(super) fn only(record: &Record, place: usize) -> anyhow::Result<Record> {
 fn figure(record: &Record, id: &str, what: &str, rows: Vec<Vec<Plot>>) -> Figure {
     let parts = [record.station.as_str(), record.event.as_str()];
     let known: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
-    let title = if known.is_empty() { record.file.clone() } else { known.join(", ") };
-    let mut lines =
-        vec![format!("{}, format {}, stage {}", record.file, record.format, record.stage)];
+    // A picture goes to others, whom the folders of this machine tell nothing.
+    let file = Path::new(&record.file).file_name().unwrap_or_default().to_string_lossy();
+    let title = if known.is_empty() { file.to_string() } else { known.join(", ") };
+    let mut lines = vec![format!("{file}, format {}, stage {}", record.format, record.stage)];
     if let Some(channel) = record.channels.first() {
         let start = channel.start.map_or_else(String::new, |start| format!(", from {start}"));
         let samples = channel.acceleration.len();

@@ -13,6 +13,7 @@ use super::folder::{self, Batch, FolderArgs, Source, Worked};
 use super::input::{self, Chain, Input, quantity};
 use super::measures;
 use super::output::{FormName, Output};
+use super::page::{self, Told};
 use super::panels;
 use crate::printer;
 
@@ -64,7 +65,7 @@ pub(super) struct ProcessArgs {
     /// What the motions of a folder are written as.
     #[arg(long, value_enum, default_value_t = FormName::Txt)]
     form: FormName,
-    /// Draw before and after as panels beside the motion, as .png, .svg or .pdf.
+    /// Draw before and after: as panels (.png, .svg, .pdf), or as a page (.html).
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
     #[command(flatten)]
@@ -235,14 +236,17 @@ pub(super) fn process(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
     }
     let target = args.output.prepare()?;
     if let Some(figure) = &args.figure {
-        panels::vacant_picture(figure, args.output.overwrite)?;
+        page::vacant_figure(figure, args.output.overwrite)?;
     }
     let read = args.input.read()?;
     let (before, after) = args.both(&read)?;
     let table = measures::before_after(&before, &after)?;
     super::change::finish(&target, &read, &after, table.lines())?;
     if let Some(figure) = &args.figure {
-        panels::write(figure, &panels::before_after(&before, &after)?)?;
+        let drawn = panels::before_after(&before, &after)?;
+        let headline = "The record before and after processing.".to_owned();
+        let tables = vec![table.on_page("Measures of the motion, before and after.")];
+        page::write(figure, &drawn, &after, Told { headline, tables })?;
         printer::lines([format!("written: {}", figure.display())])?;
     }
     Ok(ExitCode::SUCCESS)

@@ -26,6 +26,11 @@ impl Table {
         self.rows.len() < 2
     }
 
+    /// The table for a page.
+    pub(super) fn on_page(&self, caption: &str) -> barrelstack_report::Table {
+        super::page::table(caption, &self.rows)
+    }
+
     /// The rows as lines, indented by two.
     pub(super) fn lines(&self) -> Vec<String> {
         let width = |column: usize| {

@@ -84,6 +84,7 @@ fn spectra(set: &Set<'_>, target: &SelectionTarget, candidates: &[Candidate]) ->
         x: periods.clone(),
         y: values,
         style,
+        ..Series::default()
     };
     let color = |index: usize| SeriesStyle { index: Some(index), ..SeriesStyle::default() };
     let muted = SeriesStyle { muted: true, ..SeriesStyle::default() };

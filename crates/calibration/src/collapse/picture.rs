@@ -1,0 +1,137 @@
+//! Pictures of collapses: what was seen beside what the stacks with the found values do.
+
+use barrelstack_report::{Axis, Figure, FigureKind, Plot, Series, SeriesStyle};
+
+use super::ensemble::Seen;
+use super::observed::Time;
+use super::sampler::Posterior;
+use super::{Trial, alike};
+use crate::figures::measured;
+
+/// Shares of the weight between which simulated times are drawn.
+const MIDDLE: [f64; 2] = [0.05, 0.95];
+
+/// How often each test goes as it was seen, and when what was seen happens.
+pub(super) fn pictures(
+    trials: &[Trial<'_>],
+    courses: &[Option<Seen>],
+    posterior: &Posterior,
+) -> Vec<Figure> {
+    [modes(trials, courses, posterior), times(trials, courses, posterior)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+/// The courses of a test.
+fn of<'a>(
+    courses: &'a [Option<Seen>],
+    at: usize,
+    trials: &[Trial<'_>],
+) -> impl Iterator<Item = &'a Option<Seen>> {
+    courses.iter().skip(at).step_by(trials.len())
+}
+
+/// The weight of the courses that go as was seen; none where no test says how the stack went.
+fn modes(trials: &[Trial<'_>], courses: &[Option<Seen>], posterior: &Posterior) -> Option<Figure> {
+    let mut rows = Rows::default();
+    for (at, trial) in trials.iter().enumerate() {
+        let (name, share) = alike(trial, of(courses, at, trials), posterior);
+        if let Some(share) = share {
+            rows.bar(format!("test {}: {name}", at + 1), [0.0, share]);
+        }
+    }
+    let caption = "How much of the weight of the simulations goes as the test was seen to go.";
+    let x = Axis { range: Some([0.0, 1.0]), ..Axis::new("share of the weight", "") };
+    rows.figure("collapse-modes", caption, x, "simulated", None)
+}
+
+/// When things happened; none where no time was seen.
+fn times(trials: &[Trial<'_>], courses: &[Option<Seen>], posterior: &Posterior) -> Option<Figure> {
+    let mut rows = Rows::default();
+    let mut seen = Vec::new();
+    for (at, trial) in trials.iter().enumerate() {
+        let test = trial.observed;
+        let loss = |seen: &Seen| Some(seen.loss);
+        let first = |seen: &Seen| seen.first_fall().map(|(_, time)| Time::At(time));
+        let mut row = |name: &str, time: Time, simulated: &dyn Fn(&Seen) -> Option<Time>| {
+            let Time::At(time) = time else { return };
+            let weighed = of(courses, at, trials).zip(&posterior.weights);
+            let weighed = weighed.filter_map(|(course, weight)| {
+                let Some(Time::At(time)) = simulated(course.as_ref()?) else { return None };
+                Some((time, *weight))
+            });
+            rows.bar(format!("test {}: {name}", at + 1), middle(weighed.collect()));
+            seen.push(time);
+        };
+        if let Some(time) = test.loss {
+            row("loss of seat", time, &loss);
+        }
+        if let Some(time) = test.first_fall {
+            row("first fall", time, &first);
+        }
+        for (barrel, time) in &test.falls {
+            row(&format!("{barrel} fell"), *time, &|seen| seen.fall(barrel));
+        }
+    }
+    let caption = "When it was seen, and when it happens in the simulations: the middle 90 % of the weight of those in \
+                   which it does. A row without a bar happens in none.";
+    rows.figure("collapse-times", caption, Axis::new("time", "s"), "simulated", Some(seen))
+}
+
+/// The times between which the middle of the weight lies; not a number where there is none.
+fn middle(mut weighed: Vec<(f64, f64)>) -> [f64; 2] {
+    weighed.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let all: f64 = weighed.iter().map(|(_, weight)| weight).sum();
+    MIDDLE.map(|share| {
+        let mut sum = 0.0;
+        let reached = |(_, weight): &&(f64, f64)| {
+            sum += weight;
+            sum >= share * all
+        };
+        weighed.iter().find(reached).map_or(f64::NAN, |(time, _)| *time)
+    })
+}
+
+/// Rows with a name and a bar each.
+#[derive(Default)]
+struct Rows {
+    names: Vec<String>,
+    x: Vec<f64>,
+    y: Vec<f64>,
+}
+
+impl Rows {
+    fn bar(&mut self, name: String, [from, to]: [f64; 2]) {
+        // The gap parts every bar from the next.
+        self.x.extend([from, to, f64::NAN]);
+        self.y.extend([Axis::row(self.names.len()); 3]);
+        self.names.push(name);
+    }
+
+    /// The picture; `seen` has a dot for every row.
+    fn figure(
+        self,
+        id: &str,
+        caption: &str,
+        x: Axis,
+        label: &str,
+        seen: Option<Vec<f64>>,
+    ) -> Option<Figure> {
+        let rows = (0..self.names.len()).map(Axis::row).collect();
+        let style = SeriesStyle { bar: true, index: Some(0), ..SeriesStyle::default() };
+        let bars = Series { style, ..Series::new(label, self.x, self.y) };
+        let seen = seen.map(|seen| measured("seen", seen, rows, 1));
+        let plot = Plot {
+            x,
+            y: Axis::named(self.names),
+            series: std::iter::once(bars).chain(seen).collect(),
+            ..Plot::default()
+        };
+        (!plot.y.names.is_empty()).then(|| Figure {
+            id: id.to_owned(),
+            caption: caption.to_owned(),
+            kind: FigureKind::Plot(plot),
+        })
+    }
+}

@@ -1,0 +1,102 @@
+//! The page of a calibration: the parameters, and what was measured beside the fit.
+
+use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, significant};
+
+use super::{Calibration, Estimate};
+
+impl Calibration {
+    /// The result as a page.
+    pub fn document(&self) -> Document {
+        let heading = |text: &str| Block::Heading { level: 2, text: text.to_owned() };
+        let mut blocks = Vec::new();
+        if !self.figures.is_empty() {
+            blocks.push(heading("What was measured, and the fit"));
+            blocks.extend(self.figures.iter().cloned().map(Block::Figure));
+        }
+        blocks.push(heading("Parameters"));
+        blocks.push(Block::Table(self.parameters()));
+        if self.estimates.len() > 1 && !self.correlation.is_empty() {
+            blocks.push(Block::Table(self.correlations()));
+        }
+        if !self.facts.is_empty() {
+            let mut table = Table::new("What they rest on.", &[("fact", ""), ("value", "")]);
+            let cells =
+                |(name, value): &(String, String)| vec![Cell::text(name), Cell::text(value)];
+            table.rows = self.facts.iter().map(cells).collect();
+            blocks.push(Block::Table(table));
+        }
+        if !self.scenario.is_empty() {
+            let mut table = Table::new("Lines to paste into a scenario.", &[("scenario", "")]);
+            table.rows = self.scenario.lines().map(|line| vec![Cell::text(line)]).collect();
+            blocks.push(heading("For a scenario"));
+            blocks.push(Block::Table(table));
+        }
+        Document {
+            title: self.title.clone(),
+            verdict: Verdict {
+                headline: self.headline(),
+                sentences: vec![
+                    "Intervals are of 95 % and hold what scatters in the test; the model, and what was given \
+                     as exact, are not in them."
+                        .to_owned(),
+                ],
+                tone: Tone::Neutral,
+                ..Verdict::default()
+            },
+            blocks,
+            provenance: vec![(
+                "program".to_owned(),
+                format!("barrelstack {}", env!("CARGO_PKG_VERSION")),
+            )],
+            warnings: self.warnings.clone(),
+            words: Vec::new(),
+        }
+    }
+
+    /// Every parameter in a few words.
+    fn headline(&self) -> String {
+        let told = |estimate: &Estimate| {
+            let unit = estimate.unit();
+            let value = format!("{} {}", significant(estimate.value, 3), unit);
+            format!("{} {}", estimate.name, value.trim_end())
+        };
+        let all: Vec<String> = self.estimates.iter().map(told).collect();
+        let text = all.join(", ");
+        let mut letters = text.chars();
+        let first = letters.next().map(|first| first.to_uppercase().collect::<String>());
+        format!("{}{}.", first.unwrap_or_default(), letters.as_str())
+    }
+
+    fn parameters(&self) -> Table {
+        let mut table = Table::new(
+            "What the test gives, with 95 % intervals.",
+            &[("parameter", ""), ("value", ""), ("from", ""), ("to", ""), ("unit", "")],
+        );
+        let bound =
+            |value: f64| if value.is_finite() { Cell::Number(value, 4) } else { Cell::Missing };
+        let cells = |estimate: &Estimate| {
+            vec![
+                Cell::text(&estimate.name),
+                bound(estimate.value),
+                bound(estimate.low),
+                bound(estimate.high),
+                Cell::text(estimate.unit()),
+            ]
+        };
+        table.rows = self.estimates.iter().map(cells).collect();
+        table
+    }
+
+    fn correlations(&self) -> Table {
+        let names = self.estimates.iter().map(|estimate| estimate.name.as_str());
+        let columns: Vec<(&str, &str)> =
+            std::iter::once("parameter").chain(names).map(|name| (name, "")).collect();
+        let mut table = Table::new("Correlations between the parameters.", &columns);
+        let row = |(estimate, values): (&Estimate, &Vec<f64>)| {
+            let values = values.iter().map(|value| Cell::text(format!("{value:+.2}")));
+            std::iter::once(Cell::text(&estimate.name)).chain(values).collect()
+        };
+        table.rows = self.estimates.iter().zip(&self.correlation).map(row).collect();
+        table
+    }
+}

@@ -1,0 +1,117 @@
+//! Pages of what became of a record: every component, spectra and tables, before and after.
+
+use std::path::Path;
+
+use barrelstack_motion::Record;
+use barrelstack_report::{
+    Block, Cell, Document, Figure, FigureKind, Panels, Plot, Table, Tone, Verdict, html,
+};
+
+use super::output::vacant;
+use super::panels;
+use crate::store::store;
+
+/// What a page tells beside its figures.
+pub(super) struct Told {
+    /// The answer in one sentence.
+    pub(super) headline: String,
+    /// What it was and what it is, in numbers.
+    pub(super) tables: Vec<Table>,
+}
+
+/// Whether a file is to be a page.
+fn is_page(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("html"))
+}
+
+/// Refuses a page or a picture that cannot be written.
+pub(super) fn vacant_figure(path: &Path, overwrite: bool) -> anyhow::Result<()> {
+    if is_page(path) { vacant(path, overwrite) } else { panels::vacant_picture(path, overwrite) }
+}
+
+/// Writes the panels of a record before and after as its ending says: as a page with what is told, or
+/// as a picture.
+pub(super) fn write(
+    path: &Path,
+    figure: &Figure,
+    after: &Record,
+    told: Told,
+) -> anyhow::Result<()> {
+    if let (FigureKind::Panels(panels), true) = (&figure.kind, is_page(path)) {
+        return store(path, html(&document(panels, after, told)).as_bytes());
+    }
+    panels::write(path, figure)
+}
+
+fn document(panels: &Panels, after: &Record, told: Told) -> Document {
+    let heading = |text: &str| Block::Heading { level: 2, text: text.to_owned() };
+    let mut blocks = Vec::new();
+    // The spectra, which are the last row, tell most.
+    if let Some((spectra, components)) = panels.rows.split_last() {
+        blocks.push(heading("Spectra"));
+        blocks.extend(spectra.iter().enumerate().map(|(at, plot)| live("spectra", at, plot)));
+        blocks.push(heading("What became of it"));
+        blocks.extend(told.tables.into_iter().map(Block::Table));
+        for (row, plots) in components.iter().enumerate() {
+            let name = plots.first().and_then(|plot| plot.y.label.split_once(": "));
+            blocks.push(heading(&format!("Component {}", name.map_or("", |(name, _)| name))));
+            let id = format!("component-{}", row + 1);
+            blocks.extend(plots.iter().enumerate().map(|(at, plot)| live(&id, at, plot)));
+        }
+    }
+    let steps = after.notes.iter().enumerate();
+    Document {
+        title: panels.title.clone(),
+        verdict: Verdict {
+            headline: told.headline,
+            sentences: panels.lines.iter().map(|line| format!("{line}.")).collect(),
+            tone: Tone::Neutral,
+            ..Verdict::default()
+        },
+        blocks,
+        provenance: steps.map(|(at, note)| (format!("step {}", at + 1), note.clone())).collect(),
+        warnings: Vec::new(),
+        words: Vec::new(),
+    }
+}
+
+/// A plot that can be looked at closely.
+fn live(id: &str, at: usize, plot: &Plot) -> Block {
+    let what = match plot.y.label.split_once(": ") {
+        Some((channel, quantity)) => format!("{quantity} of {channel}"),
+        None => plot.y.label.clone(),
+    };
+    let mut lines: Vec<&str> = plot.series.iter().map(|series| series.label.as_str()).collect();
+    let last = lines.pop().unwrap_or_default();
+    let lines =
+        if lines.is_empty() { last.into() } else { format!("{} and {last}", lines.join(", ")) };
+    Block::Figure(Figure {
+        id: format!("{id}-{}", at + 1),
+        caption: format!("{}: {lines}.", capital(&what)),
+        kind: FigureKind::Plot(Plot { interactive: true, ..plot.clone() }),
+    })
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|first| first.to_uppercase().collect::<String>());
+    first.unwrap_or_default() + letters.as_str()
+}
+
+/// A table of the terminal as one of a page.
+pub(super) fn table(caption: &str, rows: &[Vec<String>]) -> Table {
+    let Some((head, rows)) = rows.split_first() else { return Table::new(caption, &[]) };
+    let columns: Vec<(&str, &str)> = head.iter().map(|name| (name.as_str(), "")).collect();
+    let mut table = Table::new(caption, &columns);
+    // With the digits that it is told with.
+    let digits = |text: &str| {
+        let told = text.trim_start_matches(['-', '0', '.']);
+        told.chars().filter(char::is_ascii_digit).count()
+    };
+    let cell = |text: &String| match text.parse::<f64>() {
+        Ok(value) => Cell::Number(value, digits(text)),
+        Err(_) => Cell::text(text),
+    };
+    table.rows = rows.iter().map(|row| row.iter().map(cell).collect()).collect();
+    table
+}
