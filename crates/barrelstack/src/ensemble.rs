@@ -7,6 +7,7 @@
 
 mod alone;
 mod case;
+mod columns;
 mod crew;
 
 use std::ops::ControlFlow;
@@ -23,6 +24,7 @@ use crate::watch::End;
 
 pub use barrelstack_dynamics::lanes::Width;
 pub use case::{CaseResult, Prepared};
+pub use columns::{CASE_COLUMNS, CaseColumn, Get, table};
 
 /// Version of what an ensemble computes: raised whenever the same case may give other bits, so that
 /// results of two versions are never put together.

@@ -25,7 +25,6 @@
 mod builtin;
 mod claim;
 mod collect;
-mod column;
 mod design;
 mod distribution;
 mod endings;
@@ -46,11 +45,12 @@ mod shard;
 mod stop;
 mod table;
 
+use crate::scenario::FileRef;
 use crate::scenario::template::Template;
 
+pub use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
 pub use builtin::{get as builtin, names as builtin_names};
 pub use collect::{Collected, Status, collect, read_shards};
-pub use column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
 pub use design::Design;
 pub use distribution::Distribution;
 pub use endings::{Endings, Following};
@@ -82,6 +82,8 @@ pub struct Study {
     /// The text of the study file.
     text: String,
     template: Template,
+    /// Files of the motion of the base that are at hand.
+    held: Vec<FileRef>,
     factors: Vec<Factor>,
     motions: Vec<Motion>,
     intensity: Option<Intensity>,
