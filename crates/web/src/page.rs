@@ -21,7 +21,7 @@ fn say(answer: Vec<u8>) {
 
 /// Makes room for a request of so many bytes and gives its address; the last answer is gone.
 #[unsafe(no_mangle)]
-pub extern "C" fn room(length: usize) -> *mut u8 {
+pub(crate) extern "C" fn room(length: usize) -> *mut u8 {
     std::panic::set_hook(Box::new(|panic| say(panic.to_string().into_bytes())));
     say(Vec::new());
     REQUEST.with(|request| {
@@ -33,7 +33,7 @@ pub extern "C" fn room(length: usize) -> *mut u8 {
 
 /// Does what is asked: 0 done, 1 refused.
 #[unsafe(no_mangle)]
-pub extern "C" fn run() -> u32 {
+pub(crate) extern "C" fn run() -> u32 {
     let request = REQUEST.with(RefCell::take);
     let done = crate::answered(&request, &mut |done, of| {
         if told(done, of) == 0 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
@@ -45,12 +45,12 @@ pub extern "C" fn run() -> u32 {
 
 /// Where the answer is.
 #[unsafe(no_mangle)]
-pub extern "C" fn answer() -> *const u8 {
+pub(crate) extern "C" fn answer() -> *const u8 {
     ANSWER.with(|answer| answer.borrow().as_ptr())
 }
 
 /// How many bytes the answer has.
 #[unsafe(no_mangle)]
-pub extern "C" fn answer_length() -> usize {
+pub(crate) extern "C" fn answer_length() -> usize {
     ANSWER.with(|answer| answer.borrow().len())
 }
