@@ -71,6 +71,14 @@ use plan::{Chunks, Sizes};
 use setting::Setting;
 
 /// A study: what is varied, what shakes it, and which cases are run.
+///
+/// ```
+/// use barrelstack_campaign::Study;
+///
+/// let study = Study::built_in("napa-four-levels")?;
+/// assert_eq!(study.plan().map(|chunk| chunk.cases as u64).sum::<u64>(), study.cases());
+/// # Ok::<(), barrelstack_campaign::study::StudyError>(())
+/// ```
 #[derive(Debug)]
 pub struct Study {
     /// One line for people.

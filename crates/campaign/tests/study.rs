@@ -453,7 +453,7 @@ fn a_stopped_study_goes_on_where_it_was() {
     let folder = tempfile::tempdir().unwrap();
     let whole = run_with(&study, folder.path(), 2);
     let again = tempfile::tempdir().unwrap();
-    let stop = |progress: &barrelstack_campaign::study::Progress| {
+    let stop = |progress: &Progress| {
         if progress.now >= 5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let options = RunOptions { threads: NonZero::new(1), ..RunOptions::default() };

@@ -139,6 +139,7 @@ impl Values {
     }
 
     /// Takes off the values from a row on.
+    #[must_use]
     pub fn split_off(&mut self, row: usize) -> Self {
         match self {
             Self::Integer(values) => Self::Integer(values.split_off(row)),
