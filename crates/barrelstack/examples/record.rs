@@ -3,14 +3,16 @@
 
 use std::ops::ControlFlow;
 
-use barrelstack::motion::{AccelerationUnit, bundled};
+use barrelstack::motion::{AccelerationUnit, Stage, bundled};
 use barrelstack::{Record, Scenario};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Any samples will do; these are those of the record that comes with the program.
     let own = &bundled("napa-college-2014").ok_or("it is bundled")?.channels[0];
     let (samples, unit) = (&own.acceleration[..], AccelerationUnit::MetersPerSecondSquared);
-    let record = Record::of_samples("my site", &[("E", samples)], own.time_step, unit)?;
+    let mut record = Record::of_samples("my site", &[("E", samples)], own.time_step, unit)?;
+    // As recorded, so that the drift is taken out of it.
+    record.stage = Stage::Raw;
     let changes = ["motion.scale.pgv=80 cm/s", "run.duration=20 s"].map(str::to_owned);
     let scenario = Scenario::builtin("candia-8-barrels", &changes)?.with_record(&record)?;
     let run = scenario.run_watched(&mut |progress| {
