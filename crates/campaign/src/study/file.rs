@@ -63,7 +63,7 @@ impl Study {
     ///     [base]
     ///     extends = "sliding-block"
     ///     [[motion]]
-    ///     record = "site.txt"
+    ///     records = ["site.txt"]
     ///     [design]
     ///     kind = "full-factorial"
     ///     "#,
