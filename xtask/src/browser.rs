@@ -7,11 +7,14 @@ use anyhow::{Context as _, bail};
 
 use crate::steps::cargo;
 
-/// Where the checks stand in the repository.
-const SCRIPT: &str = "crates/report/tests/browser/check.mjs";
+/// Where the checks of report pages stand in the repository.
+pub(crate) const REPORTS: &str = "crates/report/tests/browser/check.mjs";
 
-/// What is announced.
-pub(crate) const NAME: &str = "node crates/report/tests/browser/check.mjs";
+/// Where those of the engine in a page stand.
+pub(crate) const ENGINE: &str = "crates/web/tests/check.mjs";
+
+/// Where their modules are.
+const MODULES: &str = "crates/report/tests/browser";
 
 /// What installs the modules of the checks, typed in the root of the repository.
 const INSTALL: &str = "npm ci --prefix crates/report/tests/browser";
@@ -23,11 +26,12 @@ const BROWSERS: [&str; 4] =
 /// Checks that open pages in a browser.
 pub(crate) struct Check {
     root: PathBuf,
+    script: &'static str,
 }
 
 /// The checks, where the repository has them.
-pub(crate) fn find(root: &Path) -> Option<Check> {
-    root.join(SCRIPT).is_file().then(|| Check { root: root.to_path_buf() })
+pub(crate) fn find(root: &Path, script: &'static str) -> Option<Check> {
+    root.join(script).is_file().then(|| Check { root: root.to_path_buf(), script })
 }
 
 impl Check {
@@ -41,13 +45,12 @@ impl Check {
         if on_path("node").is_none() {
             return Err("no node on the PATH; install Node.js 20 or newer to check pages".into());
         }
-        let script = self.root.join(SCRIPT);
         let modules = Command::new("node")
             .args([
                 "--eval",
                 "for (const m of ['playwright-core', '@fontsource/roboto', 'axe-core']) require.resolve(m)",
             ])
-            .current_dir(script.parent().unwrap_or(&self.root))
+            .current_dir(self.root.join(MODULES))
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .status();
@@ -55,7 +58,7 @@ impl Check {
             return Err(format!("the modules of the checks are not installed; type `{INSTALL}`"));
         }
         let mut command = Command::new("node");
-        command.arg(SCRIPT).current_dir(&self.root).env("CHROMIUM", browser);
+        command.arg(self.script).current_dir(&self.root).env("CHROMIUM", browser);
         command.env("BARRELSTACK", self.program());
         Ok(command)
     }

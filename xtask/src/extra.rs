@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use crate::browser;
 use crate::steps::cargo;
+use crate::{browser, web};
 
 /// A check that not every machine can do.
 pub(crate) struct Extra {
@@ -19,10 +19,7 @@ pub(crate) struct Extra {
 }
 
 /// The oldest toolchain that builds the workspace: `rust-version` in `Cargo.toml`.
-const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
-
-/// The target of browsers.
-const BROWSER_TARGET: &str = "wasm32-unknown-unknown";
+pub(crate) const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
 
 /// All of them, the quickest first.
 pub(crate) fn all(root: &Path) -> Vec<Extra> {
@@ -49,27 +46,32 @@ pub(crate) fn all(root: &Path) -> Vec<Extra> {
                  CHANGELOG.md",
         pages: None,
     };
-    let libraries = ["dynamics", "motion", "fragility", "input", "report"];
-    let mut check = with(Command::new(cargo()), &["check", "--target", BROWSER_TARGET]);
-    check.args(libraries.map(|library| format!("--package=barrelstack-{library}")));
-    check.arg("--package=barrelstack");
-    let browser = Extra {
-        name: "check the libraries for wasm32-unknown-unknown",
-        command: if has_target() {
-            Ok(check)
-        } else {
-            Err(format!("no target {BROWSER_TARGET}; type `rustup target add {BROWSER_TARGET}`"))
-        },
+    let own = std::env::current_exe().map(Command::new);
+    let web = Extra {
+        name: "cargo xtask web",
+        command: web::Build::find(root)
+            .and_then(|_| own.map_err(|error| error.to_string()))
+            .map(|command| with(command, &["web"])),
         remedy: "see the error above",
         pages: None,
     };
-    let pages = browser::find(root).map(|check| Extra {
-        name: browser::NAME,
+    let reports = browser::find(root, browser::REPORTS).map(|check| Extra {
+        name: "node crates/report/tests/browser/check.mjs",
         command: check.command(),
         remedy: "see above",
         pages: Some(check),
     });
-    [licenses, oldest, browser].into_iter().chain(pages).collect()
+    // What the step before has built, where there is one.
+    let engine = browser::find(root, browser::ENGINE).map(|check| Extra {
+        name: "node crates/web/tests/check.mjs",
+        command: web::Build::find(root).and_then(|_| check.command()).map(|mut command| {
+            command.env("ENGINE", web::module(root));
+            command
+        }),
+        remedy: "see above",
+        pages: Some(check),
+    });
+    [licenses, oldest, web].into_iter().chain(engine).chain(reports).collect()
 }
 
 fn with(mut command: Command, words: &[&str]) -> Command {
@@ -81,11 +83,4 @@ fn with(mut command: Command, words: &[&str]) -> Command {
 fn succeeds(command: &mut Command) -> bool {
     let status = command.stdout(Stdio::null()).stderr(Stdio::null()).status();
     status.is_ok_and(|status| status.success())
-}
-
-/// Whether the standard library for browsers is installed.
-fn has_target() -> bool {
-    let mut command = with(Command::new("rustc"), &["--print", "target-libdir"]);
-    let output = command.args(["--target", BROWSER_TARGET]).output();
-    output.is_ok_and(|output| Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_dir())
 }

@@ -9,6 +9,7 @@ mod browser;
 mod extra;
 mod steps;
 mod tally;
+mod web;
 
 use std::process::ExitCode;
 
@@ -20,6 +21,7 @@ tasks:
   test       formatting, lints, documentation, and all tests in both profiles; stops at the first failure
   golden     keeps how all report pages look now, for the next test; look at what it keeps before you commit it
   golden bits  keeps what results are now, to the last bit, once their version is raised
+  web        the engine for a page, as WebAssembly; says how large it is and what it asks of the page
   validate   every problem with an exact answer, in full, with a report; `--out DIR`, `--only TEXT`, `--fast`
   bench      how fast stacks are computed, beside a game engine on the same scenes; `--cases N`, `table`, `growth`,
              `history` (the work of runs beside that of the last release; `history keep` writes it down)
@@ -40,6 +42,13 @@ fn main() -> ExitCode {
             eprintln!("xtask: {error:#}");
             ExitCode::FAILURE
         }),
+        ["web"] => match steps::web() {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                eprintln!("xtask: {error:#}");
+                ExitCode::FAILURE
+            }
+        },
         ["golden", "bits"] => release(&["--package", "barrelstack", "--example", "golden"], &[]),
         ["validate", rest @ ..] => release(&["--package", "barrelstack-validation"], rest),
         ["bench", rest @ ..] => release(&["--manifest-path", "benchmarks/Cargo.toml"], rest),

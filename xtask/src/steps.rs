@@ -11,6 +11,7 @@ use anyhow::{Context as _, bail};
 use crate::browser;
 use crate::extra;
 use crate::tally::Tally;
+use crate::web;
 
 /// One command and what to do when it fails.
 struct Step {
@@ -104,10 +105,16 @@ pub(crate) fn test() -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Builds the engine for a page.
+pub(crate) fn web() -> anyhow::Result<()> {
+    let build = web::Build::find(&root()).map_err(anyhow::Error::msg)?;
+    build.run().map(drop)
+}
+
 /// Keeps how all report pages look now.
 pub(crate) fn golden() -> anyhow::Result<ExitCode> {
-    let check =
-        browser::find(&root()).context("there are no checks of pages in this repository")?;
+    let check = browser::find(&root(), browser::REPORTS)
+        .context("there are no checks of pages in this repository")?;
     check.renew()
 }
 

@@ -1,7 +1,7 @@
-//! Many cases together: how often a stack comes down, against the friction under its racks.
+//! Many cases together: how often a stack comes down, against the friction under its racks, and all else as a table.
 #![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
 
-use barrelstack::ensemble::{Ensemble, Prepared};
+use barrelstack::ensemble::{Ensemble, Prepared, table};
 use barrelstack::{Scenario, outcome::Outcome};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -14,6 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let results = Ensemble { cases, ..Ensemble::default() }.run();
     let fell = |result: &_| matches!(result, Ok(Outcome::Collapse { .. }));
     let fallen = results.iter().filter(|result| fell(&result.outcome)).count();
-    println!("{fallen} of {} came down", results.len());
+    println!("{fallen} of {} came down\n", results.len());
+    println!("{}", barrelstack_report::column::to_csv(&table(&results)));
     Ok(())
 }

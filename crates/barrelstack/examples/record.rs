@@ -1,16 +1,21 @@
-//! A stack under a record, scaled, with a look at every twentieth of a second and its report as a page.
+//! A stack under accelerations of your own, scaled, with a look at its way and its report as a page.
 #![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
 
 use std::ops::ControlFlow;
 
-use barrelstack::Scenario;
-use barrelstack_motion::IntensityMeasure;
+use barrelstack::motion::{AccelerationUnit, Stage, bundled};
+use barrelstack::{Record, Scenario};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let record = barrelstack_motion::bundled("napa-college-2014").ok_or("it is bundled")?;
-    let motion = record.default_motion()?.scale_to(IntensityMeasure::Pgv, 0.8)?;
-    let scenario = Scenario::builtin("candia-8-barrels", &["run.duration=20 s".to_owned()])?;
-    let run = scenario.run_on(motion.into(), &mut |progress| {
+    // Any samples will do; these are those of the record that comes with the program.
+    let own = &bundled("napa-college-2014").ok_or("it is bundled")?.channels[0];
+    let (samples, unit) = (&own.acceleration[..], AccelerationUnit::MetersPerSecondSquared);
+    let mut record = Record::of_samples("my site", &[("E", samples)], own.time_step, unit)?;
+    // As recorded, so that the drift is taken out of it.
+    record.stage = Stage::Raw;
+    let changes = ["motion.scale.pgv=80 cm/s", "run.duration=20 s"].map(str::to_owned);
+    let scenario = Scenario::builtin("candia-8-barrels", &changes)?.with_record(&record)?;
+    let run = scenario.run_watched(&mut |progress| {
         println!("{:.1} of {:.1} s", progress.time, progress.end_time);
         ControlFlow::Continue(())
     })?;

@@ -3,6 +3,7 @@
 use barrelstack_report::described;
 
 use crate::assemble::PartKind;
+use crate::ground::from_disk;
 use crate::run::{RunFailure, check_memory, end_time};
 use crate::scenario::{Scenario, View};
 use crate::stand::{Standing, stand};
@@ -115,6 +116,7 @@ impl Checked {
 /// # Errors
 /// As [`Scenario::run`].
 pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
+    let scenario = &scenario.with_records(&mut from_disk)?;
     let ground = scenario.ground()?;
     let end_time = end_time(scenario, &ground, scenario.run.similitude.sqrt())?;
     let Standing { assembly, state, scratch, settled, step } = stand(scenario, end_time)?;

@@ -3,7 +3,7 @@
 mod formula;
 mod planes;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
@@ -12,14 +12,23 @@ use barrelstack_motion::{
 };
 
 use crate::scenario::{
-    MeasuredOn, MotionSource, MotionSpec, Processing as ProcessingSpec, RecordMotion, RecordSource,
-    Scale, Scenario, Vertical,
+    FileRef, MeasuredOn, MotionSource, MotionSpec, Processing as ProcessingSpec, RecordMotion,
+    RecordSource, Scale, Scenario, Vertical,
 };
 use crate::system;
 
 pub(crate) use planes::other_component;
 
 /// What moves the ground of a run.
+///
+/// ```
+/// use barrelstack::Scenario;
+///
+/// let ground = Scenario::builtin("demo-napa", &[])?.ground()?;
+/// let motion = ground.motion.as_ref().expect("a record moves");
+/// assert!(motion.vertical.is_some() && ground.end() == motion.duration);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct Ground {
     /// The motion; none for ground at rest.
@@ -138,18 +147,107 @@ impl Scenario {
     /// # Errors
     /// When the record lacks a component asked for, or cannot be scaled.
     pub fn ground_of(&self, record: &Record) -> Result<Ground, GroundError> {
-        let spec = match &self.motion.source {
-            MotionSource::Record(own) => own.clone(),
-            MotionSource::None | MotionSource::Sine(_) | MotionSource::Pulse(_) => {
-                RecordMotion::of(RecordSource::Bundled(record.file.clone()))
-            }
-        };
+        let spec = self.recorded(RecordSource::Bundled(record.file.clone()));
         let mut ground = shaken_by(record, &spec, self.motion.scale)?;
         let spec = MotionSpec { source: MotionSource::Record(spec), ..self.motion.clone() };
         ground.rescale(&spec, self.run.similitude)?;
         Ok(ground)
     }
+
+    /// The scenario with the records of its motion at hand, which `fetch` has given by their paths, so that
+    /// whatever is made of it opens no file; what is at hand already is not fetched.
+    ///
+    /// [`from_disk`] is how a run fetches by itself.
+    /// What `fetch` says where it has nothing is what the system would say, such as "there is no such file".
+    ///
+    /// ```
+    /// use barrelstack::Scenario;
+    ///
+    /// let scenario = Scenario::builtin("candia-6-barrels", &["run.duration=2 s".to_owned()])?;
+    /// let record = barrelstack_motion::bundled("napa-college-2014").expect("a bundled record");
+    /// let bytes = barrelstack_motion::write::text(&record)?.into_bytes();
+    /// let scenario = scenario.with_records(&mut |_| Ok(bytes.clone()))?;
+    /// assert!(scenario.run()?.ground.motion.is_some());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When `fetch` has none.
+    pub fn with_records(
+        &self,
+        fetch: &mut dyn FnMut(&Path) -> Result<Vec<u8>, String>,
+    ) -> Result<Self, GroundError> {
+        let mut held = self.clone();
+        if let MotionSource::Record(record) = &mut held.motion.source {
+            let obtain = how_to_obtain(record);
+            if let RecordSource::File(file) = &mut record.source {
+                hold(file, &obtain, fetch)?;
+            }
+            if let Vertical::File(file) = &mut record.vertical {
+                hold(file, OTHER_VERTICAL, fetch)?;
+            }
+        }
+        Ok(held)
+    }
+
+    /// The scenario shaken by a record at hand, in place of its own motion; components, processing and scale
+    /// are those that it states.
+    ///
+    /// # Errors
+    /// When the record has no channel, or channels of different steps.
+    pub fn with_record(&self, record: &Record) -> Result<Self, MotionError> {
+        let mut file = FileRef::new(&record.file, PathBuf::new());
+        file.hold(barrelstack_motion::write::npz(record)?);
+        let mut scenario = self.clone();
+        scenario.motion.source = MotionSource::Record(self.recorded(RecordSource::File(file)));
+        scenario.retitle();
+        Ok(scenario)
+    }
+
+    /// What it states of its record, of another one; where it has none, the first horizontal component with the
+    /// default processing.
+    fn recorded(&self, source: RecordSource) -> RecordMotion {
+        match &self.motion.source {
+            MotionSource::Record(own) => RecordMotion { source, ..own.clone() },
+            MotionSource::None | MotionSource::Sine(_) | MotionSource::Pulse(_) => {
+                RecordMotion::of(source)
+            }
+        }
+    }
 }
+
+/// The bytes of a file of the system, as [`Scenario::with_records`] takes them.
+///
+/// # Errors
+/// In words, when it cannot be read, or has more than any record.
+pub fn from_disk(path: &Path) -> Result<Vec<u8>, String> {
+    system::read(path, RECORD_LIMIT)
+}
+
+/// Has a file at hand from now on.
+fn hold(
+    file: &mut FileRef,
+    obtain: &str,
+    fetch: &mut dyn FnMut(&Path) -> Result<Vec<u8>, String>,
+) -> Result<(), GroundError> {
+    if !file.is_held() {
+        let path = file.resolve();
+        file.hold(fetch(&path).map_err(|reason| unreadable(path, reason, obtain))?);
+    }
+    Ok(())
+}
+
+fn unreadable(path: PathBuf, reason: String, obtain: &str) -> GroundError {
+    GroundError::Unreadable { path, reason, obtain: obtain.to_owned() }
+}
+
+/// How to come by the file of a record, as a sentence that goes on from why it cannot be read.
+fn how_to_obtain(record: &RecordMotion) -> String {
+    record.obtain.as_ref().map_or_else(|| "; correct the path".to_owned(), |how| format!("; {how}"))
+}
+
+/// The same for the file of a vertical component.
+const OTHER_VERTICAL: &str = "; correct motion.vertical";
 
 /// Reads or makes a motion, scaled as it says, for a stack of a length scale.
 ///
@@ -230,13 +328,7 @@ fn read(spec: &RecordMotion) -> Result<Record, GroundError> {
                 known: barrelstack_motion::BUNDLED.join(", "),
             })
         }
-        RecordSource::File(file) => {
-            let obtain = spec
-                .obtain
-                .as_ref()
-                .map_or_else(|| "; correct the path".to_owned(), |how| format!("; {how}"));
-            read_file(&file.resolve(), &options, &obtain)
-        }
+        RecordSource::File(file) => read_file(file, &options, &how_to_obtain(spec)),
     }
 }
 
@@ -268,7 +360,7 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
         }
         Vertical::File(file) => {
             let options = read_options(spec)?;
-            let other = read_file(&file.resolve(), &options, "; correct motion.vertical")?;
+            let other = read_file(file, &options, OTHER_VERTICAL)?;
             require_strong_motion(&other)?;
             warnings.extend(other.warnings.iter().map(|w| format!("{}: {w}", other.file)));
             let (record, other, told) = on_one_clock(record, &horizontal, other)?;
@@ -361,16 +453,10 @@ fn default_processing(record: &Record) -> Processing {
     if full.is_none() { full } else { Processing::compact() }
 }
 
-fn read_file(
-    path: &std::path::Path,
-    options: &ReadOptions,
-    obtain: &str,
-) -> Result<Record, GroundError> {
-    let bytes = system::read(path, RECORD_LIMIT).map_err(|reason| GroundError::Unreadable {
-        path: path.to_owned(),
-        reason,
-        obtain: obtain.to_owned(),
-    })?;
+fn read_file(file: &FileRef, options: &ReadOptions, obtain: &str) -> Result<Record, GroundError> {
+    let path = file.resolve();
+    let bytes =
+        file.read(RECORD_LIMIT).map_err(|reason| unreadable(path.clone(), reason, obtain))?;
     let record = barrelstack_motion::read(&bytes, &path.display().to_string(), options);
     // A page says which file it was, and not where it lies.
     let named = |record: Record| {

@@ -11,7 +11,7 @@ use barrelstack_dynamics::{
 };
 
 use crate::assemble::Assembly;
-use crate::ground::Ground;
+use crate::ground::{Ground, from_disk};
 use crate::outcome::{Outcome, judge};
 use crate::scenario::{self, Scenario, Scene, Until};
 use crate::stand::{Standing, stand};
@@ -24,6 +24,15 @@ use failure::MOST_KEPT;
 pub use failure::RunFailure;
 
 /// Everything that was seen of a run.
+///
+/// ```
+/// use barrelstack::Scenario;
+///
+/// let run = Scenario::builtin("rocking-block", &["run.duration=2 s".to_owned()])?.run()?;
+/// let tilt = run.recording.frames.poses.iter().map(|poses| poses[1][2].abs()).fold(0.0, f64::max);
+/// println!("{}: tilts by {tilt:.3} rad in {} steps", run.outcome.kind(), run.work.steps);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Run {
     /// What was run.
@@ -123,10 +132,12 @@ impl Scenario {
         &self,
         observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Run, RunFailure> {
-        self.run_on(self.ground()?, observer)
+        let held = self.with_records(&mut from_disk)?;
+        held.run_on(held.ground()?, observer)
     }
 
-    /// Runs it on a given ground before an observer; the motion of the scenario is not looked at.
+    /// Runs it on a given ground before an observer; the motion of the scenario is not looked at, though it
+    /// counts in the fingerprint of the run: [`Scenario::with_record`] makes a scenario of another record.
     ///
     /// ```
     /// use std::ops::ControlFlow;

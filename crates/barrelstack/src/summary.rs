@@ -314,6 +314,12 @@ impl Summary {
     }
 
     /// The summary as JSON text, indented.
+    ///
+    /// ```
+    /// let run = barrelstack::Scenario::builtin("sliding-block", &[])?.run()?;
+    /// assert!(run.summary().to_json().contains(r#""kind": "not-judged""#));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn to_json(&self) -> String {
         // Only maps with keys that are not text could fail, and there is none.
         serde_json::to_string_pretty(self).unwrap_or_default()

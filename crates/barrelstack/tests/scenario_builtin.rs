@@ -5,6 +5,7 @@
 use barrelstack::scenario::{
     Amplitude, Friction, MotionSource, NormalLaw, Scale, Scenario, Scene, builtin,
 };
+use barrelstack_motion::{AccelerationUnit, Record};
 
 fn load(name: &str) -> Scenario {
     Scenario::builtin(name, &[]).unwrap_or_else(|error| panic!("{name}: {error}"))
@@ -105,4 +106,80 @@ fn a_record_without_a_vertical_shakes_sideways_and_a_wrong_name_is_refused() {
     let flat = demo.ground_of(&record).unwrap();
     assert!(flat.motion.unwrap().vertical.is_none());
     assert!(flat.warnings[0].contains("has no vertical component"), "{:?}", flat.warnings);
+}
+
+#[test]
+fn a_record_counts_by_its_bytes_wherever_it_lies() {
+    let record = barrelstack_motion::bundled("napa-college-2014").unwrap();
+    let bytes = barrelstack_motion::write::text(&record).unwrap().into_bytes();
+    let folder = tempfile::tempdir().unwrap();
+    let named = |name: &str| {
+        let path = folder.path().join(name);
+        let changes = [format!("motion.record={}", path.display()), "run.duration=0.5 s".into()];
+        Scenario::builtin("candia-6-barrels", &changes).unwrap()
+    };
+    std::fs::write(folder.path().join("here.txt"), &bytes).unwrap();
+    std::fs::write(folder.path().join("there.txt"), &bytes).unwrap();
+    let mut other = record.clone();
+    other.channels[0].acceleration[0] += 1e-3;
+    let other = barrelstack_motion::write::text(&other).unwrap();
+    std::fs::write(folder.path().join("other.txt"), other).unwrap();
+    let hash = |scenario: &Scenario| scenario.run().unwrap().summary().provenance.scenario_hash;
+    let here = hash(&named("here.txt"));
+    assert_eq!(here, hash(&named("there.txt")));
+    assert_ne!(here, hash(&named("other.txt")));
+
+    // At hand, no file is opened, and nothing is another.
+    let mut asked = Vec::new();
+    let held = named("nowhere.txt")
+        .with_records(&mut |path| {
+            asked.push(path.to_owned());
+            Ok(bytes.clone())
+        })
+        .unwrap();
+    assert_eq!(asked, [folder.path().join("nowhere.txt")]);
+    assert_eq!(here, hash(&held));
+    assert_eq!(here, barrelstack::check(&held).unwrap().scenario_hash);
+    let pga = |scenario: &Scenario| scenario.ground().unwrap().motion.unwrap().pga();
+    assert_eq!(pga(&held), pga(&named("here.txt")));
+
+    let refused = named("nowhere.txt").with_records(&mut |_| Err("it is not here".to_owned()));
+    let sentence = refused.unwrap_err().to_string();
+    assert!(sentence.contains("nowhere.txt: it is not here; "), "{sentence}");
+}
+
+#[test]
+fn a_record_at_hand_shakes_as_the_one_that_is_read() {
+    let record = barrelstack_motion::bundled("napa-college-2014").unwrap();
+    let demo = Scenario::builtin("demo-napa", &[]).unwrap();
+    let given = demo.with_record(&record).unwrap();
+    let at = |scenario: &Scenario| {
+        let motion = scenario.ground().unwrap().motion.unwrap();
+        let vertical = motion.vertical.unwrap();
+        [20.0, 33.0, 35.5].map(|t| (motion.horizontal.at(t), vertical.at(t)))
+    };
+    assert_eq!(at(&demo), at(&given));
+    assert_eq!(given.title, "Ten barrels on five levels, napa-college-2014.txt");
+    // Both planes have their component of it.
+    let names = |scenario: &Scenario| -> Vec<String> {
+        let planes = barrelstack::variants::planes(scenario).unwrap();
+        let name = |scenario: &Scenario| scenario.ground().unwrap().motion.unwrap().name;
+        planes.iter().map(|plane| name(&plane.scenario)).collect()
+    };
+    assert_eq!(names(&given).len(), 2);
+    assert_ne!(names(&given)[0], names(&given)[1]);
+
+    // Out of samples: the same numbers, in another unit.
+    let own = &record.channels[0];
+    let in_gal: Vec<f64> = own.acceleration.iter().map(|a| 100.0 * a).collect();
+    let channels = [(own.name.as_str(), in_gal.as_slice())];
+    let unit = AccelerationUnit::Gal;
+    let made = Record::of_samples("mine", &channels, own.time_step, unit).unwrap();
+    let made = Record { stage: record.stage, ..made };
+    let made = demo.with_record(&made).unwrap().ground().unwrap();
+    assert!(made.warnings[0].contains("has no vertical component"), "{:?}", made.warnings);
+    let read = Scenario::builtin("demo-napa", &["motion.component=#1".to_owned()]).unwrap();
+    let (made, read) = (made.motion.unwrap(), read.ground().unwrap().motion.unwrap());
+    // Measured: 1e-16 and less.
+    assert!((made.pgv() / read.pgv() - 1.0).abs() < 1e-12, "{} and {}", made.pgv(), read.pgv());
 }

@@ -1,7 +1,7 @@
 //! A study in memory: a stack of each height under one motion at three strengths.
 #![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
 
-use barrelstack_campaign::study::Study;
+use barrelstack_campaign::Study;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let study = Study::parse(

@@ -152,7 +152,7 @@ impl Gathering {
     /// Reads the rows that follow, in the order of the cases.
     fn add(&mut self, table: &StudyTable) -> Result<(), DecisionError> {
         for (factor, column) in self.factors.iter_mut().zip(table.of_role(Role::Factor)) {
-            factor.values.append(column.values.clone())?;
+            factor.values.append(column.values.clone()).map_err(StudyError::Table)?;
         }
         self.results.add(&self.made, table);
         self.cases.add(table)

@@ -5,6 +5,16 @@
 //!                 ▲                            │
 //!              heights ◀───────────────────────┘
 //! ```
+//!
+//! ```
+//! use barrelstack_campaign::Study;
+//!
+//! let study = Study::built_in("napa-four-levels")?;
+//! println!("{}: {} cases under {} motions", study.title, study.cases(), study.motions());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A [`Study`] runs in memory ([`Study::table`]) or in a folder that many processes share ([`Study::run`]).
 
 // Results have the same bits on every machine, so transcendental functions are those of `libm`.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
@@ -12,6 +22,8 @@
 pub mod decision;
 pub mod heights;
 pub mod study;
+
+pub use study::Study;
 
 // The domain's rooms, by the names that they have there.
 use barrelstack::{ensemble, ground, outcome, pool, run, scenario, watch};

@@ -25,7 +25,6 @@
 mod builtin;
 mod claim;
 mod collect;
-mod column;
 mod design;
 mod distribution;
 mod endings;
@@ -46,11 +45,12 @@ mod shard;
 mod stop;
 mod table;
 
+use crate::scenario::FileRef;
 use crate::scenario::template::Template;
 
+pub use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
 pub use builtin::{get as builtin, names as builtin_names};
 pub use collect::{Collected, Status, collect, read_shards};
-pub use column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
 pub use design::Design;
 pub use distribution::Distribution;
 pub use endings::{Endings, Following};
@@ -71,6 +71,14 @@ use plan::{Chunks, Sizes};
 use setting::Setting;
 
 /// A study: what is varied, what shakes it, and which cases are run.
+///
+/// ```
+/// use barrelstack_campaign::Study;
+///
+/// let study = Study::built_in("napa-four-levels")?;
+/// assert_eq!(study.plan().map(|chunk| chunk.cases as u64).sum::<u64>(), study.cases());
+/// # Ok::<(), barrelstack_campaign::study::StudyError>(())
+/// ```
 #[derive(Debug)]
 pub struct Study {
     /// One line for people.
@@ -82,6 +90,8 @@ pub struct Study {
     /// The text of the study file.
     text: String,
     template: Template,
+    /// Files of the motion of the base that are at hand.
+    held: Vec<FileRef>,
     factors: Vec<Factor>,
     motions: Vec<Motion>,
     intensity: Option<Intensity>,

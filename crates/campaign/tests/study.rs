@@ -11,7 +11,7 @@ use std::path::Path;
 
 use barrelstack::ensemble::Width;
 use barrelstack_campaign::study::{
-    ChunkRun, Collected, Role, RunOptions, Study, StudyError, StudyTable, Tally, Value,
+    ChunkRun, Collected, Progress, Role, RunOptions, Study, StudyError, StudyTable, Tally, Value,
 };
 use common::HEAD;
 
@@ -396,6 +396,24 @@ fn a_changed_record_is_another_study() {
     let out = folder.path().join("out");
     run_with(&first, &out, 1);
     assert_eq!(first.hash(), Study::load(&file).unwrap().hash());
+
+    // Moved elsewhere it is the same, and nothing is run again.
+    let moved = folder.path().join("moved");
+    std::fs::create_dir(&moved).unwrap();
+    std::fs::copy(&record, moved.join("site.csv")).unwrap();
+    std::fs::copy(&file, moved.join("study.toml")).unwrap();
+    let done = std::sync::Mutex::new(Progress::default());
+    let tell = |progress: &Progress| {
+        *done.lock().unwrap() = *progress;
+        ControlFlow::Continue(())
+    };
+    Study::load(&moved.join("study.toml"))
+        .unwrap()
+        .run(&out, &RunOptions::default(), &tell)
+        .unwrap();
+    let Progress { before, now, .. } = *done.lock().unwrap();
+    assert!(before > 0 && now == 0, "{now} cases run again");
+
     std::fs::write(&record, samples(0.3)).unwrap();
     let second = Study::load(&file).unwrap();
     assert_ne!(first.hash(), second.hash());
@@ -435,7 +453,7 @@ fn a_stopped_study_goes_on_where_it_was() {
     let folder = tempfile::tempdir().unwrap();
     let whole = run_with(&study, folder.path(), 2);
     let again = tempfile::tempdir().unwrap();
-    let stop = |progress: &barrelstack_campaign::study::Progress| {
+    let stop = |progress: &Progress| {
         if progress.now >= 5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let options = RunOptions { threads: NonZero::new(1), ..RunOptions::default() };

@@ -3,9 +3,11 @@
 use std::fmt;
 
 use crate::direction::{Direction, Orientation};
-use crate::format::Printed;
+use crate::error::MotionError;
+use crate::format::{self, Printed, Source};
 use crate::math;
 use crate::site::Site;
+use crate::units::AccelerationUnit;
 use crate::utc::Utc;
 
 /// How far a record was processed before it was written.
@@ -199,7 +201,7 @@ impl fmt::Display for Warning {
 /// A file as read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
-    /// Name of the format, as in [`crate::FORMATS`].
+    /// Name of the format, as in [`crate::FORMATS`]; `samples` where it was made of samples.
     pub format: &'static str,
     /// Name of the file.
     pub file: String,
@@ -233,6 +235,49 @@ impl Record {
             mixed: false,
             notes: Vec::new(),
         }
+    }
+
+    /// A record out of samples at hand: channels by name, all of one step (s) and one unit.
+    ///
+    /// Names tell directions as those of files do ([`Direction::parse`]): `360`, `N28W`, `H1`, `UP`; a channel
+    /// that points down is turned upward.
+    /// Its stage is unknown, so the numbers are taken as they are; set [`Record::stage`] to [`Stage::Raw`] to
+    /// have them processed by default.
+    ///
+    /// ```
+    /// use barrelstack_motion::{AccelerationUnit, Record};
+    /// let shake: Vec<f64> = (0..400).map(|at| 0.2 * (f64::from(at) * 0.1).sin()).collect();
+    /// let record = Record::of_samples("table", &[("H1", &shake)], 0.01, AccelerationUnit::G)?;
+    /// assert!((record.channels[0].pga() - 0.2 * 9.80665).abs() < 1e-3);
+    /// # Ok::<(), barrelstack_motion::MotionError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the step is not above zero, a channel has fewer than two samples, or holds what is no acceleration.
+    pub fn of_samples(
+        name: &str,
+        channels: &[(&str, &[f64])],
+        time_step: f64,
+        unit: AccelerationUnit,
+    ) -> Result<Self, MotionError> {
+        MotionError::require_positive("time step (s)", time_step)?;
+        let mut record = Self::new("samples", name, Stage::Unknown);
+        for (channel, samples) in channels {
+            if let Some(at) = samples.iter().position(|sample| !sample.is_finite()) {
+                let what = format!("acceleration ({unit}) {} of channel {channel}", at + 1);
+                return Err(MotionError::parameter(what, "a finite number", samples[at]));
+            }
+            let acceleration = samples.iter().map(|sample| sample * unit.factor()).collect();
+            let direction = Direction::parse(channel);
+            record.channels.push(Channel::new(*channel, direction, time_step, acceleration));
+        }
+        format::finish(&Source::new(name, &[]), &mut record).map_err(|error| {
+            MotionError::Mismatch {
+                what: format!("{name}: expected {}, found {}", error.expected, error.found),
+                remedy: "correct the samples, their step or their unit".to_owned(),
+            }
+        })?;
+        Ok(record)
     }
 
     /// Gives all channels one start and one place; the station is filled in when reading ends.

@@ -37,6 +37,7 @@
 //! of unequal length are read to the end of the shorter, empty figures draw empty axes.
 
 mod animation;
+pub mod column;
 pub mod described;
 mod diagram;
 mod document;

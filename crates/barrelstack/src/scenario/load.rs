@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::error::{Place, Problem, ScenarioError};
 use super::reader::{Reader, nearest};
 use super::tree::{Origin, SourceFile, Sources, Table, Value};
-use super::{Scenario, Written, builtin, merge, root, title};
+use super::{Scenario, Written, builtin, merge, root};
 use crate::system;
 
 /// Largest scenario file (bytes).
@@ -181,7 +181,7 @@ fn read(
         Some(Origin::Default) | None => unchanged,
     };
     if !own {
-        scenario.title = title::of(&scenario);
+        scenario.retitle();
     }
     scenario.written = Written(Some(Arc::new((sources, table))));
     Ok(scenario)

@@ -89,6 +89,16 @@ pub mod error {
 }
 
 /// A checked scenario in SI units.
+///
+/// ```
+/// use barrelstack::Scenario;
+///
+/// let scenario = Scenario::builtin("demo-napa", &["stack.levels=3".to_owned()])?;
+/// println!("{}", scenario.title);
+/// assert_eq!(scenario.stack().map(|stack| stack.levels), Some(3));
+/// assert!(scenario.to_resolved_toml().contains("levels = 3"));
+/// # Ok::<(), barrelstack::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
     /// One line for people.
@@ -138,6 +148,11 @@ pub enum Scene {
 }
 
 impl Scenario {
+    /// Titles it by what stands and what shakes it, where it was written for something else.
+    pub(crate) fn retitle(&mut self) {
+        self.title = title::of(self);
+    }
+
     /// The stack, unless the scene is free.
     pub fn stack(&self) -> Option<&StackSpec> {
         match &self.scene {
@@ -178,9 +193,11 @@ impl Scenario {
     /// Fingerprint of everything but the title: FNV-1a, 64 bits, of the resolved text.
     ///
     /// Two scenarios with the same fingerprint describe the same run, however they were written.
-    /// Records count by their path as written, not by their samples.
+    /// Records count by their bytes where these are at hand ([`Scenario::with_records`]; in every run they are),
+    /// else by their path as written.
     pub fn fingerprint(&self) -> u64 {
-        let untitled = Self { title: "-".to_owned(), ..self.clone() };
+        let motion = self.motion.by_content();
+        let untitled = Self { title: "-".to_owned(), motion, ..self.clone() };
         fnv1a(untitled.to_resolved_toml().as_bytes())
     }
 

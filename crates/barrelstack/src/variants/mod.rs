@@ -32,7 +32,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::ensemble::{CaseResult, Ensemble, Prepared};
-use crate::ground::{Ground, GroundError, other_component};
+use crate::ground::{Ground, GroundError, from_disk, other_component};
 use crate::scenario::{Imperfections, MotionSource, MotionSpec, Scenario, Scene, View};
 
 pub use answer::{Answer, Asked, Shown, Told, answer};
@@ -57,6 +57,7 @@ pub struct Plane {
 /// # Errors
 /// When the motion cannot be read.
 pub fn planes(scenario: &Scenario) -> Result<Vec<Plane>, GroundError> {
+    let scenario = &scenario.with_records(&mut from_disk)?;
     let both = scenario.stack().and_then(|stack| Some((stack.across()?, stack.along()?)));
     let Some((across, along)) = both else {
         return Ok(vec![Plane { scenario: scenario.clone(), exchanged: None }]);

@@ -6,6 +6,8 @@ use std::fs;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
+use barrelstack_report::column::{csv_heading, csv_rows};
+
 use super::error::StudyError;
 use super::folder::{Draft, Provenance, manifest_of, read_shard, shards, write_whole};
 use super::shard;
@@ -119,7 +121,7 @@ pub fn collect(
     let failed = |error: &std::io::Error| StudyError::system("write", &path, error);
     let part = Draft::create(&path).map_err(|error| failed(&error))?;
     let mut csv = BufWriter::new(&part.file);
-    csv.write_all(empty.csv_heading().as_bytes()).map_err(|error| failed(&error))?;
+    csv.write_all(csv_heading(empty.columns()).as_bytes()).map_err(|error| failed(&error))?;
     let columns = folder.join("table.parquet");
     let encode = |error: &dyn Display| StudyError::System {
         doing: "write",
@@ -130,7 +132,7 @@ pub fn collect(
     let mut parquet =
         shard::Writer::new(BufWriter::new(&stored.file), &specs).map_err(|error| encode(&error))?;
     let made = read_shards(folder, &mut |made, rows| {
-        csv.write_all(rows.csv_rows().as_bytes()).map_err(|error| failed(&error))?;
+        csv.write_all(csv_rows(rows.columns()).as_bytes()).map_err(|error| failed(&error))?;
         parquet.add(rows).map_err(|error| encode(&error))?;
         visit(made, rows)
     })?;

@@ -5,9 +5,9 @@ use barrelstack_motion::Random;
 
 use crate::scenario::fnv1a;
 
-use super::column::Value;
 use super::setting::Setting;
 use super::{Factor, Levels, Study, Variation};
+use barrelstack_report::column::Value;
 
 /// The cases of a study.
 #[derive(Clone, Debug, PartialEq)]

@@ -139,7 +139,7 @@ impl Study {
     /// # Errors
     /// When a motion cannot be read.
     pub fn following(&self) -> Result<Following, StudyError> {
-        let base = self.template.with([])?;
+        let base = self.scenario(&[])?;
         let (run, shelf) = (&base.run, Shelf::default());
         let mut found = Following {
             to_rest: run.until == Until::Rest,

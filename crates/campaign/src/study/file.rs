@@ -9,19 +9,19 @@ use crate::scenario::field::Range;
 use crate::scenario::reader::{Reader, nearest};
 use crate::scenario::template::{Opened, Template};
 use crate::scenario::tree::{Node, Origin};
-use crate::scenario::{Dimension, MotionSource, Problem, Scenario, ScenarioError};
+use crate::scenario::{Dimension, FileRef, MotionSource, Problem, Scenario, ScenarioError};
 
-use super::column::{ColumnSpec, Role};
 use super::design::{Cases, Design};
 use super::distribution::Distribution;
 use super::error::StudyError;
 use super::fields::{DesignKind, STUDY};
 use super::ida::Hunt;
-use super::motions::{Motion, Shaking, hash_files};
+use super::motions::{Motion, Shaking, hash_files, unreadable};
 use super::plan::{Chunks, Sizes};
 use super::prepare::one_plane;
 use super::setting::{Domain, Setting};
 use super::{Factor, Intensity, Levels, Study, Variation, ensembles};
+use barrelstack_report::column::{ColumnSpec, Role};
 
 /// The quantile that is tried for the low end of a distribution, and from 1 for the high end.
 const LOW: f64 = 1e-6;
@@ -38,7 +38,7 @@ impl Study {
     /// # Errors
     /// The first problem found, at its place.
     pub fn load(path: &Path) -> Result<Self, StudyError> {
-        read(&Opened::load(path)?)
+        read(&Opened::load(path)?, None)
     }
 
     /// Reads a study from text; it may extend built-in scenarios only, and `source_name` is shown in errors.
@@ -46,7 +46,41 @@ impl Study {
     /// # Errors
     /// As [`Study::load`].
     pub fn parse(source_name: &str, text: &str) -> Result<Self, StudyError> {
-        read(&Opened::parse(source_name, text)?)
+        read(&Opened::parse(source_name, text)?, None)
+    }
+
+    /// As [`Study::parse`], with records that `fetch` gives by their paths, so that no file is opened.
+    ///
+    /// ```
+    /// use barrelstack_campaign::Study;
+    ///
+    /// let record = barrelstack_motion::bundled("napa-college-2014").expect("a bundled record");
+    /// let bytes = barrelstack_motion::write::text(&record)?.into_bytes();
+    /// let study = Study::parse_with(
+    ///     "sites.toml",
+    ///     r#"
+    ///     schema = 1
+    ///     [base]
+    ///     extends = "sliding-block"
+    ///     [[motion]]
+    ///     records = ["site.txt"]
+    ///     [design]
+    ///     kind = "full-factorial"
+    ///     "#,
+    ///     &mut |_| Ok(bytes.clone()),
+    /// )?;
+    /// assert_eq!(study.table()?.texts("record"), Some(&[Some("site".to_owned())][..]));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Study::load`], and when `fetch` has none.
+    pub fn parse_with(
+        source_name: &str,
+        text: &str,
+        fetch: &mut dyn FnMut(&Path) -> Result<Vec<u8>, String>,
+    ) -> Result<Self, StudyError> {
+        read(&Opened::parse(source_name, text)?, Some(fetch))
     }
 
     /// Reads a built-in study.
@@ -67,7 +101,10 @@ impl Study {
     }
 }
 
-fn read(opened: &Opened) -> Result<Study, StudyError> {
+/// Gives the bytes of a file by its path, or says why there are none.
+type Fetch<'a> = &'a mut dyn FnMut(&Path) -> Result<Vec<u8>, String>;
+
+fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> {
     let top = Reader::open(
         &opened.sources,
         &STUDY,
@@ -133,6 +170,7 @@ fn read(opened: &Opened) -> Result<Study, StudyError> {
         design,
         text: opened.sources.files[0].text.clone(),
         template,
+        held: Vec::new(),
         factors,
         motions,
         intensity,
@@ -159,8 +197,31 @@ fn read(opened: &Opened) -> Result<Study, StudyError> {
             .into());
     }
     study.chunks = Chunks::of(&study);
-    study.hash = hash(&study, own.then_some(&scenario))?;
+    if let Some(fetch) = fetch {
+        hold(&mut study, fetch)?;
+    }
+    let base = study.scenario(&[])?;
+    study.hash = hash(&study, own.then_some(&base))?;
     Ok(study)
+}
+
+/// Has the files of all motions at hand.
+fn hold(study: &mut Study, fetch: Fetch<'_>) -> Result<(), StudyError> {
+    let mut base = study.scenario(&[])?.motion;
+    for motion in &mut study.motions {
+        let spec = match &mut motion.shaking {
+            Shaking::Base => &mut base,
+            Shaking::Spec(spec) => spec,
+            Shaking::Synthetic(_) => continue,
+        };
+        for file in spec.files_mut() {
+            let path = file.resolve();
+            let bytes = fetch(&path).map_err(|reason| unreadable(&motion.name, &path, reason))?;
+            file.hold(bytes);
+        }
+    }
+    study.held = base.files_mut().map(|file| file.clone()).filter(FileRef::is_held).collect();
+    Ok(())
 }
 
 /// The fingerprint of everything that rows depend on.

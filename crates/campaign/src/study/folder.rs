@@ -19,7 +19,6 @@ use crate::scenario::fnv1a;
 use crate::system;
 
 use super::claim::Claim;
-use super::column::ColumnSpec;
 use super::design::Design;
 use super::error::StudyError;
 use super::grow::{Common, difference};
@@ -28,6 +27,7 @@ use super::shard;
 use super::stop::StopRule;
 use super::table::StudyTable;
 use super::{Intensity, Study};
+use barrelstack_report::column::ColumnSpec;
 
 /// Version of the layout of a folder.
 const LAYOUT: u32 = 2;
@@ -160,7 +160,10 @@ impl Folder {
     /// Writes what the folder belongs to, where that is not there or is what the study was before it grew.
     pub(super) fn describe(&self, study: &Study) -> Result<(), StudyError> {
         let manifest = self.path.join(MANIFEST);
-        if !manifest.is_file() || !self.is_ours()? {
+        // An earlier version may have made other keys of the same motions.
+        let keys = || study.motions.iter().map(|motion| format!("{:016x}", motion.shaking.key()));
+        let same = |known: &Provenance| known.motions.iter().map(|m| m.key.clone()).eq(keys());
+        if !manifest.is_file() || !self.is_ours()? || !same(&manifest_of(&self.path)?) {
             let text = serde_json::to_string_pretty(&study.provenance()?)
                 .map_err(|error| StudyError::Table(error.to_string()))?;
             write_whole(&manifest, format!("{text}\n").as_bytes())?;
@@ -401,12 +404,12 @@ impl Study {
     /// # Errors
     /// When a record cannot be read.
     pub fn provenance(&self) -> Result<Provenance, StudyError> {
-        let base = self.template.with([])?;
+        let base = self.scenario(&[])?;
         let motions = self.motions.iter().map(|motion| {
             let files = motion.shaking.files(Some(&base.motion));
             let source = motion.shaking.source(&base.motion);
             let hash = hash_files(&motion.name, &files)?.map(|hash| format!("{hash:016x}"));
-            let key = format!("{:016x}", fnv1a(format!("{:?}", motion.shaking).as_bytes()));
+            let key = format!("{:016x}", motion.shaking.key());
             Ok(MotionSource { name: motion.name.clone(), source, hash, key })
         });
         let motions = motions.collect::<Result<_, StudyError>>()?;

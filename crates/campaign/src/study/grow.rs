@@ -5,7 +5,7 @@ use barrelstack_report::described;
 use super::Study;
 use super::design::{Case, Design};
 use super::error::StudyError;
-use super::folder::Provenance;
+use super::folder::{MotionSource, Provenance};
 use super::motions::hash_files;
 use crate::scenario::fnv1a;
 use crate::scenario::quantity::plain;
@@ -71,10 +71,10 @@ impl Study {
 
     /// What tells the motions from all others: how each is made, and the bytes of its files.
     pub(super) fn motion_keys(&self) -> Result<Vec<u64>, StudyError> {
-        let base = self.template.with([])?;
+        let base = self.scenario(&[])?;
         let key = |motion: &super::Motion| {
             let files = hash_files(&motion.name, &motion.shaking.files(Some(&base.motion)))?;
-            let text = format!("{} {:?} {files:?}", motion.name, motion.shaking);
+            let text = format!("{} {:016x} {files:?}", motion.name, motion.shaking.key());
             Ok(fnv1a(text.as_bytes()))
         };
         self.motions.iter().map(key).collect()
@@ -113,7 +113,11 @@ pub(super) fn difference(known: &Provenance, wanted: &Provenance) -> Option<Stri
         return Some(format!("its seed is {}, that of this one {}", known.seed, wanted.seed));
     }
     // A motion that is gone or is another under its name would leave rows behind that nobody can place.
-    let changed = known.motions.iter().find(|motion| !wanted.motions.contains(motion));
+    let same = |a: &MotionSource, b: &MotionSource| {
+        (&a.name, &a.hash, &a.key) == (&b.name, &b.hash, &b.key)
+    };
+    let is_kept = |motion: &&MotionSource| wanted.motions.iter().any(|other| same(motion, other));
+    let changed = known.motions.iter().find(|motion| !is_kept(motion));
     if let Some(motion) = changed {
         let same_name = wanted.motions.iter().any(|other| other.name == motion.name);
         let what = if motion.hash.is_some() { "record" } else { "motion" };

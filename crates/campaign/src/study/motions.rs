@@ -1,6 +1,6 @@
 //! The motions of a study: records, formulas and ensembles made from random numbers.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use barrelstack_motion::{
@@ -11,7 +11,6 @@ use crate::ground::{self, Ground, GroundError, RECORD_LIMIT};
 use crate::scenario::{
     FileRef, MotionSource, MotionSpec, RecordMotion, RecordSource, Vertical, fnv1a,
 };
-use crate::system;
 
 use super::error::StudyError;
 
@@ -119,6 +118,15 @@ impl Shaking {
         }
     }
 
+    /// Fingerprint of how it is made, wherever its files lie and whatever they are called.
+    pub(super) fn key(&self) -> u64 {
+        let mut made = self.clone();
+        if let Self::Spec(spec) = &mut made {
+            spec.files_mut().for_each(|file| *file = FileRef::new("", PathBuf::new()));
+        }
+        fnv1a(format!("{made:?}").as_bytes())
+    }
+
     /// The files that it is read from.
     pub(super) fn files<'a>(&'a self, base: Option<&'a MotionSpec>) -> Vec<&'a FileRef> {
         let spec = match self {
@@ -144,15 +152,14 @@ impl Shaking {
 pub(super) fn hash_files(name: &str, files: &[&FileRef]) -> Result<Option<u64>, StudyError> {
     let mut all = Vec::new();
     for file in files {
-        let path = file.resolve();
         let bytes =
-            system::read(&path, RECORD_LIMIT).map_err(|reason| unreadable(name, &path, reason))?;
+            file.read(RECORD_LIMIT).map_err(|reason| unreadable(name, &file.resolve(), reason))?;
         all.extend(fnv1a(&bytes).to_le_bytes());
     }
     Ok((!files.is_empty()).then(|| fnv1a(&all)))
 }
 
-fn unreadable(name: &str, path: &Path, reason: String) -> StudyError {
+pub(super) fn unreadable(name: &str, path: &Path, reason: String) -> StudyError {
     let obtain = "; correct the path in the study file".to_owned();
     let error = GroundError::Unreadable { path: path.to_owned(), reason, obtain };
     StudyError::Motion { name: name.to_owned(), error: Box::new(error) }

@@ -1,8 +1,8 @@
 //! How the cases of a study are dealt into chunks.
 
 use super::Study;
-use super::column::Value;
 use super::design::{Case, Design};
+use barrelstack_report::column::Value;
 
 /// A chunk: cases that are run and kept as a whole.
 #[derive(Clone, Debug, PartialEq, Eq)]

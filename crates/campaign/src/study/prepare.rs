@@ -182,7 +182,12 @@ impl Study {
                 setting.as_ref().map(|setting| (field, &setting.node))
             })
         });
-        self.template.with(changes)
+        let mut scenario = self.template.with(changes)?;
+        for file in scenario.motion.files_mut() {
+            let held = self.held.iter().find(|held| held.resolve() == file.resolve());
+            *file = held.unwrap_or(file).clone();
+        }
+        Ok(scenario)
     }
 
     /// The motion of a case.
@@ -202,7 +207,7 @@ impl Study {
     /// # Errors
     /// Names the first motion that cannot be had.
     pub(super) fn try_motions(&self, shelf: &Shelf) -> Result<(), StudyError> {
-        let scenario = self.template.with([])?;
+        let scenario = self.scenario(&[])?;
         let mut tried: Option<&Synthetic> = None;
         for motion in &self.motions {
             // Realizations of an ensemble differ in their seeds alone: the first speaks for all.

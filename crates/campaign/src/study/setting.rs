@@ -5,8 +5,8 @@ use crate::scenario::reader::Reader;
 use crate::scenario::tree::{Node, Origin, Value as Written};
 use crate::scenario::{Dimension, Problem, Quantity, ScenarioError};
 
-use super::column::{Value, ValueKind};
 use super::fields::Spacing;
+use barrelstack_report::column::{Value, ValueKind};
 
 /// One value of a factor.
 #[derive(Clone, Debug, PartialEq)]

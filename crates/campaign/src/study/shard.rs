@@ -12,8 +12,8 @@ use parquet::file::reader::{FileReader as _, RowGroupReader, SerializedFileReade
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{Type, TypePtr};
 
-use super::column::{Column, ColumnSpec, ValueKind, Values};
 use super::table::StudyTable;
+use barrelstack_report::column::{Column, ColumnSpec, ValueKind, Values};
 
 /// Under this key of a file's metadata stand the columns: name, unit and role.
 const COLUMNS_KEY: &str = "barrelstack.columns";

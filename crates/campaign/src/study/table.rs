@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
-use barrelstack_report::{csv_field, shortest};
+use barrelstack_report::csv_field;
 
-use super::column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
 use super::error::StudyError;
 use super::shard;
+use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values, to_csv};
 
 /// One row a case, in the order of the cases; typed columns in SI units.
 ///
@@ -74,7 +74,8 @@ impl StudyTable {
                 "a row has {found} values for {expected} columns"
             )));
         }
-        self.columns.iter_mut().zip(row).try_for_each(|(column, value)| column.values.push(value))
+        let mut pairs = self.columns.iter_mut().zip(row);
+        pairs.try_for_each(|(column, value)| column.values.push(value)).map_err(StudyError::Table)
     }
 
     /// Tables of the same columns as one, sorted by case.
@@ -95,7 +96,8 @@ impl StudyTable {
         let mut table = Self::empty(specs);
         for (number, column) in table.columns.iter_mut().enumerate() {
             for (_, part, row) in &order {
-                column.values.push(parts[*part].columns[number].values.get(*row))?;
+                let value = parts[*part].columns[number].values.get(*row);
+                column.values.push(value).map_err(StudyError::Table)?;
             }
         }
         Ok(table)
@@ -158,43 +160,14 @@ impl StudyTable {
 
     /// Appends the rows of a table of the same columns.
     pub(super) fn append(&mut self, rows: Self) -> Result<(), StudyError> {
-        let pairs = self.columns.iter_mut().zip(rows.columns);
-        pairs.into_iter().try_for_each(|(column, more)| column.values.append(more.values))
+        let mut pairs = self.columns.iter_mut().zip(rows.columns);
+        let append = |(column, more): (&mut Column, Column)| column.values.append(more.values);
+        pairs.try_for_each(append).map_err(StudyError::Table)
     }
 
-    /// The table as CSV: a heading line with units, then one line a case; nothing where there is no value.
-    ///
-    /// Numbers have the fewest digits that read back to the same bits.
+    /// The table as CSV, as [`to_csv`] writes columns.
     pub fn to_csv(&self) -> String {
-        self.csv_heading() + &self.csv_rows()
-    }
-
-    /// The heading line of the table as CSV.
-    pub(super) fn csv_heading(&self) -> String {
-        let headings: Vec<String> = self.specs().map(|spec| csv_field(&spec.heading())).collect();
-        headings.join(",") + "\n"
-    }
-
-    /// The table as CSV without its heading line.
-    pub(super) fn csv_rows(&self) -> String {
-        let mut text = String::new();
-        for row in 0..self.rows() {
-            for (index, column) in self.columns.iter().enumerate() {
-                if index > 0 {
-                    text.push(',');
-                }
-                match column.values.get(row) {
-                    None => {}
-                    Some(Value::Integer(value)) => drop(write!(text, "{value}")),
-                    Some(Value::Number(value)) => {
-                        text.push_str(&shortest(value));
-                    }
-                    Some(Value::Text(value)) => text.push_str(&csv_field(&value)),
-                }
-            }
-            text.push('\n');
-        }
-        text
+        to_csv(&self.columns)
     }
 
     /// The table as the bytes of a Parquet file; the same table gives the same bytes.

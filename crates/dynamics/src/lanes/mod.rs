@@ -9,6 +9,7 @@
 //! - [`Lanewise`]: how a single thing is put into a lane, and taken out of it.
 //! - [`march`]: the run loop of all lanes, which refills the lane of a case that has ended.
 
+#[cfg(target_arch = "x86_64")]
 mod bundle;
 mod lanewise;
 mod march;

@@ -227,7 +227,7 @@ impl Reader<'_> {
                 std::path::PathBuf::new()
             }
         };
-        Ok(Some(FileRef { path, folder }))
+        Ok(Some(FileRef::new(path, folder)))
     }
 
     /// A member of a closed set.

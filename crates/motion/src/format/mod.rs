@@ -35,8 +35,8 @@ use crate::instrument::Instrument;
 use crate::math::STANDARD_GRAVITY;
 use crate::record::{Channel, Quantity, Record};
 use crate::units::AccelerationUnit;
-use source::{LARGEST_ACCELERATION, Place, Source, parse_number};
-pub(crate) use source::{Printed, quoted, shorten};
+use source::{LARGEST_ACCELERATION, Place, parse_number};
+pub(crate) use source::{Printed, Source, quoted, shorten};
 use told::Told;
 
 /// What the caller knows and a file may not say.
@@ -242,7 +242,7 @@ fn check_options(source: &Source<'_>, options: &ReadOptions) -> Result<(), ReadE
 }
 
 /// Checks that hold for every format.
-fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
+pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
     if record.channels.is_empty() {
         return Err(source.error(
             (),

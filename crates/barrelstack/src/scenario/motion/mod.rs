@@ -222,3 +222,32 @@ pub struct MotionSpec {
     /// accelerations unchanged.
     pub similitude: f64,
 }
+
+impl MotionSpec {
+    /// The files that it is read from: the record, then a vertical component of its own.
+    pub fn files_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
+        let (source, vertical) = match &mut self.source {
+            MotionSource::Record(record) => (Some(&mut record.source), Some(&mut record.vertical)),
+            MotionSource::None | MotionSource::Sine(_) | MotionSource::Pulse(_) => (None, None),
+        };
+        let source = source.and_then(|source| match source {
+            RecordSource::File(file) => Some(file),
+            RecordSource::Bundled(_) => None,
+        });
+        let vertical = vertical.and_then(|vertical| match vertical {
+            Vertical::File(file) => Some(file),
+            Vertical::None | Vertical::Component(_) => None,
+        });
+        source.into_iter().chain(vertical)
+    }
+
+    /// The same motion, whose files are called by what is in them, where that is at hand.
+    #[must_use]
+    pub fn by_content(&self) -> Self {
+        let mut same = self.clone();
+        for file in same.files_mut() {
+            *file = file.by_content();
+        }
+        same
+    }
+}

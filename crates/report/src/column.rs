@@ -1,10 +1,11 @@
-//! One column of a table of cases: what it is, and its values.
+//! A column of results with its name, unit and values: what tables for programs are made of.
 
-use barrelstack_report::described;
-use barrelstack_report::described::{Described, Objects};
+use std::fmt::Write as _;
+
 use serde::{Deserialize, Serialize};
 
-use super::error::StudyError;
+use crate::described::{Described, Objects};
+use crate::{csv_field, described, shortest};
 
 /// What a column tells of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -77,7 +78,8 @@ described! {
 }
 
 impl ColumnSpec {
-    pub(super) fn new(name: &str, unit: &str, role: Role, kind: ValueKind) -> Self {
+    /// What a column of a name holds.
+    pub fn new(name: &str, unit: &str, role: Role, kind: ValueKind) -> Self {
         Self { name: name.to_owned(), unit: unit.to_owned(), role, kind }
     }
 
@@ -92,7 +94,8 @@ impl ColumnSpec {
 }
 
 /// The values of a column, one a row; `None` where it does not apply or did not happen.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Values {
     /// Whole numbers.
     Integer(Vec<Option<i64>>),
@@ -136,7 +139,8 @@ impl Values {
     }
 
     /// Takes off the values from a row on.
-    pub(super) fn split_off(&mut self, row: usize) -> Self {
+    #[must_use]
+    pub fn split_off(&mut self, row: usize) -> Self {
         match self {
             Self::Integer(values) => Self::Integer(values.split_off(row)),
             Self::Number(values) => Self::Number(values.split_off(row)),
@@ -145,22 +149,26 @@ impl Values {
     }
 
     /// Appends values of the same kind.
-    pub(crate) fn append(&mut self, more: Self) -> Result<(), StudyError> {
+    ///
+    /// # Errors
+    /// When they are of another.
+    pub fn append(&mut self, more: Self) -> Result<(), String> {
         match (self, more) {
             (Self::Integer(values), Self::Integer(more)) => values.extend(more),
             (Self::Number(values), Self::Number(more)) => values.extend(more),
             (Self::Text(values), Self::Text(more)) => values.extend(more),
             _ => {
-                return Err(StudyError::Table(
-                    "values of another kind than their column".to_owned(),
-                ));
+                return Err("values of another kind than their column".to_owned());
             }
         }
         Ok(())
     }
 
     /// Appends a value of the column's kind; a whole number may stand for a number.
-    pub(super) fn push(&mut self, value: Option<Value>) -> Result<(), StudyError> {
+    ///
+    /// # Errors
+    /// When it is of another kind.
+    pub fn push(&mut self, value: Option<Value>) -> Result<(), String> {
         match (self, value) {
             (Self::Integer(values), None) => values.push(None),
             (Self::Number(values), None) => values.push(None),
@@ -175,7 +183,7 @@ impl Values {
                     Value::Number(value) => value.to_string(),
                     Value::Text(value) => format!("\"{value}\""),
                 };
-                return Err(StudyError::Table(format!("{value} does not fit its column")));
+                return Err(format!("{value} does not fit its column"));
             }
         }
         Ok(())
@@ -183,9 +191,10 @@ impl Values {
 }
 
 /// A column with its values.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Column {
     /// What it holds.
+    #[serde(flatten)]
     pub spec: ColumnSpec,
     /// Its values, one a row.
     pub values: Values,
@@ -193,7 +202,40 @@ pub struct Column {
 
 impl Column {
     /// A column without rows.
-    pub(crate) fn empty(spec: ColumnSpec) -> Self {
+    pub fn empty(spec: ColumnSpec) -> Self {
         Self { values: Values::empty(spec.kind), spec }
     }
+}
+
+/// Columns of one length as CSV: a heading line with units, then one line a row; nothing where there is no value.
+///
+/// Numbers have the fewest digits that read back to the same bits.
+pub fn to_csv(columns: &[Column]) -> String {
+    csv_heading(columns) + &csv_rows(columns)
+}
+
+/// The heading line of columns as CSV.
+pub fn csv_heading(columns: &[Column]) -> String {
+    let heading = |column: &Column| csv_field(&column.spec.heading());
+    columns.iter().map(heading).collect::<Vec<_>>().join(",") + "\n"
+}
+
+/// Columns as CSV without their heading line.
+pub fn csv_rows(columns: &[Column]) -> String {
+    let mut text = String::new();
+    for row in 0..columns.first().map_or(0, |column| column.values.len()) {
+        for (index, column) in columns.iter().enumerate() {
+            if index > 0 {
+                text.push(',');
+            }
+            match column.values.get(row) {
+                None => {}
+                Some(Value::Integer(value)) => drop(write!(text, "{value}")),
+                Some(Value::Number(value)) => text.push_str(&shortest(value)),
+                Some(Value::Text(value)) => text.push_str(&csv_field(&value)),
+            }
+        }
+        text.push('\n');
+    }
+    text
 }

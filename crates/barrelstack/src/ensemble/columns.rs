@@ -1,0 +1,176 @@
+//! What a table tells of a case: one list, from which every table of cases is made.
+
+use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
+
+use super::CaseResult;
+use crate::outcome::Outcome;
+use crate::scenario::quantity::plain;
+use crate::watch::Joint;
+
+/// A column of a table of cases.
+#[derive(Clone, Copy, Debug)]
+pub struct CaseColumn {
+    /// Its name without the unit.
+    pub name: &'static str,
+    /// SI unit; empty for pure numbers and for text.
+    pub unit: &'static str,
+    /// What it tells.
+    pub role: Role,
+    /// What it means, in a sentence.
+    pub meaning: &'static str,
+    /// The value of a case; none where it does not apply or is not known.
+    pub get: Get,
+}
+
+/// How a value comes from a case.
+#[derive(Clone, Copy, Debug)]
+pub enum Get {
+    /// A whole number.
+    Integer(fn(&CaseResult) -> Option<usize>),
+    /// A number in SI units.
+    Number(fn(&CaseResult) -> Option<f64>),
+    /// A text.
+    Text(fn(&CaseResult) -> Option<String>),
+}
+
+impl CaseColumn {
+    /// What a column of it holds.
+    pub fn spec(&self) -> ColumnSpec {
+        let kind = match self.get {
+            Get::Integer(_) => ValueKind::Integer,
+            Get::Number(_) => ValueKind::Number,
+            Get::Text(_) => ValueKind::Text,
+        };
+        ColumnSpec::new(self.name, self.unit, self.role, kind)
+    }
+
+    /// The value of a case.
+    pub fn of(&self, case: &CaseResult) -> Option<Value> {
+        self.values(std::slice::from_ref(case)).get(0)
+    }
+
+    /// The values of all cases.
+    fn values(&self, cases: &[CaseResult]) -> Values {
+        match self.get {
+            Get::Integer(get) => {
+                let whole = |case| get(case).and_then(|count| i64::try_from(count).ok());
+                Values::Integer(cases.iter().map(whole).collect())
+            }
+            // A NaN in a table looks like a value and is none.
+            Get::Number(get) => {
+                let number = |case| get(case).filter(|value| !value.is_nan());
+                Values::Number(cases.iter().map(number).collect())
+            }
+            Get::Text(get) => {
+                let text = |case| get(case).filter(|text| !text.is_empty());
+                Values::Text(cases.iter().map(text).collect())
+            }
+        }
+    }
+}
+
+/// A table of cases, a row each in their order: the columns of [`CASE_COLUMNS`].
+///
+/// ```
+/// use barrelstack::ensemble::{Ensemble, Prepared, table};
+/// use barrelstack::Scenario;
+/// use barrelstack_report::column::to_csv;
+///
+/// let cases = vec![Prepared::new(Scenario::builtin("sliding-block", &[])?)?];
+/// let table = table(&Ensemble { cases, ..Ensemble::default() }.run());
+/// assert!(to_csv(&table).starts_with("outcome,mode,first_loss (s),"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn table(cases: &[CaseResult]) -> Vec<Column> {
+    let column = |column: &CaseColumn| Column { spec: column.spec(), values: column.values(cases) };
+    CASE_COLUMNS.iter().map(column).collect()
+}
+
+/// Each line: what it means, the name, the unit, what it tells, and how it comes from a case.
+macro_rules! columns {
+    ($(
+        #[doc = $meaning:literal]
+        $name:ident $unit:literal: $role:ident $kind:ident $get:expr;
+    )*) => {
+        /// All columns of a table of cases, in order.
+        pub static CASE_COLUMNS: &[CaseColumn] = &[$(CaseColumn {
+            name: stringify!($name),
+            unit: $unit,
+            role: Role::$role,
+            meaning: $meaning.trim_ascii(),
+            get: Get::$kind($get),
+        }),*];
+    };
+}
+
+columns! {
+    /// stable, collapse, not-judged, invalid or error
+    outcome "": Outcome Text |case| {
+        Some(case.outcome.as_ref().map_or("error", Outcome::kind).to_owned())
+    };
+    /// how it collapsed
+    mode "": Outcome Text |case| match &case.outcome {
+        Ok(Outcome::Collapse { mode, .. }) => Some(mode.name().to_owned()),
+        Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Invalid { .. }) | Err(_) => None,
+    };
+    /// when the first body left its seat
+    first_loss "s": Outcome Number |case| match &case.outcome {
+        Ok(Outcome::Collapse { time, .. }) => Some(*time),
+        Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Invalid { .. }) | Err(_) => None,
+    };
+    /// when the first barrel had fallen
+    first_fall "s": Outcome Number |case| case.first_fall;
+    /// barrels of the stack
+    barrels "": Outcome Integer |case| case.outcome.is_ok().then_some(case.barrels);
+    /// barrels that had fallen when the case ended
+    barrels_fallen "": Outcome Integer |case| {
+        let judged = matches!(&case.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }));
+        judged.then_some(case.fall_heights.len())
+    };
+    /// largest drop of each barrel that fell (m), divided by semicolons
+    fall_heights "m": Outcome Text |case| {
+        Some(case.fall_heights.iter().map(|height| plain(*height)).collect::<Vec<_>>().join(";"))
+    };
+    /// peak displacement of the top over its height, before the collapse
+    top_drift_ratio "": Demand Number |case| case.demands.top_drift_ratio;
+    /// largest slip of the bottom rack, before the collapse
+    base_slip_peak "m": Demand Number |case| case.demands.base_slip_peak;
+    /// slip of the bottom rack at the end
+    base_slip_residual "m": Demand Number |case| case.demands.base_slip_residual;
+    /// largest tilt of a rack, before the collapse
+    rack_tilt_peak "rad": Demand Number |case| case.demands.rack_tilt_peak;
+    /// largest way of a rack on what it stands on, before the collapse
+    rack_walk_peak "m": Demand Number |case| case.demands.rack_walk_peak;
+    /// largest normal stress on a bottom barrel over the largest at rest, before the collapse
+    stress_amplification "": Demand Number |case| case.demands.stress_amplification;
+    /// the same, averaged over the boundary that is loaded at rest
+    mean_stress_amplification "": Demand Number |case| case.demands.mean_stress_amplification;
+    /// largest vertical force of a barrel on its rack, or of a rack on what it stands on
+    vertical_force_peak "N": Demand Number |case| force(case, |joint| joint.peak_vertical.0);
+    /// largest horizontal force between two of them
+    horizontal_force_peak "N": Demand Number |case| force(case, |joint| joint.peak_horizontal.0.abs());
+    /// largest displacement of a barrel at the end
+    residual_displacement "m": Demand Number |case| case.residual_displacement;
+    /// why the case ended: rest, after-collapse, duration, patience or broken
+    ended "": Run Text |case| case.ending.map(|ending| ending.name().to_owned());
+    /// time of the motion that was left when it ended
+    motion_left "s": Run Number |case| case.cut;
+    /// simulated time that it reached
+    end_time "s": Run Number |case| case.end_time;
+    /// accepted time steps
+    steps "": Run Integer |case| case.steps.and_then(|steps| usize::try_from(steps).ok());
+    /// energy missing from the books over the energy that went through
+    energy_residual_ratio "": Run Number |case| case.energy_residual_ratio;
+    /// number of warnings
+    warnings "": Run Integer |case| Some(case.warnings.len());
+    /// why there is no verdict
+    error "": Run Text |case| match &case.outcome {
+        Ok(Outcome::Invalid { reason }) | Err(reason) => Some(reason.clone()),
+        Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Collapse { .. }) => None,
+    };
+}
+
+/// The largest of all forces of a case.
+fn force(case: &CaseResult, of: fn(&Joint) -> f64) -> Option<f64> {
+    case.joints.iter().map(|(_, joint)| of(joint)).reduce(f64::max)
+}

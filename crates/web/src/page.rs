@@ -1,0 +1,56 @@
+//! The door to a page: four functions and one import over linear memory.
+#![expect(unsafe_code, reason = "names that the page knows, and a function that it has")]
+
+use std::cell::RefCell;
+use std::ops::ControlFlow;
+
+#[link(wasm_import_module = "page")]
+unsafe extern "C" {
+    /// Hears how much of how much is done; anything but 0 stops the work.
+    safe fn told(done: f64, of: f64) -> i32;
+}
+
+thread_local! {
+    static REQUEST: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+    static ANSWER: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+}
+
+fn say(answer: Vec<u8>) {
+    ANSWER.with(|kept| *kept.borrow_mut() = answer);
+}
+
+/// Makes room for a request of so many bytes and gives its address; the last answer is gone.
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn room(length: usize) -> *mut u8 {
+    std::panic::set_hook(Box::new(|panic| say(panic.to_string().into_bytes())));
+    say(Vec::new());
+    REQUEST.with(|request| {
+        let mut request = request.borrow_mut();
+        *request = vec![0; length];
+        request.as_mut_ptr()
+    })
+}
+
+/// Does what is asked: 0 done, 1 refused.
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn run() -> u32 {
+    let request = REQUEST.with(RefCell::take);
+    let done = crate::answered(&request, &mut |done, of| {
+        if told(done, of) == 0 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    });
+    let status = u32::from(done.is_err());
+    say(done.unwrap_or_else(String::into_bytes));
+    status
+}
+
+/// Where the answer is.
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn answer() -> *const u8 {
+    ANSWER.with(|answer| answer.borrow().as_ptr())
+}
+
+/// How many bytes the answer has.
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn answer_length() -> usize {
+    ANSWER.with(|answer| answer.borrow().len())
+}

@@ -1,0 +1,177 @@
+//! The engine as WebAssembly: built by whichever route the machine has, and held to what a page gives it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use anyhow::{Context as _, bail, ensure};
+
+use crate::extra::OLDEST;
+use crate::steps::cargo;
+
+/// The target of browsers.
+const TARGET: &str = "wasm32-unknown-unknown";
+
+/// What the page gives, and all that the engine may ask of it.
+const GIVEN: [&str; 1] = ["page.told"];
+
+/// Where Debian's packages `rustc-web` and `libstd-rust-web-dev` put a compiler with this target.
+const DEBIAN: &str = "/usr/bin/rustc";
+
+/// Builds the engine for a page.
+pub(crate) struct Build {
+    root: PathBuf,
+    command: Command,
+}
+
+impl Build {
+    /// The build, or what is missing here and how to come by it.
+    ///
+    /// Where the standard library for the target is installed it is taken; else it is built from Debian's
+    /// `rust-web-src`, by Debian's compiler and with the linker of the toolchain.
+    pub(crate) fn find(root: &Path) -> Result<Self, String> {
+        let mut command = Command::new(cargo());
+        command.args(["build", "--package", "barrelstack-web", "--profile", "web"]);
+        command.args(["--target", TARGET]).current_dir(root);
+        if !has_target() {
+            let linker = debian().ok_or_else(|| {
+                format!(
+                    "no target {TARGET}; type `rustup target add {TARGET}`, or install the packages \
+                     rustc-web, rust-web-src and libstd-rust-web-dev of Debian, {OLDEST} or newer"
+                )
+            })?;
+            command.args(["-Zbuild-std=std,panic_abort"]);
+            command.env("RUSTC", DEBIAN).env("RUSTC_BOOTSTRAP", "1");
+            command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
+        }
+        Ok(Self { root: root.to_path_buf(), command })
+    }
+
+    /// Builds it and says how large it is.
+    pub(crate) fn run(mut self) -> anyhow::Result<PathBuf> {
+        let status = self.command.status().context("cargo does not start")?;
+        ensure!(status.success(), "the engine does not build: see above");
+        let file = module(&self.root);
+        let bytes =
+            std::fs::read(&file).with_context(|| format!("cannot read {}", file.display()))?;
+        let asked = imports(&bytes).context("the module cannot be read")?;
+        if let Some(foreign) = asked.iter().find(|name| !GIVEN.contains(&name.as_str())) {
+            bail!(
+                "the module asks for {foreign}, which no page gives: some library needs a system; \
+                 build it without that feature"
+            );
+        }
+        println!("{}: {:.2} MB, asks for {}", file.display(), megabytes(&bytes), asked.join(", "));
+        Ok(file)
+    }
+}
+
+/// Where the module is once it is built.
+pub(crate) fn module(root: &Path) -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
+    let target = root.join(target.unwrap_or_else(|| PathBuf::from("target")));
+    target.join(TARGET).join("web").join("barrelstack_web.wasm")
+}
+
+#[expect(clippy::cast_precision_loss, reason = "a size in print")]
+fn megabytes(bytes: &[u8]) -> f64 {
+    bytes.len() as f64 * 1e-6
+}
+
+/// Whether the standard library for browsers is installed.
+fn has_target() -> bool {
+    let found = said(Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]));
+    found.is_some_and(|folder| Path::new(&folder).is_dir())
+}
+
+/// The linker of the toolchain, where Debian's compiler and the sources of its standard library are there.
+fn debian() -> Option<PathBuf> {
+    let version = said(Command::new(DEBIAN).arg("--version"))?;
+    let version = version.split_whitespace().nth(1)?;
+    let minor = |version: &str| version.split('.').nth(1)?.parse::<u32>().ok();
+    let sources = said(Command::new(DEBIAN).args(["--print", "sysroot"]))?;
+    let sources = Path::new(&sources).join("lib/rustlib/src/rust/library/Cargo.lock");
+    let own = said(Command::new("rustc").args(["--print", "sysroot"]))?;
+    let host = said(Command::new("rustc").args(["--print", "host-tuple"]))?;
+    let linker = Path::new(&own).join("lib/rustlib").join(host).join("bin/rust-lld");
+    let there = minor(version)? >= minor(OLDEST)? && sources.is_file() && linker.is_file();
+    there.then_some(linker)
+}
+
+/// What a command prints on its first line; none where it is not there or fails.
+fn said(command: &mut Command) -> Option<String> {
+    let output = command.stderr(Stdio::null()).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    Some(text.lines().next()?.to_owned()).filter(|_| output.status.success())
+}
+
+/// What a module asks of its page, as `module.name`; none where the bytes are no module.
+///
+/// Spec: WebAssembly 2.0, sections 5.5.2 and 5.5.5.
+fn imports(bytes: &[u8]) -> Option<Vec<String>> {
+    /// The section of imports.
+    const IMPORTS: u8 = 2;
+    /// The kind of import that a function is; its type follows as a number.
+    const FUNCTION: u8 = 0;
+    let mut rest = bytes.strip_prefix(b"\0asm\x01\0\0\0")?;
+    while let Some((kind, after)) = rest.split_first() {
+        rest = after;
+        let length = number(&mut rest)?;
+        let (mut section, later) = rest.split_at_checked(length)?;
+        rest = later;
+        if *kind != IMPORTS {
+            continue;
+        }
+        let mut found = Vec::new();
+        for _ in 0..number(&mut section)? {
+            let (module, name) = (word(&mut section)?, word(&mut section)?);
+            found.push(format!("{module}.{name}"));
+            let (kind, after) = section.split_first()?;
+            section = after;
+            if *kind != FUNCTION {
+                // A memory or a table is as foreign as can be, and the rest of the list no matter.
+                return Some(found);
+            }
+            number(&mut section)?;
+        }
+        return Some(found);
+    }
+    Some(Vec::new())
+}
+
+/// A number of seven bits a byte, the lowest first.
+fn number(bytes: &mut &[u8]) -> Option<usize> {
+    let mut value = 0;
+    for shift in (0..35).step_by(7) {
+        let (byte, after) = bytes.split_first()?;
+        *bytes = after;
+        value |= usize::from(byte & 0x7f) << shift;
+        if byte & 0x80 == 0 {
+            return Some(value);
+        }
+    }
+    None
+}
+
+/// A text after its length.
+fn word(bytes: &mut &[u8]) -> Option<String> {
+    let length = number(bytes)?;
+    let (text, after) = bytes.split_at_checked(length)?;
+    *bytes = after;
+    String::from_utf8(text.to_vec()).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::imports;
+
+    #[test]
+    fn a_module_that_asks_for_more_than_a_page_gives_is_seen() {
+        // One type () -> (), and two functions asked for: "page.told", "env.now".
+        let mut module = b"\0asm\x01\0\0\0\x01\x04\x01\x60\0\0\x02\x17\x02".to_vec();
+        module.extend(b"\x04page\x04told\0\0\x03env\x03now\0\0");
+        assert_eq!(imports(&module).unwrap(), ["page.told", "env.now"]);
+        assert_eq!(imports(b"\0asm\x01\0\0\0").unwrap(), [""; 0]);
+        assert_eq!(imports(&module[..20]), None);
+        assert_eq!(imports(b"MZ"), None);
+    }
+}
