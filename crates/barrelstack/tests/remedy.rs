@@ -16,7 +16,9 @@ fn scenario(changes: &[&str]) -> Scenario {
         "run.stop_after_collapse=0.1 s",
         "imperfections.variants=8",
     ];
-    let changes: Vec<String> = own.iter().chain(changes).map(|&change| change.to_owned()).collect();
+    let key = |change: &str| change.split('=').next().unwrap_or_default().to_owned();
+    let kept = own.iter().filter(|one| changes.iter().all(|other| key(other) != key(one)));
+    let changes: Vec<String> = kept.chain(changes).map(|&change| change.to_owned()).collect();
     Scenario::builtin("candia-8-barrels", &changes).unwrap()
 }
 

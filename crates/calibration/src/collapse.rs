@@ -361,7 +361,7 @@ fn alike<'a>(
     };
     let same = |seen: &Option<Seen>| seen.as_ref().is_some_and(|seen| seen.mode == mode);
     let weights = courses.zip(&posterior.weights).filter(|(seen, _)| same(seen));
-    (name, Some(weights.map(|(_, weight)| weight).sum()))
+    (name, Some(weights.fold(0.0, |sum, (_, weight)| sum + weight)))
 }
 
 #[cfg(test)]

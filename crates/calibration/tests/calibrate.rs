@@ -444,7 +444,9 @@ fn a_collapse_says_what_it_cannot_tell_and_the_same_every_time() {
     let found = from_film(1, 50, &[Parameter::Damping]);
     let told = |words: &str| found.warnings.iter().any(|warning| warning.contains(words));
     assert!(told("says nothing about damping c"), "{:?}", found.warnings);
-    assert_eq!(found, from_film(1, 50, &[Parameter::Damping]));
+    // As texts: gaps of its figures are no numbers, and equal nothing.
+    let again = from_film(1, 50, &[Parameter::Damping]);
+    assert_eq!(format!("{found:?}"), format!("{again:?}"));
 }
 
 #[test]

@@ -58,8 +58,8 @@ fn a_page_of_ten_thousand_samples_is_small_binned_and_says_what_it_rests_on() {
     assert_eq!(bins, 16);
     let cases: u32 = found.curves[0].stripes.iter().map(|stripe| stripe.cases).sum();
     assert_eq!(cases, 10_000);
-    // Measured: 66 kB.
-    assert!(found.html().len() < 100_000, "{} bytes", found.html().len());
+    // Measured: 175 kB, every figure drawn for the desk and for the phone.
+    assert!(found.html().len() < 200_000, "{} bytes", found.html().len());
     let headline = &found.document.verdict.headline;
     assert!(headline.contains("10000 cases") && headline.contains(" to "), "{headline}");
     // Measured: 0.489 to 0.502.

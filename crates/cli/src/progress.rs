@@ -52,6 +52,16 @@ impl Progress {
         self.told(done as f64, of as f64, || format!("{done} of {of} {things}"))
     }
 
+    /// So many tries are done of a search whose length is not known.
+    pub(crate) fn searched(&self, done: u64, things: &str) -> ControlFlow<()> {
+        let words = || format!("{done} {things}");
+        if let Some(bar) = &self.bar {
+            bar.set_message(words());
+        }
+        self.lines.now_and_then(words);
+        self.interrupt.flow()
+    }
+
     fn told(&self, done: f64, of: f64, words: impl Fn() -> String) -> ControlFlow<()> {
         if let Some(bar) = &self.bar {
             if bar.length().is_none() {
@@ -80,6 +90,15 @@ impl Lines {
         let start = Instant::now();
         let last = (show && !std::io::stderr().is_terminal()).then(|| Mutex::new(start));
         Self { start, last }
+    }
+
+    /// Work of unknown length has come this far.
+    fn now_and_then(&self, words: impl Fn() -> String) {
+        let Some(Ok(mut last)) = self.last.as_ref().map(Mutex::lock) else { return };
+        if last.elapsed() > EVERY {
+            printer::note(&words());
+            *last = Instant::now();
+        }
     }
 
     /// Work has come this far.

@@ -58,7 +58,8 @@ fn the_summary_says_what_happened_in_words_and_rows() {
     let first: Vec<&str> = text.lines().take(3).collect();
     assert_eq!(first[0], "Eight barrels on four levels, 4 in sine");
     assert!(first[1].starts_with("  ") && first[1].ends_with('.'), "{}", first[1]);
-    assert_eq!(first[2], "  The barrels of level 4 are thrown off the stack with their rack, R4.");
+    let second = "  In the run that is shown, the barrels of level 4 are thrown off the stack with their rack, R4.";
+    assert_eq!(first[2], second);
     assert!(text.contains("\n  changed                 run.stop_after_collapse=0.1 s\n"), "{text}");
     assert!(text.contains("\n  outcome                 collapse by ejection at "), "{text}");
     let rows = text.lines().skip_while(|line| !line.is_empty()).skip(1);

@@ -42,6 +42,12 @@ impl Record {
         let coded =
             text.split_once(' ').filter(|(code, _)| code.chars().any(|c| c.is_ascii_digit()));
         let name = coded.map_or(text.as_str(), |(_, name)| name);
+        // The state after it, and the town before it where the place says that itself.
+        let name = name.split_once(", ").map_or(name, |(name, _)| name);
+        let name = match name.split_once(" - ") {
+            Some((town, place)) if place.starts_with(town) => place,
+            _ => name,
+        };
         (!name.is_empty()).then(|| softened(name))
     }
 
@@ -54,7 +60,7 @@ impl Record {
         let place = if known.is_empty() { file() } else { known.join(", ") };
         let component = format!("{}{degrees}", channel.name);
         // Where the header says nothing, some channels are named after their file.
-        if component.is_empty() || place.contains(&component) {
+        if component.is_empty() || (known.is_empty() && place.contains(&component)) {
             place
         } else {
             format!("{place}, {component}")
@@ -125,7 +131,7 @@ mod tests {
                 "South Napa, California, 2014-08-24 10:20:44 UTC, M 6.0",
                 "CE.68150 Napa - Napa College, California",
                 "E",
-                "South Napa 2014, Napa - Napa College, California, E",
+                "South Napa 2014, Napa College, E",
             ),
             ("1989  10  18    0004 Loma Prieta, CA", "", "H1", "Loma Prieta 1989, H1"),
             ("Chi-Chi, Taiwan 9/20/1999", "TCU065", "E", "Chi-Chi 1999, TCU065, E"),
@@ -140,7 +146,7 @@ mod tests {
 
     #[test]
     fn no_header_of_a_format_gives_a_name_without_letters() {
-        let text = b"PEER\n 01/17/94 1231, , 360\nACCELERATION IN UNITS OF G\nNPTS=  4, DT= .02000 SEC\n 0 0 0 0\n";
+        let text = b"PEER\n 01/17/94 1231, , 360\nACCELERATION IN UNITS OF G\nNPTS=  4, DT= .02000 SEC\n 0 1 -1 0\n";
         let read = crate::read(text, "a/b.AT2", &ReadOptions::default()).unwrap();
         assert!(read.event_name().is_none_or(|name| name.chars().any(char::is_alphabetic)));
     }

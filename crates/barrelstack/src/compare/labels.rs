@@ -23,7 +23,14 @@ enum Topic {
 pub fn labels(runs: &[(String, Scenario)]) -> Vec<String> {
     let differing = differences(runs.iter().map(|(_, scenario)| scenario));
     let mut topics: Vec<(Topic, &Difference)> = Vec::new();
-    for one in &differing {
+    // A static coefficient that is not stated is the other one.
+    let follows = |one: &Difference| {
+        one.path.strip_suffix("static_coefficient").is_some_and(|of| {
+            let led = |other: &Difference| other.path == format!("{of}coefficient");
+            differing.iter().any(|other| led(other) && other.values == one.values)
+        })
+    };
+    for one in differing.iter().filter(|one| !follows(one)) {
         let topic = topic(&one.path);
         if topic == Topic::Other || topics.iter().all(|(known, _)| *known != topic) {
             topics.push((topic, one));

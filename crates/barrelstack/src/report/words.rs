@@ -100,9 +100,9 @@ fn device(Device { words, elements }: &Device) -> Option<String> {
 fn shaking(motion: &MotionSummary) -> String {
     let name = &motion.name;
     match (motion.pga == 0.0, motion.vertical) {
-        (true, _) => format!("The ground moves up and down only: {name}."),
-        (false, true) => format!("The ground moves as in {name}, sideways and up and down."),
-        (false, false) => format!("The ground moves as in {name}, sideways."),
+        (true, _) => format!("It is shaken up and down only, by {name}."),
+        (false, true) => format!("It is shaken sideways and up and down by {name}."),
+        (false, false) => format!("It is shaken sideways by {name}."),
     }
 }
 

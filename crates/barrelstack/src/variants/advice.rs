@@ -86,8 +86,8 @@ impl Remedy {
             };
             table.rows.push(vec![
                 Cell::text(name(one)),
-                Cell::Number(f64::from(one.variants), 4),
-                Cell::Number(f64::from(one.failed), 4),
+                Cell::Measured(f64::from(one.variants), 0),
+                Cell::Measured(f64::from(one.failed), 0),
                 Cell::text(format!("{low} to {high}")),
                 Cell::text(verdict),
             ]);

@@ -27,8 +27,8 @@ pub struct Frames {
     pub poses: Vec<Vec<[f64; 3]>>,
     /// For every frame, contact forces as `x` (m), `z` (m), and the force (N) on the contactor.
     pub forces: Vec<Vec<[f64; 4]>>,
-    /// For every frame and body, the largest normal stress (N/m) at a contact node that presses on it, or
-    /// with which it presses; zero where none does.
+    /// For every frame and body, the largest normal stress (N/m) at a contact node that presses on it; zero
+    /// where none does.
     pub stresses: Vec<Vec<f64>>,
 }
 
@@ -210,9 +210,8 @@ impl Recording {
             let pair = model.pair(contact.pair);
             let stress =
                 contact.normal_force / tributary_length(model, &pair, contact.node as usize);
-            for body in [pair.contactor, pair.target] {
-                stresses[body] = stresses[body].max(stress);
-            }
+            // As envelopes count them: where nodes of another body press.
+            stresses[pair.target] = stresses[pair.target].max(stress);
             let (force, point) = contact_force(model, state, scratch, contact);
             if contact.pair != last {
                 forces.push([0.0; 4]);

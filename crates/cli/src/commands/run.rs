@@ -104,8 +104,8 @@ pub(super) fn remedied(
     show: bool,
 ) -> Result<(), RunFailure> {
     let progress = Progress::new(show);
-    let mut found = variants::remedy(answer, &|Searched { done, of }| {
-        progress.counted(done as u64, of as u64, "runs of what may help")
+    let mut found = variants::remedy(answer, &|Searched { done, .. }| {
+        progress.searched(done as u64, "runs of what would have helped")
     })?;
     if let Some(found) = &mut found {
         found.comparison = command.against(found);
