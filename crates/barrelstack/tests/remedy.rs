@@ -60,7 +60,7 @@ fn what_is_said_to_suffice_is_what_its_command_makes_and_stands_in_as_many_varia
             let above =
                 found.tried.iter().filter(|one| one.kind == "height" && one.levels > height.levels);
             assert!(above.clone().all(|one| !one.suffices));
-            assert_eq!(above.count() as u32, 2 - height.levels);
+            assert_eq!(above.count(), 2 - height.levels as usize);
         }
     }
     assert!(kinds.contains(&"height"), "{kinds:?}");

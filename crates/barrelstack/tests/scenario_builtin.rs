@@ -120,7 +120,7 @@ fn a_record_counts_by_its_bytes_wherever_it_lies() {
     };
     std::fs::write(folder.path().join("here.txt"), &bytes).unwrap();
     std::fs::write(folder.path().join("there.txt"), &bytes).unwrap();
-    let mut other = record.clone();
+    let mut other = record;
     other.channels[0].acceleration[0] += 1e-3;
     let other = barrelstack_motion::write::text(&other).unwrap();
     std::fs::write(folder.path().join("other.txt"), other).unwrap();

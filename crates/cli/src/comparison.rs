@@ -29,17 +29,12 @@ impl<'a> Command<'a> {
         if against.is_empty() || scenario == "-" {
             return None;
         }
-        let mut command = format!("barrelstack compare {}", quoted(scenario));
-        for change in set {
-            command += &format!(" --set {}", quoted(change));
-        }
-        if let Some(record) = record {
-            command += &format!(" --record {}", quoted(&record.to_string_lossy()));
-        }
-        if let Some(variants) = self.variants.variants {
-            command += &format!(" --variants {variants}");
-        }
-        Some(command + &against.concat())
+        let set = set.iter().map(|change| format!(" --set {}", quoted(change)));
+        let record =
+            record.iter().map(|path| format!(" --record {}", quoted(&path.to_string_lossy())));
+        let variants = self.variants.variants.map(|number| format!(" --variants {number}"));
+        let options: String = set.chain(record).chain(variants).chain(against).collect();
+        Some(format!("barrelstack compare {}{options}", quoted(scenario)))
     }
 }
 

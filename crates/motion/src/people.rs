@@ -75,9 +75,7 @@ fn year(word: &str) -> Option<u32> {
     let number = |text: &str| text.parse::<u32>().ok();
     let full = |year: &u32| (1900..2100).contains(year);
     match parts.as_slice() {
-        [year] if year.len() == 4 => number(year).filter(full),
-        [year, _, _] if year.len() == 4 => number(year).filter(full),
-        [_, _, year] if year.len() == 4 => number(year).filter(full),
+        [year] | [year, _, _] | [_, _, year] if year.len() == 4 => number(year).filter(full),
         // No instrument wrote before 1930.
         [_, _, year] if year.len() == 2 => {
             number(year).map(|year| if year < 30 { 2000 + year } else { 1900 + year })

@@ -42,11 +42,12 @@ impl Glossary {
             let (before, from) = rest.split_at(place);
             let (shown, after) = from.split_at(word.len());
             out += &escape::html(before);
-            out += &format!(
-                "<button type=\"button\" class=\"term\" aria-describedby=\"word-{at}\" data-meaning=\"{}\">{}</button>",
-                escape::html(meaning),
-                escape::html(shown)
+            let (meaning, shown) = (escape::html(meaning), escape::html(shown));
+            let button = format!(
+                "<button type=\"button\" class=\"term\" aria-describedby=\"word-{at}\" \
+                 data-meaning=\"{meaning}\">{shown}</button>"
             );
+            out += &button;
             rest = after;
         }
         out + &escape::html(rest)

@@ -273,11 +273,12 @@ fn attachments_have_names_that_differ_and_are_safe() {
 }
 
 /// Where a word of a drawing stands, and by which end.
-fn word<'a>(svg: &roxmltree::Document<'a>, text: &str) -> ([f64; 2], &'static str) {
+fn word(svg: &roxmltree::Document<'_>, text: &str) -> ([f64; 2], &'static str) {
     let node =
         svg.descendants().find(|node| node.text() == Some(text) && node.has_tag_name("text"));
     let node = node.unwrap_or_else(|| panic!("no word {text:?}"));
-    let number = |name: &str| node.attribute(name).unwrap().parse::<f64>().unwrap();
+    let number = |name: &str| node.attribute(name).and_then(|text| text.parse::<f64>().ok());
+    let number = |name: &str| number(name).unwrap_or_else(|| panic!("{text:?} has no {name}"));
     let anchor = match node.attribute("text-anchor") {
         Some("end") => "end",
         Some("middle") => "middle",

@@ -256,13 +256,12 @@ fn elements(pdf: &lopdf::Document) -> Vec<Element> {
         found.push(Element { role, words, pages: Vec::new() });
         let place = found.len() - 1;
         for kid in element.get(b"K").unwrap().as_array().unwrap() {
-            match kid {
-                lopdf::Object::Reference(id) => walk(pdf, *id, found),
-                painted => {
-                    let painted = painted.as_dict().unwrap();
-                    assert!(painted.has(b"MCID"));
-                    found[place].pages.push(painted.get(b"Pg").unwrap().as_reference().unwrap());
-                }
+            if let lopdf::Object::Reference(id) = kid {
+                walk(pdf, *id, found);
+            } else {
+                let painted = kid.as_dict().unwrap();
+                assert!(painted.has(b"MCID"));
+                found[place].pages.push(painted.get(b"Pg").unwrap().as_reference().unwrap());
             }
         }
     }

@@ -77,11 +77,12 @@ pub(crate) fn legend(scene: &Scene) -> String {
         legend += " Bands with a buckle are straps; one that tears is gone.";
     }
     if let Some(ghosts) = &scene.ghosts {
-        legend += &format!(
+        let ways = format!(
             " With “{}” thin lines are the ways of the barrels of the top level in each, and the darker a \
              place, the more often a barrel ends there.",
             ghosts.label
         );
+        legend += &ways;
     }
     legend
 }

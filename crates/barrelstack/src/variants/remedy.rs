@@ -97,7 +97,7 @@ pub fn remedy(
 ) -> Result<Option<Remedy>, GroundError> {
     let spreads = answer.decides.summary.spreads();
     let worst = spreads.iter().filter_map(|(_, spread)| spread.share).reduce(f64::max);
-    if worst.is_none_or(|share| enough(share)) || answer.decides.run.interrupted {
+    if worst.is_none_or(enough) || answer.decides.run.interrupted {
         return Ok(None);
     }
     let scenario = &answer.scenario;
@@ -213,19 +213,21 @@ fn strapped(scenario: &Scenario, pretension: f64) -> Option<Change> {
     }
     *straps = Straps { levels, ties, slack: 0.0, pretension, ..*straps };
     let name = if levels == 1 { "barrels-to-racks" } else { "levels-together" };
-    let mut text =
-        format!("levels = {levels}, ties = \"{name}\", pretension = \"{} kN\"", 1e-3 * pretension);
+    let mut fields = vec![
+        format!("levels = {levels}, ties = \"{name}\""),
+        format!("pretension = \"{} kN\"", 1e-3 * pretension),
+    ];
     for (key, value, unit, default) in
         [("stiffness", straps.stiffness, "N/m", 1e5), ("damping", straps.damping, "N s/m", 0.0)]
     {
         if value != default {
-            text += &format!(", {key} = \"{value} {unit}\"");
+            fields.push(format!("{key} = \"{value} {unit}\""));
         }
     }
     if let Some(strength) = straps.strength {
-        text += &format!(", strength = \"{strength} N\"");
+        fields.push(format!("strength = \"{strength} N\""));
     }
-    let changes = vec![format!("stack.strap={{ {text} }}")];
+    let changes = vec![format!("stack.strap={{ {} }}", fields.join(", "))];
     Some(Change { kind: "straps", levels, pretension: Some(pretension), changes, scenario })
 }
 
