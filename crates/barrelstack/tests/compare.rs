@@ -188,5 +188,5 @@ fn runs_are_called_by_what_differs_between_them_in_words() {
     }
     // What differs in more than a name can tell keeps the name of its file.
     let many = ["stack.levels=3", "stack.columns=4", "run.gravity=9 m/s^2"];
-    assert_eq!(named(&[&[], &many]), ["file", "file"]);
+    assert_eq!(named(&[&[], &many]), ["file", "file (2)"]);
 }

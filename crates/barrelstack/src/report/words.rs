@@ -98,7 +98,9 @@ fn device(Device { words, elements }: &Device) -> Option<String> {
 
 /// What shook the ground.
 fn shaking(motion: &MotionSummary) -> String {
-    let name = &motion.name;
+    // Formulas have common names: "a sine".
+    let formula = motion.name.chars().all(char::is_lowercase);
+    let name = if formula { format!("a {}", motion.name) } else { motion.name.clone() };
     match (motion.pga == 0.0, motion.vertical) {
         (true, _) => format!("It is shaken up and down only, by {name}."),
         (false, true) => format!("It is shaken sideways and up and down by {name}."),
