@@ -105,7 +105,7 @@ for (const [name, text] of scenarios) {
       records.push([record, readFileSync(record)]);
     }
     const words = set.flatMap((change) => ["--set", change]);
-    const expected = said(JSON.parse(native("run", name, "--json", "--quiet", ...words)));
+    const expected = said(JSON.parse(native("run", name, "--json", "--quiet", "--no-remedy", ...words)));
     const answer = await ask({ ask: "summary", scenario: text, name: `${name}.toml`, set }, records);
     demand(answer.status === 0, answer.trap ?? answer.text);
     demand(said(JSON.parse(answer.text)) === expected, difference(expected, said(JSON.parse(answer.text))));
