@@ -24,7 +24,7 @@ use crate::scenario::{Scenario, Scene};
 pub const ENOUGH: u32 = 95;
 
 /// Pretensions (N) of straps that are tried; by hand a ratchet for webbing of 50 mm tightens to no more than
-/// 5 kN (EN 12195-2, standard tension force of 500 daN).
+/// 5 kN, an assumption: some 500 daN stand on the labels of long-handled ratchets (their STF, EN 12195-2).
 pub const PRETENSIONS: [f64; 5] = [1e3, 2e3, 3e3, 4e3, 5e3];
 
 /// Variants of a change that are run first: those of one bundle of lanes.
