@@ -58,6 +58,7 @@ pub mod report;
 mod rest;
 pub mod run;
 pub mod scenario;
+pub mod slosh;
 mod stand;
 pub mod step;
 mod stick;

@@ -99,7 +99,12 @@ pub fn judge(assembly: &Assembly, fates: &Fates) -> Outcome {
             CollapseMode::RackSliding
         }
         PartKind::Rack if from_level < assembly.levels => CollapseMode::Rocking,
-        PartKind::Rack | PartKind::Barrel | PartKind::Body | PartKind::Ground => {
+        PartKind::Rack
+        | PartKind::Barrel
+        | PartKind::Device
+        | PartKind::Wine
+        | PartKind::Body
+        | PartKind::Ground => {
             CollapseMode::Ejection
         }
     };

@@ -6,7 +6,7 @@ use barrelstack_dynamics::{
 };
 
 /// A convex part of a body, full-scale, in the frame of its draft.
-pub(super) struct Solid {
+pub(crate) struct Solid {
     pub(super) shape: Shape,
     /// Where the frame of the shape is (m).
     pub(super) offset: Vec2,
@@ -23,7 +23,7 @@ pub(super) struct Solid {
 
 /// What a solid is there to bear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Seat {
+pub(crate) enum Seat {
     /// Nothing: it meets only what has come loose.
     None,
     /// The rack stands with it on the ground, or on one of its supports.
@@ -80,7 +80,7 @@ const AT_END: f64 = 1e-9;
 
 impl Solid {
     /// A solid that is tested exactly all around.
-    pub(super) fn exact(shape: Shape, offset: Vec2, seat: Seat) -> Self {
+    pub(crate) fn exact(shape: Shape, offset: Vec2, seat: Seat) -> Self {
         Self { shape, offset, seat, below: Vec::new(), above: Vec::new(), widest: ROUND }
     }
 

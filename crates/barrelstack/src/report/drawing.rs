@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use barrelstack_dynamics::Shape;
+use barrelstack_dynamics::{Element, Shape};
 use barrelstack_report::{
     ContactForce, Event, EventKind, Frames, Ghosts, History, Moment, Point, Polyline, Role, Scene,
     SceneBody, Tie, Tint, significant,
@@ -187,6 +187,8 @@ fn body(assembly: &Assembly, index: usize) -> SceneBody {
                 PartKind::Ground => Role::Ground,
                 PartKind::Rack => Role::Rack,
                 PartKind::Barrel => Role::Barrel,
+                PartKind::Device => Role::Device,
+                PartKind::Wine => Role::Block,
                 PartKind::Body => Role::Block,
             };
             SceneBody::new(&part.name, role, outlines(assembly, index))
@@ -197,6 +199,7 @@ fn body(assembly: &Assembly, index: usize) -> SceneBody {
 fn ties(run: &Run) -> Vec<Tie> {
     let elements = run.assembly.model.elements().iter().zip(&run.elements);
     elements
+        .filter(|(element, _)| matches!(element, Element::Strap(_)))
         .map(|(element, fate)| Tie {
             bodies: element.link().bodies,
             points: element.link().points.map(|point| [point.x, point.z]),
