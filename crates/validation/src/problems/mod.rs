@@ -1,6 +1,7 @@
 //! The problems, grouped by theory.
 
 pub mod consensus;
+mod devices;
 mod fragility;
 mod gravity;
 mod housner;
@@ -13,6 +14,7 @@ mod pulses;
 mod regimes;
 mod restitution;
 mod rolling;
+mod slosh;
 mod sliding;
 mod solids;
 mod stacks;
@@ -33,6 +35,8 @@ pub fn all() -> Vec<Problem> {
         measured::problems(),
         gravity::problems(),
         stacks::problems(),
+        devices::problems(),
+        slosh::problems(),
         ode::problems(),
         invariances::problems(),
         intensity::problems(),
