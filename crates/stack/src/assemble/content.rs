@@ -21,8 +21,8 @@ static WORDS: Words = Words::silent("wine");
 /// waves that break make more.
 const DAMPING_RATIO: f64 = 0.01;
 
-/// Frequency (Hz) of what holds the wave up: far above that of waves, and no stiffer than seats.
-const HOLDING: f64 = 15.0;
+/// Rate (rad/s), 15 Hz, of what holds the wave up: far above that of waves, and no stiffer than seats.
+const HOLDING: f64 = 30.0 * PI;
 
 /// Radius (m) of the bob that is drawn.
 const BOB: f64 = 0.03;
@@ -79,7 +79,9 @@ fn add(builder: &mut Builder<'_>, body: usize, (wine, wave): (f64, Wave), gravit
     builder.parts[wine].outlines = vec![Outline { points: bob.collect(), closed: true }];
 
     let damping = 2.0 * DAMPING_RATIO * mass * rate * scale.damping(false);
-    let stiff = mass * (2.0 * PI * HOLDING).powi(2) * scale.stiffness(1.0, false);
+    let stiff = mass * HOLDING * HOLDING * scale.stiffness(1.0, false);
+    // By so much it gives under the wine.
+    let sag = gravity / (HOLDING * HOLDING);
     let link = |what: &str| Link {
         name: format!("{name} {what}"),
         bodies: [body, wine],
@@ -89,7 +91,7 @@ fn add(builder: &mut Builder<'_>, body: usize, (wine, wave): (f64, Wave), gravit
         View::Transverse => builder.hold(
             Rod {
                 link: link("pendulum"),
-                length: wave.length * scale.length,
+                length: (wave.length - sag) * scale.length,
                 stiffness: stiff,
                 damping: 0.0,
                 sway_damping: damping,
@@ -98,7 +100,7 @@ fn add(builder: &mut Builder<'_>, body: usize, (wine, wave): (f64, Wave), gravit
         ),
         View::Longitudinal => {
             let spring = mass * rate * rate * scale.stiffness(1.0, false);
-            let at = Vec2::new(0.0, -wave.depth * scale.length);
+            let at = Vec2::new(0.0, (sag - wave.depth) * scale.length);
             for (what, axis, k, c) in [
                 ("spring", Vec2::new(1.0, 0.0), spring, damping),
                 ("support", Vec2::new(0.0, 1.0), stiff, 0.0),

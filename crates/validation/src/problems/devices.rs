@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 use barrelstack::device::Tuning;
-use barrelstack::{Run, Scenario};
+use barrelstack::{Ground, Run, Scenario};
+use barrelstack_motion::GroundMotion;
 use barrelstack_dynamics::math::{cos, exp, sin, tan};
 use barrelstack_dynamics::{Body, Guide, Link, Model, Still, Strap, Vec2};
 
@@ -16,7 +17,7 @@ use super::housner::halvings;
 
 /// The problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
-    let mut list: Vec<Problem> = [40.0, 55.0, 70.0].map(rolls_out).into();
+    let mut list: Vec<Problem> = [30.0, 40.0, 55.0].map(rolls_out).into();
     list.push(hill());
     list.extend([0.8, 2.0].map(dish));
     list.push(slides());
@@ -48,15 +49,32 @@ fn problem(
     }
 }
 
-/// A stack of one level, all of whose contacts but that of the device hold.
-fn one_level(settings: &[String], motion: &str, seconds: f64) -> Result<Run, Failure> {
+/// A stack of one level on a rack so wide, so heavy and on contacts so stiff that nothing but what the device does
+/// gives.
+fn scenario(settings: &[String], motion: &str, seconds: f64) -> Result<Scenario, Failure> {
     let text = format!(
-        "schema = 1\n[stack]\nlevels = 1\ncolumns = 2\n[interface.rack-ground.friction]\ncoefficient = 2.0\n\
+        "schema = 1\n[stack]\nlevels = 1\ncolumns = 2\nrack = {{ width = \"8 m\", mass = \"400 kg\" }}\n\
+         [interface.rack-ground]\nstiffness = \"50 MN/m\"\ndamping = \"20 kN s/m\"\n\
+         [interface.rack-ground.friction]\ncoefficient = 5.0\n\
+         [interface.barrel-rack]\nstiffness = \"50 MN/m\"\ndamping = \"20 kN s/m\"\n\
          [interface.barrel-rack.friction]\ncoefficient = 0.0\n{motion}\n\
-         [run]\nduration = \"{seconds} s\"\n[record]\nhistory_rate = \"500 Hz\"\n"
+         [run]\nduration = \"{seconds} s\"\nuntil = \"duration\"\n[record]\nhistory_rate = \"500 Hz\"\n"
     );
-    let run = Scenario::parse("device.toml", &text, settings)?.run()?;
-    Ok(run)
+    Ok(Scenario::parse("device.toml", &text, settings)?)
+}
+
+fn one_level(settings: &[String], motion: &str, seconds: f64) -> Result<Run, Failure> {
+    Ok(scenario(settings, motion, seconds)?.run()?)
+}
+
+/// The same under a push (g) that grows for a second and stays for another one.
+fn pressed(settings: &[String], push: f64) -> Result<Run, Failure> {
+    let samples = (0..200).map(|at| push * GRAVITY * f64::from(at.min(100)) / 100.0).collect();
+    let motion = GroundMotion::from_acceleration("push", 0.01, samples);
+    let motion = motion.map_err(|error| Failure::Absent(error.to_string()))?;
+    let any = self::push(push, 1.0);
+    let scenario = scenario(settings, &any, 1.99)?;
+    Ok(scenario.run_on(Ground::from(motion), &mut |_| ControlFlow::Continue(()))?)
 }
 
 fn push(amplitude: f64, seconds: f64) -> String {
@@ -72,12 +90,6 @@ fn way(run: &Run, body: &str, axis: &str) -> Result<Vec<(f64, f64)>, Failure> {
     Ok(run.recording.times.iter().copied().zip(channel.values.iter().copied()).collect())
 }
 
-/// How far (m) a barrel goes against its rack at most.
-fn in_cradle(run: &Run) -> Result<f64, Failure> {
-    let (barrel, rack) = (way(run, "B1.1", "x")?, way(run, "R1", "x")?);
-    Ok(barrel.iter().zip(&rack).map(|(b, r)| (b.1 - r.1).abs()).fold(0.0, f64::max))
-}
-
 /// Chocks at an angle (rad) without a gap, on cradles that are lower.
 fn chocks(angle: f64) -> Vec<String> {
     vec![
@@ -88,7 +100,7 @@ fn chocks(angle: f64) -> Vec<String> {
         // As hard as a penalty can be, so that nothing sinks in.
         "interface.fallen-barrel-rack.law=\"hertz\"".into(),
         "interface.fallen-barrel-rack.stiffness=\"1e11 N/m^1.5\"".into(),
-        "interface.fallen-barrel-rack.friction={type=\"none\"}".into(),
+        "interface.fallen-barrel-rack.friction.coefficient=0".into(),
     ]
 }
 
@@ -103,32 +115,56 @@ fn rolls_out(degrees: f64) -> Problem {
         (exact, 1e-2, 2e-2),
         Box::new(move |effort| {
             let found = border((0.95 * exact, 1.05 * exact), halvings(effort), |amplitude| {
-                let run = one_level(&chocks(angle), &push(amplitude, 3.0), 1.5)?;
-                Ok(in_cradle(&run)? > 0.1)
+                let run = pressed(&chocks(angle), amplitude)?;
+                Ok(run.fates.collapse_time().is_some())
             })?;
             Ok(Outcome::of(found))
         }),
     )
 }
 
+/// How long (s) the blow takes.
+const BLOW: f64 = 0.05;
+
+/// Distance (m) of the center of a barrel from that of the end of a chock that it rolls over.
+const ARM: f64 = 0.5 * 0.645_918_367_346_938_8 + 0.015;
+
+/// Push (g) from which a barrel that leans on a chock at an angle (rad) comes over it: about the end of the chock
+/// `L θ'' = g sin θ − a cos θ` while the blow lasts, and on the hill `g L (1 − cos θ)` after it.
+fn over_the_hill(angle: f64) -> f64 {
+    let passes = |push: f64| {
+        let steps = 2000;
+        let step = BLOW / f64::from(steps);
+        let (mut lean, mut rate) = (angle, 0.0);
+        for _ in 0..steps {
+            let slope = |lean: f64| GRAVITY * (sin(lean) - push * cos(lean)) / ARM;
+            let middle = lean + 0.5 * step * rate;
+            rate += step * slope(middle);
+            lean = middle + 0.5 * step * rate;
+        }
+        lean <= 0.0 || 0.5 * ARM * rate * rate > GRAVITY * (1.0 - cos(lean))
+    };
+    let (mut low, mut high) = (0.0, 20.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if passes(middle) { high = middle } else { low = middle }
+    }
+    0.5 * (low + high)
+}
+
 fn hill() -> Problem {
-    // A push so short that nothing moves meanwhile gives the speed v; the hill is g (r + ρ)(1 − cos φ), with the
-    // radius ρ of the end of a chock, less what speed is lost along the line to that end.
-    let angle = 50.0_f64.to_radians();
-    let arm = 0.5 * 0.645_918_367_346_938_8 + 0.015;
-    let speed = (2.0 * GRAVITY * arm * (1.0 - cos(angle))).sqrt() / cos(angle);
+    let angle = 40.0_f64.to_radians();
+    let exact = over_the_hill(angle);
     problem(
         "chock-hill".into(),
-        "barrels between chocks at 50° after a blow".into(),
+        "barrels between chocks at 40°, pushed for 0.05 s".into(),
         "energy: m g r (1 − cos φ) over the end of a chock",
-        ("speed from which a barrel rolls out", "m/s"),
-        (speed, 3e-2, 4e-2),
+        ("push from which a barrel rolls out", "g"),
+        (exact, 1e-2, 2e-2),
         Box::new(move |effort| {
-            let seconds = 0.02;
-            let found = border((0.9 * speed, 1.1 * speed), halvings(effort), |speed| {
-                let motion = push(speed / GRAVITY / seconds, seconds);
-                let run = one_level(&chocks(angle), &motion, 1.5)?;
-                Ok(in_cradle(&run)? > 0.45)
+            let found = border((0.95 * exact, 1.05 * exact), halvings(effort), |amplitude| {
+                let run = one_level(&chocks(angle), &push(amplitude, BLOW), 1.2)?;
+                Ok(run.fates.first_fall().is_some())
             })?;
             Ok(Outcome::of(found))
         }),
@@ -149,7 +185,7 @@ fn dish(radius: f64) -> Problem {
                 format!("stack.isolator.dish_radius=\"{radius} m\""),
                 "interface.barrel-rack.friction.coefficient=0.6".into(),
             ];
-            let run = one_level(&settings, &push(0.08, 0.15), 8.0)?;
+            let run = one_level(&settings, &push(0.08, 0.15), 6.0)?;
             let ways = way(&run, "platform of R1", "x")?;
             let crossings: Vec<f64> = ways
                 .windows(2)
@@ -207,10 +243,8 @@ fn pads() -> Problem {
                 format!("stack.pad.stiffness=\"{stiffness} N/m\""),
                 "stack.pad.friction=0".into(),
                 "interface.barrel-rack.friction.coefficient=0".into(),
-                "interface.rack-ground.stiffness=\"1000 MN/m\"".into(),
-                "interface.rack-ground.damping=\"100 kN s/m\"".into(),
             ];
-            let run = one_level(&settings, "", 0.01)?;
+            let run = one_level(&settings, &push(1e-6, 0.01), 0.01)?;
             let named = |name: &str| run.assembly.model.body_named(name);
             let (Some(barrel), Some(rack)) = (named("B1.1"), named("R1")) else {
                 return Err(Failure::Absent("no barrel on its rack".into()));
@@ -312,9 +346,9 @@ fn largest_answer(share: f64, tuning: Tuning, step: f64) -> Result<f64, Failure>
     };
     let elements = vec![
         guide([0, 1], 3.0, MASS * OMEGA * OMEGA, 0.0).into(),
-        guide([1, 2], 1.0, mass * own * own, 2.0 * tuning.damping_ratio * mass * own).into(),
+        guide([1, 2], 0.0, mass * own * own, 2.0 * tuning.damping_ratio * mass * own).into(),
     ];
-    let bodies = vec![floor(), structure, body("mass", mass, 4.0)];
+    let bodies = vec![floor(), structure, body("mass", mass, 3.0)];
     let mut model = Model::new(bodies, vec![], vec![], Vec2::default())?;
     model.fasten(elements)?;
     let mut scene = Scene::of(model);
