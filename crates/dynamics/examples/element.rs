@@ -15,8 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let weight = Body { name: "weight".into(), motion: Motion::Free, mass, pose, ..hook.clone() };
     let weight = Body { surfaces: Vec::new(), ..weight };
     let link = Link { name: "strap".into(), bodies: [0, 1], points: [Vec2::default(); 2] };
-    let strap =
-        Strap {
+    let strap = Strap {
         link,
         length: 0.5 + fall,
         stiffness,

@@ -104,9 +104,7 @@ pub fn judge(assembly: &Assembly, fates: &Fates) -> Outcome {
         | PartKind::Device
         | PartKind::Wine
         | PartKind::Body
-        | PartKind::Ground => {
-            CollapseMode::Ejection
-        }
+        | PartKind::Ground => CollapseMode::Ejection,
     };
     let barrel_alone = mode == CollapseMode::Ejection && part.kind == PartKind::Barrel;
     let to_level = if barrel_alone { from_level } else { assembly.levels };

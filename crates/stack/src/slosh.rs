@@ -39,7 +39,8 @@ pub fn across(radius: f64, filled: f64) -> Wave {
     let wave_number = |j: usize| (j as f64 + 0.5) * PI / HALF_STRIP;
     let step = HALF_STRIP / POINTS as f64;
     let at: Vec<f64> = (0..POINTS).map(|i| (i as f64 + 0.5) * step).collect();
-    let weights: Vec<f64> = at.iter().map(|x| 0.5 * b * step * (1.0 - square(tanh(0.5 * x)))).collect();
+    let weights: Vec<f64> =
+        at.iter().map(|x| 0.5 * b * step * (1.0 - square(tanh(0.5 * x)))).collect();
     let functions: Vec<Vec<f64>> =
         (0..TERMS).map(|j| at.iter().map(|x| sin(wave_number(j) * x)).collect()).collect();
     let stiffness: Vec<f64> = (0..TERMS)
@@ -58,15 +59,16 @@ pub fn across(radius: f64, filled: f64) -> Wave {
         let next: Vec<f64> = functions
             .iter()
             .zip(&stiffness)
-            .map(|(f, k)| f.iter().zip(&weights).zip(&wave).map(|((f, w), v)| f * w * v).sum::<f64>() / k)
+            .map(|(f, k)| {
+                f.iter().zip(&weights).zip(&wave).map(|((f, w), v)| f * w * v).sum::<f64>() / k
+            })
             .collect();
         inverse = next.iter().map(|a| a * a).sum::<f64>().sqrt();
         amplitudes = next.into_iter().map(|a| a / inverse).collect();
     }
     let wave = surface(&amplitudes);
-    let over = |of: &dyn Fn(usize) -> f64| -> f64 {
-        (0..POINTS).map(|i| 2.0 * weights[i] * of(i)).sum()
-    };
+    let over =
+        |of: &dyn Fn(usize) -> f64| -> f64 { (0..POINTS).map(|i| 2.0 * weights[i] * of(i)).sum() };
     let norm = over(&|i| wave[i] * wave[i]);
     let push = over(&|i| wave[i] * b * tanh(0.5 * at[i]));
     let area = angle - b * cos(angle);

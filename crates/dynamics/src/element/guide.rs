@@ -124,8 +124,7 @@ impl<S: Space> Guide<S> {
         let closing = met & zero.lt(side * rate);
         let stop = self.stop_stiffness * depth;
         let elastic = self.stiffness * e + side * stop;
-        let damped =
-            self.damping * rate + S::Real::select(closing, self.stop_damping * rate, zero);
+        let damped = self.damping * rate + S::Real::select(closing, self.stop_damping * rate, zero);
         let energy = S::Real::splat(0.5) * (self.stiffness * e * e + stop * depth);
 
         let counted = |value| S::Real::select(memory.broken, zero, value);
@@ -133,8 +132,7 @@ impl<S: Space> Guide<S> {
         let damped = counted(damped);
         let force = elastic + damped;
         let aside = way - self.axis * e;
-        let breaks = self.strength.lt(force.abs())
-            | (self.reach * self.reach).lt(aside.dot(aside));
+        let breaks = self.strength.lt(force.abs()) | (self.reach * self.reach).lt(aside.dot(aside));
         let load = Load { force, energy: counted(energy), elastic, breaks, ..Load::default() };
         Action { load, wrenches: line.pull(along, force, damped) }
     }

@@ -87,7 +87,12 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds a law of contact of a device; returns its number.
-    pub(crate) fn add_law(&mut self, name: &str, law: &scenario::Interface, elements: f64) -> usize {
+    pub(crate) fn add_law(
+        &mut self,
+        name: &str,
+        law: &scenario::Interface,
+        elements: f64,
+    ) -> usize {
         self.laws.push(interface(name, law, elements, self.scale));
         StackPair::ALL.len() + self.laws.len() - 1
     }

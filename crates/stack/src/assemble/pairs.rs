@@ -73,7 +73,8 @@ impl Pairs<'_> {
     ) {
         let parts = &self.builder.parts;
         let in_cradle = pair == StackPair::BarrelRack
-            && (parts[contactor].carrier == Some(target) || parts[target].carrier == Some(contactor));
+            && (parts[contactor].carrier == Some(target)
+                || parts[target].carrier == Some(contactor));
         let interface = if in_cradle { self.builder.cradle_law } else { pair as usize };
         self.list.push(ContactPair { contactor, nodes, target, surface, interface, counts });
     }

@@ -13,14 +13,8 @@ use crate::assemble::Builder;
 
 pub(super) static WORDS: Words = Words {
     candidates: &[
-        Setting {
-            name: "chocks in the top level",
-            overrides: &["stack.chock.levels=1"],
-        },
-        Setting {
-            name: "chocks in the top three levels",
-            overrides: &["stack.chock.levels=3"],
-        },
+        Setting { name: "chocks in the top level", overrides: &["stack.chock.levels=1"] },
+        Setting { name: "chocks in the top three levels", overrides: &["stack.chock.levels=3"] },
     ],
     degraded: &[Setting {
         name: "chocks knocked aside",

@@ -177,7 +177,11 @@ impl Isolators {
                 inertia: None,
                 position: Vec2::new(x, 0.0),
                 size: half,
-                solids: vec![Solid::exact(Shape::Polygon(plate), Vec2::new(0.0, center), Seat::None)],
+                solids: vec![Solid::exact(
+                    Shape::Polygon(plate),
+                    Vec2::new(0.0, center),
+                    Seat::None,
+                )],
                 carrier: None,
                 supports: Vec::new(),
             });
@@ -189,13 +193,9 @@ impl Isolators {
             for end in ends {
                 self.bear(builder, platform, law, (x, end * (half - MARGIN)), center);
             }
-            let link = Link {
-                name,
-                bodies: [Assembly::GROUND, platform],
-                points: [Vec2::default(); 2],
-            };
-            let spring =
-                Guide::spring(link, Vec2::new(1.0, 0.0), self.recentring * share, 0.0);
+            let link =
+                Link { name, bodies: [Assembly::GROUND, platform], points: [Vec2::default(); 2] };
+            let spring = Guide::spring(link, Vec2::new(1.0, 0.0), self.recentring * share, 0.0);
             let stiff = scale.stiffness(1.0, false);
             let guide = Guide {
                 stiffness: spring.stiffness * stiff,

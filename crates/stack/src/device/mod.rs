@@ -26,7 +26,7 @@ pub use isolator::{Isolators, Path};
 pub use pad::Pads;
 pub use strap::{Straps, Ties};
 pub use tie::{Anchor, AnchorTies, Side};
-pub use tuned_mass::{Tuning, TunedMass};
+pub use tuned_mass::{TunedMass, Tuning};
 pub use walking_stop::{Holds, WalkingStops};
 
 /// Declares the devices: a table of `[stack]`, with its help, and the type that its file reads it into.

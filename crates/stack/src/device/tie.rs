@@ -25,7 +25,11 @@ pub(super) static WORDS: Words = Words {
         },
         Setting {
             name: "the top rack tied to the ceiling",
-            overrides: &["stack.tie.levels=1", "stack.tie.to=\"ceiling\"", "stack.tie.distance=\"2 m\""],
+            overrides: &[
+                "stack.tie.levels=1",
+                "stack.tie.to=\"ceiling\"",
+                "stack.tie.distance=\"2 m\"",
+            ],
         },
     ],
     degraded: &[Setting { name: "slack ties", overrides: &["stack.tie.slack=\"5 cm\""] }],
@@ -189,10 +193,14 @@ impl AnchorTies {
                         Anchor::Wall | Anchor::Neighbors => (Vec2::new(0.0, 0.3), scale.length),
                     };
                     let points = vec![point - along * length, point + along * length];
-                    builder.parts[Assembly::GROUND].outlines.push(Outline { points, closed: false });
+                    builder.parts[Assembly::GROUND]
+                        .outlines
+                        .push(Outline { points, closed: false });
                 }
                 let share = 1.0 / builder.side_by_side();
-                let force = |given: Option<f64>| given.map_or(f64::INFINITY, |it| it * scale.force() * share);
+                let force = |given: Option<f64>| {
+                    given.map_or(f64::INFINITY, |it| it * scale.force() * share)
+                };
                 let tie = Strap {
                     link: Link {
                         name: format!("{}-{name}", builder.parts[rack].name),

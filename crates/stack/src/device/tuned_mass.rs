@@ -142,7 +142,8 @@ impl TunedMass {
                 supports: Vec::new(),
             });
             let corner = |x: f64, z: f64| Vec2::new(x * HALF[0], z * HALF[1]) * scale.length;
-            let points = vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+            let points =
+                vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
             builder.parts[body].outlines = vec![Outline { points, closed: true }];
 
             let rate = TAU / self.period;

@@ -148,7 +148,8 @@ impl WalkingStops {
                     ..Guide::spring(link, Vec2::new(1.0, 0.0), 0.0, 0.0)
                 };
                 builder.loose.push(Loose { element: guide.into(), give: 0.0, words: &WORDS });
-                let apart = builder.bodies[barrel].pose.position - builder.bodies[rack].pose.position;
+                let apart =
+                    builder.bodies[barrel].pose.position - builder.bodies[rack].pose.position;
                 for side in [-1.0, 1.0] {
                     let at = Vec2::new(apart.x + side * (reach + gap), apart.z + size);
                     let points = vec![at, at - Vec2::new(0.0, lip.max(0.25 * size))];

@@ -150,7 +150,9 @@ impl Barrel {
                 Moments { axial: density * wood.axial, transverse: density * wood.transverse }
             }
             Fill::FullFrozen => frozen,
-            Fill::FullFluid | Fill::Part if wine_mass <= 0.0 => Moments { axial: 0.0, transverse: 0.0 },
+            Fill::FullFluid | Fill::Part if wine_mass <= 0.0 => {
+                Moments { axial: 0.0, transverse: 0.0 }
+            }
             Fill::FullFluid | Fill::Part => {
                 let lag = frozen.transverse - frozen.axial;
                 // A wave is a mass of its own; the rest turns as in a full barrel.

@@ -19,7 +19,9 @@ pub(super) fn problems() -> Vec<Problem> {
         frequency("half-full", HALF_FULL, 1.0, 1.3557, 1e-4),
         nearly_full(),
     ];
-    list.extend([0.3, 0.6, 1.0, 1.4, 1.8].into_iter().flat_map(|depth| [by_elements(depth), mass(depth)]));
+    list.extend(
+        [0.3, 0.6, 1.0, 1.4, 1.8].into_iter().flat_map(|depth| [by_elements(depth), mass(depth)]),
+    );
     list.push(long());
     list.extend([0.5, 0.9].map(in_a_stack));
     list
@@ -212,7 +214,8 @@ fn long() -> Problem {
     let exact = std::f64::consts::PI / length * (std::f64::consts::PI * depth / length).tanh();
     problem(
         "rectangular".into(),
-        "rectangular tank of 2 m filled to 0.5 m, as a half-full barrel is taken along its axis".into(),
+        "rectangular tank of 2 m filled to 0.5 m, as a half-full barrel is taken along its axis"
+            .into(),
         "Ibrahim 2005, section 5",
         ("ω²/g", "1/m"),
         (exact, 1e-9),
@@ -225,10 +228,11 @@ fn long() -> Problem {
 
 /// The wine of a barrel in its cradle, set in motion by a short push.
 fn in_a_stack(filled: f64) -> Problem {
-    let wave = scenario(filled).ok().and_then(|scenario| {
-        scenario.stack().and_then(|stack| stack.barrel.wave(stack.view))
-    });
-    let exact = wave.map_or(f64::NAN, |wave| (GRAVITY / wave.length).sqrt() / std::f64::consts::TAU);
+    let wave = scenario(filled)
+        .ok()
+        .and_then(|scenario| scenario.stack().and_then(|stack| stack.barrel.wave(stack.view)));
+    let exact =
+        wave.map_or(f64::NAN, |wave| (GRAVITY / wave.length).sqrt() / std::f64::consts::TAU);
     problem(
         format!("barrel-{filled}"),
         format!("barrels of 225 L filled to {filled} on their rack after a short push"),
@@ -246,7 +250,9 @@ fn in_a_stack(filled: f64) -> Problem {
             let times = &recording.times;
             let crossings: Vec<f64> = (1..times.len())
                 .filter(|i| times[*i] > 1.0 && way(i - 1) * way(*i) < 0.0)
-                .map(|i| times[i - 1] + way(i - 1) / (way(i - 1) - way(i)) * (times[i] - times[i - 1]))
+                .map(|i| {
+                    times[i - 1] + way(i - 1) / (way(i - 1) - way(i)) * (times[i] - times[i - 1])
+                })
                 .collect();
             match (crossings.first(), crossings.last()) {
                 (Some(first), Some(last)) if crossings.len() > 4 => {
