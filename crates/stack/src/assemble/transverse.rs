@@ -263,7 +263,9 @@ fn chocks(
             let end = center + Vec2::new(side * sin, -cos) * away;
             let middle = Vec2::new(end.x, 0.5 * (end.z + top));
             let bar = Polygon::bar(Vec2::new(end.x, top) - middle, end - middle, BAR_RADIUS)?;
-            solids.push(Solid::exact(Shape::Polygon(bar), middle, Seat::None));
+            let horn = Solid::exact(Shape::Polygon(bar), middle, Seat::None);
+            // What a rack weighs, it weighs without them.
+            solids.push(Solid { weighs: false, ..horn });
         }
     }
     Ok(solids)

@@ -112,7 +112,7 @@ pub struct Words {
     pub broken: &'static str,
     /// Settings worth trying on any stack of at least three levels.
     pub candidates: &'static [Setting],
-    /// What becomes of it in use: settings on top of those of a candidate.
+    /// What becomes of it in use: to be put [over](Setting::over) a candidate.
     pub degraded: &'static [Setting],
     /// What it costs.
     pub cost: Cost,
@@ -125,6 +125,16 @@ pub struct Setting {
     pub name: &'static str,
     /// Such as `stack.strap.levels=3`.
     pub overrides: &'static [&'static str],
+}
+
+impl Setting {
+    /// These settings in place of those of another one for the same fields, and with its others.
+    pub fn over(&self, other: &Self) -> Vec<&'static str> {
+        let field = |setting: &&'static str| setting.split('=').next();
+        let own: Vec<_> = self.overrides.iter().map(field).collect();
+        let kept = other.overrides.iter().filter(|setting| !own.contains(&field(setting)));
+        kept.chain(self.overrides).copied().collect()
+    }
 }
 
 /// What a device costs, bought and put on.

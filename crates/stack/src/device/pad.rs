@@ -71,8 +71,8 @@ impl Pads {
             friction: Friction::Coulomb {
                 coefficient: self.friction,
                 static_coefficient: self.friction,
-                tangential_stiffness_ratio: 0.5,
-                tangential_damping_ratio: 0.5,
+                tangential_stiffness_ratio: 1.0,
+                tangential_damping_ratio: 1.0,
             },
         };
         builder.cradle_law = builder.add_seat("pad", &law);
