@@ -24,6 +24,9 @@ const DAMPING_RATIO: f64 = 0.01;
 /// Rate (rad/s), 15 Hz, of what holds the wave up: far above that of waves, and no stiffer than seats.
 const HOLDING: f64 = 30.0 * PI;
 
+/// Its damping over the critical one: an assumption; wine that strikes the wall does not spring back.
+const HOLDING_DAMPING: f64 = 0.2;
+
 /// Radius (m) of the bob that is drawn.
 const BOB: f64 = 0.03;
 
@@ -80,6 +83,7 @@ fn add(builder: &mut Builder<'_>, body: usize, (wine, wave): (f64, Wave), gravit
 
     let damping = 2.0 * DAMPING_RATIO * mass * rate * scale.damping(false);
     let stiff = mass * HOLDING * HOLDING * scale.stiffness(1.0, false);
+    let hard = 2.0 * HOLDING_DAMPING * mass * HOLDING * scale.damping(false);
     // By so much it gives under the wine.
     let sag = gravity / (HOLDING * HOLDING);
     let link = |what: &str| Link {
@@ -93,7 +97,7 @@ fn add(builder: &mut Builder<'_>, body: usize, (wine, wave): (f64, Wave), gravit
                 link: link("pendulum"),
                 length: (wave.length - sag) * scale.length,
                 stiffness: stiff,
-                damping: 0.0,
+                damping: hard,
                 sway_damping: damping,
             },
             &WORDS,
@@ -103,7 +107,7 @@ fn add(builder: &mut Builder<'_>, body: usize, (wine, wave): (f64, Wave), gravit
             let at = Vec2::new(0.0, (sag - wave.depth) * scale.length);
             for (what, axis, k, c) in [
                 ("spring", Vec2::new(1.0, 0.0), spring, damping),
-                ("support", Vec2::new(0.0, 1.0), stiff, 0.0),
+                ("support", Vec2::new(0.0, 1.0), stiff, hard),
             ] {
                 let guide = Guide::spring(link(what), axis, k, c);
                 builder.hold(Guide { place: at, ..guide }, &WORDS);

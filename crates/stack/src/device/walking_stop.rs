@@ -151,8 +151,13 @@ impl WalkingStops {
                 let apart =
                     builder.bodies[barrel].pose.position - builder.bodies[rack].pose.position;
                 for side in [-1.0, 1.0] {
-                    let at = Vec2::new(apart.x + side * (reach + gap), apart.z + size);
-                    let points = vec![at, at - Vec2::new(0.0, lip.max(0.25 * size))];
+                    let foot = match spec.view {
+                        View::Transverse => reach + gap,
+                        View::Longitudinal => spec.rack.rail_half_spacing * scale.length,
+                    };
+                    let top = |x: f64| Vec2::new(apart.x + side * x, apart.z + size);
+                    let lip = Vec2::new(0.0, lip.max(0.25 * size));
+                    let points = vec![top(foot), top(reach + gap), top(reach + gap) - lip];
                     builder.parts[rack].outlines.push(Outline { points, closed: false });
                 }
             }
