@@ -43,7 +43,8 @@ fn a_device_out_of_reach_gives_the_bits_of_the_stack_without_it() {
     ];
     let as_wood =
         [&elastic[..], &["stack.pad.stiffness=\"980 kN/m\"", "stack.pad.friction=0.3"]].concat();
-    let cases: [(&str, &[&str], &[&str]); 8] = [
+    let cases: [(&str, &[&str], &[&str]); 9] = [
+        (ACROSS, &[], &["stack.lid.levels=4", "stack.lid.gap=\"1 m\""]),
         (
             ACROSS,
             &[],

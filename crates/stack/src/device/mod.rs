@@ -6,6 +6,7 @@
 
 mod chock;
 mod isolator;
+mod lid;
 mod pad;
 mod strap;
 mod tie;
@@ -23,6 +24,7 @@ use crate::assemble::{Assembly, Builder};
 
 pub use chock::Chocks;
 pub use isolator::{Isolators, Path};
+pub use lid::Lids;
 pub use pad::Pads;
 pub use strap::{Straps, Ties};
 pub use tie::{Anchor, AnchorTies, Side};
@@ -85,6 +87,8 @@ devices! {
     walking_stop: WalkingStops,
     /// Chocks beside the barrels, against rolling out.
     chock: Chocks,
+    /// Lids over the barrels of the highest levels.
+    lid: Lids,
     /// Elastomer pads in the cradles.
     pad: Pads,
     /// Isolators under the bottom racks.
