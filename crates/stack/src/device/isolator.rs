@@ -120,6 +120,9 @@ pub(super) fn read(reader: Reader<'_>, _levels: u32) -> Result<Isolators, InputE
 /// Sine of the steepest slope of a dish at its stops.
 const STEEPEST: f64 = 0.5;
 
+/// Half of the angle (rad) that a dish spans.
+const DISH: f64 = 1.2;
+
 /// Height (m) of the bearings, and thickness of the platform on them: an assumption.
 const BEARING: f64 = 0.03;
 const PLATE: f64 = 0.04;
@@ -222,11 +225,13 @@ impl Isolators {
         let surface = match self.path {
             Path::None | Path::Flat => 0,
             Path::Dish => {
-                // The dish goes on beyond the stops.
-                let half_angle = 1.2 * math::atan(self.stroke / self.dish_radius);
-                let dish = Shape::Cradle(Cradle::new(self.dish_radius * length, half_angle));
+                // Drawn up to the stops; it goes on beyond them, so that no blow leads out of it.
+                let dish =
+                    |half_angle| Shape::Cradle(Cradle::new(self.dish_radius * length, half_angle));
                 let offset = Vec2::new(x + end, self.dish_radius) * length;
-                let points = dish.outline().0.into_iter().map(|point| offset + point).collect();
+                let drawn = dish(math::atan(self.stroke / self.dish_radius)).outline().0;
+                let points = drawn.into_iter().map(|point| offset + point).collect();
+                let dish = dish(DISH);
                 let ground = &mut builder.parts[Assembly::GROUND];
                 ground.outlines.push(Outline { points, closed: false });
                 let rotation = Rotation2::identity();

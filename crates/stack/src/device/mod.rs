@@ -104,7 +104,7 @@ devices! {
 pub struct Words {
     /// One element of it.
     pub one: &'static str,
-    /// More than one; also the key in the summary.
+    /// More than one; with underscores also the key in the summary.
     pub many: &'static str,
     /// The force in one.
     pub force: &'static str,
