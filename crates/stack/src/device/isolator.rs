@@ -79,7 +79,7 @@ section! {
     friction: f64 = Kind::Number(Range::between(0.0, 2.0)), Default::Value("0.01");
     /// Radius of the dishes, which is the length of the pendulum; not used on a flat path. An assumption: 2 s.
     dish_radius: f64 =
-        Kind::Quantity(&[Dimension::LENGTH], Range::between(0.1, 100.0)), Default::Value("\"1 m\"");
+        Kind::Quantity(&[Dimension::LENGTH], Range::between(0.3, 100.0)), Default::Value("\"1 m\"");
     /// How far the platform may move to either side before it meets a stop: an assumption.
     stroke: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.001, 10.0)), Default::Value("\"20 cm\"");
