@@ -180,7 +180,9 @@ impl Ranking {
 #[derive(Debug, thiserror::Error)]
 pub enum ProtectError {
     /// A free scene has no levels, racks or devices.
-    #[error("\"{0}\" is a free scene; protections are those of stacks of barrels on racks")]
+    #[error(
+        "\"{0}\" is a free scene, and protections are those of stacks of barrels on racks: take the scenario of a stack"
+    )]
     NoStack(String),
     /// The hazard is over another measure.
     #[error(
@@ -231,7 +233,7 @@ struct Trial {
 
 impl Trial {
     fn new(base: &Scenario, protection: Protection) -> Result<Self, ProtectError> {
-        let changed = options::changed(base, &protection.changes)?;
+        let changed = protection.on(base)?;
         let stacks: Vec<(View, Scenario)> = planes(&changed)?
             .into_iter()
             .filter_map(|plane| Some((plane.view()?, plane.scenario)))
@@ -409,7 +411,12 @@ impl Search<'_> {
             }
             match Trial::new(self.base, protection) {
                 Ok(trial) => trials.push(trial),
-                Err(error) => self.not_tried.push((name, error.to_string())),
+                // Where a field stands in the text that was made here tells nobody anything.
+                Err(error) => {
+                    let reason = error.to_string();
+                    self.not_tried
+                        .push((name, reason.lines().next().unwrap_or_default().to_owned()));
+                }
             }
         }
         trials

@@ -1,6 +1,6 @@
 //! What can be done for a stack: a change of the scenario, what it costs, and what is left of it when worn.
 
-use crate::scenario::{Scenario, ScenarioError, catalog};
+use crate::scenario::{MotionSource, Scenario, ScenarioError, catalog};
 
 /// What kind of change it is; of a kind only one is part of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -175,15 +175,24 @@ pub(super) fn pair(
     })
 }
 
-/// A scenario with overrides; nothing is read from the disk.
-///
-/// # Errors
-/// When they do not fit it.
-pub(super) fn changed(scenario: &Scenario, changes: &[String]) -> Result<Scenario, ScenarioError> {
-    Scenario::parse(&scenario.title, &scenario.to_resolved_toml(), changes)
+/// A scenario with overrides, whatever it was made with; nothing is read from the disk.
+fn changed(scenario: &Scenario, changes: &[String]) -> Result<Scenario, ScenarioError> {
+    let mut still = scenario.clone();
+    still.motion.source = MotionSource::None;
+    let mut changed = Scenario::parse(&scenario.title, &still.to_resolved_toml(), changes)?;
+    changed.motion = scenario.motion.clone();
+    Ok(changed)
 }
 
 impl Protection {
+    /// A scenario with it.
+    ///
+    /// # Errors
+    /// When it does not fit.
+    pub fn on(&self, scenario: &Scenario) -> Result<Scenario, ScenarioError> {
+        changed(scenario, &self.changes)
+    }
+
     /// The same when it is worn or badly fitted; none where it cannot wear.
     pub(super) fn worn(&self) -> Option<Self> {
         let (words, changes) = self.degraded.as_ref()?;

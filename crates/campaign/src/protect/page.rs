@@ -131,8 +131,9 @@ fn sentences(all: &Ranking) -> Vec<String> {
     said
 }
 
-fn interval(estimate: &Estimate) -> String {
-    let shown = |x: f64| significant(x, 2);
+/// Barrels of an event in hundredths, of a year in two digits, which may be far below one.
+fn interval(all: &Ranking, estimate: &Estimate) -> String {
+    let shown = |x: f64| if is_site(all) { significant(x, 2) } else { format!("{x:.2}") };
     format!("{} ({}–{})", shown(estimate.mean), shown(estimate.low), shown(estimate.high))
 }
 
@@ -173,11 +174,15 @@ fn table(all: &Ranking) -> Table {
             name,
             Cell::text(if high > 0.0 { format!("{low:.0}–{high:.0}") } else { "0".to_owned() }),
             Cell::text(one.protection.moved.to_string()),
-            Cell::text(if is_site(all) { interval(&one.collapse) } else { shares(&one.collapse) }),
-            Cell::text(interval(&one.fallen)),
-            Cell::text(interval(&one.burst)),
-            one.saved.as_ref().map_or(Cell::Missing, |saved| Cell::text(interval(saved))),
-            one.worn.as_ref().map_or(Cell::Missing, |worn| Cell::text(interval(worn))),
+            Cell::text(if is_site(all) {
+                interval(all, &one.collapse)
+            } else {
+                shares(&one.collapse)
+            }),
+            Cell::text(interval(all, &one.fallen)),
+            Cell::text(interval(all, &one.burst)),
+            one.saved.as_ref().map_or(Cell::Missing, |saved| Cell::text(interval(all, saved))),
+            one.worn.as_ref().map_or(Cell::Missing, |worn| Cell::text(interval(all, worn))),
             Cell::text(one.direction.words()),
             Cell::text(one.motions.to_string()),
         ]);

@@ -103,7 +103,10 @@ fn request(args: &ProtectArgs) -> anyhow::Result<Request> {
         None => Shaking::Levels(velocities(&args.pgv)?),
     };
     if let Some(folder) = args.motions.as_ref().filter(|folder| !folder.is_dir()) {
-        bail!("--motions {}: there is no such folder", folder.display());
+        bail!(
+            "--motions {}: there is no such folder; give one with the files of records, or leave it out",
+            folder.display()
+        );
     }
     if let Some(budget) = args.budget.filter(|budget| !(*budget >= 0.0 && budget.is_finite())) {
         bail!("--budget {budget}: expected a sum of US$ of zero or more");
@@ -139,14 +142,11 @@ fn velocities(typed: &[String]) -> anyhow::Result<Vec<f64>> {
 fn before_and_after(args: &ProtectArgs, found: &Ranking) -> anyhow::Result<Vec<Block>> {
     let Some(best) = found.best() else { return Ok(Vec::new()) };
     let mut answers = Vec::new();
-    for (name, changes) in
-        [("as it is", &[][..]), (&*best.protection.name, &best.protection.changes)]
-    {
-        let mut with = args.scenario.clone();
-        with.set.extend(changes.iter().cloned());
-        let scenario = super::load(&with)?;
-        let placed = |error| super::placed(error, &scenario, &with);
-        let answer = answered(&scenario, Asked::Typical, !args.quiet).map_err(placed)?;
+    let own = &found.request.scenario;
+    let protected = best.protection.on(own)?;
+    for (name, scenario) in [("as it is", own), (&*best.protection.name, &protected)] {
+        let answer = answered(scenario, Asked::Typical, !args.quiet)
+            .map_err(|error| super::placed(error, scenario, &args.scenario))?;
         if answer.decides.run.interrupted {
             return Err(Stopped.into());
         }
