@@ -69,6 +69,7 @@ fn a_thin_straight_shell_has_the_inertia_of_a_tube_with_lids() {
         capacity: 10.0,
         section_diameter: 2.0 * radius,
         fill: Fill::Empty,
+        filled: 1.0,
     };
     let tube = mass * length / (length + radius);
     let lids = mass - tube;

@@ -30,7 +30,7 @@ const POINTS: usize = 400;
 /// `x + i z = b tanh(w/2)`, with half the width `b` of the surface; there a function `sin k ξ` on the surface
 /// has the normal derivative `k tanh k β` times itself, where `β` is the angle between surface and wall.
 /// What is left is an eigenvalue problem on the surface, in functions that decay fast.
-/// Half full it gives `ω² R/g = 1.35573`, as Budiansky (1960) and McIver (1989) have it; nearly empty 1, and
+/// Half full it gives `ω² R/g = 1.35573`, as McIver (1989) and Budiansky (1960) have it; nearly empty 1, and
 /// nearly full the ice-fishing problem `ω² b/g = 2.0061` (Fox and Kuttler 1983).
 /// The mass follows from how a push sidewise excites the wave (Ibrahim 2005, section 5).
 pub fn across(radius: f64, filled: f64) -> Wave {

@@ -109,8 +109,7 @@ impl Pairs<'_> {
             let seat = stands && touch.seat.stands();
             let interface = match (kind, seat) {
                 (PartKind::Rack, true) => StackPair::RackGround,
-                (PartKind::Rack, false) => StackPair::FallenRackGround,
-                (PartKind::Device, _) => StackPair::FallenRackGround,
+                (PartKind::Rack, false) | (PartKind::Device, _) => StackPair::FallenRackGround,
                 (PartKind::Barrel | PartKind::Wine | PartKind::Ground | PartKind::Body, _) => {
                     StackPair::BarrelGround
                 }

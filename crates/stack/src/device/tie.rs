@@ -172,9 +172,8 @@ impl AnchorTies {
                     (Anchor::Neighbors, Some(next)) if on == Side::Right => {
                         (next, Vec2::new(-end.x, 0.0), builder.parts[next].name.clone())
                     }
-                    (Anchor::Neighbors, _) => continue,
                     // Between racks there is no wall.
-                    (Anchor::Wall, Some(_)) => continue,
+                    (Anchor::Neighbors, _) | (Anchor::Wall, Some(_)) => continue,
                     (Anchor::Wall, None) => {
                         let at = place + end + Vec2::new(sign * far, 0.0);
                         (Assembly::GROUND, at, format!("wall {side}"))

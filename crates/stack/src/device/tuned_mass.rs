@@ -161,8 +161,9 @@ impl TunedMass {
                 ..spring
             };
             builder.hold(swing, &WORDS);
-            let hold = mass * (TAU * HOLDING).powi(2) * stiff;
-            let damp = 0.1 * mass * TAU * HOLDING * damped;
+            let fast = TAU * HOLDING;
+            let hold = mass * fast * fast * stiff;
+            let damp = 0.1 * mass * fast * damped;
             builder.hold(Guide::spring(link, Vec2::new(0.0, 1.0), hold, damp), &SUPPORT);
         }
         Ok(())

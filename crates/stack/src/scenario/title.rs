@@ -53,7 +53,9 @@ fn stands(stack: &StackSpec) -> String {
         some => format!(", {} strapped", number(some)),
     };
     let others = stack.devices.present().into_iter().filter(|words| words.one != "strap");
-    let others: String = others.map(|words| format!(", with {}", words.many)).collect();
+    let others: Vec<&str> = others.map(|words| words.many).collect();
+    let with = if others.is_empty() { "" } else { ", with " };
+    let others = with.to_owned() + &others.join(", ");
     format!("{barrels} on {levels}{straps}{others}{view}")
 }
 

@@ -30,7 +30,7 @@ pub(super) fn problems() -> Vec<Problem> {
 }
 
 fn problem(
-    id: String,
+    id: &str,
     title: String,
     source: &str,
     (quantity, unit): (&'static str, &'static str),
@@ -87,7 +87,7 @@ fn push(amplitude: f64, seconds: f64) -> String {
 /// The displacement (m) of a body along an axis, with its times (s).
 fn way(run: &Run, body: &str, axis: &str) -> Result<Vec<(f64, f64)>, Failure> {
     let name = format!("{body} displacement {axis}");
-    let channel = run.recording.channel(&name).ok_or_else(|| Failure::Absent(name))?;
+    let channel = run.recording.channel(&name).ok_or(Failure::Absent(name))?;
     Ok(run.recording.times.iter().copied().zip(channel.values.iter().copied()).collect())
 }
 
@@ -109,7 +109,7 @@ fn rolls_out(degrees: f64) -> Problem {
     let angle = degrees.to_radians();
     let exact = tan(angle);
     problem(
-        format!("chock-{degrees}"),
+        &format!("chock-{degrees}"),
         format!("barrels between chocks at {degrees}°, pushed for good"),
         "statics: roll-out at a/g = tan φ",
         ("push from which a barrel rolls out", "g"),
@@ -157,7 +157,7 @@ fn hill() -> Problem {
     let angle = 40.0_f64.to_radians();
     let exact = over_the_hill(angle);
     problem(
-        "chock-hill".into(),
+        "chock-hill",
         "barrels between chocks at 40°, pushed for 0.05 s".into(),
         "energy: m g r (1 − cos φ) over the end of a chock",
         ("push from which a barrel rolls out", "g"),
@@ -187,7 +187,7 @@ fn lid() -> Problem {
         if risen > gap + force(middle) / stiffness { low = middle } else { high = middle }
     }
     problem(
-        "lid".into(),
+        "lid",
         "barrels on cradles of 20° under lids with a gap of 5 mm, pushed with 0.5 g".into(),
         "statics: m (a cot θ − g)",
         ("force on a lid", "N"),
@@ -209,7 +209,7 @@ fn lid() -> Problem {
 
 fn dish(radius: f64) -> Problem {
     problem(
-        format!("dish-{radius}"),
+        &format!("dish-{radius}"),
         format!("a stack on an isolator in dishes of {radius} m after a short push"),
         "pendulum: T = 2π √(R/g)",
         ("period", "s"),
@@ -244,7 +244,7 @@ fn slides() -> Problem {
     let over: f64 = push_g - friction;
     let exact = 0.5 * over * GRAVITY * seconds * seconds * push_g / friction;
     problem(
-        "sheet".into(),
+        "sheet",
         "a stack on a sheet of μ = 0.05, pushed with 0.15 g for 0.4 s".into(),
         "Newmark 1965",
         ("residual displacement", "m"),
@@ -269,7 +269,7 @@ fn pads() -> Problem {
     let mass = 46.0 + 990.0 * 0.225;
     let exact = mass * GRAVITY / (2.0 * 2.0 * stiffness * cos(angle) * cos(angle));
     problem(
-        "pads".into(),
+        "pads",
         "a full barrel on pads of 400 kN/m without friction".into(),
         "statics",
         ("how far it sinks into its cradle", "m"),
@@ -315,7 +315,7 @@ fn yields() -> Problem {
     let (stiffness, force, speed) = (1e5, 2e3, 1.2);
     let exact = (0.5 * MASS * speed * speed - 0.5 * force * force / stiffness) / force;
     problem(
-        "tie-yields".into(),
+        "tie-yields",
         "a weight caught by a slack tie that yields at 2 kN".into(),
         "energy: ½ m v² = F²/2k + F Δ",
         ("how much longer the tie is for good", "m"),
@@ -339,7 +339,7 @@ fn yields() -> Problem {
 fn between_stops() -> Problem {
     let (gap, speed, omega) = (0.02, 0.3, 60.0);
     problem(
-        "stops".into(),
+        "stops",
         "a weight between two elastic stops at ±2 cm".into(),
         "4 δ/v + 2π/ω",
         ("period", "s"),
@@ -417,7 +417,7 @@ fn den_hartog(share: f64) -> [Problem; 2] {
     let title = format!("undamped structure with a tuned mass of {share} of its mass");
     let step = 0.01;
     let peak = problem(
-        format!("tuned-mass-peak-{share}"),
+        &format!("tuned-mass-peak-{share}"),
         title.clone(),
         source,
         ("largest displacement over that at rest", ""),
@@ -425,7 +425,7 @@ fn den_hartog(share: f64) -> [Problem; 2] {
         Box::new(move |_| largest_answer(share, exact, step).map(Outcome::of)),
     );
     let frequency = problem(
-        format!("tuned-mass-frequency-{share}"),
+        &format!("tuned-mass-frequency-{share}"),
         title,
         source,
         ("best frequency of the mass over that of the structure", ""),

@@ -28,7 +28,7 @@ pub(super) fn problems() -> Vec<Problem> {
 }
 
 fn problem(
-    id: String,
+    id: &str,
     title: String,
     source: &str,
     (quantity, unit): (&'static str, &'static str),
@@ -55,7 +55,7 @@ fn number(depth: f64) -> f64 {
 
 fn frequency(name: &str, source: &'static str, depth: f64, exact: f64, tolerance: f64) -> Problem {
     problem(
-        name.into(),
+        name,
         format!("horizontal cylinder filled to {depth} of its radius, first wave across"),
         source,
         ("ω² R/g", ""),
@@ -68,7 +68,7 @@ fn nearly_full() -> Problem {
     let depth: f64 = 2.0 - 1e-6;
     let half_width = (1.0 - (depth - 1.0) * (depth - 1.0)).sqrt();
     problem(
-        "nearly-full".into(),
+        "nearly-full",
         "horizontal cylinder full but for a slit, first wave across".into(),
         NEARLY_FULL,
         ("ω² b/g with half the width b of the slit", ""),
@@ -83,7 +83,7 @@ const SIDE: usize = 28;
 fn by_elements(depth: f64) -> Problem {
     let (exact, _) = finite_elements(depth, SIDE);
     problem(
-        format!("frequency-{depth}"),
+        &format!("frequency-{depth}"),
         format!("horizontal cylinder filled to {depth} of its radius, first wave across"),
         ELEMENTS,
         ("ω² R/g", ""),
@@ -95,7 +95,7 @@ fn by_elements(depth: f64) -> Problem {
 fn mass(depth: f64) -> Problem {
     let (_, exact) = finite_elements(depth, SIDE);
     problem(
-        format!("mass-{depth}"),
+        &format!("mass-{depth}"),
         format!("horizontal cylinder filled to {depth} of its radius, first wave across"),
         ELEMENTS,
         ("share of the mass that goes with the wave", ""),
@@ -213,7 +213,7 @@ fn long() -> Problem {
     let (length, depth) = (2.0, 0.5);
     let exact = std::f64::consts::PI / length * (std::f64::consts::PI * depth / length).tanh();
     problem(
-        "rectangular".into(),
+        "rectangular",
         "rectangular tank of 2 m filled to 0.5 m, as a half-full barrel is taken along its axis"
             .into(),
         "Ibrahim 2005, section 5",
@@ -234,7 +234,7 @@ fn in_a_stack(filled: f64) -> Problem {
     let exact =
         wave.map_or(f64::NAN, |wave| (GRAVITY / wave.length).sqrt() / std::f64::consts::TAU);
     problem(
-        format!("barrel-{filled}"),
+        &format!("barrel-{filled}"),
         format!("barrels of 225 L filled to {filled} on their rack after a short push"),
         "the pendulum of its wave",
         ("frequency of the wine", "Hz"),
