@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use serde::Serialize;
+
 use crate::{
     Block, Document, Figure, FigureKind, Strip, Table, Tone,
     document::FINE,
@@ -34,6 +36,23 @@ pub fn html(document: &Document) -> String {
     writer.provenance(&document.provenance);
     writer.out.push_str("</main>\n");
     assemble(&document.title, &writer.out, writer.payload)
+}
+
+/// Blocks for a page that is there already: their markup, and the data of their players and plots.
+#[derive(Clone, Debug, Serialize)]
+pub struct Fragment {
+    /// The markup.
+    pub markup: String,
+    /// The data, as JSON.
+    pub data: String,
+}
+
+/// Blocks as a part of a page, such as one that a [`Shell`](crate::Shell) makes.
+pub fn fragment(blocks: &[Block]) -> Fragment {
+    let document = Document { blocks: blocks.to_vec(), ..Document::default() };
+    let mut writer = Writer::of(&document);
+    writer.blocks(&document.blocks);
+    Fragment { markup: writer.out, data: writer.payload.into_json() }
 }
 
 /// Headings of level 2 outside details, with their anchors.
@@ -111,11 +130,7 @@ impl<'a> Writer<'a> {
         self.put("<a class=\"skip\" href=\"#content\">Skip to the content</a>\n");
         self.put(&format!("<header class=\"verdict {}\">\n", tone.class()));
         self.element("<p class=\"title\">", &document.title, "</p>");
-        self.put(&format!(
-            "<p class=\"tone\">{}<span>{}</span></p>\n",
-            sign(tone),
-            escape::html(tone.word())
-        ));
+        self.put(&badge(tone));
         self.element("<h1>", &verdict.headline, "</h1>");
         if !verdict.advice.is_empty() {
             self.element("<p class=\"advice\">", &verdict.advice, "</p>");
@@ -319,6 +334,11 @@ impl<'a> Writer<'a> {
         }
         self.put("</div>\n");
     }
+}
+
+/// A tone as its sign and its word, in markup.
+pub fn badge(tone: Tone) -> String {
+    format!("<p class=\"tone\">{}<span>{}</span></p>\n", sign(tone), escape::html(tone.word()))
 }
 
 /// A shape for each tone, so that color only repeats what it says.

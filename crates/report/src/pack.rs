@@ -5,8 +5,11 @@
 //! The stream holds, for each value, a LEB128 integer: 0 for a missing value, otherwise one
 //! plus the zigzag code of the difference (first or second order) to the values before it.
 
+use std::io::Write as _;
+
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD as BASE64;
+use flate2::{Compression, write::GzEncoder};
 use serde_json::{Value, json};
 
 /// Quantum of lengths (m) and angles (rad) of the frames: 2⁻¹⁴, about 0.061 mm and 0.061 mrad.
@@ -101,6 +104,14 @@ pub(crate) fn quantum_for(values: &[f64]) -> f64 {
     } else {
         1.0
     }
+}
+
+/// Bytes in base64 of gzip, as small as that gets.
+pub(crate) fn gzip_base64(bytes: &[u8]) -> String {
+    let mut packer = GzEncoder::new(Vec::new(), Compression::best());
+    // Writing to memory cannot fail.
+    let packed = packer.write_all(bytes).and_then(|()| packer.finish()).unwrap_or_default();
+    BASE64.encode(packed)
 }
 
 #[cfg(test)]

@@ -14,8 +14,8 @@ const UPLOT_CSS: &str = include_str!("../assets/vendor/uPlot.min.css");
 const UPLOT_JS: &str = include_str!("../assets/vendor/uPlot.iife.min.js");
 const UPLOT_LICENSE: &str = include_str!("../assets/vendor/uPlot-LICENSE");
 
-/// The page's own scripts, in the order they depend on each other.
-const SCRIPTS: [&str; 14] = [
+/// The player's scripts, in the order they depend on each other.
+const PLAYER: [&str; 12] = [
     include_str!("../assets/decode.js"),
     include_str!("../assets/forces.js"),
     include_str!("../assets/tint.js"),
@@ -28,9 +28,10 @@ const SCRIPTS: [&str; 14] = [
     include_str!("../assets/keys.js"),
     include_str!("../assets/link.js"),
     include_str!("../assets/player.js"),
-    include_str!("../assets/plots.js"),
-    include_str!("../assets/page.js"),
 ];
+
+/// What a report has beside them.
+const REPORT: [&str; 2] = [include_str!("../assets/plots.js"), include_str!("../assets/page.js")];
 
 /// The icon is an empty data address and the policy forbids every address but this page, so a
 /// browser asks for nothing else.
@@ -109,7 +110,8 @@ impl Payload {
         self.columns.len() - 1
     }
 
-    fn into_json(self) -> String {
+    /// What the scripts read.
+    pub(crate) fn into_json(self) -> String {
         json!({
             "players": self.players,
             "plots": self.plots,
@@ -140,22 +142,7 @@ pub(crate) fn assemble(title: &str, body: &str, payload: Payload) -> String {
     let scripted = live
         || !payload.players.is_empty()
         || ["<table", "<figure"].iter().any(|element| body.contains(element));
-    let mut out = String::new();
-    let title = escape::html(title);
-    out.push_str("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
-    // Writing to a String cannot fail, here and below.
-    let _ = writeln!(out, "<meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">");
-    out.push_str("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
-    out.push_str("<meta name=\"color-scheme\" content=\"light dark\">\n");
-    let _ = writeln!(out, "<title>{title}</title>\n<link rel=\"icon\" href=\"data:,\">");
-    out.push_str("<style>\n");
-    out.push_str(&palette_css());
-    if live {
-        out.push_str(UPLOT_CSS);
-    }
-    out.push_str(page_style());
-    out.push_str(REPORT_CSS);
-    out.push_str("</style>\n</head>\n<body>\n");
+    let mut out = head(title, POLICY, if live { UPLOT_CSS } else { "" }, "");
     out.push_str(body);
     if scripted {
         out.push_str("<script type=\"application/json\" id=\"barrelstack-data\">");
@@ -169,13 +156,67 @@ pub(crate) fn assemble(title: &str, body: &str, payload: Payload) -> String {
     }
     if scripted {
         out.push_str("<script>\n(() => {\n\"use strict\";\n");
-        for script in SCRIPTS {
+        for script in PLAYER.into_iter().chain(REPORT) {
             out.push_str(script);
         }
         out.push_str("})();\n</script>\n");
     }
     out.push_str("</body>\n</html>\n");
     out
+}
+
+/// The start of a file, up to its body: with its policy, and style sheets before and after that of all pages.
+fn head(title: &str, policy: &str, before: &str, after: &str) -> String {
+    let title = escape::html(title);
+    let palette = palette_css();
+    let figures = page_style();
+    format!(
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"color-scheme\" content=\"light dark\">\n\
+         <title>{title}</title>\n<link rel=\"icon\" href=\"data:,\">\n\
+         <style>\n{palette}{before}{figures}{REPORT_CSS}{after}</style>\n</head>\n<body>\n"
+    )
+}
+
+/// A page that holds a program: what it shows, and what it runs, in the look and with the player of all pages.
+///
+/// Its policy lets it run what is in it, also in workers, and ask for nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Shell<'a> {
+    /// Title of the file.
+    pub title: &'a str,
+    /// Style sheet of its own.
+    pub style: &'a str,
+    /// Its body, as markup.
+    pub body: &'a str,
+    /// Bytes that it holds, each under the id of an element, in base64 of gzip.
+    pub held: &'a [(&'a str, &'a [u8])],
+    /// Its scripts, which see those of the player.
+    pub scripts: &'a [&'a str],
+}
+
+impl Shell<'_> {
+    /// The whole file.
+    pub fn html(&self) -> String {
+        const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
+                              script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; \
+                              img-src data: blob:; base-uri 'none'; form-action 'none'";
+        let mut out = head(self.title, POLICY, "", self.style);
+        out.push_str(self.body);
+        for (id, bytes) in self.held {
+            let packed = pack::gzip_base64(bytes);
+            // Writing to a String cannot fail.
+            let _ = writeln!(out, "<script type=\"text/plain\" id=\"{id}\">{packed}</script>");
+        }
+        out.push_str("<script>\n(() => {\n\"use strict\";\n");
+        for script in PLAYER.iter().chain(self.scripts) {
+            out.push_str(script);
+        }
+        out.push_str("})();\n</script>\n</body>\n</html>\n");
+        out
+    }
 }
 
 /// The palette as custom properties: light, dark where asked for, light again on paper.

@@ -10,7 +10,7 @@ mod solid;
 mod stack;
 mod transverse;
 
-use barrelstack_dynamics::{BodyId, Model, ModelError, Placed, Planar, Vec2};
+use barrelstack_dynamics::{BodyId, Element, Link, Model, ModelError, Placed, Planar, Vec2};
 
 use crate::device::{Loose, Words};
 use crate::scenario::{Scenario, Scene, View};
@@ -125,6 +125,12 @@ impl Assembly {
     /// Bodies of a kind, in order.
     pub fn of_kind(&self, kind: PartKind) -> impl Iterator<Item = BodyId> + '_ {
         self.parts.iter().enumerate().filter(move |(_, p)| p.kind == kind).map(|(i, _)| i)
+    }
+
+    /// The links of its force elements, those of devices that are yet to be put on after the others.
+    pub fn links(&self) -> impl Iterator<Item = &Link<Planar>> {
+        let loose = self.loose.iter().map(|loose| loose.element.link());
+        self.model.elements().iter().map(Element::link).chain(loose)
     }
 
     /// The body that the ground moves; every assembly has one.

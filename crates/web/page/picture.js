@@ -1,0 +1,47 @@
+// The picture of the stack: standing, or in motion with the run before it as a ghost.
+
+// `box` is where it goes; `players` is the list that keys work on.
+function makePicture(box, players) {
+  let player = null, moved = null; // what is shown, and the panes that moved last
+
+  // `ghost` says that what moved before stays, as dashed lines over what comes.
+  function put({ markup, data }, { still = false, ghost = false }) {
+    const { players: [raw], dashes } = JSON.parse(data);
+    if (player) {
+      player.take();
+      player.pause();
+    }
+    const before = ghost && !still && moved && moved.length === raw.panes.length ? moved : null;
+    if (before) {
+      raw.overlay = "as before";
+      // A ghost has none of its own.
+      for (const { data: pane } of before) pane.overlay = null;
+    }
+    box.classList.toggle("still", still);
+    box.innerHTML = markup;
+    const figure = box.querySelector("figure");
+    figure.querySelector(".paper").remove();
+    figure.querySelector("figcaption b").remove();
+    player = makePlayer(raw, figure, dashes, before);
+    players.splice(0, players.length, player);
+    if (!still) moved = player.panes;
+    if (before) {
+      for (const { stage } of player.panes) stage.ghosts = true;
+      const check = figure.querySelector('[data-act="ghosts"]');
+      check.checked = true;
+    }
+    player.refresh();
+    if (!still && !window.matchMedia("(prefers-reduced-motion: reduce)").matches) {
+      player.take();
+      player.seek(player.begins);
+      player.play();
+    }
+  }
+
+  return {
+    put,
+    refresh: () => { if (player) player.refresh(); },
+    isMoving: () => Boolean(player && player.isPlaying()),
+    player: () => player,
+  };
+}

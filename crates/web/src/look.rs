@@ -1,0 +1,87 @@
+//! What can be said of a scenario before it is run, and what there is to choose from.
+
+use barrelstack::check::{Checked, check};
+use barrelstack::scenario::{Scenario, catalog};
+use barrelstack::variants::Plane;
+use barrelstack::{RunFailure, report};
+use barrelstack_report::{Fragment, fragment};
+use serde::Serialize;
+
+/// What there is to choose from.
+#[derive(Serialize)]
+pub(crate) struct Catalog {
+    barrels: Vec<Known>,
+    racks: Vec<Known>,
+}
+
+/// An entry of the catalog.
+#[derive(Serialize)]
+struct Known {
+    name: &'static str,
+    source: &'static str,
+}
+
+impl Catalog {
+    pub(crate) fn new() -> Self {
+        let barrels = catalog::BARRELS.iter();
+        let racks = catalog::RACKS.iter();
+        Self {
+            barrels: barrels.map(|one| Known { name: one.name, source: one.source }).collect(),
+            racks: racks.map(|one| Known { name: one.rack.base, source: one.source }).collect(),
+        }
+    }
+}
+
+/// A scenario before it is run.
+#[derive(Serialize)]
+pub(crate) struct Looked {
+    title: String,
+    /// How many variants there are in each plane.
+    variants: u32,
+    /// The scenario with every default written out.
+    resolved: String,
+    /// Every value of it.
+    settings: Vec<Stated>,
+    /// What was found of each plane.
+    checked: Vec<Checked>,
+    /// Steps of one variant in all planes times the bodies that each moves, to tell how long it takes.
+    work: f64,
+    stage: Fragment,
+}
+
+/// A value of the scenario.
+#[derive(Serialize)]
+struct Stated {
+    path: String,
+    value: String,
+    help: &'static str,
+    source: String,
+}
+
+impl Looked {
+    pub(crate) fn of(scenario: &Scenario, planes: &[Plane]) -> Result<Self, RunFailure> {
+        let checked: Result<Vec<Checked>, RunFailure> =
+            planes.iter().map(|plane| check(&plane.scenario)).collect();
+        let checked = checked?;
+        let work = checked.iter().map(|plane| {
+            let motion = plane.motion.as_ref().map_or(0.0, |motion| motion.duration);
+            let bodies = plane.barrels + plane.racks + plane.free_bodies;
+            scenario.run.duration.unwrap_or(motion) / plane.time_step * bodies as f64
+        });
+        let settings = scenario.settings().into_iter().map(|setting| Stated {
+            path: setting.path,
+            value: setting.value,
+            help: setting.help,
+            source: setting.source.words(),
+        });
+        Ok(Self {
+            title: scenario.title.clone(),
+            variants: planes.first().map_or(0, Plane::count),
+            resolved: scenario.to_resolved_toml(),
+            settings: settings.collect(),
+            work: work.sum(),
+            stage: fragment(&[report::still(planes)?]),
+            checked,
+        })
+    }
+}
