@@ -67,7 +67,7 @@ impl Build {
         let status = Command::new(cargo())
             .args(example)
             .args(["--example", "shell", "--"])
-            .args([&file, &self.root.join(PARTS), Path::new(TITLE), &page])
+            .args([file.as_path(), &self.root.join(PARTS), Path::new(TITLE), &page])
             .current_dir(&self.root)
             .status()
             .context("cargo does not start")?;
