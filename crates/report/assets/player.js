@@ -9,8 +9,8 @@ function readPane(raw, dashes) {
   return { ...raw, dashes, forces, tint, ghosts, times, count: times.length, poses: unpack(raw.poses) };
 }
 
-// `before` holds the panes of an earlier run, to be drawn over these under the name of `raw.overlay`.
-function makePlayer(raw, figure, dashes, before) {
+// `earlier` holds the panes of an earlier run, to be drawn over these under the name of `raw.overlay`.
+function makePlayer(raw, figure, dashes, earlier) {
   const find = (selector) => figure.querySelector(selector);
   const act = (name) => find(`[data-act="${name}"]`);
   const ground = raw.ground.map((h) => ({ ...h, t: columnOf(h.t), v: columnOf(h.v) }));
@@ -22,7 +22,7 @@ function makePlayer(raw, figure, dashes, before) {
     for (const { stage } of panes) stage[scale] = common;
   }
   // The bodies of the first pane, to be drawn over the others; or those of an earlier run.
-  if (before) panes.forEach(({ data }, at) => { data.overlay = before[at].data; });
+  if (earlier) panes.forEach(({ data }, at) => { data.overlay = earlier[at].data; });
   else if (raw.overlay) for (const { data } of panes.slice(1)) data.overlay = panes[0].data;
   const any = (test) => panes.some(({ data }) => test(data));
   // The pane that lasts longest beats time; the others show their frame nearest to it.

@@ -211,10 +211,11 @@ impl Shell<'_> {
             let _ = writeln!(out, "<script type=\"text/plain\" id=\"{id}\">{packed}</script>");
         }
         out.push_str("<script>\n(() => {\n\"use strict\";\n");
-        for script in PLAYER.iter().chain(self.scripts) {
-            out.push_str(script);
-        }
-        out.push_str("})();\n</script>\n</body>\n</html>\n");
+        PLAYER.iter().for_each(|script| out.push_str(script));
+        // In a block of their own, so that equal names of constants are no mistake.
+        out.push_str("{\n");
+        self.scripts.iter().for_each(|script| out.push_str(script));
+        out.push_str("}\n})();\n</script>\n</body>\n</html>\n");
         out
     }
 }
