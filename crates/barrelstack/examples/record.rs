@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 
 use barrelstack::motion::{AccelerationUnit, Stage, bundled};
-use barrelstack::{Record, Scenario};
+use barrelstack::{Record, Scenario, Summary, report};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Any samples will do; these are those of the record that comes with the program.
@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("{:.1} of {:.1} s", progress.time, progress.end_time);
         ControlFlow::Continue(())
     })?;
-    let page = barrelstack_report::html(&barrelstack::report::document(&run, &run.summary()));
+    let page = barrelstack_report::html(&report::document(&run, &Summary::of(&run, None)));
     println!("{}: a report of {} bytes", run.outcome.kind(), page.len());
     Ok(())
 }

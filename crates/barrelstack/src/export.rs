@@ -10,9 +10,9 @@ use crate::outcome::Outcome;
 use crate::report;
 use crate::run::Run;
 use crate::scenario::View;
-use crate::system;
 use crate::variants::{Answer, Shown};
 use crate::verify::Verification;
+use barrelstack_input::system;
 
 /// The names of the files that every run writes, those of the run itself also with its plane before them.
 const FILES: [&str; 4] = ["summary.json", "scenario.toml", "variants.csv", "report.html"];

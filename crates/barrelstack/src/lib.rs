@@ -10,7 +10,7 @@
 //! ```
 //!
 //! ```
-//! use barrelstack::{Run, Scenario};
+//! use barrelstack::{Run, Scenario, Summary};
 //!
 //! let text = r#"
 //!     schema = 1
@@ -23,7 +23,7 @@
 //!     cycles = 2
 //! "#;
 //! let run: Run = Scenario::from_str(text)?.run()?;
-//! println!("{}", run.summary().to_json());
+//! println!("{}", Summary::of(&run, None).to_json());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -41,40 +41,20 @@
 // Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-pub mod assemble;
-pub mod check;
 pub mod compare;
-pub mod demand;
-pub mod device;
-pub mod ensemble;
 pub mod export;
-pub mod ground;
-pub mod outcome;
-pub mod overlap;
 pub mod period;
-pub mod pool;
 pub mod render;
 pub mod report;
-mod rest;
-pub mod run;
-pub mod scenario;
-mod stand;
-pub mod step;
-mod stick;
 pub mod summary;
 pub mod variants;
 pub mod verify;
-pub mod watch;
-
-use barrelstack_input::system;
 
 pub use barrelstack_dynamics as dynamics;
 pub use barrelstack_motion as motion;
 pub use barrelstack_motion::Record;
-pub use check::check;
-pub use ensemble::Ensemble;
-pub use ground::Ground;
-pub use rest::Restless;
-pub use run::{Progress, Run, RunFailure};
-pub use scenario::Scenario;
+pub use barrelstack_stack::{
+    Ensemble, Ground, Progress, Restless, Run, RunFailure, Scenario, assemble, check, demand,
+    device, ensemble, ground, outcome, overlap, pool, run, scenario, step, watch,
+};
 pub use summary::Summary;

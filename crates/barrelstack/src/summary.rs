@@ -3,11 +3,11 @@
 mod devices;
 
 use barrelstack_dynamics::EnergySummary;
-use barrelstack_motion::GroundMotion;
 use barrelstack_report::described;
 
 use crate::assemble::PartKind;
 use crate::demand::Demands;
+use crate::ground::MotionSummary;
 use crate::outcome::Outcome;
 use crate::run::Run;
 use crate::scenario::View;
@@ -172,23 +172,6 @@ described! {
         pub residual_ratio: f64 as "1",
     }
 
-    /// What shook it.
-    #[derive(Clone, Debug)]
-    pub struct MotionSummary of motion: &GroundMotion {
-        /// Its name.
-        pub name: String = motion.name.clone(),
-        /// Peak horizontal acceleration (m/s²).
-        pub pga: f64 as "m/s2" = motion.pga(),
-        /// Peak horizontal velocity (m/s).
-        pub pgv: f64 as "m/s" = motion.pgv(),
-        /// Peak horizontal displacement (m).
-        pub pgd: f64 as "m" = motion.pgd(),
-        /// Whether there is a vertical component.
-        pub vertical: bool = motion.vertical.is_some(),
-        /// When the shaking ends.
-        pub duration: f64 as "s" = motion.duration,
-    }
-
     /// How it was computed.
     #[derive(Clone, Debug)]
     pub struct RunSummary {
@@ -316,8 +299,10 @@ impl Summary {
     /// The summary as JSON text, indented.
     ///
     /// ```
-    /// let run = barrelstack::Scenario::builtin("sliding-block", &[])?.run()?;
-    /// assert!(run.summary().to_json().contains(r#""kind": "not-judged""#));
+    /// use barrelstack::{Scenario, Summary};
+    ///
+    /// let run = Scenario::builtin("sliding-block", &[])?.run()?;
+    /// assert!(Summary::of(&run, None).to_json().contains(r#""kind": "not-judged""#));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn to_json(&self) -> String {

@@ -4,9 +4,9 @@
 
 mod common;
 
-use barrelstack::Scenario;
 use barrelstack::ensemble::{Audience, CaseResult, Prepared, simulate_in};
 use barrelstack::outcome::Outcome;
+use barrelstack::{Scenario, Summary};
 use barrelstack_dynamics::lanes::Width;
 use common::Random;
 
@@ -107,7 +107,7 @@ fn forces_and_stresses_of_a_case_in_lanes_have_the_bits_of_a_run() {
     for (index, (case, result)) in cases.iter().zip(&together).enumerate() {
         let run = case.scenario.run().unwrap();
         assert_eq!(result.outcome, Ok(run.outcome.clone()), "case {index}");
-        let demands = run.summary().demands;
+        let demands = Summary::of(&run, None).demands;
         assert!(demands.stress_amplification.is_some_and(|times| times > 1.0), "case {index}");
         assert_eq!(format!("{:?}", result.demands), format!("{demands:?}"), "case {index}");
         assert_eq!(result.joints.len(), run.recording.joints.len());

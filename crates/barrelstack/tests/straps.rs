@@ -20,7 +20,7 @@ fn run(name: &str, changes: &[&str]) -> Run {
 
 /// What every strap bore.
 fn straps(run: &Run) -> Vec<ElementSummary> {
-    run.summary().devices.named("straps").to_vec()
+    Summary::of(run, None).devices.named("straps").to_vec()
 }
 
 /// A stack of two levels under a small sine, with straps that tie both together.

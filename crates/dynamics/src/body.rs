@@ -17,7 +17,7 @@ pub enum Motion {
 }
 
 /// A surface at its place on a body.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Placed<S: Space> {
     /// The surface, in its own frame.
     pub surface: S::Surface,

@@ -325,7 +325,7 @@ impl<S: Space> ContactElements<S> {
     #[inline(always)]
     fn list_pair(&mut self, model: &Model<S>, pair: &ContactPair, frame: &PairFrame<S>) -> S::Real {
         let mut least = S::Real::splat(f64::INFINITY);
-        let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
+        let surface = &model.bounded(pair.target).surfaces[pair.surface].surface;
         let margin = self.allowances[pair.contactor] + self.allowances[pair.target];
         // Balls about the bodies first: most pairs are far apart.
         let apart = frame.contactor - frame.target;

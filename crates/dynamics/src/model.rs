@@ -1,5 +1,7 @@
 //! What does not change during a run: bodies, interfaces, and which boundaries may meet.
 
+use std::collections::BTreeMap;
+
 use crate::body::{Body, BodyId, Motion, Nodes};
 use crate::contact::Interface;
 use crate::element::Element;
@@ -69,6 +71,9 @@ pub struct Model<S: Space> {
     pub(crate) elements: Vec<Element<S>>,
     pub(crate) gravity: S::Vector,
     pub(crate) reach: Vec<f64>,
+    /// Of every body the first whose boundaries are the same: they are read there, so that a thousand equal
+    /// blocks take the memory of one.
+    pub(crate) alike: Vec<BodyId>,
     pub(crate) substepping: Substepping<S::Real>,
 }
 
@@ -223,11 +228,12 @@ impl<S: Space> Model<S> {
             pair += 1;
         });
         dangling?;
-        let reach = bodies.iter().map(Body::reach).collect();
+        let reach: Vec<f64> = bodies.iter().map(Body::reach).collect();
+        let alike = alike(&bodies, &reach);
         let whole_step_depth = vec![S::Real::splat(f64::INFINITY); interfaces.len()];
         let substepping = Substepping { substeps: S::Real::splat(1.0), whole_step_depth };
         let elements = Vec::new();
-        Ok(Self { bodies, interfaces, pairs, elements, gravity, reach, substepping })
+        Ok(Self { bodies, interfaces, pairs, elements, gravity, reach, alike, substepping })
     }
 
     /// Divides time steps while impacts ask for it; without this no step is divided.
@@ -307,8 +313,33 @@ impl<S: Space> Model<S> {
         self.bodies.iter().position(|b| b.name == name)
     }
 
+    /// The body whose boundaries are those of a body.
+    #[inline(always)]
+    pub(crate) fn bounded(&self, body: BodyId) -> &Body<S> {
+        &self.bodies[self.alike[body]]
+    }
+
     /// The nodes that a pair tests.
     pub(crate) fn pair_nodes(&self, pair: &ContactPair) -> &Nodes<S> {
-        &self.bodies[pair.contactor].nodes[pair.nodes]
+        &self.bounded(pair.contactor).nodes[pair.nodes]
     }
+}
+
+/// Of every body the first with the same boundaries, which it can only be among those of the same reach.
+fn alike<S: Space>(bodies: &[Body<S>], reach: &[f64]) -> Vec<BodyId> {
+    let mut firsts: BTreeMap<u64, Vec<BodyId>> = BTreeMap::new();
+    let first = |(id, body): (BodyId, &Body<S>)| {
+        let known = firsts.entry(reach[id].to_bits()).or_default();
+        let same = known.iter().copied().find(|known| {
+            let known = &bodies[*known];
+            known.surfaces == body.surfaces
+                && known.nodes == body.nodes
+                && known.faces == body.faces
+        });
+        same.unwrap_or_else(|| {
+            known.push(id);
+            id
+        })
+    };
+    bodies.iter().enumerate().map(first).collect()
 }

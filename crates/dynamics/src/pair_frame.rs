@@ -56,7 +56,7 @@ impl<S: Space> PairFrame<S> {
         poses: &[Pose<S>],
         rotations: &[S::Rotation],
     ) -> Self {
-        let placed = &model.bodies[pair.target].surfaces[pair.surface];
+        let placed = &model.bounded(pair.target).surfaces[pair.surface];
         let target_rotation = rotations[pair.target];
         let rotation = S::compose(target_rotation, placed.rotation);
         let origin = poses[pair.target].position + S::rotate(target_rotation, placed.offset);
@@ -78,10 +78,10 @@ impl<S: Space> PairFrame<S> {
         let (face, other) = match pair.counts {
             Counts::Everywhere => return None,
             Counts::BeforeFace(face) | Counts::BehindFace(face) => {
-                (&model.bodies[pair.contactor].faces[face], S::unrotate(self.relative, apart))
+                (&model.bounded(pair.contactor).faces[face], S::unrotate(self.relative, apart))
             }
             Counts::BehindFaceOfTarget(face) => {
-                (&model.bodies[pair.target].faces[face], S::rotate(self.placed, -apart))
+                (&model.bounded(pair.target).faces[face], S::rotate(self.placed, -apart))
             }
         };
         Some((other - face.point).dot(face.outward))
@@ -94,13 +94,13 @@ impl<S: Space> PairFrame<S> {
         let (face, out, of_nodes) = match pair.counts {
             Counts::Everywhere => return None,
             Counts::BeforeFace(face) | Counts::BehindFace(face) => {
-                let face = &model.bodies[pair.contactor].faces[face];
+                let face = &model.bounded(pair.contactor).faces[face];
                 // What points out of the contactor points into the target.
                 let out = -S::rotate(self.relative, face.outward);
                 (face, out, matches!(pair.counts, Counts::BeforeFace(_)))
             }
             Counts::BehindFaceOfTarget(face) => {
-                let face = &model.bodies[pair.target].faces[face];
+                let face = &model.bounded(pair.target).faces[face];
                 (face, S::unrotate(self.placed, face.outward), false)
             }
         };

@@ -17,7 +17,7 @@ use crate::pool;
 use crate::report;
 use crate::run::Run;
 use crate::summary::Summary;
-use crate::system;
+use barrelstack_input::system;
 
 pub use terminal::{drift_line, final_picture};
 

@@ -4,9 +4,10 @@ use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::significant;
 
 use crate::assemble::PartKind;
+use crate::ground::MotionSummary;
 use crate::outcome::{CollapseMode, Outcome};
 use crate::run::Run;
-use crate::summary::{Device, MotionSummary, Summary};
+use crate::summary::{Device, Summary};
 use crate::variants;
 use crate::verify::Verification;
 

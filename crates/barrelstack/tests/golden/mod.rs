@@ -134,7 +134,7 @@ impl Table {
         if bits && self.version == now.version {
             Verdict::Refused(format!(
                 "results changed in their bits, and their version is still {VERSION}:\n{told}\n\
-                 If that is meant, raise VERSION in crates/barrelstack/src/ensemble.rs, say in \
+                 If that is meant, raise VERSION in crates/stack/src/ensemble.rs, say in \
                  CHANGELOG.md under *Results change* what changed, and type `{RENEW}`."
             ))
         } else if self == now {

@@ -374,7 +374,7 @@ pub fn contact_force<S: Space>(
     contact: &Contact<S>,
 ) -> (S::Vector, S::Vector) {
     let pair = &model.pair(contact.pair);
-    let placed = &model.bodies[pair.target].surfaces[pair.surface];
+    let placed = &model.bounded(pair.target).surfaces[pair.surface];
     let target = scratch.rotations[pair.target];
     let rotation = S::compose(target, placed.rotation);
     let origin = state.poses[pair.target].position + S::rotate(target, placed.offset);

@@ -70,7 +70,7 @@ fn touch_by<S: Space>(
 ) {
     let pair = &model.pair(group.pair);
     let frame = PairFrame::new(model, pair, &state.poses, &scratch.rotations);
-    let surface = &model.bodies[pair.target].surfaces[pair.surface].surface;
+    let surface = &model.bounded(pair.target).surfaces[pair.surface].surface;
     let counted = frame.at_face(model, pair);
     if counted.is_some_and(|face| face.never()) {
         return;

@@ -309,6 +309,8 @@ impl<R: Real> Model<Planar<R>> {
             elements: Lanewise::in_all(&single.elements),
             gravity: Lanewise::in_all(&single.gravity),
             reach: single.reach.clone(),
+            // Those that are alike in one case need not be in another.
+            alike: (0..single.bodies.len()).collect(),
             substepping: Lanewise::in_all(&single.substepping),
         }
     }

@@ -55,7 +55,7 @@ impl<S: Space> Nearest<S> {
 }
 
 /// A surface that nodes can touch; all points are in its own frame.
-pub trait Surface<S: Space>: Clone + std::fmt::Debug + Send + Sync + 'static {
+pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + 'static {
     /// Signed distance and outward normal at a point (m).
     fn gap(&self, point: S::Vector) -> Gap<S>;
 

@@ -8,7 +8,7 @@ use crate::scenario::{MotionSource, MotionSpec, RecordMotion, Scale};
 ///
 /// # Errors
 /// When the record cannot be read, or cannot be scaled as the motion says.
-pub(crate) fn other_component(spec: &MotionSpec) -> Result<Option<MotionSpec>, GroundError> {
+pub fn other_component(spec: &MotionSpec) -> Result<Option<MotionSpec>, GroundError> {
     let MotionSource::Record(record) = &spec.source else { return Ok(None) };
     let Some(component) = other(record)? else { return Ok(None) };
     let factor = match spec.scale {

@@ -32,7 +32,7 @@ impl Scenario {
     /// Reads a scenario from text; [`Scenario::parse`] takes changes as well, and a name for errors.
     ///
     /// ```
-    /// use barrelstack::Scenario;
+    /// use barrelstack_stack::Scenario;
     ///
     /// let run = Scenario::from_str("schema = 1\nextends = \"sliding-block\"")?.run()?;
     /// assert_eq!(run.outcome.kind(), "not-judged");
@@ -67,12 +67,12 @@ impl Scenario {
     /// their number from 1. `extends` may name a built-in scenario only.
     ///
     /// ```
-    /// use barrelstack::scenario::Scenario;
+    /// use barrelstack_stack::scenario::Scenario;
     ///
     /// let text = "schema = 1\nextends = \"candia-8-barrels\"";
     /// let scenario = Scenario::parse("five.toml", text, &["stack.levels=5".to_owned()])?;
     /// assert_eq!(scenario.stack().map(|stack| stack.levels), Some(5));
-    /// # Ok::<(), barrelstack::scenario::ScenarioError>(())
+    /// # Ok::<(), barrelstack_stack::scenario::ScenarioError>(())
     /// ```
     ///
     /// # Errors

@@ -23,7 +23,10 @@ pub(super) fn of(scenario: &Scenario) -> String {
 
 impl Scenario {
     /// The same with the event of its record in its title, where nobody wrote one; a file is read for that.
-    pub(crate) fn with_event(&self) -> Result<Self, GroundError> {
+    ///
+    /// # Errors
+    /// When the record cannot be read.
+    pub fn with_event(&self) -> Result<Self, GroundError> {
         let mut named = self.clone();
         let Scene::Stack { stack, .. } = &self.scene else { return Ok(named) };
         if self.title == of(self)
@@ -53,7 +56,7 @@ fn stands(stack: &StackSpec) -> String {
 }
 
 /// What shakes it, how strongly: a record by its event, where that is known.
-pub(crate) fn shakes(scenario: &Scenario, event: Option<&str>) -> String {
+pub fn shakes(scenario: &Scenario, event: Option<&str>) -> String {
     let motion = &scenario.motion.source;
     let scaled = match scenario.motion.scale {
         Scale::Factor(1.0) => String::new(),
@@ -85,11 +88,11 @@ pub(crate) fn shakes(scenario: &Scenario, event: Option<&str>) -> String {
 }
 
 /// A number in words, where those are short.
-pub(crate) fn number(count: u32) -> String {
+pub fn number(count: u32) -> String {
     WORDS.get(count as usize).map_or_else(|| count.to_string(), ToString::to_string)
 }
 
 /// A number of things in words.
-pub(crate) fn counted(count: u32, one: &str) -> String {
+pub fn counted(count: u32, one: &str) -> String {
     format!("{} {one}{}", number(count), if count == 1 { "" } else { "s" })
 }

@@ -1,5 +1,6 @@
 //! The ground motion of a scenario: read or made, scaled, and ready to drive.
 
+mod failure;
 mod formula;
 mod planes;
 
@@ -8,8 +9,10 @@ use std::path::{Path, PathBuf};
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
     AccelerationUnit, Channel, Component, Given, GroundMotion, Horizontals, IntensityMeasure,
-    MotionError, Processing, ReadError, ReadFailure, ReadOptions, Record, Refusal,
+    MotionError, Processing, ReadFailure, ReadOptions, Record, Refusal,
 };
+
+use barrelstack_report::described;
 
 use crate::scenario::{
     FileRef, MeasuredOn, MotionSource, MotionSpec, Processing as ProcessingSpec, RecordMotion,
@@ -17,12 +20,32 @@ use crate::scenario::{
 };
 use crate::system;
 
-pub(crate) use planes::other_component;
+pub use failure::GroundError;
+pub use planes::other_component;
+
+described! {
+    /// What shook it.
+    #[derive(Clone, Debug)]
+    pub struct MotionSummary of motion: &GroundMotion {
+        /// Its name.
+        pub name: String = motion.name.clone(),
+        /// Peak horizontal acceleration (m/s²).
+        pub pga: f64 as "m/s2" = motion.pga(),
+        /// Peak horizontal velocity (m/s).
+        pub pgv: f64 as "m/s" = motion.pgv(),
+        /// Peak horizontal displacement (m).
+        pub pgd: f64 as "m" = motion.pgd(),
+        /// Whether there is a vertical component.
+        pub vertical: bool = motion.vertical.is_some(),
+        /// When the shaking ends.
+        pub duration: f64 as "s" = motion.duration,
+    }
+}
 
 /// What moves the ground of a run.
 ///
 /// ```
-/// use barrelstack::Scenario;
+/// use barrelstack_stack::Scenario;
 ///
 /// let ground = Scenario::builtin("demo-napa", &[])?.ground()?;
 /// let motion = ground.motion.as_ref().expect("a record moves");
@@ -72,50 +95,6 @@ impl Drive<Planar> for Ground {
     }
 }
 
-/// Why a scenario has no ground motion.
-#[derive(Debug, thiserror::Error)]
-pub enum GroundError {
-    /// The file of a record cannot be opened.
-    #[error("cannot read the record {path}: {reason}{obtain}", path = path.display())]
-    Unreadable {
-        /// The path that was tried.
-        path: PathBuf,
-        /// What the system says.
-        reason: String,
-        /// How to come by it, as a sentence that goes on from the reason; may be empty.
-        obtain: String,
-    },
-    /// The file is no record.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// The record has no such component, or cannot be scaled so.
-    #[error(transparent)]
-    Motion(#[from] MotionError),
-    /// The record has no vertical component of the name that the scenario asks for.
-    #[error("{error}; for a record without one say `motion.vertical = false`")]
-    Vertical {
-        /// What is missing, and what there is.
-        error: MotionError,
-    },
-    /// There is no bundled record of that name.
-    #[error("there is no bundled record \"{name}\"; the bundled ones are: {known}")]
-    UnknownBundled {
-        /// The name asked for.
-        name: String,
-        /// The names there are.
-        known: String,
-    },
-    /// A unit that no file uses.
-    #[error(
-        "motion.unit = {unit} m/s² is no unit of acceleration files: use 1 g, 0.1 g, 1 m/s^2, \
-         1 cm/s^2 or 1 mm/s^2"
-    )]
-    Unit {
-        /// The unit asked for (m/s²).
-        unit: f64,
-    },
-}
-
 /// Largest record (bytes) that is read; the longest strong-motion files have a tenth of it.
 pub const RECORD_LIMIT: usize = 256 << 20;
 
@@ -134,7 +113,7 @@ impl Scenario {
     /// record, the first horizontal component with the default processing.
     ///
     /// ```
-    /// use barrelstack::Scenario;
+    /// use barrelstack_stack::Scenario;
     ///
     /// let record = barrelstack_motion::bundled("napa-college-2014").expect("a bundled record");
     /// let scenario =
@@ -161,7 +140,7 @@ impl Scenario {
     /// What `fetch` says where it has nothing is what the system would say, such as "there is no such file".
     ///
     /// ```
-    /// use barrelstack::Scenario;
+    /// use barrelstack_stack::Scenario;
     ///
     /// let scenario = Scenario::builtin("candia-6-barrels", &["run.duration=2 s".to_owned()])?;
     /// let record = barrelstack_motion::bundled("napa-college-2014").expect("a bundled record");

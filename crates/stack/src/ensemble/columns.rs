@@ -72,8 +72,8 @@ impl CaseColumn {
 /// A table of cases, a row each in their order: the columns of [`CASE_COLUMNS`].
 ///
 /// ```
-/// use barrelstack::ensemble::{Ensemble, Prepared, table};
-/// use barrelstack::Scenario;
+/// use barrelstack_stack::ensemble::{Ensemble, Prepared, table};
+/// use barrelstack_stack::Scenario;
 /// use barrelstack_report::column::to_csv;
 ///
 /// let cases = vec![Prepared::new(Scenario::builtin("sliding-block", &[])?)?];

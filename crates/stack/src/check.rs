@@ -3,12 +3,11 @@
 use barrelstack_report::described;
 
 use crate::assemble::PartKind;
-use crate::ground::from_disk;
+use crate::ground::{MotionSummary, from_disk};
 use crate::run::{RunFailure, check_memory, end_time};
 use crate::scenario::{Scenario, View};
 use crate::stand::{Standing, stand};
 use crate::stick::SoftStick;
-use crate::summary::MotionSummary;
 
 described! {
     /// What a check found: the scenario is sound.

@@ -46,8 +46,8 @@ pub struct Audience<'a> {
 /// Cases that are run together, on all cores.
 ///
 /// ```
-/// use barrelstack::ensemble::{Ensemble, Prepared};
-/// use barrelstack::Scenario;
+/// use barrelstack_stack::ensemble::{Ensemble, Prepared};
+/// use barrelstack_stack::Scenario;
 ///
 /// let mut cases = Vec::new();
 /// for friction in [0.2, 0.4, 0.6] {

@@ -4,7 +4,7 @@
 //! SI units, checked so far that nothing downstream has to check again, or one error with its place.
 //!
 //! ```
-//! use barrelstack::scenario::{Scenario, View};
+//! use barrelstack_stack::scenario::{Scenario, View};
 //!
 //! let text = r#"
 //!     schema = 1
@@ -25,7 +25,7 @@
 //!     error.sentence(),
 //!     "four.toml:4:5: unknown key `levles` in [stack]; did you mean `levels`?"
 //! );
-//! # Ok::<(), barrelstack::scenario::ScenarioError>(())
+//! # Ok::<(), barrelstack_stack::scenario::ScenarioError>(())
 //! ```
 //!
 //! Each field is defined once, in a table of [`field::Section`]s next to the type it fills; the reader,
@@ -52,7 +52,7 @@ pub mod schema;
 pub mod shape;
 pub mod stack;
 pub mod template;
-pub(crate) mod title;
+pub mod title;
 pub mod uniform;
 
 pub use barrelstack_input::{
@@ -91,13 +91,13 @@ pub mod error {
 /// A checked scenario in SI units.
 ///
 /// ```
-/// use barrelstack::Scenario;
+/// use barrelstack_stack::Scenario;
 ///
 /// let scenario = Scenario::builtin("demo-napa", &["stack.levels=3".to_owned()])?;
 /// println!("{}", scenario.title);
 /// assert_eq!(scenario.stack().map(|stack| stack.levels), Some(3));
 /// assert!(scenario.to_resolved_toml().contains("levels = 3"));
-/// # Ok::<(), barrelstack::scenario::ScenarioError>(())
+/// # Ok::<(), barrelstack_stack::scenario::ScenarioError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {

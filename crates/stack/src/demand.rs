@@ -60,7 +60,7 @@ macro_rules! demands {
 
         impl Demands {
             /// The demands on a stack of a run that did not break down.
-            pub(crate) fn of(
+            pub fn of(
                 assembly: &Assembly,
                 fates: &Fates,
                 stresses: &Stresses,

@@ -17,7 +17,6 @@ use crate::scenario::{self, Scenario, Scene, Until};
 use crate::stand::{Standing, stand};
 use crate::step::critical_time_step;
 use crate::stick::SoftStick;
-use crate::summary::Summary;
 use crate::watch::{ElementFate, End, Ending, Fates, Recording, Stresses, Thresholds, Watch};
 
 use failure::MOST_KEPT;
@@ -26,7 +25,7 @@ pub use failure::RunFailure;
 /// Everything that was seen of a run.
 ///
 /// ```
-/// use barrelstack::Scenario;
+/// use barrelstack_stack::Scenario;
 ///
 /// let run = Scenario::builtin("rocking-block", &["run.duration=2 s".to_owned()])?.run()?;
 /// let tilt = run.recording.frames.poses.iter().map(|poses| poses[1][2].abs()).fold(0.0, f64::max);
@@ -109,7 +108,7 @@ impl Scenario {
     /// [`Outcome::Invalid`].
     ///
     /// ```
-    /// use barrelstack::{Run, Scenario};
+    /// use barrelstack_stack::{Run, Scenario};
     ///
     /// let run: Run = Scenario::builtin("sliding-block", &[])?.run()?;
     /// println!("{} after {:.1} s", run.outcome.kind(), run.end_time);
@@ -142,7 +141,7 @@ impl Scenario {
     /// ```
     /// use std::ops::ControlFlow;
     ///
-    /// use barrelstack::{Ground, Scenario};
+    /// use barrelstack_stack::{Ground, Scenario};
     /// use barrelstack_motion::GroundMotion;
     ///
     /// // Acceleration (m/s²) at steps of 0.01 s: half a second at 2 m/s², then back.
@@ -442,11 +441,6 @@ fn creep_warning(assembly: &Assembly) -> Vec<String> {
 }
 
 impl Run {
-    /// Its result as numbers and words; the time that it took is not known here.
-    pub fn summary(&self) -> Summary {
-        Summary::of(self, None)
-    }
-
     /// What the constants of the interfaces are stated for, such as "node"; "mixed" when they differ.
     pub fn stiffness_basis(&self) -> &'static str {
         let mut bases = self.assembly.model.interfaces().iter().map(|interface| interface.basis);

@@ -1,0 +1,40 @@
+//! Stacks of barrels and free scenes: what is stated, what is built, what becomes of it.
+//!
+//! ```text
+//! scenario.toml ─▶ Scenario ─ assemble ─▶ Assembly { Model, parts }
+//! record ─ ground ─▶ Ground ────────────────────┐
+//!                                               ▼
+//!                   settle ─▶ simulate, watched by Watch ─▶ Run
+//! ```
+//!
+//! One run comes from [`Scenario::run`], many from an [`Ensemble`].
+//! What is judged, said and drawn of them is in `barrelstack`, which has all of this under the same names.
+
+// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+pub mod assemble;
+pub mod check;
+pub mod demand;
+pub mod device;
+pub mod ensemble;
+pub mod ground;
+pub mod outcome;
+pub mod overlap;
+pub mod pool;
+mod rest;
+pub mod run;
+pub mod scenario;
+mod stand;
+pub mod step;
+mod stick;
+pub mod watch;
+
+use barrelstack_input::system;
+
+pub use check::check;
+pub use ensemble::Ensemble;
+pub use ground::Ground;
+pub use rest::Restless;
+pub use run::{Progress, Run, RunFailure};
+pub use scenario::Scenario;
