@@ -13,6 +13,7 @@ use crate::{
     glossary::Glossary,
     number,
     page::{Payload, assemble},
+    trial::{self, Trial},
 };
 
 /// The document as one file that asks the network for nothing.
@@ -21,8 +22,20 @@ use crate::{
 /// open the content when there is none); provenance closes the page. Players and interactive
 /// plots run in the page; without scripts, and on paper, they are SVG.
 pub fn html(document: &Document) -> String {
+    written(document, None)
+}
+
+/// As [`html`], with a program in it that starts with what the document is about.
+pub fn html_with(document: &Document, trial: &Trial<'_>) -> String {
+    written(document, Some(trial))
+}
+
+fn written(document: &Document, trial: Option<&Trial<'_>>) -> String {
     let mut writer = Writer::of(document);
     writer.header(document);
+    if trial.is_some() {
+        writer.put(trial::OPENER);
+    }
     writer.out.push_str("<main id=\"content\">\n");
     let first_player =
         document.blocks.iter().position(|b| matches!(b, Block::Player(_) | Block::Players(_)));
@@ -35,7 +48,7 @@ pub fn html(document: &Document) -> String {
     writer.words();
     writer.provenance(&document.provenance);
     writer.out.push_str("</main>\n");
-    assemble(&document.title, &writer.out, writer.payload)
+    assemble(&document.title, &writer.out, writer.payload, trial)
 }
 
 /// Blocks for a page that is there already: their markup, and the data of their players and plots.

@@ -73,6 +73,7 @@ mod table;
 mod tags;
 mod terminal;
 mod ticks;
+mod trial;
 mod vtk;
 
 pub use animation::Animation;
@@ -82,7 +83,7 @@ pub use envelope::{BoundarySample, Envelope};
 pub use escape::csv as csv_field;
 pub use figure::{Attachment, Figure, FigureKind, Format, attachments, figures};
 pub use film::Film;
-pub use html::{Fragment, badge, fragment, html};
+pub use html::{Fragment, badge, fragment, html, html_with};
 pub use markdown::{MarkdownBundle, markdown};
 pub use number::{measured, shortest, significant};
 pub use pack::{POSE_QUANTUM, TIME_QUANTUM};
@@ -98,5 +99,6 @@ pub use scene::{
 pub use strip::{Panel, Strip};
 pub use table::{Cell, Column, Rating, Table};
 pub use terminal::{Characters, sparkline, terminal_picture};
+pub use trial::Trial;
 pub use ticks::{Ticks, linear_ticks, log_ticks};
 pub use vtk::paraview;

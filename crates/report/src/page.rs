@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use crate::{
     Axis, Plot, Scale, escape, pack,
     style::{DASHES, PALETTE, page_style, standalone_style},
+    trial::{self, Trial},
 };
 
 const REPORT_CSS: &str = include_str!("../assets/report.css");
@@ -37,6 +38,14 @@ const REPORT: [&str; 2] = [include_str!("../assets/plots.js"), include_str!("../
 /// browser asks for nothing else.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; \
                       img-src data: blob:";
+
+/// What unpacks what a page holds.
+const HELD: &str = include_str!("../assets/held.js");
+
+/// The same for a page that holds a program: it may run that, also in workers.
+const PROGRAM_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
+                              script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; \
+                              img-src data: blob:; base-uri 'none'; form-action 'none'";
 
 /// Data for the scripts, gathered while blocks are written.
 #[derive(Default)]
@@ -136,13 +145,21 @@ fn axis(axis: &Axis) -> Value {
 }
 
 /// The whole file.
-pub(crate) fn assemble(title: &str, body: &str, payload: Payload) -> String {
+pub(crate) fn assemble(
+    title: &str,
+    body: &str,
+    payload: Payload,
+    trial: Option<&Trial<'_>>,
+) -> String {
     let live = !payload.plots.is_empty();
     // Tables and figures that stand still are scripted, too: they can be saved and copied.
     let scripted = live
+        || trial.is_some()
         || !payload.players.is_empty()
         || ["<table", "<figure"].iter().any(|element| body.contains(element));
-    let mut out = head(title, POLICY, if live { UPLOT_CSS } else { "" }, "");
+    let (policy, style) =
+        if trial.is_some() { (PROGRAM_POLICY, trial::STYLE) } else { (POLICY, "") };
+    let mut out = head(title, policy, if live { UPLOT_CSS } else { "" }, style);
     out.push_str(body);
     if scripted {
         out.push_str("<script type=\"application/json\" id=\"barrelstack-data\">");
@@ -154,9 +171,19 @@ pub(crate) fn assemble(title: &str, body: &str, payload: Payload) -> String {
         let license = UPLOT_LICENSE.replace("*/", "* /");
         let _ = writeln!(out, "<script>\n/*\n{}\n*/\n{UPLOT_JS}\n</script>", license.trim());
     }
+    if let Some(Trial { page, start }) = trial {
+        let packed = pack::gzip_letters(page.as_bytes());
+        let start = escape::json_in_script(start);
+        let _ = writeln!(
+            out,
+            "<script type=\"text/plain\" id=\"trial-page\">{packed}</script>\n\
+             <script type=\"application/json\" id=\"trial-start\">{start}</script>"
+        );
+    }
     if scripted {
         out.push_str("<script>\n(() => {\n\"use strict\";\n");
-        for script in PLAYER.into_iter().chain(REPORT) {
+        let tried = trial.map(|_| [HELD, trial::SCRIPT]);
+        for script in PLAYER.into_iter().chain(REPORT).chain(tried.into_iter().flatten()) {
             out.push_str(script);
         }
         out.push_str("})();\n</script>\n");
@@ -191,7 +218,7 @@ pub struct Shell<'a> {
     pub style: &'a str,
     /// Its body, as markup.
     pub body: &'a str,
-    /// Bytes that it holds, each under the id of an element, in base64 of gzip.
+    /// Bytes that it holds, each under the id of an element.
     pub held: &'a [(&'a str, &'a [u8])],
     /// Its scripts, which see those of the player.
     pub scripts: &'a [&'a str],
@@ -200,18 +227,16 @@ pub struct Shell<'a> {
 impl Shell<'_> {
     /// The whole file.
     pub fn html(&self) -> String {
-        const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
-                              script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; \
-                              img-src data: blob:; base-uri 'none'; form-action 'none'";
-        let mut out = head(self.title, POLICY, "", self.style);
+        let mut out = head(self.title, PROGRAM_POLICY, "", self.style);
         out.push_str(self.body);
         for (id, bytes) in self.held {
-            let packed = pack::gzip_base64(bytes);
+            let packed = pack::gzip_letters(bytes);
             // Writing to a String cannot fail.
             let _ = writeln!(out, "<script type=\"text/plain\" id=\"{id}\">{packed}</script>");
         }
         out.push_str("<script>\n(() => {\n\"use strict\";\n");
         PLAYER.iter().for_each(|script| out.push_str(script));
+        out.push_str(HELD);
         // In a block of their own, so that equal names of constants are no mistake.
         out.push_str("{\n");
         self.scripts.iter().for_each(|script| out.push_str(script));

@@ -17,12 +17,6 @@ function requestOf(head, records) {
   return request;
 }
 
-// The bytes held by an element of the page, in base64 of gzip.
-async function held(id) {
-  const packed = bytesOf(document.getElementById(id).textContent);
-  return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
-}
-
 // As many engines as `most`, each started when there is work for it.
 function makeEngines(module, address, most) {
   const all = new Set();
@@ -78,6 +72,10 @@ function makeEngines(module, address, most) {
 
   return {
     most,
+    // Starts engines before there is work for them.
+    warm() {
+      while (all.size < most) start();
+    },
     // Answers in bytes. `group` is what it is stopped by, `told` hears how far it is.
     ask(head, { records = [], urgency = 0, group = "", told } = {}) {
       return new Promise((resolve, reject) => {

@@ -162,6 +162,7 @@ async function start() {
     refuse(error);
   }
   if (!opened) await open(cellar.base, cellar);
+  crew.warm();
 
   let width = window.innerWidth, waiting = 0;
   window.addEventListener("resize", () => {

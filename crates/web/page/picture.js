@@ -2,15 +2,20 @@
 
 // `box` is where it goes; `players` is the list that keys work on.
 function makePicture(box, players) {
-  let player = null, moved = null; // what is shown, and the panes that moved last
+  let player = null, moved = null, ghostly = null; // what is shown, and the panes that moved last and before that
 
-  // `ghost` says that what moved before stays, as dashed lines over what comes.
-  function put({ markup, data }, { still = false, ghost = false }) {
+  // `ghost` says that what moved before stays, as dashed lines over what comes; `goesOn` that this is more of what is
+  // in motion.
+  function put({ markup, data }, { still = false, ghost = false, goesOn = false }) {
+    const time = goesOn && player ? player.time() : null, playing = Boolean(player && player.isPlaying());
+    const ended = time !== null && !playing && time >= player.times().at(-1);
     const { players: [raw], dashes } = JSON.parse(data);
     if (player) {
       player.take();
       player.pause();
     }
+    // The opening of a run is no ghost of it.
+    if (goesOn) moved = ghostly;
     const before = ghost && !still && moved && moved.length === raw.panes.length ? moved : null;
     if (before) {
       raw.overlay = "as before";
@@ -24,14 +29,17 @@ function makePicture(box, players) {
     figure.querySelector("figcaption b").remove();
     player = makePlayer(raw, figure, dashes, before);
     players.splice(0, players.length, player);
-    if (!still) moved = player.panes;
+    if (!still) [ghostly, moved] = [moved, player.panes];
     if (before) {
       for (const { stage } of player.panes) stage.ghosts = true;
       const check = figure.querySelector('[data-act="ghosts"]');
       check.checked = true;
     }
     player.refresh();
-    if (!still && !window.matchMedia("(prefers-reduced-motion: reduce)").matches) {
+    if (time !== null) {
+      player.seek(time);
+      if (playing || ended) player.play();
+    } else if (!still && !window.matchMedia("(prefers-reduced-motion: reduce)").matches) {
       player.take();
       player.seek(player.begins);
       player.play();

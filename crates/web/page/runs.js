@@ -8,7 +8,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
   const past = [];
   let now = null; // the run that is shown
   let cost = 4e-7; // time (s) of a step of a body, as measured
-  let number = 0;
+  let marks = {}; // when things were there (ms), for those who measure
 
   const seconds = (look) => (cost * look.work * (look.variants + 1)) / crew.most;
 
@@ -36,6 +36,8 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
   function tell(run) {
     const before = past[past.indexOf(run) - 1];
     const cards = [];
+    // The picture keeps its place when words come.
+    if (!run.verdict && run.look.variants > 0) cards.push(make("div", { class: "card" }, make("p", { class: "when" }, run.label), make("p", { class: "headline" }, `Shaking it, and ${run.look.variants} like it.`)));
     if (run.verdict) cards.push(cardOf(run.verdict, before ? `now: ${run.label}` : run.label, false));
     if (run.verdict && before && before.verdict) cards.push(cardOf(before.verdict, `before: ${before.label}`, true));
     find("verdicts").replaceChildren(...cards);
@@ -108,31 +110,49 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     else await show(run, run.shown ? run.shown.variant : 0).catch(refuse);
   }
 
-  // Runs a variant in sight; gives the time (ms) until its picture is there.
+  // Makes a variant move: at first as far as it takes to see it under way, then all of it.
   async function show(run, variant) {
-    const answer = await crew.ask(headOf(run.cellar, "show", { numbers: [variant] }), {
-      records: run.cellar.records, urgency: 2, group: "run",
+    const { cellar, look } = run, first = !run.shown, from = performance.now();
+    const asked = (shorter) => crew.ask(headOf({ ...cellar, changes: { ...cellar.changes, ...shorter } }, "show", { numbers: [variant] }), {
+      records: cellar.records, urgency: shorter ? 3 : 2, group: "run",
       told: (done, of) => { if (!run.shown) find("sofar").textContent = `shaken for ${done.toFixed(0)} of ${of.toFixed(0)} s`; },
     });
-    cost = answer.took / 1000 / Math.max(run.look.work, 1);
-    const first = !run.shown;
-    run.shown = jsonOf(answer);
-    if (run !== now) return;
-    picture.put(run.shown.stage, { ghost: first && past.length > 1 });
+    const put = (answer, options) => {
+      const shown = jsonOf(answer);
+      if (run === now) picture.put(shown.stage, options);
+      return shown;
+    };
+    const long = look.opening !== null && look.checked[0].motion.duration > 2 * look.opening && valuesOf(look)["run.duration"] === undefined;
+    const whole = asked();
+    let opened = false;
+    if (first && long) {
+      const opening = asked({ "run.duration": `"${look.opening} s"` }).catch(() => null);
+      const there = await Promise.race([opening, whole.then(() => null)]);
+      if (there && run === now) {
+        put(there, { ghost: past.length > 1 });
+        opened = true;
+        marks.moved = performance.now();
+      }
+    }
+    const answer = await whole;
+    cost = answer.took / 1000 / Math.max(look.work, 1);
+    run.shown = put(answer, opened ? { ghost: past.length > 1, goesOn: true } : { ghost: first && past.length > 1 });
+    if (run === now && !opened) marks.moved = performance.now();
     if (past.length > KEPT) past.find(({ shown }) => shown && shown.stage && shown !== run.shown).shown.stage = null;
+    return performance.now() - from;
   }
 
   async function run() {
     stop();
     const { cellar, look } = state();
-    const mine = { cellar: copied(cellar), look, label: labelOf(look), verdict: null, shown: null, done: false, number: (number += 1) };
+    const mine = { cellar: copied(cellar), look, label: labelOf(look), verdict: null, shown: null, done: false };
     // What was stopped before anything was seen of it is forgotten.
     if (now && !now.shown) past.splice(past.indexOf(now), 1);
     past.splice(past.indexOf(now) + 1, 0, mine);
     now = mine;
     busy(true);
     const from = performance.now();
-    const marks = { from };
+    marks = { from };
     window.barrelstack.marks = marks;
     find("bar").value = 0;
     find("sofar").textContent = "shaking it";
@@ -149,10 +169,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
       tell(mine);
     };
     try {
-      const showing = show(mine, 0).then(() => {
-        marks.moved = performance.now();
-        tell(mine);
-      });
+      const showing = show(mine, 0).then(() => tell(mine));
       const varying = look.variants > 0 ? runAll({ crew, desk, cellar: mine.cellar, count: look.variants, group: "run", heard, took: () => {} }) : null;
       await Promise.all([showing, varying]);
       mine.done = true;

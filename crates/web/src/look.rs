@@ -1,6 +1,7 @@
 //! What can be said of a scenario before it is run, and what there is to choose from.
 
 use barrelstack::check::{Checked, check};
+use barrelstack::motion::GroundMotion;
 use barrelstack::scenario::{Scenario, catalog};
 use barrelstack::variants::Plane;
 use barrelstack::{RunFailure, report};
@@ -46,7 +47,24 @@ pub(crate) struct Looked {
     checked: Vec<Checked>,
     /// Steps of one variant in all planes times the bodies that each moves, to tell how long it takes.
     work: f64,
+    /// When (s) a first picture may end that shows the stack under way, while the whole run is made; none where
+    /// nothing shakes it.
+    opening: Option<f64>,
     stage: Fragment,
+}
+
+/// Share of its peak at which the ground moves strongly, as for a player, and how long (s) an opening goes on then.
+const STRONG: f64 = 0.1;
+const UNDER_WAY: f64 = 3.0;
+
+/// When (s) the opening of a motion ends.
+fn opening(motion: &GroundMotion) -> f64 {
+    let limit = STRONG * motion.pga();
+    let mut time = 0.0;
+    while time < motion.duration && motion.horizontal.at(time).acceleration.abs() < limit {
+        time += 0.01;
+    }
+    (time + UNDER_WAY).ceil()
 }
 
 /// A value of the scenario.
@@ -68,6 +86,7 @@ impl Looked {
             let bodies = plane.barrels + plane.racks + plane.free_bodies;
             scenario.run.duration.unwrap_or(motion) / plane.time_step * bodies as f64
         });
+        let ground = planes.first().map(|plane| plane.scenario.ground()).transpose()?;
         let settings = scenario.settings().into_iter().map(|setting| Stated {
             path: setting.path,
             value: setting.value,
@@ -80,6 +99,7 @@ impl Looked {
             resolved: scenario.to_resolved_toml(),
             settings: settings.collect(),
             work: work.sum(),
+            opening: ground.and_then(|ground| ground.motion.as_ref().map(opening)),
             stage: fragment(&[report::still(planes)?]),
             checked,
         })
