@@ -4,12 +4,14 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use barrelstack_report::{Document, Paper, csv_field, document_pdf, shortest};
+use barrelstack_report::{Document, Paper, Trial, base64, csv_field, document_pdf, html_with, shortest};
+use serde_json::{Value, json};
 
 use crate::outcome::Outcome;
 use crate::report;
 use crate::run::Run;
-use crate::scenario::View;
+use crate::ground::RECORD_LIMIT;
+use crate::scenario::{FileRef, MotionSource, RecordSource, Scenario, Vertical, View};
 use crate::variants::{Answer, Shown};
 use crate::verify::Verification;
 use barrelstack_input::system;
@@ -99,7 +101,7 @@ impl Folder {
         let changed =
             |name: &str| std::fs::metadata(path.join(name)).and_then(|m| m.modified()).ok();
         let summary = std::fs::read(path.join(FILES[0])).unwrap_or_default();
-        let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
+        let summary: Value = serde_json::from_slice(&summary).unwrap_or_default();
         let written =
             changed(FILES[0]).filter(|_| summary["provenance"]["program"] == "barrelstack");
         let foreign = |name: &String| {
@@ -188,6 +190,23 @@ impl Folder {
         written
     }
 
+    /// Writes the report once more, with a page in it that holds the program and starts with this scenario.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn write_with_engine(
+        &self,
+        answer: &Answer,
+        verification: Option<&Verification>,
+        page: &str,
+    ) -> Result<(), ExportError> {
+        let document = report::answer_document(answer, verification);
+        let start = start_of(&answer.scenario);
+        let trial = Trial { page, start: &start.to_string() };
+        let bytes = html_with(&document, &trial).into_bytes();
+        self.put(&std::iter::once(("report.html", bytes.as_slice())))
+    }
+
     /// Writes the report on paper, `report.pdf`, beside the other files.
     ///
     /// # Errors
@@ -250,6 +269,28 @@ pub fn files(
     }
     files.push(("report.html".to_owned(), barrelstack_report::html(&document).into_bytes()));
     Ok(files)
+}
+
+/// What a page that holds the program starts with: the scenario as text, and its records by their names and in
+/// base64, wherever they lie here.
+fn start_of(scenario: &Scenario) -> Value {
+    let mut told = scenario.clone();
+    let mut records = Vec::new();
+    if let MotionSource::Record(motion) = &mut told.motion.source {
+        let mut hold = |file: &mut FileRef| {
+            let Ok(bytes) = file.read(RECORD_LIMIT) else { return };
+            let name = Path::new(&file.path).file_name().map(|name| name.to_string_lossy().into_owned());
+            *file = FileRef::new(name.unwrap_or_default(), PathBuf::new());
+            records.push(json!({ "path": file.path, "base64": base64(&bytes) }));
+        };
+        if let RecordSource::File(file) = &mut motion.source {
+            hold(file);
+        }
+        if let Vertical::File(file) = &mut motion.vertical {
+            hold(file);
+        }
+    }
+    json!({ "name": "scenario.toml", "text": told.to_resolved_toml(), "records": records })
 }
 
 /// All channels as arrays, named like the columns of the CSV, and "time".

@@ -86,7 +86,7 @@ pub use film::Film;
 pub use html::{Fragment, badge, fragment, html, html_with};
 pub use markdown::{MarkdownBundle, markdown};
 pub use number::{measured, shortest, significant};
-pub use pack::{POSE_QUANTUM, TIME_QUANTUM};
+pub use pack::{POSE_QUANTUM, TIME_QUANTUM, base64};
 pub use page::Shell;
 pub use pages::{Paper, document_pdf};
 pub use panels::Panels;

@@ -106,6 +106,11 @@ pub(crate) fn quantum_for(values: &[f64]) -> f64 {
     }
 }
 
+/// Bytes in base64, for a text that holds a file.
+pub fn base64(bytes: &[u8]) -> String {
+    BASE64.encode(bytes)
+}
+
 /// Bytes in gzip, written in 85 letters: their count, a space, and five letters for every four bytes, the highest first.
 ///
 /// That takes a sixteenth less than base64. Letters go on from `!` and leave out `<`, so that no script ends in them.

@@ -34,7 +34,7 @@ async function through(stream, bytes) {
 
 // The whole scenario as the end of an address; a record of one's own goes by its name only.
 async function linkOf({ base, changes, records }) {
-  const told = { base: base.own ? base : { name: base.name }, changes, records: records.map(({ path }) => path) };
+  const told = { base: base.own ? { name: base.name, text: base.text } : { name: base.name }, changes, records: records.map(({ path }) => path) };
   const packed = await through(new CompressionStream("gzip"), new TextEncoder().encode(JSON.stringify(told)));
   let raw = "";
   for (const byte of packed) raw += String.fromCharCode(byte);

@@ -68,8 +68,8 @@ async function start() {
     if (!(await seen(cellar))) return;
     showAll();
     if (shake) {
-      runs.run();
       find("result").scrollIntoView({ block: "start" });
+      runs.run();
     } else picture.put(look.stage, { still: true });
   }
 
@@ -86,9 +86,9 @@ async function start() {
   // What the base says without changes, which choices are held against.
   async function stated() {
     if (cellar.base.look === undefined) {
-      const bare = { base: cellar.base, changes: {}, records: [] };
+      const bare = { base: cellar.base, changes: {}, records: cellar.records };
       try {
-        cellar.base.look = jsonOf(await desk.ask(headOf(bare, "look"), { urgency: 2, group: "stated" }));
+        cellar.base.look = jsonOf(await desk.ask(headOf(bare, "look"), { records: bare.records, urgency: 2, group: "stated" }));
       } catch (error) {
         if (error.broken) throw error;
         // One that needs a record which is not at hand is as it is with it.
@@ -147,6 +147,15 @@ async function start() {
     else take(files);
   });
 
+  // What the page is given where it is part of another.
+  async function fromReport() {
+    const given = find("start");
+    if (!given) return false;
+    const { name, text, records } = JSON.parse(given.textContent);
+    await open({ name, text, own: true }, { records: records.map(({ path, base64 }) => ({ path, bytes: bytesOf(base64) })) });
+    return true;
+  }
+
   async function fromAddress() {
     const link = await linked(location.hash, known);
     if (!link) return false;
@@ -157,7 +166,7 @@ async function start() {
   window.addEventListener("hashchange", () => fromAddress().catch(refuse));
   let opened = false;
   try {
-    opened = await fromAddress();
+    opened = (await fromReport()) || (await fromAddress());
   } catch (error) {
     refuse(error);
   }

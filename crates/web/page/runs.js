@@ -37,7 +37,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     const before = past[past.indexOf(run) - 1];
     const cards = [];
     // The picture keeps its place when words come.
-    if (!run.verdict && run.look.variants > 0) cards.push(make("div", { class: "card" }, make("p", { class: "when" }, run.label), make("p", { class: "headline" }, `Shaking it, and ${run.look.variants} like it.`)));
+    if (!run.verdict && run.look.variants > 0) cards.push(make("div", { class: "card waits" }, make("p", { class: "when" }, run.label), make("p", { class: "headline" }, `Shaking it, and ${run.look.variants} like it.`)));
     if (run.verdict) cards.push(cardOf(run.verdict, before ? `now: ${run.label}` : run.label, false));
     if (run.verdict && before && before.verdict) cards.push(cardOf(before.verdict, `before: ${before.label}`, true));
     find("verdicts").replaceChildren(...cards);
@@ -157,6 +157,8 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     find("bar").value = 0;
     find("sofar").textContent = "shaking it";
     tell(mine);
+    // On a phone the stack stands below the choices.
+    if (find("result").getBoundingClientRect().top > 0.5 * window.innerHeight) find("result").scrollIntoView({ block: "start" });
     const heard = (verdict, count, last) => {
       mine.verdict = verdict;
       mine.done = last;

@@ -17,8 +17,9 @@ function shareOf({ words, spread }, several) {
     line.append(drawn("rect", { class: "span", x: 100 * low, y: 2, width: Math.max(100 * (high - low), 0.5), height: 10 }));
     line.append(drawn("rect", { class: "dot", x: Math.min(100 * share, 99.2), y: 0, width: 0.8, height: 14 }));
   }
-  const said = share === null ? "no verdict" : `${collapsed} of ${variants} fall; of all such stacks ${percentOf(low)} to ${percentOf(high)}`;
-  return make("div", { class: "share" }, make("span", {}, several ? words : "falls"), line, make("span", { class: "soft" }, said));
+  const sure = `${(100 * low).toFixed(0)} to ${(100 * high).toFixed(0)}\u00a0%`;
+  const said = share === null ? "no verdict" : `${collapsed} of ${variants} fall; 95\u00a0% sure: ${sure} do`;
+  return make("div", { class: "share" }, make("span", {}, several ? words : "share that falls"), line, make("span", { class: "soft" }, said));
 }
 
 // `when` says which run it is of.
