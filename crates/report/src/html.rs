@@ -60,10 +60,10 @@ pub struct Fragment {
     pub data: String,
 }
 
-/// Blocks as a part of a page, such as one that a [`Shell`](crate::Shell) makes.
+/// Blocks as a part of a page, such as one that a [`Shell`](crate::Shell) makes, which is seen with its scripts alone.
 pub fn fragment(blocks: &[Block]) -> Fragment {
     let document = Document { blocks: blocks.to_vec(), ..Document::default() };
-    let mut writer = Writer::of(&document);
+    let mut writer = Writer { prints: false, ..Writer::of(&document) };
     writer.blocks(&document.blocks);
     Fragment { markup: writer.out, data: writer.payload.into_json() }
 }
@@ -97,6 +97,8 @@ pub(crate) struct Writer<'a> {
     figures: usize,
     folded: usize,
     glossary: Glossary,
+    /// Whether players have pictures for paper and for pages without scripts.
+    pub(crate) prints: bool,
 }
 
 impl<'a> Writer<'a> {
@@ -111,6 +113,7 @@ impl<'a> Writer<'a> {
             figures: 0,
             folded: 0,
             glossary: Glossary::of(&document.words),
+            prints: true,
         }
     }
 

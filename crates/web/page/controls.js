@@ -8,7 +8,8 @@ const TENSION = "3 kN"; // of straps, which a ratchet reaches by hand
 const velocityAt = (step) => STRENGTHS[0] * (STRENGTHS[1] / STRENGTHS[0]) ** (step / STEPS);
 const stepAt = (velocity) => Math.round((STEPS * Math.log(velocity / STRENGTHS[0])) / Math.log(STRENGTHS[1] / STRENGTHS[0]));
 
-const valuesOf = (look) => Object.fromEntries(look.settings.map(({ path, value }) => [path, value]));
+// What is given, by its path; fields without a value are left out.
+const valuesOf = (look) => Object.fromEntries(look.settings.filter(({ value }) => value !== "").map(({ path, value }) => [path, value]));
 
 // `changed` is called when the reader has changed something: it gets a function that writes that into a cellar.
 function makeControls(find, catalog, changed) {

@@ -15,12 +15,16 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse }) {
       waiting = setTimeout(async () => {
         const { cellar } = state();
         const tried = copied(cellar);
-        // A value that is none of TOML is a text, as on the command line.
-        tried.changes[path] = input.value;
+        // A value that is none of TOML is a text, as on the command line; without one the field is as it was.
+        const write = ({ changes }) => {
+          if (input.value.trim() === "") delete changes[path];
+          else changes[path] = input.value;
+        };
+        write(tried);
         try {
           await desk.ask(headOf(tried, "look"), { records: tried.records, group: "field" });
           wrong.textContent = "";
-          change((now) => { now.changes[path] = input.value; }, false);
+          change(write, false);
         } catch (error) {
           if (error.broken) refuse(error);
           else if (!error.stopped) wrong.textContent = error.message;

@@ -85,6 +85,7 @@ async function start() {
 
   // What the base says without changes, which choices are held against.
   async function stated() {
+    if (cellar.base.look === undefined && Object.keys(cellar.changes).length === 0) cellar.base.look = look;
     if (cellar.base.look === undefined) {
       const bare = { base: cellar.base, changes: {}, records: cellar.records };
       try {

@@ -25,7 +25,6 @@ function makePicture(box, players) {
     box.classList.toggle("still", still);
     box.innerHTML = markup;
     const figure = box.querySelector("figure");
-    figure.querySelector(".paper").remove();
     figure.querySelector("figcaption b").remove();
     player = makePlayer(raw, figure, dashes, before);
     players.splice(0, players.length, player);

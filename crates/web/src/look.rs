@@ -2,7 +2,8 @@
 
 use barrelstack::check::{Checked, check};
 use barrelstack::motion::GroundMotion;
-use barrelstack::scenario::{Scenario, catalog};
+use barrelstack::scenario::field::Section;
+use barrelstack::scenario::{ROOT, Scenario, catalog};
 use barrelstack::variants::Plane;
 use barrelstack::{RunFailure, report};
 use barrelstack_report::{Fragment, fragment};
@@ -53,6 +54,29 @@ pub(crate) struct Looked {
     stage: Fragment,
 }
 
+/// Adds the fields that the tables at hand may have and have not.
+fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'static Section) {
+    for field in section.fields {
+        let path = if path.is_empty() { field.name.into() } else { format!("{path}.{}", field.name) };
+        match field.kind.section() {
+            Some(inner) => {
+                let table = format!("{path}.");
+                if present.iter().any(|one| one.starts_with(&table)) {
+                    absent(list, present, &path, inner);
+                }
+            }
+            // The title and the like are no part of what is run.
+            None if path.contains('.') && !present.contains(&path) => list.push(Stated {
+                path,
+                value: String::new(),
+                help: format!("{} Holds {}.", field.help, field.kind),
+                source: "not given".into(),
+            }),
+            None => {}
+        }
+    }
+}
+
 /// Share of its peak at which the ground moves strongly, as for a player, and how long (s) an opening goes on then.
 const STRONG: f64 = 0.1;
 const UNDER_WAY: f64 = 3.0;
@@ -72,7 +96,7 @@ fn opening(motion: &GroundMotion) -> f64 {
 struct Stated {
     path: String,
     value: String,
-    help: &'static str,
+    help: String,
     source: String,
 }
 
@@ -90,14 +114,17 @@ impl Looked {
         let settings = scenario.settings().into_iter().map(|setting| Stated {
             path: setting.path,
             value: setting.value,
-            help: setting.help,
+            help: setting.help.to_owned(),
             source: setting.source.words(),
         });
+        let mut settings: Vec<Stated> = settings.collect();
+        let present: Vec<String> = settings.iter().map(|one| one.path.clone()).collect();
+        absent(&mut settings, &present, "", &ROOT);
         Ok(Self {
             title: scenario.title.clone(),
             variants: planes.first().map_or(0, Plane::count),
             resolved: scenario.to_resolved_toml(),
-            settings: settings.collect(),
+            settings,
             work: work.sum(),
             opening: ground.and_then(|ground| ground.motion.as_ref().map(opening)),
             stage: fragment(&[report::still(planes)?]),

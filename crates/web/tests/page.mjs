@@ -7,6 +7,7 @@ import { basename, dirname, join } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { accessible } from "../../report/tests/browser/lib/access.mjs";
 import { DESKTOP, PHONE } from "../../report/tests/browser/lib/browser.mjs";
+import { drive, firefox } from "./firefox.mjs";
 import { demand } from "../../report/tests/browser/lib/suite.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -306,6 +307,41 @@ export async function checkPage(browser, suite, { file, program, native }) {
     await hurt.context.close();
     return text.split("\n")[0];
   });
+  await checkFirefox(suite, file, native);
   await context.close();
   rmSync(folder, { recursive: true });
+}
+
+/** The same page in the other browser: it opens from disk, moves, and says what the program says. */
+async function checkFirefox(suite, file, native) {
+  await suite.check("in Firefox it opens from disk, moves, and says what the program says", async () => {
+    const path = firefox();
+    if (!path) return "skipped: no firefox on the PATH; install the package firefox-esr of your system, or set FIREFOX";
+    const driver = await drive(path);
+    try {
+      await driver.command("WebDriver:Navigate", { url: pathToFileURL(file).href });
+      const found = await driver.run(`
+        const until = async (test) => { while (!test()) await new Promise((next) => setTimeout(next, 50)); };
+        const page = () => window.barrelstack ?? window.wrappedJSObject.barrelstack;
+        await until(() => page()?.started > 0);
+        const field = async (path, value) => {
+          const input = document.querySelector('#fields input[aria-label="' + path + '"]');
+          input.value = value;
+          input.dispatchEvent(new Event("input"));
+          await until(() => page().state().cellar.changes[path] === value);
+        };
+        await field("imperfections.variants", "4");
+        await field("run.duration", '"9 s"');
+        await new Promise((next) => setTimeout(next, 500));
+        document.getElementById("go").click();
+        await until(() => page().runs.past().at(-1)?.done);
+        const { from, moved } = page().marks;
+        return { started: page().started, moved: moved - from, verdict: JSON.stringify(page().runs.past().at(-1).verdict), playing: page().players[0].isPlaying() };
+      `);
+      sameSpreads(JSON.parse(found.verdict), JSON.parse(native("run", "demo-napa", "--set", "imperfections.variants=4", "--set", "run.duration=9 s", "--json", "--quiet", "--no-remedy")));
+      return `${found.started.toFixed(0)} ms until it can be used, ${(found.moved / 1000).toFixed(2)} s until it moves`;
+    } finally {
+      await driver.close();
+    }
+  });
 }
