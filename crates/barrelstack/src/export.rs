@@ -4,13 +4,15 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use barrelstack_report::{Document, Paper, Trial, base64, csv_field, document_pdf, html_with, shortest};
+use barrelstack_report::{
+    Document, Paper, Trial, base64, csv_field, document_pdf, html_with, shortest,
+};
 use serde_json::{Value, json};
 
+use crate::ground::RECORD_LIMIT;
 use crate::outcome::Outcome;
 use crate::report;
 use crate::run::Run;
-use crate::ground::RECORD_LIMIT;
 use crate::scenario::{FileRef, MotionSource, RecordSource, Scenario, Vertical, View};
 use crate::variants::{Answer, Shown};
 use crate::verify::Verification;
@@ -246,8 +248,7 @@ pub fn files(
 ) -> Result<Vec<(String, Vec<u8>)>, ExportError> {
     let Shown { run, summary, .. } = &answer.decides;
     let document = report::answer_document(answer, verification);
-    let json =
-        verification.map_or_else(|| summary.to_json(), |found| found.with_summary(summary));
+    let json = verification.map_or_else(|| summary.to_json(), |found| found.with_summary(summary));
     let mut files = vec![
         ("summary.json".to_owned(), (json + "\n").into_bytes()),
         ("scenario.toml".to_owned(), answer.scenario.to_resolved_toml().into_bytes()),
@@ -279,7 +280,8 @@ fn start_of(scenario: &Scenario) -> Value {
     if let MotionSource::Record(motion) = &mut told.motion.source {
         let mut hold = |file: &mut FileRef| {
             let Ok(bytes) = file.read(RECORD_LIMIT) else { return };
-            let name = Path::new(&file.path).file_name().map(|name| name.to_string_lossy().into_owned());
+            let name =
+                Path::new(&file.path).file_name().map(|name| name.to_string_lossy().into_owned());
             *file = FileRef::new(name.unwrap_or_default(), PathBuf::new());
             records.push(json!({ "path": file.path, "base64": base64(&bytes) }));
         };

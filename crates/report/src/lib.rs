@@ -99,6 +99,6 @@ pub use scene::{
 pub use strip::{Panel, Strip};
 pub use table::{Cell, Column, Rating, Table};
 pub use terminal::{Characters, sparkline, terminal_picture};
-pub use trial::Trial;
 pub use ticks::{Ticks, linear_ticks, log_ticks};
+pub use trial::Trial;
 pub use vtk::paraview;

@@ -64,7 +64,8 @@ impl Case {
             Ended::Stable => Ok(Outcome::Stable),
             Ended::Collapse { mode, time, first, from_level, to_level } => {
                 let known = CollapseMode::ALL.into_iter().find(|known| known.name() == mode);
-                let mode = known.ok_or_else(|| format!("there is no mode of collapse \"{mode}\""))?;
+                let mode =
+                    known.ok_or_else(|| format!("there is no mode of collapse \"{mode}\""))?;
                 Ok(Outcome::Collapse { mode, time, first, from_level, to_level })
             }
             Ended::NotJudged => Ok(Outcome::NotJudged),

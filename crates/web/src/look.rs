@@ -57,7 +57,8 @@ pub(crate) struct Looked {
 /// Adds the fields that the tables at hand may have and have not.
 fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'static Section) {
     for field in section.fields {
-        let path = if path.is_empty() { field.name.into() } else { format!("{path}.{}", field.name) };
+        let path =
+            if path.is_empty() { field.name.into() } else { format!("{path}.{}", field.name) };
         match field.kind.section() {
             Some(inner) => {
                 let table = format!("{path}.");

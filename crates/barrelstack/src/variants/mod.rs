@@ -194,11 +194,7 @@ pub fn run_some(
 
 /// What results in each plane say together: of the case as it is stated, which comes first, and of variants,
 /// all with their numbers.
-pub fn together(
-    planes: &[Plane],
-    numbers: &[u32],
-    results: Vec<Vec<CaseResult>>,
-) -> Vec<Variants> {
+pub fn together(planes: &[Plane], numbers: &[u32], results: Vec<Vec<CaseResult>>) -> Vec<Variants> {
     let mut found = Vec::new();
     for (plane, results) in planes.iter().zip(results) {
         let Some(imperfections) = plane.scenario.imperfections() else { continue };
