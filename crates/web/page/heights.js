@@ -5,6 +5,7 @@ const HEIGHTS = [6, 5, 4, 3, 2];
 const VELOCITIES = [12, 24, 36, 50, 70, 100]; // cm/s, as in `barrelstack heights`
 const CELL = 32; // variants after which a cell is done
 const BATCH = 4; // that are run at once
+const ENOUGH = 8; // variants from which a cell is colored, and its neighbors are taken to be like it
 const FALLS = 0.9, STANDS = 0.05; // shares from and up to which a cell is said to fall and to stand, as in a verdict
 
 // Of cells, each with its level, its strength, its counts and what runs of it, the one to run next; none when all are done.
@@ -13,7 +14,7 @@ const FALLS = 0.9, STANDS = 0.05; // shares from and up to which a cell is said 
 // taken to fall, and one that stronger shaking or a higher stack leaves standing to stand, until all others are done.
 function nextCell(cells) {
   const sure = (cell) => {
-    const beside = (other) => other !== cell && other.run >= 8;
+    const beside = (other) => other !== cell && other.run >= ENOUGH;
     const easier = (other) => other.levels <= cell.levels && other.velocity <= cell.velocity;
     const harder = (other) => other.levels >= cell.levels && other.velocity >= cell.velocity;
     return cells.some((other) => beside(other) && ((easier(other) && other.share >= FALLS) || (harder(other) && other.share <= STANDS)));
@@ -37,7 +38,8 @@ function makeHeights(find, { crew, desk, state, refuse }) {
     if (!verdict) return;
     const [worst] = [...verdict.planes].sort((a, b) => (b.spread.share ?? -1) - (a.spread.share ?? -1));
     const { collapsed, variants, interval: [low, high], share } = worst.spread;
-    place.className = share >= FALLS ? "poor" : share <= STANDS ? "good" : "fair";
+    // A few say little.
+    place.className = variants < ENOUGH ? "" : share >= FALLS ? "poor" : share <= STANDS ? "good" : "fair";
     place.replaceChildren(`${collapsed} of ${variants} fall`, make("small", {}, `${percentOf(low)} to ${percentOf(high)}`));
   }
 

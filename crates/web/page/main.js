@@ -70,7 +70,7 @@ async function start() {
     if (shake) {
       find("result").scrollIntoView({ block: "start" });
       runs.run();
-    } else picture.put(look.stage, { still: true });
+    } else await picture.put(look.stage, { still: true });
   }
 
   async function apply(other, lookOfIt) {
@@ -105,7 +105,7 @@ async function start() {
     cellar = next;
     await stated();
     showAll();
-    picture.put(look.stage, { still: true });
+    await picture.put(look.stage, { still: true });
   }
 
   const controls = makeControls(find, jsonOf(catalog), (write) => change(write, false));
@@ -126,7 +126,7 @@ async function start() {
     cellar = tried;
     missing = [];
     showAll();
-    picture.put(look.stage, { still: true });
+    await picture.put(look.stage, { still: true });
     find("said").textContent = `The stack is now shaken by ${look.checked[0].motion.name}.`;
   }
   find("record").addEventListener("change", (event) => {

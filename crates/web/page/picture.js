@@ -2,14 +2,22 @@
 
 // `box` is where it goes; `players` is the list that keys work on.
 function makePicture(box, players) {
-  let player = null, moved = null, ghostly = null; // what is shown, and the panes that moved last and before that
+  let player = null, moved = null, ghostly = null, turn = 0; // what is shown, and the panes that moved last and before that
 
   // `ghost` says that what moved before stays, as dashed lines over what comes; `goesOn` that this is more of what is
   // in motion.
-  function put({ markup, data }, { still = false, ghost = false, goesOn = false }) {
+  async function put({ markup, data }, { still = false, ghost = false, goesOn = false }) {
+    const own = (turn += 1);
+    const { players: [raw], dashes } = JSON.parse(data);
+    // Reading it and showing it are work for a frame each.
+    // A page that is not in sight has no frames.
+    await new Promise((next) => {
+      requestAnimationFrame(() => setTimeout(next));
+      setTimeout(next, 200);
+    });
+    if (own !== turn) return;
     const time = goesOn && player ? player.time() : null, playing = Boolean(player && player.isPlaying());
     const ended = time !== null && !playing && time >= player.times().at(-1);
-    const { players: [raw], dashes } = JSON.parse(data);
     if (player) {
       player.take();
       player.pause();
@@ -34,7 +42,6 @@ function makePicture(box, players) {
       const check = figure.querySelector('[data-act="ghosts"]');
       check.checked = true;
     }
-    player.refresh();
     if (time !== null) {
       player.seek(time);
       if (playing || ended) player.play();

@@ -106,7 +106,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     now = run;
     await apply(copied(run.cellar), run.look);
     tell(run);
-    if (run.shown && run.shown.stage) picture.put(run.shown.stage, {});
+    if (run.shown && run.shown.stage) await picture.put(run.shown.stage, {});
     else await show(run, run.shown ? run.shown.variant : 0).catch(refuse);
   }
 
@@ -117,9 +117,9 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
       records: cellar.records, urgency: shorter ? 3 : 2, group: "run",
       told: (done, of) => { if (!run.shown) find("sofar").textContent = `shaken for ${done.toFixed(0)} of ${of.toFixed(0)} s`; },
     });
-    const put = (answer, options) => {
+    const put = async (answer, options) => {
       const shown = jsonOf(answer);
-      if (run === now) picture.put(shown.stage, options);
+      if (run === now) await picture.put(shown.stage, options);
       return shown;
     };
     const long = look.opening !== null && look.checked[0].motion.duration > 2 * look.opening && valuesOf(look)["run.duration"] === undefined;
@@ -129,14 +129,14 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
       const opening = asked({ "run.duration": `"${look.opening} s"` }).catch(() => null);
       const there = await Promise.race([opening, whole.then(() => null)]);
       if (there && run === now) {
-        put(there, { ghost: past.length > 1 });
+        await put(there, { ghost: past.length > 1 });
         opened = true;
         marks.moved = performance.now();
       }
     }
     const answer = await whole;
     cost = answer.took / 1000 / Math.max(look.work, 1);
-    run.shown = put(answer, opened ? { ghost: past.length > 1, goesOn: true } : { ghost: first && past.length > 1 });
+    run.shown = await put(answer, opened ? { ghost: past.length > 1, goesOn: true } : { ghost: first && past.length > 1 });
     if (run === now && !opened) marks.moved = performance.now();
     if (past.length > KEPT) past.find(({ shown }) => shown && shown.stage && shown !== run.shown).shown.stage = null;
     return performance.now() - from;
