@@ -235,11 +235,14 @@ impl Shell<'_> {
             let _ = writeln!(out, "<script type=\"text/plain\" id=\"{id}\">{packed}</script>");
         }
         out.push_str("<script>\n(() => {\n\"use strict\";\n");
-        PLAYER.iter().for_each(|script| out.push_str(script));
-        out.push_str(HELD);
+        for script in PLAYER.into_iter().chain([HELD]) {
+            out.push_str(script);
+        }
         // In a block of their own, so that equal names of constants are no mistake.
         out.push_str("{\n");
-        self.scripts.iter().for_each(|script| out.push_str(script));
+        for script in self.scripts {
+            out.push_str(script);
+        }
         out.push_str("}\n})();\n</script>\n</body>\n</html>\n");
         out
     }

@@ -53,7 +53,8 @@ export async function drive(path) {
     const text = JSON.stringify([0, next, name, parameters]);
     socket.write(`${Buffer.byteLength(text)}:${text}`);
   });
-  await command("WebDriver:NewSession", { capabilities: { alwaysMatch: { timeouts: { script: 600_000, pageLoad: 120_000 } } } });
+  await command("WebDriver:NewSession", {});
+  await command("WebDriver:SetTimeouts", { script: 300_000, pageLoad: 120_000 });
   return {
     command,
     /** Runs the body of an asynchronous function in the page, which finds what it is given as `args`. */
