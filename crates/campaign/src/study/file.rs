@@ -26,9 +26,6 @@ use barrelstack_report::column::{ColumnSpec, Role};
 /// The quantile that is tried for the low end of a distribution, and from 1 for the high end.
 const LOW: f64 = 1e-6;
 
-/// Fields of `[base.run]` that end a case early, and hold only where the study file itself says so.
-const ENDS: [&str; 3] = ["until", "duration", "stop_after_collapse"];
-
 /// Most cases that a design may have.
 const MOST_CASES: u64 = 10_000_000;
 
@@ -126,7 +123,7 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
     }
     let mut template = opened.template("base", &title, sets.is_empty())?;
     // How long a scenario is run was chosen for its own motion and for a film of it.
-    template.forget_inherited("run", &ENDS);
+    template.forget_inherited("run", &crate::scenario::run::ENDS);
     let scenario = template.with([])?;
     one_plane(&top, &scenario)?;
     let mut motions = Vec::new();
