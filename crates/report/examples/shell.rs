@@ -3,7 +3,7 @@
 //! The folder has the body (`page.html`), the style sheet (`page.css`), the scripts (`*.js`, of which `main.js` comes
 //! last), and what its workers run (`worker.js`).
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use barrelstack_report::Shell;
 
@@ -21,7 +21,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for entry in std::fs::read_dir(&folder)? {
         names.push(entry?.file_name().to_string_lossy().into_owned());
     }
-    names.retain(|name| name.ends_with(".js") && name != "worker.js");
+    let is_script = |name: &String| Path::new(name).extension().is_some_and(|end| end == "js");
+    names.retain(|name| is_script(name) && name != "worker.js");
     names.sort_by_key(|name| (name == "main.js", name.clone()));
     let scripts = names.iter().map(|name| text(name)).collect::<Result<Vec<String>, _>>()?;
     let (style, body, worker) = (text("page.css")?, text("page.html")?, text("worker.js")?);

@@ -144,6 +144,7 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse }) {
   find("report-stop").addEventListener("click", () => crew.stop("report"));
 
   function showFiles(files) {
+    window.barrelstack.files = files;
     find("files").hidden = false;
     find("files").replaceChildren(...files.map(([name, bytes]) => {
       const button = make("button", { type: "button", class: "tool" }, `${name} (${(bytes.length / 1e6).toFixed(bytes.length < 1e5 ? 2 : 1)} MB)`);

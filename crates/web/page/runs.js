@@ -115,7 +115,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     const { cellar, look } = run, first = !run.shown, from = performance.now();
     const asked = (shorter) => crew.ask(headOf({ ...cellar, changes: { ...cellar.changes, ...shorter } }, "show", { numbers: [variant] }), {
       records: cellar.records, urgency: shorter ? 3 : 2, group: "run",
-      told: (done, of) => { if (!run.shown) find("sofar").textContent = `shaken for ${done.toFixed(0)} of ${of.toFixed(0)} s`; },
+      told: (done, of) => { if (!run.shown) find("sofar").textContent = `shaking it: ${percentOf(done / of)}`; },
     });
     const put = async (answer, options) => {
       const shown = jsonOf(answer);
