@@ -64,5 +64,9 @@ fn a_look_tells_every_field_and_stands_still() {
     assert_eq!(data["players"][0]["panes"].as_array().map(Vec::len), Some(2));
     assert_eq!(data["players"][0]["panes"][0]["poses"]["n"], 1);
     // The South Napa record is strong from 5.0 s on, and an opening goes on for 3 s.
-    assert!(look["opening"].as_f64().is_some_and(|end| (8.0..=9.0).contains(&end)), "{}", look["opening"]);
+    assert!(
+        look["opening"].as_f64().is_some_and(|end| (8.0..=9.0).contains(&end)),
+        "{}",
+        look["opening"]
+    );
 }
