@@ -65,7 +65,7 @@ pub(crate) fn all(root: &Path) -> Vec<Extra> {
     let engine = browser::find(root, browser::ENGINE).map(|check| Extra {
         name: "node crates/web/tests/check.mjs",
         command: web::Build::find(root).and_then(|_| check.command()).map(|mut command| {
-            command.env("ENGINE", web::module(root));
+            command.env("ENGINE", web::module(root)).env("PAGE", web::page(root));
             command
         }),
         remedy: "see above",

@@ -21,7 +21,7 @@ tasks:
   test       formatting, lints, documentation, and all tests in both profiles; stops at the first failure
   golden     keeps how all report pages look now, for the next test; look at what it keeps before you commit it
   golden bits  keeps what results are now, to the last bit, once their version is raised
-  web        the engine for a page, as WebAssembly; says how large it is and what it asks of the page
+  web        one page that holds the program, as WebAssembly, and works without a network; says how large it is
   validate   every problem with an exact answer, in full, with a report; `--out DIR`, `--only TEXT`, `--fast`
   bench      how fast stacks are computed, beside a game engine on the same scenes; `--cases N`, `table`, `growth`,
              `history` (the work of runs beside that of the last release; `history keep` writes it down)

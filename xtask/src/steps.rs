@@ -105,10 +105,10 @@ pub(crate) fn test() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Builds the engine for a page.
+/// Builds the page that holds the engine.
 pub(crate) fn web() -> anyhow::Result<()> {
     let build = web::Build::find(&root()).map_err(anyhow::Error::msg)?;
-    build.run().map(drop)
+    build.run()
 }
 
 /// Keeps how all report pages look now.

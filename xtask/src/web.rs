@@ -1,4 +1,5 @@
-//! The engine as WebAssembly: built by whichever route the machine has, and held to what a page gives it.
+//! The page with the engine in it: the engine is built as WebAssembly by whichever route the machine has, and held to
+//! what a page gives it.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -46,8 +47,8 @@ impl Build {
         Ok(Self { root: root.to_path_buf(), command })
     }
 
-    /// Builds it and says how large it is.
-    pub(crate) fn run(mut self) -> anyhow::Result<PathBuf> {
+    /// Builds it and the page around it, and says how large they are.
+    pub(crate) fn run(mut self) -> anyhow::Result<()> {
         let status = self.command.status().context("cargo does not start")?;
         ensure!(status.success(), "the engine does not build: see above");
         let file = module(&self.root);
@@ -61,15 +62,43 @@ impl Build {
             );
         }
         println!("{}: {:.2} MB, asks for {}", file.display(), megabytes(&bytes), asked.join(", "));
-        Ok(file)
+        let page = page(&self.root);
+        let example = ["run", "--quiet", "--release", "--package", "barrelstack-report"];
+        let status = Command::new(cargo())
+            .args(example)
+            .args(["--example", "shell", "--"])
+            .args([file.as_path(), &self.root.join(PARTS), Path::new(TITLE), &page])
+            .current_dir(&self.root)
+            .status()
+            .context("cargo does not start")?;
+        ensure!(status.success(), "the page cannot be made: see above");
+        let bytes =
+            std::fs::read(&page).with_context(|| format!("cannot read {}", page.display()))?;
+        println!("{}: {:.2} MB, opens in any browser", page.display(), megabytes(&bytes));
+        Ok(())
     }
+}
+
+/// What the page is made of, in the repository.
+const PARTS: &str = "crates/web/page";
+
+/// What it is called.
+const TITLE: &str = "barrelstack: wine barrels in earthquakes";
+
+/// Where the page is once it is made.
+pub(crate) fn page(root: &Path) -> PathBuf {
+    target(root).join("barrelstack.html")
+}
+
+/// Where cargo builds.
+fn target(root: &Path) -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
+    root.join(target.unwrap_or_else(|| PathBuf::from("target")))
 }
 
 /// Where the module is once it is built.
 pub(crate) fn module(root: &Path) -> PathBuf {
-    let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
-    let target = root.join(target.unwrap_or_else(|| PathBuf::from("target")));
-    target.join(TARGET).join("web").join("barrelstack_web.wasm")
+    target(root).join(TARGET).join("web").join("barrelstack_web.wasm")
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a size in print")]

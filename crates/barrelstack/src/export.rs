@@ -4,12 +4,16 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use barrelstack_report::{Document, Paper, csv_field, document_pdf, shortest};
+use barrelstack_report::{
+    Document, Paper, Trial, base64, csv_field, document_pdf, html_with, shortest,
+};
+use serde_json::{Value, json};
 
+use crate::ground::RECORD_LIMIT;
 use crate::outcome::Outcome;
 use crate::report;
 use crate::run::Run;
-use crate::scenario::View;
+use crate::scenario::{FileRef, MotionSource, RecordSource, Scenario, Vertical, View};
 use crate::variants::{Answer, Shown};
 use crate::verify::Verification;
 use barrelstack_input::system;
@@ -99,7 +103,7 @@ impl Folder {
         let changed =
             |name: &str| std::fs::metadata(path.join(name)).and_then(|m| m.modified()).ok();
         let summary = std::fs::read(path.join(FILES[0])).unwrap_or_default();
-        let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
+        let summary: Value = serde_json::from_slice(&summary).unwrap_or_default();
         let written =
             changed(FILES[0]).filter(|_| summary["provenance"]["program"] == "barrelstack");
         let foreign = |name: &String| {
@@ -127,8 +131,8 @@ impl Folder {
         self.path.join("report.html")
     }
 
-    /// Writes all files, those of a run with the name of its plane before theirs where there are two: under temporary names first and renamed together, so that none is ever half
-    /// there and a full disk leaves an earlier run as it was.
+    /// Writes all [`files`]: under temporary names first and renamed together, so that none is ever half there and
+    /// a full disk leaves an earlier run as it was.
     ///
     /// # Errors
     /// When the system refuses.
@@ -137,29 +141,7 @@ impl Folder {
         answer: &Answer,
         verification: Option<&Verification>,
     ) -> Result<(), ExportError> {
-        let Shown { run, summary, .. } = &answer.decides;
-        let document = report::answer_document(answer, verification);
-        let json =
-            verification.map_or_else(|| summary.to_json(), |found| found.with_summary(summary));
-        let mut files = vec![
-            ("summary.json".to_owned(), (json + "\n").into_bytes()),
-            ("scenario.toml".to_owned(), answer.scenario.to_resolved_toml().into_bytes()),
-            ("variants.csv".to_owned(), variants_csv(answer).into_bytes()),
-        ];
-        let both = answer.other.is_some();
-        for run in std::iter::once(run).chain(answer.other.as_ref().map(|other| &other.run)) {
-            // Of both planes each has its own files.
-            let view = run.assembly.view.filter(|_| both);
-            let plane = view.map_or_else(String::new, |view| format!("{}-", view.name()));
-            files.extend([
-                (format!("{plane}histories.csv"), histories_csv(run).into_bytes()),
-                (format!("{plane}histories.npz"), self.histories_npz(run)?),
-                (format!("{plane}forces.csv"), forces_csv(run).into_bytes()),
-                (format!("{plane}envelopes.csv"), envelopes_csv(run).into_bytes()),
-                (format!("{plane}frames.csv"), frames_csv(run).into_bytes()),
-            ]);
-        }
-        files.push(("report.html".to_owned(), barrelstack_report::html(&document).into_bytes()));
+        let files = files(answer, verification)?;
         self.put(&files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())))
     }
 
@@ -210,6 +192,23 @@ impl Folder {
         written
     }
 
+    /// Writes the report once more, with a page in it that holds the program and starts with this scenario.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn write_with_engine(
+        &self,
+        answer: &Answer,
+        verification: Option<&Verification>,
+        page: &str,
+    ) -> Result<(), ExportError> {
+        let document = report::answer_document(answer, verification);
+        let start = start_of(&answer.scenario);
+        let trial = Trial { page, start: &start.to_string() };
+        let bytes = html_with(&document, &trial).into_bytes();
+        self.put(&std::iter::once(("report.html", bytes.as_slice())))
+    }
+
     /// Writes the report on paper, `report.pdf`, beside the other files.
     ///
     /// # Errors
@@ -230,30 +229,91 @@ impl Folder {
     }
 
     fn refused(&self, name: &str, error: &std::io::Error) -> ExportError {
-        ExportError::Write { path: self.path.join(name), reason: system::words(error) }
+        refused(self.path.join(name), error)
     }
+}
 
-    /// All channels as arrays, named like the columns of the CSV, and "time".
-    fn histories_npz(&self, run: &Run) -> Result<Vec<u8>, ExportError> {
-        let recording = &run.recording;
-        let mut arrays = vec![("time".to_owned(), recording.times.as_slice())];
-        let mut add = |name: String, values| {
-            let named = |name: &str| arrays.iter().any(|(known, _)| known == name);
-            let name = array_name(&name);
-            let mut names = (2..).map(|number| format!("{name}_{number}"));
-            let name = if named(&name) { names.find(|name| !named(name)) } else { Some(name) };
-            arrays.push((name.unwrap_or_default(), values));
-        };
-        for channel in &recording.channels {
-            add(channel.name.clone(), channel.values.as_slice());
-        }
-        for joint in &recording.joints {
-            add(format!("{} vertical force", joint.name), &joint.vertical);
-            add(format!("{} horizontal force", joint.name), &joint.horizontal);
-        }
-        barrelstack_motion::write::archive(&arrays)
-            .map_err(|error| self.refused("histories.npz", &error))
+fn refused(path: PathBuf, error: &std::io::Error) -> ExportError {
+    ExportError::Write { path, reason: system::words(error) }
+}
+
+/// The files of an answer by their names, those of a run with the name of its plane before theirs where there are
+/// two, and the report last.
+///
+/// # Errors
+/// When the histories make no archive.
+pub fn files(
+    answer: &Answer,
+    verification: Option<&Verification>,
+) -> Result<Vec<(String, Vec<u8>)>, ExportError> {
+    let Shown { run, summary, .. } = &answer.decides;
+    let document = report::answer_document(answer, verification);
+    let json = verification.map_or_else(|| summary.to_json(), |found| found.with_summary(summary));
+    let mut files = vec![
+        ("summary.json".to_owned(), (json + "\n").into_bytes()),
+        ("scenario.toml".to_owned(), answer.scenario.to_resolved_toml().into_bytes()),
+        ("variants.csv".to_owned(), variants_csv(answer).into_bytes()),
+    ];
+    let both = answer.other.is_some();
+    for run in std::iter::once(run).chain(answer.other.as_ref().map(|other| &other.run)) {
+        // Of both planes each has its own files.
+        let view = run.assembly.view.filter(|_| both);
+        let plane = view.map_or_else(String::new, |view| format!("{}-", view.name()));
+        let npz = format!("{plane}histories.npz");
+        files.extend([
+            (format!("{plane}histories.csv"), histories_csv(run).into_bytes()),
+            (npz.clone(), histories_npz(run).map_err(|error| refused(npz.into(), &error))?),
+            (format!("{plane}forces.csv"), forces_csv(run).into_bytes()),
+            (format!("{plane}envelopes.csv"), envelopes_csv(run).into_bytes()),
+            (format!("{plane}frames.csv"), frames_csv(run).into_bytes()),
+        ]);
     }
+    files.push(("report.html".to_owned(), barrelstack_report::html(&document).into_bytes()));
+    Ok(files)
+}
+
+/// What a page that holds the program starts with: the scenario as text, and its records by their names and in
+/// base64, wherever they lie here.
+fn start_of(scenario: &Scenario) -> Value {
+    let mut told = scenario.clone();
+    let mut records = Vec::new();
+    if let MotionSource::Record(motion) = &mut told.motion.source {
+        let mut hold = |file: &mut FileRef| {
+            let Ok(bytes) = file.read(RECORD_LIMIT) else { return };
+            let name =
+                Path::new(&file.path).file_name().map(|name| name.to_string_lossy().into_owned());
+            *file = FileRef::new(name.unwrap_or_default(), PathBuf::new());
+            records.push(json!({ "path": file.path, "base64": base64(&bytes) }));
+        };
+        if let RecordSource::File(file) = &mut motion.source {
+            hold(file);
+        }
+        if let Vertical::File(file) = &mut motion.vertical {
+            hold(file);
+        }
+    }
+    json!({ "name": "scenario.toml", "text": told.to_resolved_toml(), "records": records })
+}
+
+/// All channels as arrays, named like the columns of the CSV, and "time".
+fn histories_npz(run: &Run) -> std::io::Result<Vec<u8>> {
+    let recording = &run.recording;
+    let mut arrays = vec![("time".to_owned(), recording.times.as_slice())];
+    let mut add = |name: String, values| {
+        let named = |name: &str| arrays.iter().any(|(known, _)| known == name);
+        let name = array_name(&name);
+        let mut names = (2..).map(|number| format!("{name}_{number}"));
+        let name = if named(&name) { names.find(|name| !named(name)) } else { Some(name) };
+        arrays.push((name.unwrap_or_default(), values));
+    };
+    for channel in &recording.channels {
+        add(channel.name.clone(), channel.values.as_slice());
+    }
+    for joint in &recording.joints {
+        add(format!("{} vertical force", joint.name), &joint.vertical);
+        add(format!("{} horizontal force", joint.name), &joint.horizontal);
+    }
+    barrelstack_motion::write::archive(&arrays)
 }
 
 /// A name as a file of the archive: it stays in the folder in which it is unpacked.

@@ -9,15 +9,16 @@ mod spectrum;
 mod trust;
 mod words;
 
-use barrelstack_report::{Document, Tone, Verdict};
+use barrelstack_report::{Block, Document, Tone, Verdict};
 
 pub(crate) use drawing::ground_histories;
 pub use drawing::scene;
 
+use crate::assemble::{AssembleError, Assembly, assemble};
 use crate::outcome::Outcome;
 use crate::run::Run;
 use crate::summary::Summary;
-use crate::variants::{self, Answer, Remedy, Shown, Variants};
+use crate::variants::{self, Answer, Plane, Remedy, Shown, Variants};
 use crate::verify::Verification;
 
 pub(crate) use drawing::legend;
@@ -51,6 +52,23 @@ pub fn answer_document(answer: &Answer, verification: Option<&Verification>) -> 
     let Answer { decides, other, .. } = answer;
     let seen = (decides.variants.as_ref(), other.as_ref());
     page(&decides.run, &decides.summary, seen, verification)
+}
+
+/// What moves of an answer, alone: its run in motion, in each plane that it looks at.
+pub fn stage(answer: &Answer) -> Block {
+    let Answer { decides: Shown { run, summary, variants }, other, .. } = answer;
+    let scene = drawing::scene_among(run, variants.as_ref());
+    sections::stage(run, summary, other.as_ref(), &scene)
+}
+
+/// The same before anything moves: the stack as it is put up, in each of its planes.
+///
+/// # Errors
+/// When it cannot be put up.
+pub fn still(planes: &[Plane]) -> Result<Block, AssembleError> {
+    let assemblies: Result<Vec<Assembly>, _> =
+        planes.iter().map(|plane| assemble(&plane.scenario)).collect();
+    Ok(planes::still(&assemblies?))
 }
 
 fn page(

@@ -118,6 +118,10 @@ pub(crate) struct RunArgs {
     /// Paper of report.pdf.
     #[arg(long, value_enum, value_name = "PAPER", default_value = "a4", requires = "pdf")]
     pub(crate) paper: crate::figures::PaperName,
+    /// The page that holds the program, such as barrelstack.html of a release, to put into report.html, so that
+    /// whoever opens that can change the stack and shake it again.
+    #[arg(long, requires = "out", value_name = "FILE")]
+    pub(crate) with_engine: Option<PathBuf>,
     /// Draw the stack in the summary with the characters of every keyboard.
     #[arg(long, conflicts_with = "json")]
     pub(crate) plain: bool,

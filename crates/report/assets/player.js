@@ -9,7 +9,8 @@ function readPane(raw, dashes) {
   return { ...raw, dashes, forces, tint, ghosts, times, count: times.length, poses: unpack(raw.poses) };
 }
 
-function makePlayer(raw, figure, dashes) {
+// `earlier` holds the panes of an earlier run, to be drawn over these under the name of `raw.overlay`.
+function makePlayer(raw, figure, dashes, earlier) {
   const find = (selector) => figure.querySelector(selector);
   const act = (name) => find(`[data-act="${name}"]`);
   const ground = raw.ground.map((h) => ({ ...h, t: columnOf(h.t), v: columnOf(h.v) }));
@@ -20,8 +21,9 @@ function makePlayer(raw, figure, dashes) {
     const common = Math.max(0, ...panes.map(({ stage }) => stage[scale]));
     for (const { stage } of panes) stage[scale] = common;
   }
-  // The bodies of the first pane, to be drawn over the others.
-  if (raw.overlay) for (const { data } of panes.slice(1)) data.overlay = panes[0].data;
+  // The bodies of the first pane, to be drawn over the others; or those of an earlier run.
+  if (earlier) panes.forEach(({ data }, at) => { data.overlay = earlier[at].data; });
+  else if (raw.overlay) for (const { data } of panes.slice(1)) data.overlay = panes[0].data;
   const any = (test) => panes.some(({ data }) => test(data));
   // The pane that lasts longest beats time; the others show their frame nearest to it.
   const last = (pane) => (pane.data.count > 0 ? pane.data.times[pane.data.count - 1] : -Infinity);
@@ -236,7 +238,7 @@ function makePlayer(raw, figure, dashes) {
   refresh();
   if (loop && !window.matchMedia("(prefers-reduced-motion: reduce)").matches) loop.run();
   return {
-    seek, play, pause, toggle, refresh, screen,
+    seek, play, pause, toggle, refresh, screen, take,
     onRest: (listener) => rests.push(listener),
     isLooping: () => Boolean(loop && loop.isLooping()),
     moment, begins, lens: lens.lens,

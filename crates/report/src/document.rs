@@ -74,7 +74,8 @@ impl Tone {
         }
     }
 
-    pub(crate) fn class(self) -> &'static str {
+    /// The class that colors what is of this tone.
+    pub fn class(self) -> &'static str {
         match self {
             Self::Stands => "stands",
             Self::Falls => "falls",

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use serde::Serialize;
+
 use crate::{
     Block, Document, Figure, FigureKind, Strip, Table, Tone,
     document::FINE,
@@ -11,6 +13,7 @@ use crate::{
     glossary::Glossary,
     number,
     page::{Payload, assemble},
+    trial::{self, Trial},
 };
 
 /// The document as one file that asks the network for nothing.
@@ -19,8 +22,20 @@ use crate::{
 /// open the content when there is none); provenance closes the page. Players and interactive
 /// plots run in the page; without scripts, and on paper, they are SVG.
 pub fn html(document: &Document) -> String {
+    written(document, None)
+}
+
+/// As [`html`], with a program in it that starts with what the document is about.
+pub fn html_with(document: &Document, trial: &Trial<'_>) -> String {
+    written(document, Some(trial))
+}
+
+fn written(document: &Document, trial: Option<&Trial<'_>>) -> String {
     let mut writer = Writer::of(document);
     writer.header(document);
+    if trial.is_some() {
+        writer.put(trial::OPENER);
+    }
     writer.out.push_str("<main id=\"content\">\n");
     let first_player =
         document.blocks.iter().position(|b| matches!(b, Block::Player(_) | Block::Players(_)));
@@ -33,7 +48,24 @@ pub fn html(document: &Document) -> String {
     writer.words();
     writer.provenance(&document.provenance);
     writer.out.push_str("</main>\n");
-    assemble(&document.title, &writer.out, writer.payload)
+    assemble(&document.title, &writer.out, writer.payload, trial)
+}
+
+/// Blocks for a page that is there already: their markup, and the data of their players and plots.
+#[derive(Clone, Debug, Serialize)]
+pub struct Fragment {
+    /// The markup.
+    pub markup: String,
+    /// The data, as JSON.
+    pub data: String,
+}
+
+/// Blocks as a part of a page, such as one that a [`Shell`](crate::Shell) makes, which is seen with its scripts alone.
+pub fn fragment(blocks: &[Block]) -> Fragment {
+    let document = Document { blocks: blocks.to_vec(), ..Document::default() };
+    let mut writer = Writer { prints: false, ..Writer::of(&document) };
+    writer.blocks(&document.blocks);
+    Fragment { markup: writer.out, data: writer.payload.into_json() }
 }
 
 /// Headings of level 2 outside details, with their anchors.
@@ -65,6 +97,8 @@ pub(crate) struct Writer<'a> {
     figures: usize,
     folded: usize,
     glossary: Glossary,
+    /// Whether players have pictures for paper and for pages without scripts.
+    pub(crate) prints: bool,
 }
 
 impl<'a> Writer<'a> {
@@ -79,6 +113,7 @@ impl<'a> Writer<'a> {
             figures: 0,
             folded: 0,
             glossary: Glossary::of(&document.words),
+            prints: true,
         }
     }
 
@@ -111,11 +146,7 @@ impl<'a> Writer<'a> {
         self.put("<a class=\"skip\" href=\"#content\">Skip to the content</a>\n");
         self.put(&format!("<header class=\"verdict {}\">\n", tone.class()));
         self.element("<p class=\"title\">", &document.title, "</p>");
-        self.put(&format!(
-            "<p class=\"tone\">{}<span>{}</span></p>\n",
-            sign(tone),
-            escape::html(tone.word())
-        ));
+        self.put(&badge(tone));
         self.element("<h1>", &verdict.headline, "</h1>");
         if !verdict.advice.is_empty() {
             self.element("<p class=\"advice\">", &verdict.advice, "</p>");
@@ -319,6 +350,11 @@ impl<'a> Writer<'a> {
         }
         self.put("</div>\n");
     }
+}
+
+/// A tone as its sign and its word, in markup.
+pub fn badge(tone: Tone) -> String {
+    format!("<p class=\"tone\">{}<span>{}</span></p>\n", sign(tone), escape::html(tone.word()))
 }
 
 /// A shape for each tone, so that color only repeats what it says.

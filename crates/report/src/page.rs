@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use crate::{
     Axis, Plot, Scale, escape, pack,
     style::{DASHES, PALETTE, page_style, standalone_style},
+    trial::{self, Trial},
 };
 
 const REPORT_CSS: &str = include_str!("../assets/report.css");
@@ -14,8 +15,8 @@ const UPLOT_CSS: &str = include_str!("../assets/vendor/uPlot.min.css");
 const UPLOT_JS: &str = include_str!("../assets/vendor/uPlot.iife.min.js");
 const UPLOT_LICENSE: &str = include_str!("../assets/vendor/uPlot-LICENSE");
 
-/// The page's own scripts, in the order they depend on each other.
-const SCRIPTS: [&str; 14] = [
+/// The player's scripts, in the order they depend on each other.
+const PLAYER: [&str; 12] = [
     include_str!("../assets/decode.js"),
     include_str!("../assets/forces.js"),
     include_str!("../assets/tint.js"),
@@ -28,14 +29,23 @@ const SCRIPTS: [&str; 14] = [
     include_str!("../assets/keys.js"),
     include_str!("../assets/link.js"),
     include_str!("../assets/player.js"),
-    include_str!("../assets/plots.js"),
-    include_str!("../assets/page.js"),
 ];
+
+/// What a report has beside them.
+const REPORT: [&str; 2] = [include_str!("../assets/plots.js"), include_str!("../assets/page.js")];
 
 /// The icon is an empty data address and the policy forbids every address but this page, so a
 /// browser asks for nothing else.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; \
                       img-src data: blob:";
+
+/// What unpacks what a page holds.
+const HELD: &str = include_str!("../assets/held.js");
+
+/// The same for a page that holds a program: it may run that, also in workers.
+const PROGRAM_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
+                              script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; \
+                              img-src data: blob:; base-uri 'none'; form-action 'none'";
 
 /// Data for the scripts, gathered while blocks are written.
 #[derive(Default)]
@@ -109,7 +119,8 @@ impl Payload {
         self.columns.len() - 1
     }
 
-    fn into_json(self) -> String {
+    /// What the scripts read.
+    pub(crate) fn into_json(self) -> String {
         json!({
             "players": self.players,
             "plots": self.plots,
@@ -134,28 +145,21 @@ fn axis(axis: &Axis) -> Value {
 }
 
 /// The whole file.
-pub(crate) fn assemble(title: &str, body: &str, payload: Payload) -> String {
+pub(crate) fn assemble(
+    title: &str,
+    body: &str,
+    payload: Payload,
+    trial: Option<&Trial<'_>>,
+) -> String {
     let live = !payload.plots.is_empty();
     // Tables and figures that stand still are scripted, too: they can be saved and copied.
     let scripted = live
+        || trial.is_some()
         || !payload.players.is_empty()
         || ["<table", "<figure"].iter().any(|element| body.contains(element));
-    let mut out = String::new();
-    let title = escape::html(title);
-    out.push_str("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
-    // Writing to a String cannot fail, here and below.
-    let _ = writeln!(out, "<meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">");
-    out.push_str("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
-    out.push_str("<meta name=\"color-scheme\" content=\"light dark\">\n");
-    let _ = writeln!(out, "<title>{title}</title>\n<link rel=\"icon\" href=\"data:,\">");
-    out.push_str("<style>\n");
-    out.push_str(&palette_css());
-    if live {
-        out.push_str(UPLOT_CSS);
-    }
-    out.push_str(page_style());
-    out.push_str(REPORT_CSS);
-    out.push_str("</style>\n</head>\n<body>\n");
+    let (policy, style) =
+        if trial.is_some() { (PROGRAM_POLICY, trial::STYLE) } else { (POLICY, "") };
+    let mut out = head(title, policy, if live { UPLOT_CSS } else { "" }, style);
     out.push_str(body);
     if scripted {
         out.push_str("<script type=\"application/json\" id=\"barrelstack-data\">");
@@ -167,15 +171,81 @@ pub(crate) fn assemble(title: &str, body: &str, payload: Payload) -> String {
         let license = UPLOT_LICENSE.replace("*/", "* /");
         let _ = writeln!(out, "<script>\n/*\n{}\n*/\n{UPLOT_JS}\n</script>", license.trim());
     }
+    if let Some(Trial { page, start }) = trial {
+        let packed = pack::gzip_letters(page.as_bytes());
+        let start = escape::json_in_script(start);
+        let _ = writeln!(
+            out,
+            "<script type=\"text/plain\" id=\"trial-page\">{packed}</script>\n\
+             <script type=\"application/json\" id=\"trial-start\">{start}</script>"
+        );
+    }
     if scripted {
         out.push_str("<script>\n(() => {\n\"use strict\";\n");
-        for script in SCRIPTS {
+        let tried = trial.map(|_| [HELD, trial::SCRIPT]);
+        for script in PLAYER.into_iter().chain(REPORT).chain(tried.into_iter().flatten()) {
             out.push_str(script);
         }
         out.push_str("})();\n</script>\n");
     }
     out.push_str("</body>\n</html>\n");
     out
+}
+
+/// The start of a file, up to its body: with its policy, and style sheets before and after that of all pages.
+fn head(title: &str, policy: &str, before: &str, after: &str) -> String {
+    let title = escape::html(title);
+    let palette = palette_css();
+    let figures = page_style();
+    format!(
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"color-scheme\" content=\"light dark\">\n\
+         <title>{title}</title>\n<link rel=\"icon\" href=\"data:,\">\n\
+         <style>\n{palette}{before}{figures}{REPORT_CSS}{after}</style>\n</head>\n<body>\n"
+    )
+}
+
+/// A page that holds a program: what it shows, and what it runs, in the look and with the player of all pages.
+///
+/// Its policy lets it run what is in it, also in workers, and ask for nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Shell<'a> {
+    /// Title of the file.
+    pub title: &'a str,
+    /// Style sheet of its own.
+    pub style: &'a str,
+    /// Its body, as markup.
+    pub body: &'a str,
+    /// Bytes that it holds, each under the id of an element.
+    pub held: &'a [(&'a str, &'a [u8])],
+    /// Its scripts, which see those of the player.
+    pub scripts: &'a [&'a str],
+}
+
+impl Shell<'_> {
+    /// The whole file.
+    pub fn html(&self) -> String {
+        let mut out = head(self.title, PROGRAM_POLICY, "", self.style);
+        out.push_str(self.body);
+        for (id, bytes) in self.held {
+            let packed = pack::gzip_letters(bytes);
+            // Writing to a String cannot fail.
+            let _ = writeln!(out, "<script type=\"text/plain\" id=\"{id}\">{packed}</script>");
+        }
+        out.push_str("<script>\n(() => {\n\"use strict\";\n");
+        for script in PLAYER.into_iter().chain([HELD]) {
+            out.push_str(script);
+        }
+        // In a block of their own, so that equal names of constants are no mistake.
+        out.push_str("{\n");
+        for script in self.scripts {
+            out.push_str(script);
+        }
+        out.push_str("}\n})();\n</script>\n</body>\n</html>\n");
+        out
+    }
 }
 
 /// The palette as custom properties: light, dark where asked for, light again on paper.

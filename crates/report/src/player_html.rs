@@ -24,11 +24,13 @@ impl Writer<'_> {
             "<figure class=\"player\" id=\"figure-{id}\" data-player=\"{place}\">\n"
         ));
         self.put(&CONTROLS.replace("{stages}", STAGE));
-        self.put("<div class=\"paper\">\n");
-        if let FigureKind::Strip(strip) = player.paper_figure(&self.document.blocks).kind {
-            self.strip(&strip, &id);
+        if self.prints {
+            self.put("<div class=\"paper\">\n");
+            if let FigureKind::Strip(strip) = player.paper_figure(&self.document.blocks).kind {
+                self.strip(&strip, &id);
+            }
+            self.put("</div>\n");
         }
-        self.put("</div>\n");
         self.caption(&player.caption);
         let events: Vec<(&str, &Event)> =
             player.scene.events.iter().map(|event| ("", event)).collect();
@@ -52,15 +54,17 @@ impl Writer<'_> {
         }
         stages.push_str("</div>\n");
         self.put(&CONTROLS.replace("{stages}", &stages));
-        self.put("<div class=\"paper\">\n");
-        for (pane, figure) in players.panes.iter().zip(players.paper_figures()) {
-            self.put(&pane_head(pane));
-            let name = self.names.take(&figure.id);
-            if let FigureKind::Strip(strip) = figure.kind {
-                self.strip(&strip, &name);
+        if self.prints {
+            self.put("<div class=\"paper\">\n");
+            for (pane, figure) in players.panes.iter().zip(players.paper_figures()) {
+                self.put(&pane_head(pane));
+                let name = self.names.take(&figure.id);
+                if let FigureKind::Strip(strip) = figure.kind {
+                    self.strip(&strip, &name);
+                }
             }
+            self.put("</div>\n");
         }
-        self.put("</div>\n");
         self.caption(&players.caption);
         let mut events: Vec<(&str, &Event)> = players
             .panes

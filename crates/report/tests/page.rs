@@ -5,8 +5,8 @@ mod common;
 use std::sync::Arc;
 
 use barrelstack_report::{
-    Axis, Block, Cell, Figure, FigureKind, Frames, Plot, Scene, Series, Strip, Table, Tone, Word,
-    html, markdown,
+    Axis, Block, Cell, Figure, FigureKind, Frames, Plot, Scene, Series, Shell, Strip, Table, Tone,
+    Trial, Word, html, html_with, markdown,
 };
 use common::{HOSTILE, document, payload, player, scene};
 
@@ -242,5 +242,25 @@ fn what_stands_still_has_a_drawing_for_a_phone_with_letters_as_large() {
                 assert!(x + wide <= width, "{:?} leaves the picture", word.text());
             }
         }
+    }
+}
+
+#[test]
+fn a_program_that_a_page_holds_cannot_end_its_script_and_may_ask_for_nothing() {
+    let start = serde_json::json!({ "text": HOSTILE }).to_string();
+    let trial = Trial { page: HOSTILE, start: &start };
+    let report = html_with(&document(vec![Block::Paragraph("x".into())]), &trial);
+    let held: &[(&str, &[u8])] = &[("engine", HOSTILE.as_bytes())];
+    let shell = Shell { title: HOSTILE, style: "", body: "<main></main>\n", held, scripts: &[] };
+    for page in [report, shell.html()] {
+        assert!(!page.contains(HOSTILE));
+        // Every script ends where it was meant to.
+        assert!(!markup(&page).contains("</script"), "{}", markup(&page));
+        let policy =
+            page.split("content=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap();
+        assert!(
+            policy.starts_with("default-src 'none'") && !policy.contains("connect-src"),
+            "{policy}"
+        );
     }
 }

@@ -1,6 +1,6 @@
 // Runs the engine in a browser and holds what it says against the program on this machine, number by number.
 //
-//     BARRELSTACK=<the program> ENGINE=<the module> node check.mjs
+//     BARRELSTACK=<the program> ENGINE=<the module> PAGE=<the page that holds it> node check.mjs
 //
 // `cargo xtask test` calls this file; $CHROMIUM names the browser, whose driver is that of the checks of reports.
 // Exit status: 0 when all checks pass, 1 when one fails, 2 when the browser or a file is missing.
@@ -11,13 +11,14 @@ import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 import { launch, missing } from "../../report/tests/browser/lib/browser.mjs";
+import { checkPage } from "./page.mjs";
 import { Suite, demand } from "../../report/tests/browser/lib/suite.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const record = join(here, "../../motion/records/napa-college-2014.txt");
-const { BARRELSTACK: program, ENGINE: engine } = process.env;
-for (const [name, file] of Object.entries({ BARRELSTACK: program, ENGINE: engine })) {
-  if (!file || !existsSync(file)) missing(`${file} is not there; set ${name}`);
+const { BARRELSTACK: program, ENGINE: engine, PAGE: file } = process.env;
+for (const [name, path] of Object.entries({ BARRELSTACK: program, ENGINE: engine, PAGE: file })) {
+  if (!path || !existsSync(path)) missing(`${path} is not there; set ${name}`);
 }
 
 const native = (...words) => execFileSync(program, words, { encoding: "utf8", maxBuffer: 1 << 28, stdio: ["ignore", "pipe", "ignore"] });
@@ -139,10 +140,12 @@ await suite.check("the report is a page", async () => {
 await suite.check("memory does not grow from run to run", async () => {
   const once = await ask({ ask: "summary", scenario: block });
   let last = once;
-  for (let at = 0; at < 20; at += 1) last = await ask({ ask: "summary", scenario: block });
+  for (let at = 0; at < 100; at += 1) last = await ask({ ask: "summary", scenario: block });
   demand(last.memory === once.memory, `${once.memory} and ${last.memory} bytes`);
 });
 await suite.check("nothing is asked of any network", () => demand(asked.length === 0, asked.join("\n")));
+await context.close();
+await checkPage(browser, suite, { file, program, native });
 await browser.close();
 process.exit(suite.close() ? 0 : 1);
 

@@ -24,7 +24,7 @@ pub(super) fn scene_among(run: &Run, variants: Option<&Variants>) -> Arc<Scene> 
     let frames = &run.recording.frames;
     Arc::new(Scene {
         bodies: (0..run.assembly.parts.len()).map(|i| body(&run.assembly, i)).collect(),
-        ties: ties(run),
+        ties: ties(&run.assembly, |element| run.elements.get(element)?.broken_at),
         frames: Frames {
             times: frames.times.clone(),
             poses: frames.poses.clone(),
@@ -48,6 +48,21 @@ pub(super) fn scene_among(run: &Run, variants: Option<&Variants>) -> Arc<Scene> 
         tint: run.assembly.of_kind(PartKind::Barrel).next().map(|_| tint(run)),
         ghosts: variants.and_then(ghosts),
     })
+}
+
+/// The scene of bodies as they are put up, before they settle into their contacts.
+pub(super) fn still(assembly: &Assembly) -> Scene {
+    let poses = assembly.model.bodies().iter().map(|body| body.pose);
+    Scene {
+        bodies: (0..assembly.parts.len()).map(|i| body(assembly, i)).collect(),
+        ties: ties(assembly, |_| None),
+        frames: Frames {
+            times: vec![0.0],
+            poses: vec![poses.map(|p| [p.position.x, p.position.z, p.orientation]).collect()],
+            forces: Vec::new(),
+        },
+        ..Scene::default()
+    }
 }
 
 /// Most variants whose ways are drawn; more would only be black.
@@ -204,14 +219,15 @@ fn body(assembly: &Assembly, index: usize) -> SceneBody {
     }
 }
 
-fn ties(run: &Run) -> Vec<Tie> {
-    let elements = run.assembly.model.elements().iter().zip(&run.elements);
-    elements
-        .filter(|(element, _)| matches!(element, Element::Strap(_)))
-        .map(|(element, fate)| Tie {
+fn ties(assembly: &Assembly, torn_at: impl Fn(usize) -> Option<f64>) -> Vec<Tie> {
+    assembly
+        .elements()
+        .enumerate()
+        .filter(|(_, element)| matches!(element, Element::Strap(_)))
+        .map(|(at, element)| Tie {
             bodies: element.link().bodies,
             points: element.link().points.map(|point| [point.x, point.z]),
-            torn_at: fate.broken_at,
+            torn_at: torn_at(at),
         })
         .collect()
 }

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use barrelstack_report::{Block, Cell, History, Pane, Players, Scene, Table};
+use barrelstack_report::{Block, Cell, History, Pane, Player, Players, Scene, Table, Tone};
 
 use super::{capital, drawing, sections, tone, words};
+use crate::assemble::Assembly;
 use crate::run::Run;
 use crate::scenario::View;
 use crate::summary::Summary;
@@ -19,7 +20,7 @@ pub(super) fn players(
     let pane = |run: &Run, summary: &Summary, scene: Arc<Scene>| {
         let alone = Summary { ensemble: None, other_plane: None, ..summary.clone() };
         Pane {
-            mark: mark(run).to_owned(),
+            mark: mark(&run.assembly).to_owned(),
             name: run.assembly.view.map_or_else(String::new, |view| capital(view.words())),
             verdict: words::alone(run, summary),
             tone: tone(run, &alone),
@@ -49,9 +50,33 @@ pub(super) fn players(
     }
 }
 
+/// What moves, before anything has moved: the stack in each plane as it is put up.
+pub(super) fn still(assemblies: &[Assembly]) -> Block {
+    let caption = "The stack as it is put up, to scale.".to_owned();
+    if let [alone] = assemblies {
+        let scene = Arc::new(drawing::still(alone));
+        return Block::Player(Player { id: "player".into(), caption, scene, traces: Vec::new() });
+    }
+    let pane = |assembly: &Assembly| Pane {
+        mark: mark(assembly).to_owned(),
+        name: assembly.view.map_or_else(String::new, |view| capital(view.words())),
+        verdict: String::new(),
+        tone: Tone::Neutral,
+        scene: Arc::new(drawing::still(assembly)),
+        traces: Vec::new(),
+    };
+    Block::Players(Players {
+        id: "players".into(),
+        caption,
+        panes: assemblies.iter().map(pane).collect(),
+        overlay: None,
+        ground: Vec::new(),
+    })
+}
+
 /// A letter that stands for a plane.
-fn mark(run: &Run) -> &'static str {
-    match run.assembly.view {
+fn mark(assembly: &Assembly) -> &'static str {
+    match assembly.view {
         Some(View::Transverse) => "X",
         Some(View::Longitudinal) => "Y",
         None => "",

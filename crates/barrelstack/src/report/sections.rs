@@ -26,10 +26,7 @@ pub(super) fn all(
     verification: Option<&Verification>,
     scene: &Arc<Scene>,
 ) -> Vec<Block> {
-    let mut blocks = vec![match other {
-        None => Block::Player(player(run, scene)),
-        Some(other) => Block::Players(planes::players((run, summary, scene), other)),
-    }];
+    let mut blocks = vec![stage(run, summary, other, scene)];
     let remedy = summary.remedy.iter().map(|found| Block::Table(found.table())).collect();
     section(&mut blocks, 2, "What would have kept it up", remedy);
     section(&mut blocks, 2, "In all variants", planes::variants(summary));
@@ -42,6 +39,19 @@ pub(super) fn all(
     }];
     section(&mut blocks, 2, "For the engineer", folded);
     blocks
+}
+
+/// What moves: a plane, or both beside each other.
+pub(super) fn stage(
+    run: &Run,
+    summary: &Summary,
+    other: Option<&Shown>,
+    scene: &Arc<Scene>,
+) -> Block {
+    match other {
+        None => Block::Player(player(run, scene)),
+        Some(other) => Block::Players(planes::players((run, summary, scene), other)),
+    }
 }
 
 /// What only a reader who calculates asks for.

@@ -32,6 +32,8 @@ pub enum Asked {
     Typical,
     /// That of a number; 0 is the case as it is stated.
     Number(u32),
+    /// The same, and no variant is run beside it.
+    Alone(u32),
 }
 
 /// What became of a scenario.
@@ -81,7 +83,8 @@ pub fn answer(
         // Another thread has panicked; this work is of no use any more.
         Err(_) => ControlFlow::Break(()),
     };
-    let varied = planes.iter().any(|plane| plane.count() > 0);
+    let alone = matches!(asked, Asked::Alone(_));
+    let varied = !alone && planes.iter().any(|plane| plane.count() > 0);
     // What cannot be run as it is stated, or not be kept, is told before the work.
     for plane in planes.iter().filter(|_| varied) {
         check(&plane.scenario)?;
@@ -128,7 +131,7 @@ pub fn answer(
 fn number(asked: Asked, variants: Option<&Variants>) -> u32 {
     let stated = variants.and_then(|variants| variants.results.first());
     match (asked, variants) {
-        (Asked::Number(number), _) => number,
+        (Asked::Number(number) | Asked::Alone(number), _) => number,
         (Asked::Typical, Some(variants)) if stated.is_some_and(|one| one.outcome.is_ok()) => {
             variants.spread.typical
         }

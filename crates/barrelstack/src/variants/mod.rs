@@ -33,7 +33,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::ensemble::{CaseResult, Ensemble, Prepared};
 use crate::ground::{Ground, GroundError, from_disk, other_component};
-use crate::scenario::{Imperfections, MotionSource, MotionSpec, Scenario, Scene, View};
+use crate::scenario::{MotionSource, MotionSpec, Scenario, Scene, View};
 
 pub use answer::{Answer, Asked, Shown, Told, answer};
 pub use remedy::{ENOUGH, PRETENSIONS, Remedy, Tried, remedy};
@@ -90,6 +90,11 @@ impl Plane {
         self.scenario.imperfections().map_or(0, |imperfections| imperfections.variants)
     }
 
+    /// The numbers of the case as it is stated and of all variants.
+    pub fn numbers(&self) -> Vec<u32> {
+        (0..=self.count()).collect()
+    }
+
     /// A variant by its number; the case as it is stated for 0.
     pub fn variant(&self, number: u32) -> Scenario {
         if number == 0 {
@@ -117,8 +122,8 @@ impl Plane {
         })
     }
 
-    /// The case as it is stated and all variants, ready to run.
-    fn prepared(&self) -> Result<Vec<Prepared>, GroundError> {
+    /// Variants by their numbers, ready to run.
+    fn prepared(&self, numbers: &[u32]) -> Result<Vec<Prepared>, GroundError> {
         let own = Arc::new(self.scenario.ground()?);
         let exchanged = match &self.exchanged {
             Some(motion) => {
@@ -135,7 +140,7 @@ impl Plane {
             scenario: Arc::new(self.variant(number)),
             ground: Arc::clone(ground(number)),
         };
-        Ok((0..=self.count()).map(case).collect())
+        Ok(numbers.iter().copied().map(case).collect())
     }
 }
 
@@ -144,7 +149,7 @@ impl Plane {
 pub struct Variants {
     /// The plane; none for a free scene.
     pub view: Option<View>,
-    /// What became of the case as it is stated and of every variant, each at the place of its number.
+    /// What became of the case as it is stated, which comes first, and of its variants.
     pub results: Vec<CaseResult>,
     /// What they say together.
     pub spread: Spread,
@@ -159,38 +164,50 @@ pub fn run(
     planes: &[Plane],
     observer: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
 ) -> Result<Option<Vec<Variants>>, GroundError> {
+    // Planes of one scenario have as many.
+    let numbers = planes.first().map(Plane::numbers).unwrap_or_default();
+    let results = run_some(planes, &numbers, observer)?;
+    Ok(results.map(|results| together(planes, &numbers, results)))
+}
+
+/// As [`run`], of the variants of these numbers alone, 0 for the case as it is stated: what became of them in
+/// each plane, in the order of their numbers, so that others may do the rest ([`together`]).
+///
+/// # Errors
+/// As [`run`].
+pub fn run_some(
+    planes: &[Plane],
+    numbers: &[u32],
+    observer: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
+) -> Result<Option<Vec<Vec<CaseResult>>>, GroundError> {
     let mut cases = Vec::new();
-    let mut counts = Vec::new();
     for plane in planes {
-        let prepared = plane.prepared()?;
-        counts.push(prepared.len());
-        cases.extend(prepared);
+        cases.extend(plane.prepared(numbers)?);
     }
     let (done, of) = (AtomicUsize::new(0), cases.len());
     let told = |_: &CaseResult| observer(done.fetch_add(1, Ordering::Relaxed) + 1, of);
     let stop = || observer(done.load(Ordering::Relaxed), of).is_break();
     let ensemble = Ensemble { cases, ..Ensemble::default() };
-    let Some(mut results) = ensemble.run_until(&told, &stop) else {
-        return Ok(None);
-    };
+    let results = ensemble.run_until(&told, &stop);
+    Ok(results.map(|all| all.chunks(numbers.len().max(1)).map(<[CaseResult]>::to_vec).collect()))
+}
+
+/// What results in each plane say together: of the case as it is stated, which comes first, and of variants,
+/// all with their numbers.
+pub fn together(planes: &[Plane], numbers: &[u32], results: Vec<Vec<CaseResult>>) -> Vec<Variants> {
     let mut found = Vec::new();
-    for (plane, count) in planes.iter().zip(counts) {
-        let rest = results.split_off(count);
-        let own = std::mem::replace(&mut results, rest);
+    for (plane, results) in planes.iter().zip(results) {
         let Some(imperfections) = plane.scenario.imperfections() else { continue };
-        found.push(Variants::of(plane.view(), imperfections, own));
+        let spread = Spread::of(imperfections, &results);
+        found.push(Variants { view: plane.view(), results, spread });
     }
     let all: Vec<&[CaseResult]> = found.iter().map(|one| one.results.as_slice()).collect();
     let typical = typical::typical(&all);
-    for one in &mut found {
-        one.spread.typical = typical;
+    let number = |place: u32| numbers.get(place as usize).copied().unwrap_or(place);
+    for Variants { spread, .. } in &mut found {
+        spread.typical = number(typical);
+        spread.gentlest = number(spread.gentlest);
+        spread.worst = number(spread.worst);
     }
-    Ok(Some(found))
-}
-
-impl Variants {
-    fn of(view: Option<View>, imperfections: &Imperfections, results: Vec<CaseResult>) -> Self {
-        let spread = Spread::of(imperfections, &results);
-        Self { view, results, spread }
-    }
+    found
 }

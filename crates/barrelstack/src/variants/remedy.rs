@@ -259,7 +259,10 @@ impl Trial {
         // What follows a collapse says nothing about whether there is one.
         change.scenario.run.stop_after_collapse = Some(0.0);
         let planes = planes(&change.scenario)?;
-        let cases = planes.iter().map(Plane::prepared).collect::<Result<_, _>>()?;
+        let cases = planes
+            .iter()
+            .map(|plane| plane.prepared(&plane.numbers()))
+            .collect::<Result<_, _>>()?;
         let counts = planes.iter().map(|_| [AtomicU32::new(0), AtomicU32::new(0)]).collect();
         Ok(Self { change, planes, cases, counts, until: 0 })
     }

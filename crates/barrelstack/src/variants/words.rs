@@ -29,7 +29,7 @@ pub fn headline(planes: &[(View, &Spread)]) -> String {
 }
 
 /// The kind of the verdict: what is not safe counts as falling.
-pub(crate) fn tone(planes: &[(View, &Spread)]) -> Tone {
+pub fn tone(planes: &[(View, &Spread)]) -> Tone {
     match planes.iter().filter_map(|(_, spread)| spread.share).reduce(f64::max) {
         None => Tone::Invalid,
         Some(share) if share <= STANDS => Tone::Stands,

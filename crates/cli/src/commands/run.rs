@@ -1,9 +1,10 @@
 //! `barrelstack run`: one scenario, from file to verdict.
 
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use anyhow::bail;
+use anyhow::{Context as _, bail};
 use barrelstack::export::{ExportError, Folder};
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario::Scene;
@@ -23,6 +24,7 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let asked = asked(&mut scenario, args.variants)?;
     // The folder is looked at before the work is done, not after.
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
+    let engine = args.with_engine.as_deref().map(engine).transpose()?;
     let placed = |error| super::placed(error, &scenario, &args.scenario);
     let mut answer = answered(&scenario, asked, !args.quiet).map_err(placed)?;
     if !args.no_remedy {
@@ -36,6 +38,9 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let written = folder.as_ref().map_or(Ok::<(), ExportError>(()), |folder| {
         crate::interrupt::writes_to(folder.path());
         folder.write(&answer, verification.as_ref())?;
+        if let Some(engine) = &engine {
+            folder.write_with_engine(&answer, verification.as_ref(), engine)?;
+        }
         if args.pdf {
             folder.write_pdf(&answer, verification.as_ref(), args.paper.into())?;
         }
@@ -57,6 +62,19 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     }
     written?;
     Ok(status(&answer))
+}
+
+/// The page that holds the program.
+fn engine(path: &Path) -> anyhow::Result<String> {
+    let page = std::fs::read_to_string(path)
+        .with_context(|| format!("cannot read the page {}", path.display()))?;
+    if !page.contains("<script type=\"text/plain\" id=\"engine\">") {
+        bail!(
+            "{} holds no engine: take barrelstack.html of a release, or make one with `cargo xtask web`",
+            path.display()
+        );
+    }
+    Ok(page)
 }
 
 /// Which run is to be shown; the number of variants is set as it was asked for.

@@ -11,7 +11,7 @@ mod solid;
 mod stack;
 mod transverse;
 
-use barrelstack_dynamics::{BodyId, Model, ModelError, Placed, Planar, Vec2};
+use barrelstack_dynamics::{BodyId, Element, Model, ModelError, Placed, Planar, Vec2};
 
 use crate::device::{Loose, Words};
 use crate::scenario::{Scenario, Scene, View};
@@ -134,6 +134,12 @@ impl Assembly {
     /// Bodies of a kind, in order.
     pub fn of_kind(&self, kind: PartKind) -> impl Iterator<Item = BodyId> + '_ {
         self.parts.iter().enumerate().filter(move |(_, p)| p.kind == kind).map(|(i, _)| i)
+    }
+
+    /// Its force elements, those of devices that are yet to be put on after the others.
+    pub fn elements(&self) -> impl Iterator<Item = &Element<Planar>> {
+        let loose = self.loose.iter().map(|loose| &loose.element);
+        self.model.elements().iter().chain(loose)
     }
 
     /// The body that the ground moves; every assembly has one.

@@ -1,0 +1,15 @@
+// "Try a change": the page that this one holds, in a frame over it, with the scenario of this report.
+{
+  const dialog = document.getElementById("trial");
+  let opened = false;
+  document.getElementById("try").addEventListener("click", async () => {
+    dialog.showModal();
+    if (opened) return;
+    opened = true;
+    const text = new TextDecoder().decode(await held("trial-page"));
+    const start = document.getElementById("trial-start").textContent;
+    const frame = make("iframe", { title: "The program" });
+    frame.srcdoc = text.replace("<body>", () => `<body><script type="application/json" id="start">${start}<\/script>`);
+    dialog.append(frame);
+  });
+}

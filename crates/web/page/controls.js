@@ -1,0 +1,129 @@
+// The five choices and the strength of the shaking, read from what the engine says of a scenario and written into the
+// changes made to it.
+
+const STRENGTHS = [3, 160]; // ends of the slider (cm/s)
+const STEPS = 200;
+const TENSION = "3 kN"; // of straps, which a ratchet reaches by hand
+
+const velocityAt = (step) => STRENGTHS[0] * (STRENGTHS[1] / STRENGTHS[0]) ** (step / STEPS);
+const stepAt = (velocity) => Math.round((STEPS * Math.log(velocity / STRENGTHS[0])) / Math.log(STRENGTHS[1] / STRENGTHS[0]));
+
+// What is given, by its path; fields without a value are left out.
+const valuesOf = (look) => Object.fromEntries(look.settings.filter(({ value }) => value !== "").map(({ path, value }) => [path, value]));
+
+// `changed` is called when the reader has changed something: it gets a function that writes that into a cellar.
+function makeControls(find, catalog, changed) {
+  const [barrel, rack, levels, view, fill, strength] = ["barrel", "rack", "levels", "view", "fill", "strength"].map(find);
+  let stated = null; // what the scenario says without changes
+  let own = 0; // peak velocity (cm/s) of its motion as it is recorded; 0 where nothing shakes
+  const offer = (select, names) => select.replaceChildren(...names.map((name) => make("option", { value: name }, called(name))));
+  offer(barrel, catalog.barrels.map(({ name }) => name));
+  offer(rack, catalog.racks.map(({ name }) => name));
+
+  // Writes a value unless it is the one that is stated.
+  const write = (cellar, path, value, same) => {
+    if (same) delete cellar.changes[path];
+    else cellar.changes[path] = value;
+  };
+  const is = (path, value) => String(stated[path]) === String(value);
+
+  const writers = {
+    barrel(cellar) {
+      const text = fill.value === "empty" ? `{ base = "${barrel.value}", fill = "empty" }` : `"${barrel.value}"`;
+      write(cellar, "stack.barrel", text, is("stack.barrel.base", barrel.value) && is("stack.barrel.fill", fill.value));
+    },
+    rack: (cellar) => write(cellar, "stack.rack", `"${rack.value}"`, is("stack.rack.base", rack.value)),
+    levels(cellar, count = Number(levels.value)) {
+      const most = Math.min(Math.max(Math.round(count) || 1, 1), 12);
+      levels.value = most;
+      write(cellar, "stack.levels", String(most), is("stack.levels", most));
+      if (cellar.changes["stack.strap"]) writers.straps(cellar, true, most);
+    },
+    view(cellar) {
+      write(cellar, "stack.view", `"${view.value}"`, is("stack.view", view.value));
+      // Of both planes the one along the barrels has columns of its own.
+      const along = stated["stack.columns_along"];
+      if (along !== undefined) write(cellar, "stack.columns", along, view.value !== "longitudinal");
+    },
+    straps(cellar, on, count = Number(levels.value)) {
+      const ties = count > 1 ? "levels-together" : "barrels-to-racks";
+      const text = on ? `{ levels = ${count}, ties = "${ties}", pretension = "${TENSION}" }` : "{ levels = 0 }";
+      write(cellar, "stack.strap", text, !on && is("stack.strap.levels", 0));
+    },
+    strength(cellar, velocity = velocityAt(Number(strength.value))) {
+      if (stated["motion.scale.pgv"] !== undefined) {
+        cellar.changes["motion.scale.pgv"] = `"${velocity.toPrecision(3)} cm/s"`;
+        return;
+      }
+      const factor = Number((velocity / own).toPrecision(3));
+      const near = Math.abs(stepAt(velocity) - stepAt(own)) < 1;
+      write(cellar, "motion.scale.factor", String(factor), near && Number(stated["motion.scale.factor"] ?? 1) === 1);
+    },
+  };
+  const edit = (name) => changed((cellar) => writers[name](cellar));
+  for (const [element, name] of [[barrel, "barrel"], [fill, "barrel"], [rack, "rack"], [view, "view"], [levels, "levels"]]) {
+    element.addEventListener("change", () => edit(name));
+  }
+  for (const button of document.querySelectorAll("[data-step]")) {
+    button.addEventListener("click", () => changed((cellar) => writers.levels(cellar, Number(levels.value) + Number(button.dataset.step))));
+  }
+  strength.addEventListener("input", () => {
+    feel(velocityAt(Number(strength.value)));
+    edit("strength");
+  });
+
+  function feel(velocity) {
+    const { name, felt, roman, like } = feels(velocity);
+    find("feels").replaceChildren(make("b", {}, `${name[0].toUpperCase()}${name.slice(1)}`), `: ${felt}.`,
+      make("span", { class: "soft" }, `peak velocity ${velocity.toFixed(0)} cm/s, intensity ${roman}${like ? `; like ${like}` : ""}`));
+    strength.setAttribute("aria-valuetext", `${name}, ${velocity.toFixed(0)} centimeters per second`);
+  }
+
+  return {
+    writers,
+    // The scenario as it is stated, without changes.
+    state(look) {
+      stated = valuesOf(look);
+    },
+    // Shows what a scenario says.
+    show(look) {
+      const values = valuesOf(look), motion = look.checked[0].motion;
+      const stack = values["stack.levels"] !== undefined;
+      for (const element of [barrel, rack, levels, view, fill]) element.disabled = !stack;
+      if (stack) {
+        barrel.value = values["stack.barrel.base"];
+        fill.value = values["stack.barrel.fill"] === "empty" ? "empty" : "full-fluid";
+        rack.value = values["stack.rack.base"];
+        levels.value = values["stack.levels"];
+        view.value = values["stack.view"];
+      }
+      strength.disabled = !motion;
+      if (motion) {
+        const velocity = 100 * motion.pgv;
+        own = velocity / Math.abs(Number(values["motion.scale.factor"] ?? 1));
+        // Not while it is being moved.
+        if (document.activeElement !== strength) strength.value = stepAt(velocity);
+        feel(velocity);
+        find("motion").textContent = `${motion.name}, ${motion.duration.toFixed(0)} s, peak acceleration ${(motion.pga / 9.80665).toFixed(2)} g`;
+      } else {
+        find("feels").textContent = "Nothing shakes it.";
+        find("motion").textContent = "Drop a record here.";
+      }
+    },
+  };
+}
+
+// A stack in a few words: what of it matters, and what is unusual about it.
+function labelOf(look) {
+  const values = valuesOf(look), motion = look.checked[0].motion;
+  if (values["stack.levels"] === undefined) return look.title;
+  const one = Number(values["stack.levels"]) === 1;
+  const words = [`${values["stack.levels"]} level${one ? "" : "s"}`];
+  if (values["stack.rack.base"] !== "two-barrel") words.push(called(values["stack.rack.base"]));
+  if (values["stack.barrel.base"] !== "bordeaux-225") words.push(called(values["stack.barrel.base"]));
+  if (values["stack.barrel.fill"] === "empty") words.push("empty");
+  if (Number(values["stack.strap.levels"] || 0) > 0) words.push("strapped");
+  if (values["stack.view"] !== "both") words.push(values["stack.view"] === "transverse" ? "across" : "along");
+  if (motion) words.push(`${(100 * motion.pgv).toFixed(0)} cm/s`);
+  return words.join(", ");
+}

@@ -1,0 +1,194 @@
+// For the engineer: every field, the text, the command, the link, and the report with its files.
+
+// `change` writes into the cellar at hand and looks at it; `open` takes another base.
+function makeEngineer(find, { desk, crew, state, change, open, refuse }) {
+  const rows = new Map();
+
+  function field({ path, value, help, source }) {
+    const input = make("input", { type: "text", "aria-label": path, spellcheck: "false" });
+    input.value = value;
+    const wrong = make("span", { class: "wrong", role: "alert" });
+    const row = make("tr", {}, make("td", {}, path), make("td", {}, input, wrong), make("td", {}, help), make("td", {}, source));
+    let waiting = 0;
+    input.addEventListener("input", () => {
+      clearTimeout(waiting);
+      waiting = setTimeout(async () => {
+        const { cellar } = state();
+        const tried = copied(cellar);
+        // A value that is none of TOML is a text, as on the command line; without one the field is as it was.
+        const write = ({ changes }) => {
+          if (input.value.trim() === "") delete changes[path];
+          else changes[path] = input.value;
+        };
+        write(tried);
+        try {
+          await desk.ask(headOf(tried, "look"), { records: tried.records, group: "field" });
+          wrong.textContent = "";
+          change(write, false);
+        } catch (error) {
+          if (error.broken) refuse(error);
+          else if (!error.stopped) wrong.textContent = error.message;
+        }
+      }, 250);
+    });
+    rows.set(path, { row, input, wrong, words: `${path} ${help}`.toLowerCase() });
+    return row;
+  }
+
+  function filter() {
+    const wanted = find("filter").value.toLowerCase();
+    for (const { row, words } of rows.values()) row.hidden = !words.includes(wanted);
+  }
+
+  // Shows what a scenario says; what is being typed stays.
+  function show(cellar, look) {
+    const paths = look.settings.map(({ path }) => path).join();
+    if (paths !== [...rows.keys()].join()) {
+      rows.clear();
+      const heads = ["field", "value", "meaning", "from"].map((name) => make("th", { scope: "col" }, name));
+      find("fields").replaceChildren(make("thead", {}, make("tr", {}, ...heads)), make("tbody", {}, ...look.settings.map(field)));
+      filter();
+    }
+    for (const { path, value } of look.settings) {
+      const { input, wrong, row } = rows.get(path);
+      if (document.activeElement !== input) {
+        input.value = value;
+        wrong.textContent = "";
+      }
+      row.classList.toggle("changed", Object.keys(cellar.changes).some((changed) => changed === path || path.startsWith(`${changed}.`)));
+    }
+    find("command").textContent = commandOf(cellar);
+    if (document.activeElement !== find("text")) {
+      find("text").value = look.resolved;
+      find("text-take").disabled = true;
+      say("text-said", "");
+    }
+  }
+
+  function say(id, text, bad) {
+    find(id).textContent = text;
+    find(id).classList.toggle("bad", Boolean(bad));
+  }
+
+  let checking = 0;
+  find("text").addEventListener("input", () => {
+    clearTimeout(checking);
+    checking = setTimeout(async () => {
+      const tried = { base: { name: "mine.toml", text: find("text").value, own: true }, changes: {}, records: state().cellar.records };
+      try {
+        await desk.ask(headOf(tried, "look"), { records: tried.records, group: "text" });
+        say("text-said", "The text is sound.");
+        find("text").removeAttribute("aria-invalid");
+        find("text-take").disabled = false;
+      } catch (error) {
+        if (error.broken) return refuse(error);
+        if (error.stopped) return;
+        say("text-said", error.message, true);
+        find("text").setAttribute("aria-invalid", "true");
+        find("text-take").disabled = true;
+        reveal(error.message);
+      }
+    }, 300);
+  });
+
+  // Brings the line of a mistake into sight.
+  function reveal(message) {
+    const at = /mine\.toml:(\d+)/.exec(message);
+    if (!at) return;
+    const box = find("text"), lines = box.value.split("\n").length;
+    box.scrollTop = Math.max(0, ((Number(at[1]) - 4) * box.scrollHeight) / lines);
+  }
+
+  find("text-take").addEventListener("click", () => open({ name: "mine.toml", text: find("text").value, own: true }));
+  find("filter").addEventListener("input", filter);
+  find("import").addEventListener("change", async (event) => {
+    const [file] = event.target.files;
+    if (file) open({ name: file.name, text: await file.text(), own: true });
+    event.target.value = "";
+  });
+  find("text-save").addEventListener("click", () => save("scenario.toml", "text/plain", [state().look.resolved]));
+
+  function save(name, type, parts) {
+    const link = make("a", { download: name, href: URL.createObjectURL(new Blob(parts, { type })) });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  }
+
+  find("link").addEventListener("click", async () => {
+    const link = location.href.replace(/#.*/, "") + (await linkOf(state().cellar));
+    const done = await copyText(link);
+    const kept = state().cellar.records.length > 0 ? " Your record is not in it: it goes by its name." : "";
+    find("link-said").textContent = (done ? "Copied." : "It stands in the address of this page.") + kept;
+    setHash(link);
+  });
+
+  function busy(on) {
+    find("report-stop").hidden = !on;
+    find("report-go").hidden = on;
+  }
+
+  find("report-go").addEventListener("click", async () => {
+    const { cellar } = state();
+    busy(true);
+    try {
+      const told = (done, of) => { find("report-said").textContent = `${percentOf(of > 0 ? done / of : 0)} of this step`; };
+      const { bytes } = await crew.ask(headOf(cellar, "files"), { records: cellar.records, urgency: 1, group: "report", told });
+      showFiles(filesOf(bytes));
+      find("report-said").textContent = "";
+    } catch (error) {
+      find("report-said").textContent = "";
+      if (!error.stopped) refuse(error);
+    }
+    busy(false);
+  });
+  find("report-stop").addEventListener("click", () => crew.stop("report"));
+
+  function showFiles(files) {
+    window.barrelstack.files = files;
+    find("files").hidden = false;
+    find("files").replaceChildren(...files.map(([name, bytes]) => {
+      const button = make("button", { type: "button", class: "tool" }, `${name} (${(bytes.length / 1e6).toFixed(bytes.length < 1e5 ? 2 : 1)} MB)`);
+      button.addEventListener("click", () => save(name, "application/octet-stream", [bytes]));
+      return make("li", {}, button);
+    }));
+    const [, page] = files.find(([name]) => name === "report.html");
+    find("report").hidden = false;
+    find("report").srcdoc = new TextDecoder().decode(page);
+  }
+
+  return { show };
+}
+
+// Files with their names, from an answer that has their list before them.
+function filesOf(bytes) {
+  const length = new DataView(bytes.buffer, bytes.byteOffset).getUint32(0, true);
+  let at = 4 + length;
+  return JSON.parse(new TextDecoder().decode(bytes.subarray(4, at))).map(([name, size]) => {
+    at += size;
+    return [name, bytes.slice(at - size, at)];
+  });
+}
+
+// Browsers keep the clipboard to pages from a safe place; the old way works everywhere else.
+async function copyText(text) {
+  try {
+    await navigator.clipboard.writeText(text);
+    return true;
+  } catch {
+    const box = make("textarea", { "aria-hidden": "true", style: "position:fixed;opacity:0" });
+    box.value = text;
+    document.body.append(box);
+    box.select();
+    const done = document.execCommand("copy");
+    box.remove();
+    return done;
+  }
+}
+
+function setHash(link) {
+  try {
+    history.replaceState(null, "", link);
+  } catch {
+    // A page inside another has no address of its own.
+  }
+}

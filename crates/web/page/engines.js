@@ -1,0 +1,106 @@
+// The engines: workers that answer requests, the most urgent first. Work that is wanted no more is stopped by ending
+// its worker, which no computation can withstand.
+
+const ROOM = 384e6; // memory of an engine (bytes) above which it is ended once it has answered, since it gives none back
+
+// A request as the engine reads it: the length of its head, the head, the records.
+function requestOf(head, records) {
+  const text = new TextEncoder().encode(JSON.stringify({ ...head, records: records.map(({ path, bytes }) => [path, bytes.length]) }));
+  const request = new Uint8Array(4 + text.length + records.reduce((sum, { bytes }) => sum + bytes.length, 0));
+  new DataView(request.buffer).setUint32(0, text.length, true);
+  request.set(text, 4);
+  let at = 4 + text.length;
+  for (const { bytes } of records) {
+    request.set(bytes, at);
+    at += bytes.length;
+  }
+  return request;
+}
+
+// As many engines as `most`, each started when there is work for it.
+function makeEngines(module, address, most) {
+  const all = new Set();
+  let waiting = [];
+
+  function start() {
+    const one = { worker: new Worker(address), job: null, ready: false };
+    one.worker.onmessage = ({ data }) => hear(one, data);
+    one.worker.onerror = (event) => fail(one, event.message || "the engine does not start");
+    one.worker.postMessage({ module });
+    all.add(one);
+  }
+
+  function end(one) {
+    one.worker.terminate();
+    all.delete(one);
+  }
+
+  function fail(one, text) {
+    const { job } = one;
+    end(one);
+    if (job) job.reject(Object.assign(new Error(text), { broken: true }));
+    next();
+  }
+
+  function hear(one, data) {
+    if (data.ready) one.ready = true;
+    else if (data.of !== undefined) {
+      if (one.job && one.job.told) one.job.told(data.done, data.of);
+      return;
+    } else {
+      const { job } = one;
+      if (data.status === 2) return fail(one, `${new TextDecoder().decode(data.answer) || "no words"} (${data.trap})`);
+      one.job = null;
+      if (data.memory > ROOM) end(one);
+      if (data.status === 0) job.resolve({ bytes: data.answer, took: data.took, memory: data.memory });
+      else job.reject(new Error(new TextDecoder().decode(data.answer)));
+    }
+    next();
+  }
+
+  function next() {
+    const idle = [...all].filter(({ ready, job }) => ready && !job);
+    for (const one of idle) {
+      if (waiting.length === 0) return;
+      one.job = waiting.shift();
+      const request = one.job.request();
+      one.worker.postMessage({ request }, [request.buffer]);
+    }
+    const starting = [...all].filter(({ ready }) => !ready).length;
+    for (let more = waiting.length - starting; more > 0 && all.size < most; more -= 1) start();
+  }
+
+  return {
+    most,
+    // Starts engines before there is work for them.
+    warm() {
+      while (all.size < most) start();
+    },
+    // Answers in bytes. `group` is what it is stopped by, `told` hears how far it is.
+    ask(head, { records = [], urgency = 0, group = "", told } = {}) {
+      return new Promise((resolve, reject) => {
+        const job = { request: () => requestOf(head, records), urgency, group, told, resolve, reject };
+        const at = waiting.findIndex((other) => other.urgency < urgency);
+        waiting.splice(at < 0 ? waiting.length : at, 0, job);
+        next();
+      });
+    },
+    // Ends all work of a group.
+    stop(group) {
+      const stopped = Object.assign(new Error("stopped"), { stopped: true });
+      const dropped = waiting.filter((job) => job.group === group);
+      waiting = waiting.filter((job) => job.group !== group);
+      for (const one of [...all]) {
+        if (one.job && one.job.group === group) {
+          dropped.push(one.job);
+          end(one);
+        }
+      }
+      for (const job of dropped) job.reject(stopped);
+      next();
+    },
+  };
+}
+
+const textOf = ({ bytes }) => new TextDecoder().decode(bytes);
+const jsonOf = (answer) => JSON.parse(textOf(answer));

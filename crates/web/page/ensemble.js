@@ -1,0 +1,69 @@
+// All variants of a stack, shared among the engines; what they say so far is told by one of them after each share.
+
+const SHARE = 4; // variants that an engine takes at once: half a second of work for a stack of the catalog
+
+// Numbers in the order in which they are run: the stack as it is stated first, then from both halves in turn, since the
+// second half of a stack that is looked at in both planes has the components of the record exchanged.
+function orderOf(count) {
+  const half = Math.ceil(count / 2), order = [0];
+  for (let at = 1; at <= half; at += 1) {
+    order.push(at);
+    if (half + at <= count) order.push(half + at);
+  }
+  return order;
+}
+
+// Collects results of variants, and asks what they say together.
+function makeTally(desk, cellar) {
+  const results = new Map(); // by number, a result in each plane
+  const planes = () => (results.get(0) || []).length;
+  return {
+    count: () => results.size,
+    add(numbers, cases) {
+      numbers.forEach((number, at) => results.set(number, cases.map((plane) => plane[at])));
+    },
+    // What they say; none before the stack as it is stated is among them.
+    async verdict(group) {
+      if (!results.has(0)) return null;
+      const numbers = [...results.keys()].sort((a, b) => a - b);
+      const cases = Array.from({ length: planes() }, (_, plane) => numbers.map((number) => results.get(number)[plane]));
+      return jsonOf(await desk.ask(headOf(cellar, "verdict", { numbers, cases }), { records: cellar.records, urgency: 1, group }));
+    },
+  };
+}
+
+// Runs all variants; `heard` gets what they say after each share, and whether that was the last one.
+async function runAll({ crew, desk, cellar, count, group, heard, took }) {
+  const order = orderOf(count), tally = makeTally(desk, cellar);
+  const shares = [];
+  for (let at = 0; at < order.length; at += SHARE) shares.push(order.slice(at, at + SHARE));
+  let asking = false, behind = false, left = shares.length, ended;
+  const all = new Promise((resolve, reject) => { ended = { resolve, reject }; });
+
+  // One verdict at a time, of what is there when it is asked for.
+  async function tell() {
+    if (asking) {
+      behind = true;
+      return;
+    }
+    asking = true;
+    do {
+      behind = false;
+      const last = left === 0;
+      const verdict = await tally.verdict(group);
+      if (verdict) heard(verdict, tally.count(), last);
+      if (last) ended.resolve(verdict);
+    } while (behind);
+    asking = false;
+  }
+
+  for (const numbers of shares) {
+    crew.ask(headOf(cellar, "variants", { numbers }), { records: cellar.records, group }).then((answer) => {
+      took(answer.took / numbers.length);
+      tally.add(numbers, jsonOf(answer));
+      left -= 1;
+      return tell();
+    }).catch(ended.reject);
+  }
+  return all;
+}

@@ -1,0 +1,204 @@
+// Runs: the stack in motion, what its variants say as they come, and those that were tried before.
+
+const SLOW = 60; // a run that takes longer (s) is announced
+const KEPT = 8; // runs whose pictures are kept
+
+// `state` is { cellar, look }, where `look` is what the engine says of the cellar; `apply` makes a cellar the one at hand.
+function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, controls }) {
+  const past = [];
+  let now = null; // the run that is shown
+  let cost = 4e-7; // time (s) of a step of a body, as measured
+  let marks = {}; // when things were there (ms), for those who measure
+
+  const seconds = (look) => (cost * look.work * (look.variants + 1)) / crew.most;
+
+  // Says so before something takes long.
+  function forecast(look) {
+    const due = seconds(look), slow = due > SLOW;
+    find("costs").hidden = !slow;
+    find("costs").textContent = slow ? `This takes about ${lasting(due)} on this computer; the first picture comes after about ${lasting(cost * look.work)}.` : "";
+  }
+
+  function busy(on) {
+    find("stop").hidden = !on;
+    find("progress").hidden = !on;
+    find("go").textContent = on ? "Shake it again" : "Shake it";
+  }
+
+  function stop() {
+    crew.stop("run");
+    desk.stop("run");
+    busy(false);
+  }
+
+  const previous = () => past[past.indexOf(now) - 1];
+
+  function tell(run) {
+    const before = past[past.indexOf(run) - 1];
+    const cards = [];
+    // The picture keeps its place when words come.
+    if (!run.verdict && run.look.variants > 0) cards.push(make("div", { class: "card waits" }, make("p", { class: "when" }, run.label), make("p", { class: "headline" }, `Shaking it, and ${run.look.variants} like it.`)));
+    if (run.verdict) cards.push(cardOf(run.verdict, before ? `now: ${run.label}` : run.label, false));
+    if (run.verdict && before && before.verdict) cards.push(cardOf(before.verdict, `before: ${before.label}`, true));
+    find("verdicts").replaceChildren(...cards);
+    find("sentences").textContent = run.shown ? run.shown.sentences.slice(run.verdict ? 1 : 0).join(" ") : "";
+    const warnings = run.shown ? run.shown.warnings : [];
+    find("warnings").hidden = warnings.length === 0;
+    find("warnings").replaceChildren(...warnings.map((text) => make("li", {}, text)));
+    offerWhich(run);
+    offerChanges(run);
+    list();
+  }
+
+  // The runs of an ensemble that are worth a look.
+  function offerWhich(run) {
+    const box = find("which");
+    box.hidden = !(run.done && run.verdict && run.verdict.planes.length > 0);
+    if (box.hidden) return;
+    const { typical, gentlest, worst } = run.verdict.planes[0].spread;
+    const offers = new Map([[0, "as it is stated"]]);
+    for (const [one, name] of [[typical, "the most typical"], [gentlest, "the gentlest"], [worst, "the worst"]]) {
+      offers.set(one, offers.has(one) ? `${offers.get(one)}, ${name}` : name);
+    }
+    box.replaceChildren(make("span", {}, "Shown is"), ...[...offers].map(([one, name]) => {
+      const button = make("button", { type: "button", class: "tool", "aria-pressed": String(run.shown && run.shown.variant === one) }, name);
+      button.addEventListener("click", () => show(run, one).then(() => tell(run)).catch(refuse));
+      return button;
+    }));
+  }
+
+  // One thing to change, for whoever looks at a stack.
+  function offerChanges(run) {
+    const values = valuesOf(run.look), levels = Number(values["stack.levels"] || 0);
+    find("next").hidden = !run.shown || levels === 0;
+    const { writers } = controls;
+    const strapped = Number(values["stack.strap.levels"] || 0) > 0;
+    const velocity = run.look.checked[0].motion ? 100 * run.look.checked[0].motion.pgv : 0;
+    const offers = [
+      [levels > 1, "One level less", (cellar) => writers.levels(cellar, levels - 1)],
+      [levels < 12, "One level more", (cellar) => writers.levels(cellar, levels + 1)],
+      [!strapped, `Strap it together, ${TENSION}`, (cellar) => writers.straps(cellar, true, levels)],
+      [strapped, "Take the straps off", (cellar) => writers.straps(cellar, false)],
+      [values["stack.rack.base"] !== "rack-on-rack", "Racks on posts", (cellar) => { cellar.changes["stack.rack"] = '"rack-on-rack"'; }],
+      [velocity > 0, "Half the shaking", (cellar) => writers.strength(cellar, velocity / 2)],
+    ];
+    find("changes").replaceChildren(...offers.filter(([fits]) => fits).map(([, name, write]) => {
+      const button = make("button", { type: "button", class: "tool" }, name);
+      button.addEventListener("click", () => change(write, true));
+      return button;
+    }));
+  }
+
+  function list() {
+    find("past").hidden = past.length < 2;
+    find("undo").disabled = !previous();
+    find("history").replaceChildren(...past.map((run) => {
+      const button = make("button", { type: "button" }, make("span", {}, run.label), make("span", {}, run.verdict ? briefly(run.verdict) + (run.done ? "" : " so far") : "stopped"));
+      if (run === now) button.setAttribute("aria-current", "true");
+      button.addEventListener("click", () => back(run));
+      return make("li", {}, button);
+    }).reverse());
+  }
+
+  // Shows an earlier run again, with its scenario at hand.
+  async function back(run) {
+    stop();
+    now = run;
+    await apply(copied(run.cellar), run.look);
+    tell(run);
+    if (run.shown && run.shown.stage) await picture.put(run.shown.stage, {});
+    else await show(run, run.shown ? run.shown.variant : 0).catch(refuse);
+  }
+
+  // Makes a variant move: at first as far as it takes to see it under way, then all of it.
+  async function show(run, variant) {
+    const { cellar, look } = run, first = !run.shown, from = performance.now();
+    const asked = (shorter) => crew.ask(headOf({ ...cellar, changes: { ...cellar.changes, ...shorter } }, "show", { numbers: [variant] }), {
+      records: cellar.records, urgency: shorter ? 3 : 2, group: "run",
+      told: (done, of) => { if (!run.shown) find("sofar").textContent = `shaking it: ${percentOf(done / of)}`; },
+    });
+    const put = async (answer, options) => {
+      const shown = jsonOf(answer);
+      if (run === now) await picture.put(shown.stage, options);
+      return shown;
+    };
+    const long = look.opening !== null && look.checked[0].motion.duration > 2 * look.opening && valuesOf(look)["run.duration"] === undefined;
+    const whole = asked();
+    let opened = false;
+    if (first && long) {
+      const opening = asked({ "run.duration": `"${look.opening} s"` }).catch(() => null);
+      const there = await Promise.race([opening, whole.then(() => null)]);
+      if (there && run === now) {
+        await put(there, { ghost: past.length > 1 });
+        opened = true;
+        marks.moved = performance.now();
+      }
+    }
+    const answer = await whole;
+    cost = answer.took / 1000 / Math.max(look.work, 1);
+    run.shown = await put(answer, opened ? { ghost: past.length > 1, goesOn: true } : { ghost: first && past.length > 1 });
+    if (run === now && !opened) marks.moved = performance.now();
+    if (past.length > KEPT) past.find(({ shown }) => shown && shown.stage && shown !== run.shown).shown.stage = null;
+    return performance.now() - from;
+  }
+
+  async function run() {
+    stop();
+    const { cellar, look } = state();
+    const mine = { cellar: copied(cellar), look, label: labelOf(look), verdict: null, shown: null, done: false };
+    // What was stopped before anything was seen of it is forgotten.
+    if (now && !now.shown) past.splice(past.indexOf(now), 1);
+    past.splice(past.indexOf(now) + 1, 0, mine);
+    now = mine;
+    busy(true);
+    const from = performance.now();
+    marks = { from };
+    window.barrelstack.marks = marks;
+    find("bar").value = 0;
+    find("sofar").textContent = "shaking it";
+    tell(mine);
+    // On a phone the stack stands below the choices.
+    if (find("result").getBoundingClientRect().top > 0.5 * window.innerHeight) find("result").scrollIntoView({ block: "start" });
+    const heard = (verdict, count, last) => {
+      mine.verdict = verdict;
+      mine.done = last;
+      if (mine !== now) return;
+      marks.variants = count - 1;
+      marks.last = performance.now();
+      const of = look.variants;
+      find("bar").value = count / (of + 1);
+      find("sofar").textContent = `${count - 1} of ${of} variants so far`;
+      tell(mine);
+    };
+    try {
+      const showing = show(mine, 0).then(() => tell(mine));
+      const varying = look.variants > 0 ? runAll({ crew, desk, cellar: mine.cellar, count: look.variants, group: "run", heard, took: () => {} }) : null;
+      await Promise.all([showing, varying]);
+      mine.done = true;
+      const typical = mine.verdict && mine.verdict.planes[0] ? mine.verdict.planes[0].spread.typical : 0;
+      // The stack as it is stated may do what hardly any other does.
+      const collapses = mine.shown.outcomes.some(({ kind }) => kind === "collapse");
+      if (mine.verdict && collapses !== (mine.verdict.tone === "falls") && typical !== 0) await show(mine, typical);
+      if (mine === now) {
+        busy(false);
+        tell(mine);
+        find("said").textContent = mine.verdict ? mine.verdict.headline : mine.shown.sentences[0];
+      }
+    } catch (error) {
+      if (error.stopped) return;
+      stop();
+      refuse(error);
+    }
+  }
+
+  find("ask").addEventListener("submit", (event) => {
+    event.preventDefault();
+    run();
+  });
+  find("stop").addEventListener("click", () => {
+    stop();
+    if (now) tell(now);
+  });
+  find("undo").addEventListener("click", () => { if (previous()) back(previous()); });
+  return { run, stop, forecast, past: () => past };
+}

@@ -1,0 +1,64 @@
+// What a strength of shaking feels like, and what things of the catalog are called.
+
+// Modified Mercalli intensity of a peak ground velocity (cm/s): Worden, Gerstenberger, Rhoades and Wald (2012),
+// Bulletin of the Seismological Society of America 102, 204–221, two lines over log PGV for California.
+function intensityOf(velocity) {
+  const log = Math.log10(Math.max(velocity, 0.1));
+  return Math.min(Math.max(log <= 0.53 ? 3.78 + 1.47 * log : 2.89 + 3.16 * log, 1), 10);
+}
+
+const ROMAN = ["", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X"];
+
+// What people feel, by whole intensities from III to X: the scale of Wood and Neumann (1931) in plain words.
+const FELT = {
+  3: ["weak", "a lorry seems to pass; hanging lamps swing"],
+  4: ["light", "glasses rattle, walls creak, some sleepers wake"],
+  5: ["moderate", "everyone feels it; bottles fall from shelves"],
+  6: ["strong", "people run outside; shelves and heavy furniture move"],
+  7: ["very strong", "it is hard to stand; chimneys break"],
+  8: ["severe", "drivers lose hold of the wheel; solid buildings are damaged"],
+  9: ["violent", "people are thrown down; buildings shift off their foundations"],
+  10: ["extreme", "few buildings stay whole"],
+};
+
+// Peak velocity (cm/s) of the stronger horizontal of records, as `barrelstack motion info` reads them.
+const LIKE = [
+  [3, "South Napa 2014 at Concord"],
+  [23, "Northridge 1994 at Arleta"],
+  [31, "El Centro 1940"],
+  [49, "Maule 2010 at Curicó"],
+  [57, "South Napa 2014 at Napa College"],
+  [101, "Kaikōura 2016 at Waiau"],
+  [125, "Chi-Chi 1999 at station TCU065"],
+  [148, "Northridge 1994 at Rinaldi"],
+];
+
+// A strength in words: { name, felt, roman, like }.
+function feels(velocity) {
+  const level = Math.max(3, Math.round(intensityOf(velocity)));
+  const [name, felt] = FELT[level];
+  const apart = ([other]) => Math.abs(Math.log(other / velocity));
+  const near = LIKE.reduce((a, b) => (apart(b) < apart(a) ? b : a));
+  return { name, felt, roman: ROMAN[level], like: apart(near) < 0.25 ? near[1] : "" };
+}
+
+const NAMES = {
+  "bordeaux-225": "Bordeaux, 225 L", "burgundy-228": "Burgundy, 228 L", "hogshead-300": "hogshead, 300 L", "puncheon-500": "puncheon, 500 L",
+  "two-barrel": "two barrels", "two-barrel-feet": "two barrels, with feet", "single-bar": "two barrels, one bar",
+  "four-barrel": "four barrels", "rack-on-rack": "two barrels, on posts", "candia-2008": "two barrels, Chile 2008",
+};
+const called = (name) => NAMES[name] || name;
+
+const percentOf = (share) => {
+  const percent = 100 * share;
+  if (percent > 0 && percent < 1) return "1 %";
+  if (percent > 99 && percent < 100) return "99 %";
+  return `${percent.toFixed(0)} %`;
+};
+
+// A time that something takes (s), in words.
+function lasting(seconds) {
+  if (seconds < 90) return `${Math.max(1, Math.round(seconds))} seconds`;
+  const minutes = Math.round(seconds / 60);
+  return minutes < 90 ? `${minutes} minutes` : `${Math.round(minutes / 60)} hours`;
+}

@@ -1,0 +1,85 @@
+//! What became of a variant, as it goes from one engine to another: what a verdict reads, to the last bit.
+
+use barrelstack::ensemble::CaseResult;
+use barrelstack::outcome::{CollapseMode, Outcome};
+use serde::{Deserialize, Serialize};
+
+/// What became of a variant, as far as a verdict on all of them needs it.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Case {
+    /// What happened.
+    outcome: Ended,
+    /// When (s) the first barrel had fallen.
+    first_fall: Option<f64>,
+    /// How many barrels there are.
+    barrels: usize,
+    /// When (s) each barrel had fallen, by name.
+    falls: Vec<(String, Option<f64>)>,
+    /// Largest displacement of the top against the ground, over the height of the stack.
+    drift: Option<f64>,
+    /// Time (s) of the motion that was left at the end.
+    cut: Option<f64>,
+    /// When (s) it ended.
+    end_time: Option<f64>,
+}
+
+/// An outcome, or why there is none.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case", tag = "kind")]
+enum Ended {
+    Stable,
+    Collapse { mode: String, time: f64, first: String, from_level: u32, to_level: u32 },
+    NotJudged,
+    Invalid { reason: String },
+    Refused { reason: String },
+}
+
+impl Case {
+    /// Of a result.
+    pub fn of(result: &CaseResult) -> Self {
+        Self {
+            outcome: match result.outcome.clone() {
+                Ok(Outcome::Stable) => Ended::Stable,
+                Ok(Outcome::Collapse { mode, time, first, from_level, to_level }) => {
+                    let mode = mode.name().to_owned();
+                    Ended::Collapse { mode, time, first, from_level, to_level }
+                }
+                Ok(Outcome::NotJudged) => Ended::NotJudged,
+                Ok(Outcome::Invalid { reason }) => Ended::Invalid { reason },
+                Err(reason) => Ended::Refused { reason },
+            },
+            first_fall: result.first_fall,
+            barrels: result.barrels,
+            falls: result.falls.clone(),
+            drift: result.demands.top_drift_ratio,
+            cut: result.cut,
+            end_time: result.end_time,
+        }
+    }
+
+    /// The result again, with nothing in it that a verdict does not read.
+    pub(crate) fn result(self) -> Result<CaseResult, String> {
+        let outcome = match self.outcome {
+            Ended::Stable => Ok(Outcome::Stable),
+            Ended::Collapse { mode, time, first, from_level, to_level } => {
+                let known = CollapseMode::ALL.into_iter().find(|known| known.name() == mode);
+                let mode =
+                    known.ok_or_else(|| format!("there is no mode of collapse \"{mode}\""))?;
+                Ok(Outcome::Collapse { mode, time, first, from_level, to_level })
+            }
+            Ended::NotJudged => Ok(Outcome::NotJudged),
+            Ended::Invalid { reason } => Ok(Outcome::Invalid { reason }),
+            Ended::Refused { reason } => Err(reason),
+        };
+        let mut result = CaseResult::failed(String::new());
+        result.outcome = outcome;
+        result.first_fall = self.first_fall;
+        result.barrels = self.barrels;
+        result.falls = self.falls;
+        result.demands.top_drift_ratio = self.drift;
+        result.cut = self.cut;
+        result.end_time = self.end_time;
+        Ok(result)
+    }
+}

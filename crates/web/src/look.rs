@@ -1,0 +1,135 @@
+//! What can be said of a scenario before it is run, and what there is to choose from.
+
+use barrelstack::check::{Checked, check};
+use barrelstack::motion::GroundMotion;
+use barrelstack::scenario::field::Section;
+use barrelstack::scenario::{ROOT, Scenario, catalog};
+use barrelstack::variants::Plane;
+use barrelstack::{RunFailure, report};
+use barrelstack_report::{Fragment, fragment};
+use serde::Serialize;
+
+/// What there is to choose from.
+#[derive(Serialize)]
+pub(crate) struct Catalog {
+    barrels: Vec<Known>,
+    racks: Vec<Known>,
+}
+
+/// An entry of the catalog.
+#[derive(Serialize)]
+struct Known {
+    name: &'static str,
+    source: &'static str,
+}
+
+impl Catalog {
+    pub(crate) fn new() -> Self {
+        let barrels = catalog::BARRELS.iter();
+        let racks = catalog::RACKS.iter();
+        Self {
+            barrels: barrels.map(|one| Known { name: one.name, source: one.source }).collect(),
+            racks: racks.map(|one| Known { name: one.rack.base, source: one.source }).collect(),
+        }
+    }
+}
+
+/// A scenario before it is run.
+#[derive(Serialize)]
+pub(crate) struct Looked {
+    title: String,
+    /// How many variants there are in each plane.
+    variants: u32,
+    /// The scenario with every default written out.
+    resolved: String,
+    /// Every value of it.
+    settings: Vec<Stated>,
+    /// What was found of each plane.
+    checked: Vec<Checked>,
+    /// Steps of one variant in all planes times the bodies that each moves, to tell how long it takes.
+    work: f64,
+    /// When (s) a first picture may end that shows the stack under way, while the whole run is made; none where
+    /// nothing shakes it.
+    opening: Option<f64>,
+    stage: Fragment,
+}
+
+/// Adds the fields that the tables at hand may have and have not.
+fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'static Section) {
+    for field in section.fields {
+        let path =
+            if path.is_empty() { field.name.into() } else { format!("{path}.{}", field.name) };
+        match field.kind.section() {
+            Some(inner) => {
+                let table = format!("{path}.");
+                if present.iter().any(|one| one.starts_with(&table)) {
+                    absent(list, present, &path, inner);
+                }
+            }
+            // The title and the like are no part of what is run.
+            None if path.contains('.') && !present.contains(&path) => list.push(Stated {
+                path,
+                value: String::new(),
+                help: format!("{} Holds {}.", field.help, field.kind),
+                source: "not given".into(),
+            }),
+            None => {}
+        }
+    }
+}
+
+/// Share of its peak at which the ground moves strongly, as for a player, and how long (s) an opening goes on then.
+const STRONG: f64 = 0.1;
+const UNDER_WAY: f64 = 3.0;
+
+/// When (s) the opening of a motion ends.
+fn opening(motion: &GroundMotion) -> f64 {
+    let limit = STRONG * motion.pga();
+    let mut time = 0.0;
+    while time < motion.duration && motion.horizontal.at(time).acceleration.abs() < limit {
+        time += 0.01;
+    }
+    (time + UNDER_WAY).ceil()
+}
+
+/// A value of the scenario.
+#[derive(Serialize)]
+struct Stated {
+    path: String,
+    value: String,
+    help: String,
+    source: String,
+}
+
+impl Looked {
+    pub(crate) fn of(scenario: &Scenario, planes: &[Plane]) -> Result<Self, RunFailure> {
+        let checked: Result<Vec<Checked>, RunFailure> =
+            planes.iter().map(|plane| check(&plane.scenario)).collect();
+        let checked = checked?;
+        let work = checked.iter().map(|plane| {
+            let motion = plane.motion.as_ref().map_or(0.0, |motion| motion.duration);
+            let bodies = plane.barrels + plane.racks + plane.free_bodies;
+            scenario.run.duration.unwrap_or(motion) / plane.time_step * bodies as f64
+        });
+        let ground = planes.first().map(|plane| plane.scenario.ground()).transpose()?;
+        let settings = scenario.settings().into_iter().map(|setting| Stated {
+            path: setting.path,
+            value: setting.value,
+            help: setting.help.to_owned(),
+            source: setting.source.words(),
+        });
+        let mut settings: Vec<Stated> = settings.collect();
+        let present: Vec<String> = settings.iter().map(|one| one.path.clone()).collect();
+        absent(&mut settings, &present, "", &ROOT);
+        Ok(Self {
+            title: scenario.title.clone(),
+            variants: planes.first().map_or(0, Plane::count),
+            resolved: scenario.to_resolved_toml(),
+            settings,
+            work: work.sum(),
+            opening: ground.and_then(|ground| ground.motion.as_ref().map(opening)),
+            stage: fragment(&[report::still(planes)?]),
+            checked,
+        })
+    }
+}
