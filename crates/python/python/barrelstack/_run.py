@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import html
 import json
 import os
@@ -92,17 +93,18 @@ class Histories(Mapping[str, "NDArray[np.float64]"]):
 
     Examples
     --------
-    >>> run.histories["B1.1 displacement x"]  # m, against the ground and the place at rest
+    >>> run.histories["B4.1 displacement x"]  # m, against the ground and the place at rest
     """
 
     def __init__(self, native: _native.Run) -> None:
         self._native = native
-        self._units = dict(native.channels())
-        self._places = {name: at for at, name in enumerate(self._units)}
+        channels = native.channels()
+        self._units = {"time": "s", **dict(channels)}
+        self._places = {name: at for at, (name, _) in enumerate(channels)}
 
     @property
     def time(self) -> NDArray[np.float64]:
-        """Times of the samples (s), shape (samples,)."""
+        """Times of the samples (s), shape (samples,); ``histories["time"]``, too."""
         return self._native.times()
 
     @property
@@ -111,18 +113,23 @@ class Histories(Mapping[str, "NDArray[np.float64]"]):
         return dict(self._units)
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
+        if name == "time":
+            return self.time
+        if name not in self._places:
+            near = difflib.get_close_matches(name, self._units, 1)
+            hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(self._units)}"
+            raise KeyError(f"there is no history {name!r}; {hint}")
         return self._native.channel(self._places[name])
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._places)
+        return iter(self._units)
 
     def __len__(self) -> int:
-        return len(self._places)
+        return len(self._units)
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
         """As a table of Arrow, ``time`` first."""
-        columns: list[tuple[str, str, NDArray[np.float64]]] = [("time", "s", self.time)]
-        columns += [(name, unit, self[name]) for name, unit in self._units.items()]
+        columns = [(name, unit, self[name]) for name, unit in self._units.items()]
         return _native.Table.of_numbers(columns).__arrow_c_stream__(requested_schema)
 
 
@@ -222,7 +229,10 @@ class Run:
     def forces(self) -> dict[str, Force]:
         """Forces between bodies that lean on each other, by names such as ``"R1 on ground"``."""
         facts = self._native.joints()
-        return {name: Force(*told, *self._native.joint(at)) for at, (name, *told) in enumerate(facts)}
+        return {
+            name: Force(at_rest, vertical, horizontal, *self._native.joint(at))
+            for at, (name, at_rest, vertical, horizontal) in enumerate(facts)
+        }
 
     @cached_property
     def envelopes(self) -> dict[str, Envelope]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from . import _native
@@ -28,6 +28,22 @@ def _is_file(name: str) -> bool:
     return os.path.isfile(name) or any(sign in name for sign in "./\\")
 
 
+#: What a field holds: quantities are texts in SI with their unit.
+Value = str | int | float | bool
+
+
+def _value(text: str) -> Value:
+    """A plain number or truth as such; anything else as text."""
+    if text in ("true", "false"):
+        return text == "true"
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return text
+
+
 class Section:
     """A table of a scenario: its fields are attributes, with their meaning as documentation.
 
@@ -35,9 +51,9 @@ class Section:
     --------
     >>> stack = barrelstack.Scenario.load("demo-napa").stack
     >>> stack.levels
-    '5'
-    >>> stack.help("levels")[:6]
-    'levels'
+    5
+    >>> stack.help("levels")
+    'levels = 5: Levels of barrels.'
     """
 
     def __init__(self, path: str, fields: Mapping[str, tuple[str, str]]) -> None:
@@ -53,21 +69,21 @@ class Section:
         names = [name for name in self._names() if name.isidentifier()]
         return [*names, "help"]
 
-    def __getattr__(self, name: str) -> Section | str:
+    def __getattr__(self, name: str) -> Section | Value:
         if name.startswith("__"):
             raise AttributeError(name)
         return self[name.replace("_", "-") if name not in self._names() else name]
 
-    def __getitem__(self, name: str) -> Section | str:
+    def __getitem__(self, name: str) -> Section | Value:
         path = f"{self._path}.{name}" if self._path else name
         if path in self._fields:
-            return self._fields[path][0]
+            return _value(self._fields[path][0])
         if any(known.startswith(f"{path}.") for known in self._fields):
             return Section(path, self._fields)
         where = f"[{self._path}]" if self._path else "the scenario"
         raise AttributeError(f"{where} has no field {name!r}; it has {', '.join(self._names())}")
 
-    def __iter__(self) -> Any:
+    def __iter__(self) -> Iterator[str]:
         return iter(self._names())
 
     def _ipython_key_completions_(self) -> list[str]:
@@ -90,7 +106,7 @@ class Section:
         return f"{name} = {value}: {meaning}"
 
     def to_dict(self) -> dict[str, Any]:
-        """The table as a nested dict of texts, quantities in SI with their unit.
+        """The table as a nested dict, quantities as texts in SI with their unit.
 
         Returns
         -------
@@ -126,7 +142,7 @@ class Scenario:
     --------
     >>> scenario = Scenario({"extends": "candia-8-barrels", "stack": {"levels": 3}})
     >>> scenario.set("motion.scale.pgv", "60 cm/s").stack.levels
-    '3'
+    3
 
     Notes
     -----
@@ -231,10 +247,10 @@ class Scenario:
         settings = self._native.settings()
         return Section("", {path: (value, meaning) for path, value, meaning in settings})
 
-    def __getattr__(self, name: str) -> Section | str:
+    def __getattr__(self, name: str) -> Section | Value:
         if name.startswith("_"):
             raise AttributeError(name)
-        return getattr(self.fields, name)  # type: ignore[no-any-return]
+        return self.fields.__getattr__(name)
 
     def __dir__(self) -> list[str]:
         fields = [name for name in self.fields if name.isidentifier()]

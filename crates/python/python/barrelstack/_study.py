@@ -61,7 +61,8 @@ class Curve(NamedTuple):
         from math import erf, sqrt
 
         z = np.log(np.asarray(intensity, dtype=np.float64) / self.median) / self.dispersion
-        return np.vectorize(lambda value: 0.5 * (1.0 + erf(value / sqrt(2.0))), otypes=[np.float64])(z)
+        chances = [0.5 * (1.0 + erf(value / sqrt(2.0))) for value in z.ravel().tolist()]
+        return np.array(chances, dtype=np.float64).reshape(z.shape)
 
 
 class Fragility:
@@ -193,7 +194,7 @@ class Study:
     """
 
     def __init__(self, text: str, name: str = "study") -> None:
-        self._source = (text, name)
+        self._source: tuple[str, str | None] = (text, name)
         self._native = _native.Study.parse(name, text)
 
     @classmethod
@@ -369,7 +370,12 @@ class Study:
             done, of = 0, sum(chunk.cases for chunk in missing)
             futures = {
                 client.submit(
-                    _chunk_of, self, place, chunk.number, retries=retries, pure=False, key=f"{self.fingerprint}-{chunk.number}"
+                    _chunk_of,
+                    self,
+                    place,
+                    chunk.number,
+                    retries=retries,
+                    key=f"{self.fingerprint}-{chunk.number}",
                 ): chunk
                 for chunk in missing
             }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,8 +50,8 @@ class Table:
     def __iter__(self) -> Iterator[str]:
         return (column.name for column in self.columns)
 
-    def __getitem__(self, name: str) -> list[int | None] | list[float | None] | list[str | None]:
-        """The values of a column; None where one does not apply or did not happen."""
+    def __getitem__(self, name: str) -> list[Any]:
+        """The values of a column: int, float or str, and None where one does not apply or did not happen."""
         return self._native.values(name)
 
     def numbers(self, name: str) -> NDArray[np.float64]:

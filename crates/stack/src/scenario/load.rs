@@ -143,7 +143,7 @@ impl Scenario {
             tree.set(Entry { key: "schema".to_owned(), origin: Origin::Whole(0), node });
         }
         let table = extend(&mut sources, tree, 0, Access::Files)?;
-        finished(sources, table, &[])
+        finished(sources, table)
     }
 
     /// The scenario with further values set, as overrides of [`Scenario::parse`] set them; what is set again is
@@ -171,7 +171,7 @@ impl Scenario {
         let first = sources.overrides.len();
         sources.overrides.extend_from_slice(overrides);
         merge::apply_overrides(&mut table, &root::ROOT, &sources, first)?;
-        finished(sources, table, overrides)
+        finished(sources, table)
     }
 
     /// Reads a built-in scenario.
@@ -230,15 +230,11 @@ fn read(
     add_source(&mut sources, name, bytes, folder)?;
     let mut table = chain(&mut sources, access)?;
     merge::apply_overrides(&mut table, &root::ROOT, &sources, 0)?;
-    finished(sources, table, overrides)
+    finished(sources, table)
 }
 
-/// The scenario of a table, into which these overrides were laid last.
-fn finished(
-    sources: Sources,
-    mut table: Table,
-    overrides: &[String],
-) -> Result<Scenario, ScenarioError> {
+/// The scenario of a table, into which all overrides were laid.
+fn finished(sources: Sources, mut table: Table) -> Result<Scenario, ScenarioError> {
     merge::expand_names(&mut table, &root::ROOT);
     let reader =
         Reader::open(&sources, &root::ROOT, String::new(), Some(&table), Origin::Whole(0))?;
@@ -246,7 +242,7 @@ fn finished(
     // A title of another file, or of a scenario before it was changed, may say what is no longer so.
     let parts = ["run.", "record.", "imperfections."];
     let kept = |change: &String| parts.iter().any(|part| change.starts_with(part));
-    let unchanged = overrides.iter().all(kept);
+    let unchanged = sources.overrides.iter().all(kept);
     let written = table.get("title").map(|title| title.node.origin);
     let own = match written {
         Some(Origin::File { file, .. } | Origin::Whole(file)) => file == 0 && unchanged,
