@@ -18,7 +18,7 @@ use arrow_array::{
 };
 use arrow_schema::{DataType, Field, Schema};
 use barrelstack::ensemble::{CASE_COLUMNS, Grounds, Prepared, rows};
-use barrelstack::ground::held;
+use barrelstack::ground::{GroundError, held};
 use barrelstack::pool;
 use barrelstack::scenario::{FileRef, ScenarioError, fnv1a};
 use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values, to_csv};
@@ -326,7 +326,7 @@ impl Cases<'_> {
                 Some(Value::Text(text)) => text,
             };
             let point = if column.spec.unit.is_empty() { "" } else { " " };
-            changes.push(format!("{name}={value}{point}{}", column.spec.unit));
+            changes.push(format!("{name}={value}{point}{}", with_powers(&column.spec.unit)));
         }
         let scenario = self.base.with(&changes).map_err(CaseError::Scenario)?;
         if scenario.stack().is_some_and(|stack| stack.columns_along.is_some()) {
@@ -350,11 +350,24 @@ impl Cases<'_> {
     }
 }
 
+/// A unit as files of scenarios write it: `m/s^2` where headings of tables have `m/s2`.
+fn with_powers(unit: &str) -> String {
+    let mut text = String::new();
+    for sign in unit.chars() {
+        if sign.is_ascii_digit() && text.ends_with(|before: char| before.is_alphabetic()) {
+            text.push('^');
+        }
+        text.push(sign);
+    }
+    text
+}
+
 /// Why there is no case.
 enum CaseError {
     Scenario(ScenarioError),
     Planes,
     Record(String),
+    Ground(GroundError),
 }
 
 impl CaseError {
@@ -367,6 +380,7 @@ impl CaseError {
                     .to_owned()
             }
             Self::Record(name) => format!("no record of the name \"{name}\" was given"),
+            Self::Ground(error) => error.to_string(),
         }
     }
 
@@ -381,6 +395,7 @@ impl CaseError {
                 raised
             }
             Self::Planes => errors::inconsistent(self.sentence()),
+            Self::Ground(error) => errors::ground(error),
             Self::Record(_) => PyValueError::new_err(format!("row {row}: {}", self.sentence())),
         }
     }
@@ -411,6 +426,11 @@ pub(crate) fn ensemble(
         let mut known = Vec::with_capacity(count);
         for (row, kind) in kinds.into_iter().enumerate() {
             known.push(kind.map_err(|error| (error, row))?);
+        }
+        if count > 0 {
+            // What all cases lack is told as such, and not in every row.
+            let first = all.scenario(0).map_err(|error| (error, 0))?;
+            all.grounds.of(&first).map_err(|error| (CaseError::Ground(error), 0))?;
         }
         let done = AtomicUsize::new(0);
         let table = rows(

@@ -49,10 +49,10 @@ def test_every_number_of_a_summary_has_the_bits_of_the_command(
 
 @pytest.mark.filterwarnings("ignore::barrelstack.BarrelstackWarning")
 def test_what_would_have_helped_is_what_the_command_finds(command: str) -> None:
-    changes = {"stack.levels": 3, "imperfections.variants": 8, "motion.sine.amplitude": "2.5 in"}
+    changes = {"stack.levels": 4, "imperfections.variants": 6, "stack.view": "transverse"}
     sets = [word for path, value in changes.items() for word in ("--set", f"{path}={value}")]
-    told = by_command(command, "run", "candia-8-barrels", *sets, "--json", "--quiet")["remedy"]
-    found = Scenario.load("candia-8-barrels").set(changes).run(remedy=True).summary["remedy"]
+    told = by_command(command, "run", "demo-napa", *sets, "--json", "--quiet")["remedy"]
+    found = Scenario.load("demo-napa").set(changes).run(remedy=True).summary["remedy"]
     assert told is not None
     # What to type is the command's to say.
     told.pop("comparison"), found.pop("comparison")
@@ -63,7 +63,7 @@ STUDY = """
 schema = 1
 title = "Friction under two motions"
 [base]
-extends = "candia-6-barrels"
+extends = "candia-8-barrels"
 run = { duration = "6 s" }
 [[factor]]
 field = "interface.rack-ground.friction.coefficient"
@@ -75,7 +75,7 @@ values = [2, 3]
 bundled = "napa-college-2014"
 [intensity]
 measure = "pgv"
-values = ["30 cm/s", "60 cm/s"]
+levels = ["30 cm/s", "60 cm/s"]
 [design]
 kind = "full-factorial"
 chunk = 3
@@ -106,7 +106,7 @@ def test_cases_of_a_table_have_the_bits_of_single_runs_and_of_a_study(tmp_path: 
             told["interface.rack-ground.friction.coefficient"], told["stack.levels"], told["level"], strict=True
         )
     ]
-    base = Scenario.load("candia-6-barrels").set(
+    base = Scenario.load("candia-8-barrels").set(
         {"run.duration": "6 s", "motion": {"bundled": "napa-college-2014"}}
     )
     table = barrelstack.ensemble(cases, base)

@@ -48,7 +48,8 @@ def ensemble(
     ScenarioError
         At the first case that cannot be, before anything is run; ``row`` tells which.
     RecordError
-        When a record cannot be used. A motion that cannot be read is a row with the reason in ``error``.
+        When a record cannot be used, or the motion of the first case cannot be read. One of a later case is a row with
+        the reason in ``error``.
     KeyboardInterrupt
         Within a second of Ctrl-C.
 
