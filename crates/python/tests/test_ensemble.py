@@ -70,7 +70,9 @@ def test_what_is_wrong_with_a_row_is_told_before_the_work() -> None:
     with pytest.raises(barrelstack.RecordError, match="there is no such file"):
         ensemble([{"motion.record": "mine.AT2"}], BASE)
     with pytest.raises(ScenarioError, match="one plane"):
-        ensemble([{}], "demo-napa")
+        ensemble([{"stack.levels": 3}], "demo-napa")
+    with pytest.raises(ValueError, match="no case sets anything"):
+        ensemble([{}], BASE)
     with pytest.raises(TypeError, match="`stack.levels` holds a object"):
         ensemble([{"stack.levels": object()}], BASE)
 

@@ -99,8 +99,8 @@ def test_a_study_crosses_to_a_worker_by_its_text() -> None:
 def test_errors_of_studies_have_their_place(tmp_path: Path) -> None:
     with pytest.raises(barrelstack.ScenarioError) as caught:
         Study(STRIPES.replace("count = 5", "cuont = 5"))
-    assert caught.value.line == 13
+    assert caught.value.line == 14
     with pytest.raises(barrelstack.StudyError, match="no study"):
         Study.collect(tmp_path)
     error = pickle.loads(pickle.dumps(caught.value))
-    assert (error.line, str(error)) == (13, str(caught.value))
+    assert (error.line, str(error)) == (14, str(caught.value))

@@ -70,6 +70,8 @@ def ensemble(
     else:
         rows = [dict(case) for case in cases]
         columns = dict.fromkeys(name for row in rows for name in row)
+        if rows and not columns:
+            raise ValueError("no case sets anything, so all are the base: run that")
         for number, row in enumerate(rows):
             if isinstance(row.get("record"), Record):
                 # The same record is read once, however many cases it shakes.
