@@ -91,7 +91,7 @@ field = "interface.block-ground.friction.coefficient"
 distribution = { kind = "uniform", from = 0.1, to = 0.6 }
 [design]
 kind = "latin-hypercube"
-samples = 2000
+count = 2000
 chunk = 20
 """
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -238,11 +239,16 @@ class Record:
         Returns
         -------
         obspy.Stream
-            One trace a component; names of components are cut to the three letters that a trace takes.
+            One trace a component; names of components are cut to the three letters that a trace takes, and of a long
+            station its number is left.
         """
         from obspy import Stream, Trace, UTCDateTime
 
         network, _, station = self.station.rpartition(".")
+        if len(station) > 5:
+            # A trace has five letters: the number of the station is among the words of its name.
+            codes = [word for word in re.findall(r"\w+", station) if len(word) <= 5 and any(map(str.isdigit, word))]
+            network, station = "", codes[0] if codes else ""
         traces = []
         for channel in self.channels:
             header = {
