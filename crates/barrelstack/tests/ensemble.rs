@@ -13,13 +13,40 @@ use common::Random;
 /// How many random cases: all of them with optimization, a share of them without.
 const CASES: u64 = if cfg!(debug_assertions) { 64 } else { 1000 };
 
-/// A stack of two to four levels with random friction and, one in five, straps that may tear, under a
-/// random sine that topples about half of them.
+/// Devices of all kinds, or wine that sloshes; for every other stack nothing.
+const DEVICES: [&[&str]; 14] = [
+    &[
+        "stack.walking_stop.levels=12",
+        "stack.walking_stop.holds=both",
+        "stack.walking_stop.lip=\"5 mm\"",
+    ],
+    &[],
+    &["stack.chock.levels=2"],
+    &[],
+    &["stack.pad.stiffness=\"500 kN/m\""],
+    &[],
+    &["stack.isolator.path=dish", "stack.isolator.stroke=\"5 cm\""],
+    &[],
+    &[
+        "stack.tie.levels=1",
+        "stack.tie.yields_at=\"2 kN\"",
+        "stack.tie.strength=\"9 kN\"",
+        "stack.tie.damping=\"2 kN s/m\"",
+    ],
+    &[],
+    &["stack.tuned_mass.mass=\"60 kg\"", "stack.tuned_mass.stroke=\"5 cm\""],
+    &[],
+    &["stack.barrel.fill=part", "stack.barrel.filled=0.8"],
+    &[],
+];
+
+/// A stack of two to four levels with random friction and, one in five, straps that may tear, and devices of
+/// other kinds, under a random sine that topples about half of them.
 fn random_case(seed: u64) -> Prepared {
     let mut random = Random(seed);
     let levels = 2 + seed % 3;
     let strapped = if seed.is_multiple_of(5) { 2 } else { 0 };
-    let settings = [
+    let mut settings = vec![
         format!("stack.strap.levels={strapped}"),
         format!("stack.strap.strength=\"{:.1} kN\"", random.between(3.0, 12.0)),
         format!("stack.levels={levels}"),
@@ -31,6 +58,8 @@ fn random_case(seed: u64) -> Prepared {
         "run.duration=\"1.6 s\"".to_owned(),
         "run.stop_after_collapse=\"0.2 s\"".to_owned(),
     ];
+    let devices = DEVICES[usize::try_from(seed / 3).unwrap() % DEVICES.len()];
+    settings.extend(devices.iter().map(|setting| (*setting).to_owned()));
     Prepared::new(Scenario::builtin("candia-8-barrels", &settings).unwrap()).unwrap()
 }
 

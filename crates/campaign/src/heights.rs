@@ -20,6 +20,7 @@ use crate::study::{Collected, Progress, RunOptions, Study, StudyError, Value};
 pub use crate::scenario::View;
 pub use json::HeightsDocument;
 pub use plan::{HEIGHTS, VELOCITIES};
+pub(crate) use plan::{quoted, synthetic};
 
 /// What is asked for.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,9 +1,9 @@
-//! Many runs of stacks: studies, what they mean for decisions, and how high is safe.
+//! Many runs of stacks: studies, what they mean for decisions, how high is safe, and what protects best.
 //!
 //! ```text
 //! STUDY.toml ─▶ study ─▶ table of cases ─▶ decision (fragility, losses, annual rates) ─▶ page
 //!                 ▲                            │
-//!              heights ◀───────────────────────┘
+//!        heights, protect ◀────────────────────┘
 //! ```
 //!
 //! ```
@@ -21,6 +21,7 @@
 
 pub mod decision;
 pub mod heights;
+pub mod protect;
 pub mod study;
 
 pub use study::Study;

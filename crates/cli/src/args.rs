@@ -40,6 +40,8 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// How high is safe: collapse of stacks of two to six levels, on one page.
     Heights(crate::commands::heights::HeightsArgs),
+    /// What protects a stack best for what it costs: fewer levels, other racks, straps, and pairs of these.
+    Protect(crate::commands::protect::ProtectArgs),
     /// Read a scenario, build the stack and let it settle, without shaking it.
     Check(CheckArgs),
     /// Run two or more scenarios and set them side by side in one page.
@@ -65,7 +67,7 @@ pub(crate) enum Command {
 }
 
 /// A scenario and what to change in it.
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub(crate) struct ScenarioArgs {
     /// A scenario file (TOML), the name of a built-in scenario, or - for standard input.
     #[arg(default_value = "demo-napa", value_name = "SCENARIO")]

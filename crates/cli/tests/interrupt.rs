@@ -88,6 +88,7 @@ fn every_command_ends_within_a_second_and_says_what_is_kept() {
         runs(&["render", "demo-napa", "--out=rendered"]),
         vec!["run", "-"],
         vec!["heights", "--out=heights"],
+        vec!["protect", "--out=protect"],
         vec!["reproduce", "--out=reproduced"],
         vec!["study", "study.toml", "--out=study"],
         vec!["study", "run-chunk", "study.toml", "--chunk=0", "--out=chunk"],

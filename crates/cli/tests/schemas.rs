@@ -268,13 +268,16 @@ fn every_document_has_the_schema_that_it_names_in_every_outcome() {
     seen.run(&["motion", "info", &bad], 2);
     #[cfg(unix)]
     {
-        let long = ["heights", "--json", "--quiet", "--out", &at("heights")];
-        let error = seen.output("stopped", &interrupted(&long), 130);
-        assert!(error["error"].as_str().unwrap().contains("goes on from there"), "{error}");
+        for command in ["heights", "protect"] {
+            let long = [command, "--json", "--quiet", "--out", &at(command)];
+            let error = seen.output("stopped", &interrupted(&long), 130);
+            assert!(error["error"].as_str().unwrap().contains("goes on from there"), "{error}");
+        }
     }
 
     // What takes minutes is seen by the test below.
-    let seen: BTreeSet<String> = seen.0.into_keys().chain(["heights".to_owned()]).collect();
+    let slow = ["heights", "protect"].map(str::to_owned);
+    let seen: BTreeSet<String> = seen.0.into_keys().chain(slow).collect();
     assert_eq!(seen, listed());
 }
 
@@ -296,8 +299,8 @@ fn every_number_has_a_unit_and_every_field_a_meaning() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "hundred and forty runs, a minute; run in release")]
-fn the_heights_of_a_moment_have_their_schema() {
+#[cfg_attr(debug_assertions, ignore = "hundreds of runs, minutes; run in release")]
+fn what_takes_a_minute_has_its_schema() {
     let folder = tempfile::tempdir().unwrap();
     let out = path(folder.path(), "heights");
     let mut seen = Seen::default();
@@ -306,4 +309,15 @@ fn the_heights_of_a_moment_have_their_schema() {
     assert_eq!(value["barrel"], "burgundy-228");
     let file = fs::read_to_string(folder.path().join("heights/heights.json")).unwrap();
     seen.document("heights.json", &file);
+    let out = path(folder.path(), "protect");
+    let hazard = folder.path().join("hazard.csv");
+    fs::write(&hazard, "pgv (cm/s),rate (1/year)\n5,0.1\n20,0.01\n60,0.001\n200,0.00001\n")
+        .unwrap();
+    let (site, low) = (format!("--site={}", hazard.display()), "--set=stack.levels=2");
+    let arguments = ["protect", "candia-8-barrels", low, &site, "--count=4", "--rounds=1"];
+    let value = seen.run(&[&arguments[..], &["--quiet", "--out", &out]].concat(), 0);
+    assert_eq!(value["per"], "year");
+    assert!(value["protections"].as_array().unwrap().len() > 5);
+    let file = fs::read_to_string(folder.path().join("protect/protect.json")).unwrap();
+    seen.document("protect.json", &file);
 }

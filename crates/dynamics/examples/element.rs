@@ -15,8 +15,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let weight = Body { name: "weight".into(), motion: Motion::Free, mass, pose, ..hook.clone() };
     let weight = Body { surfaces: Vec::new(), ..weight };
     let link = Link { name: "strap".into(), bodies: [0, 1], points: [Vec2::default(); 2] };
-    let strap =
-        Strap { link, length: 0.5 + fall, stiffness, damping: 0.0, strength: f64::INFINITY };
+    let strap = Strap {
+        link,
+        length: 0.5 + fall,
+        stiffness,
+        damping: 0.0,
+        yields_at: f64::INFINITY,
+        strength: f64::INFINITY,
+    };
     let mut model = Model::new(vec![hook, weight], vec![], vec![], Vec2::new(0.0, -gravity))?;
     model.fasten(vec![strap.into()])?;
 

@@ -20,7 +20,7 @@ pub struct EnergySummary {
     pub elastic: f64,
     /// Stored in sticks.
     pub stick: f64,
-    /// Lost in the dampers of contacts and elements, and with elements that broke.
+    /// Lost in the dampers of contacts and elements, where elements yielded, and with those that broke.
     pub damped: f64,
     /// Lost to friction (sliding and the damping of sticks).
     pub friction: f64,
@@ -71,6 +71,8 @@ pub struct EnergyLedger<S: Space> {
     wrenches: Vec<Wrench<S>>,
     /// What the force elements remembered then.
     memory: Vec<Memory<S>>,
+    /// The forces of their springs then (N).
+    springs: Vec<S::Real>,
     stored: Stored<S::Real>,
     /// Absolute work of the ground plus the largest drop of potential energy.
     ground_flow: S::Real,
@@ -108,6 +110,7 @@ impl<S: Space> EnergyLedger<S> {
             losses: scratch.losses.clone(),
             wrenches: scratch.wrenches.clone(),
             memory: state.memory.clone(),
+            springs: scratch.loads.iter().map(|load| load.elastic).collect(),
             stored,
             ground_flow: S::Real::zero(),
             deepest: stored.potential,
@@ -138,10 +141,12 @@ impl<S: Space> EnergyLedger<S> {
                 step.ground -= self.wrenches[i].plus(scratch.wrenches[i]).power(way) * half;
             }
         }
-        for ((before, now), load) in self.memory.iter_mut().zip(&state.memory).zip(&scratch.loads) {
+        let elements = self.memory.iter_mut().zip(&mut self.springs);
+        for (((before, spring), now), load) in elements.zip(&state.memory).zip(&scratch.loads) {
             let breaks = now.broken & !before.broken;
             step.damped += S::Real::select(breaks, load.energy, S::Real::zero());
-            *before = *now;
+            step.damped += (*spring + load.elastic) * half * (now.plastic - before.plastic);
+            (*before, *spring) = (*now, load.elastic);
         }
         self.works.damped += step.damped;
         self.works.friction += step.friction;
@@ -187,7 +192,8 @@ impl<S: Space> EnergyLedger<S> {
 lanewise!(struct Works<R> { damped, friction, viscous, ground });
 lanewise!(struct Stored<R> { kinetic, potential, elastic, stick });
 lanewise!(struct EnergyLedger<Planar<R>> {
-    initial, potential_start, stick_start, works, poses, losses, wrenches, memory, stored, ground_flow, deepest
+    initial, potential_start, stick_start, works, poses, losses, wrenches, memory, springs, stored, ground_flow,
+    deepest
 });
 
 #[inline(always)]

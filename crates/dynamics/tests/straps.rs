@@ -27,6 +27,7 @@ fn hung() -> Strap<Planar> {
         length: 1.0,
         stiffness: STIFFNESS,
         damping: 0.0,
+        yields_at: f64::INFINITY,
         strength: f64::INFINITY,
     }
 }

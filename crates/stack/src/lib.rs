@@ -25,6 +25,7 @@ pub mod pool;
 mod rest;
 pub mod run;
 pub mod scenario;
+pub mod slosh;
 mod stand;
 pub mod step;
 mod stick;

@@ -99,9 +99,12 @@ pub fn judge(assembly: &Assembly, fates: &Fates) -> Outcome {
             CollapseMode::RackSliding
         }
         PartKind::Rack if from_level < assembly.levels => CollapseMode::Rocking,
-        PartKind::Rack | PartKind::Barrel | PartKind::Body | PartKind::Ground => {
-            CollapseMode::Ejection
-        }
+        PartKind::Rack
+        | PartKind::Barrel
+        | PartKind::Device
+        | PartKind::Wine
+        | PartKind::Body
+        | PartKind::Ground => CollapseMode::Ejection,
     };
     let barrel_alone = mode == CollapseMode::Ejection && part.kind == PartKind::Barrel;
     let to_level = if barrel_alone { from_level } else { assembly.levels };

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use barrelstack_dynamics::Shape;
+use barrelstack_dynamics::{Element, Shape};
 use barrelstack_report::{
     ContactForce, Event, EventKind, Frames, Ghosts, History, Moment, Point, Polyline, Role, Scene,
     SceneBody, Tie, Tint, significant,
@@ -70,11 +70,20 @@ fn ghosts(variants: &Variants) -> Option<Ghosts> {
     })
 }
 
-/// What of a scene a caption has to explain: straps, and the ghosts of variants.
+/// What of a scene a caption has to explain: straps, devices, wine, and the ghosts of variants.
 pub(crate) fn legend(scene: &Scene) -> String {
     let mut legend = String::new();
     if !scene.ties.is_empty() {
-        legend += " Bands with a buckle are straps; one that tears is gone.";
+        legend += " Bands with a buckle are straps and ties; one that tears is gone.";
+    }
+    let devices = scene.bodies.iter().filter(|body| body.role == Role::Device);
+    let (wine, others): (Vec<_>, Vec<_>) =
+        devices.partition(|body| body.name.starts_with(PartKind::Wine.name()));
+    if !others.is_empty() {
+        legend += " Green bodies are devices.";
+    }
+    if !wine.is_empty() {
+        legend += " The disc in a barrel is what swings of its wine.";
     }
     if let Some(ghosts) = &scene.ghosts {
         let ways = format!(
@@ -187,6 +196,7 @@ fn body(assembly: &Assembly, index: usize) -> SceneBody {
                 PartKind::Ground => Role::Ground,
                 PartKind::Rack => Role::Rack,
                 PartKind::Barrel => Role::Barrel,
+                PartKind::Device | PartKind::Wine => Role::Device,
                 PartKind::Body => Role::Block,
             };
             SceneBody::new(&part.name, role, outlines(assembly, index))
@@ -197,6 +207,7 @@ fn body(assembly: &Assembly, index: usize) -> SceneBody {
 fn ties(run: &Run) -> Vec<Tie> {
     let elements = run.assembly.model.elements().iter().zip(&run.elements);
     elements
+        .filter(|(element, _)| matches!(element, Element::Strap(_)))
         .map(|(element, fate)| Tie {
             bodies: element.link().bodies,
             points: element.link().points.map(|point| [point.x, point.z]),

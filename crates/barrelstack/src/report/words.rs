@@ -88,7 +88,14 @@ fn device(Device { words, elements }: &Device) -> Option<String> {
     let broken = elements.iter().filter_map(|element| element.broken_at);
     let first = broken.clone().reduce(f64::min);
     let all = format!("{} {}", elements.len(), words.many);
+    let alone = elements.len() == 1;
     Some(match (broken.count(), first) {
+        (0, _) | (_, None) if alone => {
+            format!("The {} holds; it bears up to {kilonewtons} kN.", words.one)
+        }
+        (_, Some(time)) if alone => {
+            format!("The {} {}, after {time:.1} s.", words.one, words.breaks)
+        }
         (0, _) | (_, None) => format!("All {all} hold; one bears up to {kilonewtons} kN."),
         (1, Some(time)) => format!("One of {all} {}, after {time:.1} s.", words.breaks),
         (count, Some(time)) => {

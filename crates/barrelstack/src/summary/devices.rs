@@ -59,10 +59,11 @@ impl Devices {
     }
 }
 
-/// A list for every device, by its word for more than one.
+/// A list for every device, by its words for more than one.
 impl Serialize for Devices {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(|device| (device.words.many, &device.elements)))
+        let keyed = |device: &'_ Device| (key(device.words.many), device.elements.clone());
+        serializer.collect_map(self.0.iter().map(keyed))
     }
 }
 
@@ -95,12 +96,12 @@ impl Described for Devices {
             let mut at = number("s", format!("When it was {broken}."));
             at["type"] = json!(["number", "null"]);
             element.insert(format!("{broken}_at"), at);
-            objects.insert((*one).into(), closed(&format!("One {one}."), &element));
+            objects.insert(key(one), closed(&format!("One {one}."), &element));
             properties.insert(
-                (*many).into(),
+                key(many),
                 json!({
                     "type": "array",
-                    "items": { "$ref": format!("#/$defs/{one}") },
+                    "items": { "$ref": format!("#/$defs/{}", key(one)) },
                     "description": format!("All {many}."),
                 }),
             );
@@ -108,6 +109,11 @@ impl Described for Devices {
         objects.insert("Devices".into(), closed("The devices.", &properties));
         json!({ "$ref": "#/$defs/Devices" })
     }
+}
+
+/// Words as a key of a document.
+fn key(words: &str) -> String {
+    words.replace(' ', "_")
 }
 
 /// An object that has these properties, and no other.

@@ -36,7 +36,7 @@ use crate::ground::{Ground, GroundError, from_disk, other_component};
 use crate::scenario::{Imperfections, MotionSource, MotionSpec, Scenario, Scene, View};
 
 pub use answer::{Answer, Asked, Shown, Told, answer};
-pub use remedy::{ENOUGH, PRETENSIONS, Remedy, Searched, Tried, remedy};
+pub use remedy::{ENOUGH, PRETENSIONS, Remedy, Tried, remedy};
 pub use spread::{LEVEL, Range, Spread};
 
 /// A scenario in one plane, with all its variants.

@@ -15,10 +15,10 @@ use super::spread::{LEVEL, collapsed, judged};
 use super::{Answer, Plane, planes};
 use crate::device::{Straps, Ties};
 use crate::ensemble::{Audience, CaseResult, Prepared, simulate};
-use crate::ground::GroundError;
+use crate::ground::{GroundError, from_disk};
 use crate::pool;
 use crate::run::CUT;
-use crate::scenario::{Scenario, Scene};
+use crate::scenario::{Scenario, Scene, Setting, Source};
 
 /// Share (%) of variants that must stand in every plane.
 pub const ENOUGH: u32 = 95;
@@ -75,17 +75,10 @@ described! {
     }
 }
 
-/// How far the search is: runs of the change at hand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Searched {
-    /// Done.
-    pub done: usize,
-    /// Of so many, unless it is dropped before.
-    pub of: usize,
-}
-
 /// Looks for the smallest change of height, and of straps, that would have kept a stack up which falls in more
-/// variants than may fall; before an observer, from several threads, who may stop it.
+/// variants than may fall.
+///
+/// An observer hears from several threads how many runs of the change at hand are done, and may stop it.
 ///
 /// There is none to look for where the stack stands, has no variants, or its runs end before the motion.
 ///
@@ -93,14 +86,15 @@ pub struct Searched {
 /// When a motion cannot be read.
 pub fn remedy(
     answer: &Answer,
-    observer: &(dyn Fn(Searched) -> ControlFlow<()> + Sync),
+    observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
 ) -> Result<Option<Remedy>, GroundError> {
     let spreads = answer.decides.summary.spreads();
     let worst = spreads.iter().filter_map(|(_, spread)| spread.share).reduce(f64::max);
     if worst.is_none_or(enough) || answer.decides.run.interrupted {
         return Ok(None);
     }
-    let scenario = &answer.scenario;
+    // Read once, not for every change.
+    let scenario = &answer.scenario.with_records(&mut from_disk)?;
     let end = scenario.ground()?.end();
     if scenario.stack().is_none() || scenario.run.duration.is_some_and(|run| run + CUT < end) {
         return Ok(None);
@@ -125,7 +119,7 @@ fn enough(share: f64) -> bool {
 
 fn search(
     scenario: &Scenario,
-    observer: &(dyn Fn(Searched) -> ControlFlow<()> + Sync),
+    observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
     found: &mut Remedy,
 ) -> Result<ControlFlow<()>, GroundError> {
     let Some(stack) = scenario.stack() else { return Ok(ControlFlow::Continue(())) };
@@ -143,34 +137,49 @@ fn search(
             break;
         }
     }
-    let strapped = PRETENSIONS.iter().filter_map(|pretension| strapped(scenario, *pretension));
-    let mut trials: Vec<Trial> = strapped.map(Trial::new).collect::<Result<_, _>>()?;
-    // The loosest whose first variants do not rule it out; from there on upward all are run.
-    let (mut from, mut to) = (0, trials.len());
-    while from < to {
-        let middle = usize::midpoint(from, to);
-        let ran = trials[middle].run(SCOUTS, observer);
-        if ran.is_break() {
-            found.tried.extend(trials.iter().filter(|one| one.until > 0).map(Trial::told));
-            return Ok(ran);
-        }
-        if trials[middle].failed() { from = middle + 1 } else { to = middle }
-    }
-    let mut ran = ControlFlow::Continue(());
-    for trial in &mut trials[from..] {
-        ran = trial.run(u32::MAX, observer);
-        if ran.is_continue() && trial.suffices() {
-            found.straps = Some(trial.told());
-        }
-        if ran.is_break() || trial.suffices() {
-            break;
-        }
-    }
-    found.tried.extend(trials.iter().filter(|one| one.until > 0).map(Trial::told));
+    let strapped: Vec<Change> =
+        PRETENSIONS.iter().filter_map(|pretension| strapped(scenario, *pretension)).collect();
+    let mut trials: Vec<Option<Trial>> = strapped.iter().map(|_| None).collect();
+    let ran = loosest(&strapped, &mut trials, observer)?;
+    found.tried.extend(trials.iter().flatten().map(Trial::told));
+    found.straps = trials.iter().flatten().find(|trial| trial.suffices()).map(Trial::told);
     Ok(ran)
 }
 
+/// Tries straps from loose to tight until some suffice: from the loosest on whose first variants do not rule it
+/// out, which is found by halving.
+fn loosest(
+    changes: &[Change],
+    trials: &mut [Option<Trial>],
+    observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
+) -> Result<ControlFlow<()>, GroundError> {
+    let mut trial = |at: usize, until: u32| -> Result<(ControlFlow<()>, bool, bool), GroundError> {
+        let trial = match &mut trials[at] {
+            Some(trial) => trial,
+            none => none.insert(Trial::new(changes[at].clone())?),
+        };
+        Ok((trial.run(until, observer), trial.failed(), trial.suffices()))
+    };
+    let (mut from, mut to) = (0, changes.len());
+    while from < to {
+        let middle = usize::midpoint(from, to);
+        let (ran, failed, _) = trial(middle, SCOUTS)?;
+        if ran.is_break() {
+            return Ok(ran);
+        }
+        if failed { from = middle + 1 } else { to = middle }
+    }
+    for at in from..changes.len() {
+        let (ran, _, suffices) = trial(at, u32::MAX)?;
+        if ran.is_break() || suffices {
+            return Ok(ran);
+        }
+    }
+    Ok(ControlFlow::Continue(()))
+}
+
 /// A change, and the scenario that it makes.
+#[derive(Clone)]
 struct Change {
     kind: &'static str,
     levels: u32,
@@ -212,23 +221,25 @@ fn strapped(scenario: &Scenario, pretension: f64) -> Option<Change> {
         return None;
     }
     *straps = Straps { levels, ties, slack: 0.0, pretension, ..*straps };
-    let name = if levels == 1 { "barrels-to-racks" } else { "levels-together" };
-    let mut fields = vec![
-        format!("levels = {levels}, ties = \"{name}\""),
-        format!("pretension = \"{} kN\"", 1e-3 * pretension),
-    ];
-    for (key, value, unit, default) in
-        [("stiffness", straps.stiffness, "N/m", 1e5), ("damping", straps.damping, "N s/m", 0.0)]
-    {
-        if value != default {
-            fields.push(format!("{key} = \"{value} {unit}\""));
-        }
-    }
-    if let Some(strength) = straps.strength {
-        fields.push(format!("strength = \"{strength} N\""));
-    }
-    let changes = vec![format!("stack.strap={{ {} }}", fields.join(", "))];
+    let changes =
+        vec![format!("stack.strap={{ {} }}", given(&scenario, "stack.strap.").join(", "))];
     Some(Change { kind: "straps", levels, pretension: Some(pretension), changes, scenario })
+}
+
+/// The fields of a table that are not as they would be by themselves.
+fn given(scenario: &Scenario, table: &str) -> Vec<String> {
+    let settings = scenario.settings();
+    let own = settings.iter().filter(|one| one.source == Source::Given);
+    let field = |one: &Setting| {
+        let key = one.path.strip_prefix(table)?;
+        let plain = one.value.parse::<f64>().is_ok();
+        Some(if plain {
+            format!("{key} = {}", one.value)
+        } else {
+            format!("{key} = \"{}\"", one.value)
+        })
+    };
+    own.filter_map(field).collect()
 }
 
 /// A change that is being tried.
@@ -277,7 +288,7 @@ impl Trial {
     fn run(
         &mut self,
         until: u32,
-        observer: &(dyn Fn(Searched) -> ControlFlow<()> + Sync),
+        observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
     ) -> ControlFlow<()> {
         let count = self.count();
         let order = order(count);
@@ -296,14 +307,12 @@ impl Trial {
     fn stage(
         &self,
         numbers: &[u32],
-        observer: &(dyn Fn(Searched) -> ControlFlow<()> + Sync),
+        observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
     ) -> ControlFlow<()> {
         let done = AtomicUsize::new(self.counts.iter().map(|[ran, _]| count(ran)).sum());
         let stopped = AtomicBool::new(false);
         let asked = || {
-            let (done, of) =
-                (done.load(Ordering::Relaxed), self.planes.len() * self.count() as usize);
-            if observer(Searched { done, of }).is_break() {
+            if observer(done.load(Ordering::Relaxed)).is_break() {
                 stopped.store(true, Ordering::Relaxed);
             }
             stopped.load(Ordering::Relaxed) || self.failed()

@@ -84,7 +84,7 @@ pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<Stri
     for record in &request.records {
         let _ = write!(text, "[[motion]]\nrecords = [{}]\n\n", quoted(record));
     }
-    text.push_str(&synthetic(request.synthetic));
+    text.push_str(&synthetic(request.synthetic, ""));
     let velocities: Vec<String> =
         VELOCITIES.iter().map(|v| format!("\"{} cm/s\"", (100.0 * v).round())).collect();
     let _ = write!(
@@ -96,15 +96,15 @@ pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<Stri
 }
 
 /// A path as a string of TOML, absolute so that it does not hang on where the study lies.
-fn quoted(path: &std::path::Path) -> String {
+pub(crate) fn quoted(path: &std::path::Path) -> String {
     let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let text = whole.display().to_string().replace('\\', "\\\\").replace('"', "\\\"");
     format!("\"{text}\"")
 }
 
 /// Synthetic motions: half of a moderate earthquake nearby, a quarter of a large one further off, a quarter with a
-/// velocity pulse of near faults.
-fn synthetic(count: u32) -> String {
+/// velocity pulse of near faults; names end with a suffix.
+pub(crate) fn synthetic(count: u32, suffix: &str) -> String {
     let large = count / 4;
     let pulses = count / 4;
     let near = count - large - pulses;
@@ -113,7 +113,7 @@ fn synthetic(count: u32) -> String {
         if count > 0 {
             let _ = write!(
                 text,
-                "[[motion]]\nname = \"{name}\"\nsynthetic = {{ count = {count}, {body} }}\n\n"
+                "[[motion]]\nname = \"{name}{suffix}\"\nsynthetic = {{ count = {count}, {body} }}\n\n"
             );
         }
     };

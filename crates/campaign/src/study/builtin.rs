@@ -1,7 +1,9 @@
 //! The studies shipped with the program.
 
-const ALL: &[(&str, &str)] =
-    &[("napa-four-levels", include_str!("../../studies/napa-four-levels.toml"))];
+const ALL: &[(&str, &str)] = &[
+    ("napa-four-levels", include_str!("../../studies/napa-four-levels.toml")),
+    ("demo-devices", include_str!("../../studies/demo-devices.toml")),
+];
 
 /// Names of all built-in studies.
 pub fn names() -> impl Iterator<Item = &'static str> {

@@ -6,6 +6,7 @@ pub(crate) mod compare;
 mod demo;
 pub(crate) mod heights;
 pub(crate) mod motion;
+pub(crate) mod protect;
 pub(crate) mod render;
 mod reproduce;
 mod run;
@@ -34,6 +35,7 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
         Command::Run(args) => run::run(&args),
         Command::Demo(args) => demo::demo(&args),
         Command::Heights(args) => heights::run(&args),
+        Command::Protect(args) => protect::run(&args),
         Command::Calibrate(args) => calibrate::calibrate(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check::check(&args),

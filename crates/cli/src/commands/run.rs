@@ -7,7 +7,7 @@ use anyhow::bail;
 use barrelstack::export::{ExportError, Folder};
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario::Scene;
-use barrelstack::variants::{self, Answer, Asked, Searched, Shown, Told};
+use barrelstack::variants::{self, Answer, Asked, Shown, Told};
 use barrelstack::verify::{Verification, verify};
 use barrelstack::{Run, RunFailure, Scenario, Summary};
 use barrelstack_report::Characters;
@@ -104,7 +104,7 @@ pub(super) fn remedied(
     show: bool,
 ) -> Result<(), RunFailure> {
     let progress = Progress::new(show);
-    let mut found = variants::remedy(answer, &|Searched { done, .. }| {
+    let mut found = variants::remedy(answer, &|done| {
         progress.searched(done as u64, "runs of what would have helped")
     })?;
     if let Some(found) = &mut found {

@@ -8,6 +8,7 @@ use barrelstack::compare::Comparison;
 use barrelstack_calibration::CalibrationDocument;
 use barrelstack_campaign::decision::DecisionDocument;
 use barrelstack_campaign::heights::HeightsDocument;
+use barrelstack_campaign::protect::ProtectDocument;
 use barrelstack_report::described;
 use serde_json::Value;
 
@@ -49,6 +50,7 @@ documents! {
     "check" barrelstack::check::Checked: "check --json";
     "comparison" Comparison: "compare --json";
     "heights" HeightsDocument: "heights --json, and heights.json of --out";
+    "protect" ProtectDocument: "protect --json, and protect.json of --out";
     "scenarios" ScenarioList: "scenarios --json";
     "study-plan" StudyPlan: "study plan --json";
     "study-result" StudyResult: "study --json and study collect --json";

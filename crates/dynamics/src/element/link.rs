@@ -23,7 +23,7 @@ lanewise!(struct Link<Planar<R>> { name, bodies, points });
 pub(super) struct Line<S: Space> {
     bodies: [BodyId; 2],
     /// From the centers of mass to the points (m), in the inertial frame.
-    arms: [S::Vector; 2],
+    pub(super) arms: [S::Vector; 2],
     /// From the first point to the second (m).
     apart: S::Vector,
     /// Its length (m).
@@ -63,6 +63,16 @@ impl<S: Space> Link<S> {
             state.poses[second].position + arms[1] - (state.poses[first].position + arms[0]);
         Line { bodies: self.bodies, arms, apart, distance: apart.dot(apart).sqrt() }
     }
+
+    /// Both bodies met in the second point, of which the first one carries its place.
+    #[inline(always)]
+    pub(super) fn at_second(&self, state: &State<S>, rotations: &[S::Rotation]) -> Line<S> {
+        let [first, second] = self.bodies;
+        let arm = S::rotate(rotations[second], self.points[1]);
+        let apart = state.poses[second].position - state.poses[first].position;
+        let (apart, nothing) = (apart + arm, S::Vector::default());
+        Line { bodies: self.bodies, arms: [apart, arm], apart: nothing, distance: S::Real::zero() }
+    }
 }
 
 impl<S: Space> Line<S> {
@@ -73,15 +83,21 @@ impl<S: Space> Line<S> {
         self.apart * (one / S::Real::select(counts, self.distance, one))
     }
 
-    /// How fast it grows (m/s).
+    /// Velocity (m/s) of the second point against the first.
     #[inline(always)]
-    pub(super) fn rate(&self, state: &State<S>, along: S::Vector) -> S::Real {
+    pub(super) fn velocity(&self, state: &State<S>) -> S::Vector {
         let velocity = |body: usize, arm| {
             let twist = state.twists[body];
             twist.linear + S::velocity_at(twist.angular, arm)
         };
         let [first, second] = self.bodies;
-        (velocity(second, self.arms[1]) - velocity(first, self.arms[0])).dot(along)
+        velocity(second, self.arms[1]) - velocity(first, self.arms[0])
+    }
+
+    /// How fast it grows (m/s).
+    #[inline(always)]
+    pub(super) fn rate(&self, state: &State<S>, along: S::Vector) -> S::Real {
+        self.velocity(state).dot(along)
     }
 
     /// What a force (N) along it that pulls does to each of its bodies, and of that the part of a damper (N).

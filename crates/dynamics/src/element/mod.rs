@@ -1,39 +1,50 @@
 //! Force elements: what pushes or pulls two bodies without a contact.
 //!
 //! An element is of one of the kinds in the list below, each a file beside this one that says what it
-//! does at a state (its load) and what it can bear ([`Element::strength`]).
-//! All else is the same for all: they are fastened to a model, remember whether they are broken, enter
-//! the forces and the energy books, and march in lanes.
+//! does at a state, and whether it can hold ([`Load`]).
+//! All else is the same for all: they are fastened to a model, remember what they gave for good and whether
+//! they are broken, enter the forces and the energy books, and march in lanes.
 
+mod guide;
 mod link;
+mod rod;
 mod strap;
 
 use crate::body::BodyId;
 use crate::lanewise;
-use crate::model::Model;
 use crate::real::Real;
 use crate::space::{Space, Wrench};
 use crate::state::State;
 
+pub use guide::Guide;
 pub use link::Link;
+pub use rod::Rod;
 pub use strap::Strap;
 
 /// What an element remembers; changed by accepted steps only.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Memory<S: Space> {
+    /// How much longer (m) it is for good than when it was put on.
+    pub plastic: S::Real,
     /// Whether it is broken, for good: then it bears nothing.
     pub broken: <S::Real as Real>::Mask,
 }
 
-lanewise!(struct Memory<Planar<R>> {} masks { broken });
+lanewise!(struct Memory<Planar<R>> { plastic } masks { broken });
 
 /// What an element bears at a state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Load<R> {
+pub struct Load<R: Real> {
     /// Force (N) along it, positive where it pulls its bodies together.
     pub force: R,
     /// Energy stored in it (J); lost when it breaks.
     pub energy: R,
+    /// Of the force that of its spring (N), which its energy belongs to.
+    pub elastic: R,
+    /// How much longer (m) for good it is once the state is accepted.
+    pub plastic: R,
+    /// Whether it cannot hold.
+    pub breaks: R::Mask,
 }
 
 /// What an element does at a state.
@@ -44,8 +55,7 @@ pub(crate) struct Action<S: Space> {
     pub(crate) wrenches: [(Wrench<S>, Wrench<S>); 2],
 }
 
-/// Declares the kinds of elements, each a struct with a `link`, a `length` at rest (m), and the functions that
-/// are asked for here.
+/// Declares the kinds of elements, each a struct with a `link` and the functions that are asked for here.
 macro_rules! kinds {
     ($($(#[$about:meta])* $kind:ident),*) => {
         /// An element of one of the kinds.
@@ -78,16 +88,9 @@ macro_rules! kinds {
                 match self { $(Self::$kind(element) => element.damping()),* }
             }
 
-            /// The force (N) above which it breaks; infinite if it never does.
-            #[inline(always)]
-            pub fn strength(&self) -> S::Real {
-                match self { $(Self::$kind(element) => element.strength()),* }
-            }
-
-            /// Gives it the length at rest that its points have at a state, and some more (m).
+            /// Lets it bear nothing where its points are at a state, but for some more length (m).
             pub fn fit(&mut self, state: &State<S>, give: S::Real) {
-                let length = self.link().span(state) + give;
-                match self { $(Self::$kind(element) => element.length = length),* }
+                match self { $(Self::$kind(element) => element.fit(state, give)),* }
             }
 
             /// What is wrong with its constants.
@@ -110,8 +113,12 @@ macro_rules! kinds {
 }
 
 kinds!(
-    /// Pulls and never pushes.
-    Strap
+    /// Pulls and never pushes; may yield.
+    Strap,
+    /// Holds a distance, and damps a pendulum.
+    Rod,
+    /// A spring, a damper and stops along an axis of a body.
+    Guide
 );
 
 impl<S: Space> Element<S> {
@@ -137,14 +144,12 @@ fn all<R: Real>(number: R, sound: fn(f64) -> bool) -> bool {
     (0..R::LANES).all(|lane| sound(number.lane(lane)))
 }
 
-/// Elements that bore more than their strength in an accepted state are broken from then on.
+/// Elements remember what they gave for good in an accepted state, and those that could not hold are broken
+/// from then on.
 #[inline(always)]
-pub(crate) fn commit<S: Space>(
-    model: &Model<S>,
-    memory: &mut [Memory<S>],
-    loads: &[Load<S::Real>],
-) {
-    for ((element, memory), load) in model.elements.iter().zip(memory).zip(loads) {
-        memory.broken = memory.broken | element.strength().lt(load.force.abs());
+pub(crate) fn commit<S: Space>(memory: &mut [Memory<S>], loads: &[Load<S::Real>]) {
+    for (memory, load) in memory.iter_mut().zip(loads) {
+        memory.plastic = load.plastic;
+        memory.broken = memory.broken | load.breaks;
     }
 }

@@ -1,4 +1,4 @@
-//! Straps: they pull two bodies together, and never push them apart.
+//! Straps and other ties: they pull two bodies together, and never push them apart.
 
 use super::{Action, Link, Load, Memory, all};
 use crate::lanewise;
@@ -10,6 +10,8 @@ use crate::state::State;
 ///
 /// Tension is the force that it pulls with: `T = max(0, k e + c ė)` while its elongation `e` (m), the
 /// distance of the two points less `length`, is positive, and zero while it is slack.
+/// Where the spring would pull with more than it yields at, it becomes longer for good until it does not: of
+/// the elongation only what is left pulls.
 /// It has no mass, and nothing touches it on its way.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strap<S: Space> {
@@ -21,11 +23,13 @@ pub struct Strap<S: Space> {
     pub stiffness: S::Real,
     /// Damping c (N·s/m).
     pub damping: S::Real,
+    /// Tension (N) of its spring at which it yields; infinite if it never does.
+    pub yields_at: S::Real,
     /// Tension (N) above which it tears, for good; infinite if it never does.
     pub strength: S::Real,
 }
 
-lanewise!(struct Strap<Planar<R>> { link, length, stiffness, damping, strength });
+lanewise!(struct Strap<Planar<R>> { link, length, stiffness, damping, yields_at, strength });
 
 impl<S: Space> Strap<S> {
     pub(super) fn stiffness(&self) -> S::Real {
@@ -36,9 +40,8 @@ impl<S: Space> Strap<S> {
         self.damping
     }
 
-    #[inline(always)]
-    pub(super) fn strength(&self) -> S::Real {
-        self.strength
+    pub(super) fn fit(&mut self, state: &State<S>, give: S::Real) {
+        self.length = self.link.span(state) + give;
     }
 
     pub(super) fn flaw(&self) -> Option<&'static str> {
@@ -48,8 +51,8 @@ impl<S: Space> Strap<S> {
             Some("its damping must not be negative")
         } else if !all(self.length, |l| l >= 0.0 && l.is_finite()) {
             Some("its length must not be negative")
-        } else if !all(self.strength, |t| t > 0.0) {
-            Some("its strength must be positive")
+        } else if ![self.strength, self.yields_at].into_iter().all(|it| all(it, |t| t > 0.0)) {
+            Some("its strength, and what it yields at, must be positive")
         } else {
             None
         }
@@ -64,16 +67,24 @@ impl<S: Space> Strap<S> {
     ) -> Action<S> {
         let zero = S::Real::zero();
         let line = self.link.line(state, rotations);
-        let taut = self.length.lt(line.distance) & zero.lt(line.distance) & !memory.broken;
+        let length = self.length + memory.plastic;
+        let taut = length.lt(line.distance) & zero.lt(line.distance) & !memory.broken;
         let along = line.along(taut);
-        let elongation = S::Real::select(taut, line.distance - self.length, zero);
+        let elongation = S::Real::select(taut, line.distance - length, zero);
+        let yields = self.yields_at.lt(self.stiffness * elongation);
+        let most = self.yields_at / self.stiffness;
+        let flow = S::Real::select(yields, elongation - most, zero);
+        let elongation = S::Real::select(yields, most, elongation);
         let elastic = self.stiffness * elongation;
         let tension = (elastic + self.damping * line.rate(state, along)).max(zero);
         let tension = S::Real::select(taut, tension, zero);
-        let energy = S::Real::splat(0.5) * elastic * elongation;
-        Action {
-            load: Load { force: tension, energy },
-            wrenches: line.pull(along, tension, tension - elastic),
-        }
+        let load = Load {
+            force: tension,
+            energy: S::Real::splat(0.5) * elastic * elongation,
+            elastic,
+            plastic: memory.plastic + flow,
+            breaks: self.strength.lt(tension),
+        };
+        Action { load, wrenches: line.pull(along, tension, tension - elastic) }
     }
 }

@@ -296,7 +296,7 @@ pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: 
         #[inline(always)]
         || {
             commit_all(model, &mut state.contact_elements, scratch);
-            element::commit(model, &mut state.memory, &scratch.loads);
+            element::commit(&mut state.memory, &scratch.loads);
         },
     );
 }

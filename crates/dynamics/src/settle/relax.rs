@@ -271,6 +271,7 @@ impl<S: Space> Relaxation<S> {
             stick.slipping = (rests & kept.slipping) | (!rests & stick.slipping);
         }
         for (now, kept) in state.memory.iter_mut().zip(memory) {
+            now.plastic = S::Real::select(rests, kept.plastic, now.plastic);
             now.broken = (rests & kept.broken) | (!rests & now.broken);
         }
     }

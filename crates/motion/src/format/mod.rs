@@ -18,6 +18,7 @@ mod npz;
 mod number;
 mod packed;
 mod peer;
+mod place;
 mod refused;
 mod renadic;
 mod sac;

@@ -4,6 +4,7 @@ use super::number::split_touching;
 pub(crate) use super::number::{
     Printed, leading_number, leading_printed, parse_number, resolution,
 };
+pub(crate) use super::place::{Columns, Place};
 use crate::error::{ReadError, ReadFailure, Refusal};
 use crate::record::Record;
 use crate::units::AccelerationUnit;
@@ -19,44 +20,6 @@ pub(crate) struct Source<'a> {
     pub(crate) name: &'a str,
     pub(crate) bytes: &'a [u8],
     pub(crate) lines: Vec<&'a [u8]>,
-}
-
-/// A block of numbers in Fortran columns.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Columns {
-    /// Blank columns before the first field.
-    pub(crate) indent: usize,
-    /// Fields to a line.
-    pub(crate) per_line: usize,
-    /// Characters to a field.
-    pub(crate) width: usize,
-}
-
-impl Columns {
-    pub(crate) fn new(per_line: usize, width: usize) -> Self {
-        Self { indent: 0, per_line, width }
-    }
-
-    /// Reads `8F10.5`, `(10I8)` and `(1X,10F7.3)`; repeated groups such as `5(E15.7)` are not known.
-    pub(crate) fn parse(format: &str) -> Option<Self> {
-        let inner = format.trim().trim_start_matches('(');
-        let inner = inner.split(')').next()?.trim();
-        let mut indent = 0;
-        let mut block = None;
-        for part in inner.split(',') {
-            let part = part.trim().to_ascii_uppercase();
-            if let Some(blanks) = part.strip_suffix('X') {
-                indent += blanks.parse::<usize>().ok()?;
-                continue;
-            }
-            let letter = part.find(['F', 'E', 'I', 'G', 'D'])?;
-            let per_line = if letter == 0 { 1 } else { part[..letter].parse().ok()? };
-            let width: usize = part[letter + 1..].split('.').next()?.parse().ok()?;
-            block = Some(Self { indent, per_line, width });
-        }
-        let block = block?;
-        ((1..=1000).contains(&block.per_line) && (1..=100).contains(&block.width)).then_some(block)
-    }
 }
 
 impl<'a> Source<'a> {
@@ -477,37 +440,6 @@ impl<'a> Source<'a> {
             }
         }
         Ok(())
-    }
-}
-
-/// Where in the file, 0-based.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Place {
-    line: Option<usize>,
-    column: Option<usize>,
-}
-
-impl From<()> for Place {
-    fn from((): ()) -> Self {
-        Self::default()
-    }
-}
-
-impl From<usize> for Place {
-    fn from(line: usize) -> Self {
-        Self { line: Some(line), column: None }
-    }
-}
-
-impl From<Option<usize>> for Place {
-    fn from(line: Option<usize>) -> Self {
-        Self { line, column: None }
-    }
-}
-
-impl From<(usize, usize)> for Place {
-    fn from((line, column): (usize, usize)) -> Self {
-        Self { line: Some(line), column: Some(column) }
     }
 }
 

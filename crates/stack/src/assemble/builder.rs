@@ -1,41 +1,59 @@
 //! The parts list of a stack: bodies in order, each a compound of convex solids, scaled.
 
-use barrelstack_dynamics::{Body, BodyId, Motion, Nodes, Planar, Pose, Shape, Twist, Vec2};
+use barrelstack_dynamics::{
+    Body, BodyId, ContactPair, Element, Interface, Motion, Nodes, Planar, Pose, Shape, Twist, Vec2,
+};
 
+use super::interfaces::interface;
 use super::solid::{Seat, Solid, Touch, uniform};
+use super::stack::behind_each_other;
 use super::{Part, PartKind, Similitude, outline_of};
-use crate::scenario::{StackBody, StackSpec};
+use crate::device::{Loose, Words};
+use crate::scenario::{self, StackBody, StackPair, StackSpec, View};
 
 /// A stack while it is built up.
-pub(super) struct Builder<'a> {
-    pub(super) spec: &'a StackSpec,
-    pub(super) scale: Similitude,
-    pub(super) bodies: Vec<Body<Planar>>,
-    pub(super) parts: Vec<Part>,
+pub(crate) struct Builder<'a> {
+    pub(crate) spec: &'a StackSpec,
+    pub(crate) scale: Similitude,
+    pub(crate) bodies: Vec<Body<Planar>>,
+    pub(crate) parts: Vec<Part>,
     /// Moment of inertia (kg·m²) of a barrel of which nothing is changed.
     inertia: f64,
     /// How the surfaces of every body are touched, in their order.
     pub(super) touches: Vec<Vec<Touch>>,
+    /// The law between barrels and their cradles.
+    pub(crate) cradle_law: usize,
+    /// Laws of contact of devices, numbered after those of the stack.
+    pub(super) laws: Vec<Interface<Planar>>,
+    /// Boundaries of devices that meet by them.
+    pub(crate) pairs: Vec<ContactPair>,
+    /// Elements without which the stack does not stand, and whose they are.
+    pub(super) held: Vec<(Element<Planar>, &'static Words)>,
+    /// Elements that are put on once it stands.
+    pub(crate) loose: Vec<Loose>,
+    /// How far (m) devices have lifted the stack.
+    pub(super) raised: f64,
 }
 
 /// What a view says of a body: full-scale numbers in a frame of its own.
-pub(super) struct Draft {
-    pub(super) name: String,
-    pub(super) kind: PartKind,
-    pub(super) level: u32,
-    pub(super) column: u32,
+pub(crate) struct Draft {
+    pub(crate) name: String,
+    pub(crate) kind: PartKind,
+    /// None for what belongs to no level.
+    pub(crate) level: Option<u32>,
+    pub(crate) column: u32,
     /// Mass (kg).
-    pub(super) mass: f64,
+    pub(crate) mass: f64,
     /// Moment of inertia (kg·m²) about the origin of the frame, which is then the center of mass; none
     /// for center and inertia of its solids, all of one density.
-    pub(super) inertia: Option<f64>,
+    pub(crate) inertia: Option<f64>,
     /// Where the frame is (m).
-    pub(super) position: Vec2,
+    pub(crate) position: Vec2,
     /// A length that tells its size (m).
-    pub(super) size: f64,
-    pub(super) solids: Vec<Solid>,
-    pub(super) carrier: Option<BodyId>,
-    pub(super) supports: Vec<BodyId>,
+    pub(crate) size: f64,
+    pub(crate) solids: Vec<Solid>,
+    pub(crate) carrier: Option<BodyId>,
+    pub(crate) supports: Vec<BodyId>,
 }
 
 impl<'a> Builder<'a> {
@@ -43,11 +61,62 @@ impl<'a> Builder<'a> {
     pub(super) fn new(spec: &'a StackSpec, scale: Similitude) -> Self {
         let (bodies, parts) = (vec![Body::ground(0.0)], vec![Part::ground()]);
         let inertia = spec.barrel.inertia(spec.view);
-        Self { spec, scale, bodies, parts, inertia, touches: vec![Vec::new()] }
+        Self {
+            spec,
+            scale,
+            bodies,
+            parts,
+            inertia,
+            touches: vec![Vec::new()],
+            cradle_law: StackPair::BarrelRack as usize,
+            laws: Vec::new(),
+            pairs: Vec::new(),
+            held: Vec::new(),
+            loose: Vec::new(),
+            raised: 0.0,
+        }
+    }
+
+    /// How many barrels of a rack one body of the plane stands for: of what a rack has, the plane along the
+    /// barrels shows the share of one of those side by side.
+    pub(crate) fn side_by_side(&self) -> f64 {
+        match self.spec.view {
+            View::Transverse => 1.0,
+            View::Longitudinal => f64::from(self.spec.rack.barrels),
+        }
+    }
+
+    /// Adds a law of contact of a device; returns its number.
+    pub(crate) fn add_law(
+        &mut self,
+        name: &str,
+        law: &scenario::Interface,
+        elements: f64,
+    ) -> usize {
+        self.laws.push(interface(name, law, elements, self.scale));
+        StackPair::ALL.len() + self.laws.len() - 1
+    }
+
+    /// Adds the law of a seat; returns its number.
+    pub(crate) fn add_seat(&mut self, name: &str, law: &scenario::Interface) -> usize {
+        self.add_law(name, law, behind_each_other(self.spec))
+    }
+
+    /// Adds an element without which the stack does not stand.
+    pub(crate) fn hold(&mut self, element: impl Into<Element<Planar>>, words: &'static Words) {
+        self.held.push((element.into(), words));
+    }
+
+    /// Lifts all that stands on the ground by a height (m).
+    pub(crate) fn raise(&mut self, height: f64) {
+        for body in &mut self.bodies[1..] {
+            body.pose.position.z += height;
+        }
+        self.raised = height;
     }
 
     /// Adds a body, scaled; returns its id.
-    pub(super) fn add(&mut self, draft: Draft) -> BodyId {
+    pub(crate) fn add(&mut self, draft: Draft) -> BodyId {
         let length = self.scale.length;
         let (center, inertia) = if let Some(inertia) = draft.inertia {
             (Vec2::default(), inertia)
@@ -73,7 +142,7 @@ impl<'a> Builder<'a> {
         self.parts.push(Part {
             name: draft.name,
             kind: draft.kind,
-            level: Some(draft.level),
+            level: draft.level,
             column: Some(draft.column),
             carrier: draft.carrier,
             supports: draft.supports,
@@ -124,7 +193,7 @@ impl<'a> Builder<'a> {
             barrels.push(self.add(Draft {
                 name: format!("B{level}.{column}"),
                 kind: PartKind::Barrel,
-                level,
+                level: Some(level),
                 column,
                 mass: barrel.mass,
                 inertia: Some(inertia),

@@ -112,7 +112,7 @@ fn add_rack(
     let rack_id = builder.add(Draft {
         name,
         kind: PartKind::Rack,
-        level,
+        level: Some(level),
         column,
         mass,
         inertia: None,

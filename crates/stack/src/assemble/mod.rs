@@ -1,6 +1,7 @@
 //! From a scenario to bodies that can move: the model, and what each of its bodies means.
 
 mod builder;
+mod content;
 mod free;
 mod interfaces;
 mod longitudinal;
@@ -16,7 +17,9 @@ use crate::device::{Loose, Words};
 use crate::scenario::{Scenario, Scene, View};
 use crate::step::TimeStepping;
 
+pub(crate) use builder::{Builder, Draft};
 pub use similitude::Similitude;
+pub(crate) use solid::{Seat, Solid};
 
 /// What kind of thing a body is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +30,10 @@ pub enum PartKind {
     Barrel,
     /// A rack.
     Rack,
+    /// What protects a stack.
+    Device,
+    /// What moves of the wine in a barrel.
+    Wine,
     /// A body of a free scene.
     Body,
 }
@@ -38,6 +45,8 @@ impl PartKind {
             Self::Ground => "ground",
             Self::Barrel => "barrel",
             Self::Rack => "rack",
+            Self::Device => "device",
+            Self::Wine => "wine",
             Self::Body => "body",
         }
     }
@@ -63,7 +72,7 @@ pub struct Part {
     pub level: Option<u32>,
     /// Column, 1 at the left: of barrels, or of racks for a rack.
     pub column: Option<u32>,
-    /// For a barrel, the rack that carries it.
+    /// For a barrel the rack that carries it, for wine its barrel, for a rack on an isolator its platform.
     pub carrier: Option<BodyId>,
     /// For a rack above the first level, the bodies it stands on.
     pub supports: Vec<BodyId>,

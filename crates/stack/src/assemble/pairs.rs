@@ -29,12 +29,23 @@ pub(super) fn pairs(builder: &Builder<'_>) -> Vec<ContactPair> {
                 (PartKind::Barrel, PartKind::Barrel) => {
                     pairs.exact((a, 0), (b, 0), StackPair::BarrelBarrel, [Counts::Everywhere; 2]);
                 }
-                (PartKind::Ground | PartKind::Body, _) | (_, PartKind::Ground | PartKind::Body) => {
-                    unreachable!("a stack is made of barrels and racks on one ground")
+                (PartKind::Rack, PartKind::Device) => pairs.rack_and_device(a, b),
+                (PartKind::Barrel, PartKind::Device) => {
+                    pairs.solids_of(a, b, StackPair::FallenBarrelRack);
+                }
+                (PartKind::Device, PartKind::Device) => {
+                    pairs.solids_of(a, b, StackPair::FallenRackRack);
+                }
+                (PartKind::Wine, _) | (_, PartKind::Wine) => {}
+                (PartKind::Device, PartKind::Rack | PartKind::Barrel)
+                | (PartKind::Ground | PartKind::Body, _)
+                | (_, PartKind::Ground | PartKind::Body) => {
+                    unreachable!("barrels and racks on one ground come first, then devices")
                 }
             }
         }
     }
+    pairs.list.extend(&builder.pairs);
     pairs.list
 }
 
@@ -60,7 +71,11 @@ impl Pairs<'_> {
         pair: StackPair,
         counts: Counts,
     ) {
-        let interface = pair as usize;
+        let parts = &self.builder.parts;
+        let in_cradle = pair == StackPair::BarrelRack
+            && (parts[contactor].carrier == Some(target)
+                || parts[target].carrier == Some(contactor));
+        let interface = if in_cradle { self.builder.cradle_law } else { pair as usize };
         self.list.push(ContactPair { contactor, nodes, target, surface, interface, counts });
     }
 
@@ -95,7 +110,8 @@ impl Pairs<'_> {
             let interface = match (kind, seat) {
                 (PartKind::Rack, true) => StackPair::RackGround,
                 (PartKind::Rack, false) => StackPair::FallenRackGround,
-                (PartKind::Barrel | PartKind::Ground | PartKind::Body, _) => {
+                (PartKind::Device, _) => StackPair::FallenRackGround,
+                (PartKind::Barrel | PartKind::Wine | PartKind::Ground | PartKind::Body, _) => {
                     StackPair::BarrelGround
                 }
             };
@@ -135,6 +151,38 @@ impl Pairs<'_> {
                 [Counts::Everywhere; 2]
             };
             self.exact((barrel, 0), (rack, solid), interface, counts);
+        }
+    }
+
+    /// All solids of one body against all of another.
+    fn solids_of(&mut self, a: BodyId, b: BodyId, pair: StackPair) {
+        for of_a in self.solids(a) {
+            for of_b in self.solids(b) {
+                self.exact((a, of_a), (b, of_b), pair, [Counts::Everywhere; 2]);
+            }
+        }
+    }
+
+    /// A rack stands on the platform of an isolator as on the ground.
+    fn rack_and_device(&mut self, rack: BodyId, device: BodyId) {
+        let carried = self.builder.parts[rack].carrier == Some(device);
+        for solid in self.solids(rack) {
+            let touch = self.touch(rack, solid);
+            let seat = carried && touch.seat.stands();
+            let pair = if seat { StackPair::RackGround } else { StackPair::FallenRackRack };
+            for of_device in self.solids(device) {
+                let both = [Counts::Everywhere; 2];
+                match touch.below.filter(|_| seat) {
+                    Some(face) => {
+                        let before = Counts::BeforeFace(face.face);
+                        self.push((rack, face.nodes), (device, of_device), pair, before);
+                        let behind =
+                            [Counts::BehindFace(face.face), Counts::BehindFaceOfTarget(face.face)];
+                        self.exact((rack, solid), (device, of_device), pair, behind);
+                    }
+                    None => self.exact((rack, solid), (device, of_device), pair, both),
+                }
+            }
         }
     }
 

@@ -6,7 +6,7 @@ use barrelstack_dynamics::{
 };
 
 /// A convex part of a body, full-scale, in the frame of its draft.
-pub(super) struct Solid {
+pub(crate) struct Solid {
     pub(super) shape: Shape,
     /// Where the frame of the shape is (m).
     pub(super) offset: Vec2,
@@ -19,11 +19,13 @@ pub(super) struct Solid {
     /// Cosine of the angle to its faces with nodes up to which a contact is one of the face: see
     /// [`Face::widest`].
     pub(super) widest: f64,
+    /// Whether the mass of its body is spread over it, too.
+    pub(super) weighs: bool,
 }
 
 /// What a solid is there to bear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Seat {
+pub(crate) enum Seat {
     /// Nothing: it meets only what has come loose.
     None,
     /// The rack stands with it on the ground, or on one of its supports.
@@ -80,8 +82,16 @@ const AT_END: f64 = 1e-9;
 
 impl Solid {
     /// A solid that is tested exactly all around.
-    pub(super) fn exact(shape: Shape, offset: Vec2, seat: Seat) -> Self {
-        Self { shape, offset, seat, below: Vec::new(), above: Vec::new(), widest: ROUND }
+    pub(crate) fn exact(shape: Shape, offset: Vec2, seat: Seat) -> Self {
+        Self {
+            shape,
+            offset,
+            seat,
+            below: Vec::new(),
+            above: Vec::new(),
+            widest: ROUND,
+            weighs: true,
+        }
     }
 
     /// Adds itself to a body whose center of mass is at `center` (m) of the draft, scaled by `length`.
@@ -170,7 +180,7 @@ pub(super) fn boundary(placed: &Placed<Planar>, length: f64) -> Nodes<Planar> {
 /// Center of mass (m) and moment of inertia about it over the mass (m²) of solids of one density.
 pub(super) fn uniform(solids: &[Solid]) -> (Vec2, f64) {
     let sections = || {
-        solids.iter().filter_map(|solid| {
+        solids.iter().filter(|solid| solid.weighs).filter_map(|solid| {
             solid.shape.section().map(|section| (section.centroid + solid.offset, section))
         })
     };

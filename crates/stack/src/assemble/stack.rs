@@ -6,8 +6,7 @@ use barrelstack_dynamics::{Interface, Model, Planar, Vec2};
 use super::builder::Builder;
 use super::interfaces::interface;
 use super::solid::TRIBUTARY;
-use super::{AssembleError, Assembly, Similitude, longitudinal, pairs, transverse};
-use crate::device::Site;
+use super::{AssembleError, Assembly, Similitude, content, longitudinal, pairs, transverse};
 use crate::scenario::{self, Basis, SeatContact, StackPair, StackSpec, View};
 
 /// Lever (m) of the resistance of barrels on hoops against rolling on floors, racks and each other: an
@@ -38,38 +37,42 @@ pub(super) fn assemble(
     if spec.mirror {
         builder.mirror();
     }
-    let site = Site {
-        view: spec.view,
-        levels: spec.levels,
-        mirror: spec.mirror,
-        scale,
-        parts: &builder.parts,
-        bodies: &builder.bodies,
-    };
-    let loose = spec.devices.place(&site).map_err(AssembleError::Stack)?;
+    spec.devices.place(&mut builder).map_err(AssembleError::Stack)?;
+    content::pour(&mut builder, gravity);
     let pairs = pairs::pairs(&builder);
-    let interfaces = laws(spec, scale);
-    let model = Model::new(builder.bodies, interfaces, pairs, Vec2::new(0.0, -gravity))?;
+    let Builder { bodies, parts, laws: more, cradle_law, held, loose, raised, .. } = builder;
+    let mut interfaces = laws(spec, scale);
+    interfaces.extend(more);
+    // Pads have as much stroke as bare cradles.
+    interfaces[cradle_law].stop = interfaces[StackPair::BarrelRack as usize].stop;
+    let mut model = Model::new(bodies, interfaces, pairs, Vec2::new(0.0, -gravity))?;
+    let (held, devices) = held.into_iter().unzip();
+    model.fasten(held)?;
     Ok(Assembly {
         model,
-        parts: builder.parts,
+        parts,
         loose,
         step: f64::INFINITY,
-        devices: Vec::new(),
-        height: height * scale.length,
+        devices,
+        height: height * scale.length + raised,
         levels: spec.levels,
         view: Some(spec.view),
         rack_reach: rack_reach * scale.length,
     })
 }
 
+/// How many elements of a seat stand one behind the other where the plane shows one.
+pub(super) fn behind_each_other(spec: &StackSpec) -> f64 {
+    match spec.view {
+        View::Transverse => spec.rack.contact.behind_each_other(),
+        View::Longitudinal => 1.0,
+    }
+}
+
 /// The laws of contact, each at the place of its pair. Across the barrels a seat may stand for several
 /// elements one behind the other.
 fn laws(spec: &StackSpec, scale: Similitude) -> Vec<Interface<Planar>> {
-    let behind = match spec.view {
-        View::Transverse => spec.rack.contact.behind_each_other(),
-        View::Longitudinal => 1.0,
-    };
+    let behind = behind_each_other(spec);
     let stroke = spec.rack.seat_stroke * scale.length;
     // What an element of a seat is weighed by is its length where the seat's constants hold for a meter.
     let each = match spec.rack.contact {

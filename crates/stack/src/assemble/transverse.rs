@@ -18,6 +18,7 @@ use barrelstack_dynamics::{BodyId, Shape, Vec2, math};
 use super::builder::{Builder, Draft};
 use super::solid::{Seat, Solid, row};
 use super::{AssembleError, PartKind};
+use crate::device::Chocks;
 use crate::scenario::{Cradle, Friction, Posts, Rack, RackKind, SeatContact};
 
 /// Play (m) between the cup of a foot and the post in it: an assumption.
@@ -102,13 +103,28 @@ fn add_rack(
         .collect();
 
     let (name, mass, offset) = builder.rack_at(level, column);
-    let solids = rack_solids(rack, &places, radius, level).map_err(|problem| {
-        AssembleError::Shape { body: name.clone(), problem: problem.to_string() }
-    })?;
+    let shape = |problem: PolygonError| AssembleError::Shape {
+        body: name.clone(),
+        problem: problem.to_string(),
+    };
+    let mut solids = rack_solids(rack, &places, radius, level).map_err(shape)?;
+    if spec.devices.chock.at(level, spec.levels) {
+        let horns = chocks(rack, spec.devices.chock, &places, radius).map_err(shape)?;
+        let inside = |horn: &&Solid| horn.offset.x.abs() > 0.5 * rack.width;
+        if let Some(horn) = horns.iter().find(inside) {
+            return Err(AssembleError::Stack(format!(
+                "chocks at {:.3} m lie beyond the rack, which reaches {:.3} m to either side: make \
+                 stack.chock.angle or stack.chock.gap smaller",
+                horn.offset.x.abs(),
+                0.5 * rack.width
+            )));
+        }
+        solids.extend(horns);
+    }
     let rack_id = builder.add(Draft {
         name,
         kind: PartKind::Rack,
-        level,
+        level: Some(level),
         column,
         mass,
         inertia: None,
@@ -227,6 +243,32 @@ fn cradle(
         }
     }
     Ok(())
+}
+
+/// The chocks of a rack, on its beam: bars whose round ends keep their gap from the barrels.
+fn chocks(
+    rack: &Rack,
+    chock: Chocks,
+    places: &[f64],
+    radius: f64,
+) -> Result<Vec<Solid>, PolygonError> {
+    let foot = if rack.kind == RackKind::OnBarrels { rack.foot_height } else { 0.0 };
+    let top = foot + rack.beam_height;
+    let (sin, cos) = math::sin_cos(chock.angle);
+    let away = radius + chock.gap + BAR_RADIUS;
+    let mut solids = Vec::new();
+    for place in places {
+        let center = Vec2::new(*place, rack.clearance + radius);
+        for side in [-1.0, 1.0] {
+            let end = center + Vec2::new(side * sin, -cos) * away;
+            let middle = Vec2::new(end.x, 0.5 * (end.z + top));
+            let bar = Polygon::bar(Vec2::new(end.x, top) - middle, end - middle, BAR_RADIUS)?;
+            let horn = Solid::exact(Shape::Polygon(bar), middle, Seat::None);
+            // What a rack weighs, it weighs without them.
+            solids.push(Solid { weighs: false, ..horn });
+        }
+    }
+    Ok(solids)
 }
 
 /// Length (m) of the straight bars of which a trough is made.

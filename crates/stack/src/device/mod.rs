@@ -1,21 +1,35 @@
 //! Devices that protect a stack: each a file beside this one, and a line in the list below.
 //!
-//! A device is a table of `[stack]`, the force elements that it puts on a stack, and the words that it is
-//! told in. What its elements bear, the energy in them, and how they are drawn is the same for all.
+//! A device is a table of `[stack]`, the force elements, bodies and laws of contact that it puts on a stack, and
+//! what is said of it: its words, settings worth trying, what becomes of it in use, and its price.
+//! What its elements bear, the energy in them, and how they are drawn is the same for all.
 
+mod chock;
+mod isolator;
+mod lid;
+mod pad;
 mod strap;
+mod tie;
+mod tuned_mass;
+mod walking_stop;
 
-use barrelstack_dynamics::{Body, Element, Memory, ModelError, Planar, State};
+use barrelstack_dynamics::{Element, Memory, ModelError, Planar, State};
 use barrelstack_input::InputError;
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::field::{Default, Field, Kind};
 use barrelstack_input::reader::Reader;
 use barrelstack_input::writer::Writer;
 
-use crate::assemble::{Assembly, Part, Similitude};
-use crate::scenario::View;
+use crate::assemble::{Assembly, Builder};
 
+pub use chock::Chocks;
+pub use isolator::{Isolators, Path};
+pub use lid::Lids;
+pub use pad::Pads;
 pub use strap::{Straps, Ties};
+pub use tie::{Anchor, AnchorTies, Side};
+pub use tuned_mass::{TunedMass, Tuning};
+pub use walking_stop::{Holds, WalkingStops};
 
 /// Declares the devices: a table of `[stack]`, with its help, and the type that its file reads it into.
 macro_rules! devices {
@@ -48,14 +62,19 @@ macro_rules! devices {
                 $(stack.table(stringify!($name), self.$name.write());)*
             }
 
-            /// Their elements on a stack, one device after the other.
+            /// Puts them on a stack, one device after the other.
             ///
             /// # Errors
             /// When a device does not go on this stack, with what to do.
-            pub(crate) fn place(&self, site: &Site<'_>) -> Result<Vec<Loose>, String> {
-                let mut all = Vec::new();
-                $(all.extend(self.$name.place(site)?);)*
-                Ok(all)
+            pub(crate) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
+                $(self.$name.place(builder)?;)*
+                Ok(())
+            }
+
+            /// The words of those that are on the stack.
+            pub fn present(&self) -> Vec<&'static Words> {
+                let all = [$((&$name::WORDS, self.$name.is_on())),*];
+                all.into_iter().filter(|(_, on)| *on).map(|(words, _)| words).collect()
             }
         }
     };
@@ -64,14 +83,28 @@ macro_rules! devices {
 devices! {
     /// Straps on the highest levels.
     strap: Straps,
+    /// Stops that keep racks from walking on the barrels below.
+    walking_stop: WalkingStops,
+    /// Chocks beside the barrels, against rolling out.
+    chock: Chocks,
+    /// Lids over the barrels of the highest levels.
+    lid: Lids,
+    /// Elastomer pads in the cradles.
+    pad: Pads,
+    /// Isolators under the bottom racks.
+    isolator: Isolators,
+    /// Ties of racks to a wall, to the ceiling, or to their neighbors.
+    tie: AnchorTies,
+    /// Masses on springs.
+    tuned_mass: TunedMass,
 }
 
-/// The words in which a device is told, in files and reports.
-#[derive(Debug, PartialEq, Eq)]
+/// What is said of a device, in files, in reports, and to who looks for the best of them.
+#[derive(Debug, PartialEq)]
 pub struct Words {
     /// One element of it.
     pub one: &'static str,
-    /// More than one; also the key in the summary.
+    /// More than one; with underscores also the key in the summary.
     pub many: &'static str,
     /// The force in one.
     pub force: &'static str,
@@ -81,17 +114,81 @@ pub struct Words {
     pub break_all: &'static str,
     /// ... and what it is then.
     pub broken: &'static str,
+    /// Settings worth trying on any stack of at least three levels.
+    pub candidates: &'static [Setting],
+    /// What becomes of it in use: to be put [over](Setting::over) a candidate.
+    pub degraded: &'static [Setting],
+    /// What it costs.
+    pub cost: Cost,
 }
 
-/// The stack as drawn, on which devices are put.
-#[derive(Clone, Copy)]
-pub(crate) struct Site<'a> {
-    pub(crate) view: View,
-    pub(crate) levels: u32,
-    pub(crate) mirror: bool,
-    pub(crate) scale: Similitude,
-    pub(crate) parts: &'a [Part],
-    pub(crate) bodies: &'a [Body<Planar>],
+/// A way to set a device, in words and as settings of the scenario.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Setting {
+    /// In words.
+    pub name: &'static str,
+    /// Such as `stack.strap.levels=3`.
+    pub overrides: &'static [&'static str],
+}
+
+impl Setting {
+    /// These settings in place of those of another one for the same fields, and with its others.
+    pub fn over(&self, other: &Self) -> Vec<&'static str> {
+        let field = |setting: &&'static str| setting.split('=').next();
+        let own: Vec<_> = self.overrides.iter().map(field).collect();
+        let kept = other.overrides.iter().filter(|setting| !own.contains(&field(setting)));
+        kept.chain(self.overrides).copied().collect()
+    }
+}
+
+/// What a device costs, bought and put on.
+#[derive(Debug, PartialEq)]
+pub struct Cost {
+    /// Least and most (US$ of 2024) ...
+    pub dollars: [f64; 2],
+    /// ... for each of these.
+    pub each: Each,
+    /// Where that comes from.
+    pub source: &'static str,
+}
+
+/// What a price is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Each {
+    /// A stack.
+    Stack,
+    /// A level of a stack that has the device.
+    Level,
+}
+
+impl Words {
+    /// Of what no report tells.
+    pub(crate) const fn silent(one: &'static str) -> Self {
+        Self {
+            one,
+            many: one,
+            force: "force",
+            breaks: "breaks",
+            break_all: "break",
+            broken: "broken",
+            candidates: &[],
+            degraded: &[],
+            cost: Cost { dollars: [0.0, 0.0], each: Each::Stack, source: "" },
+        }
+    }
+}
+
+/// A number of the highest levels; 0 for none.
+const LEVELS: Kind = Kind::Integer(0, 12);
+
+/// Refuses a device on more levels than a stack has.
+fn check_levels(reader: &Reader<'_>, device: u32, stack: u32) -> Result<(), InputError> {
+    if device <= stack {
+        return Ok(());
+    }
+    let path = reader.path_of("levels");
+    let message = format!("`{path}` is {device}, but the stack has only {stack}");
+    Err(reader.inconsistent("levels", message))
 }
 
 /// An element that is not tightened yet.
@@ -111,12 +208,16 @@ impl Assembly {
     /// When an element that was sound as drawn is not on the settled stack.
     pub(crate) fn fasten(&mut self, state: &mut State<Planar>) -> Result<(), ModelError> {
         let loose = std::mem::take(&mut self.loose);
-        self.devices = loose.iter().map(|loose| loose.words).collect();
+        if loose.is_empty() {
+            return Ok(());
+        }
+        self.devices.extend(loose.iter().map(|loose| loose.words));
         let tighten = |Loose { mut element, give, .. }| {
             element.fit(state, give);
             element
         };
-        let elements: Vec<_> = loose.into_iter().map(tighten).collect();
+        let mut elements = self.model.elements().to_vec();
+        elements.extend(loose.into_iter().map(tighten));
         state.memory = vec![Memory::default(); elements.len()];
         self.model.fasten(elements)
     }

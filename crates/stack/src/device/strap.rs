@@ -10,8 +10,8 @@ use barrelstack_input::field::{Default, Kind, Named, Range, names};
 use barrelstack_input::reader::Reader;
 use barrelstack_input::{Dimension, InputError, section};
 
-use super::{Loose, Site, Words};
-use crate::assemble::PartKind;
+use super::{Cost, Each, LEVELS, Loose, Setting, Words, check_levels};
+use crate::assemble::{Builder, PartKind};
 use crate::scenario::View;
 
 pub(super) static WORDS: Words = Words {
@@ -21,6 +21,29 @@ pub(super) static WORDS: Words = Words {
     breaks: "tears",
     break_all: "tear",
     broken: "torn",
+    candidates: &[
+        Setting {
+            name: "barrels of the top level strapped to their racks",
+            overrides: &["stack.strap.levels=1", "stack.strap.pretension=\"1 kN\""],
+        },
+        Setting {
+            name: "the top three levels strapped together",
+            overrides: &[
+                "stack.strap.levels=3",
+                "stack.strap.ties=\"levels-together\"",
+                "stack.strap.pretension=\"2 kN\"",
+            ],
+        },
+    ],
+    degraded: &[Setting {
+        name: "loose straps",
+        overrides: &["stack.strap.pretension=\"0 N\"", "stack.strap.slack=\"3 cm\""],
+    }],
+    cost: Cost {
+        dollars: [40.0, 120.0],
+        each: Each::Level,
+        source: "two ratchet straps of 5 kN with hooks and half an hour of two people: an assumption",
+    },
 };
 
 /// What straps tie.
@@ -44,7 +67,7 @@ section! {
     /// Straps on the highest levels: they pull, never push, and have no mass.
     pub static SECTION = "strap";
     /// How many of the highest levels are strapped; 0 for no straps.
-    levels: u32 = Kind::Integer(0, 12), Default::Value("0");
+    levels: u32 = LEVELS, Default::Value("0");
     /// Every barrel to its rack, or besides every rack to the one below.
     ties: Ties = Kind::Choice(names::<Ties>), Default::Value("\"barrels-to-racks\"");
     /// Force per elongation of one strap; that of a polyester strap is its strength over some 5 to 7 % of its length.
@@ -81,9 +104,7 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError
     }
     let refused = |message: String| Err(reader.inconsistent("levels", message));
     let path = reader.path_of("levels");
-    if straps.levels > levels {
-        return refused(format!("`{path}` is {}, but the stack has only {levels}", straps.levels));
-    }
+    check_levels(&reader, straps.levels, levels)?;
     if straps.levels == 1 && straps.ties == Ties::LevelsTogether {
         return refused(format!(
             "`{path}` is 1, but \"levels-together\" ties at least 2; take 2, or \"barrels-to-racks\""
@@ -94,14 +115,15 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError
 }
 
 impl Straps {
-    /// The straps of a stack: from the ground up, those on the left first.
+    /// Puts on the straps: from the ground up, those on the left first.
     ///
     /// # Errors
     /// When the pretension would stretch a strap over more than its whole way.
-    pub(super) fn place(&self, site: &Site<'_>) -> Result<Vec<Loose>, String> {
+    pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let Self { levels, ties, stiffness, damping, slack, pretension, strength } = *self;
-        let Site { parts, bodies, scale, .. } = *site;
-        let lowest = site.levels.saturating_sub(levels) + 1;
+        let Builder { spec, parts, bodies, scale, .. } = builder;
+        let (scale, view) = (*scale, spec.view);
+        let lowest = spec.levels.saturating_sub(levels) + 1;
         let give = (slack - pretension / stiffness) * scale.length;
         // Every strap is plumb on the stack as drawn.
         let strap = |upper: BodyId, lower: BodyId, side: &str, from: f64| {
@@ -121,13 +143,14 @@ impl Straps {
                 length: apart.z + give,
                 stiffness: stiffness * scale.stiffness(1.0, false),
                 damping: damping * scale.damping(false),
+                yields_at: f64::INFINITY,
                 strength: strength.map_or(f64::INFINITY, |force| force * scale.force()),
             };
             Ok(Loose { element: strap.into(), give, words: &WORDS })
         };
         // In the mirror left and right change places, in the order of sums, too.
         let mut sides = [("left", -1.0), ("right", 1.0)];
-        if site.mirror {
+        if spec.mirror {
             sides.reverse();
         }
         let mut all = Vec::new();
@@ -137,7 +160,7 @@ impl Straps {
                     let strapped = part.level.is_some_and(|level| level >= lowest);
                     let Some(rack) = part.carrier.filter(|_| strapped) else { continue };
                     for (side, sign) in sides {
-                        let (side, from) = match site.view {
+                        let (side, from) = match view {
                             View::Transverse => (side, sign * part.size),
                             View::Longitudinal if sign < 0.0 => ("front", 0.0),
                             View::Longitudinal => ("back", 0.0),
@@ -158,9 +181,14 @@ impl Straps {
                         all.push(strap(body, below, side, sign * part.size)?);
                     }
                 }
-                PartKind::Ground | PartKind::Body => {}
+                PartKind::Ground | PartKind::Device | PartKind::Wine | PartKind::Body => {}
             }
         }
-        Ok(all)
+        builder.loose.extend(all);
+        Ok(())
+    }
+
+    pub(super) fn is_on(&self) -> bool {
+        self.levels > 0
     }
 }

@@ -10,6 +10,7 @@ use super::reader::Reader;
 use super::stack::View;
 use super::tree::Table;
 use super::writer::Writer;
+use crate::slosh::{self, Wave};
 
 /// What the barrel holds and how the contents turn with it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,8 +20,22 @@ pub enum Fill {
     /// Full, and the wine is an ideal fluid: it does not turn about the axis of the barrel, and
     /// turns only in part about a transverse axis.
     FullFluid,
+    /// Filled in part, to [`Barrel::filled`]: waves go in it, and the wine does not turn with the wood.
+    Part,
     /// Wood only.
     Empty,
+}
+
+impl Fill {
+    /// Mass (kg) of the contents of a barrel of a capacity (m³), filled to a share of it where it is so in part.
+    fn mass(self, capacity: f64, filled: f64) -> f64 {
+        let share = match self {
+            Self::FullFrozen | Self::FullFluid => 1.0,
+            Self::Part => filled,
+            Self::Empty => 0.0,
+        };
+        catalog::WINE_DENSITY * capacity * share
+    }
 }
 
 /// A barrel, a body of revolution whose outer radius falls as a parabola from the bilge to the
@@ -47,6 +62,8 @@ pub struct Barrel {
     pub section_diameter: f64,
     /// Contents.
     pub fill: Fill,
+    /// Share of the capacity that is filled, where it is so in part.
+    pub filled: f64,
 }
 
 impl Barrel {
@@ -62,10 +79,11 @@ impl Barrel {
     #[must_use]
     pub fn altered(&self, mass: Option<f64>, fill: Option<Fill>) -> Self {
         let fill = fill.unwrap_or(self.fill);
-        let regular = match (self.fill == Fill::Empty, fill == Fill::Empty) {
-            (true, false) => self.empty_mass + catalog::WINE_DENSITY * self.capacity,
-            (false, true) => self.empty_mass,
-            (true, true) | (false, false) => self.mass,
+        let contents = |fill: Fill| fill.mass(self.capacity, self.filled);
+        let regular = if contents(fill) == contents(self.fill) {
+            self.mass
+        } else {
+            self.empty_mass + contents(fill)
         };
         Self { mass: mass.unwrap_or(regular), fill, ..self.clone() }
     }
@@ -85,6 +103,17 @@ impl Barrel {
             View::Transverse => moments.axial,
             View::Longitudinal => moments.transverse,
         }
+    }
+
+    /// The first wave of its wine in the plane of a view; none where it is full or empty.
+    pub fn wave(&self, view: View) -> Option<Wave> {
+        let length = 2.0 * self.half_room();
+        // The cylinder of the same capacity.
+        let radius = (self.capacity / (PI * length)).sqrt();
+        (self.fill == Fill::Part).then(|| match view {
+            View::Transverse => slosh::across(radius, self.filled),
+            View::Longitudinal => slosh::along(radius, length, self.filled),
+        })
     }
 
     fn moments(&self) -> Moments {
@@ -121,12 +150,16 @@ impl Barrel {
                 Moments { axial: density * wood.axial, transverse: density * wood.transverse }
             }
             Fill::FullFrozen => frozen,
-            Fill::FullFluid if wine_mass <= 0.0 => Moments { axial: 0.0, transverse: 0.0 },
-            Fill::FullFluid => {
+            Fill::FullFluid | Fill::Part if wine_mass <= 0.0 => {
+                Moments { axial: 0.0, transverse: 0.0 }
+            }
+            Fill::FullFluid | Fill::Part => {
                 let lag = frozen.transverse - frozen.axial;
+                // A wave is a mass of its own; the rest turns as in a full barrel.
+                let rest = self.wave(View::Longitudinal).map_or(1.0, |wave| 1.0 - wave.share);
                 Moments {
                     axial: wine_density * stokes_layer(half_room, inner),
-                    transverse: lag * lag / frozen.transverse,
+                    transverse: lag * lag / frozen.transverse * rest,
                 }
             }
         };
@@ -216,6 +249,7 @@ impl Named for Fill {
     const NAMES: &'static [(&'static str, Self)] = &[
         ("full-fluid", Self::FullFluid),
         ("full-frozen", Self::FullFrozen),
+        ("part", Self::Part),
         ("empty", Self::Empty),
     ];
 }
@@ -223,6 +257,9 @@ impl Named for Fill {
 const CATALOG: Default = Default::Derived("that of the catalog");
 const SIZE: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Range { least: 0.01, above: false, greatest: 10.0 });
+
+/// Fuller, the surface is too small for a wave that counts; emptier, the wine is a puddle.
+const FILLED: Range = Range::between(0.02, 0.995);
 
 /// A barrel.
 pub static BARREL: Section = Section {
@@ -242,9 +279,15 @@ pub static BARREL: Section = Section {
             "Contents, and whether they turn with the barrel.",
         ),
         Field::new(
+            "filled",
+            Kind::Number(FILLED),
+            Default::Value("0.9"),
+            "Share of the capacity that is filled, where `fill` is \"part\", of this barrel or of one that differs.",
+        ),
+        Field::new(
             "mass",
             Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)),
-            Default::Derived("the empty mass, and the capacity times 990 kg/m^3 unless empty"),
+            Default::Derived("the empty mass, and what of the capacity is filled times 990 kg/m^3"),
             "Mass of wood and contents.",
         ),
         Field::new(
@@ -290,12 +333,9 @@ pub(super) fn read(reader: Reader<'_>, rail_half_spacing: f64) -> Result<Barrel,
     let or = |name, regular| Ok(reader.optional_quantity(name)?.unwrap_or(regular));
     let empty_mass = or("empty_mass", known.empty_mass)?;
     let capacity = or("capacity", known.capacity)?;
-    let regular_mass = match fill {
-        Fill::FullFluid | Fill::FullFrozen => empty_mass + catalog::WINE_DENSITY * capacity,
-        Fill::Empty => empty_mass,
-    };
+    let filled = reader.number("filled")?;
     let mut barrel = Barrel {
-        mass: or("mass", regular_mass)?,
+        mass: or("mass", empty_mass + fill.mass(capacity, filled))?,
         empty_mass,
         length: or("length", known.length)?,
         bilge_diameter: or("bilge_diameter", known.bilge_diameter)?,
@@ -304,6 +344,7 @@ pub(super) fn read(reader: Reader<'_>, rail_half_spacing: f64) -> Result<Barrel,
         capacity,
         section_diameter: 0.0,
         fill,
+        filled,
         base,
     };
     let above_rails = barrel.diameter_at(rail_half_spacing);
@@ -371,6 +412,7 @@ pub(super) fn write(barrel: &Barrel) -> Table {
     let mut writer = Writer::new(&BARREL);
     writer.text("base", &barrel.base);
     writer.choice("fill", barrel.fill);
+    writer.number("filled", barrel.filled);
     writer.quantity("mass", barrel.mass);
     writer.quantity("empty_mass", barrel.empty_mass);
     writer.quantity("length", barrel.length);

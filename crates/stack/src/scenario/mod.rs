@@ -190,6 +190,28 @@ impl Scenario {
         writer::to_toml(&root::write(self))
     }
 
+    /// What stands and how it is run, as the table of a key in another file such as a study; without title and
+    /// motion, and without when its runs end, which were chosen for its own motion.
+    pub fn to_toml_table(&self, key: &str) -> String {
+        let plain = |key: &str, value| tree::Entry {
+            key: key.to_owned(),
+            origin: tree::Origin::Default,
+            node: tree::Node { origin: tree::Origin::Default, value },
+        };
+        let mut own = root::write(self);
+        own.remove("title");
+        own.remove("motion");
+        if let Some(tree::Entry {
+            node: tree::Node { value: tree::Value::Table(run), .. }, ..
+        }) = own.get_mut("run")
+        {
+            for end in run::ENDS {
+                run.remove(end);
+            }
+        }
+        writer::to_toml(&tree::Table { entries: vec![plain(key, tree::Value::Table(own))] })
+    }
+
     /// Fingerprint of everything but the title: FNV-1a, 64 bits, of the resolved text.
     ///
     /// Two scenarios with the same fingerprint describe the same run, however they were written.

@@ -9,6 +9,9 @@ use super::reader::Reader;
 use super::tree::Table;
 use super::writer::Writer;
 
+/// Fields of `[run]` that end a run early.
+pub const ENDS: [&str; 3] = ["until", "duration", "stop_after_collapse"];
+
 /// Time integration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Method {

@@ -52,7 +52,9 @@ fn stands(stack: &StackSpec) -> String {
         all if all == stack.levels => ", strapped".to_owned(),
         some => format!(", {} strapped", number(some)),
     };
-    format!("{barrels} on {levels}{straps}{view}")
+    let others = stack.devices.present().into_iter().filter(|words| words.one != "strap");
+    let others: String = others.map(|words| format!(", with {}", words.many)).collect();
+    format!("{barrels} on {levels}{straps}{others}{view}")
 }
 
 /// What shakes it, how strongly: a record by its event, where that is known.

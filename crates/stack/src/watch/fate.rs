@@ -152,7 +152,11 @@ impl Fates {
             let most_slip = match part.kind {
                 PartKind::Barrel => thresholds.seat_loss_ratio * part.size,
                 PartKind::Rack if !foot => thresholds.rack_slide_ratio * assembly.rack_reach,
-                PartKind::Rack | PartKind::Ground | PartKind::Body => f64::INFINITY,
+                PartKind::Rack
+                | PartKind::Ground
+                | PartKind::Device
+                | PartKind::Wine
+                | PartKind::Body => f64::INFINITY,
             };
             let most_tilt =
                 if foot { thresholds.overturning_angle } else { thresholds.rocking_angle };
@@ -305,7 +309,7 @@ impl<R: Real> Fates<R> {
         let body = &self.bodies[i];
         let fell = body.fell_at.lt(never);
         let (slid, tilted) = match body.place.kind {
-            PartKind::Ground | PartKind::Body => return,
+            PartKind::Ground | PartKind::Device | PartKind::Wine | PartKind::Body => return,
             PartKind::Barrel => {
                 ((body.most_slip * body.most_slip).lt(slip.dot(slip)), R::Mask::default())
             }

@@ -57,11 +57,13 @@ impl Joints {
         };
         for (i, part) in assembly.parts.iter().enumerate() {
             match part.kind {
-                PartKind::Rack if part.supports.is_empty() => join(i, Assembly::GROUND),
+                PartKind::Rack if part.supports.is_empty() => {
+                    join(i, part.carrier.unwrap_or(Assembly::GROUND));
+                }
                 PartKind::Rack => part.supports.iter().for_each(|support| join(i, *support)),
                 PartKind::Barrel => part.carrier.iter().for_each(|rack| join(i, *rack)),
                 PartKind::Body => join(i, Assembly::GROUND),
-                PartKind::Ground => {}
+                PartKind::Ground | PartKind::Device | PartKind::Wine => {}
             }
         }
         let mut of_upper = vec![Vec::new(); assembly.parts.len()];

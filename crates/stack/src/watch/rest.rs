@@ -111,7 +111,11 @@ impl Rest {
                 inertia: of.inertia / of.mass,
                 floor: match part.kind {
                     PartKind::Barrel => ON_FLOOR * part.size,
-                    PartKind::Ground | PartKind::Rack | PartKind::Body => f64::NEG_INFINITY,
+                    PartKind::Ground
+                    | PartKind::Rack
+                    | PartKind::Device
+                    | PartKind::Wine
+                    | PartKind::Body => f64::NEG_INFINITY,
                 },
             })
         };

@@ -190,7 +190,7 @@ impl Pressing {
             let made = match part.kind {
                 PartKind::Barrel => body.surfaces.first().and_then(|s| on_surface(i, &s.surface)),
                 PartKind::Rack => Some(on_nodes(i, &body.nodes)),
-                PartKind::Ground | PartKind::Body => None,
+                PartKind::Ground | PartKind::Device | PartKind::Wine | PartKind::Body => None,
             };
             if let Some(envelope) = made {
                 of_body[i] = Some(envelopes.len());

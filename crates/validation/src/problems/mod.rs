@@ -1,6 +1,7 @@
 //! The problems, grouped by theory.
 
 pub mod consensus;
+mod devices;
 mod fragility;
 mod gravity;
 mod housner;
@@ -14,6 +15,7 @@ mod regimes;
 mod restitution;
 mod rolling;
 mod sliding;
+mod slosh;
 mod solids;
 mod stacks;
 mod statistics;
@@ -33,6 +35,8 @@ pub fn all() -> Vec<Problem> {
         measured::problems(),
         gravity::problems(),
         stacks::problems(),
+        devices::problems(),
+        slosh::problems(),
         ode::problems(),
         invariances::problems(),
         intensity::problems(),

@@ -1,0 +1,479 @@
+//! What protects a stack best for what it costs: fewer levels, other racks, devices, single and in pairs.
+//!
+//! All are shaken by the same motions with the same quantiles of friction, so that differences are those of the
+//! protections and not of luck.
+//! The first round tries everything, every later one only what may still be worth it, under further motions.
+//! A round of a protection in one direction is a study in a folder of its own, so what is stopped goes on from there.
+
+mod json;
+mod options;
+mod page;
+mod plan;
+mod rank;
+
+use std::num::NonZero;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use barrelstack::check;
+use barrelstack::variants::planes;
+use barrelstack_report::{Block, Document};
+
+use crate::decision::{Cases, DecisionError, SiteHazard};
+use crate::ground::GroundError;
+use crate::pool;
+use crate::run::RunFailure;
+use crate::scenario::{MotionSource, Scenario, ScenarioError, View};
+use crate::study::{RunOptions, Study, StudyError};
+
+pub use json::ProtectDocument;
+pub use options::{Kind, Protection};
+pub use rank::Estimate;
+
+use rank::{Quantity, Runs, weights};
+
+/// Levels of peak ground velocity (m/s) that are shaken where nothing else is asked for.
+pub const VELOCITIES: [f64; 3] = [0.25, 0.50, 0.75];
+
+/// The same where a hazard says how often each is to be expected.
+const SITE_VELOCITIES: [f64; 6] = [0.10, 0.18, 0.30, 0.50, 0.80, 1.20];
+
+/// How hard stacks are shaken.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shaking {
+    /// To these levels of peak ground velocity (m/s), all alike.
+    Levels(Vec<f64>),
+    /// As a site is, by its hazard over peak ground velocity.
+    Site(SiteHazard),
+}
+
+impl Shaking {
+    /// The levels of peak ground velocity (m/s).
+    fn levels(&self) -> &[f64] {
+        match self {
+            Self::Levels(levels) => levels,
+            Self::Site(_) => &SITE_VELOCITIES,
+        }
+    }
+
+    fn weights(&self) -> Vec<f64> {
+        match self {
+            Self::Levels(levels) => weights(levels, None),
+            Self::Site(site) => weights(&SITE_VELOCITIES, Some(&site.hazard)),
+        }
+    }
+}
+
+/// What is asked for.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The stack.
+    pub scenario: Scenario,
+    /// How hard it is shaken.
+    pub shaking: Shaking,
+    /// Files of the motions, in place of the bundled and synthetic ones.
+    pub records: Vec<PathBuf>,
+    /// A folder of such files.
+    pub folder: Option<PathBuf>,
+    /// Motions of a round where none are named.
+    pub motions: u32,
+    /// Rounds.
+    pub rounds: u32,
+    /// Most that a protection may cost for a stack (US$, the middle of its range).
+    pub budget: Option<f64>,
+    /// Seed of everything that is drawn.
+    pub seed: u32,
+}
+
+/// What a protection came to.
+#[derive(Clone, Debug)]
+pub struct Ranked {
+    /// The protection.
+    pub protection: Protection,
+    /// Share of the runs that collapse at the levels of shaking, all alike; at a site how often a year.
+    pub collapse: Estimate,
+    /// Barrels of a stack that fall, likewise.
+    pub fallen: Estimate,
+    /// Barrels of a stack that burst under the central assumption, likewise.
+    pub burst: Estimate,
+    /// How many fewer barrels fall than of the stack as it is, under the same motions; none for itself.
+    pub saved: Option<Estimate>,
+    /// The direction of shaking in which more barrels fall.
+    pub direction: View,
+    /// Motions under which it was run.
+    pub motions: usize,
+    /// Runs in both directions.
+    pub runs: usize,
+    /// Runs without a verdict.
+    pub left_out: usize,
+    /// The last round in which it was run, counted from 1.
+    pub round: u32,
+    /// Whether nothing that was tried costs no more and loses less.
+    pub on_front: bool,
+    /// Barrels that fall when it is worn or badly fitted; none where it was not tried so.
+    pub worn: Option<Estimate>,
+}
+
+impl Ranked {
+    /// The middle of what it costs for a stack (US$).
+    pub fn cost(&self) -> f64 {
+        middle(&self.protection)
+    }
+}
+
+/// What protects a stack best.
+#[derive(Clone, Debug)]
+pub struct Ranking {
+    /// What was asked for.
+    pub request: Request,
+    /// Every protection that was tried: those first that went furthest, of these the one under which fewest barrels
+    /// fall.
+    pub all: Vec<Ranked>,
+    /// What was not tried, and why.
+    pub not_tried: Vec<(String, String)>,
+    /// Runs in all.
+    pub runs: usize,
+    /// The page.
+    pub document: Document,
+}
+
+impl Ranking {
+    /// The stack as it is.
+    pub fn as_it_is(&self) -> Option<&Ranked> {
+        self.all.iter().find(|one| one.protection.kind == Kind::AsItIs)
+    }
+
+    /// The one that saves most barrels for its cost, of those that went through all rounds and save some beyond doubt.
+    pub fn best(&self) -> Option<&Ranked> {
+        let last = self.all.iter().map(|one| one.round).max();
+        let worth = |one: &Ranked| one.saved.map_or(0.0, |saved| saved.mean / one.cost());
+        let helps = self.all.iter().filter(|one| {
+            Some(one.round) == last && one.saved.is_some_and(|saved| saved.low > 0.0)
+        });
+        // Of equals the first, under which fewer fall.
+        helps.reduce(|best, one| if worth(one) > worth(best) { one } else { best })
+    }
+
+    /// The page as one file that asks the network for nothing.
+    pub fn html(&self) -> String {
+        barrelstack_report::html(&self.document)
+    }
+
+    /// The page as text, with its figures and tables as files for a folder named `figure_dir`.
+    pub fn markdown(&self, figure_dir: &str) -> barrelstack_report::MarkdownBundle {
+        barrelstack_report::markdown(&self.document, figure_dir)
+    }
+
+    /// The numbers for programs, in SI units.
+    pub fn to_document(&self) -> ProtectDocument {
+        ProtectDocument::of(self)
+    }
+
+    /// Makes the page, with blocks that show before and after.
+    pub fn describe(&mut self, before_and_after: Vec<Block>) {
+        self.document = page::document(self, before_and_after);
+    }
+}
+
+/// Why there is no ranking.
+#[derive(Debug, thiserror::Error)]
+pub enum ProtectError {
+    /// A free scene has no levels, racks or devices.
+    #[error(
+        "\"{0}\" is a free scene, and protections are those of stacks of barrels on racks: take the scenario of a stack"
+    )]
+    NoStack(String),
+    /// The hazard is over another measure.
+    #[error(
+        "the hazard in {file} is over {measure}, but motions are scaled by peak ground velocity; give the hazard over pgv"
+    )]
+    Hazard {
+        /// The file.
+        file: String,
+        /// What it is over.
+        measure: String,
+    },
+    /// The scenario does not read back.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// Its motion cannot be read.
+    #[error(transparent)]
+    Ground(#[from] GroundError),
+    /// A protected stack cannot be built, or does not stand.
+    #[error(transparent)]
+    Stack(#[from] RunFailure),
+    /// A study cannot be run.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// Its cases decide nothing.
+    #[error(transparent)]
+    Decision(#[from] DecisionError),
+}
+
+/// How far it is: runs of a round.
+#[derive(Clone, Copy, Debug)]
+pub struct Reached {
+    /// The round, counted from 1; one more than there are where worn devices are tried.
+    pub round: u32,
+    /// Runs that are done.
+    pub done: u64,
+    /// Of so many.
+    pub of: u64,
+}
+
+/// A protection while it is tried.
+struct Trial {
+    protection: Protection,
+    /// The stack in each direction.
+    stacks: Vec<(View, Scenario)>,
+    runs: Vec<Runs>,
+    round: u32,
+}
+
+impl Trial {
+    fn new(base: &Scenario, protection: Protection) -> Result<Self, ProtectError> {
+        let changed = protection.on(base)?;
+        let stacks: Vec<(View, Scenario)> = planes(&changed)?
+            .into_iter()
+            .filter_map(|plane| Some((plane.view()?, plane.scenario)))
+            .collect();
+        // Whether it can be built, and stands by itself, in every direction.
+        stacks.iter().try_for_each(|(_, stack)| check(stack).map(drop))?;
+        let runs = stacks.iter().map(|_| Runs::default()).collect();
+        Ok(Self { protection, stacks, runs, round: 0 })
+    }
+
+    /// The direction in which more barrels fall.
+    fn worse(&self, weights: &[f64]) -> usize {
+        let fallen = |at: usize| self.runs[at].estimate(Quantity::Fallen, weights, 1.0).mean;
+        (0..self.runs.len()).max_by(|a, b| fallen(*a).total_cmp(&fallen(*b))).unwrap_or(0)
+    }
+}
+
+/// Tries everything that can be done for a stack, in folders below `folder`, and goes on where an earlier run stopped.
+///
+/// `tell` hears how far it is, from several threads, and may stop it.
+///
+/// # Errors
+/// When the scenario has no stack, a record cannot be read, or a folder cannot be written.
+pub fn protect(
+    request: &Request,
+    folder: &Path,
+    options: &RunOptions,
+    tell: &(dyn Fn(Reached) -> ControlFlow<()> + Sync),
+) -> Result<Ranking, ProtectError> {
+    if request.scenario.stack().is_none() {
+        return Err(ProtectError::NoStack(request.scenario.title.clone()));
+    }
+    if let Shaking::Site(site) = &request.shaking
+        && site.measure != "pgv"
+    {
+        let (file, measure) = (site.file.clone(), site.measure.clone());
+        return Err(ProtectError::Hazard { file, measure });
+    }
+    // What shakes it is the business of the studies.
+    let mut base = request.scenario.clone();
+    base.motion.source = MotionSource::None;
+    let (levels, weights) = (request.shaking.levels(), request.shaking.weights());
+    let mut search =
+        Search { request, base: &base, folder, options, tell, levels, not_tried: Vec::new() };
+    let mut singles = options::singles(&base);
+    // As it is it has to stand before anything else is asked.
+    let mut trials = vec![Trial::new(&base, singles.remove(0))?];
+    trials.extend(search.trials(singles));
+    let mut open: Vec<usize> = (0..trials.len()).collect();
+    for round in 0..request.rounds {
+        search.round(&mut trials, &open, round)?;
+        let judged: Vec<(&Runs, f64)> = open
+            .iter()
+            .map(|at| {
+                (&trials[*at].runs[trials[*at].worse(&weights)], middle(&trials[*at].protection))
+            })
+            .collect();
+        let kept = rank::contenders(&judged, Quantity::Fallen, &weights);
+        open = kept.into_iter().map(|at| open[at]).collect();
+        if round == 0 && request.rounds > 1 {
+            let pairs = pairs(&base, &best_of_kinds(&trials, &open, &weights));
+            let first = trials.len();
+            trials.extend(search.trials(pairs));
+            let added: Vec<usize> = (first..trials.len()).collect();
+            // They meet the motions that the others have met.
+            search.round(&mut trials, &added, 0)?;
+            open.extend(added);
+        }
+    }
+    let mut all: Vec<Ranked> =
+        trials.iter().map(|trial| ranked(trial, &trials[0], &weights)).collect();
+    mark_front(&mut all);
+    search.worn(&trials, &mut all, &weights)?;
+    // What was dropped early has met fewer motions, so its mean is another one.
+    all.sort_by(|a, b| {
+        let by_mean = a.fallen.mean.total_cmp(&b.fallen.mean).then(a.cost().total_cmp(&b.cost()));
+        b.round.cmp(&a.round).then(by_mean)
+    });
+    let runs = all.iter().map(|one| one.runs).sum();
+    let not_tried = search.not_tried;
+    let mut ranking =
+        Ranking { request: request.clone(), all, not_tried, runs, document: Document::default() };
+    ranking.describe(Vec::new());
+    Ok(ranking)
+}
+
+/// Of each kind of protection the two under which fewest barrels fall.
+fn best_of_kinds<'a>(trials: &'a [Trial], open: &[usize], weights: &[f64]) -> Vec<&'a Protection> {
+    let fallen = |trial: &Trial| {
+        trial.runs[trial.worse(weights)].estimate(Quantity::Fallen, weights, 1.0).mean
+    };
+    let mut sorted: Vec<&Trial> = open.iter().map(|at| &trials[*at]).collect();
+    sorted.sort_by(|a, b| fallen(a).total_cmp(&fallen(b)));
+    let mut best: Vec<&Protection> = Vec::new();
+    for protection in sorted.into_iter().map(|trial| &trial.protection) {
+        if best.iter().filter(|known| known.kind == protection.kind).count() < 2 {
+            best.push(protection);
+        }
+    }
+    best
+}
+
+/// All pairs of some protections.
+fn pairs(base: &Scenario, of: &[&Protection]) -> Vec<Protection> {
+    let all = of.iter().enumerate();
+    all.flat_map(|(at, one)| {
+        of[at + 1..].iter().filter_map(|other| options::pair(base, one, other))
+    })
+    .collect()
+}
+
+fn middle(protection: &Protection) -> f64 {
+    0.5 * (protection.cost[0] + protection.cost[1])
+}
+
+fn ranked(trial: &Trial, base: &Trial, weights: &[f64]) -> Ranked {
+    let worse = trial.worse(weights);
+    let (view, stack) = &trial.stacks[worse];
+    let runs = &trial.runs[worse];
+    let barrels = stack.stack().map_or(0, |stack| stack.levels * stack.columns);
+    let most = f64::from(barrels);
+    let saved = (trial.protection.kind != Kind::AsItIs)
+        .then(|| runs.less_than(&base.runs[base.worse(weights)], Quantity::Fallen, weights))
+        .flatten();
+    Ranked {
+        protection: trial.protection.clone(),
+        collapse: runs.estimate(Quantity::Collapsed, weights, 1.0),
+        fallen: runs.estimate(Quantity::Fallen, weights, most),
+        burst: runs.estimate(Quantity::Burst, weights, most),
+        saved,
+        direction: *view,
+        motions: runs.motions(),
+        runs: trial.runs.iter().map(|runs| runs.count).sum(),
+        left_out: trial.runs.iter().map(|runs| runs.left_out).sum(),
+        round: trial.round,
+        on_front: false,
+        worn: None,
+    }
+}
+
+/// Marks those that nothing beats in both cost and barrels that fall, of those that went through all rounds.
+fn mark_front(all: &mut [Ranked]) {
+    let last = all.iter().map(|one| one.round).max();
+    let mut finalists: Vec<&mut Ranked> =
+        all.iter_mut().filter(|one| Some(one.round) == last).collect();
+    let points: Vec<(f64, f64)> =
+        finalists.iter().map(|one| (one.cost(), one.fallen.mean)).collect();
+    for at in rank::front(&points) {
+        finalists[at].on_front = true;
+    }
+}
+
+/// What all trials of a search share.
+struct Search<'a> {
+    request: &'a Request,
+    base: &'a Scenario,
+    folder: &'a Path,
+    options: &'a RunOptions,
+    tell: &'a (dyn Fn(Reached) -> ControlFlow<()> + Sync),
+    levels: &'a [f64],
+    not_tried: Vec<(String, String)>,
+}
+
+impl Search<'_> {
+    /// Those that can be built and paid for; why not of the others is kept.
+    fn trials(&mut self, protections: Vec<Protection>) -> Vec<Trial> {
+        let mut trials = Vec::new();
+        for protection in protections {
+            let name = protection.name.clone();
+            let cost = middle(&protection);
+            if let Some(budget) = self.request.budget.filter(|budget| cost > *budget) {
+                let reason = format!("costs US${cost:.0}, above the budget of US${budget:.0}");
+                self.not_tried.push((name, reason));
+                continue;
+            }
+            match Trial::new(self.base, protection) {
+                Ok(trial) => trials.push(trial),
+                // Where a field stands in the text that was made here tells nobody anything.
+                Err(error) => {
+                    let reason = error.to_string();
+                    self.not_tried
+                        .push((name, reason.lines().next().unwrap_or_default().to_owned()));
+                }
+            }
+        }
+        trials
+    }
+
+    /// Runs a round of some trials.
+    fn round(&self, trials: &mut [Trial], open: &[usize], round: u32) -> Result<(), ProtectError> {
+        let mut studies = Vec::new();
+        for at in open {
+            for (direction, (view, stack)) in trials[*at].stacks.iter().enumerate() {
+                let study = plan::study(self.request, stack, self.levels, round)?;
+                let folder = self
+                    .folder
+                    .join(&trials[*at].protection.key)
+                    .join(plan::name(view.name(), round));
+                studies.push((*at, direction, folder, study));
+            }
+        }
+        let of: u64 = studies.iter().map(|(.., study)| study.cases()).sum();
+        let done = AtomicU64::new(0);
+        // Each on one thread, and as many at once as there are cores.
+        let options = RunOptions { threads: Some(NonZero::<usize>::MIN), ..*self.options };
+        let work = |(.., folder, study): &(usize, usize, PathBuf, Study)| {
+            let before = AtomicU64::new(0);
+            let collected = study.run(folder, &options, &|progress| {
+                let now = progress.tally.cases;
+                let news = now.saturating_sub(before.fetch_max(now, Ordering::Relaxed));
+                let done = done.fetch_add(news, Ordering::Relaxed) + news;
+                (self.tell)(Reached { round: round + 1, done, of })
+            })?;
+            Ok::<Cases, ProtectError>(Cases::read(&collected)?)
+        };
+        let found = pool::map(&studies, work, &|_| ());
+        for ((at, direction, ..), cases) in studies.iter().zip(found) {
+            trials[*at].runs[*direction].add(&cases?, self.levels);
+            trials[*at].round = round + 1;
+        }
+        Ok(())
+    }
+
+    /// What is left of those on the front when they are worn, under the motions of the first round.
+    fn worn(
+        &mut self,
+        trials: &[Trial],
+        all: &mut [Ranked],
+        weights: &[f64],
+    ) -> Result<(), ProtectError> {
+        for (trial, found) in trials.iter().zip(all).filter(|(_, found)| found.on_front) {
+            let Some(worn) = trial.protection.worn() else { continue };
+            let mut one = self.trials(vec![worn]);
+            let open: Vec<usize> = (0..one.len()).collect();
+            self.round(&mut one, &open, 0)?;
+            let Some(one) = one.first() else { continue };
+            let most = one.stacks[0].1.stack().map_or(0, |stack| stack.levels * stack.columns);
+            let runs = &one.runs[one.worse(weights)];
+            found.worn = Some(runs.estimate(Quantity::Fallen, weights, f64::from(most)));
+        }
+        Ok(())
+    }
+}

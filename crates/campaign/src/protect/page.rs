@@ -1,0 +1,300 @@
+//! The page: one table to act on, one figure, before and after, and what was not modeled.
+
+use barrelstack_fragility::Interval;
+use barrelstack_report::{
+    Axis, Block, Cell, Document, Figure, FigureKind, Plot, Rating, Table, Tone, Verdict,
+    significant,
+};
+
+use super::{Estimate, Kind, Ranked, Ranking, Shaking};
+use crate::decision::{heading, percent, points, text};
+
+pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document {
+    let mut blocks = before_and_after;
+    blocks.push(heading("What it comes to"));
+    blocks.push(Block::Table(table(all)));
+    blocks.push(text(legend(all)));
+    blocks.push(Block::Figure(chart(all)));
+    blocks.push(heading("How to try one"));
+    blocks.push(Block::Table(changes(all)));
+    if !all.not_tried.is_empty() {
+        blocks.push(heading("What was not tried"));
+        let row = |(name, reason): &(String, String)| format!("{name}: {reason}");
+        blocks.push(Block::List(all.not_tried.iter().map(row).collect()));
+    }
+    blocks.push(heading("What this rests on"));
+    blocks.push(Block::List(rests_on(all)));
+    Document {
+        title: format!("What protects best: {}", all.request.scenario.title),
+        verdict: Verdict {
+            headline: headline(all),
+            sentences: sentences(all),
+            tone: Tone::Neutral,
+            ..Verdict::default()
+        },
+        blocks,
+        provenance: vec![
+            ("protections tried".into(), all.all.len().to_string()),
+            ("runs".into(), all.runs.to_string()),
+            ("seed".into(), all.request.seed.to_string()),
+            ("program".into(), format!("barrelstack {}", env!("CARGO_PKG_VERSION"))),
+        ],
+        warnings: warnings(all),
+        words: barrelstack::report::WORDS.to_vec(),
+    }
+}
+
+/// "a year", or "when shaken to 25, 50, 75 cm/s".
+fn per(all: &Ranking) -> String {
+    match &all.request.shaking {
+        Shaking::Site(_) => "a year at this site".to_owned(),
+        Shaking::Levels(levels) => {
+            let shown: Vec<String> = levels
+                .iter()
+                .map(|v| significant(100.0 * v, 3).trim_end_matches(".0").to_owned())
+                .collect();
+            format!("in shaking of {} cm/s", listed(&shown))
+        }
+    }
+}
+
+/// "a, b and c".
+fn listed(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+fn is_site(all: &Ranking) -> bool {
+    matches!(all.request.shaking, Shaking::Site(_))
+}
+
+/// How likely collapse is, or how often.
+fn collapse(all: &Ranking, value: f64) -> String {
+    if is_site(all) { format!("{} times a year", significant(value, 2)) } else { percent(value) }
+}
+
+fn headline(all: &Ranking) -> String {
+    let Some(base) = all.as_it_is() else { return "Nothing was tried.".to_owned() };
+    if base.fallen.mean <= 0.0 {
+        return format!("The stack stands as it is: no barrel falls {}.", per(all));
+    }
+    let Some(best) = all.best() else {
+        return "Nothing that was tried helps beyond doubt.".to_owned();
+    };
+    format!(
+        "Most is saved for its cost by this: {}. On average {} barrels of a stack fall {}, instead of {}.",
+        best.protection.name,
+        significant(best.fallen.mean, 2),
+        per(all),
+        significant(base.fallen.mean, 2)
+    )
+}
+
+fn sentences(all: &Ranking) -> Vec<String> {
+    let (Some(base), best) = (all.as_it_is(), all.best()) else { return Vec::new() };
+    let mut said = Vec::new();
+    if let Some(best) = best {
+        said.push(format!(
+            "It costs US${:.0} to {:.0} a stack, and collapse comes to {} instead of {}.",
+            best.protection.cost[0],
+            best.protection.cost[1],
+            collapse(all, best.collapse.mean),
+            collapse(all, base.collapse.mean)
+        ));
+        if best.protection.moved > 0 {
+            said.push(format!("{} barrels have to stand elsewhere.", best.protection.moved));
+        }
+        if let (Some(worn), Some((words, _))) = (&best.worn, &best.protection.degraded) {
+            said.push(format!(
+                "Badly kept ({words}) {} fall, under the motions of the first round.",
+                significant(worn.mean, 2)
+            ));
+        }
+        if let Some(fewest) = all.all.first().filter(|one| one.protection != best.protection) {
+            said.push(format!(
+                "Fewest fall, {}, with this: {}, for US${:.0} to {:.0}.",
+                significant(fewest.fallen.mean, 2),
+                fewest.protection.name,
+                fewest.protection.cost[0],
+                fewest.protection.cost[1]
+            ));
+        }
+    }
+    said.push(format!(
+        "{} protections were tried in {} runs, across the barrels and along them where the scenario has both.",
+        all.all.len() - 1,
+        all.runs
+    ));
+    said
+}
+
+/// Barrels of an event in hundredths, of a year in two digits, which may be far below one.
+fn interval(all: &Ranking, estimate: &Estimate) -> String {
+    let shown = |x: f64| if is_site(all) { significant(x, 2) } else { format!("{x:.2}") };
+    format!("{} ({}–{})", shown(estimate.mean), shown(estimate.low), shown(estimate.high))
+}
+
+fn shares(estimate: &Estimate) -> String {
+    let whole = |x: f64| format!("{:.0}", 100.0 * x);
+    format!("{} % ({}–{})", whole(estimate.mean), whole(estimate.low), whole(estimate.high))
+}
+
+fn table(all: &Ranking) -> Table {
+    let (collapses, fallen, burst) = if is_site(all) {
+        ("collapses a year", "barrels fallen a year", "barrels burst a year")
+    } else {
+        ("collapse", "barrels fallen", "barrels burst")
+    };
+    let mut table = Table::new(
+        format!("Every protection that was tried, {}; in brackets 95 % intervals.", per(all)),
+        &[
+            ("protection", ""),
+            ("cost of a stack", "US$"),
+            ("barrels elsewhere", ""),
+            (collapses, ""),
+            (fallen, ""),
+            (burst, ""),
+            ("fewer fall, same motions", ""),
+            ("fallen when badly kept", ""),
+            ("weaker", ""),
+            ("motions", ""),
+        ],
+    );
+    for one in &all.all {
+        let name = if one.on_front {
+            Cell::Rated(Rating::Good, format!("✓ {}", one.protection.name))
+        } else {
+            Cell::text(one.protection.name.clone())
+        };
+        let [low, high] = one.protection.cost;
+        table.rows.push(vec![
+            name,
+            Cell::text(if high > 0.0 { format!("{low:.0}–{high:.0}") } else { "0".to_owned() }),
+            Cell::text(one.protection.moved.to_string()),
+            Cell::text(if is_site(all) {
+                interval(all, &one.collapse)
+            } else {
+                shares(&one.collapse)
+            }),
+            Cell::text(interval(all, &one.fallen)),
+            Cell::text(interval(all, &one.burst)),
+            one.saved.as_ref().map_or(Cell::Missing, |saved| Cell::text(interval(all, saved))),
+            one.worn.as_ref().map_or(Cell::Missing, |worn| Cell::text(interval(all, worn))),
+            Cell::text(one.direction.words()),
+            Cell::text(one.motions.to_string()),
+        ]);
+    }
+    table
+}
+
+fn legend(all: &Ranking) -> String {
+    format!(
+        "✓: nothing that went through all rounds costs no more and loses less. Those below with fewer motions were \
+         dropped early, because a cheaper one is better beyond doubt or half of the others did better; their numbers \
+         are those of fewer motions. \"Fewer fall\" compares run by run under the same {} and is surer than the \
+         difference of two means. Numbers are those of the direction of shaking in which more barrels fall.",
+        if all.request.records.is_empty() && all.request.folder.is_none() {
+            "motions and friction"
+        } else {
+            "records and friction"
+        }
+    )
+}
+
+/// Cost against loss.
+fn chart(all: &Ranking) -> Figure {
+    let of = |front: bool| {
+        let last = all.all.iter().map(|one| one.round).max();
+        let some: Vec<&Ranked> =
+            all.all.iter().filter(|one| one.on_front == front && Some(one.round) == last).collect();
+        let x: Vec<f64> = some.iter().map(|one| one.cost()).collect();
+        let bounds: Vec<Interval> = some
+            .iter()
+            .map(|one| Interval { low: one.fallen.low, high: one.fallen.high })
+            .collect();
+        (x, some.iter().map(|one| one.fallen.mean).collect::<Vec<_>>(), bounds)
+    };
+    let series = [(true, "nothing beats it in both"), (false, "others")]
+        .into_iter()
+        .enumerate()
+        .map(|(index, (front, label))| {
+            let (x, y, bounds) = of(front);
+            points(label, &x, y.into_iter(), bounds.into_iter(), index)
+        })
+        .collect();
+    let fallen = if is_site(all) { "barrels fallen a year" } else { "barrels fallen" };
+    Figure {
+        id: "cost-and-loss".into(),
+        caption: format!(
+            "Barrels that fall against what a protection costs, {}, of those that went through all rounds. Upright \
+             bars: 95 % intervals. The table names them.",
+            per(all)
+        ),
+        kind: FigureKind::Plot(Plot {
+            x: Axis::new("cost of a stack", "US$"),
+            y: Axis::new(fallen, ""),
+            series,
+            ..Plot::default()
+        }),
+    }
+}
+
+/// What each changes, to be tried by hand.
+fn changes(all: &Ranking) -> Table {
+    let mut table = Table::new(
+        "What each protection changes in the scenario, and where its cost comes from.",
+        &[("protection", ""), ("changes", ""), ("cost", "")],
+    );
+    let tried = all.all.iter().filter(|one| one.protection.kind != Kind::AsItIs);
+    for one in tried {
+        table.rows.push(vec![
+            Cell::text(one.protection.name.clone()),
+            Cell::text(one.protection.changes.join("; ")),
+            Cell::text(one.protection.source.clone()),
+        ]);
+    }
+    table
+}
+
+fn rests_on(all: &Ranking) -> Vec<String> {
+    let own = !all.request.records.is_empty() || all.request.folder.is_some();
+    let motions = if own {
+        "Motions: the records that were named, each scaled to every level of peak ground velocity."
+            .to_owned()
+    } else {
+        "Motions: both components of South Napa 2014 at Napa College with its vertical, and synthetic ones (earthquakes \
+         of M 6 at 8 km and M 7 at 20 km, pulses of near faults), each scaled to every level of peak ground velocity."
+            .to_owned()
+    };
+    vec![
+        motions,
+        "Friction is drawn for every run about that of the scenario: rack on floor with a scatter of 20 %, barrel on rack \
+         of 25 %, both assumptions. All protections draw the same quantiles."
+            .into(),
+        "Costs are for one stack, bought and put on once; most are assumptions, told in the table. Work, lost time and \
+         what a fall does to people are not counted."
+            .into(),
+        "Barrels burst by the height of their fall, by the central assumption of three; nobody has tested that.".into(),
+        "One stack alone in a plane: no neighbors that knock it down, no walls, no ropes between stacks. Straps tear at no \
+         force unless the scenario gives one."
+            .into(),
+        "Half-way between two levels of shaking the loss is half-way, and nothing is lost below half of the lowest level; \
+         above the highest it is that of the highest."
+            .into(),
+    ]
+}
+
+fn warnings(all: &Ranking) -> Vec<String> {
+    let left_out: usize = all.all.iter().map(|one| one.left_out).sum();
+    let mut said = Vec::new();
+    if left_out > 0 {
+        said.push(format!(
+            "{left_out} of {} runs have no verdict and are left out; the column `error` of the tables says why.",
+            all.runs
+        ));
+    }
+    said
+}

@@ -1,0 +1,93 @@
+//! The studies behind the ranking: one for each protection, direction and round, alike in all but the stack.
+
+use std::fmt::Write as _;
+
+use super::Request;
+use crate::heights::{quoted, synthetic};
+use crate::scenario::Scenario;
+use crate::study::Study;
+use crate::study::StudyError;
+
+/// Runs of a chunk, what is kept or lost at a stop.
+const CHUNK: usize = 24;
+
+/// Pairs of bodies whose friction is drawn for each run, and the scatter (standard deviation of the logarithm) about that
+/// of the scenario: assumptions, since floors are washed daily and racks differ.
+const FRICTION: [(&str, f64); 2] = [("rack-ground", 0.2), ("barrel-rack", 0.25)];
+
+/// Name of the folder of a study below that of its protection.
+pub(super) fn name(direction: &str, round: u32) -> String {
+    format!("{direction}-{}", round + 1)
+}
+
+/// The study of a stack in one direction in a round, counted from 0: what it draws depends on the round alone, so all
+/// protections meet the same motions and the same quantiles of friction.
+///
+/// # Errors
+/// When a record cannot be read.
+pub(super) fn study(
+    request: &Request,
+    scenario: &Scenario,
+    levels: &[f64],
+    round: u32,
+) -> Result<Study, StudyError> {
+    let mut text = format!(
+        "schema = 1\ntitle = \"{}\"\nseed = {}\n\n{}\n",
+        "protection",
+        request.seed.wrapping_add(round),
+        scenario.to_toml_table("base")
+    );
+    let settings = scenario.settings();
+    for (pair, dispersion) in FRICTION {
+        let field = format!("interface.{pair}.friction.coefficient");
+        let Some(median) = settings.iter().find(|setting| setting.path == field) else { continue };
+        // What is at rest may not slide more easily than what slides: both are drawn as one.
+        let at_rest = format!("interface.{pair}.friction.static_coefficient");
+        let known = settings.iter().any(|setting| setting.path == at_rest);
+        let also = if known { format!("also = [\"{at_rest}\"]\n") } else { String::new() };
+        // Writing to a String cannot fail.
+        let _ = write!(
+            text,
+            "[[factor]]\n\
+             name = \"friction {pair}\"\n\
+             field = \"{field}\"\n\
+             {also}\
+             distribution = {{ kind = \"lognormal\", median = {}, dispersion = {dispersion} }}\n\n",
+            median.value
+        );
+    }
+    text.push_str(&motions(request, round));
+    let levels: Vec<String> = levels.iter().map(|v| format!("\"{} cm/s\"", 100.0 * v)).collect();
+    let _ = write!(
+        text,
+        "[intensity]\nmeasure = \"pgv\"\nlevels = [{}]\n\n[design]\nkind = \"stripes\"\nchunk = {CHUNK}\n",
+        levels.join(", ")
+    );
+    Study::parse("protection.toml", &text)
+}
+
+/// The motions of a round: the records that were named, or else the bundled one in the first round and synthetic ones in
+/// all.
+fn motions(request: &Request, round: u32) -> String {
+    let mut text = String::new();
+    for record in &request.records {
+        let _ = write!(text, "[[motion]]\nrecords = [{}]\n\n", quoted(record));
+    }
+    if let Some(folder) = &request.folder {
+        let _ = write!(text, "[[motion]]\nfolder = {}\n\n", quoted(folder));
+    }
+    if !text.is_empty() {
+        return text;
+    }
+    let bundled = round == 0;
+    if bundled {
+        text.push_str(
+            "[[motion]]\n\
+             bundled = \"napa-college-2014\"\n\
+             components = [\"horizontal-1\", \"horizontal-2\"]\n\
+             each = { vertical = \"UP\" }\n\n",
+        );
+    }
+    let made = request.motions.saturating_sub(if bundled { 2 } else { 0 });
+    text + &synthetic(made, &format!(", {}", round + 1))
+}

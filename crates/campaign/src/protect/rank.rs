@@ -1,0 +1,270 @@
+//! How protections compare: what each comes to under the same motions, which of two is better, who goes on.
+
+use std::collections::BTreeMap;
+
+use barrelstack_fragility::{Hazard, Interval, grouped_mean, student_quantile};
+
+use crate::decision::{Breakage, Case, Cases};
+
+/// Level of all intervals.
+pub(super) const LEVEL: f64 = 0.95;
+
+/// What became of a stack in one run, as shares of its barrels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Outcome {
+    collapsed: f64,
+    fallen: f64,
+    burst: f64,
+}
+
+impl Outcome {
+    fn of(case: &Case) -> Self {
+        let burst: f64 = case.falls.iter().map(|fall| Breakage::RANGE[1].probability(*fall)).sum();
+        Self {
+            collapsed: f64::from(u8::from(case.collapsed)),
+            fallen: f64::from(case.fallen()),
+            burst,
+        }
+    }
+}
+
+/// All runs of a stack in one direction: by motion, and of each by level of shaking.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Runs {
+    by_motion: BTreeMap<String, Vec<Vec<Outcome>>>,
+    pub(super) count: usize,
+    pub(super) left_out: usize,
+}
+
+/// What one quantity comes to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Estimate {
+    /// The mean over all motions, weighted over the levels of shaking.
+    pub mean: f64,
+    /// Its 95 % interval, for which the runs of one motion go together.
+    pub low: f64,
+    /// The end of that interval.
+    pub high: f64,
+}
+
+/// A quantity of the runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Quantity {
+    Collapsed,
+    Fallen,
+    Burst,
+}
+
+impl Quantity {
+    fn of(self, outcome: &Outcome) -> f64 {
+        match self {
+            Self::Collapsed => outcome.collapsed,
+            Self::Fallen => outcome.fallen,
+            Self::Burst => outcome.burst,
+        }
+    }
+}
+
+impl Runs {
+    /// Adds the cases of a round at levels of shaking (m/s).
+    pub(super) fn add(&mut self, cases: &Cases, levels: &[f64]) {
+        self.left_out += cases.left_out;
+        self.count += cases.all.len() + cases.left_out;
+        for case in &cases.all {
+            let Some(velocity) = case.intensity(cases.main) else { continue };
+            // Levels went through text and back, and motions were scaled to them.
+            let off = |level: &f64| (velocity / level - 1.0).abs();
+            let nearest =
+                (0..levels.len()).min_by(|a, b| off(&levels[*a]).total_cmp(&off(&levels[*b])));
+            let Some(at) = nearest.filter(|at| off(&levels[*at]) < 1e-3) else { continue };
+            let motion = cases.records[case.record as usize].clone();
+            let of = self.by_motion.entry(motion).or_insert_with(|| vec![Vec::new(); levels.len()]);
+            of[at].push(Outcome::of(case));
+        }
+    }
+
+    /// What each motion comes to, by weights of the levels; none of a motion that lacks a level.
+    fn by_motion(&self, quantity: Quantity, weights: &[f64]) -> BTreeMap<&str, f64> {
+        let weighted = |levels: &Vec<Vec<Outcome>>| {
+            let mean = |runs: &Vec<Outcome>| {
+                let sum: f64 = runs.iter().map(|run| quantity.of(run)).sum();
+                (!runs.is_empty()).then(|| sum / runs.len() as f64)
+            };
+            levels
+                .iter()
+                .zip(weights)
+                .map(|(runs, weight)| Some(weight * mean(runs)?))
+                .sum::<Option<f64>>()
+        };
+        let motions = self.by_motion.iter();
+        motions.filter_map(|(name, levels)| Some((name.as_str(), weighted(levels)?))).collect()
+    }
+
+    /// How many motions shook it at all levels.
+    pub(super) fn motions(&self) -> usize {
+        self.by_motion.values().filter(|levels| levels.iter().all(|runs| !runs.is_empty())).count()
+    }
+
+    /// What a quantity comes to, by weights of the levels; `most` is what one run can come to.
+    pub(super) fn estimate(&self, quantity: Quantity, weights: &[f64], most: f64) -> Estimate {
+        let values: Vec<f64> = self.by_motion(quantity, weights).into_values().collect();
+        let scale = most * weights.iter().sum::<f64>();
+        if values.is_empty() || scale <= 0.0 {
+            return Estimate { mean: f64::NAN, low: 0.0, high: scale };
+        }
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let shares: Vec<(f64, f64)> = values.iter().map(|value| (value / scale, 1.0)).collect();
+        let Interval { low, high } = grouped_mean(&shares, LEVEL);
+        Estimate { mean, low: scale * low, high: scale * high }
+    }
+
+    /// By how much less a quantity is than in other runs under the same motions: the mean of the differences and
+    /// its 95 % interval (Student's); none with fewer than two motions in common.
+    pub(super) fn less_than(
+        &self,
+        other: &Self,
+        quantity: Quantity,
+        weights: &[f64],
+    ) -> Option<Estimate> {
+        let (own, other) = (self.by_motion(quantity, weights), other.by_motion(quantity, weights));
+        let differences: Vec<f64> =
+            own.iter().filter_map(|(name, value)| Some(other.get(name)? - value)).collect();
+        let count = differences.len();
+        if count < 2 {
+            return None;
+        }
+        let mean = differences.iter().sum::<f64>() / count as f64;
+        let squares: f64 = differences.iter().map(|one| (one - mean) * (one - mean)).sum();
+        let error = (squares / (count as f64 * (count as f64 - 1.0))).sqrt();
+        let half = student_quantile(LEVEL, count - 1) * error;
+        Some(Estimate { mean, low: mean - half, high: mean + half })
+    }
+}
+
+/// Weights of levels of shaking (m/s): how often a year each stands for, or without a hazard all alike.
+///
+/// What becomes of a stack between two levels is taken as straight in the logarithm of the shaking, above the
+/// highest as at the highest, and below the lowest as falling to nothing at half of it.
+pub(super) fn weights(levels: &[f64], hazard: Option<&Hazard>) -> Vec<f64> {
+    let Some(hazard) = hazard else { return vec![1.0 / levels.len() as f64; levels.len()] };
+    let share = |at: usize, x: f64| {
+        let below = if at == 0 { 0.5 * levels[0] } else { levels[at - 1] };
+        let rising = |from: f64, to: f64| libm::log(x / from) / libm::log(to / from);
+        if x <= below {
+            0.0
+        } else if x <= levels[at] {
+            rising(below, levels[at])
+        } else if let Some(above) = levels.get(at + 1) {
+            (1.0 - rising(levels[at], *above)).max(0.0)
+        } else {
+            1.0
+        }
+    };
+    (0..levels.len()).map(|at| hazard.expected(1.0, |x| share(at, x)).low).collect()
+}
+
+/// Who goes on to the next round: of those that are not worse than a cheaper one beyond doubt, the better half by mean,
+/// and four at least; the first, the stack as it is, always.
+///
+/// `cost` is the middle of what each costs, `worse` the quantity by which they are judged.
+pub(super) fn contenders(all: &[(&Runs, f64)], quantity: Quantity, weights: &[f64]) -> Vec<usize> {
+    const LEAST: usize = 4;
+    let mean = |at: usize| all[at].0.estimate(quantity, weights, 1.0).mean;
+    let beaten = |at: usize| {
+        all.iter().any(|(runs, cost)| {
+            let less = runs.less_than(all[at].0, quantity, weights);
+            *cost <= all[at].1 && less.is_some_and(|less| less.low > 0.0)
+        })
+    };
+    let mut left: Vec<usize> = (1..all.len()).filter(|at| !beaten(*at)).collect();
+    left.sort_by(|a, b| mean(*a).total_cmp(&mean(*b)).then(a.cmp(b)));
+    left.truncate((all.len() - 1).div_ceil(2).max(LEAST));
+    left.insert(0, 0);
+    left.sort_unstable();
+    left
+}
+
+/// Those that no other beats in both cost and mean; by their numbers, the cheapest first.
+pub(super) fn front(all: &[(f64, f64)]) -> Vec<usize> {
+    let better = |a: (f64, f64), b: (f64, f64)| a.0 <= b.0 && a.1 <= b.1 && a != b;
+    let mut front: Vec<usize> =
+        (0..all.len()).filter(|at| !all.iter().any(|other| better(*other, all[*at]))).collect();
+    front.sort_by(|a, b| all[*a].0.total_cmp(&all[*b].0).then(all[*a].1.total_cmp(&all[*b].1)));
+    front
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn runs(motions: &[(&str, &[f64])]) -> Runs {
+        let outcome = |fallen: &f64| vec![Outcome { collapsed: 0.0, fallen: *fallen, burst: 0.0 }];
+        let of = |(name, levels): &(&str, &[f64])| {
+            ((*name).to_owned(), levels.iter().map(outcome).collect())
+        };
+        Runs { by_motion: motions.iter().map(of).collect(), count: 0, left_out: 0 }
+    }
+
+    #[test]
+    fn a_difference_under_the_same_motions_is_surer_than_the_means_are() {
+        // Motions differ by far more than the two stacks.
+        let (mild, hard): (Vec<f64>, Vec<f64>) = ((0..6).map(f64::from).collect(), vec![]);
+        assert!(hard.is_empty());
+        let names = ["a", "b", "c", "d", "e", "f"];
+        let one: Vec<[f64; 1]> = mild.iter().map(|x| [*x]).collect();
+        let other: Vec<[f64; 1]> =
+            mild.iter().enumerate().map(|(i, x)| [x + 1.0 + 0.1 * i as f64]).collect();
+        let of = |values: &[[f64; 1]]| {
+            let rows: Vec<(&str, &[f64])> =
+                names.iter().zip(values).map(|(name, value)| (*name, &value[..])).collect();
+            runs(&rows)
+        };
+        let (one, other) = (of(&one), of(&other));
+        let less = one.less_than(&other, Quantity::Fallen, &[1.0]).unwrap();
+        assert!((less.mean - 1.25).abs() < 1e-12 && less.low > 1.0, "{less:?}");
+        let [a, b] = [&one, &other].map(|runs| runs.estimate(Quantity::Fallen, &[1.0], 8.0));
+        assert!(a.high > b.low, "{a:?} {b:?}");
+    }
+
+    #[test]
+    fn weights_of_a_site_are_the_rate_at_which_something_happens_that_always_does() {
+        // Exceeded once in x⁻² years.
+        let rows: Vec<(f64, f64)> =
+            (0..60).map(|i| 0.01 * 1.1_f64.powi(i)).map(|x| (x, 1e-4 / (x * x))).collect();
+        let hazard = Hazard::new(&rows).unwrap();
+        let levels = [0.1, 0.2, 0.4];
+        let found = weights(&levels, Some(&hazard));
+        // Of all that exceeds a level well above the lowest, each case counts once.
+        let above: f64 = found.iter().sum();
+        let exact = hazard.expected(1.0, |x| {
+            if x >= 0.1 { 1.0 } else { (x / 0.05).ln().max(0.0) / 2.0_f64.ln() }
+        });
+        assert!((above / exact.low - 1.0).abs() < 1e-3, "{above} {exact:?}");
+        assert!(found[0] > found[1] && found[1] > found[2]);
+        assert_eq!(weights(&levels, None), [1.0 / 3.0; 3]);
+    }
+
+    #[test]
+    fn the_front_holds_what_nothing_beats_in_both() {
+        assert_eq!(
+            front(&[(0.0, 5.0), (10.0, 5.0), (20.0, 1.0), (5.0, 3.0), (30.0, 1.0)]),
+            [0, 3, 2]
+        );
+    }
+
+    #[test]
+    fn what_a_cheaper_one_beats_beyond_doubt_is_dropped_and_the_stack_as_it_is_stays() {
+        let of = |falls: [f64; 4]| {
+            let names = ["a", "b", "c", "d"];
+            let rows: Vec<[f64; 1]> = falls.iter().map(|x| [*x]).collect();
+            let rows: Vec<(&str, &[f64])> =
+                names.iter().zip(&rows).map(|(name, value)| (*name, &value[..])).collect();
+            runs(&rows)
+        };
+        let base = of([8.0, 8.0, 7.0, 8.0]);
+        let good = of([1.0, 0.0, 1.0, 0.0]);
+        let dear = of([4.0, 5.0, 4.0, 4.0]);
+        let all = [(&base, 0.0), (&dear, 90.0), (&good, 10.0)];
+        assert_eq!(contenders(&all, Quantity::Fallen, &[1.0]), [0, 2]);
+    }
+}

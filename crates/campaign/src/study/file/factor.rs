@@ -1,0 +1,178 @@
+//! A factor of a study file: which fields it sets, and what values they take.
+
+use barrelstack_report::column::{ColumnSpec, Role};
+
+use crate::scenario::reader::Reader;
+use crate::scenario::template::Template;
+use crate::scenario::tree::Node;
+use crate::scenario::{Scenario, ScenarioError};
+use crate::study::distribution::Distribution;
+use crate::study::setting::{Domain, Setting};
+use crate::study::{Factor, Variation, rows};
+
+/// The quantile that is tried for the low end of a distribution, and from 1 for the high end.
+pub(super) const LOW: f64 = 1e-6;
+
+/// Two factors that would set the same field, or take the same column.
+pub(super) fn clash(top: &Reader<'_>, factors: &[Factor], new: &Factor) -> Option<ScenarioError> {
+    let error = |message| Some(top.inconsistent("factor", message));
+    for factor in factors {
+        if factor.name == new.name {
+            return error(format!(
+                "two factors have the name `{}`; give one another `name`",
+                new.name
+            ));
+        }
+        if let Some(field) = new.fields.iter().find(|field| factor.fields.contains(field)) {
+            return error(format!(
+                "the factors `{}` and `{}` both set {field}",
+                factor.name, new.name
+            ));
+        }
+    }
+    rows::fixed_columns()
+        .any(|column| column == new.name)
+        .then(|| {
+            error(format!(
+                "every table has a column `{}`; give the factor another `name`",
+                new.name
+            ))
+        })
+        .flatten()
+}
+
+pub(super) fn read_factor(
+    reader: Reader<'_>,
+    template: &Template,
+    scenario: &Scenario,
+    own_motion: bool,
+) -> Result<Factor, ScenarioError> {
+    let field = reader.text("field")?.trim().to_owned();
+    let name = reader.optional_text("name")?.unwrap_or_else(|| field.clone());
+    let mut fields = vec![field.clone()];
+    fields.extend(reader.texts("also")?.into_iter().map(|text| text.trim().to_owned()));
+    let mut domain = None;
+    for (index, path) in fields.iter().enumerate() {
+        let of = domain_of(
+            &reader,
+            if index == 0 { "field" } else { "also" },
+            path,
+            template,
+            own_motion,
+        )?;
+        if domain.get_or_insert(of) != &of {
+            let message = format!("`{path}` does not take the same kind of value as `{field}`");
+            return Err(reader.inconsistent("also", message));
+        }
+    }
+    let Some(domain) = domain else { return Err(reader.missing("field")) };
+    let (variation, domain) = read_variation(&reader, domain, "values")?;
+    let Some(variation) = variation else {
+        return Err(reader.one_of(&["values", "range", "distribution"]));
+    };
+    reader.finish();
+    // Every value is tried by itself, so that one which the scenario refuses is told now and here.
+    let ends: Vec<Setting> = match &variation {
+        Variation::Values(values) => values.clone(),
+        Variation::Distribution(distribution) => match distribution.settings() {
+            Some(settings) => settings.cloned().collect(),
+            None => [LOW, 0.5, 1.0 - LOW].map(|u| distribution.quantile(u)).to_vec(),
+        },
+    };
+    for setting in &ends {
+        template.with(fields.iter().map(|field| (field.as_str(), &setting.node)))?;
+    }
+    let base = Template::value_in(scenario, &field).and_then(|value| domain.told(&value));
+    let column = ColumnSpec::new(&name, &domain.unit(), Role::Factor, domain.column_kind());
+    let structural = !domain.continuous();
+    Ok(Factor { name, fields, variation, column, base, structural })
+}
+
+fn domain_of(
+    reader: &Reader<'_>,
+    key: &str,
+    path: &str,
+    template: &Template,
+    own_motion: bool,
+) -> Result<Domain, ScenarioError> {
+    let Some(field) = template.field(path) else {
+        let message = format!(
+            "a scenario has no field `{path}`{}",
+            template
+                .nearest(path)
+                .map_or(String::new(), |near| format!(", did you mean `{near}`?"))
+        );
+        return Err(reader.inconsistent(key, message));
+    };
+    if path.starts_with("motion.") && !own_motion {
+        let message = format!("`{path}` is set by [[motion]]; vary it there");
+        return Err(reader.inconsistent(key, message));
+    }
+    if matches!(path, "motion.record" | "motion.vertical_record") {
+        // What these files hold is part of the fingerprint of the study only where [[motion]] lists them.
+        let message = format!("`{path}` names a file; list the `records` of [[motion]]");
+        return Err(reader.inconsistent(key, message));
+    }
+    if matches!(path, "title" | "schema" | "extends") || path.starts_with("record.") {
+        let message = format!("`{path}` changes nothing that happens to the stack");
+        return Err(reader.inconsistent(key, message));
+    }
+    Domain::of(field).ok_or_else(|| {
+        let message = format!(
+            "`{path}` holds {}; a factor varies a single value: name a field in it",
+            field.kind
+        );
+        reader.inconsistent(key, message)
+    })
+}
+
+/// Reads a list (whose key is given), a range or a distribution; none where there is none of them.
+pub(super) fn read_variation(
+    reader: &Reader<'_>,
+    domain: Domain,
+    list: &'static str,
+) -> Result<(Option<Variation>, Domain), ScenarioError> {
+    let first = match reader.nodes(list)? {
+        Some(nodes) => nodes.first().cloned(),
+        None => None,
+    };
+    let range = reader.optional_section("range")?;
+    let distribution = reader.optional_section("distribution")?;
+    let inner = |section: &Option<Reader<'_>>,
+                 keys: &[&'static str]|
+     -> Result<Option<Node>, ScenarioError> {
+        let Some(section) = section else { return Ok(None) };
+        for key in keys {
+            if section.has(key) {
+                return if *key == "values" {
+                    Ok(section.nodes(key)?.and_then(|nodes| nodes.first().cloned()))
+                } else {
+                    section.node(key)
+                };
+            }
+        }
+        Ok(None)
+    };
+    let first = match first {
+        Some(node) => Some(node),
+        None => match inner(&range, &["from"])? {
+            Some(node) => Some(node),
+            None => inner(&distribution, &["from", "mean", "median", "values"])?,
+        },
+    };
+    let domain = first.as_ref().map_or(domain, |node| domain.fixed_by(node));
+    let variation = if reader.has(list) {
+        Some(Variation::Values(domain.settings(reader, list)?))
+    } else if let Some(range) = range {
+        let origin = reader.origin_of("range");
+        let values = domain.range(&range, origin)?;
+        range.finish();
+        Some(Variation::Values(values))
+    } else if let Some(distribution) = distribution {
+        let origin = reader.origin_of("distribution");
+        Some(Variation::Distribution(Distribution::read(distribution, domain, origin)?))
+    } else {
+        None
+    };
+    Ok((variation, domain))
+}

@@ -1,0 +1,124 @@
+//! What protects best: all meet the same shaking, a stop loses nothing, and what cannot be tried is told.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use barrelstack::Scenario;
+use barrelstack_campaign::decision::SiteHazard;
+use barrelstack_campaign::protect::{
+    Kind, ProtectError, Ranking, Reached, Request, Shaking, protect,
+};
+use barrelstack_campaign::study::{RunOptions, StudyError, StudyTable};
+
+/// Two levels, four motions, two rounds.
+fn request() -> Request {
+    let changes = ["stack.levels=2", "motion.scale.factor=1"].map(str::to_owned);
+    Request {
+        scenario: Scenario::builtin("candia-8-barrels", &changes).unwrap(),
+        shaking: Shaking::Levels(vec![0.6]),
+        records: Vec::new(),
+        folder: None,
+        motions: 4,
+        rounds: 2,
+        budget: None,
+        seed: 3,
+    }
+}
+
+fn ranking(request: &Request, folder: &Path) -> Result<Ranking, ProtectError> {
+    protect(request, folder, &RunOptions::default(), &|_| ControlFlow::Continue(()))
+}
+
+fn json(ranking: &Ranking) -> String {
+    serde_json::to_string_pretty(&ranking.to_document()).unwrap()
+}
+
+/// What shook every case of a study, and the friction on its floor over that of the scenario.
+fn shaken(folder: &Path) -> Vec<(String, String)> {
+    let table =
+        StudyTable::from_parquet(std::fs::read(folder.join("table.parquet")).unwrap()).unwrap();
+    let records = table.texts("record").unwrap();
+    let friction = table.numbers("friction rack-ground").unwrap();
+    let words = |record: &Option<String>| record.clone().unwrap_or_default();
+    records
+        .iter()
+        .zip(friction)
+        .map(|(record, value)| (words(record), format!("{:.9}", value.unwrap())))
+        .collect()
+}
+
+#[test]
+fn all_protections_meet_the_same_motions_and_friction_and_a_stop_loses_no_bit() {
+    let request = request();
+    let (whole, stopped) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let found = ranking(&request, whole.path()).unwrap();
+
+    // The stack as it is and one level less, in both rounds or as long as both were in the race.
+    let of =
+        |key: &str, round: u32| shaken(&whole.path().join(key).join(format!("transverse-{round}")));
+    assert_eq!(of("as-it-is", 1), of("levels-1", 1));
+    assert_ne!(of("as-it-is", 1), of("as-it-is", 2));
+    assert_eq!(of("as-it-is", 1).len(), 4);
+
+    // Stopped again and again, it comes to the same to the last bit.
+    for most in [3, 9, 30] {
+        let heard = AtomicUsize::new(0);
+        let stop = |_: Reached| {
+            if heard.fetch_add(1, Ordering::Relaxed) < most {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        };
+        let result = protect(&request, stopped.path(), &RunOptions::default(), &stop);
+        assert!(matches!(result, Err(ProtectError::Study(StudyError::Stopped))), "{most}");
+    }
+    let resumed = ranking(&request, stopped.path()).unwrap();
+    assert_eq!(json(&found), json(&resumed));
+    assert_eq!(found.html(), resumed.html());
+
+    // What was tried is a change of the scenario, and stands by itself as one.
+    let mut kinds = BTreeMap::<&str, usize>::new();
+    for one in &found.all {
+        *kinds.entry(one.protection.kind.name()).or_default() += 1;
+        assert!(one.fallen.low <= one.fallen.mean && one.fallen.mean <= one.fallen.high);
+        let changed = one.protection.on(&request.scenario).unwrap();
+        assert_eq!(
+            changed.fingerprint() == request.scenario.fingerprint(),
+            one.protection.changes.is_empty()
+        );
+    }
+    assert!(kinds["height"] == 1 && kinds["rack"] >= 3 && kinds["straps"] == 3, "{kinds:?}");
+    assert_eq!(found.all.iter().filter(|one| one.protection.kind == Kind::AsItIs).count(), 1);
+    let low = found.all.iter().find(|one| one.protection.key == "levels-1").unwrap();
+    assert_eq!(low.protection.moved, 2);
+}
+
+#[test]
+fn what_costs_more_than_the_budget_is_not_tried_and_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let request = Request { budget: Some(0.0), rounds: 1, ..request() };
+    let found = ranking(&request, folder.path()).unwrap();
+    assert_eq!(found.all.len(), 1);
+    assert!(found.best().is_none());
+    assert!(found.not_tried.iter().all(|(_, reason)| reason.contains("above the budget of US$0")));
+    assert!(found.document.verdict.headline.contains("Nothing that was tried helps beyond doubt"));
+}
+
+#[test]
+fn a_free_scene_and_a_hazard_over_another_measure_are_refused_before_anything_is_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let free = Request { scenario: Scenario::builtin("sliding-block", &[]).unwrap(), ..request() };
+    let said = ranking(&free, folder.path()).unwrap_err().to_string();
+    assert!(said.contains("is a free scene"), "{said}");
+    let text = "pga (g),rate (1/year)\n0.1,0.05\n0.5,0.005\n1.0,0.0005\n";
+    let hazard = SiteHazard::parse("napa.csv", text).unwrap();
+    let over = Request { shaking: Shaking::Site(hazard), ..request() };
+    let said = ranking(&over, folder.path()).unwrap_err().to_string();
+    assert!(said.contains("napa.csv is over pga") && said.contains("over pgv"), "{said}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}

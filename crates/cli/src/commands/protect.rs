@@ -1,0 +1,187 @@
+//! `barrelstack protect`: what protects a stack best for what it costs, on one page.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context as _, bail};
+use barrelstack::compare::{document, sides};
+use barrelstack::scenario::{Dimension, quantity::Quantity};
+use barrelstack::variants::Asked;
+use barrelstack_campaign::decision::SiteHazard;
+use barrelstack_campaign::protect::{
+    ProtectError, Ranking, Reached, Request, Shaking, VELOCITIES, protect,
+};
+use barrelstack_campaign::study::{RunOptions, StudyError};
+use barrelstack_report::{Block, significant};
+
+use crate::args::ScenarioArgs;
+use crate::commands::heights::page;
+use crate::commands::run::answered;
+use crate::interrupt::{Stopped, keeps};
+use crate::lanes::LanesArgs;
+use crate::printer;
+use crate::progress::Progress;
+use crate::store::{store, writable};
+
+/// Arguments of `protect`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct ProtectArgs {
+    #[command(flatten)]
+    scenario: ScenarioArgs,
+    /// How often the site is shaken how hard: a CSV of `pgv (cm/s)` and `rate (1/year)`.
+    #[arg(long, value_name = "FILE", conflicts_with = "pgv")]
+    site: Option<PathBuf>,
+    /// Peak ground velocity to which motions are scaled, such as "50 cm/s"; may be repeated.
+    #[arg(long, value_name = "VELOCITY")]
+    pgv: Vec<String>,
+    /// A folder of recorded motions, in place of the bundled and synthetic ones.
+    #[arg(long, value_name = "DIR")]
+    motions: Option<PathBuf>,
+    /// Most that a protection may cost for a stack (US$).
+    #[arg(long, value_name = "NUMBER")]
+    budget: Option<f64>,
+    /// Motions of a round, where none are named.
+    #[arg(long, value_name = "NUMBER", default_value_t = 12, value_parser = clap::value_parser!(u32).range(4..=1000))]
+    count: u32,
+    /// Rounds: everything is tried in the first, half of it in each that follows.
+    #[arg(long, value_name = "NUMBER", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=12))]
+    rounds: u32,
+    /// Seed of motions and friction.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    seed: u32,
+    /// Where to write the page and the studies behind it; run again to go on after a stop.
+    #[arg(long, value_name = "DIR", default_value = "barrelstack-protect")]
+    out: PathBuf,
+    #[command(flatten)]
+    lanes: LanesArgs,
+    /// Print one JSON document in place of the table.
+    #[arg(long)]
+    json: bool,
+    /// Show no progress.
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Tries everything, writes the page, prints the table.
+pub(crate) fn run(args: &ProtectArgs) -> anyhow::Result<ExitCode> {
+    let request = request(args)?;
+    writable(&args.out)?;
+    keeps(format!(
+        "what was run is kept in {}, the same command goes on from there",
+        args.out.display()
+    ));
+    let progress = Progress::new(!args.quiet);
+    let options = RunOptions { lanes: args.lanes.lanes, ..RunOptions::default() };
+    let result = protect(&request, &args.out, &options, &|Reached { round, done, of }| {
+        progress.counted(done, of, &format!("runs of round {round}"))
+    });
+    drop(progress);
+    let mut found = match result {
+        Err(ProtectError::Study(StudyError::Stopped)) => return Err(Stopped.into()),
+        other => other?,
+    };
+    let shown = before_and_after(args, &found)?;
+    found.describe(shown);
+    // The answer is printed even where it cannot be written.
+    let written = write(&args.out, &found);
+    if args.json {
+        printer::document(&found.to_document())?;
+    } else {
+        print(&found)?;
+        printer::lines(["", &format!("page: {}", args.out.join("index.html").display())])?;
+    }
+    found.document.warnings.iter().for_each(|warning| printer::warning(warning));
+    written?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn request(args: &ProtectArgs) -> anyhow::Result<Request> {
+    let scenario = super::load(&args.scenario)?;
+    let shaking = match &args.site {
+        Some(file) => Shaking::Site(SiteHazard::load(file)?),
+        None if args.pgv.is_empty() => Shaking::Levels(VELOCITIES.to_vec()),
+        None => Shaking::Levels(velocities(&args.pgv)?),
+    };
+    if let Some(folder) = args.motions.as_ref().filter(|folder| !folder.is_dir()) {
+        bail!(
+            "--motions {}: there is no such folder; give one with the files of records, or leave it out",
+            folder.display()
+        );
+    }
+    if let Some(budget) = args.budget.filter(|budget| !(*budget >= 0.0 && budget.is_finite())) {
+        bail!("--budget {budget}: expected a sum of US$ of zero or more");
+    }
+    Ok(Request {
+        scenario,
+        shaking,
+        records: args.scenario.record.iter().cloned().collect(),
+        folder: args.motions.clone(),
+        motions: args.count,
+        rounds: args.rounds,
+        budget: args.budget,
+        seed: args.seed,
+    })
+}
+
+/// Velocities (m/s) as typed, ascending, each once.
+fn velocities(typed: &[String]) -> anyhow::Result<Vec<f64>> {
+    let read = |text: &String| {
+        let said =
+            || format!("--pgv {text:?}: expected a velocity above zero, such as \"50 cm/s\"");
+        let value = Quantity::parse_as(text, &[Dimension::VELOCITY]).with_context(said)?.value;
+        anyhow::ensure!(value > 0.0 && value.is_finite(), said());
+        Ok(value)
+    };
+    let mut all: Vec<f64> = typed.iter().map(read).collect::<anyhow::Result<_>>()?;
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    Ok(all)
+}
+
+/// The stack as it is and with the best protection side by side, under the motion of the scenario.
+fn before_and_after(args: &ProtectArgs, found: &Ranking) -> anyhow::Result<Vec<Block>> {
+    let Some(best) = found.best() else { return Ok(Vec::new()) };
+    let mut answers = Vec::new();
+    let own = &found.request.scenario;
+    let protected = best.protection.on(own)?;
+    for (name, scenario) in [("as it is", own), (&*best.protection.name, &protected)] {
+        let answer = answered(scenario, Asked::Typical, !args.quiet)
+            .map_err(|error| super::placed(error, scenario, &args.scenario))?;
+        if answer.decides.run.interrupted {
+            return Err(Stopped.into());
+        }
+        answers.push((name.to_owned(), answer));
+    }
+    let compared = document(&sides(answers));
+    let players = compared.blocks.into_iter().filter(|block| matches!(block, Block::Players(_)));
+    Ok(players.collect())
+}
+
+fn write(out: &Path, found: &Ranking) -> anyhow::Result<()> {
+    let json = serde_json::to_string_pretty(&found.to_document())? + "\n";
+    page(out, &found.html(), &found.markdown("figures"))?;
+    store(&out.join("protect.json"), json.as_bytes())
+}
+
+fn print(found: &Ranking) -> anyhow::Result<()> {
+    let verdict = &found.document.verdict;
+    let mut lines = vec![verdict.headline.clone()];
+    lines.extend(verdict.sentences.iter().map(|sentence| format!("  {sentence}")));
+    lines.push(String::new());
+    lines.push(format!(
+        "  {:44}{:>12}{:>14}{:>18}",
+        "protection", "US$ a stack", "collapse", "barrels fallen"
+    ));
+    for one in &found.all {
+        let sign = if one.on_front { "*" } else { " " };
+        lines.push(format!(
+            "{sign} {:44}{:>12.0}{:>14}{:>18}",
+            one.protection.name,
+            one.cost(),
+            significant(one.collapse.mean, 2),
+            significant(one.fallen.mean, 2)
+        ));
+    }
+    lines.push("* nothing that was tried costs no more and loses less".to_owned());
+    printer::lines(lines)
+}

@@ -1,0 +1,139 @@
+//! Guides: a spring, a damper and stops along an axis of the body they are fixed to.
+
+use super::{Action, Link, Load, Memory, all};
+use crate::lanewise;
+use crate::real::Real;
+use crate::space::{Linear, Space};
+use crate::state::State;
+
+/// A guide on its first body, along which a point of the second body goes.
+///
+/// With the way `e` (m) of that point from its place along the axis, which turns with the first body,
+///
+/// ```text
+/// f = k e + c ė                          everywhere
+/// f = … + kₛ (|e| − δ) sgn e + cₛ ė      beyond the gap δ; the damper on approach only
+/// ```
+///
+/// Both bodies feel the force where the point of the second one is, so that no momentum is lost.
+/// A guide holds the point while it is no further than `reach` (m) from its axis; then, and above its strength,
+/// it lets go for good.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Guide<S: Space> {
+    /// What it joins.
+    pub link: Link<S>,
+    /// Unit vector in the frame of the first body.
+    pub axis: S::Vector,
+    /// From the first point to the second at rest (m), in the frame of the first body.
+    pub place: S::Vector,
+    /// Stiffness k (N/m).
+    pub stiffness: S::Real,
+    /// Damping c (N·s/m).
+    pub damping: S::Real,
+    /// Way δ (m) to either side after which it meets a stop; infinite without stops.
+    pub gap: S::Real,
+    /// Stiffness kₛ of the stops (N/m).
+    pub stop_stiffness: S::Real,
+    /// Damping cₛ of the stops on approach (N·s/m).
+    pub stop_damping: S::Real,
+    /// Force (N) above which it breaks, for good; infinite if it never does.
+    pub strength: S::Real,
+    /// Distance (m) from its axis beyond which it has let go, for good; infinite if it never does.
+    pub reach: S::Real,
+}
+
+lanewise!(struct Guide<Planar<R>> {
+    link, axis, place, stiffness, damping, gap, stop_stiffness, stop_damping, strength, reach
+});
+
+impl<S: Space> Guide<S> {
+    /// A guide with a spring and a damper and nothing else, the second point in its place.
+    pub fn spring(link: Link<S>, axis: S::Vector, stiffness: S::Real, damping: S::Real) -> Self {
+        let (never, none) = (S::Real::splat(f64::INFINITY), S::Real::zero());
+        Self {
+            link,
+            axis,
+            place: S::Vector::default(),
+            stiffness,
+            damping,
+            gap: never,
+            stop_stiffness: none,
+            stop_damping: none,
+            strength: never,
+            reach: never,
+        }
+    }
+
+    /// Stops count where the point can reach them.
+    fn with_stops(&self, free: S::Real, stop: S::Real) -> S::Real {
+        free + S::Real::select(self.gap.is_finite_mask(), stop, S::Real::zero())
+    }
+
+    pub(super) fn stiffness(&self) -> S::Real {
+        self.with_stops(self.stiffness, self.stop_stiffness)
+    }
+
+    pub(super) fn damping(&self) -> S::Real {
+        self.with_stops(self.damping, self.stop_damping)
+    }
+
+    pub(super) fn fit(&mut self, state: &State<S>, give: S::Real) {
+        let [first, second] = [0, 1].map(|at| {
+            let pose = state.poses[self.link.bodies[at]];
+            (pose.position, S::rotation(pose.orientation))
+        });
+        let point = second.0 + S::rotate(second.1, self.link.points[1]);
+        let place = S::unrotate(first.1, point - first.0) - self.link.points[0];
+        self.place = place + self.axis * give;
+    }
+
+    pub(super) fn flaw(&self) -> Option<&'static str> {
+        let constants = [self.stiffness, self.damping, self.stop_stiffness, self.stop_damping];
+        let length = self.axis.dot(self.axis);
+        if !constants.into_iter().all(|it| all(it, |k| k >= 0.0 && k.is_finite())) {
+            Some("its stiffness and damping must be finite and not negative")
+        } else if !all(length, |l| (l - 1.0).abs() < 1e-9) {
+            Some("its axis must be a unit vector")
+        } else if !all(self.gap, |d| d >= 0.0) {
+            Some("its gap must not be negative")
+        } else if ![self.strength, self.reach].into_iter().all(|it| all(it, |f| f > 0.0)) {
+            Some("its strength and its reach must be positive")
+        } else {
+            None
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn act(
+        &self,
+        state: &State<S>,
+        rotations: &[S::Rotation],
+        memory: Memory<S>,
+    ) -> Action<S> {
+        let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
+        let line = self.link.at_second(state, rotations);
+        let rotation = rotations[self.link.bodies[0]];
+        let along = S::rotate(rotation, self.axis);
+        let way = S::unrotate(rotation, line.arms[0]) - self.link.points[0] - self.place;
+        let e = self.axis.dot(way);
+        let rate = line.rate(state, along);
+
+        let side = S::Real::select(e.lt(zero), -one, one);
+        let met = self.gap.lt(e.abs());
+        let depth = S::Real::select(met, e.abs() - self.gap, zero);
+        let closing = met & zero.lt(side * rate);
+        let stop = self.stop_stiffness * depth;
+        let elastic = self.stiffness * e + side * stop;
+        let damped = self.damping * rate + S::Real::select(closing, self.stop_damping * rate, zero);
+        let energy = S::Real::splat(0.5) * (self.stiffness * e * e + stop * depth);
+
+        let counted = |value| S::Real::select(memory.broken, zero, value);
+        let elastic = counted(elastic);
+        let damped = counted(damped);
+        let force = elastic + damped;
+        let aside = way - self.axis * e;
+        let breaks = self.strength.lt(force.abs()) | (self.reach * self.reach).lt(aside.dot(aside));
+        let load = Load { force, energy: counted(energy), elastic, breaks, ..Load::default() };
+        Action { load, wrenches: line.pull(along, force, damped) }
+    }
+}

@@ -1,0 +1,117 @@
+//! What moves of the wine in part-filled barrels.
+//!
+//! Across the barrels a wall presses toward the axis of the barrel, so the first wave is a pendulum on that
+//! axis, whatever the barrel does about it; the rest of the wine goes with the axis.
+//! Along the barrels it is a mass on a spring in the barrel, as in a rectangular tank as long and as full, at
+//! the depth at which the wine keeps its center of mass: an approximation.
+
+use std::f64::consts::PI;
+
+use barrelstack_dynamics::{Guide, Link, Rod, Vec2};
+
+use super::{Builder, Draft, Outline, PartKind};
+use crate::device::Words;
+use crate::scenario::{StackBody, View};
+use crate::slosh::Wave;
+
+/// What holds the wine never breaks, and no report tells of it.
+static WORDS: Words = Words::silent("wine");
+
+/// Damping of a wave over the critical one: an assumption; viscosity alone makes less of it in a smooth barrel,
+/// waves that break make more.
+const DAMPING_RATIO: f64 = 0.01;
+
+/// Rate (rad/s), 15 Hz, of what holds the wave up: far above that of waves, and no stiffer than seats.
+const HOLDING: f64 = 30.0 * PI;
+
+/// Its damping over the critical one: an assumption; wine that strikes the wall does not spring back.
+const HOLDING_DAMPING: f64 = 0.2;
+
+/// Radius (m) of the bob that is drawn.
+const BOB: f64 = 0.03;
+
+/// Puts the moving part of the wine into all barrels that are filled in part.
+pub(super) fn pour(builder: &mut Builder<'_>, gravity: f64) {
+    for body in 0..builder.bodies.len() {
+        let part = &builder.parts[body];
+        let (PartKind::Barrel, Some(level), Some(column)) = (part.kind, part.level, part.column)
+        else {
+            continue;
+        };
+        let mut barrel = builder.spec.barrel.clone();
+        for change in builder.spec.changes_of(StackBody::Barrel, level, column) {
+            barrel = barrel.altered(change.mass, change.fill);
+        }
+        if let Some(wave) = barrel.wave(builder.spec.view) {
+            add(builder, body, (barrel.mass - barrel.empty_mass, wave), gravity);
+        }
+    }
+}
+
+/// Takes the mass of a wave out of a barrel with some wine (kg), and hangs it up in it.
+fn add(builder: &mut Builder<'_>, body: usize, (wine, wave): (f64, Wave), gravity: f64) {
+    let scale = builder.scale;
+    let mass = wave.share * wine;
+    let rate = (gravity / wave.length).sqrt();
+    let down = match builder.spec.view {
+        View::Transverse => wave.length,
+        View::Longitudinal => wave.depth,
+    };
+    let place = builder.bodies[body].pose.position * (1.0 / scale.length) - Vec2::new(0.0, down);
+    let held = &mut builder.bodies[body];
+    held.mass -= mass * scale.mass();
+    let name = format!("wine in {}", held.name);
+    let wine = builder.add(Draft {
+        name: name.clone(),
+        kind: PartKind::Wine,
+        level: None,
+        column: 1,
+        mass,
+        // Every force goes through its center, so it never turns.
+        inertia: Some(0.5 * mass * BOB * BOB),
+        position: place,
+        size: BOB,
+        solids: Vec::new(),
+        carrier: Some(body),
+        supports: Vec::new(),
+    });
+    let bob = (0..24).map(|i| {
+        let (sin, cos) = barrelstack_dynamics::math::sin_cos(PI * f64::from(i) / 12.0);
+        Vec2::new(cos, sin) * (BOB * scale.length)
+    });
+    builder.parts[wine].outlines = vec![Outline { points: bob.collect(), closed: true }];
+
+    let damping = 2.0 * DAMPING_RATIO * mass * rate * scale.damping(false);
+    let stiff = mass * HOLDING * HOLDING * scale.stiffness(1.0, false);
+    let hard = 2.0 * HOLDING_DAMPING * mass * HOLDING * scale.damping(false);
+    // By so much it gives under the wine.
+    let sag = gravity / (HOLDING * HOLDING);
+    let link = |what: &str| Link {
+        name: format!("{name} {what}"),
+        bodies: [body, wine],
+        points: [Vec2::default(); 2],
+    };
+    match builder.spec.view {
+        View::Transverse => builder.hold(
+            Rod {
+                link: link("pendulum"),
+                length: (wave.length - sag) * scale.length,
+                stiffness: stiff,
+                damping: hard,
+                sway_damping: damping,
+            },
+            &WORDS,
+        ),
+        View::Longitudinal => {
+            let spring = mass * rate * rate * scale.stiffness(1.0, false);
+            let at = Vec2::new(0.0, (sag - wave.depth) * scale.length);
+            for (what, axis, k, c) in [
+                ("spring", Vec2::new(1.0, 0.0), spring, damping),
+                ("support", Vec2::new(0.0, 1.0), stiff, hard),
+            ] {
+                let guide = Guide::spring(link(what), axis, k, c);
+                builder.hold(Guide { place: at, ..guide }, &WORDS);
+            }
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Chocks beside the barrels: horns that are higher than the cradle, against rolling out.
+//!
+//! A barrel that leans on a support at an angle φ from the vertical through its center rolls over it from a
+//! sidewise acceleration of g tan φ on, and over a hill of m g r (1 − cos φ).
+
+use barrelstack_input::declared::Declared as _;
+use barrelstack_input::field::{Default, Kind, Range};
+use barrelstack_input::reader::Reader;
+use barrelstack_input::{Dimension, InputError, section};
+
+use super::{Cost, Each, LEVELS, Setting, Words, check_levels};
+use crate::assemble::Builder;
+
+pub(super) static WORDS: Words = Words {
+    candidates: &[
+        Setting { name: "chocks in the top level", overrides: &["stack.chock.levels=1"] },
+        Setting { name: "chocks in the top three levels", overrides: &["stack.chock.levels=3"] },
+    ],
+    degraded: &[Setting {
+        name: "chocks knocked aside",
+        overrides: &["stack.chock.gap=\"4 cm\"", "stack.chock.angle=\"45 deg\""],
+    }],
+    cost: Cost {
+        dollars: [15.0, 60.0],
+        each: Each::Level,
+        source: "four wedges of hardwood, or horns welded to a rack: an assumption",
+    },
+    many: "chocks",
+    ..Words::silent("chock")
+};
+
+section! {
+    /// Chocks beside the barrels.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Chocks;
+    /// Chocks on the racks to both sides of their barrels, higher than the cradle; they do nothing along the barrels.
+    pub static SECTION = "chock";
+    /// How many of the highest levels have chocks; 0 for none.
+    levels: u32 = LEVELS, Default::Value("0");
+    /// Angle of the top of a chock from the vertical through the center of the barrel: an assumption.
+    angle: f64 =
+        Kind::Quantity(&[Dimension::ANGLE], Range::between(0.1, 1.4)), Default::Value("\"55 deg\"");
+    /// Free distance between a chock and its barrel: an assumption.
+    gap: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 0.2)), Default::Value("\"5 mm\"");
+}
+
+/// Reads chocks.
+pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Chocks, InputError> {
+    let chocks = Chocks::read_fields(&reader)?;
+    check_levels(&reader, chocks.levels, levels)?;
+    reader.finish();
+    Ok(chocks)
+}
+
+impl Chocks {
+    pub(super) fn is_on(&self) -> bool {
+        self.levels > 0
+    }
+
+    /// Whether a level of a number of them has chocks, which are solids of its racks.
+    pub(crate) fn at(&self, level: u32, levels: u32) -> bool {
+        level + self.levels > levels
+    }
+
+    /// Chocks come with the racks.
+    #[expect(clippy::unnecessary_wraps, clippy::unused_self, reason = "as every device is put on")]
+    pub(super) fn place(&self, _: &mut Builder<'_>) -> Result<(), String> {
+        Ok(())
+    }
+}

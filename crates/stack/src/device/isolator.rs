@@ -1,0 +1,256 @@
+//! Isolators under the bottom racks: a platform on rollers, balls or sheets, flat or in dishes.
+//!
+//! A platform bears on the ground at two points.
+//! In a dish of radius `R` a stack swings as a pendulum of that length, `T = 2π √(R/g)`, whatever it weighs; for
+//! balls between two dishes `R` is the sum of both radii less the diameter of the balls.
+//! The stroke ends at stops; a rack stands on its platform as on the ground.
+
+use barrelstack_dynamics::shape::{Cradle, Polygon};
+use barrelstack_dynamics::space::Rotation2;
+use barrelstack_dynamics::{
+    BodyId, ContactPair, Counts, Guide, Link, Node, Nodes, Placed, Shape, Vec2, math,
+};
+use barrelstack_input::declared::Declared as _;
+use barrelstack_input::field::{Default, Kind, Named, Range, names};
+use barrelstack_input::reader::Reader;
+use barrelstack_input::{Dimension, InputError, section};
+
+use super::{Cost, Each, Loose, Setting, Words};
+use crate::assemble::{Assembly, Builder, Draft, Outline, PartKind, Seat, Solid};
+use crate::scenario::{Basis, Damping, Friction, Interface, NormalLaw};
+
+pub(super) static WORDS: Words = Words {
+    one: "isolator",
+    many: "isolators",
+    force: "force",
+    breaks: "breaks",
+    break_all: "break",
+    broken: "broken",
+    candidates: &[
+        Setting {
+            name: "an isolator of balls in dishes of 1 m",
+            overrides: &["stack.isolator.path=\"dish\""],
+        },
+        Setting {
+            name: "a flat isolator of rollers with recentring springs",
+            overrides: &["stack.isolator.path=\"flat\"", "stack.isolator.recentring=\"10 kN/m\""],
+        },
+        Setting {
+            name: "a sheet of low friction",
+            overrides: &["stack.isolator.path=\"flat\"", "stack.isolator.friction=0.12"],
+        },
+    ],
+    degraded: &[
+        Setting { name: "seized rollers", overrides: &["stack.isolator.friction=0.6"] },
+        Setting { name: "rusty rollers", overrides: &["stack.isolator.friction=0.1"] },
+    ],
+    cost: Cost {
+        dollars: [800.0, 2500.0],
+        each: Each::Stack,
+        source: "a platform of stainless steel with rolling bearings: an assumption",
+    },
+};
+
+/// What the platform moves on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Path {
+    /// There is no isolator.
+    None,
+    /// A level path.
+    Flat,
+    /// Circular dishes.
+    Dish,
+}
+
+impl Named for Path {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("none", Self::None), ("flat", Self::Flat), ("dish", Self::Dish)];
+}
+
+section! {
+    /// Isolators under the bottom racks.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Isolators;
+    /// A platform under every bottom rack that rolls or slides on the ground, flat or in dishes, between stops.
+    pub static SECTION = "isolator";
+    /// The path of the platform.
+    path: Path = Kind::Choice(names::<Path>), Default::Value("\"none\"");
+    /// Friction of the platform on its path: 0.005 to 0.02 for balls and rollers, 0.1 to 0.2 for sheets, 0.6 where they are seized.
+    friction: f64 = Kind::Number(Range::between(0.0, 2.0)), Default::Value("0.01");
+    /// Radius of the dishes, which is the length of the pendulum; not used on a flat path. An assumption: 2 s.
+    dish_radius: f64 =
+        Kind::Quantity(&[Dimension::LENGTH], Range::between(0.3, 100.0)), Default::Value("\"1 m\"");
+    /// How far the platform may move to either side before it meets a stop: an assumption.
+    stroke: f64 =
+        Kind::Quantity(&[Dimension::LENGTH], Range::between(0.001, 10.0)), Default::Value("\"20 cm\"");
+    /// Stiffness of a stop: an assumption.
+    stop_stiffness: f64 =
+        Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"500 kN/m\"");
+    /// Damping of a stop, on approach only: an assumption.
+    stop_damping: f64 =
+        Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"5 kN s/m\"");
+    /// Stiffness of springs that pull the platform back to its place.
+    recentring: f64 =
+        Kind::Quantity(&[Dimension::STIFFNESS], Range::NOT_NEGATIVE), Default::Value("\"0 N/m\"");
+    /// Stiffness of the bearings at one end of a platform: an assumption, that of steel balls on steel plate.
+    bearing_stiffness: f64 =
+        Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"10 MN/m\"");
+    /// Mass of a platform: an assumption.
+    mass: f64 =
+        Kind::Quantity(&[Dimension::MASS], Range::up_to(1e4)), Default::Value("\"60 kg\"");
+}
+
+/// Reads isolators.
+pub(super) fn read(reader: Reader<'_>, _levels: u32) -> Result<Isolators, InputError> {
+    let isolators = Isolators::read_fields(&reader)?;
+    if isolators.path == Path::Dish && isolators.stroke > STEEPEST * isolators.dish_radius {
+        let message = format!(
+            "`{}` of {} m leads out of a dish of {} m; a dish goes up to {} m",
+            reader.path_of("stroke"),
+            isolators.stroke,
+            isolators.dish_radius,
+            STEEPEST * isolators.dish_radius
+        );
+        return Err(reader.inconsistent("stroke", message));
+    }
+    reader.finish();
+    Ok(isolators)
+}
+
+/// Sine of the steepest slope of a dish at its stops.
+const STEEPEST: f64 = 0.5;
+
+/// Half of the angle (rad) that a dish spans.
+const DISH: f64 = 1.2;
+
+/// Height (m) of the bearings, and thickness of the platform on them: an assumption.
+const BEARING: f64 = 0.03;
+const PLATE: f64 = 0.04;
+
+/// How far (m) a platform reaches beyond the rack: an assumption; and its bearings lie inside of its end.
+const MARGIN: f64 = 0.05;
+
+/// Damping of bearings over their stiffness (s), on approach only: an assumption.
+const BEARING_DAMPING: f64 = 5e-4;
+
+impl Isolators {
+    pub(super) fn is_on(&self) -> bool {
+        self.path != Path::None
+    }
+
+    /// Lifts the stack and puts a platform under every bottom rack.
+    pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
+        if !self.is_on() {
+            return Ok(());
+        }
+        let (scale, share) = (builder.scale, 1.0 / builder.side_by_side());
+        builder.raise((BEARING + PLATE) * scale.length);
+        let stiffness = self.bearing_stiffness * share;
+        let law = Interface {
+            basis: Basis::Node,
+            normal: NormalLaw::SpeedGap {
+                stiffness,
+                damping: Damping::Coefficient(BEARING_DAMPING * stiffness),
+            },
+            friction: Friction::Coulomb {
+                coefficient: self.friction,
+                static_coefficient: self.friction,
+                tangential_stiffness_ratio: 1.0,
+                tangential_damping_ratio: 1.0,
+            },
+        };
+        let law = builder.add_law("isolator-ground", &law, 1.0);
+        let bottom = |(id, part): (BodyId, &crate::assemble::Part)| {
+            (part.kind == PartKind::Rack && part.supports.is_empty()).then_some(id)
+        };
+        let racks: Vec<BodyId> = builder.parts.iter().enumerate().filter_map(bottom).collect();
+        for rack in racks {
+            let (name, size) = (builder.parts[rack].name.clone(), builder.parts[rack].size);
+            let half = size / scale.length + MARGIN;
+            let x = builder.bodies[rack].pose.position.x / scale.length;
+            let plate = Polygon::rectangle(2.0 * half, PLATE, 0.25 * PLATE)
+                .map_err(|problem| format!("the platform under {name}: {problem}"))?;
+            let center = BEARING + 0.5 * PLATE;
+            let platform = builder.add(Draft {
+                name: format!("platform of {name}"),
+                kind: PartKind::Device,
+                level: None,
+                column: builder.parts[rack].column.unwrap_or(1),
+                mass: self.mass * share,
+                inertia: None,
+                position: Vec2::new(x, 0.0),
+                size: half,
+                solids: vec![Solid::exact(
+                    Shape::Polygon(plate),
+                    Vec2::new(0.0, center),
+                    Seat::None,
+                )],
+                carrier: None,
+                supports: Vec::new(),
+            });
+            builder.parts[rack].carrier = Some(platform);
+            let mut ends = [-1.0, 1.0];
+            if builder.spec.mirror {
+                ends.reverse();
+            }
+            for end in ends {
+                self.bear(builder, platform, law, (x, end * (half - MARGIN)), center);
+            }
+            let link =
+                Link { name, bodies: [Assembly::GROUND, platform], points: [Vec2::default(); 2] };
+            let spring = Guide::spring(link, Vec2::new(1.0, 0.0), self.recentring * share, 0.0);
+            let stiff = scale.stiffness(1.0, false);
+            let guide = Guide {
+                stiffness: spring.stiffness * stiff,
+                gap: self.stroke * scale.length,
+                stop_stiffness: self.stop_stiffness * share * stiff,
+                stop_damping: self.stop_damping * share * scale.damping(false),
+                ..spring
+            };
+            builder.loose.push(Loose { element: guide.into(), give: 0.0, words: &WORDS });
+        }
+        Ok(())
+    }
+
+    /// A bearing of a platform at `x + end` (m) of the ground, `center` (m) below its center of mass.
+    fn bear(
+        &self,
+        builder: &mut Builder<'_>,
+        platform: BodyId,
+        interface: usize,
+        (x, end): (f64, f64),
+        center: f64,
+    ) {
+        let length = builder.scale.length;
+        let surface = match self.path {
+            Path::None | Path::Flat => 0,
+            Path::Dish => {
+                // Drawn up to the stops; it goes on beyond them, so that no blow leads out of it.
+                let dish =
+                    |half_angle| Shape::Cradle(Cradle::new(self.dish_radius * length, half_angle));
+                let offset = Vec2::new(x + end, self.dish_radius) * length;
+                let drawn = dish(math::atan(self.stroke / self.dish_radius)).outline().0;
+                let points = drawn.into_iter().map(|point| offset + point).collect();
+                let dish = dish(DISH);
+                let ground = &mut builder.parts[Assembly::GROUND];
+                ground.outlines.push(Outline { points, closed: false });
+                let rotation = Rotation2::identity();
+                let surfaces = &mut builder.bodies[Assembly::GROUND].surfaces;
+                surfaces.push(Placed { surface: dish, offset, rotation });
+                surfaces.len() - 1
+            }
+        };
+        let nodes = &mut builder.bodies[platform].nodes;
+        let position = Vec2::new(end, -center) * length;
+        nodes.push(Nodes::Fixed(vec![Node { position, tributary_length: length }]));
+        let nodes = nodes.len() - 1;
+        builder.pairs.push(ContactPair {
+            contactor: platform,
+            nodes,
+            target: Assembly::GROUND,
+            surface,
+            interface,
+            counts: Counts::Everywhere,
+        });
+    }
+}

@@ -1,0 +1,100 @@
+//! Lids over the barrels of the highest levels: a cap rack or a bar that closes on them from above.
+//!
+//! A lid is fixed to the rack that carries the barrel, bears on the barrel without friction, and weighs nothing.
+//! A barrel that rolls out of its cradle has to rise first, which a lid does not let it.
+
+use barrelstack_dynamics::{Guide, Link, Vec2};
+use barrelstack_input::declared::Declared as _;
+use barrelstack_input::field::{Default, Kind, Range};
+use barrelstack_input::reader::Reader;
+use barrelstack_input::{Dimension, InputError, section};
+
+use super::{Cost, Each, LEVELS, Loose, Setting, Words, check_levels};
+use crate::assemble::{Builder, Outline, PartKind};
+
+pub(super) static WORDS: Words = Words {
+    one: "lid",
+    many: "lids",
+    force: "force",
+    breaks: "breaks",
+    break_all: "break",
+    broken: "broken",
+    candidates: &[
+        Setting { name: "a cap rack on the top level", overrides: &["stack.lid.levels=1"] },
+        Setting { name: "lids on the top three levels", overrides: &["stack.lid.levels=3"] },
+    ],
+    degraded: &[Setting { name: "lids that sit loose", overrides: &["stack.lid.gap=\"4 cm\""] }],
+    cost: Cost {
+        dollars: [100.0, 250.0],
+        each: Each::Level,
+        source: "a rack turned over, with clamps: an assumption",
+    },
+};
+
+section! {
+    /// Lids over barrels.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Lids;
+    /// Lids over the barrels of the highest levels, such as a cap rack clamped to the rack below: they bound how far a barrel rises in its cradle.
+    pub static SECTION = "lid";
+    /// How many of the highest levels have lids; 0 for none.
+    levels: u32 = LEVELS, Default::Value("0");
+    /// How far a barrel may rise from its place at rest before it meets its lid: an assumption.
+    gap: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 1.0)), Default::Value("\"1 cm\"");
+    /// Force per way into one lid: an assumption.
+    stiffness: f64 =
+        Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"500 kN/m\"");
+    /// Force per speed into one lid, on approach only: an assumption.
+    damping: f64 =
+        Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"2 kN s/m\"");
+    /// Force above which one lid breaks, for good; without it none does.
+    strength: Option<f64> =
+        Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
+}
+
+/// Reads lids.
+pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Lids, InputError> {
+    let lids = Lids::read_fields(&reader)?;
+    check_levels(&reader, lids.levels, levels)?;
+    reader.finish();
+    Ok(lids)
+}
+
+impl Lids {
+    pub(super) fn is_on(&self) -> bool {
+        self.levels > 0
+    }
+
+    /// Puts a lid on every barrel of its levels.
+    #[expect(clippy::unnecessary_wraps, reason = "as every device is put on")]
+    pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
+        let (spec, scale) = (builder.spec, builder.scale);
+        let lowest = spec.levels.saturating_sub(self.levels) + 1;
+        for barrel in 0..builder.parts.len() {
+            let part = &builder.parts[barrel];
+            let Some(rack) = part.carrier.filter(|_| part.kind == PartKind::Barrel) else {
+                continue;
+            };
+            if part.level < Some(lowest) {
+                continue;
+            }
+            let (name, size) = (part.name.clone(), part.size);
+            let gap = self.gap * scale.length;
+            let link = Link { name, bodies: [rack, barrel], points: [Vec2::default(); 2] };
+            let guide = Guide {
+                gap,
+                stop_stiffness: self.stiffness * scale.stiffness(1.0, false),
+                stop_damping: self.damping * scale.damping(false),
+                strength: self.strength.map_or(f64::INFINITY, |force| force * scale.force()),
+                ..Guide::spring(link, Vec2::new(0.0, 1.0), 0.0, 0.0)
+            };
+            builder.loose.push(Loose { element: guide.into(), give: 0.0, words: &WORDS });
+            let top = builder.bodies[barrel].pose.position - builder.bodies[rack].pose.position
+                + Vec2::new(0.0, size + gap);
+            let half = Vec2::new(0.6 * size, 0.0);
+            let points = vec![top - half, top + half];
+            builder.parts[rack].outlines.push(Outline { points, closed: false });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,81 @@
+//! Elastomer pads in the cradles: softer, more damped and less slippery than wood on steel.
+
+use barrelstack_input::declared::Declared as _;
+use barrelstack_input::field::{Default, Kind, Range};
+use barrelstack_input::reader::Reader;
+use barrelstack_input::{Dimension, InputError, section};
+
+use super::{Cost, Each, Setting, Words};
+use crate::assemble::Builder;
+use crate::scenario::{Basis, Damping, Friction, Interface, NormalLaw};
+
+pub(super) static WORDS: Words = Words {
+    candidates: &[Setting {
+        name: "rubber pads in all cradles",
+        overrides: &["stack.pad.stiffness=\"500 kN/m\""],
+    }],
+    degraded: &[Setting {
+        name: "worn pads",
+        overrides: &[
+            "stack.pad.stiffness=\"980 kN/m\"",
+            "stack.pad.damping=\"2.2 kN s/m\"",
+            "stack.pad.friction=0.22",
+        ],
+    }],
+    cost: Cost {
+        dollars: [20.0, 60.0],
+        each: Each::Level,
+        source: "eight pads of rubber of 1 cm: an assumption",
+    },
+    many: "pads",
+    ..Words::silent("pad")
+};
+
+section! {
+    /// Pads between barrels and their cradles.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Pads;
+    /// Elastomer pads between all barrels and their cradles, in place of `interface.barrel-rack`, which still holds
+    /// for racks that lie on barrels.
+    pub static SECTION = "pad";
+    /// Stiffness of one contact element on pads; without it there are none.
+    stiffness: Option<f64> =
+        Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Nothing;
+    /// Damping of one contact element on pads, of rubber in both senses: an assumption.
+    damping: f64 =
+        Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"5 kN s/m\"");
+    /// Coefficient of friction of wood on pads: an assumption.
+    friction: f64 = Kind::Number(Range::between(0.0, 2.0)), Default::Value("0.6");
+}
+
+/// Reads pads.
+pub(super) fn read(reader: Reader<'_>, _levels: u32) -> Result<Pads, InputError> {
+    Pads::read(reader)
+}
+
+impl Pads {
+    pub(super) fn is_on(&self) -> bool {
+        self.stiffness.is_some()
+    }
+
+    /// Gives the cradles their law.
+    #[expect(clippy::unnecessary_wraps, reason = "as every device is put on")]
+    pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
+        let Some(stiffness) = self.stiffness else { return Ok(()) };
+        let law = Interface {
+            basis: Basis::Node,
+            normal: NormalLaw::KelvinVoigt {
+                stiffness,
+                damping: Damping::Coefficient(self.damping),
+            },
+            friction: Friction::Coulomb {
+                coefficient: self.friction,
+                static_coefficient: self.friction,
+                tangential_stiffness_ratio: 1.0,
+                tangential_damping_ratio: 1.0,
+            },
+        };
+        builder.cradle_law = builder.add_seat("pad", &law);
+        Ok(())
+    }
+}

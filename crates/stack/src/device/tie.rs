@@ -1,0 +1,222 @@
+//! Ties of racks to what stands beside or above them: cables and rods that pull, may have slack, yield and tear.
+//!
+//! Walls and ceilings move as the ground does; a real one moves more.
+
+use barrelstack_dynamics::{Link, Strap, Vec2};
+use barrelstack_input::declared::Declared as _;
+use barrelstack_input::field::{Default, Kind, Named, Range, names};
+use barrelstack_input::reader::Reader;
+use barrelstack_input::{Dimension, InputError, section};
+
+use super::{Cost, Each, LEVELS, Loose, Setting, Words, check_levels};
+use crate::assemble::{Assembly, Builder, Outline, PartKind};
+
+pub(super) static WORDS: Words = Words {
+    one: "tie",
+    many: "ties",
+    force: "tension",
+    breaks: "tears",
+    break_all: "tear",
+    broken: "torn",
+    candidates: &[
+        Setting {
+            name: "the top rack tied to walls on both sides",
+            overrides: &["stack.tie.levels=1"],
+        },
+        Setting {
+            name: "the top rack tied to the ceiling",
+            overrides: &[
+                "stack.tie.levels=1",
+                "stack.tie.to=\"ceiling\"",
+                "stack.tie.distance=\"2 m\"",
+            ],
+        },
+    ],
+    degraded: &[Setting { name: "slack ties", overrides: &["stack.tie.slack=\"5 cm\""] }],
+    cost: Cost {
+        dollars: [150.0, 600.0],
+        each: Each::Level,
+        source: "two cables with anchors in concrete, set by two people: an assumption",
+    },
+};
+
+/// What racks are tied to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Anchor {
+    /// A wall at either end of the rack.
+    Wall,
+    /// The ceiling above both ends of the rack.
+    Ceiling,
+    /// The racks beside it on the same level.
+    Neighbors,
+}
+
+impl Named for Anchor {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("wall", Self::Wall), ("ceiling", Self::Ceiling), ("neighbors", Self::Neighbors)];
+}
+
+/// On which sides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// On the left.
+    Left,
+    /// On the right.
+    Right,
+    /// On both.
+    Both,
+}
+
+impl Named for Side {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("left", Self::Left), ("right", Self::Right), ("both", Self::Both)];
+}
+
+section! {
+    /// Ties of racks.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct AnchorTies;
+    /// Cables or rods from the ends of racks to a wall, to the ceiling or to the neighboring racks: they pull, never push.
+    pub static SECTION = "tie";
+    /// How many of the highest levels are tied; 0 for none.
+    levels: u32 = LEVELS, Default::Value("0");
+    /// What they are tied to; walls and ceiling move as the ground does.
+    to: Anchor = Kind::Choice(names::<Anchor>), Default::Value("\"wall\"");
+    /// On which side there is a wall or a ceiling, before mirroring.
+    side: Side = Kind::Choice(names::<Side>), Default::Value("\"both\"");
+    /// From the end of a rack to the wall or the ceiling; to a wall the 18 in that a winery keeps (Press Democrat 2014).
+    distance: f64 =
+        Kind::Quantity(&[Dimension::LENGTH], Range::between(0.01, 20.0)), Default::Value("\"45 cm\"");
+    /// Force per elongation of one tie; of a steel cable of 8 mm some 2 MN over its length in meters, softer with its anchors: an assumption.
+    stiffness: f64 =
+        Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"500 kN/m\"");
+    /// Force per rate of elongation of one tie, while it is taut.
+    damping: f64 =
+        Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
+    /// How far one tie gives, on the stack at rest, before it pulls.
+    slack: f64 =
+        Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), Default::Value("\"1 cm\"");
+    /// Force at which one tie yields: it becomes longer for good; without it none does.
+    yields_at: Option<f64> =
+        Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
+    /// Force above which one tie tears, for good; without it none does.
+    strength: Option<f64> =
+        Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
+}
+
+/// Reads ties.
+pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<AnchorTies, InputError> {
+    let ties = AnchorTies::read_fields(&reader)?;
+    check_levels(&reader, ties.levels, levels)?;
+    if let (Some(yields_at), Some(strength)) = (ties.yields_at, ties.strength)
+        && strength <= yields_at
+        && ties.damping == 0.0
+    {
+        let message = format!(
+            "`{}` of {yields_at} N is not below the strength of {strength} N, so no tie would yield; leave it out",
+            reader.path_of("yields_at")
+        );
+        return Err(reader.inconsistent("yields_at", message));
+    }
+    reader.finish();
+    Ok(ties)
+}
+
+impl AnchorTies {
+    pub(super) fn is_on(&self) -> bool {
+        self.levels > 0
+    }
+
+    /// Ties the racks, from the ground up.
+    ///
+    /// # Errors
+    /// When racks have no neighbors to be tied to.
+    pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
+        let (spec, scale) = (builder.spec, builder.scale);
+        if !self.is_on() {
+            return Ok(());
+        }
+        let racks = spec.racks_per_level();
+        if self.to == Anchor::Neighbors && racks < 2 {
+            return Err(format!(
+                "stack.tie.to = \"neighbors\" ties racks side by side, but this stack has one rack on a level \
+                 {}: set stack.columns higher, or stack.tie.to = \"wall\"",
+                spec.view.words()
+            ));
+        }
+        let lowest = spec.levels.saturating_sub(self.levels) + 1;
+        let far = self.distance * scale.length;
+        // In the mirror left and right change places, in the order of sums, too.
+        let mut sides = [("left", -1.0, Side::Left), ("right", 1.0, Side::Right)];
+        if spec.mirror {
+            sides = [("left", 1.0, Side::Left), ("right", -1.0, Side::Right)];
+        }
+        for rack in 0..builder.parts.len() {
+            let part = &builder.parts[rack];
+            if part.kind != PartKind::Rack || part.level < Some(lowest) {
+                continue;
+            }
+            let (level, column, size) = (part.level, part.column, part.size);
+            let place = builder.bodies[rack].pose.position;
+            for (side, sign, on) in sides {
+                let beside = match on {
+                    Side::Left => column.and_then(|column| column.checked_sub(1)),
+                    Side::Right | Side::Both => column.map(|column| column + 1),
+                };
+                let neighbor = builder.parts.iter().position(|other| {
+                    other.kind == PartKind::Rack && other.level == level && other.column == beside
+                });
+                let end = Vec2::new(sign * size, 0.0);
+                let (other, point, name) = match (self.to, neighbor) {
+                    // Each neighbor is met once, from its left.
+                    (Anchor::Neighbors, Some(next)) if on == Side::Right => {
+                        (next, Vec2::new(-end.x, 0.0), builder.parts[next].name.clone())
+                    }
+                    (Anchor::Neighbors, _) => continue,
+                    // Between racks there is no wall.
+                    (Anchor::Wall, Some(_)) => continue,
+                    (Anchor::Wall, None) => {
+                        let at = place + end + Vec2::new(sign * far, 0.0);
+                        (Assembly::GROUND, at, format!("wall {side}"))
+                    }
+                    (Anchor::Ceiling, _) => {
+                        let at = place + end + Vec2::new(0.0, far);
+                        (Assembly::GROUND, at, format!("ceiling {side}"))
+                    }
+                };
+                if other == Assembly::GROUND && ![on, Side::Both].contains(&self.side) {
+                    continue;
+                }
+                if other == Assembly::GROUND {
+                    let (along, length) = match self.to {
+                        Anchor::Ceiling => (Vec2::new(0.15, 0.0), scale.length),
+                        Anchor::Wall | Anchor::Neighbors => (Vec2::new(0.0, 0.3), scale.length),
+                    };
+                    let points = vec![point - along * length, point + along * length];
+                    builder.parts[Assembly::GROUND]
+                        .outlines
+                        .push(Outline { points, closed: false });
+                }
+                let share = 1.0 / builder.side_by_side();
+                let force = |given: Option<f64>| {
+                    given.map_or(f64::INFINITY, |it| it * scale.force() * share)
+                };
+                let tie = Strap {
+                    link: Link {
+                        name: format!("{}-{name}", builder.parts[rack].name),
+                        bodies: [rack, other],
+                        points: [end, point],
+                    },
+                    length: far,
+                    stiffness: self.stiffness * scale.stiffness(1.0, false) * share,
+                    damping: self.damping * scale.damping(false) * share,
+                    yields_at: force(self.yields_at),
+                    strength: force(self.strength),
+                };
+                let give = self.slack * scale.length;
+                builder.loose.push(Loose { element: tie.into(), give, words: &WORDS });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,173 @@
+//! Tuned masses: a mass on a spring and a damper that swings against a rack.
+
+use std::f64::consts::TAU;
+
+use barrelstack_dynamics::{Guide, Link, Vec2};
+use barrelstack_input::declared::Declared as _;
+use barrelstack_input::field::{Default, Kind, Range};
+use barrelstack_input::reader::Reader;
+use barrelstack_input::{Dimension, InputError, section};
+
+use super::{Cost, Each, LEVELS, Setting, Words};
+use crate::assemble::{Builder, Draft, Outline, PartKind};
+
+pub(super) static WORDS: Words = Words {
+    one: "tuned mass",
+    many: "tuned masses",
+    force: "force",
+    breaks: "breaks",
+    break_all: "break",
+    broken: "broken",
+    candidates: &[
+        Setting {
+            name: "a tuned mass of 50 kg on the top rack, 1 s",
+            overrides: &["stack.tuned_mass.mass=\"50 kg\""],
+        },
+        Setting {
+            name: "a tuned mass of 150 kg on the top rack, 1.5 s",
+            overrides: &["stack.tuned_mass.mass=\"150 kg\"", "stack.tuned_mass.period=\"1.5 s\""],
+        },
+    ],
+    degraded: &[Setting {
+        name: "a tuned mass without its damper",
+        overrides: &["stack.tuned_mass.damping_ratio=0.01"],
+    }],
+    cost: Cost {
+        dollars: [400.0, 1500.0],
+        each: Each::Stack,
+        source: "a steel weight on rollers with springs and a damper: an assumption",
+    },
+};
+
+/// How a mass is tuned to a structure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tuning {
+    /// Its own frequency over that of the structure.
+    pub frequency: f64,
+    /// Its damping over the critical one of its own frequency.
+    pub damping_ratio: f64,
+}
+
+impl Tuning {
+    /// The tuning with which the largest displacement of an undamped structure under a harmonic force is least,
+    /// for a mass that is this share of that of the structure: the frequency `1/(1 + μ)` and the damping
+    /// `√(3μ/8(1 + μ))` (Den Hartog 1956, section 3.3).
+    /// A stack that rocks is no such structure: the more it sways, the slower.
+    ///
+    /// ```
+    /// let tuning = barrelstack::device::Tuning::den_hartog(0.05);
+    /// assert_eq!(tuning.frequency, 1.0 / 1.05);
+    /// assert!((tuning.damping_ratio - 0.1336).abs() < 1e-4);
+    /// ```
+    pub fn den_hartog(share: f64) -> Self {
+        Self {
+            frequency: 1.0 / (1.0 + share),
+            damping_ratio: (3.0 * share / (8.0 * (1.0 + share))).sqrt(),
+        }
+    }
+}
+
+section! {
+    /// A mass on a spring and a damper on every rack of a level.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct TunedMass;
+    /// Masses that swing in the plane on springs and dampers against the racks of a level, without touching anything.
+    pub static SECTION = "tuned_mass";
+    /// Mass of one, on one rack; 0 for none.
+    mass: f64 =
+        Kind::Quantity(&[Dimension::MASS], Range::between(0.0, 1e4)), Default::Value("\"0 kg\"");
+    /// Level of the racks that carry one; 0 for the top level.
+    level: u32 = LEVELS, Default::Value("0");
+    /// Its own period: for an undamped structure that of the structure times one more than the share of the mass (Den Hartog 1956).
+    period: f64 =
+        Kind::Quantity(&[Dimension::TIME], Range::between(0.05, 20.0)), Default::Value("\"1 s\"");
+    /// Damping over the critical one: for a share μ of the mass √(3μ/8(1 + μ)), which is 0.13 for 5 % (Den Hartog 1956).
+    damping_ratio: f64 = Kind::Number(Range::between(0.0, 2.0)), Default::Value("0.13");
+    /// How far it may swing to either side before it meets a stop: an assumption.
+    stroke: f64 =
+        Kind::Quantity(&[Dimension::LENGTH], Range::up_to(10.0)), Default::Value("\"30 cm\"");
+    /// Stiffness of the stops: an assumption.
+    stop_stiffness: f64 =
+        Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"100 kN/m\"");
+}
+
+/// Reads a tuned mass.
+pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<TunedMass, InputError> {
+    let mass = TunedMass::read_fields(&reader)?;
+    if mass.level > levels {
+        let path = reader.path_of("level");
+        let message = format!("`{path}` is {}, but the stack has only {levels} levels", mass.level);
+        return Err(reader.inconsistent("level", message));
+    }
+    reader.finish();
+    Ok(mass)
+}
+
+/// Frequency (Hz) of what holds it up: far above that of any stack, and no stiffer than seats.
+const HOLDING: f64 = 15.0;
+
+/// Half of its width and height as drawn (m).
+const HALF: [f64; 2] = [0.15, 0.03];
+
+impl TunedMass {
+    pub(super) fn is_on(&self) -> bool {
+        self.mass > 0.0
+    }
+
+    /// Puts a mass on every rack of its level, at the center of mass of the rack.
+    #[expect(clippy::unnecessary_wraps, reason = "as every device is put on")]
+    pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
+        let (spec, scale) = (builder.spec, builder.scale);
+        let level = if self.level == 0 { spec.levels } else { self.level };
+        let racks = if self.is_on() { builder.parts.len() } else { 0 };
+        let mass = self.mass / builder.side_by_side();
+        for rack in 0..racks {
+            let part = &builder.parts[rack];
+            if part.kind != PartKind::Rack || part.level != Some(level) {
+                continue;
+            }
+            let (name, column) = (format!("mass on {}", part.name), part.column.unwrap_or(1));
+            let body = builder.add(Draft {
+                name: name.clone(),
+                kind: PartKind::Device,
+                level: None,
+                column,
+                mass,
+                // Every force goes through its center, so it never turns.
+                inertia: Some(mass * HALF[0] * HALF[0]),
+                position: builder.bodies[rack].pose.position * (1.0 / scale.length),
+                size: HALF[0],
+                solids: Vec::new(),
+                carrier: Some(rack),
+                supports: Vec::new(),
+            });
+            let corner = |x: f64, z: f64| Vec2::new(x * HALF[0], z * HALF[1]) * scale.length;
+            let points =
+                vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+            builder.parts[body].outlines = vec![Outline { points, closed: true }];
+
+            let rate = TAU / self.period;
+            let (stiff, damped) = (scale.stiffness(1.0, false), scale.damping(false));
+            let link = Link { name, bodies: [rack, body], points: [Vec2::default(); 2] };
+            let spring = Guide::spring(
+                link.clone(),
+                Vec2::new(1.0, 0.0),
+                mass * rate * rate * stiff,
+                2.0 * self.damping_ratio * mass * rate * damped,
+            );
+            let swing = Guide {
+                gap: self.stroke * scale.length,
+                stop_stiffness: self.stop_stiffness / builder.side_by_side() * stiff,
+                ..spring
+            };
+            builder.hold(swing, &WORDS);
+            let hold = mass * (TAU * HOLDING).powi(2) * stiff;
+            let damp = 0.1 * mass * TAU * HOLDING * damped;
+            builder.hold(Guide::spring(link, Vec2::new(0.0, 1.0), hold, damp), &SUPPORT);
+        }
+        Ok(())
+    }
+}
+
+/// What holds a mass up is not told of.
+static SUPPORT: Words = Words::silent("support");

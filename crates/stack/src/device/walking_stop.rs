@@ -1,0 +1,167 @@
+//! Stops that keep racks from walking on the barrels below: hooks over the ends of the barrels, or saddles.
+//!
+//! A rack that has been lifted above its lips is off them for good.
+
+use barrelstack_dynamics::{Guide, Link, Vec2};
+use barrelstack_input::declared::Declared as _;
+use barrelstack_input::field::{Default, Kind, Named, Range, names};
+use barrelstack_input::reader::Reader;
+use barrelstack_input::{Dimension, InputError, section};
+
+use super::{Cost, Each, LEVELS, Loose, Setting, Words, check_levels};
+use crate::assemble::{Builder, Outline, PartKind};
+use crate::scenario::{RackKind, View};
+
+pub(super) static WORDS: Words = Words {
+    one: "walking stop",
+    many: "walking stops",
+    force: "force",
+    breaks: "gives way",
+    break_all: "give way",
+    broken: "off",
+    candidates: &[
+        Setting {
+            name: "hooks over the barrel ends under every rack",
+            overrides: &["stack.walking_stop.levels=12"],
+        },
+        Setting {
+            name: "saddles that hold every rack both ways",
+            overrides: &["stack.walking_stop.levels=12", "stack.walking_stop.holds=\"both\""],
+        },
+    ],
+    degraded: &[Setting {
+        name: "bent stops",
+        overrides: &["stack.walking_stop.gap=\"6 cm\"", "stack.walking_stop.lip=\"1 cm\""],
+    }],
+    cost: Cost {
+        dollars: [20.0, 80.0],
+        each: Each::Level,
+        source: "four bent plates welded to a rack: an assumption",
+    },
+};
+
+/// In which plane they hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Holds {
+    /// Along the barrels: a hook over the hoop or the end of a barrel.
+    Along,
+    /// Across the barrels: a saddle on its round, without friction.
+    Across,
+    /// Both.
+    Both,
+}
+
+impl Named for Holds {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("along", Self::Along), ("across", Self::Across), ("both", Self::Both)];
+}
+
+section! {
+    /// Stops between racks and the barrels below.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct WalkingStops;
+    /// Stops between racks and the barrels below: lips that a rack meets once it has walked through a gap.
+    pub static SECTION = "walking_stop";
+    /// How many of the highest levels have racks with stops, the bottom rack never; 12 for all, 0 for none.
+    levels: u32 = LEVELS, Default::Value("0");
+    /// Whether they hold along the barrels, across them, or both.
+    holds: Holds = Kind::Choice(names::<Holds>), Default::Value("\"along\"");
+    /// How far a rack may move from its place at rest, to either side, before it meets a lip: an assumption.
+    gap: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), Default::Value("\"2 cm\"");
+    /// Height of the lips: a rack that has risen by more is off them; an assumption.
+    lip: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::up_to(1.0)), Default::Value("\"4 cm\"");
+    /// Force per way into the lips of one barrel; of bent steel plate, an assumption.
+    stiffness: f64 =
+        Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"1 MN/m\"");
+    /// Force per speed into the lips of one barrel, on approach only; an assumption.
+    damping: f64 =
+        Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"2 kN s/m\"");
+    /// Force above which the lips of one barrel break, for good; without it they never do.
+    strength: Option<f64> =
+        Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
+}
+
+/// Reads stops.
+pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<WalkingStops, InputError> {
+    let stops = WalkingStops::read_fields(&reader)?;
+    if stops.levels < 12 {
+        check_levels(&reader, stops.levels, levels)?;
+    }
+    reader.finish();
+    Ok(stops)
+}
+
+impl WalkingStops {
+    pub(super) fn is_on(&self) -> bool {
+        self.levels > 0
+    }
+
+    /// Puts stops between racks and each of the barrels below.
+    ///
+    /// # Errors
+    /// When racks stand on racks, which have no barrels below.
+    pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
+        let spec = builder.spec;
+        if !self.is_on() {
+            return Ok(());
+        }
+        if spec.rack.kind == RackKind::OnRacks {
+            return Err(format!(
+                "walking stops hold racks on the barrels below, but a `{}` rack stands on posts: set \
+                 stack.walking_stop.levels = 0, or take another rack; rack.post_spigot is what holds posts",
+                spec.rack.base
+            ));
+        }
+        let held = match spec.view {
+            View::Transverse => self.holds != Holds::Along,
+            View::Longitudinal => self.holds != Holds::Across,
+        };
+        let lowest = spec.levels.saturating_sub(self.levels) + 1;
+        let scale = builder.scale;
+        for rack in 0..builder.parts.len() {
+            let part = &builder.parts[rack];
+            if !held || part.kind != PartKind::Rack || part.level < Some(lowest) {
+                continue;
+            }
+            for barrel in part.supports.clone() {
+                let below = &builder.parts[barrel];
+                let (name, size) = (below.name.clone(), below.size);
+                // A saddle lies on a round that turns under it; a hook is met at the top of its barrel.
+                let (point, reach) = match spec.view {
+                    View::Transverse => (Vec2::default(), 0.7 * size),
+                    View::Longitudinal => {
+                        (Vec2::new(0.0, size), 0.5 * spec.barrel.length * scale.length)
+                    }
+                };
+                let (gap, lip) = (self.gap * scale.length, self.lip * scale.length);
+                let link = Link {
+                    name: format!("{}-{name}", builder.parts[rack].name),
+                    bodies: [rack, barrel],
+                    points: [Vec2::default(), point],
+                };
+                let guide = Guide {
+                    gap,
+                    stop_stiffness: self.stiffness * scale.stiffness(1.0, false),
+                    stop_damping: self.damping * scale.damping(false),
+                    strength: self.strength.map_or(f64::INFINITY, |force| force * scale.force()),
+                    reach: lip,
+                    ..Guide::spring(link, Vec2::new(1.0, 0.0), 0.0, 0.0)
+                };
+                builder.loose.push(Loose { element: guide.into(), give: 0.0, words: &WORDS });
+                let apart =
+                    builder.bodies[barrel].pose.position - builder.bodies[rack].pose.position;
+                for side in [-1.0, 1.0] {
+                    let foot = match spec.view {
+                        View::Transverse => reach + gap,
+                        View::Longitudinal => spec.rack.rail_half_spacing * scale.length,
+                    };
+                    let top = |x: f64| Vec2::new(apart.x + side * x, apart.z + size);
+                    let lip = Vec2::new(0.0, lip.max(0.25 * size));
+                    let points = vec![top(foot), top(reach + gap), top(reach + gap) - lip];
+                    builder.parts[rack].outlines.push(Outline { points, closed: false });
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,119 @@
+//! First wave of the wine in a part-filled barrel: its period, and how much of the wine goes with it.
+
+use std::f64::consts::PI;
+
+use barrelstack_dynamics::math::{acos, cos, exp, sin, sin_cos};
+
+/// The first wave of a tank as a pendulum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wave {
+    /// Share of the mass of the liquid that goes with it.
+    pub share: f64,
+    /// Length (m) of the pendulum, `g/ω²`.
+    pub length: f64,
+    /// How far (m) its mass hangs below the middle of the tank where it stands for a mass on a spring.
+    pub depth: f64,
+}
+
+/// Functions over the free surface.
+const TERMS: usize = 60;
+
+/// Half of the strip that the surface becomes (1); beyond it the wall is as near as a rounding error.
+const HALF_STRIP: f64 = 16.0;
+
+/// Points of the quadrature.
+const POINTS: usize = 400;
+
+/// The first wave across a horizontal circular cylinder of a radius (m) that is filled to a share of its volume.
+///
+/// In the potential theory of small waves the segment of the circle becomes a strip under
+/// `x + i z = b tanh(w/2)`, with half the width `b` of the surface; there a function `sin k ξ` on the surface
+/// has the normal derivative `k tanh k β` times itself, where `β` is the angle between surface and wall.
+/// What is left is an eigenvalue problem on the surface, in functions that decay fast.
+/// Half full it gives `ω² R/g = 1.35573`, as Budiansky (1960) and McIver (1989) have it; nearly empty 1, and
+/// nearly full the ice-fishing problem `ω² b/g = 2.0061` (Fox and Kuttler 1983).
+/// The mass follows from how a push sidewise excites the wave (Ibrahim 2005, section 5).
+pub fn across(radius: f64, filled: f64) -> Wave {
+    let angle = wetted(filled);
+    let b = sin(angle);
+    let wave_number = |j: usize| (j as f64 + 0.5) * PI / HALF_STRIP;
+    let step = HALF_STRIP / POINTS as f64;
+    let at: Vec<f64> = (0..POINTS).map(|i| (i as f64 + 0.5) * step).collect();
+    let weights: Vec<f64> =
+        at.iter().map(|x| 0.5 * b * step * (1.0 - square(tanh(0.5 * x)))).collect();
+    let functions: Vec<Vec<f64>> =
+        (0..TERMS).map(|j| at.iter().map(|x| sin(wave_number(j) * x)).collect()).collect();
+    let stiffness: Vec<f64> = (0..TERMS)
+        .map(|j| 0.5 * HALF_STRIP * wave_number(j) * tanh(wave_number(j) * angle))
+        .collect();
+    let surface = |amplitudes: &[f64]| -> Vec<f64> {
+        let sum = |i: usize| amplitudes.iter().zip(&functions).map(|(a, f)| a * f[i]).sum();
+        (0..POINTS).map(sum).collect()
+    };
+    // The largest 1/κ, by repeated multiplication; the next one is less than half as large.
+    let mut amplitudes = vec![0.0; TERMS];
+    amplitudes[0] = 1.0;
+    let mut inverse = 0.0;
+    for _ in 0..60 {
+        let wave = surface(&amplitudes);
+        let next: Vec<f64> = functions
+            .iter()
+            .zip(&stiffness)
+            .map(|(f, k)| {
+                f.iter().zip(&weights).zip(&wave).map(|((f, w), v)| f * w * v).sum::<f64>() / k
+            })
+            .collect();
+        inverse = next.iter().map(|a| a * a).sum::<f64>().sqrt();
+        amplitudes = next.into_iter().map(|a| a / inverse).collect();
+    }
+    let wave = surface(&amplitudes);
+    let over =
+        |of: &dyn Fn(usize) -> f64| -> f64 { (0..POINTS).map(|i| 2.0 * weights[i] * of(i)).sum() };
+    let norm = over(&|i| wave[i] * wave[i]);
+    let push = over(&|i| wave[i] * b * tanh(0.5 * at[i]));
+    let area = angle - b * cos(angle);
+    let length = inverse * radius;
+    Wave { share: push * push / (norm * inverse * area), length, depth: length }
+}
+
+/// The first wave along a barrel as that of a rectangular tank as long (m), filled to the mean depth of the
+/// wine under its surface: `ω² = π g/L tanh(π h/L)` with the mass `8 tanh(π h/L)/(π³ h/L)` of the wine (Ibrahim
+/// 2005, section 5). For a barrel, whose bottom is round, an approximation.
+pub fn along(radius: f64, room_length: f64, filled: f64) -> Wave {
+    let angle = wetted(filled);
+    let (b, area) = (sin(angle), angle - sin(angle) * cos(angle));
+    let depth = radius * area / (2.0 * b);
+    let ratio = depth / room_length;
+    let swing = tanh(PI * ratio);
+    let share = 8.0 * swing / (PI * PI * PI * ratio);
+    // So deep that the wine keeps its center of mass while the rest is in the middle of the barrel.
+    let center = radius * 2.0 * b * b * b / (3.0 * area);
+    Wave { share, length: room_length / (PI * swing), depth: center / share }
+}
+
+/// Half of the angle (rad) that a segment spans in its circle, of which it fills a share.
+fn wetted(filled: f64) -> f64 {
+    let (mut low, mut high) = (0.0, PI);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        let (sin, cos) = sin_cos(middle);
+        if middle - sin * cos < PI * filled { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// Share of the volume of a horizontal cylinder that is filled to a depth over its radius.
+pub fn filled_to(depth: f64) -> f64 {
+    let angle = acos(1.0 - depth);
+    let (sin, cos) = sin_cos(angle);
+    (angle - sin * cos) / PI
+}
+
+fn tanh(x: f64) -> f64 {
+    let e = exp(-2.0 * x);
+    (1.0 - e) / (1.0 + e)
+}
+
+fn square(x: f64) -> f64 {
+    x * x
+}

@@ -1,0 +1,458 @@
+//! Protection devices: each where its answer is exact, as a scenario puts it on a stack.
+
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+use barrelstack::assemble::PartKind;
+use barrelstack::device::Tuning;
+use barrelstack::{Ground, Run, Scenario};
+use barrelstack_dynamics::math::{cos, exp, sin, tan};
+use barrelstack_dynamics::{Body, Guide, Link, Model, Still, Strap, Vec2};
+use barrelstack_motion::GroundMotion;
+
+use crate::problem::border;
+use crate::scene::{Scene, disc, floor};
+use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance};
+
+use super::housner::halvings;
+
+/// The problems of this theory.
+pub(super) fn problems() -> Vec<Problem> {
+    let mut list: Vec<Problem> = [30.0, 40.0, 55.0].map(rolls_out).into();
+    list.extend([hill(), lid()]);
+    list.extend([0.8, 2.0].map(dish));
+    list.push(slides());
+    list.extend([pads(), yields(), between_stops()]);
+    for share in [0.05, 0.2] {
+        list.extend(den_hartog(share));
+    }
+    list
+}
+
+fn problem(
+    id: String,
+    title: String,
+    source: &str,
+    (quantity, unit): (&'static str, &'static str),
+    (exact, tolerance, fast): (f64, f64, f64),
+    run: crate::problem::Run,
+) -> Problem {
+    Problem {
+        id: format!("devices/{id}"),
+        title,
+        source: source.into(),
+        quantity,
+        unit,
+        exact,
+        tolerance: Tolerance::Relative(tolerance),
+        fast: Some(Tolerance::Relative(fast)),
+        run,
+    }
+}
+
+/// A stack of one level on a rack so wide, so heavy and on contacts so stiff that nothing but what the device does
+/// gives.
+fn scenario(settings: &[String], motion: &str, seconds: f64) -> Result<Scenario, Failure> {
+    let text = format!(
+        "schema = 1\n[stack]\nlevels = 1\ncolumns = 2\nrack = {{ width = \"8 m\", mass = \"400 kg\" }}\n\
+         [interface.rack-ground]\nstiffness = \"50 MN/m\"\ndamping = \"20 kN s/m\"\n\
+         [interface.rack-ground.friction]\ncoefficient = 5.0\n\
+         [interface.barrel-rack]\nstiffness = \"50 MN/m\"\ndamping = \"20 kN s/m\"\n\
+         [interface.barrel-rack.friction]\ncoefficient = 0.0\n{motion}\n\
+         [run]\nduration = \"{seconds} s\"\nuntil = \"duration\"\n[record]\nhistory_rate = \"500 Hz\"\n"
+    );
+    Ok(Scenario::parse("device.toml", &text, settings)?)
+}
+
+fn one_level(settings: &[String], motion: &str, seconds: f64) -> Result<Run, Failure> {
+    Ok(scenario(settings, motion, seconds)?.run()?)
+}
+
+/// The same under a push (g) that grows for a second and stays for another one.
+fn pressed(settings: &[String], push: f64) -> Result<Run, Failure> {
+    let samples = (0..200).map(|at| push * GRAVITY * f64::from(at.min(100)) / 100.0).collect();
+    let motion = GroundMotion::from_acceleration("push", 0.01, samples);
+    let motion = motion.map_err(|error| Failure::Absent(error.to_string()))?;
+    let any = self::push(push, 1.0);
+    let scenario = scenario(settings, &any, 1.99)?;
+    Ok(scenario.run_on(Ground::from(motion), &mut |_| ControlFlow::Continue(()))?)
+}
+
+fn push(amplitude: f64, seconds: f64) -> String {
+    format!(
+        "[motion.pulse]\nkind = \"rectangular\"\namplitude = \"{amplitude} g\"\nperiod = \"{seconds} s\""
+    )
+}
+
+/// The displacement (m) of a body along an axis, with its times (s).
+fn way(run: &Run, body: &str, axis: &str) -> Result<Vec<(f64, f64)>, Failure> {
+    let name = format!("{body} displacement {axis}");
+    let channel = run.recording.channel(&name).ok_or_else(|| Failure::Absent(name))?;
+    Ok(run.recording.times.iter().copied().zip(channel.values.iter().copied()).collect())
+}
+
+/// Chocks at an angle (rad) without a gap, on cradles that are lower.
+fn chocks(angle: f64) -> Vec<String> {
+    vec![
+        "stack.chock.levels=1".into(),
+        "stack.chock.gap=\"0 m\"".into(),
+        format!("stack.chock.angle=\"{angle} rad\""),
+        "stack.rack.cradle.angle=\"20 deg\"".into(),
+        // As hard as a penalty can be, so that nothing sinks in.
+        "interface.fallen-barrel-rack.law=\"hertz\"".into(),
+        "interface.fallen-barrel-rack.stiffness=\"1e11 N/m^1.5\"".into(),
+        "interface.fallen-barrel-rack.friction.coefficient=0".into(),
+    ]
+}
+
+fn rolls_out(degrees: f64) -> Problem {
+    let angle = degrees.to_radians();
+    let exact = tan(angle);
+    problem(
+        format!("chock-{degrees}"),
+        format!("barrels between chocks at {degrees}°, pushed for good"),
+        "statics: roll-out at a/g = tan φ",
+        ("push from which a barrel rolls out", "g"),
+        (exact, 1e-2, 2e-2),
+        Box::new(move |effort| {
+            let found = border((0.95 * exact, 1.05 * exact), halvings(effort), |amplitude| {
+                let run = pressed(&chocks(angle), amplitude)?;
+                Ok(run.fates.collapse_time().is_some())
+            })?;
+            Ok(Outcome::of(found))
+        }),
+    )
+}
+
+/// How long (s) the blow takes.
+const BLOW: f64 = 0.05;
+
+/// Distance (m) of the center of a barrel from that of the end of a chock that it rolls over.
+const ARM: f64 = 0.5 * 0.645_918_367_346_938_8 + 0.015;
+
+/// Push (g) from which a barrel that leans on a chock at an angle (rad) comes over it: about the end of the chock
+/// `L θ'' = g sin θ − a cos θ` while the blow lasts, and on the hill `g L (1 − cos θ)` after it.
+fn over_the_hill(angle: f64) -> f64 {
+    let passes = |push: f64| {
+        let steps = 2000;
+        let step = BLOW / f64::from(steps);
+        let (mut lean, mut rate) = (angle, 0.0);
+        for _ in 0..steps {
+            let slope = |lean: f64| GRAVITY * (sin(lean) - push * cos(lean)) / ARM;
+            let middle = lean + 0.5 * step * rate;
+            rate += step * slope(middle);
+            lean = middle + 0.5 * step * rate;
+        }
+        lean <= 0.0 || 0.5 * ARM * rate * rate > GRAVITY * (1.0 - cos(lean))
+    };
+    let (mut low, mut high) = (0.0, 20.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if passes(middle) { high = middle } else { low = middle }
+    }
+    0.5 * (low + high)
+}
+
+fn hill() -> Problem {
+    let angle = 40.0_f64.to_radians();
+    let exact = over_the_hill(angle);
+    problem(
+        "chock-hill".into(),
+        "barrels between chocks at 40°, pushed for 0.05 s".into(),
+        "energy: m g r (1 − cos φ) over the end of a chock",
+        ("push from which a barrel rolls out", "g"),
+        (exact, 1e-2, 2e-2),
+        Box::new(move |effort| {
+            let found = border((0.95 * exact, 1.05 * exact), halvings(effort), |amplitude| {
+                let run = one_level(&chocks(angle), &push(amplitude, BLOW), 1.2)?;
+                // Beyond the hill it comes down on the beam.
+                let drops = run.assembly.of_kind(PartKind::Barrel).map(|b| run.fates.fate(b).drop);
+                Ok(drops.fold(0.0, f64::max) > 0.05)
+            })?;
+            Ok(Outcome::of(found))
+        }),
+    )
+}
+
+fn lid() -> Problem {
+    // On one support under an angle θ and under its lid a barrel bears m (a cot θ − g) up there, and has risen by
+    // (r + ρ)(cos θ − cos φ), which is the gap and what the lid gives.
+    let (push, angle, gap, stiffness) = (0.5, 20.0_f64.to_radians(), 0.005, 2e6);
+    let mass = 46.0 + 990.0 * 0.225;
+    let force = |lean: f64| mass * GRAVITY * (push * cos(lean) / sin(lean) - 1.0);
+    let (mut low, mut high) = (0.01, angle);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        let risen = ARM * (cos(middle) - cos(angle));
+        if risen > gap + force(middle) / stiffness { low = middle } else { high = middle }
+    }
+    problem(
+        "lid".into(),
+        "barrels on cradles of 20° under lids with a gap of 5 mm, pushed with 0.5 g".into(),
+        "statics: m (a cot θ − g)",
+        ("force on a lid", "N"),
+        (force(0.5 * (low + high)), 1e-2, 1e-2),
+        Box::new(move |_| {
+            let settings = [
+                "stack.lid.levels=1".to_owned(),
+                format!("stack.lid.gap=\"{gap} m\""),
+                format!("stack.lid.stiffness=\"{stiffness} N/m\""),
+                "stack.lid.damping=\"20 kN s/m\"".into(),
+                "stack.rack.cradle.angle=\"20 deg\"".into(),
+            ];
+            let run = pressed(&settings, push)?;
+            let bore = run.elements.iter().map(|element| element.peak.0.abs());
+            Ok(Outcome::of(bore.fold(0.0, f64::max)))
+        }),
+    )
+}
+
+fn dish(radius: f64) -> Problem {
+    problem(
+        format!("dish-{radius}"),
+        format!("a stack on an isolator in dishes of {radius} m after a short push"),
+        "pendulum: T = 2π √(R/g)",
+        ("period", "s"),
+        (TAU * (radius / GRAVITY).sqrt(), 5e-3, 5e-3),
+        Box::new(move |_| {
+            let settings = [
+                "stack.isolator.path=\"dish\"".to_owned(),
+                "stack.isolator.friction=0".into(),
+                format!("stack.isolator.dish_radius=\"{radius} m\""),
+                "interface.barrel-rack.friction.coefficient=0.6".into(),
+            ];
+            let run = one_level(&settings, &push(0.08, 0.15), 6.0)?;
+            let ways = way(&run, "platform of R1", "x")?;
+            let crossings: Vec<f64> = ways
+                .windows(2)
+                .filter(|w| w[0].0 > 0.3 && w[0].1 * w[1].1 < 0.0)
+                .map(|w| w[0].0 + w[0].1 / (w[0].1 - w[1].1) * (w[1].0 - w[0].0))
+                .collect();
+            match (crossings.first(), crossings.last()) {
+                (Some(first), Some(last)) if crossings.len() > 2 => {
+                    Ok(Outcome::of(2.0 * (last - first) / (crossings.len() - 1) as f64))
+                }
+                _ => Err(Failure::Absent("the platform does not swing".into())),
+            }
+        }),
+    )
+}
+
+fn slides() -> Problem {
+    // Newmark's block: against the ground it ends a v/2 (a − μg)/(μg) further back.
+    let (push_g, seconds, friction) = (0.15, 0.4, 0.05);
+    let over: f64 = push_g - friction;
+    let exact = 0.5 * over * GRAVITY * seconds * seconds * push_g / friction;
+    problem(
+        "sheet".into(),
+        "a stack on a sheet of μ = 0.05, pushed with 0.15 g for 0.4 s".into(),
+        "Newmark 1965",
+        ("residual displacement", "m"),
+        (exact, 1e-2, 1e-2),
+        Box::new(move |_| {
+            let settings = [
+                "stack.isolator.path=\"flat\"".to_owned(),
+                format!("stack.isolator.friction={friction}"),
+                "stack.isolator.stroke=\"5 m\"".into(),
+                "interface.barrel-rack.friction.coefficient=0.6".into(),
+            ];
+            let run = one_level(&settings, &push(push_g, seconds), 4.0)?;
+            let last = way(&run, "platform of R1", "x")?.last().map(|last| last.1.abs());
+            last.map(Outcome::of).ok_or_else(|| Failure::Absent("nothing was recorded".into()))
+        }),
+    )
+}
+
+fn pads() -> Problem {
+    // Two supports at 28°, each of two elements, bear m g; the barrel sinks by δ/cos 28°.
+    let (stiffness, angle) = (4e5, 28.0_f64.to_radians());
+    let mass = 46.0 + 990.0 * 0.225;
+    let exact = mass * GRAVITY / (2.0 * 2.0 * stiffness * cos(angle) * cos(angle));
+    problem(
+        "pads".into(),
+        "a full barrel on pads of 400 kN/m without friction".into(),
+        "statics",
+        ("how far it sinks into its cradle", "m"),
+        (exact, 1e-2, 1e-2),
+        Box::new(move |_| {
+            let settings = [
+                format!("stack.pad.stiffness=\"{stiffness} N/m\""),
+                "stack.pad.friction=0".into(),
+                "interface.barrel-rack.friction.coefficient=0".into(),
+            ];
+            let run = one_level(&settings, &push(1e-6, 0.01), 0.01)?;
+            let named = |name: &str| run.assembly.model.body_named(name);
+            let (Some(barrel), Some(rack)) = (named("B1.1"), named("R1")) else {
+                return Err(Failure::Absent("no barrel on its rack".into()));
+            };
+            let bodies = run.assembly.model.bodies();
+            let drawn = bodies[barrel].pose.position.z - bodies[rack].pose.position.z;
+            let rest = run.fates.rest(barrel).z - run.fates.rest(rack).z;
+            Ok(Outcome::of(drawn - rest))
+        }),
+    )
+}
+
+const MASS: f64 = 100.0;
+
+/// A weight that flies at a speed (m/s) without gravity, and what it is joined to the ground by.
+fn flying(
+    speed: f64,
+    element: barrelstack_dynamics::Element<barrelstack_dynamics::Planar>,
+) -> Result<Scene, Failure> {
+    let mut body = disc("weight", 0.3, MASS, 0.045, Vec2::new(0.0, 3.0));
+    body.twist.linear = Vec2::new(speed, 0.0);
+    let mut model = Model::new(vec![floor(), body], vec![], vec![], Vec2::default())?;
+    model.fasten(vec![element])?;
+    Ok(Scene::of(model))
+}
+
+fn joined(from: Vec2) -> Link<barrelstack_dynamics::Planar> {
+    Link { name: "element".into(), bodies: [0, 1], points: [from, Vec2::default()] }
+}
+
+fn yields() -> Problem {
+    let (stiffness, force, speed) = (1e5, 2e3, 1.2);
+    let exact = (0.5 * MASS * speed * speed - 0.5 * force * force / stiffness) / force;
+    problem(
+        "tie-yields".into(),
+        "a weight caught by a slack tie that yields at 2 kN".into(),
+        "energy: ½ m v² = F²/2k + F Δ",
+        ("how much longer the tie is for good", "m"),
+        (exact, 1e-5, 1e-4),
+        Box::new(move |effort| {
+            let tie = Strap {
+                link: joined(Vec2::new(-1.0, 3.0)),
+                length: 1.05,
+                stiffness,
+                damping: 0.0,
+                yields_at: force,
+                strength: f64::INFINITY,
+            };
+            let mut scene = flying(speed, tie.into())?;
+            scene.run(&Still, if effort == Effort::Full { 1e-5 } else { 1e-4 }, 0.4)?;
+            Ok(Outcome::of(scene.state.memory[0].plastic))
+        }),
+    )
+}
+
+fn between_stops() -> Problem {
+    let (gap, speed, omega) = (0.02, 0.3, 60.0);
+    problem(
+        "stops".into(),
+        "a weight between two elastic stops at ±2 cm".into(),
+        "4 δ/v + 2π/ω",
+        ("period", "s"),
+        (4.0 * gap / speed + TAU / omega, 1e-6, 1e-5),
+        Box::new(move |effort| {
+            let spring = Guide::spring(joined(Vec2::new(0.0, 3.0)), Vec2::new(1.0, 0.0), 0.0, 0.0);
+            let guide = Guide { gap, stop_stiffness: MASS * omega * omega, ..spring };
+            let mut scene = flying(speed, guide.into())?;
+            let (mut before, mut found) = ((0.0, 0.0), None);
+            let step = if effort == Effort::Full { 1e-5 } else { 5e-5 };
+            scene.watch(&Still, step, 1.0, |state, _, _| {
+                let (t, x) = (state.time, state.poses[1].position.x);
+                if before.1 < 0.0 && x >= 0.0 {
+                    found = Some(before.0 + before.1 / (before.1 - x) * (t - before.0));
+                    return ControlFlow::Break(());
+                }
+                before = (t, x);
+                ControlFlow::Continue(())
+            })?;
+            found.map(Outcome::of).ok_or_else(|| Failure::Absent("it does not come back".into()))
+        }),
+    )
+}
+
+/// Frequency of the structure that a mass is tuned to (rad/s), and its stiffness over its mass.
+const OMEGA: f64 = TAU;
+
+/// The largest displacement of a structure under a harmonic force, over that under the same force at rest: with a
+/// mass that is this share of it, tuned so. From the answer to a blow, which holds all frequencies.
+fn largest_answer(share: f64, tuning: Tuning, step: f64) -> Result<f64, Failure> {
+    let body = |name: &str, mass: f64, z: f64| Body {
+        mass,
+        ..disc(name, 0.3, 1.0, 0.045, Vec2::new(0.0, z))
+    };
+    let mut structure = body("structure", MASS, 3.0);
+    structure.twist.linear = Vec2::new(1.0, 0.0);
+    let mass = share * MASS;
+    let own = tuning.frequency * OMEGA;
+    let guide = |bodies: [usize; 2], from: f64, stiffness: f64, damping: f64| {
+        let points = [Vec2::new(0.0, from), Vec2::default()];
+        let link = Link { name: "guide".into(), bodies, points };
+        Guide::spring(link, Vec2::new(1.0, 0.0), stiffness, damping)
+    };
+    let elements = vec![
+        guide([0, 1], 3.0, MASS * OMEGA * OMEGA, 0.0).into(),
+        guide([1, 2], 0.0, mass * own * own, 2.0 * tuning.damping_ratio * mass * own).into(),
+    ];
+    let bodies = vec![floor(), structure, body("mass", mass, 3.0)];
+    let mut model = Model::new(bodies, vec![], vec![], Vec2::default())?;
+    model.fasten(elements)?;
+    let mut scene = Scene::of(model);
+    let mut ways = Vec::new();
+    scene.watch(&Still, step, 40.0, |state, _, _| {
+        ways.push(state.poses[1].position.x);
+        ControlFlow::Continue(())
+    })?;
+    // |X(ω)| of the blow m v, over its 1/k at rest; both peaks lie near the frequency of the structure.
+    let answer = |omega: f64| {
+        let (mut re, mut im) = (0.0, 0.0);
+        for (i, x) in ways.iter().enumerate() {
+            let phase = omega * step * i as f64;
+            re += x * cos(phase);
+            im += x * sin(phase);
+        }
+        (re * re + im * im).sqrt() * step * OMEGA * OMEGA
+    };
+    let peaks = (0..=60).map(|i| answer(OMEGA * (0.65 + 0.01 * f64::from(i))));
+    Ok(peaks.fold(0.0, f64::max))
+}
+
+/// The best tuning, found by search alone, against Den Hartog's formula.
+fn den_hartog(share: f64) -> [Problem; 2] {
+    let exact = Tuning::den_hartog(share);
+    let source = "Den Hartog 1956, section 3.3";
+    let title = format!("undamped structure with a tuned mass of {share} of its mass");
+    let step = 0.01;
+    let peak = problem(
+        format!("tuned-mass-peak-{share}"),
+        title.clone(),
+        source,
+        ("largest displacement over that at rest", ""),
+        ((1.0 + 2.0 / share).sqrt(), 1e-2, 1e-2),
+        Box::new(move |_| largest_answer(share, exact, step).map(Outcome::of)),
+    );
+    let frequency = problem(
+        format!("tuned-mass-frequency-{share}"),
+        title,
+        source,
+        ("best frequency of the mass over that of the structure", ""),
+        (exact.frequency, 1e-2, 1e-2),
+        Box::new(move |_| {
+            let mut best = (f64::INFINITY, exact);
+            let mut reach = 0.1;
+            let mut middle = Tuning { frequency: 1.0, damping_ratio: 0.2 };
+            while reach > 2e-3 {
+                for (along, across) in
+                    (-2..=2).flat_map(|i| (-2..=2).map(move |j| (f64::from(i), f64::from(j))))
+                {
+                    let tuning = Tuning {
+                        frequency: middle.frequency + 0.5 * reach * along,
+                        damping_ratio: middle.damping_ratio * exp(0.5 * reach * 4.0 * across),
+                    };
+                    let peak = largest_answer(share, tuning, 2.0 * step)?;
+                    if peak < best.0 {
+                        best = (peak, tuning);
+                    }
+                }
+                middle = best.1;
+                reach *= 0.5;
+            }
+            let note = format!("with a damping of {:.3}, peak {:.3}", best.1.damping_ratio, best.0);
+            Ok(Outcome::of(best.1.frequency).noted(note))
+        }),
+    );
+    [peak, frequency]
+}
