@@ -222,7 +222,8 @@ class Record:
                 raise ValueError(f"{trace.id} has gaps; fill or cut them first")
         components = {trace.stats.channel or trace.id: trace.data for trace in traces}
         station = f"{first.network}.{first.station}".strip(".")
-        start = first.starttime.datetime.isoformat() + "Z"
+        # A trace without a start has that of 1970.
+        start = first.starttime.datetime.isoformat() + "Z" if first.starttime.timestamp != 0 else None
         return cls.from_arrays(
             components,
             first.delta,
