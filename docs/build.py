@@ -37,7 +37,7 @@ def items(text: str) -> str:
 
 def docstring(text: str) -> str:
     """A docstring of numpydoc as Markdown."""
-    parts = SECTION.split(text)
+    parts = SECTION.split(re.sub(r"^::\n", "", text, flags=re.MULTILINE))
     out = [parts[0].strip()]
     for name, body in zip(parts[1::2], parts[2::2], strict=True):
         body = body.strip("\n")
