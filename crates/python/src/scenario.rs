@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use barrelstack::ground::from_disk;
 use barrelstack::scenario::{Scene, builtin, reference as fields_of, schema as schema_of};
-use barrelstack::variants::{self, Answer, Asked, Searched, Shown, Told};
+use barrelstack::variants::{self, Answer, Asked, Shown, Told};
 use barrelstack::verify::{Verification, verify};
 use barrelstack::watch::Pace;
 use barrelstack::{RunFailure, Summary};
@@ -143,7 +143,7 @@ impl Scenario {
                 Told::Run(now) => hear.tell(now.time, now.end_time, "s"),
             })?;
             if remedy && !hear.stopped() {
-                let found = variants::remedy(&answer, &|Searched { done, .. }| {
+                let found = variants::remedy(&answer, &|done| {
                     hear.tell(done as f64, f64::NAN, "runs of what would have helped")
                 })?;
                 answer.decides.summary.remedy = found;
