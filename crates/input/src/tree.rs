@@ -171,10 +171,9 @@ impl Sources {
     }
 
     fn adopt_node(&mut self, node: &mut Node, path: &str) {
-        let told = match &node.value {
-            Value::Table(_) | Value::Array(_) => path.to_owned(),
-            leaf => format!("{path}={}", writer::inline(leaf)),
-        };
+        let inner = matches!(node.value, Value::Table(_) | Value::Array(_));
+        let told =
+            if inner { path.to_owned() } else { format!("{path}={}", writer::inline(&node.value)) };
         node.origin = Origin::Override(self.overrides.len());
         self.overrides.push(told);
         match &mut node.value {

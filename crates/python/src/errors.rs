@@ -63,7 +63,6 @@ pub(crate) fn read(error: &ReadError) -> PyErr {
 }
 
 /// A request about a record that cannot be met.
-#[expect(clippy::needless_pass_by_value, reason = "called as a function on errors")]
 pub(crate) fn motion(error: MotionError) -> PyErr {
     raise("RecordError", error.to_string(), Spot::default())
 }
@@ -95,14 +94,17 @@ pub(crate) fn run(failure: &RunFailure, scenario: &Scenario) -> PyErr {
 }
 
 /// Why a study cannot be planned, run or collected.
-#[expect(clippy::needless_pass_by_value, reason = "called as a function on errors")]
 pub(crate) fn study(error: StudyError) -> PyErr {
     match &error {
         StudyError::File(error) => scenario(error),
         StudyError::Motion { error: motion, .. } => {
             let path = match &**motion {
                 GroundError::Unreadable { path, .. } => Some(path.display().to_string()),
-                _ => None,
+                GroundError::Read(error) => Some(error.file.clone()),
+                GroundError::Motion(_)
+                | GroundError::Vertical { .. }
+                | GroundError::UnknownBundled { .. }
+                | GroundError::Unit { .. } => None,
             };
             raise("RecordError", error.to_string(), Spot { path, ..Spot::default() })
         }
@@ -123,13 +125,11 @@ pub(crate) fn study(error: StudyError) -> PyErr {
 }
 
 /// What a study cannot decide or write, in the library's words.
-#[expect(clippy::needless_pass_by_value, reason = "called as a function on errors")]
 pub(crate) fn told<E: ToString>(error: E) -> PyErr {
     raise("StudyError", error.to_string(), Spot::default())
 }
 
 /// A table that cannot be read, or a file that cannot be written.
-#[expect(clippy::needless_pass_by_value, reason = "called as a function on errors")]
 pub(crate) fn general<E: ToString>(error: E) -> PyErr {
     raise("Error", error.to_string(), Spot::default())
 }

@@ -4,6 +4,8 @@
 //! interpreter's lock.
 //! How a person meets it, in Python's words and with its documentation, is in `python/barrelstack`.
 
+#![allow(clippy::needless_pass_by_value, reason = "functions take what the interpreter gives")]
+
 mod errors;
 mod listen;
 mod record;

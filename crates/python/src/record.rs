@@ -32,6 +32,9 @@ impl From<barrelstack_motion::Record> for Record {
 /// Name, azimuth (degrees), whether it is vertical, step (s), start, velocity at the first sample (m/s).
 type ChannelFacts = (String, Option<f64>, bool, f64, Option<String>, f64);
 
+/// Numbers of one component.
+type Numbers<'py> = Bound<'py, PyArray1<f64>>;
+
 /// What a person may say of the place of a record: network, station and sensor are in the station.
 type Place = (String, String, Option<f64>, Option<f64>);
 
@@ -58,7 +61,6 @@ impl Record {
     }
 
     #[staticmethod]
-    #[expect(clippy::needless_pass_by_value, reason = "arrays are borrowed for the call")]
     fn of_samples(
         name: &str,
         channels: Vec<(String, PyReadonlyArray1<'_, f64>)>,
@@ -158,7 +160,7 @@ impl Record {
         &self,
         py: Python<'py>,
         channel: usize,
-    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+    ) -> PyResult<(Numbers<'py>, Numbers<'py>)> {
         let motion = self.channel(channel)?.sampled().map_err(errors::motion)?;
         let array = |values: &[f64]| values.to_vec().into_pyarray(py);
         Ok((array(motion.velocity()), array(motion.displacement())))
@@ -275,14 +277,14 @@ impl Record {
         tolerance: f64,
         nearly: bool,
     ) -> PyResult<(Self, f64, String)> {
-        let (target, named): (TargetSpectrum, String) = match target.extract::<String>() {
-            Ok(text) => (text.parse().map_err(errors::motion)?, text),
-            Err(_) => {
-                let points: Vec<(f64, f64)> = target.extract()?;
-                let table = TargetSpectrum::Table { points, damping };
-                let named = table.to_string();
-                (table, named)
-            }
+        let (target, named): (TargetSpectrum, String) = if let Ok(text) = target.extract::<String>()
+        {
+            (text.parse().map_err(errors::motion)?, text)
+        } else {
+            let points: Vec<(f64, f64)> = target.extract()?;
+            let table = TargetSpectrum::Table { points, damping };
+            let named = table.to_string();
+            (table, named)
         };
         let method = if frequency { MatchMethod::Frequency } else { MatchMethod::Time };
         let (shortest, longest) = periods;
@@ -303,7 +305,6 @@ impl Record {
     }
 
     /// Pseudo-accelerations (m/s²) of a component at some periods (s).
-    #[expect(clippy::needless_pass_by_value, reason = "the array is borrowed for the call")]
     fn spectrum<'py>(
         &self,
         py: Python<'py>,

@@ -22,6 +22,9 @@ pub(crate) struct Study {
     inner: Arc<study::Study>,
 }
 
+/// A file: name and text.
+type NamedText = (&'static str, String);
+
 /// A chunk: number, cases, first and last case.
 type ChunkFacts = (usize, usize, u64, u64);
 
@@ -133,7 +136,6 @@ pub(crate) fn studies() -> Vec<(&'static str, &'static str)> {
 
 /// The rows that are done in the folder of a study; `write` writes its tables, too.
 #[pyfunction]
-#[expect(clippy::needless_pass_by_value, reason = "as the interpreter gives it")]
 pub(crate) fn read_table(py: Python<'_>, folder: PathBuf, write: bool) -> PyResult<Table> {
     let read = py.detach(|| {
         if write {
@@ -146,7 +148,6 @@ pub(crate) fn read_table(py: Python<'_>, folder: PathBuf, write: bool) -> PyResu
 
 /// What the rows of a folder come from, as JSON, and the chunks that are missing.
 #[pyfunction]
-#[expect(clippy::needless_pass_by_value, reason = "as the interpreter gives it")]
 pub(crate) fn provenance(py: Python<'_>, folder: PathBuf) -> PyResult<(String, Vec<usize>)> {
     let status = py.detach(|| Collected::status(&folder)).map_err(errors::study)?;
     let made = serde_json::to_string(&status.provenance).map_err(errors::general)?;
@@ -160,7 +161,6 @@ fn request(hazard: Option<&Path>, years: Option<f64>) -> PyResult<Request> {
 
 /// What the study of a folder says: as JSON, and as a page.
 #[pyfunction]
-#[expect(clippy::needless_pass_by_value, reason = "as the interpreter gives it")]
 pub(crate) fn decision(
     py: Python<'_>,
     folder: PathBuf,
@@ -175,12 +175,11 @@ pub(crate) fn decision(
 
 /// The curves of the study of a folder for other programs: name and text of each file, and what is missing.
 #[pyfunction]
-#[expect(clippy::needless_pass_by_value, reason = "as the interpreter gives it")]
 pub(crate) fn export(
     py: Python<'_>,
     folder: PathBuf,
     asset: &str,
-) -> PyResult<(Vec<(&'static str, String)>, Vec<String>)> {
+) -> PyResult<(Vec<NamedText>, Vec<String>)> {
     let decided = py.detach(|| decide_folder(&folder, &Request::default()));
     let (decision, made) = decided.map_err(errors::told)?;
     let found = exported(&decision, &made, asset).map_err(errors::told)?;

@@ -46,7 +46,6 @@ type Facts = (String, String, String, String, &'static str);
 impl Table {
     /// A table of cases from columns with their headings.
     #[staticmethod]
-    #[expect(clippy::needless_pass_by_value, reason = "as the interpreter gives it")]
     fn from_columns(columns: Vec<(String, Vec<Bound<'_, PyAny>>)>) -> PyResult<Self> {
         let column = |(heading, values): &(String, Vec<Bound<'_, PyAny>>)| {
             Ok(given(heading, of_values(heading, values)?))
@@ -56,7 +55,6 @@ impl Table {
 
     /// A table of numbers: name, unit, values.
     #[staticmethod]
-    #[expect(clippy::needless_pass_by_value, reason = "arrays are borrowed for the call")]
     fn of_numbers(columns: Vec<(String, String, PyReadonlyArray1<'_, f64>)>) -> Self {
         let column = |(name, unit, values): &(String, String, PyReadonlyArray1<'_, f64>)| Column {
             spec: ColumnSpec::new(name, unit, Role::Demand, ValueKind::Number),
@@ -172,7 +170,9 @@ impl Table {
                 }
                 Values::Text(values) => {
                     let mut texts = StringBuilder::new();
-                    values.iter().for_each(|text| texts.append_option(text.as_ref()));
+                    for text in values {
+                        texts.append_option(text.as_ref());
+                    }
                     (DataType::Utf8, Arc::new(texts.finish()))
                 }
             };
@@ -213,7 +213,7 @@ fn of_values(heading: &str, values: &[Bound<'_, PyAny>]) -> PyResult<Values> {
     let whole = |value: &Bound<'_, PyAny>| {
         value.is_instance_of::<PyInt>() && !value.is_instance_of::<PyBool>()
     };
-    if some().all(|value| whole(value)) {
+    if some().all(whole) {
         return values
             .iter()
             .map(PyAnyMethods::extract)
@@ -251,6 +251,7 @@ fn of_values(heading: &str, values: &[Bound<'_, PyAny>]) -> PyResult<Values> {
     values.iter().map(text).collect::<PyResult<_>>().map(Values::Text)
 }
 
+#[expect(clippy::wildcard_enum_match_arm, reason = "a list of another library, which grows")]
 fn of_array(heading: &str, array: &ArrayRef) -> PyResult<Values> {
     macro_rules! whole {
         ($kind:ty) => {
@@ -403,7 +404,6 @@ impl CaseError {
 
 /// Runs the cases of a table on all cores.
 #[pyfunction]
-#[expect(clippy::needless_pass_by_value, reason = "as the interpreter gives it")]
 pub(crate) fn ensemble(
     py: Python<'_>,
     base: &Scenario,

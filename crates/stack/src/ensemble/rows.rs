@@ -44,18 +44,17 @@ impl Grounds {
         let known = self.0.lock().ok().and_then(|kept| {
             kept.iter().find(|(kept, _)| *kept == plain).map(|(_, ground)| Arc::clone(ground))
         });
-        let read = match known {
-            Some(read) => read,
-            None => {
-                let read = Arc::new(of_spec(&plain, 1.0)?);
-                if let Ok(mut kept) = self.0.lock() {
-                    if kept.len() >= KEPT {
-                        kept.remove(0);
-                    }
-                    kept.push((plain.clone(), Arc::clone(&read)));
+        let read = if let Some(read) = known {
+            read
+        } else {
+            let read = Arc::new(of_spec(&plain, 1.0)?);
+            if let Ok(mut kept) = self.0.lock() {
+                if kept.len() >= KEPT {
+                    kept.remove(0);
                 }
-                read
+                kept.push((plain.clone(), Arc::clone(&read)));
             }
+            read
         };
         if *spec == plain && similitude == 1.0 {
             return Ok(read);
