@@ -145,6 +145,8 @@ def notebook(path: Path, out: Path) -> None:
 
 def main() -> int:
     """Gathers the pages and builds them."""
+    # Notebooks draw into their cells, whatever the tests draw into.
+    os.environ.pop("MPLBACKEND", None)
     source = TARGET / "source"
     shutil.rmtree(source, ignore_errors=True)
     (source / "notebooks").mkdir(parents=True)
