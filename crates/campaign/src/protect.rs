@@ -111,8 +111,8 @@ pub struct Ranked {
     pub round: u32,
     /// Whether nothing that was tried costs no more and loses less.
     pub on_front: bool,
-    /// Barrels that fall when it is worn or badly fitted; none where it was not tried so.
-    pub worn: Option<Estimate>,
+    /// What it is when worst kept, and the barrels that then fall; none where it was not tried so.
+    pub worn: Option<(String, Estimate)>,
 }
 
 impl Ranked {
@@ -465,14 +465,18 @@ impl Search<'_> {
         weights: &[f64],
     ) -> Result<(), ProtectError> {
         for (trial, found) in trials.iter().zip(all).filter(|(_, found)| found.on_front) {
-            let Some(worn) = trial.protection.worn() else { continue };
-            let mut one = self.trials(vec![worn]);
-            let open: Vec<usize> = (0..one.len()).collect();
-            self.round(&mut one, &open, 0)?;
-            let Some(one) = one.first() else { continue };
-            let most = one.stacks[0].1.stack().map_or(0, |stack| stack.levels * stack.columns);
-            let runs = &one.runs[one.worse(weights)];
-            found.worn = Some(runs.estimate(Quantity::Fallen, weights, f64::from(most)));
+            for (words, worn) in trial.protection.worn() {
+                let mut one = self.trials(vec![worn]);
+                let open: Vec<usize> = (0..one.len()).collect();
+                self.round(&mut one, &open, 0)?;
+                let Some(one) = one.first() else { continue };
+                let most = one.stacks[0].1.stack().map_or(0, |stack| stack.levels * stack.columns);
+                let runs = &one.runs[one.worse(weights)];
+                let fallen = runs.estimate(Quantity::Fallen, weights, f64::from(most));
+                if found.worn.as_ref().is_none_or(|(_, worst)| worst.mean < fallen.mean) {
+                    found.worn = Some((words.to_owned(), fallen));
+                }
+            }
         }
         Ok(())
     }

@@ -45,7 +45,7 @@ described! {
         /// Its name.
         pub name: String = one.protection.name.clone(),
         /// What kind of change it is.
-        pub kind: &'static str ["as-it-is", "height", "rack", "straps", "pair"] = one.protection.kind.name(),
+        pub kind: &'static str ["as-it-is", "height", "rack", "device", "pair"] = one.protection.kind.name(),
         /// What it changes, as overrides of the scenario.
         pub changes: Vec<String> = one.protection.changes.clone(),
         /// What it costs for a stack, from and to.
@@ -62,10 +62,10 @@ described! {
         pub barrels_burst: Interval = Interval::of(&one.burst),
         /// How many fewer barrels fall than of the stack as it is, under the same motions; null for itself.
         pub barrels_saved: Option<Interval> = one.saved.as_ref().map(Interval::of),
-        /// Barrels that fall when it is worn or badly fitted; null where that was not tried.
-        pub barrels_fallen_when_worn: Option<Interval> = one.worn.as_ref().map(Interval::of),
-        /// What it is when worn, in words.
-        pub worn: Option<String> = one.protection.degraded.as_ref().map(|(words, _)| words.clone()),
+        /// Barrels that fall when it is worst kept; null where that was not tried.
+        pub barrels_fallen_when_worn: Option<Interval> = one.worn.as_ref().map(|(_, worn)| Interval::of(worn)),
+        /// What it is then, in words.
+        pub worn: Option<String> = one.worn.as_ref().map(|(words, _)| words.clone()),
         /// The direction of shaking in which more barrels fall.
         pub direction: &'static str ["transverse", "longitudinal"] = one.direction.name(),
         /// Motions under which it was run.

@@ -1,5 +1,7 @@
 //! What can be done for a stack: a change of the scenario, what it costs, and what is left of it when worn.
 
+use barrelstack::device::{Cost, DEVICES, Each, Setting};
+
 use crate::scenario::{MotionSource, Scenario, ScenarioError, catalog};
 
 /// What kind of change it is; of a kind only one is part of a pair.
@@ -11,8 +13,8 @@ pub enum Kind {
     Height,
     /// Other racks.
     Rack,
-    /// Straps.
-    Straps,
+    /// A device, by what one of it is called.
+    Device(&'static str),
     /// Two of these at once.
     Pair,
 }
@@ -24,7 +26,7 @@ impl Kind {
             Self::AsItIs => "as-it-is",
             Self::Height => "height",
             Self::Rack => "rack",
-            Self::Straps => "straps",
+            Self::Device(_) => "device",
             Self::Pair => "pair",
         }
     }
@@ -47,8 +49,8 @@ pub struct Protection {
     pub source: String,
     /// Barrels that have to stand elsewhere.
     pub moved: u32,
-    /// What it is when worn or badly fitted: in words, and as further overrides; none where it cannot wear.
-    pub degraded: Option<(String, Vec<String>)>,
+    /// What may become of it in use: in words, and as further overrides.
+    pub degraded: Vec<(String, Vec<String>)>,
 }
 
 /// Price (US$) of a new rack for two barrels: about 100 in 2009 (cedarrivercellars.com); that it may be twice as much
@@ -58,14 +60,11 @@ const RACK: [f64; 2] = [100.0, 200.0];
 /// The same of a rack on posts, which has some twice the steel: an assumption.
 const RACK_ON_POSTS: [f64; 2] = [200.0, 400.0];
 
-/// Price (US$) of a strap with its ratchet, put on: an assumption.
-const STRAP: [f64; 2] = [15.0, 40.0];
-
 /// Cost (US$) of a barrel's place elsewhere, half a rack and its floor: an assumption.
 const PLACE: [f64; 2] = [100.0, 300.0];
 
-/// Pretensions (kN) of straps that are tried; by hand a ratchet for webbing of 50 mm reaches 5 kN at most.
-const PRETENSIONS: [u32; 3] = [1, 3, 5];
+/// Pretensions (kN) of straps about the whole stack; by hand a ratchet for webbing of 50 mm reaches 5 kN at most.
+const PRETENSIONS: [u32; 2] = [1, 3];
 
 /// All that can be done for a stack, which as it is comes first.
 pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
@@ -80,7 +79,7 @@ pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
         cost: [0.0, 0.0],
         source: String::new(),
         moved: 0,
-        degraded: None,
+        degraded: Vec::new(),
     };
     let mut all = vec![none(Kind::AsItIs, "as-it-is", "as it is")];
     for fewer in 1..levels {
@@ -111,39 +110,51 @@ pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
             ..none(Kind::Rack, &format!("rack-{}", rack.base), &format!("racks `{}`", rack.base))
         });
     }
-    if stack.devices.strap.levels == 0 && levels > 1 {
-        // Three levels as one block, and the whole stack.
-        let blocks = if levels > 3 { vec![3, levels] } else { vec![levels] };
-        for strapped in blocks {
-            for pretension in PRETENSIONS {
-                let (which, part) = if strapped == levels {
-                    ("all levels".to_owned(), "all".to_owned())
-                } else {
-                    (format!("top {strapped} levels"), format!("top-{strapped}"))
-                };
-                let table = |pretension: &str| {
-                    format!(
-                        "stack.strap={{ levels = {strapped}, ties = \"levels-together\", {pretension} }}"
-                    )
-                };
-                // Two down the sides of every barrel, and two between racks.
-                let count =
-                    2 * strapped * columns + 2 * (strapped - 1) * columns.div_ceil(per_rack);
-                all.push(Protection {
-                    changes: vec![table(&format!("pretension = \"{pretension} kN\""))],
-                    cost: times(STRAP, count),
-                    source: "a strap and its ratchet, put on; assumption".to_owned(),
-                    degraded: Some(("loose by 20 mm".to_owned(), vec![table("slack = \"20 mm\"")])),
-                    ..none(
-                        Kind::Straps,
-                        &format!("straps-{part}-at-{pretension}-kn"),
-                        &format!("{which} strapped together at {pretension} kN"),
-                    )
-                });
-            }
+    let present = stack.devices.present();
+    for words in DEVICES.iter().filter(|words| !present.contains(words)) {
+        let device = |name: &str, changes: Vec<String>| Protection {
+            cost: price(&words.cost, &changes, levels),
+            source: words.cost.source.to_owned(),
+            changes,
+            degraded: words.degraded.iter().map(told).collect(),
+            ..none(Kind::Device(words.one), &slug(name), name)
+        };
+        all.extend(words.candidates.iter().map(told).map(|(name, changes)| device(&name, changes)));
+        if words.many == "straps" && levels > 1 {
+            all.extend(PRETENSIONS.iter().map(|pretension| {
+                let fields = [
+                    format!("levels={levels}"),
+                    "ties=\"levels-together\"".to_owned(),
+                    format!("pretension=\"{pretension} kN\""),
+                ];
+                let changes = fields.iter().map(|field| format!("stack.strap.{field}")).collect();
+                device(&format!("all levels strapped together at {pretension} kN"), changes)
+            }));
         }
     }
     all
+}
+
+fn told(setting: &Setting) -> (String, Vec<String>) {
+    let overrides = setting.overrides.iter().map(|change| (*change).to_owned());
+    (setting.name.to_owned(), overrides.collect())
+}
+
+/// What a device costs (US$) on so many levels as it is set to, or else on all.
+fn price(cost: &Cost, changes: &[String], levels: u32) -> [f64; 2] {
+    let set = |change: &String| change.split_once(".levels=")?.1.parse::<u32>().ok();
+    let count = match cost.each {
+        Each::Stack => 1,
+        Each::Level => changes.iter().find_map(set).unwrap_or(levels),
+    };
+    times(cost.dollars, count)
+}
+
+/// A name as that of a folder.
+fn slug(name: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+    let dashed: String = name.chars().map(plain).collect();
+    dashed.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
 }
 
 /// Two at once, the second for the stack that the first leaves; none of one kind, since each changes the same fields,
@@ -171,7 +182,7 @@ pub(super) fn pair(
         cost: [0, 1].map(|at| first.cost[at] + second.cost[at]),
         source: join([&first.source, &second.source], "; "),
         moved: first.moved + second.moved,
-        degraded: second.degraded.or_else(|| first.degraded.clone()),
+        degraded: [first.degraded.clone(), second.degraded].concat(),
     })
 }
 
@@ -193,21 +204,20 @@ impl Protection {
         changed(scenario, &self.changes)
     }
 
-    /// The same when it is worn or badly fitted; none where it cannot wear.
-    pub(super) fn worn(&self) -> Option<Self> {
-        let (words, changes) = self.degraded.as_ref()?;
-        let keys: Vec<&str> =
-            changes.iter().filter_map(|change| change.split('=').next()).collect();
-        let kept = self
-            .changes
-            .iter()
-            .filter(|change| change.split('=').next().is_none_or(|key| !keys.contains(&key)));
-        Some(Self {
-            key: format!("{}-worn", self.key),
-            name: format!("{}, {words}", self.name),
-            changes: kept.chain(changes).cloned().collect(),
-            degraded: None,
-            ..self.clone()
+    /// What it is when worn or badly kept: in words, and in its place.
+    pub(super) fn worn(&self) -> impl Iterator<Item = (&str, Self)> {
+        self.degraded.iter().enumerate().map(|(at, (words, changes))| {
+            let field = |change: &String| change.split('=').next().map(str::to_owned);
+            let own: Vec<_> = changes.iter().map(field).collect();
+            let kept = self.changes.iter().filter(|change| !own.contains(&field(change)));
+            let worn = Self {
+                key: format!("{}-worn-{}", self.key, at + 1),
+                name: format!("{}, {words}", self.name),
+                changes: kept.chain(changes).cloned().collect(),
+                degraded: Vec::new(),
+                ..self.clone()
+            };
+            (words.as_str(), worn)
         })
     }
 }

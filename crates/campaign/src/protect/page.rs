@@ -107,7 +107,7 @@ fn sentences(all: &Ranking) -> Vec<String> {
         if best.protection.moved > 0 {
             said.push(format!("{} barrels have to stand elsewhere.", best.protection.moved));
         }
-        if let (Some(worn), Some((words, _))) = (&best.worn, &best.protection.degraded) {
+        if let Some((words, worn)) = &best.worn {
             said.push(format!(
                 "Badly kept ({words}) {} fall, under the motions of the first round.",
                 significant(worn.mean, 2)
@@ -182,7 +182,9 @@ fn table(all: &Ranking) -> Table {
             Cell::text(interval(all, &one.fallen)),
             Cell::text(interval(all, &one.burst)),
             one.saved.as_ref().map_or(Cell::Missing, |saved| Cell::text(interval(all, saved))),
-            one.worn.as_ref().map_or(Cell::Missing, |worn| Cell::text(interval(all, worn))),
+            one.worn.as_ref().map_or(Cell::Missing, |(words, worn)| {
+                Cell::text(format!("{} {words}", interval(all, worn)))
+            }),
             Cell::text(one.direction.words()),
             Cell::text(one.motions.to_string()),
         ]);
