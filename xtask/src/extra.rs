@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use crate::steps::cargo;
-use crate::{browser, web};
+use crate::{browser, python, web};
 
 /// A check that not every machine can do.
 pub(crate) struct Extra {
@@ -71,7 +71,14 @@ pub(crate) fn all(root: &Path) -> Vec<Extra> {
         remedy: "see above",
         pages: Some(check),
     });
-    [licenses, oldest, web].into_iter().chain(engine).chain(reports).collect()
+    let package = Extra {
+        name: "tests of the Python package",
+        command: python::find(root),
+        remedy: "see above; `cargo xtask python` runs this step alone, `cargo xtask python heavy` also what needs ObsPy, \
+                 OpenQuake, Dask and Slurm",
+        pages: None,
+    };
+    [licenses, oldest, web].into_iter().chain([package]).chain(engine).chain(reports).collect()
 }
 
 fn with(mut command: Command, words: &[&str]) -> Command {

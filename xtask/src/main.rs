@@ -7,6 +7,7 @@
 
 mod browser;
 mod extra;
+mod python;
 mod steps;
 mod tally;
 mod web;
@@ -22,6 +23,8 @@ tasks:
   golden     keeps how all report pages look now, for the next test; look at what it keeps before you commit it
   golden bits  keeps what results are now, to the last bit, once their version is raised
   web        one page that holds the program, as WebAssembly, and works without a network; says how large it is
+  python     the Python package in an environment of its own under target/: its tests, its notebooks, its site;
+             `heavy` also those that need ObsPy, OpenQuake, Dask and Slurm; `site` the site alone
   validate   every problem with an exact answer, in full, with a report; `--out DIR`, `--only TEXT`, `--fast`
   bench      how fast stacks are computed, beside a game engine on the same scenes; `--cases N`, `table`, `growth`,
              `history` (the work of runs beside that of the last release; `history keep` writes it down)
@@ -49,6 +52,15 @@ fn main() -> ExitCode {
                 ExitCode::FAILURE
             }
         },
+        ["python", rest @ ..] if matches!(rest, [] | ["heavy" | "site"]) => {
+            match python::run(&steps::root(), rest.first().copied()) {
+                Ok(()) => ExitCode::SUCCESS,
+                Err(error) => {
+                    eprintln!("xtask: {error:#}");
+                    ExitCode::FAILURE
+                }
+            }
+        }
         ["golden", "bits"] => release(&["--package", "barrelstack", "--example", "golden"], &[]),
         ["validate", rest @ ..] => release(&["--package", "barrelstack-validation"], rest),
         ["bench", rest @ ..] => release(&["--manifest-path", "benchmarks/Cargo.toml"], rest),

@@ -161,7 +161,7 @@ pub(crate) fn cargo() -> OsString {
 }
 
 /// The root of the repository, from wherever the task is started.
-fn root() -> PathBuf {
+pub(crate) fn root() -> PathBuf {
     let own = Path::new(env!("CARGO_MANIFEST_DIR"));
     own.parent().unwrap_or(own).to_path_buf()
 }

@@ -9,7 +9,7 @@ use std::time::Instant;
 use barrelstack::assemble::{Assembly, assemble};
 use barrelstack::ground::Ground;
 use barrelstack::scenario::Scene;
-use barrelstack::watch::{End, Thresholds, Watch};
+use barrelstack::watch::{End, Glance, Pace, Thresholds, Watch};
 use barrelstack::{Scenario, Summary};
 use barrelstack_dynamics::{
     Method, Observer, Planar, Scratch, Simulation, State, look, settle, simulate,
@@ -207,7 +207,7 @@ impl Stage {
         let record = &self.scenario.record;
         let mut scenario = self.scenario.clone();
         scenario.run.stop_after_collapse = after;
-        let mut progress = |_| ControlFlow::Continue(());
+        let mut progress = |_: Glance<'_>| ControlFlow::Continue(());
         let mut watch = Watch::new(
             &self.assembly,
             &self.ground,
@@ -217,6 +217,7 @@ impl Stage {
             (record.frame_rate, record.history_rate),
             End::new(&scenario, &self.assembly, &self.ground),
             &mut progress,
+            Pace::Time,
         );
         let end_time = self.scenario.run.duration.unwrap_or(12.0);
         self.shaken(state, scratch, end_time, &mut watch)

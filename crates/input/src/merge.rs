@@ -212,17 +212,18 @@ fn holds(table: &Table, origin: Origin) -> bool {
     table.entries.iter().any(|entry| inside(&entry.node, origin))
 }
 
-/// Applies all overrides, in order.
+/// Applies the overrides from one on, in order.
 ///
 /// One that takes back what another has set contradicts it, and is refused; the same one twice is not.
 pub fn apply_overrides(
     table: &mut Table,
     section: &'static Section,
     sources: &Sources,
+    first: usize,
 ) -> Result<(), InputError> {
     let texts = &sources.overrides;
     let mut set: Vec<usize> = Vec::new();
-    for index in 0..texts.len() {
+    for index in first..texts.len() {
         apply_override(table, section, sources, index)?;
         let undone = |known: &&usize| !holds(table, Origin::Override(**known));
         if let Some(known) = set.iter().find(undone).filter(|known| texts[**known] != texts[index])

@@ -6,6 +6,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::{InputError, Place, Problem};
+use crate::writer;
 
 /// Where a key or value was written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -150,6 +151,40 @@ impl Sources {
             Origin::Whole(file) => Place::Whole { file: self.files[file].name.clone() },
             Origin::Override(index) => Place::Override { text: self.overrides[index].clone() },
             Origin::Default => Place::Unknown,
+        }
+    }
+
+    /// Gives every value of a tree that no text holds a place: its path and what it is, as an override would say it.
+    ///
+    /// Items of lists count from 1.
+    pub fn adopt(&mut self, table: &mut Table) {
+        self.adopt_below(table, "");
+    }
+
+    fn adopt_below(&mut self, table: &mut Table, above: &str) {
+        for entry in &mut table.entries {
+            let point = if above.is_empty() { "" } else { "." };
+            let path = format!("{above}{point}{}", entry.key);
+            self.adopt_node(&mut entry.node, &path);
+            entry.origin = entry.node.origin;
+        }
+    }
+
+    fn adopt_node(&mut self, node: &mut Node, path: &str) {
+        let inner = matches!(node.value, Value::Table(_) | Value::Array(_));
+        let told =
+            if inner { path.to_owned() } else { format!("{path}={}", writer::inline(&node.value)) };
+        node.origin = Origin::Override(self.overrides.len());
+        self.overrides.push(told);
+        match &mut node.value {
+            Value::Table(table) => self.adopt_below(table, path),
+            Value::Array(items) => {
+                for (at, item) in items.iter_mut().enumerate() {
+                    self.adopt_node(item, &format!("{path}.{}", at + 1));
+                }
+            }
+            Value::Text(_) | Value::Integer(_) | Value::Float(_) | Value::Flag(_) | Value::Date => {
+            }
         }
     }
 

@@ -56,6 +56,7 @@
 
 mod align;
 mod bundled;
+mod changed;
 mod collection;
 mod corners;
 mod direction;

@@ -9,6 +9,7 @@ mod alone;
 mod case;
 mod columns;
 mod crew;
+mod rows;
 mod trail;
 
 use std::ops::ControlFlow;
@@ -26,6 +27,7 @@ use crate::watch::End;
 pub use barrelstack_dynamics::lanes::Width;
 pub use case::{CaseResult, Prepared};
 pub use columns::{CASE_COLUMNS, CaseColumn, Get, table};
+pub use rows::{Grounds, rows};
 pub use trail::{RATE, Trail};
 
 /// Version of what an ensemble computes: raised whenever the same case may give other bits, so that

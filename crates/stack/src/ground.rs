@@ -175,12 +175,17 @@ impl Scenario {
     /// # Errors
     /// When the record has no channel, or channels of different steps.
     pub fn with_record(&self, record: &Record) -> Result<Self, MotionError> {
-        let mut file = FileRef::new(&record.file, PathBuf::new());
-        file.hold(barrelstack_motion::write::npz(record)?);
+        Ok(self.with_record_file(&held(record)?))
+    }
+
+    /// As [`Scenario::with_record`], by a file that is at hand ([`held`]), so that many scenarios share one.
+    #[must_use]
+    pub fn with_record_file(&self, file: &FileRef) -> Self {
         let mut scenario = self.clone();
-        scenario.motion.source = MotionSource::Record(self.recorded(RecordSource::File(file)));
+        let source = RecordSource::File(file.clone());
+        scenario.motion.source = MotionSource::Record(self.recorded(source));
         scenario.retitle();
-        Ok(scenario)
+        scenario
     }
 
     /// What it states of its record, of another one; where it has none, the first horizontal component with the
@@ -193,6 +198,16 @@ impl Scenario {
             }
         }
     }
+}
+
+/// A record as a file that is at hand.
+///
+/// # Errors
+/// When the record has no channel, or channels of different steps.
+pub fn held(record: &Record) -> Result<FileRef, MotionError> {
+    let mut file = FileRef::new(&record.file, PathBuf::new());
+    file.hold(barrelstack_motion::write::npz(record)?);
+    Ok(file)
 }
 
 /// The bytes of a file of the system, as [`Scenario::with_records`] takes them.

@@ -17,7 +17,9 @@ use crate::scenario::{self, Scenario, Scene, Until};
 use crate::stand::{Standing, stand};
 use crate::step::critical_time_step;
 use crate::stick::SoftStick;
-use crate::watch::{ElementFate, End, Ending, Fates, Recording, Stresses, Thresholds, Watch};
+use crate::watch::{
+    ElementFate, End, Ending, Eye, Fates, Glance, Pace, Recording, Stresses, Thresholds, Watch,
+};
 
 use failure::MOST_KEPT;
 pub use failure::RunFailure;
@@ -160,6 +162,39 @@ impl Scenario {
         ground: Ground,
         observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Run, RunFailure> {
+        let end_time = end_time(self, &ground, self.run.similitude.sqrt())?;
+        let mut eye = |glance: Glance<'_>| observer(Progress { time: glance.time, end_time });
+        self.run_before(ground, Pace::Time, &mut eye)
+    }
+
+    /// Runs it on a given ground before an eye, which looks at its pace and may stop it: a law of one's own for the end
+    /// of a run, a quantity that no history has.
+    ///
+    /// ```
+    /// use std::num::NonZero;
+    /// use std::ops::ControlFlow;
+    ///
+    /// use barrelstack_stack::Scenario;
+    /// use barrelstack_stack::watch::Pace;
+    ///
+    /// let scenario = Scenario::builtin("sliding-block", &[])?;
+    /// let every = Pace::Steps(NonZero::new(10).ok_or("ten")?);
+    /// let run = scenario.run_before(scenario.ground()?, every, &mut |glance| {
+    ///     let speed = glance.state.twists[1].linear.x;
+    ///     if speed > 0.5 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    /// })?;
+    /// assert!(run.interrupted && run.end_time < 0.2);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Scenario::run_on`].
+    pub fn run_before(
+        &self,
+        ground: Ground,
+        pace: Pace,
+        eye: &mut Eye<'_>,
+    ) -> Result<Run, RunFailure> {
         let time_scale = self.run.similitude.sqrt();
         let end_time = end_time(self, &ground, time_scale)?;
         let Standing { assembly, mut state, mut scratch, settled, step } = stand(self, end_time)?;
@@ -171,7 +206,7 @@ impl Scenario {
         check_memory(&assembly, end_time, rates)?;
         let (evaluations, tested) = (scratch.evaluations, scratch.contact_evaluations);
         let sticks = SoftStick::of(&assembly, &scratch, ground.motion.as_ref());
-        let mut told = |time| observer(Progress { time, end_time });
+        let mut seen = |glance: Glance<'_>| eye(glance);
         let mut watch = Watch::new(
             &assembly,
             &ground,
@@ -180,7 +215,8 @@ impl Scenario {
             thresholds,
             rates,
             End::new(self, &assembly, &ground),
-            &mut told,
+            &mut seen,
+            pace,
         );
         let result = simulate(model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
         let Watch { recording, mut stresses, fates, elements, ending, .. } = watch;

@@ -7,6 +7,7 @@ mod recording;
 mod rest;
 mod stress;
 
+use std::num::NonZero;
 use std::ops::ControlFlow;
 
 use barrelstack_dynamics::real::Real;
@@ -37,11 +38,37 @@ pub struct Watch<'a> {
     ground: &'a Ground,
     assembly: &'a Assembly,
     end: End,
-    progress: &'a mut dyn FnMut(f64) -> ControlFlow<()>,
-    /// When progress is told next (s).
-    next_progress: f64,
+    eye: &'a mut Eye<'a>,
+    pace: Pace,
+    /// When the eye looks next (s).
+    next_look: f64,
+    /// Accepted states that were passed to it or over.
+    states: u64,
     /// Why the run is over; none while it goes on, or to the end of its time.
     pub ending: Option<Ending>,
+}
+
+/// What an eye sees of a run while it goes on.
+#[derive(Clone, Copy)]
+pub struct Glance<'a> {
+    /// Simulated time (s).
+    pub time: f64,
+    /// Accepted steps until then.
+    pub steps: u64,
+    /// Poses and twists of all bodies, in the order of the parts.
+    pub state: &'a State<Planar>,
+}
+
+/// Who looks at a run while it goes on, and may stop it.
+pub type Eye<'a> = dyn FnMut(Glance<'_>) -> ControlFlow<()> + 'a;
+
+/// When an eye looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// At the start and every 0.05 s of simulated time.
+    Time,
+    /// At the start and after every so many accepted steps.
+    Steps(NonZero<u64>),
 }
 
 /// What ends a run before its time is over.
@@ -102,7 +129,8 @@ impl<'a> Watch<'a> {
         thresholds: Thresholds,
         rates: (f64, f64),
         end: End,
-        progress: &'a mut dyn FnMut(f64) -> ControlFlow<()>,
+        eye: &'a mut Eye<'a>,
+        pace: Pace,
     ) -> Self {
         Self {
             recording: Recording::new(assembly, state, rates),
@@ -112,14 +140,16 @@ impl<'a> Watch<'a> {
             ground,
             assembly,
             end,
-            progress,
-            next_progress: 0.0,
+            eye,
+            pace,
+            next_look: 0.0,
+            states: 0,
             ending: None,
         }
     }
 }
 
-/// Simulated time (s) between two reports to the caller.
+/// Simulated time (s) between two looks of an eye whose pace is time.
 const PROGRESS: f64 = 0.05;
 
 impl Observer<Planar> for Watch<'_> {
@@ -136,9 +166,16 @@ impl Observer<Planar> for Watch<'_> {
         // question.
         self.stresses.observe(self.fates.collapse_time().is_none(), scratch);
         self.recording.observe(self.assembly, self.ground, model, state, scratch, energy);
-        if state.time >= self.next_progress {
-            self.next_progress = state.time + PROGRESS;
-            if (self.progress)(state.time).is_break() {
+        let due = match self.pace {
+            Pace::Time => state.time >= self.next_look,
+            Pace::Steps(every) => self.states.is_multiple_of(every.get()),
+        };
+        // The first state is the start, which no step has made.
+        let glance = Glance { time: state.time, steps: self.states, state };
+        self.states += 1;
+        if due {
+            self.next_look = state.time + PROGRESS;
+            if (self.eye)(glance).is_break() {
                 self.ending = Some(Ending::Interrupted);
                 return ControlFlow::Break(());
             }

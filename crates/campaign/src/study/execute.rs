@@ -117,7 +117,8 @@ impl Study {
     /// Runs all chunks that are missing from a folder; other processes may do so at the same time, and each chunk
     /// is run by one of them.
     ///
-    /// `tell` hears of every case that is done, from several threads, and may stop the run; what was done until then is
+    /// `tell` hears of every case that is done, and many times a second between, from several threads, and may stop
+    /// the run; what was done until then is
     /// kept, and the next run goes on from there.
     /// How many threads there are changes nothing about the table.
     ///
@@ -369,7 +370,10 @@ impl Shared<'_> {
         }
         drop(state);
         let mut tell = |result: &CaseResult| self.case_done(result);
-        let stop = || self.stop.load(Ordering::Relaxed);
+        let stop = || {
+            self.tell(&mut self.state());
+            self.stop.load(Ordering::Relaxed)
+        };
         let mut bench =
             Bench { shelf: &self.shelf, lanes: self.lanes, tell: &mut tell, stop: &stop };
         let Some(table) = self.study.compute(chunk, &mut bench)? else { return Ok(()) };

@@ -1,6 +1,7 @@
 //! Code and table spectra: pseudo-acceleration as a function of period.
 
 mod codes;
+mod text;
 
 use crate::error::MotionError;
 use crate::math::STANDARD_GRAVITY;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::error::{Place, Problem, ScenarioError};
 use super::reader::{Reader, nearest};
-use super::tree::{Origin, SourceFile, Sources, Table, Value};
+use super::tree::{Entry, Node, Origin, SourceFile, Sources, Table, Value};
 use super::{Scenario, Written, builtin, merge, root};
 use crate::system;
 
@@ -110,6 +110,70 @@ impl Scenario {
         read(&name, &bytes, overrides, Access::Files)
     }
 
+    /// Reads a scenario from values that stand in no text, such as those of another program; relative paths are
+    /// relative to the current folder, and an error names the path of the value that it is about.
+    ///
+    /// ```
+    /// use barrelstack_stack::scenario::Scenario;
+    /// use barrelstack_stack::scenario::tree::{Entry, Node, Origin, Table, Value};
+    ///
+    /// let node = |value| Node { origin: Origin::Default, value };
+    /// let entry = |key: &str, value| Entry {
+    ///     key: key.to_owned(),
+    ///     origin: Origin::Default,
+    ///     node: node(value),
+    /// };
+    /// let extends = entry("extends", Value::Text("candia-8-barrels".to_owned()));
+    /// let levels = Table { entries: vec![entry("levels", Value::Float(2.5))] };
+    /// let tree = Table { entries: vec![extends, entry("stack", Value::Table(levels))] };
+    /// let error = Scenario::from_tree("mine", tree).unwrap_err();
+    /// assert!(error.sentence().starts_with("override `stack.levels=2.5`: "));
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`Scenario::load`].
+    pub fn from_tree(name: &str, mut tree: Table) -> Result<Self, ScenarioError> {
+        let mut sources = Sources::default();
+        add_source(&mut sources, name, &[], PathBuf::new())?;
+        sources.adopt(&mut tree);
+        if tree.get("schema").is_none() {
+            let schema = Value::Integer(Some(i64::from(root::SCHEMA)));
+            let node = Node { origin: Origin::Whole(0), value: schema };
+            tree.set(Entry { key: "schema".to_owned(), origin: Origin::Whole(0), node });
+        }
+        let table = extend(&mut sources, tree, 0, Access::Files)?;
+        finished(sources, table)
+    }
+
+    /// The scenario with further values set, as overrides of [`Scenario::parse`] set them; what is set again is
+    /// replaced.
+    ///
+    /// A record that was given as a value ([`Scenario::with_record`]) belongs to no text and is not kept.
+    ///
+    /// ```
+    /// use barrelstack_stack::scenario::Scenario;
+    ///
+    /// let three = Scenario::builtin("demo-napa", &["stack.levels=3".to_owned()])?;
+    /// let six = three.with(&["stack.levels=6".to_owned()])?;
+    /// assert_eq!(six, Scenario::builtin("demo-napa", &["stack.levels=6".to_owned()])?);
+    /// # Ok::<(), barrelstack_stack::scenario::ScenarioError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The first problem found, at its place.
+    pub fn with(&self, overrides: &[String]) -> Result<Self, ScenarioError> {
+        let Some((sources, table)) = self.written.0.as_deref() else {
+            return Self::parse("scenario", &self.to_resolved_toml(), overrides);
+        };
+        let (mut sources, mut table) = (sources.clone(), table.clone());
+        let first = sources.overrides.len();
+        sources.overrides.extend_from_slice(overrides);
+        merge::apply_overrides(&mut table, &root::ROOT, &sources, first)?;
+        finished(sources, table)
+    }
+
     /// Reads a built-in scenario.
     ///
     /// # Errors
@@ -165,15 +229,20 @@ fn read(
     let folder = Path::new(name).parent().map(Path::to_path_buf).unwrap_or_default();
     add_source(&mut sources, name, bytes, folder)?;
     let mut table = chain(&mut sources, access)?;
-    merge::apply_overrides(&mut table, &root::ROOT, &sources)?;
+    merge::apply_overrides(&mut table, &root::ROOT, &sources, 0)?;
+    finished(sources, table)
+}
+
+/// The scenario of a table, into which all overrides were laid.
+fn finished(sources: Sources, mut table: Table) -> Result<Scenario, ScenarioError> {
     merge::expand_names(&mut table, &root::ROOT);
     let reader =
         Reader::open(&sources, &root::ROOT, String::new(), Some(&table), Origin::Whole(0))?;
-    let mut scenario = root::read(reader, &stem(name))?;
+    let mut scenario = root::read(reader, &stem(&sources.files[0].name))?;
     // A title of another file, or of a scenario before it was changed, may say what is no longer so.
     let parts = ["run.", "record.", "imperfections."];
     let kept = |change: &String| parts.iter().any(|part| change.starts_with(part));
-    let unchanged = overrides.iter().all(kept);
+    let unchanged = sources.overrides.iter().all(kept);
     let written = table.get("title").map(|title| title.node.origin);
     let own = match written {
         Some(Origin::File { file, .. } | Origin::Whole(file)) => file == 0 && unchanged,

@@ -431,7 +431,7 @@ fn document(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Reco
     let mut channels = Vec::new();
     let corners = record.noise_corners(&NoiseCriterion::default());
     for (channel, corners) in record.channels.iter().zip(corners) {
-        let motion = measures::sampled(channel)?;
+        let motion = channel.sampled()?;
         let mut values = BTreeMap::new();
         for Shown { measure, .. } in shown {
             let value =

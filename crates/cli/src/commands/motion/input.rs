@@ -278,30 +278,8 @@ impl Choice {
         }
         cut_to_shortest(&mut chosen);
         let chain = self.processing.unwrap_or(usual).of(record.stage);
-        Ok(if chain.is_none() { chosen } else { processed(&chosen, &chain)? })
+        Ok(if chain.is_none() { chosen } else { chosen.processed(&chain)? })
     }
-}
-
-/// All channels after a chain, every step of it in the notes.
-pub(super) fn processed(record: &Record, chain: &Processing) -> anyhow::Result<Record> {
-    let mut out = record.clone();
-    for channel in &mut out.channels {
-        let done = chain
-            .apply(channel.time_step, &channel.acceleration, channel.initial_velocity)
-            .map_err(|error| {
-                let (file, name) = (&record.file, &channel.name);
-                anyhow!("{file}, channel {name}: {error}; give a value in that range")
-            })?;
-        channel.acceleration = done.acceleration;
-        channel.initial_velocity = done.initial_velocity;
-        for step in done.steps {
-            out.notes.push(format!("{}: {step}", channel.name));
-        }
-        // What the header stated is true of other numbers.
-        channel.peaks.clear();
-    }
-    out.stage = Stage::Corrected;
-    Ok(out)
 }
 
 /// Channels of one record end together; the longer ones lose their last samples.

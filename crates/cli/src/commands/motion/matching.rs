@@ -6,13 +6,12 @@ use std::process::ExitCode;
 use anyhow::{anyhow, bail};
 use barrelstack::scenario::Dimension;
 use barrelstack_motion::{
-    GroundMotion, History, MatchMethod, Matching, MotionError, Record, STANDARD_GRAVITY, Sampled,
-    Stage, TargetSpectrum, response,
+    MatchMethod, Matching, MotionError, Record, STANDARD_GRAVITY, TargetSpectrum, response,
 };
 use clap::ValueEnum;
 
 use super::input::{self, Chain, Choice, Input, quantity};
-use super::measures::{self, sampled};
+use super::measures;
 use super::output::Output;
 use super::page::{self, Told};
 use super::panels;
@@ -148,70 +147,16 @@ fn matched(
     settings: &Matching,
 ) -> anyhow::Result<(Record, Option<String>)> {
     let place = place(args, before)?;
-    let channel = &before.channels[place];
-    let horizontal = History::Sampled(sampled(channel)?);
-    // A second component takes the first scaling and nothing else, so one of height 1 comes back as
-    // the factor for all others.
-    let probe = History::Sampled(Sampled::new(1.0, vec![1.0, 1.0])?);
-    let given = GroundMotion::new(channel.name.clone(), horizontal, Some(probe));
-    let matched = if args.accept_misfit {
-        given.match_spectrum_nearly(spectrum, settings)?
-    } else {
-        given.match_spectrum(spectrum, settings).map_err(|error| match error {
-            MotionError::NotConverged { .. } => anyhow!("{error}: add --accept-misfit"),
-            other @ (MotionError::Parameter { .. }
-            | MotionError::NotScalable { .. }
-            | MotionError::Zero { .. }
-            | MotionError::NoChannel { .. }
-            | MotionError::Mismatch { .. }) => other.into(),
-        })?
-    };
+    let done = before.matched(place, spectrum, &args.to, settings, args.accept_misfit);
+    let (after, matched) = done.map_err(|error| match error {
+        MotionError::NotConverged { .. } => anyhow!("{error}: add --accept-misfit"),
+        other @ (MotionError::Parameter { .. }
+        | MotionError::NotScalable { .. }
+        | MotionError::Zero { .. }
+        | MotionError::NoChannel { .. }
+        | MotionError::Mismatch { .. }) => other.into(),
+    })?;
     let missed = (!matched.missed.is_empty()).then(|| matched.missed_in_words());
-    let (History::Sampled(series), Some(probe)) =
-        (&matched.motion.horizontal, &matched.motion.vertical)
-    else {
-        bail!("the matched motion is not sampled");
-    };
-    let factor = probe.at(0.0).acceleration;
-    let step = series.time_step();
-    let mut after = before.clone();
-    for (k, other) in after.channels.iter_mut().enumerate() {
-        other.peaks.clear();
-        if k == place {
-            other.acceleration = series.acceleration().to_vec();
-            other.initial_velocity = 0.0;
-        } else {
-            let scaled = History::Sampled(sampled(other)?.scaled(factor));
-            other.acceleration = scaled.sampled(step)?.acceleration().to_vec();
-            other.initial_velocity *= factor;
-        }
-        other.time_step = step;
-    }
-    after.stage = Stage::Corrected;
-    after.notes.push(format!(
-        "{}: scaled by {factor:.4} and matched in {} to {} from {} to {} s: misfit at most \
-         {:.2} % after {} rounds, ends closed",
-        channel.name,
-        matched.domain(),
-        args.to,
-        settings.shortest,
-        settings.longest,
-        100.0 * matched.misfit,
-        matched.rounds
-    ));
-    if after.channels.len() > 1 {
-        after.notes.push(format!("all other components scaled by {factor:.4}"));
-    }
-    if step != channel.time_step {
-        after.notes.push(format!(
-            "step cut from {} to {step} s, so that the shortest matched period has ten; sums over \
-             samples, such as the Arias intensity, fall a little where the motion is linear between",
-            channel.time_step
-        ));
-    }
-    if let Some(words) = &missed {
-        after.notes.push(format!("{}: the target is missed {words}", channel.name));
-    }
     Ok((after, missed))
 }
 

@@ -69,15 +69,6 @@ pub(super) fn reading(measure: &IntensityMeasure) -> (&'static str, f64) {
     }
 }
 
-/// A channel as sampled motion, with the velocity it starts with.
-pub(super) fn sampled(channel: &Channel) -> Result<Sampled, MotionError> {
-    Sampled::with_initial_velocity(
-        channel.time_step,
-        channel.acceleration.clone(),
-        channel.initial_velocity,
-    )
-}
-
 /// Every measure (rows) of every column.
 pub(super) fn table(
     columns: &[(String, &Channel)],
@@ -87,7 +78,7 @@ pub(super) fn table(
     let head = ["measure".to_owned(), "unit".to_owned()];
     let mut table = Table::new(2, head.into_iter().chain(names));
     let motions: Vec<Sampled> =
-        columns.iter().map(|(_, channel)| sampled(channel)).collect::<Result<_, _>>()?;
+        columns.iter().map(|(_, channel)| channel.sampled()).collect::<Result<_, _>>()?;
     let lengths = motions.iter().map(|motion| number(motion.duration()));
     table.row(["length".to_owned(), "s".to_owned()].into_iter().chain(lengths));
     for Shown { measure, name } in measures {
@@ -121,7 +112,7 @@ pub(super) fn pulse(motion: &Sampled) -> Result<PulseFit, MotionError> {
 
 /// The dominant velocity pulse of every channel, one sentence each.
 pub(super) fn pulses(record: &Record) -> Vec<String> {
-    let sentence = |channel: &Channel| match sampled(channel).and_then(|motion| pulse(&motion)) {
+    let sentence = |channel: &Channel| match channel.sampled().and_then(|motion| pulse(&motion)) {
         Ok(fit) => format!(
             "{}: a velocity pulse of {} s and {} cm/s from {} s holds {:.0} % of the squared \
              velocity{}",
@@ -150,7 +141,7 @@ pub(super) struct Rotated {
 /// `RotD50` and `RotD100` of the two horizontals.
 pub(super) fn rotated(record: &Record) -> Result<Vec<Rotated>, MotionError> {
     let (one, two) = record.horizontal_pair()?;
-    let (first, second) = (sampled(one)?, sampled(two)?);
+    let (first, second) = (one.sampled()?, two.sampled()?);
     let (a, b) = (first.acceleration(), second.acceleration());
     let mut rows = vec![
         Rotated {

@@ -11,7 +11,6 @@ use barrelstack_report::{
     Axis, Band, Figure, FigureKind, Format, Mark, Panels, Plot, Series, significant,
 };
 
-use super::measures::sampled;
 use super::output::vacant;
 use crate::store::store;
 
@@ -66,7 +65,7 @@ impl Kind {
 pub(super) fn record(record: &Record, read: &Record) -> anyhow::Result<Figure> {
     let mut rows = Vec::new();
     for channel in &record.channels {
-        let motion = sampled(channel)?;
+        let motion = channel.sampled()?;
         let row = Kind::ALL.map(|kind| {
             let values = kind.values(&motion);
             let marks = peak_mark(kind, channel.time_step, &values).into_iter().collect();
@@ -102,7 +101,7 @@ pub(super) fn compared(
     let mut rows = Vec::new();
     let mut channels = Vec::new();
     for (old, new) in before.channels.iter().zip(&after.channels) {
-        let (was, is) = (sampled(old)?, sampled(new)?);
+        let (was, is) = (old.sampled()?, new.sampled()?);
         // What is longer has pads at both ends: the recorded part begins later.
         let shift = 0.5 * (new.duration() - old.duration());
         let row = Kind::ALL.map(|kind| {

@@ -14,7 +14,6 @@ use clap::ValueEnum;
 use super::folder::{self, Batch, FolderArgs, Source, Worked};
 use super::info;
 use super::input::{self, Chain, Choice, Input};
-use super::measures::sampled;
 use super::output::{self, vacant};
 use super::panels;
 use super::process::share;
@@ -271,8 +270,8 @@ fn series(kind: Kind, channel: &Channel, damping: &[f64]) -> anyhow::Result<Vec<
     Ok(match kind {
         Kind::Panels => Vec::new(),
         Kind::Acceleration => over_time(a, 1.0 / STANDARD_GRAVITY),
-        Kind::Velocity => over_time(sampled(channel)?.velocity(), 100.0),
-        Kind::Displacement => over_time(sampled(channel)?.displacement(), 100.0),
+        Kind::Velocity => over_time(channel.sampled()?.velocity(), 100.0),
+        Kind::Displacement => over_time(channel.sampled()?.displacement(), 100.0),
         Kind::Arias => over_time(&husid(a), arias(step, a)),
         Kind::Response => {
             let periods = standard_periods(40);

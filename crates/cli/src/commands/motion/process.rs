@@ -189,7 +189,7 @@ impl ProcessArgs {
         }
         let after = match self.corners {
             Some(CornersFrom::Auto) => by_noise(&before, &chain)?,
-            None => input::processed(&before, &chain)?,
+            None => before.processed(&chain)?,
         };
         Ok((before, after))
     }
@@ -210,7 +210,7 @@ fn by_noise(before: &Record, chain: &Processing) -> anyhow::Result<Record> {
             ..chain.clone()
         };
         let alone = Record { channels: vec![channel.clone()], notes: Vec::new(), ..before.clone() };
-        let done = input::processed(&alone, &chain)?;
+        let done = alone.processed(&chain)?;
         after.notes.push(format!("{}: {}", channel.name, corners.sentence(&criterion)));
         after.notes.extend(done.notes);
         after.channels.extend(done.channels);

@@ -5,7 +5,7 @@ use barrelstack::scenario::Dimension;
 use barrelstack_motion::{GroundMotion, History, Horizontals, IntensityMeasure, Record};
 
 use super::input::{self, Chain, Choice, Input, quantity};
-use super::measures::{self, reading, sampled};
+use super::measures::{self, reading};
 use super::output::Output;
 use super::table::number;
 
@@ -46,7 +46,7 @@ pub(super) fn scale(args: &ScaleArgs) -> anyhow::Result<()> {
     if let Some((measure, value)) = goal {
         let (factor, of) = factor_to(args, &before, measure, value)?;
         let (unit, readable) = reading(&measure);
-        multiply(&mut after, factor);
+        after = after.multiplied(factor);
         after.notes.push(format!(
             "scaled by {factor:.6}, which brings {measure} of {of} to {} {unit}; one factor for all \
              components",
@@ -57,7 +57,7 @@ pub(super) fn scale(args: &ScaleArgs) -> anyhow::Result<()> {
         if !factor.is_finite() || factor == 0.0 {
             bail!("--factor: expected a number other than 0, found {factor}");
         }
-        multiply(&mut after, factor);
+        after = after.multiplied(factor);
         after.notes.push(format!("scaled by {factor}; one factor for all components"));
     }
     if let Some(length) = args.froude {
@@ -77,7 +77,7 @@ fn factor_to(
     if let Some(over) = args.of.as_deref().and_then(|name| name.parse::<Horizontals>().ok()) {
         let (first, second) =
             record.horizontal_pair().map_err(|error| anyhow!("--of {over}: {error}"))?;
-        let factor = over.scale_factor(measure, &sampled(first)?, &sampled(second)?, value)?;
+        let factor = over.scale_factor(measure, &first.sampled()?, &second.sampled()?, value)?;
         return Ok((factor, format!("{} and {} ({over})", first.name, second.name)));
     }
     let channel = match &args.of {
@@ -90,18 +90,8 @@ fn factor_to(
             .clone(),
     };
     let motion =
-        GroundMotion::new(channel.name.clone(), History::Sampled(sampled(&channel)?), None);
+        GroundMotion::new(channel.name.clone(), History::Sampled(channel.sampled()?), None);
     Ok((motion.scale_factor(measure, value)?, channel.name))
-}
-
-fn multiply(record: &mut Record, factor: f64) {
-    for channel in &mut record.channels {
-        for value in &mut channel.acceleration {
-            *value *= factor;
-        }
-        channel.initial_velocity *= factor;
-        channel.peaks.clear();
-    }
 }
 
 fn froude(record: &mut Record, length: f64) -> anyhow::Result<()> {

@@ -1,0 +1,145 @@
+//! A record as a whole, changed: processed, scaled, matched; every step in its notes.
+
+use crate::error::MotionError;
+use crate::ground_motion::GroundMotion;
+use crate::history::History;
+use crate::matched::Matched;
+use crate::matching::Matching;
+use crate::process::Processing;
+use crate::record::{Channel, Record, Stage};
+use crate::sampled::Sampled;
+use crate::target::TargetSpectrum;
+
+impl Channel {
+    /// The channel as a sampled motion, with the velocity it starts with.
+    ///
+    /// # Errors
+    /// As [`Sampled::new`].
+    pub fn sampled(&self) -> Result<Sampled, MotionError> {
+        let acceleration = self.acceleration.clone();
+        Sampled::with_initial_velocity(self.time_step, acceleration, self.initial_velocity)
+    }
+}
+
+impl Record {
+    /// All channels after a chain, every step of it in the notes.
+    ///
+    /// ```
+    /// use barrelstack_motion::{Processing, bundled};
+    /// let napa = bundled("napa-college-2014").unwrap();
+    /// let gentle = napa.processed(&Processing { high_pass: Some(0.2), ..Processing::none() })?;
+    /// assert!(gentle.channels[0].pgd() < napa.channels[0].pgd());
+    /// # Ok::<(), barrelstack_motion::MotionError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If a setting is out of range for a channel.
+    pub fn processed(&self, chain: &Processing) -> Result<Self, MotionError> {
+        let mut out = self.clone();
+        for channel in &mut out.channels {
+            let done = chain
+                .apply(channel.time_step, &channel.acceleration, channel.initial_velocity)
+                .map_err(|error| MotionError::Mismatch {
+                    what: format!("{}, channel {}: {error}", self.file, channel.name),
+                    remedy: "give a value in that range".to_owned(),
+                })?;
+            channel.acceleration = done.acceleration;
+            channel.initial_velocity = done.initial_velocity;
+            for step in done.steps {
+                out.notes.push(format!("{}: {step}", channel.name));
+            }
+            // What the header stated is true of other numbers.
+            channel.peaks.clear();
+        }
+        out.stage = Stage::Corrected;
+        Ok(out)
+    }
+
+    /// All channels times one factor; what it is for belongs in the notes.
+    #[must_use]
+    pub fn multiplied(&self, factor: f64) -> Self {
+        let mut out = self.clone();
+        for channel in &mut out.channels {
+            for value in &mut channel.acceleration {
+                *value *= factor;
+            }
+            channel.initial_velocity *= factor;
+            channel.peaks.clear();
+        }
+        out
+    }
+
+    /// One channel (from 0) matched to a target, which the notes call `named`; all others take its first scaling only.
+    ///
+    /// `nearly` takes the best motion where the tolerance is not reached.
+    ///
+    /// # Errors
+    /// As [`GroundMotion::match_spectrum`], and if there is no such channel.
+    pub fn matched(
+        &self,
+        place: usize,
+        target: &TargetSpectrum,
+        named: &str,
+        settings: &Matching,
+        nearly: bool,
+    ) -> Result<(Self, Matched), MotionError> {
+        let channel = self.channels.get(place).ok_or_else(|| MotionError::NoChannel {
+            file: self.file.clone(),
+            wanted: format!("#{}", place + 1),
+            available: self.channels.len().to_string(),
+        })?;
+        let horizontal = History::Sampled(channel.sampled()?);
+        // A second component takes the first scaling and nothing else, so one of height 1 comes back as
+        // the factor for all others.
+        let probe = History::Sampled(Sampled::new(1.0, vec![1.0, 1.0])?);
+        let given = GroundMotion::new(channel.name.clone(), horizontal, Some(probe));
+        let matched = if nearly {
+            given.match_spectrum_nearly(target, settings)?
+        } else {
+            given.match_spectrum(target, settings)?
+        };
+        let factor =
+            matched.motion.vertical.as_ref().map_or(1.0, |probe| probe.at(0.0).acceleration);
+        let series = matched.motion.horizontal.sampled(matched.motion.horizontal.natural_step())?;
+        let step = series.time_step();
+        let mut after = self.clone();
+        for (k, other) in after.channels.iter_mut().enumerate() {
+            other.peaks.clear();
+            if k == place {
+                other.acceleration = series.acceleration().to_vec();
+                other.initial_velocity = 0.0;
+            } else {
+                let scaled = History::Sampled(other.sampled()?.scaled(factor));
+                other.acceleration = scaled.sampled(step)?.acceleration().to_vec();
+                other.initial_velocity *= factor;
+            }
+            other.time_step = step;
+        }
+        after.stage = Stage::Corrected;
+        after.notes.push(format!(
+            "{}: scaled by {factor:.4} and matched in {} to {named} from {} to {} s: misfit at most \
+             {:.2} % after {} rounds, ends closed",
+            channel.name,
+            matched.domain(),
+            settings.shortest,
+            settings.longest,
+            100.0 * matched.misfit,
+            matched.rounds
+        ));
+        if after.channels.len() > 1 {
+            after.notes.push(format!("all other components scaled by {factor:.4}"));
+        }
+        if step != channel.time_step {
+            after.notes.push(format!(
+                "step cut from {} to {step} s, so that the shortest matched period has ten; sums over \
+                 samples, such as the Arias intensity, fall a little where the motion is linear between",
+                channel.time_step
+            ));
+        }
+        if !matched.missed.is_empty() {
+            let words = matched.missed_in_words();
+            after.notes.push(format!("{}: the target is missed {words}", channel.name));
+        }
+        Ok((after, matched))
+    }
+}

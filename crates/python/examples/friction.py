@@ -1,0 +1,8 @@
+"""Many cases: how often a stack comes down, against the friction under its racks."""
+
+from barrelstack import ensemble
+
+cases = [{"interface.rack-ground.friction.coefficient": 0.05 * number} for number in range(1, 17)]
+table = ensemble(cases, "candia-8-barrels")
+fell = table["outcome"].count("collapse")
+print(f"{fell} of {len(table)} came down")

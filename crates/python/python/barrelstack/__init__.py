@@ -1,0 +1,94 @@
+"""Wine-barrel stacks in earthquakes, from Python.
+
+::
+
+    Scenario ── run ──▶ Run          what stands and what shakes it ─▶ outcome, histories, report
+    Record   ──────────┘             strong ground motion: read, made of arrays, processed, scaled, measured
+    ensemble ──────────▶ Table       many cases at once
+    Study    ── run ──▶ Fragility    hundreds of cases in a folder, on one machine or on many
+    Scene    ── run ──▶ Run          any planar bodies
+
+All numbers are SI: m, s, kg, N, rad; z is up. Quantities that are given carry their unit as text (``"60 cm/s"``).
+"""
+
+from __future__ import annotations
+
+from . import _native
+from ._ensemble import ensemble
+from ._errors import BarrelstackWarning, Error, RecordError, RunError, ScenarioError, StudyError
+from ._record import Channel, Intensity, Record
+from ._run import Demands, Envelope, Force, Frames, Glance, Histories, Outcome, Run
+from ._scenario import Scenario, Section
+from ._scene import Scene
+from ._study import Chunk, Curve, Fragility, Hunts, Study
+from ._table import Column, Table
+
+__version__ = _native.VERSION
+
+__all__ = [
+    "BarrelstackWarning",
+    "Channel",
+    "Chunk",
+    "Column",
+    "Curve",
+    "Demands",
+    "Envelope",
+    "Error",
+    "Force",
+    "Fragility",
+    "Frames",
+    "Glance",
+    "Histories",
+    "Hunts",
+    "Intensity",
+    "Outcome",
+    "Record",
+    "RecordError",
+    "Run",
+    "RunError",
+    "Scenario",
+    "ScenarioError",
+    "Scene",
+    "Section",
+    "Study",
+    "StudyError",
+    "Table",
+    "__version__",
+    "ensemble",
+    "formats",
+    "scenarios",
+    "studies",
+]
+
+
+def scenarios() -> dict[str, str]:
+    """The scenarios that come with the library.
+
+    Returns
+    -------
+    dict
+        Names, and their texts with all comments: places to start from.
+    """
+    return dict(_native.scenarios())
+
+
+def studies() -> dict[str, str]:
+    """The studies that come with the library.
+
+    Returns
+    -------
+    dict
+        Names, and their texts with all comments.
+    """
+    return dict(_native.studies())
+
+
+def formats() -> dict[str, str]:
+    """The formats of strong-motion files that are read.
+
+    Returns
+    -------
+    dict
+        Names, and their publishers.
+    """
+    return dict(_native.formats())

@@ -1,0 +1,88 @@
+"""Many cases at once, in the lanes of the machine's vector unit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from . import _native
+from ._progress import Progress, told
+from ._quantity import plain
+from ._record import Record
+from ._scenario import Scenario
+from ._table import Table
+
+__all__ = ["ensemble"]
+
+
+def ensemble(
+    cases: Iterable[Mapping[str, Any]] | Any,
+    base: Scenario | str = "candia-8-barrels",
+    *,
+    records: Mapping[str, Record] | None = None,
+    progress: Progress = None,
+) -> Table:
+    """Runs many cases, each with the bits of a single run, and tells what became of each.
+
+    Parameters
+    ----------
+    cases
+        What each case sets in the base: a list of dicts, or any table that speaks Arrow (polars, pandas, pyarrow,
+        DuckDB). Columns are paths of fields, such as ``"stack.levels"``; a column of numbers may state their unit,
+        ``"motion.scale.pgv (cm/s)"``; texts are values as on the command line, ``"60 cm/s"``. Empty cells set nothing.
+        A column ``"record"`` says what shakes the case: a name among ``records``, or, in a list of dicts, a record.
+    base
+        A scenario, or the name of one.
+    records
+        The records that the table names.
+    progress
+        True for a bar, or a function that is called with (done, of, what).
+
+    Returns
+    -------
+    Table
+        A row a case, in their order: what it set, then outcome, demands and how it was computed.
+
+    Raises
+    ------
+    ScenarioError
+        At the first case that cannot be, before anything is run; ``row`` tells which.
+    RecordError
+        When a record cannot be used, or the motion of the first case cannot be read. One of a later case is a row with
+        the reason in ``error``.
+    KeyboardInterrupt
+        Within a second of Ctrl-C.
+
+    Notes
+    -----
+    All cores are used, the interpreter's lock is free, and memory holds the motions of one batch a core.
+    A case looks at one plane.
+
+    Examples
+    --------
+    >>> table = ensemble([{"stack.levels": n, "motion.scale.pgv": "60 cm/s"} for n in (2, 3, 4)])
+    >>> table["outcome"]
+    ['stable', 'collapse', 'collapse']
+    """
+    known = dict(records or {})
+    if hasattr(cases, "__arrow_c_stream__"):
+        table = _native.Table.from_arrow(cases)
+    else:
+        rows = [dict(case) for case in cases]
+        columns = dict.fromkeys(name for row in rows for name in row)
+        if rows and not columns:
+            raise ValueError("no case sets anything, so all are the base: run that")
+        for number, row in enumerate(rows):
+            if isinstance(row.get("record"), Record):
+                # The same record is read once, however many cases it shakes.
+                record = row["record"]
+                name = next((name for name, other in known.items() if other is record), f"record of row {number}")
+                known[name] = record
+                row["record"] = name
+        table = _native.Table.from_columns(
+            [(name, [plain(row.get(name)) if name in row else None for row in rows]) for name in columns]
+        )
+    scenario = base if isinstance(base, Scenario) else Scenario.load(base)
+    native = {name: record._native for name, record in known.items()}
+    with told(progress, f"ensemble of {len(table)} cases") as hear:
+        return Table(_native.ensemble(scenario._shaken, table, native, hear))

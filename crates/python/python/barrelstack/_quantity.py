@@ -1,0 +1,124 @@
+"""Quantities of Pint and astropy as the texts with units that the library reads."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any, Protocol, runtime_checkable
+
+__all__ = ["plain"]
+
+
+@runtime_checkable
+class _Pint(Protocol):
+    """A quantity of Pint."""
+
+    magnitude: Any
+
+    def to_base_units(self) -> Any: ...
+
+
+@runtime_checkable
+class _Astropy(Protocol):
+    """A quantity of astropy."""
+
+    value: Any
+    si: Any
+
+
+#: Base units by the names that Pint and astropy have for them.
+_BASE = {
+    "meter": "m",
+    "m": "m",
+    "kilogram": "kg",
+    "kg": "kg",
+    "gram": "gram",
+    "second": "s",
+    "s": "s",
+    "radian": "rad",
+    "rad": "rad",
+}
+
+
+def _written(value: float, powers: dict[str, Fraction | float]) -> str:
+    unit = " ".join(
+        _BASE[name] if power == 1 else f"{_BASE[name]}^{float(power):g}" for name, power in powers.items()
+    )
+    return f"{float(value)!r} {unit}".strip()
+
+
+def _of_pint(quantity: Any) -> str:
+    # Pint has no fixed system: grams or kilograms may be its base.
+    base = quantity.to_base_units()
+    return _written(base.magnitude, dict(base.unit_items()))
+
+
+def _of_astropy(quantity: Any) -> str:
+    si = quantity.si
+    powers = {unit.name: power for unit, power in zip(si.unit.bases, si.unit.powers, strict=True)}
+    return _written(si.value * si.unit.scale, powers)
+
+
+def plain(value: Any) -> Any:
+    """A value as the library takes it: quantities as texts with units, containers with such values.
+
+    Parameters
+    ----------
+    value
+        A text, number, truth, list or dict, or a quantity of Pint or astropy in any of them.
+
+    Returns
+    -------
+    object
+        The same without any type of another package.
+
+    Raises
+    ------
+    TypeError
+        When a quantity has a base unit that no field of a scenario has, such as the kelvin.
+    """
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    if isinstance(value, (str, bool, int, float)):
+        return value
+    try:
+        if isinstance(value, _Pint):
+            return _of_pint(value)
+        if isinstance(value, _Astropy):
+            return _of_astropy(value)
+    except KeyError as unit:
+        raise TypeError(f"no field of a scenario has the unit {unit}") from None
+    # Numbers and truths of NumPy.
+    item = getattr(value, "item", None)
+    return plain(item()) if callable(item) and getattr(value, "ndim", 0) == 0 else value
+
+
+def literal(value: Any) -> str:
+    """A value as TOML, for an override.
+
+    Parameters
+    ----------
+    value
+        As for :func:`plain`.
+
+    Returns
+    -------
+    str
+        TOML on one line.
+    """
+    import json
+
+    value = plain(value)
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, list):
+        return "[" + ", ".join(literal(item) for item in value) + "]"
+    if isinstance(value, dict):
+        pairs = (f"{json.dumps(key)} = {literal(item)}" for key, item in value.items())
+        return "{ " + ", ".join(pairs) + " }"
+    raise TypeError(f"a scenario holds texts, numbers, truths, lists and dicts, not a {type(value).__name__}")

@@ -1,0 +1,575 @@
+"""Records of strong ground motion."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _native
+
+__all__ = ["Channel", "Intensity", "Record"]
+
+#: The measures that are shown where none are named.
+USUAL = ("pga", "pgv", "pgd", "pgv/pga", "arias", "cav", "d5-75", "d5-95", "bracketed", "tm")
+
+
+class Channel(NamedTuple):
+    """One component of a record."""
+
+    name: str
+    #: Degrees clockwise from north; None where unknown, and for a vertical component.
+    azimuth: float | None
+    vertical: bool
+    #: Time between samples (s).
+    time_step: float
+    #: Instant of the first sample (UTC, ISO 8601); None where the file does not tell.
+    start: str | None
+    #: Acceleration (m/s²), shape (samples,): a view that cannot be written; vertical ones are positive upward.
+    acceleration: NDArray[np.float64]
+
+
+class Intensity(NamedTuple):
+    """A measure of every component, in SI units."""
+
+    measure: str
+    unit: str
+    #: By the name of the component.
+    values: dict[str, float]
+
+
+class Record:
+    """Accelerations of one instrument in one event; never changed, only made anew.
+
+    Made by :meth:`read`, :meth:`bundled`, :meth:`from_arrays` or :meth:`from_obspy`.
+
+    Examples
+    --------
+    >>> record = Record.bundled("napa-college-2014").scale(pgv=0.6)
+    >>> round(record.intensity("pgv")[0].values["90"], 6)
+    0.6
+    """
+
+    def __init__(self, native: _native.Record) -> None:
+        self._native = native
+
+    @classmethod
+    def read(
+        cls,
+        source: str | os.PathLike[str] | bytes | Sequence[str | os.PathLike[str]],
+        *,
+        unit: str | None = None,
+        time_step: float | None = None,
+        sensitivity: float | None = None,
+        name: str = "record",
+    ) -> Record:
+        """Reads a record in any of the formats of :func:`barrelstack.formats`.
+
+        Parameters
+        ----------
+        source
+            A path, the bytes of a file, or several paths whose components make one record.
+        unit
+            Unit of acceleration for files that state none: ``"g"``, ``"m/s2"``, ``"cm/s2"``, ``"gal"``.
+        time_step
+            Time between samples (s) for files that state none.
+        sensitivity
+            Counts to one m/s² for files that hold counts.
+        name
+            What errors call bytes.
+
+        Returns
+        -------
+        Record
+
+        Raises
+        ------
+        RecordError
+            With path, line and column, what was expected and what was found.
+
+        Notes
+        -----
+        Units and steps are never guessed.
+        """
+        given = (unit, time_step, sensitivity)
+        if isinstance(source, (bytes, bytearray)):
+            return cls(_native.Record.read(bytes(source), name, *given))
+        if isinstance(source, (str, os.PathLike)):
+            path = os.fspath(source)
+            with open(path, "rb") as file:
+                return cls(_native.Record.read(file.read(), path, *given))
+        parts = [cls.read(one, unit=unit, time_step=time_step, sensitivity=sensitivity) for one in source]
+        return cls(_native.Record.gather([part._native for part in parts]))
+
+    @classmethod
+    def bundled(cls, name: str = "napa-college-2014") -> Record:
+        """A record that comes with the library.
+
+        Parameters
+        ----------
+        name
+            ``"napa-college-2014"``: South Napa 2014 at Napa College (CSMIP 68150).
+
+        Returns
+        -------
+        Record
+        """
+        found = _native.Record.bundled(name)
+        if found is None:
+            raise ValueError(f'no record {name!r} comes with the library; "napa-college-2014" does')
+        return cls(found)
+
+    @classmethod
+    def from_arrays(
+        cls,
+        acceleration: ArrayLike | Mapping[str, ArrayLike],
+        dt: float,
+        *,
+        unit: str,
+        vertical: ArrayLike | None = None,
+        second: ArrayLike | None = None,
+        name: str = "arrays",
+        raw: bool = False,
+        start: str | None = None,
+        station: str = "",
+    ) -> Record:
+        """A record from accelerations at hand.
+
+        Parameters
+        ----------
+        acceleration
+            The horizontal component, shape (samples,); or all components by name, where names tell directions as
+            those of files do: ``"360"``, ``"N28W"``, ``"H1"``, ``"UP"``.
+        dt
+            Time between samples (s).
+        unit
+            Unit of the numbers; never guessed.
+        vertical
+            The vertical component, positive upward.
+        second
+            The other horizontal component.
+        name
+            What results call it.
+        raw
+            Whether it is as recorded, so that it is processed before it shakes anything.
+        start
+            Instant of the first sample (UTC, ISO 8601).
+        station
+            Name of the station.
+
+        Returns
+        -------
+        Record
+
+        Raises
+        ------
+        RecordError
+            When a number is not finite, the step is not above zero, or there are fewer than two samples.
+        """
+        if isinstance(acceleration, Mapping):
+            parts = list(acceleration.items())
+        else:
+            parts = [("H1", acceleration)]
+            parts += [("H2", second)] if second is not None else []
+            parts += [("UP", vertical)] if vertical is not None else []
+        channels = [(str(key), np.ascontiguousarray(values, dtype=np.float64)) for key, values in parts]
+        return cls(_native.Record.of_samples(name, channels, float(dt), unit, raw, start, station))
+
+    @classmethod
+    def from_obspy(cls, stream: Any, *, unit: str, name: str = "", raw: bool = False) -> Record:
+        """A record from a trace or a stream of ObsPy.
+
+        Parameters
+        ----------
+        stream
+            A ``Trace``, or a ``Stream`` whose traces are the components of one instrument, all of one step.
+        unit
+            Unit of the numbers. Traces are often counts: remove the response or the sensitivity first.
+        name
+            What results call it; the identity of the first trace without.
+        raw
+            Whether it is as recorded, so that it is processed before it shakes anything.
+
+        Returns
+        -------
+        Record
+
+        Raises
+        ------
+        RecordError
+            As :meth:`from_arrays`.
+        ValueError
+            When traces have other steps, starts or lengths, or samples are missing.
+        """
+        traces = list(stream) if hasattr(stream, "traces") else [stream]
+        if not traces:
+            raise ValueError("the stream has no trace")
+        first = traces[0].stats
+        for trace in traces:
+            stats = trace.stats
+            if (stats.delta, stats.npts) != (first.delta, first.npts):
+                raise ValueError(
+                    f"{trace.id} has {stats.npts} samples of {stats.delta} s, {traces[0].id} has {first.npts} of"
+                    f" {first.delta} s; resample and trim the stream first"
+                )
+            if abs(stats.starttime - first.starttime) > 0.5 * first.delta:
+                raise ValueError(f"{trace.id} and {traces[0].id} do not begin together; trim the stream first")
+            if np.ma.is_masked(trace.data):
+                raise ValueError(f"{trace.id} has gaps; fill or cut them first")
+        components = {trace.stats.channel or trace.id: trace.data for trace in traces}
+        station = f"{first.network}.{first.station}".strip(".")
+        # A trace without a start has that of 1970.
+        start = first.starttime.datetime.isoformat() + "Z" if first.starttime.timestamp != 0 else None
+        return cls.from_arrays(
+            components,
+            first.delta,
+            unit=unit,
+            name=name or traces[0].id,
+            raw=raw,
+            start=start,
+            station=station,
+        )
+
+    def to_obspy(self) -> Any:
+        """The record as a stream of ObsPy, accelerations in m/s².
+
+        Returns
+        -------
+        obspy.Stream
+            One trace a component; names of components are cut to the three letters that a trace takes, and of a long
+            station its number is left.
+        """
+        from obspy import Stream, Trace, UTCDateTime
+
+        network, _, station = self.station.rpartition(".")
+        if len(station) > 5:
+            # A trace has five letters: the number of the station is among the words of its name.
+            codes = [word for word in re.findall(r"\w+", station) if len(word) <= 5 and any(map(str.isdigit, word))]
+            network, station = "", codes[0] if codes else ""
+        traces = []
+        for channel in self.channels:
+            header = {
+                "network": network,
+                "station": station,
+                "channel": channel.name[:3],
+                "delta": channel.time_step,
+            }
+            if channel.start is not None:
+                header["starttime"] = UTCDateTime(channel.start)
+            traces.append(Trace(channel.acceleration.copy(), header))
+        return Stream(traces)
+
+    @property
+    def name(self) -> str:
+        """The name of the file, or what was given."""
+        return self._native.name
+
+    @property
+    def format(self) -> str:
+        """The name of the format that it was read in; ``samples`` where it was made of arrays."""
+        return self._native.format
+
+    @property
+    def event(self) -> str:
+        """The earthquake, as the file states it."""
+        return self._native.event
+
+    @property
+    def station(self) -> str:
+        """The station, as the file states it."""
+        return self._native.station
+
+    @property
+    def stage(self) -> str:
+        """How far it was processed: ``raw``, ``corrected`` or ``unknown``."""
+        return self._native.stage
+
+    @property
+    def notes(self) -> list[str]:
+        """What was done to its numbers, one sentence a step."""
+        return self._native.notes
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the reader noticed."""
+        return self._native.warnings
+
+    @property
+    def channels(self) -> list[Channel]:
+        """The components, in the order of the file; accelerations are views without a copy."""
+        facts = self._native.channels()
+        return [
+            Channel(name, azimuth, vertical, step, start, self._native.acceleration(at))
+            for at, (name, azimuth, vertical, step, start, _) in enumerate(facts)
+        ]
+
+    def __getitem__(self, component: str) -> Channel:
+        """A component by name, ``"h1"``, ``"h2"``, ``"vertical"`` or ``"#3"``."""
+        return self.channels[self._native.find(component)]
+
+    def velocity(self, component: str = "h1") -> NDArray[np.float64]:
+        """Velocity (m/s) at the samples: the integral of accelerations that are linear between.
+
+        Parameters
+        ----------
+        component
+            A name, ``"h1"``, ``"h2"``, ``"vertical"`` or ``"#3"``.
+
+        Returns
+        -------
+        ndarray, shape (samples,)
+        """
+        return self._native.integrated(self._native.find(component))[0]
+
+    def displacement(self, component: str = "h1") -> NDArray[np.float64]:
+        """Displacement (m) at the samples, as it moves the ground of a model.
+
+        Parameters
+        ----------
+        component
+            As for :meth:`velocity`.
+
+        Returns
+        -------
+        ndarray, shape (samples,)
+        """
+        return self._native.integrated(self._native.find(component))[1]
+
+    def component(self, name: str) -> Record:
+        """The record with one component alone, turned where need be.
+
+        Parameters
+        ----------
+        name
+            As for :meth:`velocity`, or ``"az:122"`` for an azimuth (degrees clockwise from north).
+
+        Returns
+        -------
+        Record
+        """
+        return Record(self._native.component(name))
+
+    def process(
+        self,
+        chain: str = "default",
+        *,
+        mean: str | None = None,
+        detrend: bool | None = None,
+        taper: float | None = None,
+        high_pass: float | None = None,
+        low_pass: float | None = None,
+        order: int | None = None,
+        keep_pads: bool | None = None,
+        close: bool | None = None,
+    ) -> Record:
+        """All components after a chain of processing, every step in :attr:`notes`.
+
+        Parameters
+        ----------
+        chain
+            Where to start: ``"default"`` for the stage of the record, ``"raw"`` (mean, taper, high-pass at 0.1 Hz,
+            ends closed), ``"compact"`` (the same without pads), or ``"none"``. What is given beside it replaces its
+            step.
+        mean
+            ``"keep"``, ``"pre-event"`` or ``"whole"``.
+        detrend
+            Whether to subtract the least-squares line.
+        taper
+            Length of the cosine taper at each end over that of the record.
+        high_pass, low_pass
+            Corners (Hz) of the zero-phase Butterworth filter.
+        order
+            Its order, applied forth and back.
+        keep_pads
+            Whether the zeros that hold the filter's transients stay (Boore 2005).
+        close
+            Whether velocity and displacement are brought to zero at the end.
+
+        Returns
+        -------
+        Record
+
+        Raises
+        ------
+        RecordError
+            When a setting is out of range for the record.
+        """
+        steps = (mean, detrend, taper, high_pass, low_pass, order, keep_pads, close)
+        return Record(self._native.process(chain, *steps))
+
+    def scale(self, factor: float | None = None, *, of: str = "h1", **target: float | str) -> Record:
+        """All components times one factor.
+
+        Parameters
+        ----------
+        factor
+            The factor; or leave it out and name a measure.
+        of
+            The component that the measure is about, or ``"rotd50"``, ``"rotd100"`` or ``"geomean"`` of both
+            horizontals.
+        **target
+            One measure and its value: ``pgv=0.6`` (SI), ``pgv="60 cm/s"``, ``pga="0.4 g"``, ``arias=2.0``. Measures
+            with a period are written ``**{"sa(1.0)": "0.5 g"}``.
+
+        Returns
+        -------
+        Record
+
+        Raises
+        ------
+        RecordError
+            When the measure does not grow with the motion or is zero.
+        """
+        if factor is not None and not target:
+            return Record(self._native.multiplied(float(factor)))
+        if factor is not None or len(target) != 1:
+            raise TypeError('scale takes a factor, or one measure: scale(pgv="60 cm/s")')
+        ((measure, value),) = target.items()
+        number = _native.measured(measure, value) if isinstance(value, str) else float(value)
+        return Record(self._native.scaled_to(measure, number, of))
+
+    def match(
+        self,
+        target: str | tuple[ArrayLike, ArrayLike],
+        *,
+        of: str = "h1",
+        damping: float = 0.05,
+        method: str = "time",
+        periods: tuple[float, float] = (0.1, 3.0),
+        tolerance: float = 0.05,
+        nearly: bool = False,
+    ) -> Record:
+        """The record with one component matched to a target spectrum; all others take its first scaling.
+
+        Parameters
+        ----------
+        target
+            A code with its parameters, ``"ec8:ag=0.3,site=B"``, ``"asce7:sds=1,sd1=0.6"``, ``"nch433:zone=2,soil=D"``,
+            ``"nch2745:zone=2,soil=II"``, ``"nzs1170:z=0.3,site=C"``, ``"ac156:sds=1"`` (accelerations in g); or
+            periods (s, ascending) and pseudo-accelerations (m/s²).
+        of
+            The component that is matched.
+        damping
+            Damping ratio of a target that is given by numbers.
+        method
+            ``"time"``: wavelets at the peak responses; ``"frequency"``: Fourier amplitudes, phases kept.
+        periods
+            Shortest and longest period (s) that are matched.
+        tolerance
+            Largest relative misfit accepted at any of them.
+        nearly
+            Whether to take the best motion where the tolerance is not reached; :attr:`notes` say what it misses.
+
+        Returns
+        -------
+        Record
+
+        Raises
+        ------
+        RecordError
+            When a setting is out of range, or the tolerance is not reached.
+        """
+        if method not in ("time", "frequency"):
+            raise ValueError(f'a method is "time" or "frequency", found {method!r}')
+        wanted: str | list[tuple[float, float]]
+        if isinstance(target, str):
+            wanted = target
+        else:
+            period, acceleration = (np.asarray(one, dtype=np.float64) for one in target)
+            wanted = list(zip(period.tolist(), acceleration.tolist(), strict=True))
+        spread = (float(periods[0]), float(periods[1]))
+        by_frequency = method == "frequency"
+        record, _, _ = self._native.matched(wanted, damping, of, by_frequency, spread, tolerance, nearly)
+        return Record(record)
+
+    def intensity(self, *measures: str) -> list[Intensity]:
+        """Intensity measures of every component.
+
+        Parameters
+        ----------
+        *measures
+            Names such as ``"pgv"``, ``"sa(1.0)"``, ``"sa(1.0,0.02)"``, ``"d5-95"``, ``"housner"``; the usual ones
+            without.
+
+        Returns
+        -------
+        list of Intensity
+            Each with its unit and a value (SI) by component. ``pandas.DataFrame`` takes the list as it is.
+
+        Raises
+        ------
+        RecordError
+            When there is no such measure.
+        """
+        names = [channel[0] for channel in self._native.channels()]
+        rows = []
+        for measure in measures or USUAL:
+            values, unit = self._native.intensity(measure)
+            rows.append(Intensity(measure, unit, dict(zip(names, values, strict=True))))
+        return rows
+
+    def spectrum(
+        self,
+        periods: ArrayLike | None = None,
+        *,
+        damping: float = 0.05,
+        of: str = "h1",
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Response spectrum of a component, or of both horizontals.
+
+        Parameters
+        ----------
+        periods
+            Periods (s); thirty a decade from 0.01 to 10 s without.
+        damping
+            Damping ratio.
+        of
+            A component, or ``"rotd50"``, ``"rotd100"`` or ``"geomean"``.
+
+        Returns
+        -------
+        periods : ndarray, shape (n,)
+            In s.
+        acceleration : ndarray, shape (n,)
+            Pseudo-spectral acceleration (m/s²): exact for accelerations that are linear between samples.
+        """
+        at = _native.standard_periods(30) if periods is None else np.ascontiguousarray(periods, dtype=np.float64)
+        return at, self._native.spectrum(at, damping, of)
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Writes it in the form of the ending: ``.txt`` and ``.npz`` (exact), ``.csv``, ``.at2``.
+
+        Parameters
+        ----------
+        path
+            The file.
+        """
+        name = os.fspath(path)
+        data = self._native.written(os.path.splitext(name)[1].lstrip(".").lower())
+        with open(name, "wb") as file:
+            file.write(data)
+
+    def _repr_html_(self) -> str:
+        names = [channel.name for channel in self.channels]
+        head = "".join(f"<th>{name}</th>" for name in ["measure", "unit", *names])
+        rows = "".join(
+            f"<tr><td>{row.measure}</td><td>{row.unit}</td>"
+            + "".join(f"<td>{row.values[name]:.4g}</td>" for name in names)
+            + "</tr>"
+            for row in self.intensity()
+        )
+        return f"<p>{self!r}</p>".replace("<R", "&lt;R") + f"<table><tr>{head}</tr>{rows}</table>"
+
+    def __repr__(self) -> str:
+        channels = self.channels
+        names = ", ".join(channel.name for channel in channels)
+        step, count = channels[0].time_step, len(channels[0].acceleration)
+        return f"<Record {self.name!r}: {names}; {count} samples of {step:g} s, {self.stage}>"
+
+
+def _records(items: Iterable[tuple[str, Record]]) -> dict[str, _native.Record]:
+    return {name: record._native for name, record in items}

@@ -1,0 +1,368 @@
+"""What became of a scenario."""
+
+from __future__ import annotations
+
+import difflib
+import html
+import json
+import os
+import warnings
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _native
+from ._errors import BarrelstackWarning
+from ._table import Table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["Demands", "Envelope", "Force", "Frames", "Glance", "Histories", "Outcome", "Run"]
+
+Glance = _native.Glance
+
+
+def warn(sentences: list[str]) -> None:
+    """Tells what the reader of a result should know, as warnings of Python."""
+    for sentence in sentences:
+        warnings.warn(sentence, BarrelstackWarning, stacklevel=3)
+
+
+class Outcome(NamedTuple):
+    """What happened."""
+
+    #: ``stable``, ``collapse``, ``not-judged``, ``interrupted`` or ``invalid``.
+    kind: str
+    #: ``ejection``, ``rocking``, ``rack-sliding`` or ``overturning``.
+    mode: str | None
+    #: When the first body left its seat (s).
+    time: float | None
+    #: That body.
+    first: str | None
+    #: When the first barrel had fallen (s).
+    first_fall: float | None
+    barrels_fallen: int | None
+    barrels: int
+    #: Why the run is invalid.
+    reason: str | None
+
+
+class Demands(Mapping[str, "float | None"]):
+    """Demands on the stack while it stood, by name, in SI units; None where one does not apply."""
+
+    def __init__(self, values: dict[str, float | None]) -> None:
+        self._values = values
+
+    def __getitem__(self, name: str) -> float | None:
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """SI unit of each; ``1`` for a ratio."""
+        return {path.removeprefix("demands."): unit for path, unit, _ in _demands()}
+
+    @property
+    def meanings(self) -> dict[str, str]:
+        """What each is, in a sentence."""
+        return {path.removeprefix("demands."): meaning for path, _, meaning in _demands()}
+
+    def __repr__(self) -> str:
+        units = self.units
+        return "\n".join(
+            f"{name} = {'—' if value is None else f'{value:.4g} {units.get(name, str())}'}"
+            for name, value in self._values.items()
+        )
+
+
+def _demands() -> list[tuple[str, str, str]]:
+    return [row for row in _native.fields() if row[0].startswith("demands.")]
+
+
+class Histories(Mapping[str, "NDArray[np.float64]"]):
+    """Histories of the ground, of every body and of the energies, by name: views without a copy.
+
+    Examples
+    --------
+    >>> run.histories["B4.1 displacement x"]  # m, against the ground and the place at rest
+    """
+
+    def __init__(self, native: _native.Run) -> None:
+        self._native = native
+        channels = native.channels()
+        self._units = {"time": "s", **dict(channels)}
+        self._places = {name: at for at, (name, _) in enumerate(channels)}
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """Times of the samples (s), shape (samples,); ``histories["time"]``, too."""
+        return self._native.times()
+
+    @property
+    def units(self) -> dict[str, str]:
+        """SI unit of each."""
+        return dict(self._units)
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        if name == "time":
+            return self.time
+        if name not in self._places:
+            near = difflib.get_close_matches(name, self._units, 1)
+            hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(self._units)}"
+            raise KeyError(f"there is no history {name!r}; {hint}")
+        return self._native.channel(self._places[name])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._units)
+
+    def __len__(self) -> int:
+        return len(self._units)
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """As a table of Arrow, ``time`` first."""
+        columns = [(name, unit, self[name]) for name, unit in self._units.items()]
+        return _native.Table.of_numbers(columns).__arrow_c_stream__(requested_schema)
+
+
+class Force(NamedTuple):
+    """The force between two bodies of a stack, on the upper one."""
+
+    #: Vertical force at rest (N).
+    at_rest: float
+    #: Largest vertical force (N), and when (s).
+    peak_vertical: tuple[float, float]
+    #: Largest horizontal force with its sign (N), and when (s).
+    peak_horizontal: tuple[float, float]
+    #: Vertical force (N) at the times of the histories: a view without a copy.
+    vertical: NDArray[np.float64]
+    #: Horizontal force (N) at the times of the histories: a view without a copy.
+    horizontal: NDArray[np.float64]
+
+
+class Envelope(NamedTuple):
+    """Normal stress along the boundary of a body, force per length of boundary."""
+
+    #: Places (m) in the frame of the body, shape (points, 2): x and z.
+    points: NDArray[np.float64]
+    #: Coordinate along the boundary: angle (rad) from x on a circle, x (m) elsewhere.
+    coordinate: NDArray[np.float64]
+    #: Length of boundary (m) that each value holds for.
+    length: NDArray[np.float64]
+    #: Stress at rest (N/m): a view without a copy.
+    at_rest: NDArray[np.float64]
+    #: Largest stress while the stack stood (N/m): a view without a copy.
+    peak: NDArray[np.float64]
+    #: Whether the last point is next to the first.
+    closed: bool
+
+
+class Frames(NamedTuple):
+    """Where all bodies were, at the rate of frames."""
+
+    #: Times (s), shape (frames,).
+    time: NDArray[np.float64]
+    #: Names of the bodies, the ground first.
+    bodies: list[str]
+    #: x (m), z (m) and angle (rad) in the inertial frame, shape (frames, bodies, 3).
+    poses: NDArray[np.float64]
+    #: Largest normal stress (N/m) at a node that presses on the body, shape (frames, bodies).
+    stresses: NDArray[np.float64]
+
+
+class Run:
+    """What became of a scenario, in one plane, with everything that was seen of the run that is shown.
+
+    Made by :meth:`Scenario.run`.
+    """
+
+    def __init__(self, native: _native.Run) -> None:
+        self._native = native
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """All numbers of the run, as ``barrelstack run --json`` prints them; SI units."""
+        summary: dict[str, Any] = json.loads(self._native.summary())
+        return summary
+
+    @property
+    def headline(self) -> str:
+        """The answer in one sentence."""
+        return self._native.headline
+
+    @property
+    def outcome(self) -> Outcome:
+        """What happened in the run that is shown."""
+        outcome = self.summary["outcome"]
+        return Outcome(**{name: outcome.get(name) for name in Outcome._fields})
+
+    @property
+    def ensemble(self) -> dict[str, Any] | None:
+        """What all variants say together: ``share`` that collapses, its 95 % ``interval``, modes; None without any."""
+        return self.summary["ensemble"]  # type: ignore[no-any-return]
+
+    @property
+    def variants(self) -> Table | None:
+        """The stack as it is stated (number 0) and its variants, a row each; None where none were run."""
+        table = self._native.variants()
+        return None if table is None else Table(table)
+
+    @property
+    def demands(self) -> Demands:
+        """What the motion asked of the stack."""
+        return Demands(self.summary["demands"])
+
+    @cached_property
+    def histories(self) -> Histories:
+        """Ground, displacements, rotations and energies over time."""
+        return Histories(self._native)
+
+    @cached_property
+    def forces(self) -> dict[str, Force]:
+        """Forces between bodies that lean on each other, by names such as ``"R1 on ground"``."""
+        facts = self._native.joints()
+        return {
+            name: Force(at_rest, vertical, horizontal, *self._native.joint(at))
+            for at, (name, at_rest, vertical, horizontal) in enumerate(facts)
+        }
+
+    @cached_property
+    def envelopes(self) -> dict[str, Envelope]:
+        """Stress along the boundary of every barrel and rack, by its name."""
+        found = {}
+        for at, (name, closed) in enumerate(self._native.envelopes()):
+            points = self._native.envelope_points(at)
+            stresses = self._native.envelope_stresses(at)
+            found[name] = Envelope(points[:, :2], points[:, 2], points[:, 3], *stresses, closed)
+        return found
+
+    @cached_property
+    def frames(self) -> Frames:
+        """Poses of all bodies over time."""
+        bodies = [name for name, _ in self._native.bodies()]
+        native = self._native
+        return Frames(native.frame_times(), bodies, native.poses(), native.frame_stresses())
+
+    def contact_forces(self, frame: int) -> NDArray[np.float64]:
+        """The contact forces of a frame, one arrow a pair of bodies.
+
+        Parameters
+        ----------
+        frame
+            Its number, from 0.
+
+        Returns
+        -------
+        ndarray, shape (arrows, 4)
+            Place x, z (m) and force x, z (N) on the body that carries the contact.
+        """
+        return self._native.frame_forces(frame)
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the reader should know, one sentence each."""
+        return self._native.warnings
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether an observer stopped it."""
+        return self._native.interrupted
+
+    @property
+    def scenario(self) -> str:
+        """The scenario of the run that is shown, every default written out (TOML)."""
+        return self._native.toml
+
+    @property
+    def other(self) -> Run | None:
+        """The other plane, where the scenario looks at its stack in both; None where it looks at one."""
+        other = self._native.other()
+        return None if other is None else Run(other)
+
+    def html(self) -> str:
+        """The report as one page that asks the network for nothing.
+
+        Returns
+        -------
+        str
+        """
+        return self._native.html()
+
+    def report(self, path: str | os.PathLike[str], *, paper: str = "a4") -> None:
+        """Writes the report.
+
+        Parameters
+        ----------
+        path
+            A file that ends with ``.html`` or ``.pdf``.
+        paper
+            ``"a4"`` or ``"letter"``.
+        """
+        name = os.fspath(path)
+        pdf = name.lower().endswith(".pdf")
+        data = self._native.pdf(paper) if pdf else self.html().encode()
+        with open(name, "wb") as file:
+            file.write(data)
+
+    def write(self, folder: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Writes the files of ``barrelstack run --out``: report, summary, histories, forces, envelopes, frames.
+
+        Parameters
+        ----------
+        folder
+            A folder that is new or empty.
+        overwrite
+            Whether to write into one that holds something.
+        """
+        self._native.write(os.fspath(folder), overwrite)
+
+    def plot(self, *names: str, ax: Axes | None = None) -> Axes:
+        """Histories over time.
+
+        Parameters
+        ----------
+        *names
+            Histories of one unit; displacements along x of the top barrels, or of all bodies of a free scene, without.
+        ax
+            Where to draw; new axes without.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        import matplotlib.pyplot as plt
+
+        shown = names or self._usual()
+        if ax is None:
+            _, ax = plt.subplots(figsize=(8, 3.5), layout="constrained")
+        for name in shown:
+            ax.plot(self.histories.time, self.histories[name], label=name, linewidth=1)
+        units = {self.histories.units[name] for name in shown}
+        ax.set_xlabel("time (s)")
+        ax.set_ylabel(f"{'displacement' if not names else 'value'} ({' / '.join(sorted(units))})")
+        if self.outcome.time is not None:
+            ax.axvline(self.outcome.time, color="0.5", linestyle=":", label=f"{self.outcome.first} leaves its seat")
+        ax.legend(loc="upper left", fontsize="small")
+        return ax
+
+    def _usual(self) -> list[str]:
+        bodies = self.summary["bodies"]
+        barrels = [body for body in bodies if body["kind"] == "barrel"]
+        top = max((body["level"] for body in barrels), default=None)
+        chosen = [body["name"] for body in (barrels or bodies) if body["level"] == top]
+        return [f"{name} displacement x" for name in chosen]
+
+    def _repr_html_(self) -> str:
+        page = html.escape(self.html(), quote=True)
+        return f'<iframe srcdoc="{page}" style="width: 100%; height: 720px; border: 0"></iframe>'
+
+    def __repr__(self) -> str:
+        return f"<Run: {self.headline}>"

@@ -1,0 +1,392 @@
+"""Scenarios: what stands, what shakes it, how it is run."""
+
+from __future__ import annotations
+
+import functools
+import json
+import os
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from . import _native
+from ._progress import Progress, told
+from ._quantity import literal, plain
+from ._record import Record
+from ._run import Glance, Run, warn
+
+__all__ = ["Scenario", "Section"]
+
+
+@functools.cache
+def _schema(of: str) -> dict[str, Any]:
+    schema: dict[str, Any] = json.loads(_native.schema(of))
+    return schema
+
+
+def _is_file(name: str) -> bool:
+    """A name that is a file is a file; any other without a point or a separator is built in."""
+    return os.path.isfile(name) or any(sign in name for sign in "./\\")
+
+
+#: What a field holds: quantities are texts in SI with their unit.
+Value = str | int | float | bool
+
+
+def _value(text: str) -> Value:
+    """A plain number or truth as such; anything else as text."""
+    if text in ("true", "false"):
+        return text == "true"
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return text
+
+
+class Section:
+    """A table of a scenario: its fields are attributes, with their meaning as documentation.
+
+    Examples
+    --------
+    >>> stack = barrelstack.Scenario.load("demo-napa").stack
+    >>> stack.levels
+    5
+    >>> stack.help("levels")
+    'levels = 5: Levels of barrels.'
+    """
+
+    def __init__(self, path: str, fields: Mapping[str, tuple[str, str]]) -> None:
+        self._path = path
+        self._fields = fields
+
+    def _names(self) -> list[str]:
+        start = f"{self._path}." if self._path else ""
+        below = (path[len(start) :] for path in self._fields if path.startswith(start))
+        return list(dict.fromkeys(name.split(".")[0] for name in below))
+
+    def __dir__(self) -> list[str]:
+        names = [name for name in self._names() if name.isidentifier()]
+        return [*names, "help"]
+
+    def __getattr__(self, name: str) -> Section | Value:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return self[name.replace("_", "-") if name not in self._names() else name]
+
+    def __getitem__(self, name: str) -> Section | Value:
+        path = f"{self._path}.{name}" if self._path else name
+        if path in self._fields:
+            return _value(self._fields[path][0])
+        if any(known.startswith(f"{path}.") for known in self._fields):
+            return Section(path, self._fields)
+        where = f"[{self._path}]" if self._path else "the scenario"
+        raise AttributeError(f"{where} has no field {name!r}; it has {', '.join(self._names())}")
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names())
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return self._names()
+
+    def help(self, name: str) -> str:
+        """What a field means.
+
+        Parameters
+        ----------
+        name
+            A field of this table.
+
+        Returns
+        -------
+        str
+            Its name, its value with its unit, and its meaning.
+        """
+        value, meaning = self._fields[f"{self._path}.{name}" if self._path else name]
+        return f"{name} = {value}: {meaning}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The table as a nested dict, quantities as texts in SI with their unit.
+
+        Returns
+        -------
+        dict
+            One entry a field; a table inside is a dict.
+        """
+        inner = {name: self[name] for name in self._names()}
+        return {name: item.to_dict() if isinstance(item, Section) else item for name, item in inner.items()}
+
+    def __repr__(self) -> str:
+        start = f"{self._path}." if self._path else ""
+        rows = [(path, *told) for path, told in self._fields.items() if path.startswith(start)]
+        return "\n".join(f"{path} = {value}    # {meaning}" for path, value, meaning in rows)
+
+
+class Scenario:
+    """What stands, what shakes it, and how it is run; never changed, only made anew.
+
+    Parameters
+    ----------
+    of
+        The text of a scenario (TOML), or a nested dict of the same fields. Quantities are texts with a unit
+        (``"32 kg"``), or quantities of Pint or astropy.
+    name
+        What errors call it.
+
+    Raises
+    ------
+    ScenarioError
+        At the first field that cannot be, with its place or its path.
+
+    Examples
+    --------
+    >>> scenario = Scenario({"extends": "candia-8-barrels", "stack": {"levels": 3}})
+    >>> scenario.set("motion.scale.pgv", "60 cm/s").stack.levels
+    3
+
+    Notes
+    -----
+    All fields are in the reference of scenario files; :meth:`schema` has them for programs.
+    """
+
+    def __init__(self, of: str | Mapping[str, Any], name: str = "scenario") -> None:
+        self._record: Record | None = None
+        if isinstance(of, str):
+            self._native = _native.Scenario.parse(name, of, [])
+        else:
+            self._native = _native.Scenario.from_tree(name, plain(dict(of)))
+
+    @classmethod
+    def _of(cls, native: _native.Scenario, record: Record | None = None) -> Scenario:
+        made = cls.__new__(cls)
+        made._native = native
+        made._record = record
+        return made
+
+    @classmethod
+    def load(cls, name: str | os.PathLike[str], **changes: Any) -> Scenario:
+        """A scenario from a file, or one that comes with the library by its name.
+
+        Parameters
+        ----------
+        name
+            A path, or one of :func:`barrelstack.scenarios`. A name that is a file is a file.
+        **changes
+            Fields to set, with ``__`` for the point: ``stack__levels=6``.
+
+        Returns
+        -------
+        Scenario
+
+        Raises
+        ------
+        ScenarioError
+            When there is none, or at the first field that cannot be.
+        """
+        sets = [f"{path.replace('__', '.')}={literal(value)}" for path, value in changes.items()]
+        path = os.fspath(name)
+        read = _native.Scenario.load if _is_file(path) else _native.Scenario.builtin
+        return cls._of(read(path, sets))
+
+    def set(self, path: str | Mapping[str, Any], value: Any = None) -> Scenario:
+        """A new scenario with fields set.
+
+        Parameters
+        ----------
+        path
+            The path of a field, such as ``"stack.levels"`` or ``"interface.rack-ground.friction.coefficient"``;
+            or a mapping of paths to values, set together.
+        value
+            Its value: a number, a text, a quantity, a list or a dict.
+
+        Returns
+        -------
+        Scenario
+            This one stays as it is.
+
+        Raises
+        ------
+        ScenarioError
+            When no field has the path, or the value cannot be; ``value`` names both.
+        """
+        changes = path if isinstance(path, Mapping) else {path: value}
+        sets = [f"{path}={literal(value)}" for path, value in changes.items()]
+        return self._of(self._native.changed(sets), self._record)
+
+    def with_record(self, record: Record) -> Scenario:
+        """A new scenario shaken by a record in place of its own motion.
+
+        Parameters
+        ----------
+        record
+            What shakes it. Component, processing and scale are those that the scenario states under ``motion``.
+
+        Returns
+        -------
+        Scenario
+        """
+        return self._of(self._native, record)
+
+    @property
+    def _shaken(self) -> _native.Scenario:
+        return self._native if self._record is None else self._native.with_record(self._record._native)
+
+    @property
+    def title(self) -> str:
+        """One line for people."""
+        return self._shaken.title
+
+    @property
+    def fingerprint(self) -> str:
+        """Sixteen hexadecimal digits that tell what is run from all else; titles do not count."""
+        return self._shaken.fingerprint
+
+    @property
+    def fields(self) -> Section:
+        """All fields with their values, defaults written out."""
+        settings = self._native.settings()
+        return Section("", {path: (value, meaning) for path, value, meaning in settings})
+
+    def __getattr__(self, name: str) -> Section | Value:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return self.fields.__getattr__(name)
+
+    def __dir__(self) -> list[str]:
+        fields = [name for name in self.fields if name.isidentifier()]
+        return [*super().__dir__(), *fields]
+
+    def to_toml(self) -> str:
+        """The scenario as a file: every default written out, every quantity in SI.
+
+        Returns
+        -------
+        str
+            TOML that reads back to the same run.
+        """
+        return self._native.to_toml()
+
+    @staticmethod
+    def schema() -> dict[str, Any]:
+        """The JSON Schema (2020-12) of scenario files.
+
+        Returns
+        -------
+        dict
+        """
+        return _schema("scenario")
+
+    def check(self) -> list[dict[str, Any]]:
+        """Is it sound, and does the stack stand by itself?
+
+        Returns
+        -------
+        list of dict
+            For every plane how it came to rest, its time step and its warnings, as ``barrelstack check --json``.
+
+        Raises
+        ------
+        RunError
+            When it does not stand, with the body that goes first and what it lacks.
+        """
+        return [json.loads(one) for one in self._shaken.check()]
+
+    def run(
+        self,
+        record: Record | str | os.PathLike[str] | None = None,
+        variants: int | None = None,
+        progress: Progress = None,
+        *,
+        variant: int | None = None,
+        remedy: bool = False,
+        verify: bool = False,
+    ) -> Run:
+        """Runs it with its variants and shows the most typical run.
+
+        Parameters
+        ----------
+        record
+            What shakes it in place of its own motion: a record, or a path.
+        variants
+            How many variants are run beside the stack as it is stated; as the scenario says without (64). 0 for none.
+        progress
+            True for a bar, or a function that is called with (done, of, what) some twenty times a second.
+        variant
+            The variant that is shown, 0 for the stack as it is stated; without, the most typical.
+        remedy
+            Whether to look for what would have kept the stack up, as the command does.
+        verify
+            Whether to repeat the run with half the step and with a nanometer of disturbance.
+
+        Returns
+        -------
+        Run
+            What became of it: the plane that decides, with the other in :attr:`Run.other`.
+
+        Raises
+        ------
+        RunError
+            When the stack cannot be built or does not stand.
+        RecordError
+            When the motion cannot be read.
+        KeyboardInterrupt
+            Within a second of Ctrl-C.
+
+        Warns
+        -----
+        BarrelstackWarning
+            One warning for each thing that the reader of the result should know.
+
+        Notes
+        -----
+        The numbers are those of ``barrelstack run``, bit for bit. The interpreter's lock is free meanwhile.
+        """
+        if record is not None:
+            record = record if isinstance(record, Record) else Record.read(record)
+            return self.with_record(record).run(
+                None, variants, progress, variant=variant, remedy=remedy, verify=verify
+            )
+        with told(progress, f"run of {self.title!r}") as hear:
+            run = Run(self._shaken.run(variants, variant, remedy, verify, hear))
+        warn(run.warnings)
+        return run
+
+    def observe(self, look: Callable[[Glance], object], every: int = 100) -> Run:
+        """Runs it as it is stated, in one plane, before an observer that may stop it.
+
+        Parameters
+        ----------
+        look
+            Called with a :class:`Glance` at the start and after every so many accepted steps; the run ends where it
+            returns anything true, and what was seen until then is returned.
+        every
+            Accepted steps between two calls.
+
+        Returns
+        -------
+        Run
+            ``run.interrupted`` tells whether the observer stopped it.
+
+        Raises
+        ------
+        RunError
+            When the stack cannot be built or does not stand.
+        Exception
+            Whatever the observer raises.
+
+        Notes
+        -----
+        A call takes the interpreter's lock and some microseconds; laws for every step belong into the library.
+        """
+        run = Run(self._shaken.run_before(every, look))
+        warn(run.warnings)
+        return run
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Scenario) and self.fingerprint == other.fingerprint
+
+    def __hash__(self) -> int:
+        return hash(self.fingerprint)
+
+    def __repr__(self) -> str:
+        return f"<Scenario {self.title!r}, {self.fingerprint}>"

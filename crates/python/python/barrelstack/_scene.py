@@ -1,0 +1,138 @@
+"""Free scenes: any planar bodies, for checks of one's own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from ._progress import Progress
+from ._record import Record
+from ._run import Glance, Run
+from ._scenario import Scenario
+
+__all__ = ["Scene"]
+
+
+class Scene:
+    """A free scene that is put together body by body.
+
+    Parameters
+    ----------
+    title
+        One line for people.
+    **tables
+        Other tables of a scenario, such as ``run={"duration": "2 s"}`` or ``motion={"bundled": "napa-college-2014"}``.
+
+    Examples
+    --------
+    >>> scene = Scene("A block slides", run={"duration": "1 s"})
+    >>> scene.body("block", shape={"type": "rectangle", "width": "1 m", "height": "0.3 m"}, mass="100 kg",
+    ...            position=["0 m", "0.15 m"], velocity=["1 m/s", "0 m/s"], nodes="corners")
+    >>> scene.interface("block", "ground", stiffness="5 MN/m", damping="10 kN s/m", friction={"coefficient": 0.3})
+    >>> scene.run().outcome.kind
+    'not-judged'
+    """
+
+    def __init__(self, title: str = "Free scene", **tables: Any) -> None:
+        self.title = title
+        self.tables = tables
+        self.bodies: list[dict[str, Any]] = []
+        self.interfaces: list[dict[str, Any]] = []
+
+    def body(
+        self,
+        name: str,
+        *,
+        shape: Mapping[str, Any],
+        mass: Any,
+        position: Sequence[Any],
+        **fields: Any,
+    ) -> Scene:
+        """Adds a body.
+
+        Parameters
+        ----------
+        name
+            Its name in results.
+        shape
+            The fields of its shape: ``{"type": "disc", "radius": "35 cm"}``, or of its ``parts``.
+        mass
+            With its unit.
+        position
+            Center of mass, x and z with their units; z is up and 0 on the ground.
+        **fields
+            Other fields of a body: ``angle``, ``velocity``, ``spin``, ``nodes``, ``group``.
+
+        Returns
+        -------
+        Scene
+            This one.
+        """
+        place = list(position)
+        self.bodies.append({"name": name, "shape": dict(shape), "mass": mass, "position": place, **fields})
+        return self
+
+    def interface(self, first: str, second: str, **fields: Any) -> Scene:
+        """Says by which laws two bodies, or kinds of bodies, meet.
+
+        Parameters
+        ----------
+        first, second
+            Their names; ``"ground"`` is one.
+        **fields
+            The fields of an interface: ``stiffness``, ``damping``, ``friction``, ``normal``.
+
+        Returns
+        -------
+        Scene
+            This one.
+        """
+        self.interfaces.append({"between": [first, second], **fields})
+        return self
+
+    def scenario(self) -> Scenario:
+        """The scene as a scenario.
+
+        Returns
+        -------
+        Scenario
+
+        Raises
+        ------
+        ScenarioError
+            At the first field that cannot be; its ``value`` has the path, items of lists counted from 1.
+        """
+        tree = {"title": self.title, "kind": "free", **self.tables, "body": self.bodies, "interface": self.interfaces}
+        return Scenario({key: value for key, value in tree.items() if value != []}, name=self.title)
+
+    def run(self, record: Record | None = None, progress: Progress = None) -> Run:
+        """Runs it; as :meth:`Scenario.run`.
+
+        Parameters
+        ----------
+        record
+            What shakes it.
+        progress
+            As for :meth:`Scenario.run`.
+
+        Returns
+        -------
+        Run
+        """
+        return self.scenario().run(record, progress=progress)
+
+    def observe(self, look: Callable[[Glance], object], every: int = 100) -> Run:
+        """Runs it before an observer; as :meth:`Scenario.observe`.
+
+        Parameters
+        ----------
+        look
+            Called every so many steps; anything true ends the run.
+        every
+            Accepted steps between two calls.
+
+        Returns
+        -------
+        Run
+        """
+        return self.scenario().observe(look, every)

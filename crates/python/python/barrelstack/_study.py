@@ -1,0 +1,531 @@
+"""Studies: one scenario run many times, on this machine or on many."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _native
+from ._progress import Progress, told
+from ._table import Table
+
+__all__ = ["Chunk", "Curve", "Fragility", "Hunts", "Study"]
+
+
+class Chunk(NamedTuple):
+    """Cases that are computed together and kept as a whole."""
+
+    number: int
+    cases: int
+    first: int
+    last: int
+
+
+class Curve(NamedTuple):
+    """The fragility of one limit state."""
+
+    limit_state: str
+    #: Median (SI unit of the measure); None where the data support no curve.
+    median: float | None
+    #: Standard deviation of the logarithm.
+    dispersion: float | None
+    #: 95 % interval of the median.
+    median_interval: tuple[float | None, float | None] | None
+    #: What was counted, shape (levels, 5): intensity, cases, failures, and Wilson's 95 % interval.
+    raw: NDArray[np.float64]
+    #: The 95 % band, shape (points, 3): intensity, lower, upper.
+    band: NDArray[np.float64]
+    #: Why there is no curve.
+    no_curve: str | None
+
+    def probability(self, intensity: Any) -> NDArray[np.float64]:
+        """Chance of failure at intensities (SI), by the lognormal curve.
+
+        Parameters
+        ----------
+        intensity
+            Numbers above 0.
+
+        Returns
+        -------
+        ndarray
+            Of the shape of the intensities.
+        """
+        if self.median is None or self.dispersion is None:
+            raise ValueError(f"{self.limit_state} has no curve: {self.no_curve}")
+        from math import erf, sqrt
+
+        z = np.log(np.asarray(intensity, dtype=np.float64) / self.median) / self.dispersion
+        chances = [0.5 * (1.0 + erf(value / sqrt(2.0))) for value in z.ravel().tolist()]
+        return np.array(chances, dtype=np.float64).reshape(z.shape)
+
+
+class Fragility:
+    """What a study says: curves, modes, losses, what matters.
+
+    Attributes
+    ----------
+    document : dict
+        All numbers, as ``barrelstack study report --json`` prints them.
+    """
+
+    def __init__(self, document: dict[str, Any], page: str) -> None:
+        self.document = document
+        self._page = page
+
+    @property
+    def headline(self) -> str:
+        """The answer in a sentence."""
+        return str(self.document["headline"])
+
+    @property
+    def measure(self) -> tuple[str, str]:
+        """Name and SI unit of the intensity measure."""
+        measure = self.document["measure"]
+        return measure["name"], measure["unit"]
+
+    @property
+    def curves(self) -> dict[str, Curve]:
+        """A curve for every limit state, by its name; the first is the loss of the first seat."""
+        found = {}
+        for one in self.document["fragility"]:
+            raw = [[row["intensity"], row["cases"], row["failures"], *row["interval"]] for row in one["raw"]]
+            band = [[row["intensity"], *row["interval"]] for row in one["band_at"]]
+            interval = one["median_interval"]
+            found[one["limit_state"]] = Curve(
+                one["limit_state"],
+                one["median"],
+                one["dispersion"],
+                None if interval is None else (interval[0], interval[1]),
+                np.array(raw, dtype=np.float64).reshape(-1, 5),
+                np.array(band, dtype=np.float64).reshape(-1, 3),
+                one["no_curve"],
+            )
+        return found
+
+    def html(self) -> str:
+        """The page of the study.
+
+        Returns
+        -------
+        str
+        """
+        return self._page
+
+    def plot(self, *limit_states: str, ax: Any = None) -> Any:
+        """Raw fractions, curves and bands.
+
+        Parameters
+        ----------
+        *limit_states
+            Names among :attr:`curves`; the first without.
+        ax
+            Where to draw; new axes without.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        import matplotlib.pyplot as plt
+
+        curves = self.curves
+        name, unit = self.measure
+        if ax is None:
+            _, ax = plt.subplots(figsize=(6, 4), layout="constrained")
+        for number, state in enumerate(limit_states or list(curves)[:1]):
+            curve, color = curves[state], f"C{number}"
+            x, cases, failures, low, high = curve.raw.T
+            share = failures / np.maximum(cases, 1)
+            ax.errorbar(x, share, [share - low, high - share], fmt="o", color=color, markersize=4, capsize=2, label=state)
+            if curve.median is not None:
+                at = np.linspace(0.5 * x.min(), 1.2 * x.max(), 200)
+                ax.plot(at, curve.probability(at), color=color)
+            if len(curve.band):
+                ax.fill_between(*curve.band.T, color=color, alpha=0.15, linewidth=0)
+        ax.set_xlabel(f"{name} ({unit})")
+        ax.set_ylabel("chance of failure")
+        ax.set_ylim(-0.02, 1.02)
+        ax.legend(loc="upper left", fontsize="small")
+        return ax
+
+    def _repr_html_(self) -> str:
+        import html
+
+        page = html.escape(self._page, quote=True)
+        return f'<iframe srcdoc="{page}" style="width: 100%; height: 720px; border: 0"></iframe>'
+
+    def __repr__(self) -> str:
+        return f"<Fragility: {self.headline}>"
+
+
+class Hunts(NamedTuple):
+    """An incremental dynamic analysis: what each motion did at each level that was tried."""
+
+    #: Names of the motions.
+    motions: list[str]
+    #: For each motion the levels (SI unit of the measure), ascending.
+    levels: list[NDArray[np.float64]]
+    #: For each motion what was asked of the stack at those levels; not a number where it collapsed.
+    demands: list[NDArray[np.float64]]
+    #: For each motion the lowest level at which the stack collapsed; not a number where it stood throughout.
+    capacities: NDArray[np.float64]
+
+
+class Study:
+    """A study: what is varied, what shakes it, and which cases are run.
+
+    Parameters
+    ----------
+    text
+        The text of a study file (TOML); it may extend scenarios that come with the library.
+    name
+        What errors call it.
+
+    Examples
+    --------
+    >>> study = Study.load("napa-four-levels")
+    >>> study.run("napa")
+    >>> study.fragility("napa").curves["first-seat"].median
+    """
+
+    def __init__(self, text: str, name: str = "study") -> None:
+        self._source: tuple[str, str | None] = (text, name)
+        self._native = _native.Study.parse(name, text)
+
+    @classmethod
+    def load(cls, name: str | os.PathLike[str]) -> Study:
+        """A study from a file, or one that comes with the library by its name.
+
+        Parameters
+        ----------
+        name
+            A path, or one of :func:`barrelstack.studies`.
+
+        Returns
+        -------
+        Study
+
+        Raises
+        ------
+        ScenarioError
+            At the first field that cannot be.
+        RecordError
+            When a motion cannot be read.
+        """
+        path = os.fspath(name)
+        made = cls.__new__(cls)
+        if os.path.isfile(path) or any(sign in path for sign in "./\\"):
+            made._native = _native.Study.load(path)
+            made._source = (os.path.abspath(path), None)
+        else:
+            made._native = _native.Study.builtin(path)
+            made._source = (path, None)
+        return made
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """So that it crosses to workers: by its text, or by its path, which they must see, too."""
+        text, name = self._source
+        return (Study.load, (text,)) if name is None else (Study, (text, name))
+
+    @property
+    def title(self) -> str:
+        """One line for people."""
+        return self._native.title
+
+    @property
+    def design(self) -> str:
+        """Which cases are run: ``full-factorial``, ``stripes``, ``ida``, …"""
+        return self._native.design
+
+    @property
+    def fingerprint(self) -> str:
+        """What tells it from all other studies, the bytes of its records included."""
+        return self._native.fingerprint
+
+    @property
+    def cases(self) -> int:
+        """How many cases there are; of an adaptive design, at most."""
+        return self._native.cases
+
+    @property
+    def motions(self) -> int:
+        """How many motions there are."""
+        return self._native.motions
+
+    def plan(self, folder: str | os.PathLike[str] | None = None) -> list[Chunk]:
+        """The chunks of the study.
+
+        Parameters
+        ----------
+        folder
+            Only those that are missing from this folder.
+
+        Returns
+        -------
+        list of Chunk
+        """
+        chunks = [Chunk(*facts) for facts in self._native.chunks()]
+        if folder is None or not (Path(folder) / "study.json").is_file():
+            return chunks
+        missing = set(_native.provenance(os.fspath(folder))[1])
+        return [chunk for chunk in chunks if chunk.number in missing]
+
+    def run(
+        self,
+        folder: str | os.PathLike[str],
+        *,
+        workers: int | None = None,
+        progress: Progress = None,
+    ) -> Table:
+        """Runs what is missing of a folder, on this machine; other processes may do so at the same time.
+
+        Parameters
+        ----------
+        folder
+            Folder of the results: new, empty, or one of this study, which then goes on.
+        workers
+            Threads; all cores without. The table does not depend on it.
+        progress
+            As for :meth:`Scenario.run`.
+
+        Returns
+        -------
+        Table
+            A row a case, as :meth:`collect`.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            Within a second of Ctrl-C; every chunk that was done is kept, and the next run goes on from there.
+        StudyError
+            When the folder belongs to something else or cannot be written.
+        """
+        with told(progress, f"study {self.title!r}") as hear:
+            self._native.run(os.fspath(folder), workers, hear)
+        return self.collect(folder)
+
+    def run_chunk(self, folder: str | os.PathLike[str], chunk: int) -> bool:
+        """Runs one chunk and writes its shard, unless it is there: the same bytes wherever it is run.
+
+        Parameters
+        ----------
+        folder
+            Folder of the results, seen by all who work on it.
+        chunk
+            Its number.
+
+        Returns
+        -------
+        bool
+            Whether it was run.
+        """
+        return self._native.run_chunk(os.fspath(folder), chunk)
+
+    def run_on(
+        self,
+        client: Any,
+        folder: str | os.PathLike[str],
+        *,
+        progress: Progress = None,
+        retries: int = 10,
+    ) -> Table:
+        """Runs what is missing of a folder on the workers of Dask: a task a chunk.
+
+        Parameters
+        ----------
+        client
+            A ``distributed.Client``: of a ``LocalCluster``, of dask-jobqueue on Slurm, or of any other.
+        folder
+            Folder of the results on a disk that all workers see.
+        progress
+            As for :meth:`Scenario.run`.
+        retries
+            How often a chunk is tried again that failed. A worker that is killed is no failure of its own: its chunk
+            goes to another.
+
+        Returns
+        -------
+        Table
+            As :meth:`collect`: byte for byte that of :meth:`run`.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            Tasks that have not begun are taken back; what is done is kept.
+
+        Notes
+        -----
+        Each task uses one thread, so give workers as many threads as they have cores.
+        """
+        from distributed import as_completed
+
+        place = os.path.abspath(folder)
+        missing = self.plan(place)
+        with told(progress, f"study {self.title!r} on {client}") as hear:
+            done, of = 0, sum(chunk.cases for chunk in missing)
+            futures = {
+                client.submit(
+                    _chunk_of,
+                    self,
+                    place,
+                    chunk.number,
+                    retries=retries,
+                    key=f"{self.fingerprint}-{chunk.number}",
+                ): chunk
+                for chunk in missing
+            }
+            try:
+                for future in as_completed(futures):
+                    future.result()
+                    done += futures[future].cases
+                    if hear:
+                        hear(done, of, "cases")
+            finally:
+                client.cancel(list(futures))
+        return self.collect(place, write=True)
+
+    def table(self) -> Table:
+        """Runs all cases in memory, without a folder.
+
+        Returns
+        -------
+        Table
+        """
+        return Table(self._native.table())
+
+    @staticmethod
+    def collect(folder: str | os.PathLike[str], *, write: bool = False) -> Table:
+        """The rows that are done, a row a case in their order.
+
+        Parameters
+        ----------
+        folder
+            A folder of a study, finished or not.
+        write
+            Whether to write ``table.csv``, ``table.parquet``, ``columns.csv`` and ``provenance.json``, too.
+
+        Returns
+        -------
+        Table
+        """
+        return Table(_native.read_table(os.fspath(folder), write))
+
+    @staticmethod
+    def provenance(folder: str | os.PathLike[str]) -> dict[str, Any]:
+        """What the rows of a folder come from.
+
+        Parameters
+        ----------
+        folder
+            A folder of a study, finished or not.
+
+        Returns
+        -------
+        dict
+            Version, hashes, seed, motions, columns, and how far it is.
+        """
+        made: dict[str, Any] = json.loads(_native.provenance(os.fspath(folder))[0])
+        return made
+
+    @staticmethod
+    def fragility(
+        folder: str | os.PathLike[str],
+        *,
+        hazard: str | os.PathLike[str] | None = None,
+        years: float | None = None,
+    ) -> Fragility:
+        """What the study of a folder says, finished or not.
+
+        Parameters
+        ----------
+        folder
+            A folder of a study.
+        hazard
+            A table (CSV) of intensity and annual rate at the site: adds annual rates and expected losses.
+        years
+            Years for which chances are given; 50 without.
+
+        Returns
+        -------
+        Fragility
+
+        Raises
+        ------
+        StudyError
+            When no case has a verdict.
+        """
+        path = None if hazard is None else os.fspath(hazard)
+        document, page = _native.decision(os.fspath(folder), path, years)
+        return Fragility(json.loads(document), page)
+
+    @staticmethod
+    def ida(folder: str | os.PathLike[str], demand: str = "top_drift_ratio") -> Hunts:
+        """The incremental dynamic analysis of a folder.
+
+        Parameters
+        ----------
+        folder
+            A folder of a study whose design is ``ida`` or ``stripes``.
+        demand
+            A column of the table.
+
+        Returns
+        -------
+        Hunts
+        """
+        table = Study.collect(folder)
+        names = np.array(table["record"], dtype=object)
+        level, value = table.numbers("level"), table.numbers(demand)
+        fell = np.array([outcome == "collapse" for outcome in table["outcome"]])
+        motions = [str(name) for name in dict.fromkeys(names.tolist())]
+        levels, demands, capacities = [], [], []
+        for motion in motions:
+            rows = np.flatnonzero(names == motion)
+            rows = rows[np.argsort(level[rows], kind="stable")]
+            levels.append(level[rows])
+            demands.append(np.where(fell[rows], np.nan, value[rows]))
+            capacities.append(level[rows][fell[rows]].min(initial=np.inf))
+        found = np.array(capacities)
+        return Hunts(motions, levels, demands, np.where(np.isinf(found), np.nan, found))
+
+    @staticmethod
+    def export(
+        folder: str | os.PathLike[str],
+        out: str | os.PathLike[str],
+        *,
+        asset: str = "wine.barrel.stack",
+    ) -> list[str]:
+        """Writes fragility and loss for OpenQuake (NRML 0.5) and Pelicun.
+
+        Parameters
+        ----------
+        folder
+            A folder of a study.
+        out
+            Folder for the files.
+        asset
+            What the other program calls one stack.
+
+        Returns
+        -------
+        list of str
+            What could not go into the files, and why.
+        """
+        files, notes = _native.export(os.fspath(folder), asset)
+        os.makedirs(out, exist_ok=True)
+        for name, text in files:
+            (Path(out) / name).write_text(text, encoding="utf-8")
+        return notes
+
+    def __repr__(self) -> str:
+        return f"<Study {self.title!r}: {self.cases} cases under {self.motions} motions>"
+
+
+def _chunk_of(study: Study, folder: str, chunk: int) -> bool:
+    """What a worker does."""
+    return study.run_chunk(folder, chunk)

@@ -1,0 +1,106 @@
+"""Tables of results, for whatever reads Arrow."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _native
+
+__all__ = ["Column", "Table"]
+
+
+class Column(NamedTuple):
+    """What a column holds."""
+
+    name: str
+    #: SI unit; empty for pure numbers and for texts.
+    unit: str
+    #: ``key``, ``factor``, ``motion``, ``intensity``, ``outcome``, ``demand`` or ``run``.
+    role: str
+    #: ``integer``, ``number`` or ``text``.
+    kind: str
+    meaning: str
+
+
+class Table:
+    """Columns of one length: ``pandas.DataFrame.from_arrow``, ``polars.DataFrame``, ``pyarrow.table`` and DuckDB take
+    it as it is.
+
+    Examples
+    --------
+    >>> polars.DataFrame(table).filter(polars.col("outcome") == "collapse")
+    """
+
+    def __init__(self, native: _native.Table) -> None:
+        self._native = native
+
+    @property
+    def columns(self) -> list[Column]:
+        """What the columns hold, in order."""
+        return [Column(*facts) for facts in self._native.specs()]
+
+    def __len__(self) -> int:
+        return len(self._native)
+
+    def __iter__(self) -> Iterator[str]:
+        return (column.name for column in self.columns)
+
+    def __getitem__(self, name: str) -> list[Any]:
+        """The values of a column: int, float or str, and None where one does not apply or did not happen."""
+        return self._native.values(name)
+
+    def numbers(self, name: str) -> NDArray[np.float64]:
+        """The numbers of a column.
+
+        Parameters
+        ----------
+        name
+            A column of numbers or whole numbers.
+
+        Returns
+        -------
+        ndarray, shape (rows,)
+            SI units; not a number where there is no value.
+        """
+        return self._native.numbers(name)
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """As a stream of Arrow; units are in the metadata of the fields."""
+        return self._native.__arrow_c_stream__(requested_schema)
+
+    def to_csv(self, path: str | os.PathLike[str] | None = None) -> str:
+        """The table as CSV, with units in the heading and numbers that read back to the same bits.
+
+        Parameters
+        ----------
+        path
+            Where to write it as well.
+
+        Returns
+        -------
+        str
+        """
+        text = self._native.to_csv()
+        if path is not None:
+            with open(path, "w", encoding="utf-8", newline="") as file:
+                file.write(text)
+        return text
+
+    def to_parquet(self, path: str | os.PathLike[str]) -> None:
+        """Writes it as Parquet; the same table gives the same bytes.
+
+        Parameters
+        ----------
+        path
+            The file.
+        """
+        with open(path, "wb") as file:
+            file.write(self._native.to_parquet())
+
+    def __repr__(self) -> str:
+        return f"<Table: {len(self)} rows of {', '.join(self)}>"

@@ -1,0 +1,35 @@
+//! The Python package: what `barrelstack._native` holds.
+//!
+//! Here is what needs Rust: the library's types behind handles, arrays and tables without a copy, work without the
+//! interpreter's lock.
+//! How a person meets it, in Python's words and with its documentation, is in `python/barrelstack`.
+
+#![allow(clippy::needless_pass_by_value, reason = "functions take what the interpreter gives")]
+
+mod errors;
+mod listen;
+mod record;
+mod run;
+mod scenario;
+mod study;
+mod table;
+mod value;
+mod view;
+
+/// The library for `barrelstack`, the package.
+#[pyo3::pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::record::{Record, formats, measured, standard_periods};
+    #[pymodule_export]
+    use crate::run::{Glance, Run};
+    #[pymodule_export]
+    use crate::scenario::{Scenario, fields, reference, scenarios, schema};
+    #[pymodule_export]
+    use crate::study::{Study, decision, export, provenance, read_table, studies};
+    #[pymodule_export]
+    use crate::table::{Table, ensemble};
+
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
+}

@@ -1,0 +1,103 @@
+//! Work without the interpreter's lock, while the thread that asked for it listens for Ctrl-C and tells of progress.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+use pyo3::prelude::*;
+
+/// Time between two looks for a signal; far below the second that is promised.
+const LISTEN: Duration = Duration::from_millis(50);
+
+/// What work tells, and whether it is to stop.
+#[derive(Default)]
+pub(crate) struct Hear {
+    stop: AtomicBool,
+    told: Mutex<Option<Told>>,
+}
+
+/// How far work is: so much of so much, of what.
+#[derive(Clone, Copy, PartialEq)]
+struct Told {
+    done: f64,
+    of: f64,
+    what: &'static str,
+}
+
+impl Hear {
+    /// Tells how far the work is.
+    pub(crate) fn tell(&self, done: f64, of: f64, what: &'static str) -> ControlFlow<()> {
+        *self.told.lock().unwrap_or_else(PoisonError::into_inner) = Some(Told { done, of, what });
+        if self.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    /// Whether the work is to stop.
+    pub(crate) fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    fn pass_on(&self, last: &mut Option<Told>, progress: &Bound<'_, PyAny>) -> PyResult<()> {
+        let told = *self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(Told { done, of, what }) = told.filter(|_| told != *last) {
+            *last = told;
+            progress.call1((done, of, what))?;
+        }
+        Ok(())
+    }
+}
+
+/// Does work on another thread without the lock; raises what a signal or `progress` raised, when the work has stopped.
+pub(crate) fn listening<T: Send>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&Hear) -> T + Send,
+) -> PyResult<T> {
+    let hear = Hear::default();
+    let mut last = None;
+    let mut raised = None;
+    let done = std::thread::scope(|scope| {
+        let (give, take) = sync_channel(1);
+        let hear = &hear;
+        let worker = scope.spawn(move || {
+            // The taker goes only after it has taken.
+            let _ = give.send(work(hear));
+        });
+        let take = Mutex::new(take);
+        loop {
+            let got = py.detach(|| {
+                take.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LISTEN)
+            });
+            match got {
+                Ok(done) => break Ok(done),
+                Err(RecvTimeoutError::Disconnected) => break Err(worker.join()),
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+            if raised.is_none() {
+                let heard = py.check_signals();
+                let heard = heard.and_then(|()| match progress {
+                    Some(progress) => hear.pass_on(&mut last, progress),
+                    None => Ok(()),
+                });
+                if let Err(error) = heard {
+                    raised = Some(error);
+                    hear.stop.store(true, Ordering::Relaxed);
+                }
+            }
+        }
+    });
+    if let Some(raised) = raised {
+        return Err(raised);
+    }
+    match done {
+        Ok(done) => {
+            if let Some(progress) = progress {
+                hear.pass_on(&mut last, progress)?;
+            }
+            Ok(done)
+        }
+        Err(Err(panic)) => std::panic::resume_unwind(panic),
+        Err(Ok(())) => Err(crate::errors::general("the work ended without a result")),
+    }
+}

@@ -1,0 +1,419 @@
+//! Records: read, made of arrays, processed, scaled, matched, measured.
+
+use std::sync::Arc;
+
+use barrelstack::scenario::{Dimension, Quantity};
+use barrelstack_motion::{
+    AccelerationUnit, Channel, Component, FORMATS, Horizontals, IntensityMeasure, MatchMethod,
+    Matching, MeanRemoval, MotionError, Pads, Processing, ReadOptions, ResponseSpectrum, Stage,
+    TargetSpectrum, Utc, bundled, read, rotated_spectrum, write,
+};
+use numpy::{IntoPyArray as _, PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use crate::errors;
+use crate::scenario::bytes;
+use crate::view::view;
+
+/// A record of the library.
+#[pyclass(frozen, module = "barrelstack._native")]
+pub(crate) struct Record {
+    pub(crate) inner: Arc<barrelstack_motion::Record>,
+}
+
+impl From<barrelstack_motion::Record> for Record {
+    fn from(inner: barrelstack_motion::Record) -> Self {
+        Self { inner: Arc::new(inner) }
+    }
+}
+
+/// Name, azimuth (degrees), whether it is vertical, step (s), start, velocity at the first sample (m/s).
+type ChannelFacts = (String, Option<f64>, bool, f64, Option<String>, f64);
+
+/// Numbers of one component.
+type Numbers<'py> = Bound<'py, PyArray1<f64>>;
+
+/// What a person may say of the place of a record: network, station and sensor are in the station.
+type Place = (String, String, Option<f64>, Option<f64>);
+
+#[pymethods]
+impl Record {
+    #[staticmethod]
+    fn read(
+        py: Python<'_>,
+        data: &[u8],
+        name: &str,
+        unit: Option<&str>,
+        time_step: Option<f64>,
+        sensitivity: Option<f64>,
+    ) -> PyResult<Self> {
+        let unit = unit.map(str::parse::<AccelerationUnit>).transpose().map_err(errors::motion)?;
+        let options = ReadOptions { unit, time_step, sensitivity, ..ReadOptions::default() };
+        let record = py.detach(|| read(data, name, &options));
+        record.map(Self::from).map_err(|error| errors::read(&error))
+    }
+
+    #[staticmethod]
+    fn bundled(name: &str) -> Option<Self> {
+        bundled(name).map(Self::from)
+    }
+
+    #[staticmethod]
+    fn of_samples(
+        name: &str,
+        channels: Vec<(String, PyReadonlyArray1<'_, f64>)>,
+        time_step: f64,
+        unit: &str,
+        raw: bool,
+        start: Option<&str>,
+        station: &str,
+    ) -> PyResult<Self> {
+        let unit: AccelerationUnit = unit.parse().map_err(errors::motion)?;
+        let start: Option<Utc> = start.map(str::parse).transpose().map_err(errors::motion)?;
+        let samples: Vec<(&str, Vec<f64>)> = channels
+            .iter()
+            .map(|(name, values)| (name.as_str(), values.as_array().to_vec()))
+            .collect();
+        let channels: Vec<(&str, &[f64])> =
+            samples.iter().map(|(name, values)| (*name, values.as_slice())).collect();
+        let record = barrelstack_motion::Record::of_samples(name, &channels, time_step, unit);
+        let mut record = record.map_err(errors::motion)?;
+        if raw {
+            record.stage = Stage::Raw;
+        }
+        station.clone_into(&mut record.station);
+        for channel in &mut record.channels {
+            channel.start = start;
+            station.clone_into(&mut channel.site.station);
+        }
+        Ok(record.into())
+    }
+
+    #[staticmethod]
+    fn gather(records: Vec<PyRef<'_, Self>>) -> PyResult<Self> {
+        let records: Vec<_> = records.iter().map(|record| (*record.inner).clone()).collect();
+        barrelstack_motion::Record::gather(&records).map(Self::from).map_err(errors::motion)
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.inner.file
+    }
+
+    #[getter]
+    fn format(&self) -> &str {
+        self.inner.format
+    }
+
+    #[getter]
+    fn event(&self) -> &str {
+        &self.inner.event
+    }
+
+    #[getter]
+    fn station(&self) -> &str {
+        &self.inner.station
+    }
+
+    #[getter]
+    fn stage(&self) -> String {
+        self.inner.stage.to_string()
+    }
+
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.inner.notes.clone()
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.inner.warnings.iter().map(ToString::to_string).collect()
+    }
+
+    fn channels(&self) -> Vec<ChannelFacts> {
+        let facts = |channel: &Channel| {
+            let start = channel.start.map(|start| start.to_string());
+            let azimuth = channel.direction.azimuth;
+            let (name, step) = (channel.name.clone(), channel.time_step);
+            (name, azimuth, channel.is_vertical(), step, start, channel.initial_velocity)
+        };
+        self.inner.channels.iter().map(facts).collect()
+    }
+
+    fn site(&self, channel: usize) -> PyResult<Place> {
+        let site = &self.channel(channel)?.site;
+        Ok((site.station.clone(), site.sensor.clone(), site.latitude, site.longitude))
+    }
+
+    fn acceleration<'py>(
+        slf: &Bound<'py, Self>,
+        channel: usize,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let record = slf.get();
+        view(slf.as_any(), &record.channel(channel)?.acceleration)
+    }
+
+    /// Velocities (m/s) and displacements (m) at the samples.
+    fn integrated<'py>(
+        &self,
+        py: Python<'py>,
+        channel: usize,
+    ) -> PyResult<(Numbers<'py>, Numbers<'py>)> {
+        let motion = self.channel(channel)?.sampled().map_err(errors::motion)?;
+        let array = |values: &[f64]| values.to_vec().into_pyarray(py);
+        Ok((array(motion.velocity()), array(motion.displacement())))
+    }
+
+    /// The place of a channel among the others, by what people call it.
+    fn find(&self, name: &str) -> PyResult<usize> {
+        let wanted: Component = name.parse().map_err(errors::motion)?;
+        let found = self.inner.component(&wanted).map_err(errors::motion)?;
+        let known = self.inner.channels.iter().position(|channel| channel.name == found.name);
+        known.ok_or_else(|| {
+            PyIndexError::new_err(format!("no channel of the record is {name}; turn it first"))
+        })
+    }
+
+    /// The record with a component of it alone, which may be turned to an azimuth.
+    fn component(&self, name: &str) -> PyResult<Self> {
+        let wanted: Component = name.parse().map_err(errors::motion)?;
+        let channel = self.inner.component(&wanted).map_err(errors::motion)?;
+        let channels = vec![channel];
+        Ok(barrelstack_motion::Record { channels, ..(*self.inner).clone() }.into())
+    }
+
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the settings of a chain, each with its name in Python"
+    )]
+    fn process(
+        &self,
+        py: Python<'_>,
+        chain: &str,
+        mean: Option<&str>,
+        detrend: Option<bool>,
+        taper: Option<f64>,
+        high_pass: Option<f64>,
+        low_pass: Option<f64>,
+        order: Option<u32>,
+        pads: Option<bool>,
+        close: Option<bool>,
+    ) -> PyResult<Self> {
+        let mut steps = match chain {
+            "default" => Processing::for_stage(self.inner.stage),
+            "raw" => Processing::raw(),
+            "compact" => Processing::compact(),
+            "none" => Processing::none(),
+            other => {
+                return Err(PyValueError::new_err(format!(
+                    "there is no chain \"{other}\"; there are \"default\", \"raw\", \"compact\" and \"none\""
+                )));
+            }
+        };
+        steps.mean = match mean {
+            None => steps.mean,
+            Some("keep") => MeanRemoval::Keep,
+            Some("pre-event") => MeanRemoval::PreEvent,
+            Some("whole") => MeanRemoval::Whole,
+            Some(other) => {
+                return Err(PyValueError::new_err(format!(
+                    "there is no mean \"{other}\"; there are \"keep\", \"pre-event\" and \"whole\""
+                )));
+            }
+        };
+        steps.detrend = detrend.unwrap_or(steps.detrend);
+        steps.taper = taper.unwrap_or(steps.taper);
+        steps.high_pass = high_pass.or(steps.high_pass);
+        steps.low_pass = low_pass.or(steps.low_pass);
+        steps.order = order.unwrap_or(steps.order);
+        steps.pads = match pads {
+            None => steps.pads,
+            Some(true) => Pads::Kept,
+            Some(false) => Pads::Removed,
+        };
+        steps.close = close.unwrap_or(steps.close);
+        py.detach(|| self.inner.processed(&steps)).map(Self::from).map_err(errors::motion)
+    }
+
+    /// All components times one factor.
+    fn multiplied(&self, factor: f64) -> PyResult<Self> {
+        if !(factor.is_finite() && factor != 0.0) {
+            return Err(PyValueError::new_err(format!(
+                "a factor is a number other than 0, found {factor}"
+            )));
+        }
+        let mut record = self.inner.multiplied(factor);
+        record.notes.push(format!("scaled by {factor}; one factor for all components"));
+        Ok(record.into())
+    }
+
+    /// All components times the factor that brings a measure of one component, or of both horizontals, to a value (SI).
+    fn scaled_to(&self, measure: &str, value: f64, of: &str) -> PyResult<Self> {
+        let measure: IntensityMeasure = measure.parse().map_err(errors::motion)?;
+        let factor = self.factor(measure, value, of).map_err(errors::motion)?;
+        let mut record = self.inner.multiplied(factor);
+        record.notes.push(format!(
+            "scaled by {factor:.6}, which brings {measure} of {of} to {value} {}; one factor for all components",
+            measure.unit()
+        ));
+        Ok(record.into())
+    }
+
+    /// The record with one component matched to a target, the misfit, and in words what it misses.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the settings of a match, each with its name in Python"
+    )]
+    fn matched(
+        &self,
+        py: Python<'_>,
+        target: &Bound<'_, PyAny>,
+        damping: f64,
+        of: &str,
+        frequency: bool,
+        periods: (f64, f64),
+        tolerance: f64,
+        nearly: bool,
+    ) -> PyResult<(Self, f64, String)> {
+        let (target, named): (TargetSpectrum, String) = if let Ok(text) = target.extract::<String>()
+        {
+            (text.parse().map_err(errors::motion)?, text)
+        } else {
+            let points: Vec<(f64, f64)> = target.extract()?;
+            let table = TargetSpectrum::Table { points, damping };
+            let named = table.to_string();
+            (table, named)
+        };
+        let method = if frequency { MatchMethod::Frequency } else { MatchMethod::Time };
+        let (shortest, longest) = periods;
+        let settings = Matching { method, shortest, longest, tolerance, ..Matching::default() };
+        let place = self.find(of)?;
+        let found = py.detach(|| self.inner.matched(place, &target, &named, &settings, nearly));
+        let (record, found) = found.map_err(errors::motion)?;
+        Ok((record.into(), found.misfit, found.missed_in_words()))
+    }
+
+    /// A measure of every component (SI), with its unit; NaN where the component is too short for it.
+    fn intensity(&self, py: Python<'_>, measure: &str) -> PyResult<(Vec<f64>, &'static str)> {
+        let measure: IntensityMeasure = measure.parse().map_err(errors::motion)?;
+        let of = |channel: &Channel| measure.of(&channel.sampled()?);
+        let values =
+            py.detach(|| self.inner.channels.iter().map(of).collect::<Result<Vec<f64>, _>>());
+        Ok((values.map_err(errors::motion)?, measure.unit()))
+    }
+
+    /// Pseudo-accelerations (m/s²) of a component at some periods (s).
+    fn spectrum<'py>(
+        &self,
+        py: Python<'py>,
+        periods: PyReadonlyArray1<'py, f64>,
+        damping: f64,
+        of: &str,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let periods = periods.as_array().to_vec();
+        let values = py.detach(|| self.pseudo_acceleration(&periods, damping, of));
+        Ok(values.map_err(errors::motion)?.into_pyarray(py))
+    }
+
+    /// The record as the bytes of a file.
+    fn written<'py>(&self, py: Python<'py>, form: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let text = |text: Result<String, MotionError>| text.map(String::into_bytes);
+        let written = match form {
+            "npz" => write::npz(&self.inner),
+            "txt" => text(write::text(&self.inner)),
+            "csv" => text(write::csv(&self.inner)),
+            "at2" => text(write::at2(&self.inner)),
+            other => {
+                return Err(PyValueError::new_err(format!(
+                    "a record is written as .npz, .txt, .csv or .at2, not as .{other}"
+                )));
+            }
+        };
+        Ok(bytes(py, &written.map_err(errors::motion)?))
+    }
+}
+
+impl Record {
+    fn channel(&self, at: usize) -> PyResult<&Channel> {
+        let missing = || {
+            PyIndexError::new_err(format!("the record has {} channels", self.inner.channels.len()))
+        };
+        self.inner.channels.get(at).ok_or_else(missing)
+    }
+
+    fn factor(&self, measure: IntensityMeasure, value: f64, of: &str) -> Result<f64, MotionError> {
+        if let Ok(over) = of.parse::<Horizontals>() {
+            let (first, second) = self.inner.horizontal_pair()?;
+            return over.scale_factor(measure, &first.sampled()?, &second.sampled()?, value);
+        }
+        let channel = self.inner.component(&of.parse::<Component>()?)?;
+        let horizontal = barrelstack_motion::History::Sampled(channel.sampled()?);
+        barrelstack_motion::GroundMotion::new(channel.name, horizontal, None)
+            .scale_factor(measure, value)
+    }
+
+    fn pseudo_acceleration(
+        &self,
+        periods: &[f64],
+        damping: f64,
+        of: &str,
+    ) -> Result<Vec<f64>, MotionError> {
+        if let Ok(over) = of.parse::<Horizontals>() {
+            let (one, two) = self.inner.horizontal_pair()?;
+            let (a, b) = (one.acceleration.as_slice(), two.acceleration.as_slice());
+            if over != Horizontals::GeometricMean {
+                let median = over == Horizontals::RotD50;
+                let peaks = rotated_spectrum(one.time_step, a, b, periods, damping)?;
+                return Ok(peaks
+                    .iter()
+                    .map(|p| if median { p.median } else { p.largest })
+                    .collect());
+            }
+            let of = |values| {
+                Ok(ResponseSpectrum::new(one.time_step, values, periods, damping)?
+                    .pseudo_acceleration())
+            };
+            let (a, b): (Vec<f64>, Vec<f64>) = (of(a)?, of(b)?);
+            return Ok(a.iter().zip(&b).map(|(a, b)| (a * b).sqrt()).collect());
+        }
+        let channel = self.inner.component(&of.parse::<Component>()?)?;
+        let spectrum =
+            ResponseSpectrum::new(channel.time_step, &channel.acceleration, periods, damping)?;
+        Ok(spectrum.pseudo_acceleration())
+    }
+}
+
+/// Periods (s) from 0.01 to 10 s, so many to a decade.
+#[pyfunction]
+pub(crate) fn standard_periods(py: Python<'_>, per_decade: usize) -> Bound<'_, PyArray1<f64>> {
+    barrelstack_motion::standard_periods(per_decade).into_pyarray(py)
+}
+
+/// A value of a measure with its unit, in SI.
+#[pyfunction]
+pub(crate) fn measured(measure: &str, text: &str) -> PyResult<f64> {
+    let of: IntensityMeasure = measure.parse().map_err(errors::motion)?;
+    let dimension = match of.unit() {
+        "m/s2" => Dimension::ACCELERATION,
+        "m/s" => Dimension::VELOCITY,
+        "m" => Dimension::LENGTH,
+        "s" => Dimension::TIME,
+        unit => {
+            return Err(PyValueError::new_err(format!(
+                "{measure} is given as a number in {unit}, found \"{text}\""
+            )));
+        }
+    };
+    let quantity = Quantity::parse_as(text, &[dimension]);
+    quantity
+        .map(|quantity| quantity.value)
+        .map_err(|error| PyValueError::new_err(format!("{measure}: {error}")))
+}
+
+/// Names and titles of the formats that are read.
+#[pyfunction]
+pub(crate) fn formats() -> Vec<(&'static str, &'static str)> {
+    FORMATS.iter().map(|format| (format.name, format.title)).collect()
+}

@@ -1,0 +1,278 @@
+//! A run: its outcome, its histories without a copy, its page.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use barrelstack::assemble::PartKind;
+use barrelstack::ensemble;
+use barrelstack::export::Folder;
+use barrelstack::report;
+use barrelstack::variants::{Answer, Shown};
+use barrelstack::verify::Verification;
+use barrelstack::watch::StressEnvelope;
+use barrelstack_report::column::{Column, ColumnSpec, Role, ValueKind, Values};
+use barrelstack_report::{Paper, document_pdf, html};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
+use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use crate::errors;
+use crate::scenario::bytes;
+use crate::table::Table;
+use crate::view::{rows, view};
+
+/// What became of a scenario, in the plane that decides or in the other one.
+#[pyclass(frozen, module = "barrelstack._native")]
+pub(crate) struct Run {
+    answer: Arc<Answer>,
+    repeated: Option<Arc<Verification>>,
+    /// Whether this is the plane that does not decide.
+    beside: bool,
+}
+
+/// Two bodies and their forces: name, at rest (N), largest vertical (N) and when (s), largest horizontal and when.
+type JointFacts = (String, f64, (f64, f64), (f64, f64));
+
+type Array<'py> = Bound<'py, PyArray1<f64>>;
+
+impl Run {
+    pub(crate) fn of(answer: Answer, repeated: Option<Verification>) -> Self {
+        Self { answer: Arc::new(answer), repeated: repeated.map(Arc::new), beside: false }
+    }
+
+    fn shown(&self) -> &Shown {
+        match &self.answer.other {
+            Some(other) if self.beside => other,
+            _ => &self.answer.decides,
+        }
+    }
+
+    fn run(&self) -> &barrelstack::Run {
+        &self.shown().run
+    }
+
+    fn envelope(&self, at: usize) -> PyResult<&StressEnvelope> {
+        self.run().stresses.envelopes.get(at).ok_or_else(|| missing("envelope"))
+    }
+
+    fn verification(&self) -> Option<&Verification> {
+        self.repeated.as_deref()
+    }
+}
+
+fn missing(what: &str) -> PyErr {
+    PyIndexError::new_err(format!("there is no such {what}"))
+}
+
+#[pymethods]
+impl Run {
+    /// The other plane, where the scenario looks at its stack in both.
+    fn other(&self) -> Option<Self> {
+        let (answer, repeated) = (Arc::clone(&self.answer), self.repeated.clone());
+        self.answer.other.as_ref().map(|_| Self { answer, repeated, beside: !self.beside })
+    }
+
+    #[getter]
+    fn headline(&self) -> String {
+        report::sentences(self.run(), &self.shown().summary).swap_remove(0)
+    }
+
+    fn summary(&self) -> String {
+        self.shown().summary.to_json()
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.run().warnings.clone()
+    }
+
+    #[getter]
+    fn interrupted(&self) -> bool {
+        self.run().interrupted
+    }
+
+    #[getter]
+    fn toml(&self) -> String {
+        self.run().scenario.to_resolved_toml()
+    }
+
+    /// Times (s) of the samples of all histories.
+    fn times<'py>(slf: &Bound<'py, Self>) -> PyResult<Array<'py>> {
+        view(slf.as_any(), &slf.get().run().recording.times)
+    }
+
+    /// Name and unit of every history.
+    fn channels(&self) -> Vec<(String, &'static str)> {
+        let channels = self.run().recording.channels.iter();
+        channels.map(|channel| (channel.name.clone(), channel.unit)).collect()
+    }
+
+    fn channel<'py>(slf: &Bound<'py, Self>, at: usize) -> PyResult<Array<'py>> {
+        let channels = &slf.get().run().recording.channels;
+        view(slf.as_any(), &channels.get(at).ok_or_else(|| missing("history"))?.values)
+    }
+
+    fn joints(&self) -> Vec<JointFacts> {
+        let joints = self.run().recording.joints.iter();
+        let facts = |joint: &barrelstack::watch::JointForces| {
+            (joint.name.clone(), joint.at_rest, joint.peak_vertical, joint.peak_horizontal)
+        };
+        joints.map(facts).collect()
+    }
+
+    /// Vertical and horizontal forces (N) on the upper body.
+    fn joint<'py>(slf: &Bound<'py, Self>, at: usize) -> PyResult<(Array<'py>, Array<'py>)> {
+        let joint = slf.get().run().recording.joints.get(at).ok_or_else(|| missing("joint"))?;
+        Ok((view(slf.as_any(), &joint.vertical)?, view(slf.as_any(), &joint.horizontal)?))
+    }
+
+    /// Name and kind of every body, in the order of the poses.
+    fn bodies(&self) -> Vec<(String, &'static str)> {
+        let parts = self.run().assembly.parts.iter();
+        parts.map(|part| (part.name.clone(), part.kind.name())).collect()
+    }
+
+    /// Outlines of a body (m, from its center of mass), each with whether it closes on itself.
+    fn outlines<'py>(
+        &self,
+        py: Python<'py>,
+        body: usize,
+    ) -> PyResult<Vec<(Bound<'py, PyArray2<f64>>, bool)>> {
+        let part = self.run().assembly.parts.get(body).ok_or_else(|| missing("body"))?;
+        let drawn = part.outlines.iter().filter(|_| part.kind != PartKind::Ground);
+        drawn
+            .map(|line| Ok((rows(py, line.points.iter().map(|p| [p.x, p.z]))?, line.closed)))
+            .collect()
+    }
+
+    fn frame_times<'py>(slf: &Bound<'py, Self>) -> PyResult<Array<'py>> {
+        view(slf.as_any(), &slf.get().run().recording.frames.times)
+    }
+
+    /// For every frame and body `x` (m), `z` (m), angle (rad).
+    fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let poses = &self.run().recording.frames.poses;
+        let bodies = self.run().assembly.parts.len();
+        let flat = PyArray1::from_iter(py, poses.iter().flatten().flatten().copied());
+        flat.reshape([poses.len(), bodies, 3])
+    }
+
+    /// For every frame and body the largest stress (N/m) at a node that presses on it.
+    fn frame_stresses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let stresses = &self.run().recording.frames.stresses;
+        let bodies = self.run().assembly.parts.len();
+        PyArray1::from_iter(py, stresses.iter().flatten().copied())
+            .reshape([stresses.len(), bodies])
+    }
+
+    /// The contact forces of a frame: `x` (m), `z` (m), and the force (N) on the contactor.
+    fn frame_forces<'py>(
+        &self,
+        py: Python<'py>,
+        frame: usize,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let forces =
+            self.run().recording.frames.forces.get(frame).ok_or_else(|| missing("frame"))?;
+        rows(py, forces.iter().copied())
+    }
+
+    /// The bodies that have an envelope, each with whether it closes on itself.
+    fn envelopes(&self) -> Vec<(String, bool)> {
+        let name = |body: usize| self.run().assembly.parts[body].name.clone();
+        self.run().stresses.envelopes.iter().map(|one| (name(one.body), one.closed)).collect()
+    }
+
+    /// Points of an envelope: `x` (m), `z` (m), coordinate (rad or m), length (m).
+    fn envelope_points<'py>(
+        &self,
+        py: Python<'py>,
+        at: usize,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let envelope = self.envelope(at)?;
+        let points = envelope.points.iter().zip(&envelope.lengths);
+        rows(py, points.map(|(p, length)| [p.position.x, p.position.z, p.coordinate, *length]))
+    }
+
+    /// Stresses (N/m) at rest, and the largest while the stack stood.
+    fn envelope_stresses<'py>(
+        slf: &Bound<'py, Self>,
+        at: usize,
+    ) -> PyResult<(Array<'py>, Array<'py>)> {
+        let envelope = slf.get().envelope(at)?;
+        Ok((view(slf.as_any(), &envelope.at_rest)?, view(slf.as_any(), &envelope.peak)?))
+    }
+
+    /// The case as it is stated and its variants, a row each; none where none were run.
+    fn variants(&self) -> Option<Table> {
+        let results = &self.shown().variants.as_ref()?.results;
+        let numbers = Values::Integer((0..results.len()).map(|n| i64::try_from(n).ok()).collect());
+        let spec = ColumnSpec::new("variant", "", Role::Key, ValueKind::Integer);
+        let mut columns = vec![Column { spec, values: numbers }];
+        columns.extend(ensemble::table(results));
+        Some(Table { columns })
+    }
+
+    fn html(&self, py: Python<'_>) -> String {
+        py.detach(|| html(&report::answer_document(&self.answer, self.verification())))
+    }
+
+    fn pdf<'py>(&self, py: Python<'py>, paper: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let paper = match paper {
+            "a4" => Paper::A4,
+            "letter" => Paper::Letter,
+            other => {
+                return Err(PyValueError::new_err(format!(
+                    "paper is \"a4\" or \"letter\", found \"{other}\""
+                )));
+            }
+        };
+        let made = py.detach(|| {
+            document_pdf(&report::answer_document(&self.answer, self.verification()), paper)
+        });
+        Ok(bytes(py, &made))
+    }
+
+    /// Writes the files that the command writes.
+    fn write(&self, py: Python<'_>, folder: PathBuf, overwrite: bool) -> PyResult<()> {
+        let written = py.detach(|| {
+            let folder = Folder::prepare(&folder, overwrite)?;
+            folder.write(&self.answer, self.verification())
+        });
+        written.map_err(errors::general)
+    }
+}
+
+/// What an observer sees of a run.
+#[pyclass(frozen, module = "barrelstack._native")]
+pub(crate) struct Glance {
+    #[pyo3(get)]
+    time: f64,
+    #[pyo3(get)]
+    steps: u64,
+    poses: Py<PyArray2<f64>>,
+    twists: Py<PyArray2<f64>>,
+}
+
+impl Glance {
+    pub(crate) fn of(py: Python<'_>, glance: &barrelstack::watch::Glance<'_>) -> PyResult<Self> {
+        let poses = glance.state.poses.iter();
+        let poses = rows(py, poses.map(|p| [p.position.x, p.position.z, p.orientation]))?.unbind();
+        let twists = glance.state.twists.iter();
+        let twists = rows(py, twists.map(|t| [t.linear.x, t.linear.z, t.angular]))?.unbind();
+        Ok(Self { time: glance.time, steps: glance.steps, poses, twists })
+    }
+}
+
+#[pymethods]
+impl Glance {
+    #[getter]
+    fn poses<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        self.poses.bind(py).clone()
+    }
+
+    #[getter]
+    fn twists<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        self.twists.bind(py).clone()
+    }
+}

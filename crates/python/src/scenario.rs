@@ -1,0 +1,252 @@
+//! Scenarios: read, changed, run.
+
+use std::num::NonZero;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use barrelstack::ground::from_disk;
+use barrelstack::scenario::{Scene, builtin, reference as fields_of, schema as schema_of};
+use barrelstack::variants::{self, Answer, Asked, Shown, Told};
+use barrelstack::verify::{Verification, verify};
+use barrelstack::watch::Pace;
+use barrelstack::{RunFailure, Summary};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+use crate::errors;
+use crate::listen::listening;
+use crate::record::Record;
+use crate::run::{Glance, Run};
+use crate::value;
+
+/// A scenario of the library.
+#[pyclass(frozen, module = "barrelstack._native")]
+pub(crate) struct Scenario {
+    pub(crate) inner: Arc<barrelstack::Scenario>,
+}
+
+impl Scenario {
+    fn of(
+        read: Result<barrelstack::Scenario, barrelstack::scenario::ScenarioError>,
+    ) -> PyResult<Self> {
+        read.map(|inner| Self { inner: Arc::new(inner) }).map_err(|error| errors::scenario(&error))
+    }
+}
+
+#[pymethods]
+impl Scenario {
+    #[staticmethod]
+    fn load(path: PathBuf, changes: Vec<String>) -> PyResult<Self> {
+        Self::of(barrelstack::Scenario::load(&path, &changes))
+    }
+
+    #[staticmethod]
+    fn parse(name: &str, text: &str, changes: Vec<String>) -> PyResult<Self> {
+        Self::of(barrelstack::Scenario::parse(name, text, &changes))
+    }
+
+    #[staticmethod]
+    fn builtin(name: &str, changes: Vec<String>) -> PyResult<Self> {
+        Self::of(barrelstack::Scenario::builtin(name, &changes))
+    }
+
+    #[staticmethod]
+    fn from_tree(name: &str, tree: &Bound<'_, PyDict>) -> PyResult<Self> {
+        Self::of(barrelstack::Scenario::from_tree(name, value::table(tree)?))
+    }
+
+    fn changed(&self, changes: Vec<String>) -> PyResult<Self> {
+        Self::of(self.inner.with(&changes))
+    }
+
+    fn with_record(&self, record: &Record) -> PyResult<Self> {
+        let inner = self.inner.with_record(&record.inner).map_err(errors::motion)?;
+        Ok(Self { inner: Arc::new(inner) })
+    }
+
+    #[getter]
+    fn title(&self) -> &str {
+        &self.inner.title
+    }
+
+    #[getter]
+    fn fingerprint(&self) -> String {
+        format!("{:016x}", self.inner.fingerprint())
+    }
+
+    #[getter]
+    fn is_free(&self) -> bool {
+        matches!(self.inner.scene, Scene::Free(_))
+    }
+
+    fn to_toml(&self) -> String {
+        self.inner.to_resolved_toml()
+    }
+
+    /// Path, value and meaning of every field.
+    fn settings(&self) -> Vec<(String, String, &'static str)> {
+        let settings = self.inner.settings().into_iter();
+        settings.map(|setting| (setting.path, setting.value, setting.help)).collect()
+    }
+
+    /// What a check of every plane finds, each as JSON.
+    fn check(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let found = py.detach(|| {
+            let planes = variants::planes(&self.inner)?;
+            planes
+                .iter()
+                .map(|plane| barrelstack::check(&plane.scenario))
+                .collect::<Result<Vec<_>, _>>()
+        });
+        let found = found.map_err(|error: RunFailure| errors::run(&error, &self.inner))?;
+        found.iter().map(|one| serde_json::to_string(one).map_err(errors::general)).collect()
+    }
+
+    #[pyo3(signature = (variants, variant, remedy, repeats, progress))]
+    fn run(
+        &self,
+        py: Python<'_>,
+        variants: Option<u32>,
+        variant: Option<u32>,
+        remedy: bool,
+        repeats: bool,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Run> {
+        let mut scenario = (*self.inner).clone();
+        let count = match &mut scenario.scene {
+            Scene::Stack { imperfections, .. } => {
+                imperfections.variants = variants.unwrap_or(imperfections.variants);
+                imperfections.variants
+            }
+            Scene::Free(_) if variants.is_some_and(|count| count > 0) => {
+                return Err(PyValueError::new_err(
+                    "a free scene has no variants, since nothing says how it may differ",
+                ));
+            }
+            Scene::Free(_) => 0,
+        };
+        let asked = match variant {
+            Some(number) if number > count => {
+                return Err(PyValueError::new_err(format!(
+                    "there is no variant {number}: there are variants 1 to {count}, and 0 is the stack as it is \
+                     stated"
+                )));
+            }
+            Some(number) => Asked::Number(number),
+            None => Asked::Typical,
+        };
+        let answer = listening(py, progress, |hear| {
+            let mut answer = variants::answer(&scenario, asked, &mut |told| match told {
+                Told::Variants { done, of } => hear.tell(done as f64, of as f64, "variants"),
+                Told::Run(now) => hear.tell(now.time, now.end_time, "s"),
+            })?;
+            if remedy && !hear.stopped() {
+                let found = variants::remedy(&answer, &|done| {
+                    hear.tell(done as f64, f64::NAN, "runs of what would have helped")
+                })?;
+                answer.decides.summary.remedy = found;
+            }
+            let mut repeated: Option<Verification> = None;
+            if repeats && !hear.stopped() {
+                let found = verify(&answer.decides.run, &mut |now| {
+                    hear.tell(now.time, now.end_time, "s of repeats")
+                })?;
+                answer.decides.summary.verification = Some(found.clone());
+                repeated = Some(found);
+            }
+            Ok((answer, repeated))
+        })?;
+        let (answer, repeated) =
+            answer.map_err(|error: RunFailure| errors::run(&error, &scenario))?;
+        Ok(Run::of(answer, repeated))
+    }
+
+    /// Runs it as it is stated in one plane, before a function that sees every so many steps and stops the run by
+    /// anything true that it returns.
+    fn run_before(
+        &self,
+        py: Python<'_>,
+        every: NonZero<u64>,
+        look: &Bound<'_, PyAny>,
+    ) -> PyResult<Run> {
+        let look = look.clone().unbind();
+        let mut raised = None;
+        let done = py.detach(|| -> Result<Answer, RunFailure> {
+            let scenario = self.inner.with_records(&mut from_disk)?;
+            let plane = variants::planes(&scenario)?.remove(0);
+            let stated = plane.scenario;
+            let mut eye = |glance: barrelstack::watch::Glance<'_>| {
+                let told = Python::attach(|py| {
+                    py.check_signals()?;
+                    let seen = Bound::new(py, Glance::of(py, &glance)?)?;
+                    look.bind(py).call1((seen,))?.is_truthy()
+                });
+                match told {
+                    Ok(false) => ControlFlow::Continue(()),
+                    Ok(true) => ControlFlow::Break(()),
+                    Err(error) => {
+                        raised = Some(error);
+                        ControlFlow::Break(())
+                    }
+                }
+            };
+            let run = stated.run_before(stated.ground()?, Pace::Steps(every), &mut eye)?;
+            let summary = Summary::of(&run, None);
+            Ok(Answer { scenario, decides: Shown { run, summary, variants: None }, other: None })
+        });
+        match (raised, done) {
+            (Some(error), _) => Err(error),
+            (None, Ok(answer)) => Ok(Run::of(answer, None)),
+            (None, Err(error)) => Err(errors::run(&error, &self.inner)),
+        }
+    }
+}
+
+/// Names and texts of the scenarios that come with the library.
+#[pyfunction]
+pub(crate) fn scenarios() -> Vec<(&'static str, &'static str)> {
+    builtin::names().filter_map(|name| Some((name, builtin::get(name)?))).collect()
+}
+
+/// The JSON Schema of scenario files, of study files, or of the summary.
+#[pyfunction]
+pub(crate) fn schema(of: &str) -> PyResult<String> {
+    let schema = match of {
+        "scenario" => schema_of::json_schema(),
+        "study" => barrelstack_campaign::study::json_schema(),
+        "summary" => barrelstack_report::described::document::<Summary>("summary"),
+        other => {
+            return Err(PyValueError::new_err(format!(
+                "there is no schema of \"{other}\"; there are \"scenario\", \"study\" and \"summary\""
+            )));
+        }
+    };
+    serde_json::to_string(&schema).map_err(errors::general)
+}
+
+/// The reference of scenario files or study files in Markdown.
+#[pyfunction]
+pub(crate) fn reference(of: &str) -> PyResult<String> {
+    match of {
+        "scenario" => Ok(fields_of::markdown()),
+        "study" => Ok(barrelstack_campaign::study::reference()),
+        other => Err(PyValueError::new_err(format!(
+            "there is no reference of \"{other}\"; there are \"scenario\" and \"study\""
+        ))),
+    }
+}
+
+/// The keys of the summary: path, unit and meaning.
+#[pyfunction]
+pub(crate) fn fields() -> Vec<(String, String, String)> {
+    let schema = barrelstack_report::described::document::<Summary>("summary");
+    let rows = barrelstack_report::described::dictionary(&schema);
+    rows.into_iter().map(|[path, unit, meaning]| (path, unit, meaning)).collect()
+}
+
+/// Bytes for Python.
+pub(crate) fn bytes<'py>(py: Python<'py>, of: &[u8]) -> Bound<'py, PyBytes> {
+    PyBytes::new(py, of)
+}

@@ -1,0 +1,187 @@
+//! Studies: planned, run chunk by chunk, collected, decided.
+
+use std::num::NonZero;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use barrelstack::ensemble::Width;
+use barrelstack_campaign::decision::{Request, SiteHazard, decide_folder, export as exported};
+use barrelstack_campaign::study::{
+    self, ChunkRun, Collected, Progress, RunOptions, StudyError, collect,
+};
+use pyo3::prelude::*;
+
+use crate::errors;
+use crate::listen::{Hear, listening};
+use crate::table::Table;
+
+/// A study of the library.
+#[pyclass(frozen, module = "barrelstack._native")]
+pub(crate) struct Study {
+    inner: Arc<study::Study>,
+}
+
+/// A file: name and text.
+type NamedText = (&'static str, String);
+
+/// A chunk: number, cases, first and last case.
+type ChunkFacts = (usize, usize, u64, u64);
+
+impl Study {
+    fn of(read: Result<study::Study, StudyError>) -> PyResult<Self> {
+        read.map(|inner| Self { inner: Arc::new(inner) }).map_err(errors::study)
+    }
+}
+
+#[pymethods]
+impl Study {
+    #[staticmethod]
+    fn load(path: PathBuf) -> PyResult<Self> {
+        Self::of(study::Study::load(&path))
+    }
+
+    #[staticmethod]
+    fn parse(name: &str, text: &str) -> PyResult<Self> {
+        Self::of(study::Study::parse(name, text))
+    }
+
+    #[staticmethod]
+    fn builtin(name: &str) -> PyResult<Self> {
+        Self::of(study::Study::built_in(name))
+    }
+
+    #[getter]
+    fn title(&self) -> &str {
+        &self.inner.title
+    }
+
+    #[getter]
+    fn design(&self) -> &'static str {
+        self.inner.design.name()
+    }
+
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.inner.seed
+    }
+
+    #[getter]
+    fn fingerprint(&self) -> String {
+        format!("{:016x}", self.inner.hash())
+    }
+
+    #[getter]
+    fn cases(&self) -> u64 {
+        self.inner.cases()
+    }
+
+    #[getter]
+    fn motions(&self) -> usize {
+        self.inner.motions()
+    }
+
+    #[getter]
+    fn is_adaptive(&self) -> bool {
+        self.inner.is_adaptive()
+    }
+
+    fn chunks(&self) -> Vec<ChunkFacts> {
+        self.inner
+            .plan()
+            .map(|chunk| (chunk.number, chunk.cases, chunk.first, chunk.last))
+            .collect()
+    }
+
+    /// Runs what is missing of a folder.
+    fn run(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        threads: Option<NonZero<usize>>,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let options = RunOptions { threads, lanes: None };
+        let done = listening(py, progress, |hear| {
+            self.inner.run_all(&folder, &options, &|now| told(hear, now))?;
+            collect(&folder, &mut |_, _| Ok(())).map(drop)
+        })?;
+        done.map_err(errors::study)
+    }
+
+    /// Runs one chunk, unless its shard is there; whether it was run.
+    fn run_chunk(&self, py: Python<'_>, folder: PathBuf, chunk: usize) -> PyResult<bool> {
+        let done = listening(py, None, |hear| {
+            self.inner.run_chunk(&folder, chunk, Width::widest(), &|| hear.stopped())
+        })?;
+        Ok(done.map_err(errors::study)? != ChunkRun::Before)
+    }
+
+    /// Its table, without a folder.
+    fn table(&self, py: Python<'_>) -> PyResult<Table> {
+        let table = py.detach(|| self.inner.table()).map_err(errors::study)?;
+        Ok(Table { columns: table.columns().to_vec() })
+    }
+}
+
+fn told(hear: &Hear, now: &Progress) -> ControlFlow<()> {
+    hear.tell((now.before + now.now) as f64, now.cases as f64, "cases")
+}
+
+/// Names and texts of the studies that come with the library.
+#[pyfunction]
+pub(crate) fn studies() -> Vec<(&'static str, &'static str)> {
+    study::builtin_names().filter_map(|name| Some((name, study::builtin(name)?))).collect()
+}
+
+/// The rows that are done in the folder of a study; `write` writes its tables, too.
+#[pyfunction]
+pub(crate) fn read_table(py: Python<'_>, folder: PathBuf, write: bool) -> PyResult<Table> {
+    let read = py.detach(|| {
+        if write {
+            collect(&folder, &mut |_, _| Ok(()))?;
+        }
+        Collected::read(&folder)
+    });
+    Ok(Table { columns: read.map_err(errors::study)?.table.columns().to_vec() })
+}
+
+/// What the rows of a folder come from, as JSON, and the chunks that are missing.
+#[pyfunction]
+pub(crate) fn provenance(py: Python<'_>, folder: PathBuf) -> PyResult<(String, Vec<usize>)> {
+    let status = py.detach(|| Collected::status(&folder)).map_err(errors::study)?;
+    let made = serde_json::to_string(&status.provenance).map_err(errors::general)?;
+    Ok((made, status.missing))
+}
+
+fn request(hazard: Option<&Path>, years: Option<f64>) -> PyResult<Request> {
+    let hazard = hazard.map(SiteHazard::load).transpose().map_err(errors::told)?;
+    Ok(Request { hazard, years })
+}
+
+/// What the study of a folder says: as JSON, and as a page.
+#[pyfunction]
+pub(crate) fn decision(
+    py: Python<'_>,
+    folder: PathBuf,
+    hazard: Option<PathBuf>,
+    years: Option<f64>,
+) -> PyResult<(String, String)> {
+    let request = request(hazard.as_deref(), years)?;
+    let (decision, _) = py.detach(|| decide_folder(&folder, &request)).map_err(errors::told)?;
+    let numbers = serde_json::to_string(&decision.to_document()).map_err(errors::general)?;
+    Ok((numbers, decision.html()))
+}
+
+/// The curves of the study of a folder for other programs: name and text of each file, and what is missing.
+#[pyfunction]
+pub(crate) fn export(
+    py: Python<'_>,
+    folder: PathBuf,
+    asset: &str,
+) -> PyResult<(Vec<NamedText>, Vec<String>)> {
+    let decided = py.detach(|| decide_folder(&folder, &Request::default()));
+    let (decision, made) = decided.map_err(errors::told)?;
+    let found = exported(&decision, &made, asset).map_err(errors::told)?;
+    Ok((found.files, found.notes))
+}

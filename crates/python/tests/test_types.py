@@ -1,0 +1,64 @@
+"""Types: stubs against the module, strict checks of package and examples; names that are told."""
+
+from __future__ import annotations
+
+import inspect
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import barrelstack
+from conftest import ROOT
+
+PACKAGE = ROOT / "crates" / "python"
+
+
+def mypy(*words: str) -> None:
+    pytest.importorskip("mypy", reason="no mypy")
+    done = subprocess.run([sys.executable, "-m", *words], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_stubs_say_what_the_module_holds() -> None:
+    mypy("mypy.stubtest", "barrelstack._native", "--concise")
+
+
+def test_package_and_examples_are_strictly_typed(tmp_path: Path) -> None:
+    examples = sorted(str(path) for path in (PACKAGE / "examples").glob("*.py"))
+    assert len(examples) >= 5
+    mypy("mypy", "--strict", "--cache-dir", str(tmp_path), str(PACKAGE / "python" / "barrelstack"), *examples)
+
+
+def test_everything_public_is_documented() -> None:
+    for name in barrelstack.__all__:
+        thing = getattr(barrelstack, name)
+        if name == "__version__":
+            continue
+        assert inspect.getdoc(thing), name
+        if inspect.isclass(thing):
+            for member, value in vars(thing).items():
+                if callable(value) and not member.startswith("_") and thing.__module__.startswith("barrelstack."):
+                    assert inspect.getdoc(value), f"{name}.{member}"
+
+
+@pytest.mark.parametrize("path", sorted((PACKAGE / "examples").glob("*.py")), ids=lambda path: path.stem)
+def test_examples_run(path: Path, tmp_path: Path) -> None:
+    words = [sys.executable, "-W", "ignore", str(path)]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout
+
+
+def test_the_example_of_the_readme_runs(tmp_path: Path) -> None:
+    pytest.importorskip("polars", reason="no polars")
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    assert len(blocks) == 1
+    environment = {**os.environ, "MPLBACKEND": "Agg"}
+    words = [sys.executable, "-W", "ignore", "-c", blocks[0]]
+    done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

@@ -1,0 +1,153 @@
+//! Cases that are made when their turn comes, of which only rows of a table are kept: memory holds those of one batch a
+//! core, however many there are.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+
+use barrelstack_report::column::Column;
+
+use super::{Audience, CASE_COLUMNS, CaseResult, Prepared, Width, simulate_in, table};
+use crate::ground::{Ground, GroundError, of_spec, scaled};
+use crate::pool;
+use crate::scenario::{MeasuredOn, MotionSource, MotionSpec, Scale, Scenario};
+
+/// Cases that a core takes at once: as many as the first chunks of a study have.
+const BATCH: usize = 64;
+
+/// Fewest batches a core, so that none waits long for the last.
+const SHARE: usize = 4;
+
+/// Motions as their sources have them, so that none is read for every case.
+#[derive(Debug, Default)]
+pub struct Grounds(Mutex<Vec<(MotionSpec, Arc<Ground>)>>);
+
+/// Motions that are kept at once.
+const KEPT: usize = 64;
+
+impl Grounds {
+    /// The ground of a scenario, with the bits of [`Scenario::ground`].
+    ///
+    /// # Errors
+    /// As [`Scenario::ground`].
+    pub fn of(&self, scenario: &Scenario) -> Result<Arc<Ground>, GroundError> {
+        let (spec, similitude) = (&scenario.motion, scenario.run.similitude);
+        let alone = match (&spec.source, spec.scale) {
+            (MotionSource::Record(_), Scale::Measure { of, .. }) => of != MeasuredOn::Component,
+            (MotionSource::Record(_), Scale::Factor(_) | Scale::Pga(_) | Scale::Pgv(_)) => false,
+            (MotionSource::None | MotionSource::Sine(_) | MotionSource::Pulse(_), _) => true,
+        };
+        if alone {
+            return of_spec(spec, similitude).map(Arc::new);
+        }
+        let plain = MotionSpec { scale: Scale::Factor(1.0), similitude: 1.0, ..spec.clone() };
+        let known = self.0.lock().ok().and_then(|kept| {
+            kept.iter().find(|(kept, _)| *kept == plain).map(|(_, ground)| Arc::clone(ground))
+        });
+        let read = if let Some(read) = known {
+            read
+        } else {
+            let read = Arc::new(of_spec(&plain, 1.0)?);
+            if let Ok(mut kept) = self.0.lock() {
+                if kept.len() >= KEPT {
+                    kept.remove(0);
+                }
+                kept.push((plain.clone(), Arc::clone(&read)));
+            }
+            read
+        };
+        if *spec == plain && similitude == 1.0 {
+            return Ok(read);
+        }
+        let Some(motion) = read.motion.clone() else { return Ok(read) };
+        let motion = scaled(motion, spec, similitude)?;
+        Ok(Arc::new(Ground { motion: Some(motion), warnings: read.warnings.clone() }))
+    }
+}
+
+/// Runs `count` cases that `make` makes by their number, on all cores, before an observer who hears of every case and
+/// may stop them all; their table, a row each in the order of their numbers, or none when it was stopped.
+///
+/// A case that cannot be made is a row with the reason as its error.
+/// `kind` tells which cases have one topology, so that those march together; that changes nothing about any of them.
+///
+/// ```
+/// use std::ops::ControlFlow;
+///
+/// use barrelstack_stack::Scenario;
+/// use barrelstack_stack::ensemble::{Grounds, Prepared, rows};
+///
+/// let base = Scenario::builtin("sliding-block", &[])?;
+/// let grounds = Grounds::default();
+/// let make = |number: usize| {
+///     let change = format!("interface.block-ground.friction.coefficient={}", 0.1 * (number + 1) as f64);
+///     let scenario = base.with(&[change]).map_err(|error| error.sentence())?;
+///     let ground = grounds.of(&scenario).map_err(|error| error.to_string())?;
+///     Ok(Prepared { scenario: scenario.into(), ground })
+/// };
+/// let table = rows(9, &|_| 0, &make, None, &|_| ControlFlow::Continue(()), &|| false);
+/// assert_eq!(table.map(|table| table[0].values.len()), Some(9));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn rows(
+    count: usize,
+    kind: &dyn Fn(usize) -> u64,
+    make: &(dyn Fn(usize) -> Result<Prepared, String> + Sync),
+    lanes: Option<Width>,
+    observer: &(dyn Fn(&CaseResult) -> ControlFlow<()> + Sync),
+    asked_to_stop: &(dyn Fn() -> bool + Sync),
+) -> Option<Vec<Column>> {
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by_key(|number| kind(*number));
+    let stopped = AtomicBool::new(false);
+    let lanes = lanes.unwrap_or_else(Width::widest);
+    let together = |numbers: &&[usize]| -> Option<Vec<Column>> {
+        let tell = |result: &CaseResult| {
+            if observer(result).is_break() {
+                stopped.store(true, Ordering::Relaxed);
+            }
+        };
+        let stop = || stopped.load(Ordering::Relaxed) || asked_to_stop();
+        let mut made = Vec::with_capacity(numbers.len());
+        for number in *numbers {
+            if stop() {
+                return None;
+            }
+            made.push(make(*number));
+        }
+        let ready: Vec<Prepared> = made.iter().filter_map(|one| one.clone().ok()).collect();
+        let mut tell_one = |result: &CaseResult| tell(result);
+        let mut audience = Audience { tell: &mut tell_one, stop: &stop };
+        let mut done = simulate_in(lanes, &ready, &mut audience)?.into_iter();
+        let result = |one: Result<Prepared, String>| match one {
+            Ok(_) => done.next(),
+            Err(reason) => {
+                let failed = CaseResult::failed(reason);
+                tell(&failed);
+                Some(failed)
+            }
+        };
+        let results: Option<Vec<CaseResult>> = made.into_iter().map(result).collect();
+        Some(table(&results?))
+    };
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let size = count.div_ceil(SHARE * cores).clamp(1, BATCH);
+    let batches: Vec<&[usize]> = order.chunks(size).collect();
+    let parts: Option<Vec<Vec<Column>>> =
+        pool::map(&batches, together, &|_| ()).into_iter().collect();
+    let parts = parts?;
+    // Where each case came to stand: its batch, and its row there.
+    let mut places = vec![(0, 0); count];
+    for (at, number) in order.iter().enumerate() {
+        places[*number] = (at / size, at % size);
+    }
+    let column = |index: usize| {
+        let mut column = Column::empty(CASE_COLUMNS[index].spec());
+        for (part, row) in &places {
+            // Of one list, so every value is of the kind of its column.
+            let _ = column.values.push(parts[*part][index].values.get(*row));
+        }
+        column
+    };
+    Some((0..CASE_COLUMNS.len()).map(column).collect())
+}

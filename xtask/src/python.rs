@@ -1,0 +1,137 @@
+//! The Python package: built by pip into an environment of its own, tested there, its site built.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use anyhow::{Context as _, bail};
+
+use crate::steps::cargo;
+
+/// What the tests need beside the package.
+const TESTS: [&str; 14] = [
+    "maturin>=1.9,<2",
+    "numpy",
+    "pytest",
+    "mypy",
+    "typing_extensions",
+    "polars",
+    "pyarrow",
+    "pandas",
+    "matplotlib",
+    "pint",
+    "nbclient",
+    "nbformat",
+    "ipykernel",
+    "mkdocs>=1.6,<2",
+];
+
+/// What some of them need that takes long to install.
+const HEAVY: [&str; 4] = ["obspy", "openquake-engine", "distributed", "dask-jobqueue"];
+
+/// The step of the test command, where there is a Python; else what is missing.
+pub(crate) fn find(root: &Path) -> Result<Command, String> {
+    if !root.join("pyproject.toml").is_file() {
+        return Err("there is no pyproject.toml".to_owned());
+    }
+    interpreter()?;
+    let own = std::env::current_exe().map_err(|error| error.to_string())?;
+    let mut command = Command::new(own);
+    command.arg("python");
+    Ok(command)
+}
+
+/// A Python that makes environments, 3.10 or later.
+fn interpreter() -> Result<&'static str, String> {
+    let check = "import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 10))";
+    let answers = |name: &&&str| {
+        let run = Command::new(**name).args(["-c", check]).stderr(Stdio::null()).status();
+        run.is_ok_and(|status| status.success())
+    };
+    ["python3", "python"].iter().find(answers).copied().ok_or_else(|| {
+        "no Python 3.10 or later with venv; install one to build and test the Python package"
+            .to_owned()
+    })
+}
+
+/// Builds and tests; with `heavy` also what takes long to install, with `site` the site alone.
+pub(crate) fn run(root: &Path, what: Option<&str>) -> anyhow::Result<()> {
+    let Some(python) = environment(root, what == Some("heavy"))? else {
+        println!("skipped: pip cannot install maturin; is there a net?");
+        println!("0 passed, 0 failed, 1 skipped");
+        return Ok(());
+    };
+    // What numbers are held against; built already where the tests of the workspace ran before.
+    let built = Command::new(cargo())
+        .args(["build", "--quiet", "--release", "--package", "barrelstack-cli"])
+        .current_dir(root)
+        .status()
+        .context("cargo does not start")?;
+    if !built.success() {
+        bail!("the program was not built: see above");
+    }
+    checked(Command::new(&python).arg("docs/build.py").current_dir(root), "the site")?;
+    if what == Some("site") {
+        return Ok(());
+    }
+    let program =
+        target(root).join("release").join(format!("barrelstack{}", std::env::consts::EXE_SUFFIX));
+    let mut tests = Command::new(&python);
+    tests.args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "crates/python/tests"]);
+    tests.env("BARRELSTACK_COMMAND", program).env("MPLBACKEND", "Agg").current_dir(root);
+    if what != Some("heavy") {
+        tests.args(["-m", "not heavy"]);
+    }
+    checked(&mut tests, "the tests of the package")
+}
+
+/// The environment with the package as it is now, kept from run to run; none without the net.
+fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
+    let folder = target(root).join("python");
+    let bin = if cfg!(windows) { "Scripts" } else { "bin" };
+    let python = folder.join(bin).join(format!("python{}", std::env::consts::EXE_SUFFIX));
+    if !python.is_file() {
+        let base = interpreter().map_err(anyhow::Error::msg)?;
+        checked(Command::new(base).args(["-m", "venv"]).arg(&folder), "the environment")?;
+    }
+    let needed: Vec<&str> =
+        if heavy { TESTS.iter().chain(&HEAVY).copied().collect() } else { TESTS.to_vec() };
+    let pip = |words: &[&str]| {
+        let mut pip = Command::new(&python);
+        pip.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet"]).args(words);
+        pip.current_dir(root).status().is_ok_and(|status| status.success())
+    };
+    // The net is not asked for what is there.
+    let there = |name: &&&str| {
+        let name = name.split(['<', '>', '=']).next().unwrap_or(name);
+        let show = ["-m", "pip", "--disable-pip-version-check", "show", "--quiet", name];
+        let run = Command::new(&python).args(show).stderr(Stdio::null()).status();
+        run.is_ok_and(|status| status.success())
+    };
+    for name in needed.iter().filter(|name| !there(name)) {
+        if !pip(&[name]) {
+            // Tests say by themselves what they lack.
+            println!("pip cannot install {name}; is there a net?");
+        }
+    }
+    if !there(&&"maturin") {
+        return Ok(None);
+    }
+    // With the environment's own maturin, so that no net is asked for what is there.
+    if !pip(&["--no-build-isolation", "--no-deps", "--force-reinstall", "."]) {
+        bail!("`pip install .` failed: see above");
+    }
+    Ok(Some(python))
+}
+
+fn checked(command: &mut Command, what: &str) -> anyhow::Result<()> {
+    let status = command.status().with_context(|| format!("{what}: it does not start"))?;
+    if !status.success() {
+        bail!("{what} failed: see above");
+    }
+    Ok(())
+}
+
+/// Where cargo builds.
+fn target(root: &Path) -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from)
+}
