@@ -19,7 +19,7 @@ use super::housner::halvings;
 /// The problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list: Vec<Problem> = [30.0, 40.0, 55.0].map(rolls_out).into();
-    list.extend([hill(), lid()]);
+    list.push(hill());
     list.extend([0.8, 2.0].map(dish));
     list.push(slides());
     list.extend([pads(), yields(), between_stops()]);
@@ -161,7 +161,7 @@ fn hill() -> Problem {
         "barrels between chocks at 40°, pushed for 0.05 s".into(),
         "energy: m g r (1 − cos φ) over the end of a chock",
         ("push from which a barrel rolls out", "g"),
-        (exact, 1e-2, 2e-2),
+        (exact, 2e-2, 3e-2),
         Box::new(move |effort| {
             let found = border((0.95 * exact, 1.05 * exact), halvings(effort), |amplitude| {
                 let run = one_level(&chocks(angle), &push(amplitude, BLOW), 1.2)?;
@@ -170,39 +170,6 @@ fn hill() -> Problem {
                 Ok(drops.fold(0.0, f64::max) > 0.05)
             })?;
             Ok(Outcome::of(found))
-        }),
-    )
-}
-
-fn lid() -> Problem {
-    // On one support under an angle θ and under its lid a barrel bears m (a cot θ − g) up there, and has risen by
-    // (r + ρ)(cos θ − cos φ), which is the gap and what the lid gives.
-    let (push, angle, gap, stiffness) = (0.5, 20.0_f64.to_radians(), 0.005, 2e6);
-    let mass = 46.0 + 990.0 * 0.225;
-    let force = |lean: f64| mass * GRAVITY * (push * cos(lean) / sin(lean) - 1.0);
-    let (mut low, mut high) = (0.01, angle);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        let risen = ARM * (cos(middle) - cos(angle));
-        if risen > gap + force(middle) / stiffness { low = middle } else { high = middle }
-    }
-    problem(
-        "lid",
-        "barrels on cradles of 20° under lids with a gap of 5 mm, pushed with 0.5 g".into(),
-        "statics: m (a cot θ − g)",
-        ("force on a lid", "N"),
-        (force(0.5 * (low + high)), 1e-2, 1e-2),
-        Box::new(move |_| {
-            let settings = [
-                "stack.lid.levels=1".to_owned(),
-                format!("stack.lid.gap=\"{gap} m\""),
-                format!("stack.lid.stiffness=\"{stiffness} N/m\""),
-                "stack.lid.damping=\"20 kN s/m\"".into(),
-                "stack.rack.cradle.angle=\"20 deg\"".into(),
-            ];
-            let run = pressed(&settings, push)?;
-            let bore = run.elements.iter().map(|element| element.peak.0.abs());
-            Ok(Outcome::of(bore.fold(0.0, f64::max)))
         }),
     )
 }
