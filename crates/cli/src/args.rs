@@ -40,7 +40,7 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// How high is safe: collapse of stacks of two to six levels, on one page.
     Heights(crate::commands::heights::HeightsArgs),
-    /// What protects a stack best for what it costs: fewer levels, other racks, devices, and pairs of these.
+    /// What protects a stack best for what it costs: levels, racks, devices, pairs of these.
     Protect(crate::commands::protect::ProtectArgs),
     /// Read a scenario, build the stack and let it settle, without shaking it.
     Check(CheckArgs),
