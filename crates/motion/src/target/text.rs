@@ -60,7 +60,7 @@ impl<'a> Parameters<'a> {
     }
 
     fn need<T>(&self, key: &str, value: Option<T>) -> Result<T, MotionError> {
-        value.ok_or_else(|| self.unlike(key, "nothing"))
+        value.ok_or_else(|| self.unlike(&format!("{key} is missing"), "nothing"))
     }
 
     /// A member of a closed set.
@@ -97,7 +97,7 @@ impl<'a> Parameters<'a> {
             None => Ok(()),
             Some(("damping", found)) => Err(self.wrong(
                 "damping",
-                "none, since the code defines its spectrum for 5 % and no correction (a table may be for another)",
+                "none, since the code is for 5 % of damping and has no correction (a table may be for another)",
                 found,
             )),
             Some((key, found)) => Err(self.unlike(key, found)),
@@ -112,7 +112,7 @@ impl<'a> Parameters<'a> {
 /// use barrelstack_motion::TargetSpectrum;
 /// let target: TargetSpectrum = "ec8:ag=0.3,site=B,damping=0.02".parse()?;
 /// assert_eq!(target.damping(), 0.02);
-/// assert!("ec8:ag=0.3".parse::<TargetSpectrum>().unwrap_err().to_string().starts_with("ec8: site: "));
+/// assert!("ec8:ag=0.3".parse::<TargetSpectrum>().unwrap_err().to_string().starts_with("ec8: site is missing: "));
 /// # Ok::<(), barrelstack_motion::MotionError>(())
 /// ```
 impl FromStr for TargetSpectrum {

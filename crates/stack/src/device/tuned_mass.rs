@@ -55,7 +55,7 @@ impl Tuning {
     /// A stack that rocks is no such structure: the more it sways, the slower.
     ///
     /// ```
-    /// let tuning = barrelstack::device::Tuning::den_hartog(0.05);
+    /// let tuning = barrelstack_stack::device::Tuning::den_hartog(0.05);
     /// assert_eq!(tuning.frequency, 1.0 / 1.05);
     /// assert!((tuning.damping_ratio - 0.1336).abs() < 1e-4);
     /// ```
