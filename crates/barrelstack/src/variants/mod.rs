@@ -2,7 +2,7 @@
 //!
 //! Collapse is chaotic, and friction is hardly known: one run is an anecdote.
 //! A stack is therefore run as it is stated (number 0) and in variants (from number 1) that differ in what no
-//! cellar can exclude and nobody knows ([`Imperfections`]), in one plane or
+//! cellar can exclude and nobody knows ([`Imperfections`](crate::scenario::Imperfections)), in one plane or
 //! in both.
 //!
 //! ```
