@@ -100,7 +100,7 @@ impl<'a> Parameters<'a> {
                 "none, since the code is for 5 % of damping and has no correction (a table may be for another)",
                 found,
             )),
-            Some((key, found)) => Err(self.unlike(key, found)),
+            Some((key, found)) => Err(self.unlike(&format!("no parameter {key}"), found)),
         }
     }
 }
