@@ -69,13 +69,13 @@ pub(crate) fn run(root: &Path, what: Option<&str>) -> anyhow::Result<()> {
     if !built.success() {
         bail!("the program was not built: see above");
     }
-    checked(Command::new(&python).arg("docs/build.py").current_dir(root), "the site")?;
+    checked(inside(&python).arg("docs/build.py").current_dir(root), "the site")?;
     if what == Some("site") {
         return Ok(());
     }
     let program =
         target(root).join("release").join(format!("barrelstack{}", std::env::consts::EXE_SUFFIX));
-    let mut tests = Command::new(&python);
+    let mut tests = inside(&python);
     tests.args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "crates/python/tests"]);
     tests.env("BARRELSTACK_COMMAND", program).env("MPLBACKEND", "Agg").current_dir(root);
     if what != Some("heavy") {
@@ -96,7 +96,7 @@ fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
     let needed: Vec<&str> =
         if heavy { TESTS.iter().chain(&HEAVY).copied().collect() } else { TESTS.to_vec() };
     let pip = |words: &[&str]| {
-        let mut pip = Command::new(&python);
+        let mut pip = inside(&python);
         pip.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet"]).args(words);
         pip.current_dir(root).status().is_ok_and(|status| status.success())
     };
@@ -121,6 +121,17 @@ fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
         bail!("`pip install .` failed: see above");
     }
     Ok(Some(python))
+}
+
+/// A Python of an environment, whose programs it finds before those of others.
+fn inside(python: &Path) -> Command {
+    let mut command = Command::new(python);
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let own = python.parent().map(Path::to_path_buf);
+    if let Ok(all) = std::env::join_paths(own.into_iter().chain(std::env::split_paths(&path))) {
+        command.env("PATH", all);
+    }
+    command
 }
 
 fn checked(command: &mut Command, what: &str) -> anyhow::Result<()> {
