@@ -42,7 +42,7 @@ pub(crate) enum Command {
     Heights(crate::commands::heights::HeightsArgs),
     /// What protects a stack best for what it costs: levels, racks, devices, pairs of these.
     Protect(crate::commands::protect::ProtectArgs),
-    /// The RockScore of a rack or a device: one number from a protocol that never changes, on one sheet.
+    /// The RockScore of a rack or a device: one number from a fixed protocol, on one sheet.
     Score(crate::commands::score::ScoreArgs),
     /// Read a scenario, build the stack and let it settle, without shaking it.
     Check(CheckArgs),
