@@ -48,6 +48,7 @@ pub mod real;
 pub mod settle;
 pub mod shape;
 pub mod simulate;
+pub mod solid;
 pub mod space;
 pub mod state;
 
@@ -61,5 +62,6 @@ pub use model::{ContactPair, Counts, InterfaceId, Model, ModelError, Substepping
 pub use settle::{Lack, SettleError, Settled, settle};
 pub use shape::Shape;
 pub use simulate::{Finish, Observer, RunError, Simulation, look, simulate};
-pub use space::{Linear, Planar, Pose, Space, Twist, Vec2};
+pub use solid::Solid;
+pub use space::{Linear, Planar, Pose, Quaternion, Rotation3, Space, Spatial, Twist, Vec2, Vec3};
 pub use state::State;
