@@ -39,6 +39,7 @@ pub(super) static BOGACKI_SHAMPINE: Tableau = Tableau {
 
 /// The rates of one stage.
 #[derive(Clone, Debug)]
+#[expect(clippy::struct_field_names, reason = "a slip rate is called so everywhere")]
 struct Rates<S: Space> {
     /// Velocity of every body, and the rate of its turn from the start of the step ([`Space::turn_rate`]).
     ways: Vec<Twist<S>>,

@@ -102,6 +102,8 @@ struct Support {
     across: f64,
     /// The unit vector around the axis.
     around: Vec3,
+    /// β, the part of the direction across the axis.
+    outward: f64,
 }
 
 impl Set<'_> {
@@ -134,9 +136,27 @@ impl Set<'_> {
             (0.0, barrel.head_radius * inverse)
         };
         let point = self.center + self.rotation.apply(barrel.furthest(local));
-        Support { point, along, across, around }
+        Support { point, along, across, around, outward }
+    }
+
+    /// The support of the direction of a head, at the side of the rim that lies toward a point (m).
+    fn on_rim(&self, direction: Vec3, toward: Vec3) -> Support {
+        let (barrel, way) = (self.barrel, self.rotation.unapply(toward - self.center));
+        let radial = Vec3::new(0.0, way.y, way.z).unit_or(Vec3::new(0.0, 0.0, 1.0));
+        let side = if direction.dot(self.axis()) < 0.0 { -1.0 } else { 1.0 };
+        let rim = Vec3::new(side * barrel.half_length, 0.0, 0.0) + radial * barrel.head_radius;
+        Support {
+            point: self.center + self.rotation.apply(rim),
+            along: 0.0,
+            across: barrel.head_radius / HEAD,
+            around: self.rotation.apply(Vec3::new(0.0, -radial.z, radial.y)),
+            outward: HEAD,
+        }
     }
 }
+
+/// Directions (rad) nearer to an axis than this are those of its head.
+const HEAD: f64 = 1e-7;
 
 /// How a direction separates two cores.
 struct Separation {
@@ -148,17 +168,27 @@ struct Separation {
 }
 
 fn separation(target: &Set<'_>, contactor: &Set<'_>, normal: Vec3) -> Separation {
-    let supports = [target.support(normal), contactor.support(-normal)];
+    let mut supports = [target.support(normal), contactor.support(-normal)];
+    // Where a whole head bears, the point of its rim that is nearest to the other body counts.
+    if supports[0].outward < HEAD {
+        supports[0] = target.on_rim(normal, supports[1].point);
+    }
+    if supports[1].outward < HEAD {
+        supports[1] = contactor.on_rim(-normal, supports[0].point);
+    }
     let way = supports[1].point - supports[0].point;
     Separation { way, distance: way.dot(normal), supports }
 }
 
 /// Tangential parts of the way (m) below which a normal is exact to rounding.
 const TANGENTIAL: f64 = 4e-15;
+/// Newton steps (rad) below which a normal is exact: near the edge of a head, where a support turns much
+/// faster than its direction, its place is lost in rounding long before the normal is.
+const TURN: f64 = 1e-11;
 /// Newton steps before projections help out.
 const MOST_STEPS: u32 = 25;
 /// How often projections may help out.
-const MOST_HELP: u32 = 400;
+const MOST_HELP: u32 = 40;
 
 /// Two barrels, the target at the origin.
 ///
@@ -202,26 +232,34 @@ pub(super) fn barrels(
             evaluations += 1;
             let tangential = best.way - normal * best.distance;
             let scale = best.way.length() + center.length();
-            if tangential.length() <= TANGENTIAL * scale {
-                let [_, on_other] = &best.supports;
-                return found(normal, on_other.point, best.distance, evaluations, true);
+            let step = newton(normal, &best, tangential);
+            if tangential.length() <= TANGENTIAL * scale || step.length() <= TURN {
+                let (normal, point, distance) = polished(&one, &other, normal, &best);
+                return found(normal, point, distance, evaluations, true);
             }
-            let Some((next, reached)) = ascend(&one, &other, normal, &best, tangential) else {
+            let Some((next, reached)) = ascend(&one, &other, normal, &best, tangential, step)
+            else {
                 break;
             };
             (normal, best) = (next, reached);
         }
-        // What cannot ascend by rounding alone is there.
+        // What rounding alone keeps from ascending is there.
         let tangential = best.way - normal * best.distance;
-        if tangential.length() <= 1e-11 * (best.way.length() + center.length()) {
-            return found(normal, best.supports[1].point, best.distance, evaluations, true);
+        if newton(normal, &best, tangential).length() <= 2e-9 {
+            let (normal, point, distance) = polished(&one, &other, normal, &best);
+            return found(normal, point, distance, evaluations, true);
         }
         for _ in 0..8 {
             from = one.project(to);
             to = other.project(from);
             evaluations += 2;
         }
-        normal = (to - from).unit_or(normal);
+        let way = to - from;
+        if way.length() <= 1e-9 * grown {
+            // The cores meet: there is no nearest pair, and the best direction found has to do.
+            break;
+        }
+        normal = way.unit_or(normal);
     }
     let best = separation(&one, &other, normal);
     found(normal, best.supports[1].point, best.distance, evaluations, false)
@@ -245,15 +283,32 @@ fn on_head(bearing: &Set<'_>, resting: &Set<'_>) -> Option<(Vec3, Vec3, f64)> {
     ))
 }
 
-/// A Newton step on the sphere of directions, shortened until the cores are better separated.
-fn ascend(
+/// Normal, point of the contactor's core and distance (m), from the surer of both supports: the place of one
+/// on a rim turns much faster than the direction where that is nearly an axis.
+fn polished(
     target: &Set<'_>,
     contactor: &Set<'_>,
     normal: Vec3,
     here: &Separation,
-    tangential: Vec3,
-) -> Option<(Vec3, Separation)> {
-    let first = tangential * (1.0 / tangential.length());
+) -> (Vec3, Vec3, f64) {
+    let [from, to] = &here.supports;
+    let (from, to) = if from.outward < to.outward {
+        (target.project(to.point), to.point)
+    } else {
+        (from.point, contactor.project(from.point))
+    };
+    // Nearer than this the difference of two points tells no direction.
+    if here.distance < 1e-6 {
+        return (normal, here.supports[1].point, here.distance);
+    }
+    let way = to - from;
+    (way.unit_or(normal), to, way.length())
+}
+
+/// A Newton step (rad) on the sphere of directions, toward where the cores are separated most.
+fn newton(normal: Vec3, here: &Separation, tangential: Vec3) -> Vec3 {
+    let slope = tangential.length();
+    let first = tangential.unit_or(normal);
     let second = normal.cross(first);
     // Curvatures of both cores, and of the sphere.
     let mut matrix = [here.distance.abs(), 0.0, here.distance.abs()];
@@ -265,20 +320,28 @@ fn ascend(
     }
     let [a, b, c] = matrix;
     let determinant = a * c - b * b;
-    let slope = tangential.length();
-    let (along, aside) = if determinant > 1e-14 * (a * c).abs() && a > 0.0 {
-        (slope * c / determinant, -slope * b / determinant)
+    if determinant > 1e-14 * (a * c).abs() && a > 0.0 {
+        first * (slope * c / determinant) - second * (slope * b / determinant)
     } else {
-        (slope / a.max(1e-3), 0.0)
-    };
+        first * (slope / a.max(1e-3))
+    }
+}
+
+/// A step, shortened until the cores are better separated.
+fn ascend(
+    target: &Set<'_>,
+    contactor: &Set<'_>,
+    normal: Vec3,
+    here: &Separation,
+    tangential: Vec3,
+    step: Vec3,
+) -> Option<(Vec3, Separation)> {
     // No step turns further than half a radian: curvatures change.
-    let size = (along * along + aside * aside).sqrt();
-    let mut share = if size > 0.5 { 0.5 / size } else { 1.0 };
+    let mut share = 0.5 / step.length().max(0.5);
     for _ in 0..40 {
-        let step = first * (along * share) + second * (aside * share);
-        let next = (normal + step).unit_or(normal);
+        let next = (normal + step * share).unit_or(normal);
         let there = separation(target, contactor, next);
-        let rounding = 2e-16 * (here.distance.abs() + there.way.length());
+        let rounding = 1e-15 * (contactor.center.length() + there.way.length());
         let off = there.way - next * there.distance;
         if there.distance > here.distance + rounding
             || (there.distance >= here.distance - rounding && off.length() < tangential.length())
