@@ -1,5 +1,7 @@
 //! Solids in space: distances against exact ones, and what holds for any pose.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
+
 use std::f64::consts::PI;
 
 use barrelstack_dynamics::contact::Stick;
