@@ -283,7 +283,7 @@ fn momentum<S: Space>(
     body: usize,
     twist: Twist<S>,
 ) -> Twist<S> {
-    let (inertia, rotation) = (model.bodies[body].inertia, scratch.rotations[body]);
+    let (inertia, rotation) = (model.inert[body].inertia, scratch.rotations[body]);
     Twist { linear: twist.linear, angular: S::momentum(inertia, rotation, twist.angular) }
 }
 
@@ -294,6 +294,6 @@ fn of_momentum<S: Space>(
     orientation: S::Orientation,
     momentum: Twist<S>,
 ) -> Twist<S> {
-    let (inertia, rotation) = (model.bodies[body].inertia, S::rotation(orientation));
+    let (inertia, rotation) = (model.inert[body].inertia, S::rotation(orientation));
     Twist { linear: momentum.linear, angular: S::spin_of(inertia, rotation, momentum.angular) }
 }

@@ -22,7 +22,7 @@ pub(super) fn semi_implicit_euler<S: Space>(
     let step = until - state.time;
     for i in free(model) {
         state.twists[i] = state.twists[i].plus(scratch.accelerations[i], step);
-        let inertia = model.bodies[i].inertia;
+        let inertia = model.inert[i].inertia;
         (state.poses[i], state.twists[i]) = state.poses[i].coasted(inertia, state.twists[i], step);
     }
     advance_sticks(state, &scratch.slip_rates, step);
@@ -76,7 +76,7 @@ fn predict<S: Space>(
     for i in free(model) {
         let kick = scratch.accelerations[i];
         let middle = state.twists[i].plus(kick, half);
-        let (pose, arrived) = state.poses[i].coasted(model.bodies[i].inertia, middle, step);
+        let (pose, arrived) = state.poses[i].coasted(model.inert[i].inertia, middle, step);
         state.poses[i] = pose;
         state.twists[i] = arrived.plus(kick, half);
         // Until the new forces are known, the old acceleration waits here for the correction.
