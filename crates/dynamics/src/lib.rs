@@ -19,6 +19,7 @@
 //! # Signs
 //!
 //! - `x` points right, `z` up, angles grow from `x` toward `z`; all units are SI, angles radians.
+//!   In space `y` points away and turns are right-handed, so an angle of the plane is a turn about `-y`.
 //! - A gap's distance is negative when penetrating; penetration is never negative.
 //! - Penetration rate is positive while approaching.
 //! - Normals point out of the target.

@@ -42,18 +42,18 @@ fn loads(feet: &[Vec3]) -> Result<Vec<f64>, Failure> {
 fn four_feet() -> Vec<Problem> {
     let exact = [357.265_44, 224.067_89, 133.234_56, 266.432_11];
     let feet = || corners(0.7365, 0.27, 0.0).map(|foot| foot - Vec3::new(0.2, 0.05, 0.0));
-    shared("plate of 981 N on four equal springs", "plate", exact.to_vec(), feet().to_vec())
+    shared("plate of 981 N on four equal springs", "plate", exact.to_vec(), &feet())
 }
 
 fn three_legs() -> Vec<Problem> {
     let legs = [(0.6, 0.0), (-0.3, 0.4), (-0.3, -0.4)];
     let legs = legs.map(|(x, y)| Vec3::new(x - 0.05, y - 0.1, 0.0));
-    shared("tripod under 981 N", "tripod", vec![381.5, 422.375, 177.125], legs.to_vec())
+    shared("tripod under 981 N", "tripod", vec![381.5, 422.375, 177.125], &legs)
 }
 
-fn shared(title: &str, name: &str, exact: Vec<f64>, feet: Vec<Vec3>) -> Vec<Problem> {
+fn shared(title: &str, name: &str, exact: Vec<f64>, feet: &[Vec3]) -> Vec<Problem> {
     let of = |(foot, exact): (usize, f64)| {
-        let feet = feet.clone();
+        let feet = feet.to_vec();
         problem(
             format!("space-blocks/{name}-{}", foot + 1),
             title,

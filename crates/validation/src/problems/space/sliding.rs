@@ -226,7 +226,7 @@ fn ring() -> [Problem; 3] {
     let title = "ring thrown at 1 m/s and spun at 1.5 m/s about its center, μ = 0.3";
     let source = "sliding ring: Farkas, Bartels, Unger and Wolf 2003";
     let run = || -> Result<(Scene<Spatial>, f64), Failure> {
-        let (radius, count) = (0.3, 360);
+        let (radius, count) = (0.3, 120);
         let at = |i: i32| {
             let angle = f64::from(i) * TAU / f64::from(count);
             Vec3::new(radius * cos(angle), radius * sin(angle), 0.0)
