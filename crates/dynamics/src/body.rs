@@ -1,7 +1,7 @@
 //! A rigid body: mass, surfaces that can be touched, and nodes that touch.
 
 use crate::real::Real;
-use crate::shape::{HalfPlane, Shape, Surface};
+use crate::shape::{HalfPlane, Shape, Surface, Whole};
 use crate::space::{Planar, Pose, Rotation2, Space, Twist, Vec2};
 
 /// Index of a body in its model.
@@ -100,6 +100,8 @@ pub enum Nodes<S: Space> {
         /// Length of boundary (m) that the node stands for.
         tributary_length: S::Real,
     },
+    /// A convex body of space, of which the deepest points touch.
+    Whole(S::Whole),
 }
 
 impl<S: Space> Nodes<S> {
@@ -109,6 +111,7 @@ impl<S: Space> Nodes<S> {
             Self::Fixed(nodes) => nodes.len(),
             Self::Rounds(rounds) => rounds.len(),
             Self::Rolling { .. } => 1,
+            Self::Whole(whole) => whole.most_contacts(),
         }
     }
 }
@@ -195,6 +198,10 @@ impl<S: Space> Body<S> {
             Nodes::Rounds(_) => Vec::new(),
             Nodes::Rolling { center, radius, .. } => {
                 vec![length(*center) + radius.largest_lane()]
+            }
+            Nodes::Whole(whole) => {
+                let (center, radius) = whole.ball();
+                vec![length(center) + radius.largest_lane()]
             }
         });
         let surfaces =

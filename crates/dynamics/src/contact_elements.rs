@@ -12,7 +12,7 @@ use crate::lanes::Lanewise;
 use crate::model::{ContactPair, Counts, Model};
 use crate::pair_frame::PairFrame;
 use crate::real::{Mask, Real};
-use crate::shape::Surface;
+use crate::shape::{Surface, Whole};
 use crate::space::{Linear, Planar, Pose, Space, Twist};
 
 /// Substepping are foreseen to the same bits whatever else is in the list: so no element outside it may be
@@ -388,6 +388,17 @@ impl<S: Space> ContactElements<S> {
                     self.nodes.push(0);
                     self.positions.push(*center);
                     self.weights.push(basis.weight(*tributary_length));
+                }
+            }
+            Nodes::Whole(whole) => {
+                let (center, radius) = whole.ball();
+                if let Some(gap) = self.near(surface, frame.to_surface(center), radius, margin) {
+                    least = least.min(gap);
+                    for index in 0..whole.most_contacts() {
+                        self.nodes.push(u32::try_from(index).unwrap_or(u32::MAX));
+                        self.positions.push(center);
+                        self.weights.push(basis.weight(whole.tributary_length()));
+                    }
                 }
             }
         }

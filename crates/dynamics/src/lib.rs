@@ -19,6 +19,7 @@
 //! # Signs
 //!
 //! - `x` points right, `z` up, angles grow from `x` toward `z`; all units are SI, angles radians.
+//!   In space `y` points away and turns are right-handed, so an angle of the plane is a turn about `-y`.
 //! - A gap's distance is negative when penetrating; penetration is never negative.
 //! - Penetration rate is positive while approaching.
 //! - Normals point out of the target.
@@ -48,6 +49,7 @@ pub mod real;
 pub mod settle;
 pub mod shape;
 pub mod simulate;
+pub mod solid;
 pub mod space;
 pub mod state;
 
@@ -61,5 +63,6 @@ pub use model::{ContactPair, Counts, InterfaceId, Model, ModelError, Substepping
 pub use settle::{Lack, SettleError, Settled, settle};
 pub use shape::Shape;
 pub use simulate::{Finish, Observer, RunError, Simulation, look, simulate};
-pub use space::{Linear, Planar, Pose, Space, Twist, Vec2};
+pub use solid::Solid;
+pub use space::{Linear, Planar, Pose, Quaternion, Rotation3, Space, Spatial, Twist, Vec2, Vec3};
 pub use state::State;

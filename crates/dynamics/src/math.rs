@@ -2,7 +2,9 @@
 
 use crate::real::Real;
 
-pub use libm::{acos, acosh, atan, atan2, cbrt, cos, exp, hypot, log, log1p, log10, pow, sin, tan};
+pub use libm::{
+    acos, acosh, asin, atan, atan2, cbrt, cos, exp, hypot, log, log1p, log10, pow, sin, tan,
+};
 
 /// Sine and cosine of an angle (rad) for one number or a bundle of lanes.
 ///

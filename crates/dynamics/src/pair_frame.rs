@@ -11,7 +11,7 @@ pub(crate) struct PairFrame<S: Space> {
     /// From the surface's frame to the inertial frame.
     pub(crate) rotation: S::Rotation,
     /// From the contactor's body frame to the surface's frame.
-    relative: S::Rotation,
+    pub(crate) relative: S::Rotation,
     /// Center of mass of the contactor (m) in the surface's frame.
     pub(crate) contactor: S::Vector,
     /// Center of mass of the target (m) in the surface's frame.

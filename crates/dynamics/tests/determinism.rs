@@ -73,6 +73,7 @@ fn bodies_of_kinds_have_the_pairs_and_the_bits_of_a_list() {
         None => 0,
         Some(Nodes::Rolling { .. }) => 1,
         Some(Nodes::Fixed(_) | Nodes::Rounds(_)) => 2,
+        Some(Nodes::Whole(none)) => match *none {},
     };
     let kinds = bodies.iter().map(kind).collect();
     let meet = |_: &[Body<Planar>], [a, b]: [usize; 2]| {

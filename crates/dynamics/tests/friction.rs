@@ -125,7 +125,7 @@ fn a_node_slips_until_the_slip_turns_against_its_spring() {
     };
     // A normal force of 1000 N: breaks at 500 N, slides at 300 N.
     let commit = |displacement: f64, slipping: bool, slip: f64| {
-        let stick: Stick<Planar> = Stick { displacement, slipping };
+        let stick: Stick<Planar> = Stick { displacement, slipping, tangent_plane: () };
         stick.commit(&law, slip, 1000.0, 1.0)
     };
     assert!(!commit(0.49e-3, false, 0.1).slipping);
@@ -141,7 +141,7 @@ fn a_node_slips_until_the_slip_turns_against_its_spring() {
 fn a_stick_stores_half_its_force_times_its_stretch() {
     let law = coulomb(0.5, 1e6, 0.0);
     let found = |displacement: f64| {
-        let stick: Stick<Planar> = Stick { displacement, slipping: false };
+        let stick: Stick<Planar> = Stick { displacement, slipping: false, tangent_plane: () };
         law.force::<Planar>(stick, 0.0, 1000.0, 1.0)
     };
     assert!(
@@ -183,8 +183,11 @@ fn largest_coefficient(law: &FrictionLaw) -> f64 {
 }
 
 fn any_stick() -> impl Strategy<Value = Stick<Planar>> {
-    (-0.01..0.01_f64, any::<bool>())
-        .prop_map(|(displacement, slipping)| Stick { displacement, slipping })
+    (-0.01..0.01_f64, any::<bool>()).prop_map(|(displacement, slipping)| Stick {
+        displacement,
+        slipping,
+        tangent_plane: (),
+    })
 }
 
 proptest! {

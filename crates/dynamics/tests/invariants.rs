@@ -361,6 +361,7 @@ fn four_times(body: &Body<Planar>) -> Body<Planar> {
                 }
             }
             Nodes::Rounds(_) => unreachable!("not in these scenes"),
+            Nodes::Whole(none) => match *none {},
             Nodes::Rolling { center, radius, tributary_length } => {
                 *center = *center * 4.0;
                 *radius *= 4.0;

@@ -3,6 +3,7 @@
 
 pub mod drive;
 pub mod scene;
+pub mod spatial;
 pub mod theory;
 pub mod tumble;
 

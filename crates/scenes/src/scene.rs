@@ -8,7 +8,8 @@ use barrelstack_dynamics::space::Rotation2;
 use barrelstack_dynamics::{
     Basis, Body, BodyId, ContactPair, Counts, Drive, EnergyLedger, FrictionLaw, Interface, Method,
     Model, ModelError, Motion, Node, Nodes, NormalLaw, Placed, Planar, Pose, RunError, Scratch,
-    SettleError, Settled, Shape, Simulation, State, Twist, Vec2, look, math, settle, simulate,
+    SettleError, Settled, Shape, Simulation, Space, State, Twist, Vec2, look, math, settle,
+    simulate,
 };
 
 use crate::GRAVITY;
@@ -116,7 +117,7 @@ pub fn points(points: &[Vec2]) -> Nodes<Planar> {
 }
 
 /// An interface with constants per node.
-pub fn interface(normal: NormalLaw, friction: FrictionLaw) -> Interface<Planar> {
+pub fn interface<S: Space<Real = f64>>(normal: NormalLaw, friction: FrictionLaw) -> Interface<S> {
     Interface {
         name: "contact".into(),
         normal,
@@ -153,9 +154,10 @@ pub fn pair(contactor: BodyId, target: BodyId) -> ContactPair {
     }
 }
 
-/// Every body with nodes against every other body's first surface; two discs meet once.
-pub fn all_pairs(bodies: &[Body<Planar>]) -> Vec<ContactPair> {
-    let round = |i: usize| matches!(bodies[i].nodes.first(), Some(Nodes::Rolling { .. }));
+/// Every body with nodes against every other body's first surface; two discs, and two solids, meet once.
+pub fn all_pairs<S: Space>(bodies: &[Body<S>]) -> Vec<ContactPair> {
+    let round =
+        |i: usize| matches!(bodies[i].nodes.first(), Some(Nodes::Rolling { .. } | Nodes::Whole(_)));
     let mut pairs = vec![];
     for contactor in 0..bodies.len() {
         for target in 0..bodies.len() {
@@ -173,33 +175,33 @@ pub fn all_pairs(bodies: &[Body<Planar>]) -> Vec<ContactPair> {
 }
 
 /// A model with its state and working memory.
-pub struct Scene {
+pub struct Scene<S: Space = Planar> {
     /// What does not change.
-    pub model: Model<Planar>,
+    pub model: Model<S>,
     /// Where everything is.
-    pub state: State<Planar>,
+    pub state: State<S>,
     /// The forces there.
-    pub scratch: Scratch<Planar>,
+    pub scratch: Scratch<S>,
     /// How it is integrated; velocity Verlet unless changed.
     pub method: Method,
 }
 
-impl Scene {
+impl<S: Space<Real = f64>> Scene<S> {
     /// Bodies that all may meet, with one interface.
     ///
     /// # Errors
     /// When the bodies do not make a model.
     pub fn new(
-        bodies: Vec<Body<Planar>>,
-        interface: Interface<Planar>,
-        gravity: Vec2,
+        bodies: Vec<Body<S>>,
+        interface: Interface<S>,
+        gravity: S::Vector,
     ) -> Result<Self, ModelError> {
         let pairs = all_pairs(&bodies);
         Ok(Self::of(Model::new(bodies, vec![interface], pairs, gravity)?))
     }
 
     /// The initial state of a model.
-    pub fn of(model: Model<Planar>) -> Self {
+    pub fn of(model: Model<S>) -> Self {
         let state = State::initial(&model);
         let scratch = Scratch::new(&model);
         Self { model, state, scratch, method: Method::VelocityVerlet }
@@ -234,10 +236,10 @@ impl Scene {
     /// When the numbers break down.
     pub fn run(
         &mut self,
-        drive: &impl Drive<Planar>,
+        drive: &impl Drive<S>,
         time_step: f64,
         end_time: f64,
-    ) -> Result<RunTotals<Planar>, RunError> {
+    ) -> Result<RunTotals<S>, RunError> {
         self.watch(drive, time_step, end_time, |_, _, _| ControlFlow::Continue(()))
     }
 
@@ -247,16 +249,18 @@ impl Scene {
     /// When the numbers break down.
     pub fn watch(
         &mut self,
-        drive: &impl Drive<Planar>,
+        drive: &impl Drive<S>,
         time_step: f64,
         end_time: f64,
-        seen: impl FnMut(&State<Planar>, &Scratch<Planar>, &EnergyLedger<Planar>) -> ControlFlow<()>,
-    ) -> Result<RunTotals<Planar>, RunError> {
+        seen: impl FnMut(&State<S>, &Scratch<S>, &EnergyLedger<S>) -> ControlFlow<()>,
+    ) -> Result<RunTotals<S>, RunError> {
         let simulation = Simulation { method: self.method, time_step, end_time };
         let Self { model, state, scratch, .. } = self;
         simulate(model, drive, state, scratch, &simulation, &mut look(seen))
     }
+}
 
+impl Scene {
     /// Place of a body along `x` (m) relative to body 0, the ground.
     pub fn relative(&self, body: usize) -> f64 {
         self.state.poses[body].position.x - self.state.poses[0].position.x

@@ -248,6 +248,7 @@ fn facing(
             rounds.iter().take(2).map(|round| weight(round.tributary_length)).sum()
         }
         Nodes::Rolling { tributary_length, .. } => weight(*tributary_length),
+        Nodes::Whole(none) => match *none {},
     }
 }
 
@@ -270,6 +271,7 @@ fn mean_square_arm(nodes: &Nodes<Planar>) -> f64 {
             mean_square(rounds.iter().map(|round| round.center.length()))
         }
         Nodes::Fixed(_) | Nodes::Rounds(_) | Nodes::Rolling { .. } => 0.0,
+        Nodes::Whole(none) => match *none {},
     }
 }
 

@@ -33,4 +33,4 @@ pub use execute::{Row, execute};
 pub use problem::{Effort, Failure, Outcome, Problem, Tolerance};
 pub use problems::all;
 
-pub use barrelstack_scenes::{GRAVITY, drive, scene, theory, tumble};
+pub use barrelstack_scenes::{GRAVITY, drive, scene, spatial, theory, tumble};

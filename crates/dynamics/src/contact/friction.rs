@@ -49,8 +49,11 @@ pub enum FrictionLaw<R = f64> {
 /// What a node remembers of its stick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stick<S: Space> {
-    /// Elastic tangential displacement of the contactor relative to the target (m).
+    /// Elastic tangential displacement of the contactor relative to the target (m), in the frame of the
+    /// target's surface.
     pub displacement: S::Tangent,
+    /// The plane of the displacement when the last step was accepted: contacts travel over round targets.
+    pub tangent_plane: S::TangentPlane,
     /// Whether the node was slipping when the last step was accepted.
     pub slipping: <S::Real as Real>::Mask,
 }
@@ -126,6 +129,14 @@ impl<R: Real> FrictionLaw<R> {
 }
 
 impl<S: Space> Stick<S> {
+    /// The stick turned into the tangent plane where its contact is now.
+    #[inline(always)]
+    #[must_use]
+    pub fn carried(self, to: S::TangentPlane) -> Self {
+        let displacement = S::carry(self.displacement, self.tangent_plane, to);
+        Self { displacement, tangent_plane: to, ..self }
+    }
+
     /// What is remembered of a stick once a step is accepted: no more displacement than friction can
     /// hold, and whether the node slips.
     ///
@@ -162,11 +173,12 @@ impl<S: Space> Stick<S> {
         let held = S::Real::select(slipping, kinetic, limit);
         let overstretched = (held * held).lt(spring.dot(spring));
         if !overstretched.any() {
-            return Self { displacement: self.displacement, slipping };
+            return Self { slipping, ..self };
         }
         // Where the weight is zero nothing touches, and the stick forgets anyway.
         let safe = S::Real::select(overstretched, stiffness, S::Real::splat(1.0));
         let cut = S::shorten(spring, held) * (S::Real::splat(1.0) / safe);
-        Self { displacement: S::choose(overstretched, cut, self.displacement), slipping }
+        let displacement = S::choose(overstretched, cut, self.displacement);
+        Self { displacement, slipping, ..self }
     }
 }

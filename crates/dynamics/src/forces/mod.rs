@@ -8,6 +8,7 @@ use crate::contact_elements::ContactElements;
 use crate::element::{self, Load};
 use crate::model::{ContactPair, Model};
 use crate::real::Real;
+use crate::shape::Whole;
 use crate::space::{Space, Twist, Wrench};
 use crate::state::State;
 
@@ -103,7 +104,7 @@ pub struct Scratch<S: Space> {
     pub losses: Vec<Losses<S>>,
     /// What the viscous damping of every body takes away; empty where no body has any.
     pub viscous: Vec<Wrench<S>>,
-    /// Acceleration of every body; zero for prescribed ones.
+    /// Acceleration that forces and moments give to every body; zero for prescribed ones.
     pub accelerations: Vec<Twist<S>>,
     /// Rotation of every body.
     pub rotations: Vec<S::Rotation>,
@@ -139,6 +140,8 @@ pub struct Pressed<S: Space> {
     pub touching: <S::Real as Real>::Mask,
     /// The companion point (m), in the frame of the target's surface.
     pub point: S::Vector,
+    /// What its stick keeps with its displacement.
+    tangent_plane: S::TangentPlane,
     /// Compressive force (N); zero where it does not touch.
     pub normal_force: S::Real,
     /// What the constants of its laws are multiplied by.
@@ -282,12 +285,7 @@ fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratc
         let inverse_mass = S::Real::splat(1.0) / body.mass;
         scratch.accelerations[i] = Twist {
             linear: model.gravity + wrench.force * inverse_mass,
-            angular: S::spin_rate(
-                body.inertia,
-                scratch.rotations[i],
-                state.twists[i].angular,
-                wrench.moment,
-            ),
+            angular: S::spin_rate(body.inertia, scratch.rotations[i], wrench.moment),
         };
     }
 }
@@ -353,7 +351,8 @@ fn commit_pair<S: Space>(
         *next = element + 1;
 
         let stick = &mut sticks[element];
-        *stick = stick.commit(&law, slip_rates[element], contact.normal_force, contact.weight);
+        let carried = stick.carried(contact.tangent_plane);
+        *stick = carried.commit(&law, slip_rates[element], contact.normal_force, contact.weight);
         let counted = S::Real::select(contact.touching, S::Real::splat(1.0), S::Real::zero());
         stick.displacement = stick.displacement * counted;
         stick.slipping = stick.slipping & contact.touching;
@@ -366,6 +365,7 @@ pub fn tributary_length<S: Space>(model: &Model<S>, pair: &ContactPair, node: us
         Nodes::Fixed(nodes) => nodes[node].tributary_length,
         Nodes::Rounds(rounds) => rounds[node].tributary_length,
         Nodes::Rolling { tributary_length, .. } => *tributary_length,
+        Nodes::Whole(whole) => whole.tributary_length(),
     }
 }
 

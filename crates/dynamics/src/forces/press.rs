@@ -6,7 +6,7 @@ use crate::contact_elements::{ContactElements, Group};
 use crate::model::Model;
 use crate::pair_frame::{AtFace, PairFrame};
 use crate::real::{Mask, Real};
-use crate::shape::{Gap, Nearest, Surface};
+use crate::shape::{Gap, Nearest, Surface, Whole};
 use crate::space::{Linear, Space, Twist, Wrench};
 use crate::state::State;
 
@@ -127,6 +127,18 @@ fn touch_by<S: Space>(
                 press.node(group.first, node, gap, one);
             }
         }
+        Nodes::Whole(whole) => whole.meet(
+            surface,
+            frame.contactor,
+            frame.relative,
+            #[inline(always)]
+            |index, node, gap| {
+                press.look_ahead(node, gap);
+                if gap.distance.lt(S::Real::zero()).any() {
+                    press.node(group.first + index, node, gap, one);
+                }
+            },
+        ),
     }
     let Press { meeting, sum, totals, needs_substeps, pressed, .. } = press;
     let touches = pressed.len() > others;
@@ -347,7 +359,8 @@ impl<'a, S: Space> Press<'a, S> {
             normal = stop.add(normal, depth, rate, self.step);
         }
         let normal_force = normal.total * weight;
-        let stick = self.elements.sticks[element];
+        let tangent_plane = S::tangent_plane(contact.normal);
+        let stick = self.elements.sticks[element].carried(tangent_plane);
         let friction = self.friction.force::<S>(stick, contact.slip_rate, normal_force, weight);
         self.totals.elastic += normal.energy * weight;
         self.totals.stick += friction.energy;
@@ -374,6 +387,7 @@ impl<'a, S: Space> Press<'a, S> {
             node: contact.node,
             touching,
             point: contact.point,
+            tangent_plane,
             normal_force,
             weight: whole,
         });

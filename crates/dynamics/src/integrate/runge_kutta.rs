@@ -41,8 +41,10 @@ pub(super) static BOGACKI_SHAMPINE: Tableau = Tableau {
 #[derive(Clone, Debug)]
 #[expect(clippy::struct_field_names, reason = "a slip rate is called so everywhere")]
 struct Rates<S: Space> {
-    twists: Vec<Twist<S>>,
-    accelerations: Vec<Twist<S>>,
+    /// Velocity of every body, and the rate of its turn from the start of the step ([`Space::turn_rate`]).
+    ways: Vec<Twist<S>>,
+    /// Its acceleration, and the rate of what [`Space::momentum`] tells.
+    kicks: Vec<Twist<S>>,
     slip_rates: Vec<S::Tangent>,
 }
 
@@ -51,13 +53,22 @@ struct Rates<S: Space> {
 pub(super) struct Stages<S: Space> {
     rates: Vec<Rates<S>>,
     poses: Vec<Pose<S>>,
-    twists: Vec<Twist<S>>,
+    /// Velocity of every body, and what [`Space::momentum`] tells.
+    momenta: Vec<Twist<S>>,
     sticks: Vec<Stick<S>>,
+    /// The turn of every body from there to the stage at hand.
+    turned: Vec<S::Spin>,
 }
 
 impl<S: Space> Default for Stages<S> {
     fn default() -> Self {
-        Self { rates: Vec::new(), poses: Vec::new(), twists: Vec::new(), sticks: Vec::new() }
+        Self {
+            rates: Vec::new(),
+            poses: Vec::new(),
+            momenta: Vec::new(),
+            sticks: Vec::new(),
+            turned: Vec::new(),
+        }
     }
 }
 
@@ -72,7 +83,7 @@ impl<S: Space> Stages<S> {
         scratch: &mut Scratch<S>,
         until: S::Real,
     ) {
-        self.begin(state);
+        self.begin(model, state, scratch);
         self.attempt(tableau, model, drive, state, scratch, until);
         accept(model, state, scratch);
     }
@@ -93,7 +104,7 @@ impl<S: Space> Stages<S> {
     ) -> S::Real {
         let start = state.time;
         let mut until = until;
-        self.begin(state);
+        self.begin(model, state, scratch);
         loop {
             self.attempt(tableau, model, drive, state, scratch, until);
             let dt = (until - start).largest_lane();
@@ -112,21 +123,29 @@ impl<S: Space> Stages<S> {
             }
             let shorter = (dt * (0.9 / cbrt(error)).clamp(0.1, 0.9)).max(smallest);
             until = start + S::Real::splat(shorter);
-            self.restore(state, start);
+            self.restore(model, state, start);
         }
     }
 
-    fn begin(&mut self, state: &State<S>) {
+    fn begin(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
         self.poses.clone_from(&state.poses);
-        self.twists.clone_from(&state.twists);
+        self.momenta.clear();
+        for (i, twist) in state.twists.iter().enumerate() {
+            self.momenta.push(momentum(model, scratch, i, *twist));
+        }
+        self.turned.clear();
+        self.turned.resize(state.poses.len(), S::Spin::default());
         self.sticks.clone_from(&state.contact_elements.sticks);
         self.rates.clear();
     }
 
-    fn restore(&mut self, state: &mut State<S>, time: S::Real) {
+    fn restore(&mut self, model: &Model<S>, state: &mut State<S>, time: S::Real) {
         state.time = time;
         state.poses.clone_from(&self.poses);
-        state.twists.clone_from(&self.twists);
+        for (i, twist) in state.twists.iter_mut().enumerate() {
+            *twist = of_momentum(model, i, self.poses[i].orientation, self.momenta[i]);
+        }
+        self.turned.fill(S::Spin::default());
         state.contact_elements.sticks.clone_from(&self.sticks);
         // The first stage is the start itself and stays.
         self.rates.truncate(1);
@@ -145,14 +164,14 @@ impl<S: Space> Stages<S> {
         let start = state.time;
         let dt = until - start;
         if self.rates.is_empty() {
-            self.keep(state, scratch);
+            self.keep(model, state, scratch);
         }
         for (row, time) in tableau.rows.iter().zip(&tableau.times[1..]) {
             self.combine(model, state, row, dt);
             state.time = start + S::Real::splat(*time) * dt;
             place_prescribed(model, drive, state);
             evaluate(model, state, scratch);
-            self.keep(state, scratch);
+            self.keep(model, state, scratch);
         }
         self.combine(model, state, tableau.weights, dt);
         state.time = until;
@@ -160,33 +179,53 @@ impl<S: Space> Stages<S> {
         evaluate(model, state, scratch);
     }
 
-    fn keep(&mut self, state: &State<S>, scratch: &Scratch<S>) {
-        self.rates.push(Rates {
-            twists: state.twists.clone(),
-            accelerations: scratch.accelerations.clone(),
+    fn keep(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
+        let mut rates = Rates {
+            ways: Vec::with_capacity(state.twists.len()),
+            kicks: Vec::with_capacity(state.twists.len()),
             slip_rates: scratch.slip_rates.clone(),
-        });
+        };
+        for i in 0..state.twists.len() {
+            let (way, kick) = self.rates_of(model, state, scratch, i);
+            rates.ways.push(way);
+            rates.kicks.push(kick);
+        }
+        self.rates.push(rates);
+    }
+
+    /// The rates of a body at a stage: of its place and turn, and of its velocity and momentum.
+    fn rates_of(
+        &self,
+        model: &Model<S>,
+        state: &State<S>,
+        scratch: &Scratch<S>,
+        body: usize,
+    ) -> (Twist<S>, Twist<S>) {
+        let Twist { linear, angular } = state.twists[body];
+        let way = Twist { linear, angular: S::turn_rate(self.turned[body], angular) };
+        (way, momentum(model, scratch, body, scratch.accelerations[body]))
     }
 
     /// The start plus a weighted sum of the rates.
-    fn combine(&self, model: &Model<S>, state: &mut State<S>, weights: &[f64], dt: S::Real) {
+    fn combine(&mut self, model: &Model<S>, state: &mut State<S>, weights: &[f64], dt: S::Real) {
         for i in free(model) {
             let mut velocity = Twist::default();
-            let mut twist = self.twists[i];
+            let mut reached = self.momenta[i];
             for (rates, weight) in self.rates.iter().zip(weights) {
                 let share = S::Real::splat(*weight) * dt;
-                velocity = velocity.plus(rates.twists[i], share);
-                twist = twist.plus(rates.accelerations[i], share);
+                velocity = velocity.plus(rates.ways[i], share);
+                reached = reached.plus(rates.kicks[i], share);
             }
             state.poses[i] = self.poses[i].moved(velocity, S::Real::splat(1.0));
-            state.twists[i] = twist;
+            state.twists[i] = of_momentum(model, i, state.poses[i].orientation, reached);
+            self.turned[i] = velocity.angular;
         }
         for (element, stick) in state.contact_elements.sticks.iter_mut().enumerate() {
             let mut displacement = self.sticks[element].displacement;
             for (rates, weight) in self.rates.iter().zip(weights) {
                 displacement += rates.slip_rates[element] * (S::Real::splat(*weight) * dt);
             }
-            *stick = Stick { displacement, slipping: self.sticks[element].slipping };
+            *stick = Stick { displacement, ..self.sticks[element] };
         }
     }
 
@@ -212,14 +251,15 @@ impl<S: Space> Stages<S> {
             let mut kick = Twist::<S>::default();
             for (k, difference) in differences.iter().enumerate() {
                 let share = S::Real::splat(difference * dt);
-                let (twist, acceleration) = if k < last {
-                    (self.rates[k].twists[i], self.rates[k].accelerations[i])
+                let (velocity, acceleration) = if k < last {
+                    (self.rates[k].ways[i], self.rates[k].kicks[i])
                 } else {
-                    (state.twists[i], scratch.accelerations[i])
+                    self.rates_of(model, state, scratch, i)
                 };
-                way = way.plus(twist, share);
+                way = way.plus(velocity, share);
                 kick = kick.plus(acceleration, share);
             }
+            let kick = of_momentum(model, i, state.poses[i].orientation, kick);
             let size = |t: Twist<S>| {
                 let linear = t.linear.dot(t.linear).sqrt();
                 let angular = t.angular.dot(t.angular).sqrt() * reach;
@@ -233,4 +273,27 @@ impl<S: Space> Stages<S> {
         }
         worst
     }
+}
+
+/// A twist with what [`Space::momentum`] tells of its spin: methods add these, since spins turn with their
+/// bodies where no moment acts.
+fn momentum<S: Space>(
+    model: &Model<S>,
+    scratch: &Scratch<S>,
+    body: usize,
+    twist: Twist<S>,
+) -> Twist<S> {
+    let (inertia, rotation) = (model.inert[body].inertia, scratch.rotations[body]);
+    Twist { linear: twist.linear, angular: S::momentum(inertia, rotation, twist.angular) }
+}
+
+/// The twist of what [`momentum`] tells, of a body with this orientation.
+fn of_momentum<S: Space>(
+    model: &Model<S>,
+    body: usize,
+    orientation: S::Orientation,
+    momentum: Twist<S>,
+) -> Twist<S> {
+    let (inertia, rotation) = (model.inert[body].inertia, S::rotation(orientation));
+    Twist { linear: momentum.linear, angular: S::spin_of(inertia, rotation, momentum.angular) }
 }

@@ -22,7 +22,8 @@ pub(super) fn semi_implicit_euler<S: Space>(
     let step = until - state.time;
     for i in free(model) {
         state.twists[i] = state.twists[i].plus(scratch.accelerations[i], step);
-        state.poses[i] = state.poses[i].moved(state.twists[i], step);
+        let inertia = model.inert[i].inertia;
+        (state.poses[i], state.twists[i]) = state.poses[i].coasted(inertia, state.twists[i], step);
     }
     advance_sticks(state, &scratch.slip_rates, step);
     std::mem::swap(&mut scratch.old_slip_rates, &mut scratch.slip_rates);
@@ -33,7 +34,8 @@ pub(super) fn semi_implicit_euler<S: Space>(
     accept(model, state, scratch);
 }
 
-/// Half a kick, a drift, and the other half of the kick with the forces of the new place.
+/// Half a kick, a drift without forces ([`Space::coast`]), and the other half of the kick with the forces of
+/// the new place.
 ///
 /// Those forces depend on the velocity, which is predicted from the old acceleration and corrected
 /// afterwards; sticks likewise, from the old slip rate.
@@ -74,8 +76,9 @@ fn predict<S: Space>(
     for i in free(model) {
         let kick = scratch.accelerations[i];
         let middle = state.twists[i].plus(kick, half);
-        state.poses[i] = state.poses[i].moved(middle, step);
-        state.twists[i] = middle.plus(kick, half);
+        let (pose, arrived) = state.poses[i].coasted(model.inert[i].inertia, middle, step);
+        state.poses[i] = pose;
+        state.twists[i] = arrived.plus(kick, half);
         // Until the new forces are known, the old acceleration waits here for the correction.
         scratch.old_accelerations[i] = kick;
     }

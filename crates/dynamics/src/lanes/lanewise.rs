@@ -5,7 +5,7 @@ use crate::contact::{Basis, Exponent, FrictionLaw, Interface, NormalLaw, Rolling
 use crate::forces::Losses;
 use crate::model::{Model, Substepping};
 use crate::real::{Mask, Real};
-use crate::shape::{BarrelProfile, Circle, Cradle, HalfPlane, Shape};
+use crate::shape::{BarrelProfile, Circle, Cradle, HalfPlane, NoWhole, Shape};
 use crate::space::{Planar, Pose, Rotation2, Twist, Vec2, Wrench};
 
 /// A thing made of bundles of numbers, each lane of which is the same thing made of single numbers.
@@ -199,6 +199,7 @@ macro_rules! lanewise {
         @variants $name:ident, ($bundle:ty), ($single:ty),
         { $($variant:ident $({ $($field:ident),* })? $(($inner:ident))?),* $(,)? }
     ) => {
+        #[allow(unreachable_code, reason = "a variant may hold what the plane has none of")]
         impl<R: $crate::real::Real> $crate::lanes::Lanewise for $bundle {
             type Single = $single;
             fn in_all(single: &Self::Single) -> Self {
@@ -246,7 +247,7 @@ pub fn put_truth<M: Mask>(mask: &mut M, lane: usize, single: bool) {
     *mask = M::from_lanes(|l| if l == lane { single } else { others.lane(l) });
 }
 
-lanewise!(same bool, usize, String, Motion, Basis, Exponent, HalfPlane);
+lanewise!(same(), bool, usize, String, Motion, Basis, Exponent, HalfPlane, NoWhole);
 
 lanewise!(struct Vec2<R> { x, z });
 lanewise!(struct Rotation2<R> { cos, sin });
@@ -275,7 +276,7 @@ lanewise!(
     }
 );
 lanewise!(enum Nodes<Planar<R>> {
-    Fixed(nodes), Rounds(rounds), Rolling { center, radius, tributary_length }
+    Fixed(nodes), Rounds(rounds), Rolling { center, radius, tributary_length }, Whole(none)
 });
 lanewise!(enum FrictionLaw<R> {
     Frictionless,
@@ -289,7 +290,7 @@ lanewise!(enum NormalLaw<R> {
     Hertz { stiffness },
     Rebound { stiffness, restitution, speed }
 });
-lanewise!(struct Stick<Planar<R>> { displacement } masks { slipping });
+lanewise!(struct Stick<Planar<R>> { displacement, tangent_plane } masks { slipping });
 lanewise!(struct Stop<R> { depth, law });
 lanewise!(struct Rolling<R> { lever, spin });
 lanewise!(struct Interface<Planar<R>> { name, normal, stop, rolling, friction, basis });

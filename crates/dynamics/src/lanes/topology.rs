@@ -67,7 +67,7 @@ impl BodyKind {
         };
         let rounds = body.nodes.iter().flat_map(|nodes| match nodes {
             Nodes::Rounds(rounds) => rounds.as_slice(),
-            Nodes::Fixed(_) | Nodes::Rolling { .. } => &[],
+            Nodes::Fixed(_) | Nodes::Rolling { .. } | Nodes::Whole(_) => &[],
         });
         let ends = |round: &Round<Planar>| {
             let arcs = round.arc_limits.map(|limit| limit.is_some());

@@ -2,9 +2,11 @@
 //!
 //! Contact laws, the contact loop, the integrators, the energy ledger and the run loop are written
 //! against [`Space`] and never name a dimension.
-//! [`Planar`] is the vertical plane of the paper.
+//! [`Planar`] is the vertical plane of the paper, [`Spatial`] the space around it.
 
 mod planar;
+mod spatial;
+mod vector;
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
@@ -12,6 +14,8 @@ use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 use crate::real::Real;
 
 pub use planar::{Planar, Rotation2, Vec2};
+pub use spatial::Spatial;
+pub use vector::{Quaternion, Rotation3, Vec3};
 
 /// What vectors, spins and tangents have in common: they add and scale.
 pub trait Linear<R>:
@@ -49,10 +53,15 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     type Inertia: Copy + Debug + PartialEq + Send + Sync + 'static;
     /// A displacement (m), velocity (m/s) or force (N) in the plane tangent to a contact.
     type Tangent: Linear<Self::Real>;
+    /// What a tangent keeps beside it, so that it can be carried along a surface that turns: the normal in
+    /// space, nothing in the plane, where a tangent is a number.
+    type TangentPlane: Copy + Debug + Default + PartialEq + Send + Sync + 'static;
     /// Viscous damping matrix of a body.
     type Damping: Copy + Debug + PartialEq + Send + Sync + 'static;
     /// The shapes whose surface can be a contact target.
     type Surface: crate::shape::Surface<Self>;
+    /// Convex bodies that touch as a whole; none in the plane, where round pieces do.
+    type Whole: crate::shape::Whole<Self>;
 
     /// The rotation that an orientation stands for.
     fn rotation(orientation: Self::Orientation) -> Self::Rotation;
@@ -89,13 +98,33 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn turn_between(from: Self::Orientation, to: Self::Orientation) -> Self::Spin;
     /// How far apart two orientations are (rad); an upper bound will do.
     fn angle_between(a: Self::Orientation, b: Self::Orientation) -> Self::Real;
-    /// Angular acceleration under a moment.
+    /// Angular acceleration that a moment alone gives; what a body does without moments is told by
+    /// [`Space::coast`] and [`Space::momentum`].
     fn spin_rate(
         inertia: Self::Inertia,
         rotation: Self::Rotation,
-        spin: Self::Spin,
         moment: Self::Spin,
     ) -> Self::Spin;
+    /// What a spin keeps where no moment acts, up to a factor that is constant: the angular momentum in
+    /// space, the spin itself in the plane.
+    fn momentum(inertia: Self::Inertia, rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
+    /// The spin of a body with what [`Space::momentum`] tells.
+    fn spin_of(
+        inertia: Self::Inertia,
+        rotation: Self::Rotation,
+        momentum: Self::Spin,
+    ) -> Self::Spin;
+    /// How a body is turned and spins after a time without moments.
+    fn coast(
+        inertia: Self::Inertia,
+        orientation: Self::Orientation,
+        spin: Self::Spin,
+        time: Self::Real,
+    ) -> (Self::Orientation, Self::Spin);
+    /// The rate of the turn that leads from one orientation to another, once it is `turned` long, at a spin.
+    ///
+    /// Turns do not add in space, so the sum of a spin over time is no turn; the sum of this is.
+    fn turn_rate(turned: Self::Spin, spin: Self::Spin) -> Self::Spin;
     /// The smallest principal moment of inertia (kg·m²) in one lane.
     fn least_inertia(inertia: Self::Inertia, lane: usize) -> f64;
     /// Rotational kinetic energy (J).
@@ -108,6 +137,14 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn tangential(vector: Self::Vector, normal: Self::Vector) -> Self::Tangent;
     /// A tangent as a vector.
     fn along(tangent: Self::Tangent, normal: Self::Vector) -> Self::Vector;
+    /// What is kept with the tangents of a surface with this unit normal.
+    fn tangent_plane(normal: Self::Vector) -> Self::TangentPlane;
+    /// A tangent, turned from one tangent plane into another.
+    fn carry(
+        tangent: Self::Tangent,
+        from: Self::TangentPlane,
+        to: Self::TangentPlane,
+    ) -> Self::Tangent;
     /// A tangent, no longer than `limit` (not negative).
     fn shorten(tangent: Self::Tangent, limit: Self::Real) -> Self::Tangent;
     /// `yes` where the mask holds, `no` elsewhere.
@@ -170,6 +207,15 @@ impl<S: Space> Pose<S> {
             position: self.position + twist.linear * time,
             orientation: S::turn(self.orientation, twist.angular, time),
         }
+    }
+
+    /// Pose and twist after moving for a time (s) while no force acts.
+    #[inline(always)]
+    #[must_use]
+    pub fn coasted(self, inertia: S::Inertia, twist: Twist<S>, time: S::Real) -> (Self, Twist<S>) {
+        let (orientation, angular) = S::coast(inertia, self.orientation, twist.angular, time);
+        let position = self.position + twist.linear * time;
+        (Self { position, orientation }, Twist { linear: twist.linear, angular })
     }
 
     /// The way to another pose near it (m and rad): the twist that goes it in a unit of time.

@@ -142,10 +142,12 @@ impl<R: Real> Space for Planar<R> {
     type Rotation = Rotation2<R>;
     type Inertia = R;
     type Tangent = R;
+    type TangentPlane = ();
     /// Rows of the symmetric matrix of eq. 2.8, acting on `(ẋ, ż, θ̇)`:
     /// N·s/m in the upper left block, N·m·s in the last entry.
     type Damping = [[R; 3]; 3];
     type Surface = crate::shape::Shape<R>;
+    type Whole = crate::shape::NoWhole;
 
     #[inline(always)]
     fn rotation(orientation: R) -> Rotation2<R> {
@@ -216,8 +218,24 @@ impl<R: Real> Space for Planar<R> {
         (a - b).abs()
     }
     #[inline(always)]
-    fn spin_rate(inertia: R, _rotation: Rotation2<R>, _spin: R, moment: R) -> R {
+    fn spin_rate(inertia: R, _rotation: Rotation2<R>, moment: R) -> R {
         moment / inertia
+    }
+    #[inline(always)]
+    fn momentum(_inertia: R, _rotation: Rotation2<R>, spin: R) -> R {
+        spin
+    }
+    #[inline(always)]
+    fn spin_of(_inertia: R, _rotation: Rotation2<R>, momentum: R) -> R {
+        momentum
+    }
+    #[inline(always)]
+    fn coast(_inertia: R, orientation: R, spin: R, time: R) -> (R, R) {
+        (orientation + spin * time, spin)
+    }
+    #[inline(always)]
+    fn turn_rate(_turned: R, spin: R) -> R {
+        spin
     }
     fn least_inertia(inertia: R, lane: usize) -> f64 {
         inertia.lane(lane)
@@ -234,6 +252,12 @@ impl<R: Real> Space for Planar<R> {
     #[inline(always)]
     fn along(tangent: R, normal: Vec2<R>) -> Vec2<R> {
         Vec2::new(normal.z * tangent, -(normal.x * tangent))
+    }
+    #[inline(always)]
+    fn tangent_plane(_normal: Vec2<R>) {}
+    #[inline(always)]
+    fn carry(tangent: R, (): (), (): ()) -> R {
+        tangent
     }
     #[inline(always)]
     fn shorten(tangent: R, limit: R) -> R {

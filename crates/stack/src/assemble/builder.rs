@@ -235,6 +235,7 @@ impl<'a> Builder<'a> {
                         }
                     }
                     Nodes::Rolling { center, .. } => flip(center),
+                    Nodes::Whole(none) => match *none {},
                 }
             }
         }

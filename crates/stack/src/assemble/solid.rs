@@ -113,7 +113,7 @@ impl Solid {
             };
             let others = match &body.nodes[exact] {
                 Nodes::Rounds(rounds) => rounds.iter().copied().filter(|r| !at_end(r)).collect(),
-                Nodes::Fixed(_) | Nodes::Rolling { .. } => Vec::new(),
+                Nodes::Fixed(_) | Nodes::Rolling { .. } | Nodes::Whole(_) => Vec::new(),
             };
             body.faces.push(Face { point, outward: Vec2::new(0.0, outward), widest: self.widest });
             Some(NodedFace {

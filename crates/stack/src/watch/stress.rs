@@ -482,7 +482,7 @@ fn on_nodes(body: BodyId, sets: &[Nodes<Planar>]) -> StressEnvelope {
     let nodes = || {
         sets.iter().filter_map(|set| match set {
             Nodes::Fixed(nodes) => Some(nodes),
-            Nodes::Rounds(_) | Nodes::Rolling { .. } => None,
+            Nodes::Rounds(_) | Nodes::Rolling { .. } | Nodes::Whole(_) => None,
         })
     };
     let points = nodes()

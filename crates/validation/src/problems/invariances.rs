@@ -141,7 +141,7 @@ fn four_times(body: &Body<Planar>) -> Body<Planar> {
                 }
             }
             // Heaps are made of blocks with nodes and of discs.
-            Nodes::Rounds(_) => {}
+            Nodes::Rounds(_) | Nodes::Whole(_) => {}
             Nodes::Rolling { radius, .. } => *radius *= 4.0,
         }
     }

@@ -17,6 +17,7 @@ mod rolling;
 mod sliding;
 mod slosh;
 mod solids;
+mod space;
 mod stacks;
 mod statistics;
 
@@ -38,6 +39,7 @@ pub fn all() -> Vec<Problem> {
         devices::problems(),
         slosh::problems(),
         ode::problems(),
+        space::problems(),
         invariances::problems(),
         intensity::problems(),
         statistics::problems(),

@@ -1,0 +1,152 @@
+//! A barrel of revolution about `x`: stave, heads, and a rounded chime between them.
+
+use crate::real::Real;
+use crate::shape::Gap;
+use crate::space::{Spatial, Vec3};
+
+/// A barrel about the origin with its axis along `x`, as its core: the same barrel drawn in by the
+/// rounding of its chime.
+///
+/// Seen in the half-plane of `x` and the distance `r` from the axis, the stave of the core is the arc
+/// `x² + (r + a)² = R²`, whose center lies on the far side of the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Barrel<R = f64> {
+    /// Half the length (m) of the core.
+    pub half_length: R,
+    /// Radius (m) of the heads of the core.
+    pub head_radius: R,
+    /// `R`, the radius (m) of the stave of the core along the barrel.
+    pub stave_radius: R,
+    /// `a`, how far (m) the center of the stave's arc lies beyond the axis.
+    pub stave_offset: R,
+    /// How far (m) the barrel reaches beyond its core.
+    pub rounding: R,
+}
+
+/// Why dimensions make no barrel.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "a barrel {length} m long, with heads of {head_radius} m and a bilge of {bilge_radius} m in radius and a \
+     chime rounded by {rounding} m: lengths must be positive, the bilge wider than the heads but not wider \
+     than half as much again as it is long, and the rounding smaller than half the length and the heads"
+)]
+pub struct BarrelError {
+    length: f64,
+    head_radius: f64,
+    bilge_radius: f64,
+    rounding: f64,
+}
+
+impl Barrel {
+    /// A barrel of a length (m), the radii (m) of its heads and of its bilge, and a rounding (m) of its
+    /// chime, which takes that much from the corner between head and stave.
+    ///
+    /// # Errors
+    /// When these make no barrel.
+    pub fn new(
+        length: f64,
+        head_radius: f64,
+        bilge_radius: f64,
+        rounding: f64,
+    ) -> Result<Self, BarrelError> {
+        let (half, rise) = (0.5 * length, bilge_radius - head_radius);
+        let arc = (half * half + rise * rise) / (2.0 * rise);
+        let stave_offset = arc - bilge_radius;
+        let (half_length, stave_radius) = (half - rounding, arc - rounding);
+        let corner = (stave_radius * stave_radius - half_length * half_length).sqrt();
+        let barrel = Self {
+            half_length,
+            head_radius: corner - stave_offset,
+            stave_radius,
+            stave_offset,
+            rounding,
+        };
+        let sound = rounding >= 0.0
+            && rise > 0.0
+            && barrel.half_length > 0.0
+            && barrel.head_radius > 0.0
+            // An arc whose center lies on this side of the axis would be no hull of itself.
+            && stave_offset >= 0.0
+            && arc.is_finite();
+        if sound {
+            Ok(barrel)
+        } else {
+            Err(BarrelError { length, head_radius, bilge_radius, rounding })
+        }
+    }
+}
+
+impl<R: Real> Barrel<R> {
+    /// Radius (m) of a ball that holds it.
+    pub(super) fn reach(&self) -> R {
+        let corner = self.half_length * self.half_length + self.head_radius * self.head_radius;
+        corner.sqrt().max(self.stave_radius - self.stave_offset) + self.rounding
+    }
+
+    /// Distance and normal at a point (m).
+    ///
+    /// Outside of the core the nearest point lies on the stave, on a head, or on the circle where they
+    /// meet; inside, the face that is nearer counts.
+    #[inline(always)]
+    pub(super) fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
+        let (zero, one) = (R::zero(), R::splat(1.0));
+        let side = R::select(point.x.lt(zero), -one, one);
+        let along = point.x.abs();
+        let across = Vec3::new(zero, point.y, point.z);
+        let radial = across.unit_or(Vec3::new(zero, zero, one));
+        let from_axis = across.length();
+        let plane = |x: R, r: R| Vec3::new(side * x, zero, zero) + radial * r;
+
+        let from_center = from_axis + self.stave_offset;
+        let length = (along * along + from_center * from_center).sqrt();
+        let stave = length - self.stave_radius;
+        let head = along - self.half_length;
+        let corner = self.head_radius + self.stave_offset;
+        let (beyond, outward) = (head, from_axis - self.head_radius);
+        let chime = (beyond * beyond + outward * outward).sqrt();
+
+        let inside = stave.le(zero) & head.le(zero);
+        let on_head =
+            (inside & stave.lt(head)) | (!inside & zero.le(head) & from_axis.le(self.head_radius));
+        let before_stave = (along * corner).le(self.half_length * from_center);
+        let on_stave = (inside & !on_head) | (!inside & !on_head & before_stave);
+
+        let at_corner = chime.le(zero);
+        let inverse = one / R::select(at_corner, one, chime);
+        let past = plane(beyond, outward) * inverse;
+        let end = plane(self.half_length, corner) * (one / self.stave_radius);
+        let of_chime = Vec3::select(at_corner, end, past);
+        // The center of the arc lies outside of every barrel, so no length is zero near one.
+        let of_stave = plane(along, from_center) * (one / R::select(length.le(zero), one, length));
+        let of_head = plane(one, zero);
+        let distance = R::select(on_head, head, R::select(on_stave, stave, chime));
+        let normal = Vec3::select(on_head, of_head, Vec3::select(on_stave, of_stave, of_chime));
+        Gap { distance: distance - self.rounding, normal }
+    }
+
+    /// The point of the core (m) that lies furthest in a direction of length one.
+    #[inline(always)]
+    pub(super) fn furthest(&self, direction: Vec3<R>) -> Vec3<R> {
+        let (zero, one) = (R::zero(), R::splat(1.0));
+        let across = Vec3::new(zero, direction.y, direction.z);
+        let outward = across.length();
+        let radial = across.unit_or(Vec3::new(zero, zero, one));
+        let stave = direction * self.stave_radius - radial * self.stave_offset;
+        let side = R::select(direction.x.lt(zero), -one, one);
+        let chime = Vec3::new(side * self.half_length, zero, zero) + radial * self.head_radius;
+        let corner = self.head_radius + self.stave_offset;
+        let on_stave = (direction.x.abs() * corner).le(self.half_length * outward);
+        Vec3::select(on_stave, stave, chime)
+    }
+
+    /// In one lane.
+    pub(super) fn lane(&self, lane: usize) -> Barrel {
+        Barrel {
+            half_length: self.half_length.lane(lane),
+            head_radius: self.head_radius.lane(lane),
+            stave_radius: self.stave_radius.lane(lane),
+            stave_offset: self.stave_offset.lane(lane),
+            rounding: self.rounding.lane(lane),
+        }
+    }
+}

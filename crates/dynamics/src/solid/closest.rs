@@ -1,0 +1,354 @@
+//! The points of two convex bodies that are closest to each other.
+//!
+//! All is single numbers: lanes ask one after the other, and so have the bits of a single run.
+
+use super::barrel::Barrel;
+use crate::shape::Gap;
+use crate::space::{Linear, Rotation3, Spatial, Vec3};
+
+/// Where two bodies are closest, or deepest in each other, in the frame of the target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closest {
+    /// Distance (m) of the surfaces, negative where they overlap.
+    pub distance: f64,
+    /// Unit normal out of the target.
+    pub normal: Vec3,
+    /// The point (m) of the contactor's surface.
+    pub point: Vec3,
+    /// How often a distance or a support was asked for.
+    pub evaluations: u32,
+    /// Whether the search came to its end.
+    pub converged: bool,
+}
+
+/// Evaluations after which the search along an axis gives up; bisection alone needs 50.
+const MOST_ALONG: u32 = 120;
+
+/// The point of a segment that is closest to a convex body: share of the way from `from` to `to`, gap,
+/// evaluations, and whether it was found.
+///
+/// The distance is convex along the segment, so its slope `n · (to − from)` never falls and has one
+/// zero: found between the ends by false position, guarded by bisection.
+pub(super) fn along_axis(
+    gap: impl Fn(Vec3) -> Gap<Spatial>,
+    from: Vec3,
+    to: Vec3,
+) -> (f64, Gap<Spatial>, u32, bool) {
+    let way = to - from;
+    let at = |share: f64| {
+        let gap = gap(from + way * share);
+        (gap, gap.normal.dot(way))
+    };
+    let (first, falling) = at(0.0);
+    if falling >= 0.0 {
+        return (0.0, first, 1, true);
+    }
+    let (last, rising) = at(1.0);
+    if rising <= 0.0 {
+        return (1.0, last, 2, true);
+    }
+    // Share and slope at both ends of what holds the zero.
+    let (mut low, mut high) = ((0.0, falling), (1.0, rising));
+    let flat = 1e-15 * way.length();
+    let (mut kept, mut best, mut wide) = (0, (0.0, first), 1.0);
+    for evaluation in 3..MOST_ALONG {
+        let secant = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+        let narrowed: f64 = high.0 - low.0;
+        // Every third time the interval has to be half as long, or it is halved.
+        let slow = evaluation % 3 == 0 && narrowed > 0.5 * wide;
+        if evaluation % 3 == 0 {
+            wide = narrowed;
+        }
+        let inside = secant > low.0 && secant < high.0;
+        let share = if inside && !slow { secant } else { 0.5 * (low.0 + high.0) };
+        let (gap, slope) = at(share);
+        best = (share, gap);
+        if slope.abs() <= flat || narrowed <= 4.0 * f64::EPSILON {
+            return (share, gap, evaluation, true);
+        }
+        // The end that stays a second time counts half (the Illinois rule), so that both come nearer.
+        if slope < 0.0 {
+            low = (share, slope);
+            if kept == 1 {
+                high.1 *= 0.5;
+            }
+            kept = 1;
+        } else {
+            high = (share, slope);
+            if kept == -1 {
+                low.1 *= 0.5;
+            }
+            kept = -1;
+        }
+    }
+    (best.0, best.1, MOST_ALONG, false)
+}
+
+/// A barrel at its place, in the frame of another.
+#[derive(Clone, Copy)]
+struct Set<'a> {
+    barrel: &'a Barrel,
+    center: Vec3,
+    rotation: Rotation3,
+}
+
+/// Part of a core: how it supports a direction.
+struct Support {
+    /// The point (m) that lies furthest.
+    point: Vec3,
+    /// `r ⊥ ⊗ ⊥`: curvature radius (m) along the barrel, alike in all tangential directions.
+    along: f64,
+    /// What is added of it (m) across the axis, in direction `around`.
+    across: f64,
+    /// The unit vector around the axis.
+    around: Vec3,
+    /// β, the part of the direction across the axis.
+    outward: f64,
+}
+
+impl Set<'_> {
+    fn axis(&self) -> Vec3 {
+        self.rotation.apply(Vec3::new(1.0, 0.0, 0.0))
+    }
+
+    /// The nearest point (m) of the core to one outside of it.
+    fn project(&self, point: Vec3) -> Vec3 {
+        let gap = self.barrel.gap(self.rotation.unapply(point - self.center));
+        let depth = (gap.distance + self.barrel.rounding).max(0.0);
+        point - self.rotation.apply(gap.normal) * depth
+    }
+
+    /// The support of a unit direction, with the curvature of the surface there.
+    ///
+    /// On the stave `h = R |n| − a β`, on the chime `h = l |α| + r β`, with α along the axis and β across
+    /// it; the second derivatives of `|n|` and `β` are `1` tangentially and `1/β` around the axis.
+    fn support(&self, direction: Vec3) -> Support {
+        let local = self.rotation.unapply(direction);
+        let barrel = self.barrel;
+        let outward = (local.y * local.y + local.z * local.z).sqrt();
+        let corner = barrel.head_radius + barrel.stave_offset;
+        let on_stave = local.x.abs() * corner <= barrel.half_length * outward;
+        let inverse = 1.0 / outward.max(1e-300);
+        let around = self.rotation.apply(Vec3::new(0.0, -local.z * inverse, local.y * inverse));
+        let (along, across) = if on_stave {
+            (barrel.stave_radius, -barrel.stave_offset * inverse)
+        } else {
+            (0.0, barrel.head_radius * inverse)
+        };
+        let point = self.center + self.rotation.apply(barrel.furthest(local));
+        Support { point, along, across, around, outward }
+    }
+
+    /// The support of the direction of a head, at the side of the rim that lies toward a point (m).
+    fn on_rim(&self, direction: Vec3, toward: Vec3) -> Support {
+        let (barrel, way) = (self.barrel, self.rotation.unapply(toward - self.center));
+        let radial = Vec3::new(0.0, way.y, way.z).unit_or(Vec3::new(0.0, 0.0, 1.0));
+        let side = if direction.dot(self.axis()) < 0.0 { -1.0 } else { 1.0 };
+        let rim = Vec3::new(side * barrel.half_length, 0.0, 0.0) + radial * barrel.head_radius;
+        Support {
+            point: self.center + self.rotation.apply(rim),
+            along: 0.0,
+            across: barrel.head_radius / HEAD,
+            around: self.rotation.apply(Vec3::new(0.0, -radial.z, radial.y)),
+            outward: HEAD,
+        }
+    }
+}
+
+/// Directions (rad) nearer to an axis than this are those of its head.
+const HEAD: f64 = 1e-7;
+
+/// How a direction separates two cores.
+struct Separation {
+    /// From the support of the target to that of the contactor.
+    way: Vec3,
+    /// Distance (m) of the planes that bear the cores.
+    distance: f64,
+    supports: [Support; 2],
+}
+
+fn separation(target: &Set<'_>, contactor: &Set<'_>, normal: Vec3) -> Separation {
+    let mut supports = [target.support(normal), contactor.support(-normal)];
+    // Where a whole head bears, the point of its rim that is nearest to the other body counts.
+    if supports[0].outward < HEAD {
+        supports[0] = target.on_rim(normal, supports[1].point);
+    }
+    if supports[1].outward < HEAD {
+        supports[1] = contactor.on_rim(-normal, supports[0].point);
+    }
+    let way = supports[1].point - supports[0].point;
+    Separation { way, distance: way.dot(normal), supports }
+}
+
+/// Tangential parts of the way (m) below which a normal is exact to rounding.
+const TANGENTIAL: f64 = 4e-15;
+/// Newton steps (rad) below which a normal is exact: near the edge of a head, where a support turns much
+/// faster than its direction, its place is lost in rounding long before the normal is.
+const TURN: f64 = 1e-11;
+/// Newton steps before projections help out.
+const MOST_STEPS: u32 = 25;
+/// How often projections may help out.
+const MOST_HELP: u32 = 40;
+
+/// Two barrels, the target at the origin.
+///
+/// Of all directions the one that separates the cores most is the normal, and the distance of the bearing
+/// planes that of the cores: `g(n) = n · c − h₁(n) − h₂(−n)`, concave where the cores are apart.
+/// Where a head bears, `g` has a kink, so heads are asked first; else Newton's method on the sphere of
+/// directions, begun by projections from one core to the other and back, which also help out where
+/// it does not ascend: they always come nearer.
+pub(super) fn barrels(
+    target: &Barrel,
+    contactor: &Barrel,
+    center: Vec3,
+    rotation: Rotation3,
+) -> Closest {
+    let one = Set { barrel: target, center: Vec3::default(), rotation: Rotation3::identity() };
+    let other = Set { barrel: contactor, center, rotation };
+    let grown = target.rounding + contactor.rounding;
+    let found = |normal: Vec3, point: Vec3, distance: f64, evaluations, converged| Closest {
+        distance: distance - grown,
+        normal,
+        point: point - normal * contactor.rounding,
+        evaluations,
+        converged,
+    };
+    let mut evaluations = 0;
+    for (bearing, resting, sense) in [(&one, &other, 1.0), (&other, &one, -1.0)] {
+        if let Some((normal, point, distance)) = on_head(bearing, resting) {
+            // The point is that of the body which rests on the head.
+            let at = if sense > 0.0 { point } else { point - normal * distance };
+            return found(normal * sense, at, distance, 4, true);
+        }
+        evaluations += 2;
+    }
+
+    let mut from = one.project(center);
+    let mut to = other.project(from);
+    let mut normal = (to - from).unit_or(center.unit_or(Vec3::new(0.0, 0.0, 1.0)));
+    for _ in 0..MOST_HELP {
+        let mut best = separation(&one, &other, normal);
+        for _ in 0..MOST_STEPS {
+            evaluations += 1;
+            let tangential = best.way - normal * best.distance;
+            let scale = best.way.length() + center.length();
+            let step = newton(normal, &best, tangential);
+            if tangential.length() <= TANGENTIAL * scale || step.length() <= TURN {
+                let (normal, point, distance) = polished(&one, &other, normal, &best);
+                return found(normal, point, distance, evaluations, true);
+            }
+            let Some((next, reached)) = ascend(&one, &other, normal, &best, tangential, step)
+            else {
+                break;
+            };
+            (normal, best) = (next, reached);
+        }
+        // What rounding alone keeps from ascending is there.
+        let tangential = best.way - normal * best.distance;
+        if newton(normal, &best, tangential).length() <= 2e-9 {
+            let (normal, point, distance) = polished(&one, &other, normal, &best);
+            return found(normal, point, distance, evaluations, true);
+        }
+        for _ in 0..8 {
+            from = one.project(to);
+            to = other.project(from);
+            evaluations += 2;
+        }
+        let way = to - from;
+        if way.length() <= 1e-9 * grown {
+            // The cores meet: there is no nearest pair, and the best direction found has to do.
+            break;
+        }
+        normal = way.unit_or(normal);
+    }
+    let best = separation(&one, &other, normal);
+    found(normal, best.supports[1].point, best.distance, evaluations, false)
+}
+
+/// Where the core of one body is closest to the inside of a head of another: normal out of the head,
+/// the point of the core and its distance (m).
+fn on_head(bearing: &Set<'_>, resting: &Set<'_>) -> Option<(Vec3, Vec3, f64)> {
+    let axis = bearing.axis();
+    let side = if (resting.center - bearing.center).dot(axis) < 0.0 { -1.0 } else { 1.0 };
+    let normal = axis * side;
+    let support = resting.support(-normal);
+    let head = bearing.center + normal * bearing.barrel.half_length;
+    let way = support.point - head;
+    let distance = way.dot(normal);
+    let aside = (way - normal * distance).length();
+    (distance >= 0.0 && aside <= bearing.barrel.head_radius).then_some((
+        normal,
+        support.point,
+        distance,
+    ))
+}
+
+/// Normal, point of the contactor's core and distance (m), from the surer of both supports: the place of one
+/// on a rim turns much faster than the direction where that is nearly an axis.
+fn polished(
+    target: &Set<'_>,
+    contactor: &Set<'_>,
+    normal: Vec3,
+    here: &Separation,
+) -> (Vec3, Vec3, f64) {
+    let [from, to] = &here.supports;
+    let (from, to) = if from.outward < to.outward {
+        (target.project(to.point), to.point)
+    } else {
+        (from.point, contactor.project(from.point))
+    };
+    // Nearer than this the difference of two points tells no direction.
+    if here.distance < 1e-6 {
+        return (normal, here.supports[1].point, here.distance);
+    }
+    let way = to - from;
+    (way.unit_or(normal), to, way.length())
+}
+
+/// A Newton step (rad) on the sphere of directions, toward where the cores are separated most.
+fn newton(normal: Vec3, here: &Separation, tangential: Vec3) -> Vec3 {
+    let slope = tangential.length();
+    let first = tangential.unit_or(normal);
+    let second = normal.cross(first);
+    // Curvatures of both cores, and of the sphere.
+    let mut matrix = [here.distance.abs(), 0.0, here.distance.abs()];
+    for support in &here.supports {
+        let (u, v) = (support.around.dot(first), support.around.dot(second));
+        matrix[0] += support.along + support.across * u * u;
+        matrix[1] += support.across * u * v;
+        matrix[2] += support.along + support.across * v * v;
+    }
+    let [a, b, c] = matrix;
+    let determinant = a * c - b * b;
+    if determinant > 1e-14 * (a * c).abs() && a > 0.0 {
+        first * (slope * c / determinant) - second * (slope * b / determinant)
+    } else {
+        first * (slope / a.max(1e-3))
+    }
+}
+
+/// A step, shortened until the cores are better separated.
+fn ascend(
+    target: &Set<'_>,
+    contactor: &Set<'_>,
+    normal: Vec3,
+    here: &Separation,
+    tangential: Vec3,
+    step: Vec3,
+) -> Option<(Vec3, Separation)> {
+    // No step turns further than half a radian: curvatures change.
+    let mut share = 0.5 / step.length().max(0.5);
+    for _ in 0..40 {
+        let next = (normal + step * share).unit_or(normal);
+        let there = separation(target, contactor, next);
+        let rounding = 1e-15 * (contactor.center.length() + there.way.length());
+        let off = there.way - next * there.distance;
+        if there.distance > here.distance + rounding
+            || (there.distance >= here.distance - rounding && off.length() < tangential.length())
+        {
+            return Some((next, there));
+        }
+        share *= 0.5;
+    }
+    None
+}

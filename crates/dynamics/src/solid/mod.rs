@@ -1,0 +1,105 @@
+//! Boundaries in space: ball, half-space, capsule, barrel of revolution.
+//!
+//! All are convex cores grown by a radius, so that at the depths of contact the cores are apart, and
+//! what is asked is the distance of convex bodies that do not meet.
+//! A target answers how far a point is from it ([`Surface::gap`]); a capsule or a barrel touches as a
+//! whole ([`Rounded`]), a ball with its center ([`Nodes::Rolling`](crate::body::Nodes::Rolling)), and feet, legs and
+//! boxes with their points ([`Nodes::Fixed`](crate::body::Nodes::Fixed)).
+//! One file holds one solid; [`Solid`] is the table.
+
+mod barrel;
+mod closest;
+mod rounded;
+
+use crate::real::Real;
+use crate::shape::{Gap, Nearest, Surface};
+use crate::space::{Spatial, Vec3};
+
+pub use barrel::{Barrel, BarrelError};
+pub use closest::Closest;
+pub use rounded::{Hull, Rounded};
+
+/// A ball about the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball<R = f64> {
+    /// Radius (m).
+    pub radius: R,
+}
+
+impl<R: Real> Ball<R> {
+    #[inline(always)]
+    fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
+        let up = Vec3::new(R::zero(), R::zero(), R::splat(1.0));
+        Gap { distance: point.length() - self.radius, normal: point.unit_or(up) }
+    }
+}
+
+/// A tube with round ends about the origin, along `x`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Capsule<R = f64> {
+    /// Half the length (m) of its axis; it is longer by its radius at both ends.
+    pub half_length: R,
+    /// Radius (m).
+    pub radius: R,
+}
+
+impl<R: Real> Capsule<R> {
+    /// In one lane.
+    fn lane(&self, lane: usize) -> Capsule {
+        Capsule { half_length: self.half_length.lane(lane), radius: self.radius.lane(lane) }
+    }
+
+    #[inline(always)]
+    fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
+        let along = point.x.clamp_magnitude(self.half_length);
+        let from_axis = Vec3::new(point.x - along, point.y, point.z);
+        Ball { radius: self.radius }.gap(from_axis)
+    }
+}
+
+/// Every solid that can be a target.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Solid<R = f64> {
+    /// All below `z = 0`: the floor.
+    HalfSpace,
+    /// A ball.
+    Ball(Ball<R>),
+    /// A tube with round ends.
+    Capsule(Capsule<R>),
+    /// A barrel.
+    Barrel(Barrel<R>),
+}
+
+impl<R: Real> Surface<Spatial<R>> for Solid<R> {
+    #[inline(always)]
+    fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
+        match self {
+            Self::HalfSpace => {
+                let up = Vec3::new(R::zero(), R::zero(), R::splat(1.0));
+                Gap { distance: point.z, normal: up }
+            }
+            Self::Ball(ball) => ball.gap(point),
+            Self::Capsule(capsule) => capsule.gap(point),
+            Self::Barrel(barrel) => barrel.gap(point),
+        }
+    }
+
+    #[inline(always)]
+    fn nearest(&self, point: Vec3<R>, _slack: R) -> Nearest<Spatial<R>> {
+        let none = R::Mask::default();
+        let flat = match self {
+            Self::HalfSpace => !none,
+            Self::Ball(_) | Self::Capsule(_) | Self::Barrel(_) => none,
+        };
+        Nearest::endless(self.gap(point), !flat)
+    }
+
+    fn reach(&self) -> f64 {
+        match self {
+            Self::HalfSpace => f64::INFINITY,
+            Self::Ball(ball) => ball.radius.largest_lane(),
+            Self::Capsule(capsule) => (capsule.half_length + capsule.radius).largest_lane(),
+            Self::Barrel(barrel) => barrel.reach().largest_lane(),
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! Motion in space: `x` to the right, `y` away, `z` up, turns right-handed.
+
+use super::{Linear, Quaternion, Rotation3, Space, Vec3};
+use crate::real::{Mask, Real};
+use crate::solid::{Rounded, Solid};
+
+/// Space, with one number or a bundle of lanes as its scalar.
+///
+/// A body's frame is that of its principal axes, so its inertia is three numbers.
+/// Spins and moments are those of the inertial frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spatial<R = f64>(std::marker::PhantomData<R>);
+
+impl<R: Real> Space for Spatial<R> {
+    type Real = R;
+    type Vector = Vec3<R>;
+    type Spin = Vec3<R>;
+    type Orientation = Quaternion<R>;
+    type Rotation = Rotation3<R>;
+    /// The principal moments of inertia (kg·m²) about the axes of the body frame.
+    ///
+    /// A body of revolution has its axis along `x`: then it coasts exactly.
+    type Inertia = Vec3<R>;
+    type Tangent = Vec3<R>;
+    type TangentPlane = Vec3<R>;
+    /// Damping of the velocity (N·s/m) and of the spin (N·m·s), alike in all directions.
+    type Damping = [R; 2];
+    type Surface = Solid<R>;
+    type Whole = Rounded<R>;
+
+    #[inline(always)]
+    fn rotation(orientation: Quaternion<R>) -> Rotation3<R> {
+        orientation.matrix()
+    }
+    #[inline(always)]
+    fn rotate(rotation: Rotation3<R>, vector: Vec3<R>) -> Vec3<R> {
+        rotation.apply(vector)
+    }
+    #[inline(always)]
+    fn unrotate(rotation: Rotation3<R>, vector: Vec3<R>) -> Vec3<R> {
+        rotation.unapply(vector)
+    }
+    #[inline(always)]
+    fn compose(outer: Rotation3<R>, inner: Rotation3<R>) -> Rotation3<R> {
+        outer.after(inner)
+    }
+    #[inline(always)]
+    fn relative(outer: Rotation3<R>, inner: Rotation3<R>) -> Rotation3<R> {
+        outer.back().after(inner)
+    }
+    #[inline(always)]
+    fn unrotate_spin(rotation: Rotation3<R>, spin: Vec3<R>) -> Vec3<R> {
+        rotation.unapply(spin)
+    }
+    #[inline(always)]
+    fn rotate_spin(rotation: Rotation3<R>, spin: Vec3<R>) -> Vec3<R> {
+        rotation.apply(spin)
+    }
+    #[inline(always)]
+    fn velocity_at(spin: Vec3<R>, arm: Vec3<R>) -> Vec3<R> {
+        spin.cross(arm)
+    }
+    /// The length itself, and a hair for its rounding.
+    #[inline(always)]
+    fn at_most(vector: Vec3<R>) -> R {
+        vector.length() * R::splat(1.0 + 1e-15)
+    }
+    #[inline(always)]
+    fn first_coordinate(vector: Vec3<R>) -> R {
+        vector.x
+    }
+    #[inline(always)]
+    fn spin_magnitude(spin: Vec3<R>) -> R {
+        spin.length()
+    }
+    #[inline(always)]
+    fn moment(arm: Vec3<R>, force: Vec3<R>) -> Vec3<R> {
+        arm.cross(force)
+    }
+    #[inline(always)]
+    fn turn(orientation: Quaternion<R>, spin: Vec3<R>, time: R) -> Quaternion<R> {
+        Quaternion::turn(spin * time).after(orientation).normalized()
+    }
+    /// The axis of the turn times its angle, by the series of `asin s / s`: better than 1e-14 rad for
+    /// turns below 0.2 rad, and an underestimate of longer ones.
+    #[inline(always)]
+    fn turn_between(from: Quaternion<R>, to: Quaternion<R>) -> Vec3<R> {
+        let turn = to.after(from.back());
+        let z = turn.v.dot(turn.v);
+        let series = R::splat(1.0)
+            + z * (R::splat(1.0 / 6.0)
+                + z * (R::splat(3.0 / 40.0)
+                    + z * (R::splat(15.0 / 336.0)
+                        + z * (R::splat(105.0 / 3456.0) + z * R::splat(945.0 / 42_240.0)))));
+        let two = R::splat(2.0);
+        // A quaternion and its negative are one turn.
+        turn.v * (series * R::select(turn.w.lt(R::zero()), -two, two))
+    }
+    /// From the chord `d = 2 sin(θ/4)` between the quaternions, which is √2 at most, where the arc is
+    /// 1.1108 times as long.
+    #[inline(always)]
+    fn angle_between(a: Quaternion<R>, b: Quaternion<R>) -> R {
+        let square = |w: R, v: Vec3<R>| w * w + v.dot(v);
+        let near = square(a.w - b.w, a.v - b.v).min(square(a.w + b.w, a.v + b.v));
+        near.sqrt() * R::splat(2.222)
+    }
+    #[inline(always)]
+    fn spin_rate(inertia: Vec3<R>, rotation: Rotation3<R>, moment: Vec3<R>) -> Vec3<R> {
+        rotation.apply(rotation.unapply(moment).over(inertia))
+    }
+    #[inline(always)]
+    fn momentum(inertia: Vec3<R>, rotation: Rotation3<R>, spin: Vec3<R>) -> Vec3<R> {
+        rotation.apply(rotation.unapply(spin).times(inertia))
+    }
+    /// Refined once: a matrix is orthogonal but for rounding, and what that takes always from one side adds
+    /// up over a run.
+    #[inline(always)]
+    fn spin_of(inertia: Vec3<R>, rotation: Rotation3<R>, momentum: Vec3<R>) -> Vec3<R> {
+        let spin = Self::spin_rate(inertia, rotation, momentum);
+        let missing = momentum - Self::momentum(inertia, rotation, spin);
+        spin + Self::spin_rate(inertia, rotation, missing)
+    }
+    /// Free rotation in momentum form: the angular momentum **L** stays, and the kinetic energy
+    ///
+    /// ```text
+    /// T = ½ (Π₁²/I₁ + (Π₂² + Π₃²)/I₂) + ½ Π₃² (1/I₃ − 1/I₂)      Π = Rᵀ L
+    /// ```
+    ///
+    /// is that of a body of revolution, whose motion is exact (it turns about **L** at `L/I₂` and about
+    /// its own axis at `Π₁ (1/I₁ − 1/I₂)`), and of a remainder that turns it about its third axis.
+    /// Half of the remainder, the body of revolution, the other half: symplectic, reversible, of second
+    /// order, and exact for a body of revolution (after Touma and Wisdom 1994, and Fassò 2003).
+    #[inline(always)]
+    fn coast(
+        inertia: Vec3<R>,
+        orientation: Quaternion<R>,
+        spin: Vec3<R>,
+        time: R,
+    ) -> (Quaternion<R>, Vec3<R>) {
+        let (one, zero) = (R::splat(1.0), R::zero());
+        let rotation = orientation.matrix();
+        let body_momentum = rotation.unapply(spin).times(inertia);
+        let momentum = rotation.apply(body_momentum);
+        let across = one / inertia.y;
+        let half = R::splat(0.5) * time * (one / inertia.z - across);
+        let about_axis = time * (one / inertia.x - across);
+
+        let third = |p: Vec3<R>| Quaternion::turn(Vec3::new(zero, zero, p.z * half));
+        let first = third(body_momentum);
+        let p = first.matrix().unapply(body_momentum);
+        let axial = Quaternion::turn(Vec3::new(p.x * about_axis, zero, zero));
+        let p = axial.matrix().unapply(p);
+        let last = third(p);
+
+        let about_momentum = Quaternion::turn(momentum * (time * across));
+        let turned =
+            about_momentum.after(orientation).after(first).after(axial).after(last).normalized();
+        (turned, Self::spin_of(inertia, turned.matrix(), momentum))
+    }
+    /// The inverse of the derivative of the exponential map, to the order that methods of fourth order
+    /// need: `ω − ½ u × ω + ¹⁄₁₂ u × (u × ω)` (Munthe-Kaas 1999).
+    #[inline(always)]
+    fn turn_rate(turned: Vec3<R>, spin: Vec3<R>) -> Vec3<R> {
+        let once = turned.cross(spin);
+        spin - once * R::splat(0.5) + turned.cross(once) * R::splat(1.0 / 12.0)
+    }
+    fn least_inertia(inertia: Vec3<R>, lane: usize) -> f64 {
+        let Vec3 { x, y, z } = inertia.lane(lane);
+        // Comparisons that a lost number fails on purpose: it is the least.
+        if x.is_nan() || y.is_nan() || z.is_nan() { f64::NAN } else { x.min(y).min(z) }
+    }
+    #[inline(always)]
+    fn spin_energy(inertia: Vec3<R>, rotation: Rotation3<R>, spin: Vec3<R>) -> R {
+        let spin = rotation.unapply(spin);
+        R::splat(0.5) * spin.times(inertia).dot(spin)
+    }
+    #[inline(always)]
+    fn tangential(vector: Vec3<R>, normal: Vec3<R>) -> Vec3<R> {
+        vector - normal * vector.dot(normal)
+    }
+    #[inline(always)]
+    fn along(tangent: Vec3<R>, _normal: Vec3<R>) -> Vec3<R> {
+        tangent
+    }
+    #[inline(always)]
+    fn tangent_plane(normal: Vec3<R>) -> Vec3<R> {
+        normal
+    }
+    /// By the shortest turn from one normal to the other,
+    /// `s′ = s − (n + n′) (s · n′) / (1 + n · n′)`: what lies in the old plane keeps its length, and
+    /// whatever is given lies in the new plane.
+    #[inline(always)]
+    fn carry(tangent: Vec3<R>, from: Vec3<R>, to: Vec3<R>) -> Vec3<R> {
+        // Where a normal turned right over, the tangent lies in both planes.
+        let least = R::splat(1e-9);
+        let scale = (R::splat(1.0) + from.dot(to)).max(least);
+        tangent - (from + to) * (tangent.dot(to) / scale)
+    }
+    #[inline(always)]
+    fn shorten(tangent: Vec3<R>, limit: R) -> Vec3<R> {
+        let square = tangent.dot(tangent);
+        let longer = (limit * limit).lt(square);
+        if !longer.any() {
+            return tangent;
+        }
+        let length = R::select(longer, square, R::splat(1.0)).sqrt();
+        Vec3::select(longer, tangent * (limit / length), tangent)
+    }
+    #[inline(always)]
+    fn choose(mask: R::Mask, yes: Vec3<R>, no: Vec3<R>) -> Vec3<R> {
+        Vec3::select(mask, yes, no)
+    }
+    #[inline(always)]
+    fn damp([linear, angular]: [R; 2], velocity: Vec3<R>, spin: Vec3<R>) -> (Vec3<R>, Vec3<R>) {
+        (-(velocity * linear), -(spin * angular))
+    }
+}

@@ -1,0 +1,249 @@
+//! Vectors of space and what turns them: unit quaternions, which are integrated, and matrices.
+
+use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+
+use super::Linear;
+use crate::math;
+use crate::real::Real;
+
+/// A vector of space.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Vec3<R = f64> {
+    /// To the right.
+    pub x: R,
+    /// Away from who looks.
+    pub y: R,
+    /// Up.
+    pub z: R,
+}
+
+impl<R: Real> Vec3<R> {
+    /// The vector `(x, y, z)`.
+    #[inline(always)]
+    pub const fn new(x: R, y: R, z: R) -> Self {
+        Self { x, y, z }
+    }
+    /// The same vector in every lane.
+    #[inline(always)]
+    pub fn splat(vector: Vec3<f64>) -> Self {
+        Self::new(R::splat(vector.x), R::splat(vector.y), R::splat(vector.z))
+    }
+    /// The vector in one lane.
+    pub fn lane(self, lane: usize) -> Vec3<f64> {
+        Vec3::new(self.x.lane(lane), self.y.lane(lane), self.z.lane(lane))
+    }
+    /// Its length.
+    #[inline(always)]
+    pub fn length(self) -> R {
+        self.dot(self).sqrt()
+    }
+    /// The vector product.
+    #[inline(always)]
+    #[must_use]
+    pub fn cross(self, other: Self) -> Self {
+        Self::new(
+            self.y * other.z - self.z * other.y,
+            self.z * other.x - self.x * other.z,
+            self.x * other.y - self.y * other.x,
+        )
+    }
+    /// The products of the components.
+    #[inline(always)]
+    #[must_use]
+    pub fn times(self, other: Self) -> Self {
+        Self::new(self.x * other.x, self.y * other.y, self.z * other.z)
+    }
+    /// The quotients of the components.
+    #[inline(always)]
+    #[must_use]
+    pub fn over(self, other: Self) -> Self {
+        Self::new(self.x / other.x, self.y / other.y, self.z / other.z)
+    }
+    /// `yes` where the mask holds, `no` elsewhere.
+    #[inline(always)]
+    pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
+        Self::new(
+            R::select(mask, yes.x, no.x),
+            R::select(mask, yes.y, no.y),
+            R::select(mask, yes.z, no.z),
+        )
+    }
+    /// The vector of length one in its direction; `instead` where it has no length.
+    #[inline(always)]
+    #[must_use]
+    pub fn unit_or(self, instead: Self) -> Self {
+        let length = self.length();
+        let none = length.le(R::zero());
+        let inverse = R::splat(1.0) / R::select(none, R::splat(1.0), length);
+        Self::select(none, instead, self * inverse)
+    }
+}
+
+impl<R: Real> Add for Vec3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
+    }
+}
+impl<R: Real> Sub for Vec3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.x - other.x, self.y - other.y, self.z - other.z)
+    }
+}
+impl<R: Real> Neg for Vec3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.y, -self.z)
+    }
+}
+impl<R: Real> AddAssign for Vec3<R> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+impl<R: Real> SubAssign for Vec3<R> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+impl<R: Real> Mul<R> for Vec3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: R) -> Self {
+        Self::new(self.x * factor, self.y * factor, self.z * factor)
+    }
+}
+impl<R: Real> Linear<R> for Vec3<R> {
+    #[inline(always)]
+    fn dot(self, other: Self) -> R {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+}
+
+/// A unit quaternion: from the body frame to the outer frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quaternion<R = f64> {
+    /// Cosine of half the turn.
+    pub w: R,
+    /// The axis, as long as the sine of half the turn.
+    pub v: Vec3<R>,
+}
+
+impl<R: Real> Quaternion<R> {
+    /// No turn.
+    #[inline(always)]
+    pub fn identity() -> Self {
+        Self { w: R::splat(1.0), v: Vec3::default() }
+    }
+
+    /// The turn about an axis by its length (rad), right-handed.
+    #[inline(always)]
+    pub fn turn(turn: Vec3<R>) -> Self {
+        let half = turn.length() * R::splat(0.5);
+        let (sin, cos) = math::sin_cos(half);
+        let still = half.le(R::zero());
+        let share = sin / R::select(still, R::splat(1.0), half + half);
+        Self { w: cos, v: turn * R::select(still, R::splat(0.5), share) }
+    }
+
+    /// First `inner`, then this one.
+    #[inline(always)]
+    #[must_use]
+    pub fn after(self, inner: Self) -> Self {
+        Self {
+            w: self.w * inner.w - self.v.dot(inner.v),
+            v: inner.v * self.w + self.v * inner.w + self.v.cross(inner.v),
+        }
+    }
+
+    /// Of length one again: every product of two loses a rounding.
+    #[inline(always)]
+    #[must_use]
+    pub fn normalized(self) -> Self {
+        let inverse = R::splat(1.0) / (self.w * self.w + self.v.dot(self.v)).sqrt();
+        Self { w: self.w * inverse, v: self.v * inverse }
+    }
+
+    /// The turn back.
+    #[inline(always)]
+    #[must_use]
+    pub fn back(self) -> Self {
+        Self { w: self.w, v: -self.v }
+    }
+
+    /// The matrix that turns vectors alike, whatever rounding has made of the length: a share of 1e-16 that
+    /// always has one sign would be a drift of the angular momentum.
+    #[inline(always)]
+    pub fn matrix(self) -> Rotation3<R> {
+        let (w, Vec3 { x, y, z }) = (self.w, self.v);
+        let one = R::splat(1.0);
+        let two = R::splat(2.0) / (w * w + self.v.dot(self.v));
+        Rotation3 {
+            rows: [
+                Vec3::new(
+                    one - two * (y * y + z * z),
+                    two * (x * y - w * z),
+                    two * (x * z + w * y),
+                ),
+                Vec3::new(
+                    two * (x * y + w * z),
+                    one - two * (x * x + z * z),
+                    two * (y * z - w * x),
+                ),
+                Vec3::new(
+                    two * (x * z - w * y),
+                    two * (y * z + w * x),
+                    one - two * (x * x + y * y),
+                ),
+            ],
+        }
+    }
+}
+
+/// A matrix that turns vectors of space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rotation3<R = f64> {
+    /// Its rows.
+    pub rows: [Vec3<R>; 3],
+}
+
+impl<R: Real> Rotation3<R> {
+    /// No rotation.
+    #[inline(always)]
+    pub fn identity() -> Self {
+        Quaternion::identity().matrix()
+    }
+    /// The turned vector.
+    #[inline(always)]
+    pub fn apply(self, v: Vec3<R>) -> Vec3<R> {
+        let [x, y, z] = self.rows;
+        Vec3::new(x.dot(v), y.dot(v), z.dot(v))
+    }
+    /// The vector turned back.
+    #[inline(always)]
+    pub fn unapply(self, v: Vec3<R>) -> Vec3<R> {
+        let [x, y, z] = self.rows;
+        x * v.x + y * v.y + z * v.z
+    }
+    /// The rotation back.
+    #[inline(always)]
+    #[must_use]
+    pub fn back(self) -> Self {
+        let [a, b, c] = self.rows;
+        Self {
+            rows: [Vec3::new(a.x, b.x, c.x), Vec3::new(a.y, b.y, c.y), Vec3::new(a.z, b.z, c.z)],
+        }
+    }
+    /// First `inner`, then this one.
+    #[inline(always)]
+    #[must_use]
+    pub fn after(self, inner: Self) -> Self {
+        Self { rows: self.rows.map(|row| inner.unapply(row)) }
+    }
+}

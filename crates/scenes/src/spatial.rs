@@ -1,0 +1,85 @@
+//! Bodies of scenes in space: floors, balls, blocks on feet, barrels.
+
+use barrelstack_dynamics::solid::{Ball, Hull, Rounded};
+use barrelstack_dynamics::{
+    Body, Motion, Node, Nodes, Placed, Pose, Quaternion, Rotation3, Solid, Spatial, Twist, Vec3,
+    math,
+};
+
+/// Free fall (m/s²) as felt on a plane that falls at an angle (rad) in the direction `heading` (rad, from
+/// `x` toward `y`).
+pub fn gravity_on_slope(gravity: f64, angle: f64, heading: f64) -> Vec3 {
+    let along = gravity * math::sin(angle);
+    Vec3::new(along * math::cos(heading), along * math::sin(heading), -gravity * math::cos(angle))
+}
+
+/// A turn (rad) about the upright.
+pub fn yaw(angle: f64) -> Quaternion {
+    Quaternion::turn(Vec3::new(0.0, 0.0, angle))
+}
+
+/// A solid at the center of mass of its body.
+pub fn centered(surface: Solid) -> Placed<Spatial> {
+    Placed { surface, offset: Vec3::default(), rotation: Rotation3::identity() }
+}
+
+/// A free body without boundaries, of a mass (kg) and principal moments of inertia (kg·m²).
+pub fn free(name: &str, mass: f64, inertia: Vec3, position: Vec3) -> Body<Spatial> {
+    Body {
+        name: name.into(),
+        motion: Motion::Free,
+        mass,
+        inertia,
+        damping: None,
+        pose: Pose { position, orientation: Quaternion::identity() },
+        twist: Twist::default(),
+        surfaces: Vec::new(),
+        nodes: Vec::new(),
+        faces: Vec::new(),
+    }
+}
+
+/// The ground with what is fixed to it.
+pub fn ground_of(surfaces: Vec<Placed<Spatial>>) -> Body<Spatial> {
+    // No force moves it, so its mass is of no account.
+    let body = free("ground", 1.0, Vec3::new(1.0, 1.0, 1.0), Vec3::default());
+    Body { motion: Motion::Prescribed, surfaces, ..body }
+}
+
+/// A level floor at `z = 0`.
+pub fn floor() -> Body<Spatial> {
+    ground_of(vec![centered(Solid::HalfSpace)])
+}
+
+/// A free homogeneous ball.
+pub fn ball(radius: f64, mass: f64, center: Vec3) -> Body<Spatial> {
+    let inertia = 0.4 * mass * radius * radius;
+    Body {
+        surfaces: vec![centered(Solid::Ball(Ball { radius }))],
+        nodes: vec![Nodes::Rolling { center: Vec3::default(), radius, tributary_length: 1.0 }],
+        ..free("ball", mass, Vec3::new(inertia, inertia, inertia), center)
+    }
+}
+
+/// Points (m) of a body that touch: feet, legs, corners.
+pub fn points(points: &[Vec3]) -> Nodes<Spatial> {
+    Nodes::Fixed(points.iter().map(|p| Node { position: *p, tributary_length: 1.0 }).collect())
+}
+
+/// The four corners (m) of a rectangle of half sides `x` and `y` at the height `z`.
+pub fn corners(x: f64, y: f64, z: f64) -> [Vec3; 4] {
+    [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(a, b)| Vec3::new(a * x, b * y, z))
+}
+
+/// A free capsule or barrel that touches, and can be touched, with its center of mass in its middle.
+pub fn solid(name: &str, hull: Hull, mass: f64, inertia: Vec3, position: Vec3) -> Body<Spatial> {
+    let surface = match hull {
+        Hull::Capsule(capsule) => Solid::Capsule(capsule),
+        Hull::Barrel(barrel) => Solid::Barrel(barrel),
+    };
+    Body {
+        surfaces: vec![centered(surface)],
+        nodes: vec![Nodes::Whole(Rounded::centered(hull))],
+        ..free(name, mass, inertia, position)
+    }
+}

@@ -1,0 +1,162 @@
+//! A body that turns freely: Euler's equations and their solution in elliptic functions.
+
+use std::ops::ControlFlow;
+
+use barrelstack_dynamics::space::Linear;
+use barrelstack_dynamics::{
+    FrictionLaw, Method, NormalLaw, Quaternion, Space, Spatial, Still, Vec3,
+};
+
+use super::{problem, scene};
+use crate::scene::Scene;
+use crate::spatial::free;
+use crate::{Failure, Outcome, Problem, Tolerance};
+
+const SOURCE: &str = "Euler's equations; Landau and Lifshitz, Mechanics, § 37";
+
+/// Principal moments of inertia (kg·m²).
+const INERTIA: Vec3 = Vec3::new(2.0, 5.0, 6.0);
+/// Spin (rad/s) at the start: near the middle axis, about which no body stays.
+const SPIN: Vec3 = Vec3::new(0.2, 3.0, 0.1);
+
+pub(super) fn problems() -> Vec<Problem> {
+    let mut list = vec![spin(), attitude()];
+    for (method, order) in [
+        (Method::SemiImplicitEuler, 2.0),
+        (Method::VelocityVerlet, 2.0),
+        (Method::RungeKutta4, 4.0),
+    ] {
+        list.push(convergence(method, order));
+        list.push(momentum(method));
+    }
+    list.push(energy());
+    list
+}
+
+fn body(method: Method) -> Result<Scene<Spatial>, Failure> {
+    let mut body = free("body", 1.0, INERTIA, Vec3::default());
+    body.twist.angular = SPIN;
+    let nothing = NormalLaw::KelvinVoigt { stiffness: 1.0, damping: 0.0 };
+    let mut scene = scene(vec![body], nothing, FrictionLaw::Frictionless, Vec3::default())?;
+    scene.by(method);
+    Ok(scene)
+}
+
+/// The spin (rad/s), seen from the body.
+fn body_spin(scene: &Scene<Spatial>) -> Vec3 {
+    let rotation = Spatial::<f64>::rotation(scene.state.poses[0].orientation);
+    rotation.unapply(scene.state.twists[0].angular)
+}
+
+fn spin() -> Problem {
+    problem(
+        "space-free/spin",
+        "asymmetric body that tumbles for 20 s, Runge–Kutta 4 at 1 ms",
+        SOURCE,
+        ("spin about its middle axis", "rad/s"),
+        (2.709_578_90, Tolerance::Absolute(1e-7)),
+        Box::new(|_| {
+            let mut scene = body(Method::RungeKutta4)?;
+            scene.run(&Still, 1e-3, 20.0)?;
+            let spin = body_spin(&scene);
+            let off = spin - Vec3::new(1.037_479_57, 2.709_578_90, 1.022_919_29);
+            let note = format!("spin off by {:.1e} rad/s in all", off.length());
+            Ok(Outcome::of(spin.y).noted(note))
+        }),
+    )
+}
+
+fn attitude() -> Problem {
+    problem(
+        "space-free/attitude",
+        "asymmetric body that tumbles for 10 s, Runge–Kutta 4 at 1 ms",
+        SOURCE,
+        ("how far its quaternion is from the exact one, or its negative", ""),
+        (0.0, Tolerance::Absolute(1e-7)),
+        Box::new(|_| {
+            let mut scene = body(Method::RungeKutta4)?;
+            scene.run(&Still, 1e-3, 10.0)?;
+            let exact = Quaternion {
+                w: 0.238_640_12,
+                v: Vec3::new(-0.053_627_58, -0.965_432_75, -0.090_080_98),
+            };
+            let found = scene.state.poses[0].orientation;
+            let off = |sign: f64| {
+                let (w, v) = (found.w - sign * exact.w, found.v - exact.v * sign);
+                (w * w + v.dot(v)).sqrt()
+            };
+            Ok(Outcome::of(off(1.0).min(off(-1.0))))
+        }),
+    )
+}
+
+/// How the body is turned after 7 s in steps of a length (s).
+fn turned(method: Method, step: f64) -> Result<Quaternion, Failure> {
+    let mut scene = body(method)?;
+    scene.run(&Still, step, 7.0)?;
+    Ok(scene.state.poses[0].orientation)
+}
+
+fn convergence(method: Method, order: f64) -> Problem {
+    problem(
+        format!("space-free/order-{}", method.name()),
+        format!("asymmetric body that tumbles for 7 s, {}", method.name()),
+        SOURCE,
+        ("order of convergence of its attitude, counted up to that of the method", ""),
+        (order, Tolerance::Absolute(0.1)),
+        Box::new(move |_| {
+            let [a, b, c] = [0.01, 0.005, 0.0025].map(|step| turned(method, step));
+            let apart = |p: Quaternion, q: Quaternion| {
+                Spatial::<f64>::spin_magnitude(Spatial::<f64>::turn_between(p, q))
+            };
+            let (b, coarse) = (b?, a?);
+            let (first, second) = (apart(coarse, b), apart(b, c?));
+            let found = (first / second).log2();
+            let note = format!(
+                "order {found:.2}: {first:.2e}, {second:.2e} rad between steps of 10, 5 and 2.5 ms"
+            );
+            // The error of fourth order is so small here that the one of fifth order still shows.
+            Ok(Outcome::of(found.min(order)).noted(note))
+        }),
+    )
+}
+
+fn angular_momentum(scene: &Scene<Spatial>) -> Vec3 {
+    let rotation = Spatial::<f64>::rotation(scene.state.poses[0].orientation);
+    Spatial::<f64>::momentum(INERTIA, rotation, scene.state.twists[0].angular)
+}
+
+fn momentum(method: Method) -> Problem {
+    problem(
+        format!("space-free/momentum-{}", method.name()),
+        format!("asymmetric body that tumbles for 100 s, {} at 1 ms", method.name()),
+        "conservation of angular momentum",
+        ("change of the angular momentum, as a share", ""),
+        (0.0, Tolerance::Absolute(1e-12)),
+        Box::new(move |_| {
+            let mut scene = body(method)?;
+            let start = angular_momentum(&scene);
+            scene.run(&Still, 1e-3, 100.0)?;
+            Ok(Outcome::of((angular_momentum(&scene) - start).length() / start.length()))
+        }),
+    )
+}
+
+fn energy() -> Problem {
+    problem(
+        "space-free/energy",
+        "asymmetric body that tumbles for 100 s, velocity Verlet at 1 ms",
+        "conservation of energy",
+        ("largest change of its energy, as a share", ""),
+        (0.0, Tolerance::Absolute(1e-6)),
+        Box::new(|_| {
+            let mut scene = body(Method::VelocityVerlet)?;
+            let mut worst = 0.0_f64;
+            scene.watch(&Still, 1e-3, 100.0, |_, _, books| {
+                worst = worst.max((books.summary(0).kinetic / 22.57 - 1.0).abs());
+                ControlFlow::Continue(())
+            })?;
+            Ok(Outcome::of(worst))
+        }),
+    )
+}

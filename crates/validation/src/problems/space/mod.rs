@@ -1,0 +1,77 @@
+//! Bodies in space: turning freely, rolling, sliding, standing on feet, and barrels.
+
+mod barrels;
+mod blocks;
+mod free;
+mod rolling;
+mod sliding;
+
+use barrelstack_dynamics::contact::restitution;
+use barrelstack_dynamics::{Body, FrictionLaw, NormalLaw, Spatial, Vec3};
+
+use crate::problem::Run;
+use crate::scene::{Scene, coulomb, interface};
+use crate::{Failure, Problem, Tolerance};
+
+/// Acceleration of free fall (m/s²) of these problems.
+const G: f64 = 9.81;
+
+/// Time step (s).
+const STEP: f64 = 2e-5;
+
+/// Stiffness (N/m) of a contact, along the normal and of the stick.
+const STIFFNESS: f64 = 1e8;
+
+/// The problems of these theories.
+pub(super) fn problems() -> Vec<Problem> {
+    let theories = [
+        free::problems(),
+        rolling::problems(),
+        sliding::problems(),
+        blocks::problems(),
+        barrels::problems(),
+    ];
+    theories.into_iter().flatten().collect()
+}
+
+/// A problem whose full and fast forms are one.
+fn problem(
+    id: impl Into<String>,
+    title: impl Into<String>,
+    source: &str,
+    (quantity, unit): (&'static str, &'static str),
+    (exact, tolerance): (f64, Tolerance),
+    run: Run,
+) -> Problem {
+    Problem {
+        id: id.into(),
+        title: title.into(),
+        source: source.into(),
+        quantity,
+        unit,
+        exact,
+        tolerance,
+        fast: None,
+        run,
+    }
+}
+
+/// A normal law of a stiffness (N/m), for a mass (kg) that comes to rest on it.
+fn firm(stiffness: f64, mass: f64) -> NormalLaw {
+    NormalLaw::KelvinVoigt { stiffness, damping: restitution::damping(stiffness, 0.7, mass) }
+}
+
+/// Friction of a coefficient, whose sticks have a stiffness (N/m) and damp a mass (kg).
+fn rough(coefficient: f64, stiffness: f64, mass: f64) -> FrictionLaw {
+    coulomb(coefficient, stiffness, restitution::damping(stiffness, 0.5, mass))
+}
+
+/// Bodies with one interface.
+fn scene(
+    bodies: Vec<Body<Spatial>>,
+    normal: NormalLaw,
+    friction: FrictionLaw,
+    gravity: Vec3,
+) -> Result<Scene<Spatial>, Failure> {
+    Ok(Scene::new(bodies, interface(normal, friction), gravity)?)
+}
