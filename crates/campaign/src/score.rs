@@ -53,7 +53,7 @@ impl Capacity {
             Err(FitError::NothingFailed { .. }) => return Ok(Self::Above(highest)),
             Err(FitError::EverythingFailed { .. }) => return Ok(Self::Below(lowest)),
             Err(FitError::Separated { above, below }) => return Ok(Self::Between(*above, *below)),
-            Err(other) => return Err(other.clone()),
+            Err(other) => return Err(*other),
         };
         let at = fit.curve.intensity(protocol.chance);
         // A curve says nothing of shaking that nobody met.

@@ -1,5 +1,6 @@
 //! The score sheet: the number, every state in every direction, the curves, the protocol.
 
+use barrelstack_fragility::Stripe;
 use barrelstack_report::{
     Axis, Block, Cell, Document, Figure, FigureKind, Plot, Rating, Series, Table, Verdict,
 };
@@ -143,7 +144,7 @@ fn chart(sheet: &Sheet) -> Figure {
         } else {
             let stripes = &row.curve.stripes;
             let x: Vec<f64> = stripes.iter().map(|stripe| 100.0 * stripe.intensity).collect();
-            let y = stripes.iter().map(|stripe| stripe.fraction());
+            let y = stripes.iter().map(Stripe::fraction);
             points(&label(row), &x, y, row.curve.intervals.iter().copied(), index)
         }
     });
