@@ -132,7 +132,7 @@ fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
         run.is_ok_and(|status| status.success())
     };
     for name in needed.iter().filter(|name| !there(name)) {
-        let alone: &[&str] = if **name == OPENQUAKE { &["--no-deps"] } else { &[] };
+        let alone: &[&str] = if **name == *OPENQUAKE { &["--no-deps"] } else { &[] };
         if !pip(&[alone, &[*name]].concat()) {
             // Tests say by themselves what they lack.
             println!("pip cannot install {name}; is there a net?");
