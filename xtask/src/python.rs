@@ -8,7 +8,7 @@ use anyhow::{Context as _, bail};
 use crate::steps::cargo;
 
 /// What the tests need beside the package.
-const TESTS: [&str; 14] = [
+const TESTS: [&str; 15] = [
     "maturin>=1.9,<2",
     "numpy",
     "pytest",
@@ -23,10 +23,32 @@ const TESTS: [&str; 14] = [
     "nbformat",
     "ipykernel",
     "mkdocs>=1.6,<2",
+    "distributed",
 ];
 
 /// What some of them need that takes long to install.
-const HEAVY: [&str; 4] = ["obspy", "openquake-engine", "distributed", "dask-jobqueue"];
+const HEAVY: [&str; 2] = ["obspy", "dask-jobqueue"];
+
+/// OpenQuake, which with all that it asks for has to build GDAL: its readers need none of that.
+const OPENQUAKE: &str = "openquake-engine";
+
+/// What its readers need.
+const READERS: [&str; 14] = [
+    "alpha_shapes",
+    "decorator",
+    "fiona",
+    "h3",
+    "h5py",
+    "numba",
+    "psutil",
+    "pyproj",
+    "pyyaml",
+    "pyzmq",
+    "requests",
+    "scipy",
+    "shapely",
+    "toml",
+];
 
 /// The step of the test command, where there is a Python; else what is missing.
 pub(crate) fn find(root: &Path) -> Result<Command, String> {
@@ -93,8 +115,10 @@ fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
         let base = interpreter().map_err(anyhow::Error::msg)?;
         checked(Command::new(base).args(["-m", "venv"]).arg(&folder), "the environment")?;
     }
-    let needed: Vec<&str> =
-        if heavy { TESTS.iter().chain(&HEAVY).copied().collect() } else { TESTS.to_vec() };
+    let mut needed = TESTS.to_vec();
+    if heavy {
+        needed.extend(HEAVY.iter().chain(&READERS).chain([&OPENQUAKE]));
+    }
     let pip = |words: &[&str]| {
         let mut pip = inside(&python);
         pip.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet"]).args(words);
@@ -108,7 +132,8 @@ fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
         run.is_ok_and(|status| status.success())
     };
     for name in needed.iter().filter(|name| !there(name)) {
-        if !pip(&[name]) {
+        let alone: &[&str] = if **name == *OPENQUAKE { &["--no-deps"] } else { &[] };
+        if !pip(&[alone, &[*name]].concat()) {
             // Tests say by themselves what they lack.
             println!("pip cannot install {name}; is there a net?");
         }

@@ -6,6 +6,7 @@ mod observed;
 mod picture;
 mod sampler;
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use barrelstack::ensemble::{Prepared, Width};
@@ -126,17 +127,17 @@ struct Trial<'a> {
 /// [`super::response`].
 ///
 /// The result is a function of the observations, the scenarios and the settings; the number of threads
-/// is not an input. `tell` hears how many simulations are done, of how many.
+/// is not an input. `tell` hears how many simulations are done, of how many, from several threads, and may stop them.
 ///
 /// # Errors
 /// When a scenario is no stack of linear laws or cannot be simulated, does not go with what was seen,
-/// or when nothing within the range is like it.
+/// or when nothing within the range is like it; and when it was stopped.
 pub fn collapse(
     observations: &Observations,
     scenarios: &[Scenario],
     parameters: &[Parameter],
     settings: &Settings,
-    tell: &(dyn Fn(usize, usize) + Sync),
+    tell: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
 ) -> Result<Calibration, CalibrateError> {
     let trials = trials(observations, scenarios, parameters, settings)?;
     let Some(lead) = trials.first() else { return Ok(Calibration::default()) };
@@ -144,6 +145,7 @@ pub fn collapse(
     let point = |draw: &Draw| draw.point.iter().map(|x| reach * x).collect::<Vec<f64>>();
     let of = settings.simulations * trials.len();
     let mut courses: Vec<Option<Seen>> = Vec::new();
+    let mut stopped = false;
     let posterior = sample(parameters.len(), settings.simulations, settings.seed, |draws| {
         let before = courses.len();
         let batch: Vec<Prepared> = draws
@@ -159,8 +161,12 @@ pub fn collapse(
                 trials.iter().map(built).collect::<Vec<_>>()
             })
             .collect();
-        let seen =
-            simulate(batch, settings.lanes, &|done| tell(before + done, of.max(before + done)));
+        let told = |done| tell(before + done, of.max(before + done));
+        let seen = if stopped { None } else { simulate(batch, settings.lanes, &told) };
+        let Some(seen) = seen else {
+            stopped = true;
+            return vec![f64::NEG_INFINITY; draws.len()];
+        };
         let logs = seen
             .chunks_exact(trials.len())
             .map(|tests| {
@@ -175,6 +181,9 @@ pub fn collapse(
         courses.extend(seen);
         logs
     });
+    if stopped {
+        return Err(CalibrateError::Stopped);
+    }
     let posterior = posterior.ok_or_else(|| TableError::Unsuited {
         file: observations.file.clone(),
         reason: "no simulation within the range runs to its end: start from a sounder scenario"

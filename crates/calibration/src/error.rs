@@ -15,4 +15,7 @@ pub enum CalibrateError {
     /// The simulation that the fit starts from fails.
     #[error(transparent)]
     Run(#[from] RunFailure),
+    /// It was told to stop: what a part of the simulations says is no estimate.
+    #[error("the simulations were stopped")]
+    Stopped,
 }

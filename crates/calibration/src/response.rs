@@ -8,7 +8,7 @@ use barrelstack_dynamics::math;
 use barrelstack_fragility::student_quantile;
 use barrelstack_report::{Axis, Figure};
 
-use self::simulate::{Measured, Simulator};
+use self::simulate::{Measured, Simulator, Tell};
 use super::figures::{figure, fitted};
 use super::least_squares::{Fit, Start, condition, fit, normalized};
 use super::result::{inseparable, short};
@@ -46,21 +46,24 @@ const ILL: f64 = 1e3;
 /// Meant as 95 % intervals, these have held the truth in about 90 of 100 made records (89 to 94), for a reason
 /// that is not known; the result warns of it.
 ///
+/// `tell` hears how many simulations were begun, from several threads, and may stop them.
+///
 /// The fit starts from the scenario and finds the minimum next to it.
 /// Impacts, slips and falls make responses chaotic within seconds: short windows of mild shaking that
 /// still slide a little keep the response smooth.
 ///
 /// # Errors
 /// When the scenario is no stack of linear laws, the table does not go with it, or the first
-/// simulation fails.
+/// simulation fails; and when it was stopped.
 pub fn response(
     scenario: &Scenario,
     table: &Table,
     parameters: &[Parameter],
     until: Option<f64>,
+    tell: &Tell<'_>,
 ) -> Result<Calibration, CalibrateError> {
     let measured = Measured::read(table, until)?;
-    let simulator = Simulator::new(scenario, &measured, parameters)?;
+    let simulator = Simulator::new(scenario, &measured, parameters, tell)?;
     let simulated = simulator.first()?;
     let rows = measured.times.len();
     let values = rows * measured.channels.len();
@@ -177,7 +180,11 @@ fn weighted(
     let evaluate = |points: &[Vec<f64>]| -> Vec<Option<Vec<f64>>> {
         simulator.batch(points).into_iter().map(|found| found.map(residuals)).collect()
     };
-    fit(start, &evaluate).ok_or_else(|| {
+    let found = fit(start, &evaluate);
+    if simulator.stopped() {
+        return Err(CalibrateError::Stopped);
+    }
+    found.ok_or_else(|| {
         CalibrateError::Run(RunFailure::Duration(
             "the stack does not stand for values 1 % from those of the scenario: start from a sounder \
              scenario"

@@ -17,7 +17,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use barrelstack::check;
-use barrelstack::variants::planes;
+use barrelstack::compare;
+use barrelstack::variants::{Asked, Told, answer, planes};
 use barrelstack_report::{Block, Document};
 
 use crate::decision::{Cases, DecisionError, SiteHazard};
@@ -172,9 +173,30 @@ impl Ranking {
         ProtectDocument::of(self)
     }
 
-    /// Makes the page, with blocks that show before and after.
-    pub fn describe(&mut self, before_and_after: Vec<Block>) {
-        self.document = page::document(self, before_and_after);
+    /// Runs the stack as it is and with the best protection under the motion of the scenario, and shows them side by
+    /// side on the page; whether these runs went to their ends.
+    ///
+    /// # Errors
+    /// When one of them cannot be run.
+    pub fn show_before_and_after(
+        &mut self,
+        tell: &mut (dyn FnMut(Told) -> ControlFlow<()> + Send),
+    ) -> Result<bool, ProtectError> {
+        let Some(best) = self.best() else { return Ok(true) };
+        let own = &self.request.scenario;
+        let protected = best.protection.on(own)?;
+        let mut answers = Vec::new();
+        for (name, scenario) in [("as it is", own), (&*best.protection.name, &protected)] {
+            let answer = answer(scenario, Asked::Typical, tell)?;
+            if answer.decides.run.interrupted {
+                return Ok(false);
+            }
+            answers.push((name.to_owned(), answer));
+        }
+        let compared = compare::document(&compare::sides(answers));
+        let players = compared.blocks.into_iter().filter(|one| matches!(one, Block::Players(_)));
+        self.document = page::document(self, players.collect());
+        Ok(true)
     }
 }
 
@@ -312,7 +334,7 @@ pub fn protect(
     let not_tried = search.not_tried;
     let mut ranking =
         Ranking { request: request.clone(), all, not_tried, runs, document: Document::default() };
-    ranking.describe(Vec::new());
+    ranking.document = page::document(&ranking, Vec::new());
     Ok(ranking)
 }
 

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
+use barrelstack::variants;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::interrupt::Interrupt;
@@ -50,6 +51,16 @@ impl Progress {
     /// So many of so many things are done.
     pub(crate) fn counted(&self, done: u64, of: u64, things: &str) -> ControlFlow<()> {
         self.told(done as f64, of as f64, || format!("{done} of {of} {things}"))
+    }
+
+    /// A run and its variants have come this far.
+    pub(crate) fn told_of(&self, told: variants::Told) -> ControlFlow<()> {
+        match told {
+            variants::Told::Run(reached) => self.at(reached),
+            variants::Told::Variants { done, of } => {
+                self.counted(done as u64, of as u64, "variants")
+            }
+        }
     }
 
     /// So many of so many things are done of a part of the work, after which there may be others.

@@ -6,8 +6,11 @@
 
 #![allow(clippy::needless_pass_by_value, reason = "functions take what the interpreter gives")]
 
+mod ask;
+mod calibrate;
 mod errors;
 mod listen;
+mod page;
 mod record;
 mod run;
 mod scenario;
@@ -19,6 +22,15 @@ mod view;
 /// The library for `barrelstack`, the package.
 #[pyo3::pymodule]
 mod _native {
+    #[pymodule_export]
+    use crate::ask::{compare, heights, protect, reproduce};
+    #[pymodule_export]
+    use crate::calibrate::{
+        calibrate_collapse, calibrate_drop, calibrate_friction, calibrate_response,
+        calibrate_stiffness,
+    };
+    #[pymodule_export]
+    use crate::page::Page;
     #[pymodule_export]
     use crate::record::{Record, formats, measured, standard_periods};
     #[pymodule_export]

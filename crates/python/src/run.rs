@@ -6,18 +6,20 @@ use std::sync::Arc;
 use barrelstack::assemble::PartKind;
 use barrelstack::ensemble;
 use barrelstack::export::Folder;
+use barrelstack::render::{Part, RenderFolder, Rendering};
 use barrelstack::report;
 use barrelstack::variants::{Answer, Shown};
 use barrelstack::verify::Verification;
 use barrelstack::watch::StressEnvelope;
 use barrelstack_report::column::{Column, ColumnSpec, Role, ValueKind, Values};
-use barrelstack_report::{Paper, document_pdf, html};
+use barrelstack_report::{Format, document_pdf, html};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::errors;
+use crate::page::paper_of;
 use crate::scenario::bytes;
 use crate::table::Table;
 use crate::view::{rows, view};
@@ -59,6 +61,23 @@ impl Run {
     fn verification(&self) -> Option<&Verification> {
         self.repeated.as_deref()
     }
+}
+
+/// Those of all that are named, in their own order; all of them where none is.
+fn chosen<T: Copy, const N: usize>(
+    what: &str,
+    names: &[String],
+    all: [T; N],
+    name: impl Fn(T) -> &'static str,
+) -> PyResult<Vec<T>> {
+    if let Some(other) = names.iter().find(|given| !all.iter().any(|one| name(*one) == **given)) {
+        let known = all.map(&name).join(", ");
+        return Err(PyValueError::new_err(format!(
+            "there is no {what} {other:?}; there are {known}"
+        )));
+    }
+    let asked = |one: &T| names.is_empty() || names.iter().any(|given| *given == name(*one));
+    Ok(all.into_iter().filter(asked).collect())
 }
 
 fn missing(what: &str) -> PyErr {
@@ -218,19 +237,37 @@ impl Run {
     }
 
     fn pdf<'py>(&self, py: Python<'py>, paper: &str) -> PyResult<Bound<'py, PyBytes>> {
-        let paper = match paper {
-            "a4" => Paper::A4,
-            "letter" => Paper::Letter,
-            other => {
-                return Err(PyValueError::new_err(format!(
-                    "paper is \"a4\" or \"letter\", found \"{other}\""
-                )));
-            }
-        };
+        let paper = paper_of(paper)?;
         let made = py.detach(|| {
             document_pdf(&report::answer_document(&self.answer, self.verification()), paper)
         });
         Ok(bytes(py, &made))
+    }
+
+    /// Writes parts as pictures, films and series: the place and the count of files of each.
+    fn render(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        parts: Vec<String>,
+        formats: Vec<String>,
+        dpi: f64,
+        paper: &str,
+        rate: f64,
+        between: Option<[f64; 2]>,
+        largest: u32,
+        overwrite: bool,
+    ) -> PyResult<Vec<(PathBuf, usize)>> {
+        let parts = chosen("part", &parts, Part::ALL, Part::name)?;
+        let formats = chosen("format", &formats, Format::ALL, Format::extension)?;
+        let how = Rendering { formats, dpi, paper: paper_of(paper)?, rate, between, largest };
+        how.check(self.run()).map_err(PyValueError::new_err)?;
+        let written = py.detach(|| {
+            let folder = RenderFolder::prepare(&folder, &parts, overwrite)?;
+            folder.write(self.run(), &self.shown().summary, &how)
+        });
+        let written = written.map_err(errors::general)?;
+        Ok(written.into_iter().map(|one| (one.place, one.files)).collect())
     }
 
     /// Writes the files that the command writes.

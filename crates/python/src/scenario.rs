@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::errors;
-use crate::listen::listening;
+use crate::listen::{Hear, listening};
 use crate::record::Record;
 use crate::run::{Glance, Run};
 use crate::value;
@@ -114,19 +114,7 @@ impl Scenario {
         repeats: bool,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Run> {
-        let mut scenario = (*self.inner).clone();
-        let count = match &mut scenario.scene {
-            Scene::Stack { imperfections, .. } => {
-                imperfections.variants = variants.unwrap_or(imperfections.variants);
-                imperfections.variants
-            }
-            Scene::Free(_) if variants.is_some_and(|count| count > 0) => {
-                return Err(PyValueError::new_err(
-                    "a free scene has no variants, since nothing says how it may differ",
-                ));
-            }
-            Scene::Free(_) => 0,
-        };
+        let (scenario, count) = with_variants(&self.inner, variants)?;
         let asked = match variant {
             Some(number) if number > count => {
                 return Err(PyValueError::new_err(format!(
@@ -138,10 +126,7 @@ impl Scenario {
             None => Asked::Typical,
         };
         let answer = listening(py, progress, |hear| {
-            let mut answer = variants::answer(&scenario, asked, &mut |told| match told {
-                Told::Variants { done, of } => hear.tell(done as f64, of as f64, "variants"),
-                Told::Run(now) => hear.tell(now.time, now.end_time, "s"),
-            })?;
+            let mut answer = variants::answer(&scenario, asked, &mut |now| told(hear, now))?;
             if remedy && !hear.stopped() {
                 let found = variants::remedy(&answer, &|done| {
                     hear.tell(done as f64, f64::NAN, "runs of what would have helped")
@@ -201,6 +186,35 @@ impl Scenario {
             (None, Ok(answer)) => Ok(Run::of(answer, None)),
             (None, Err(error)) => Err(errors::run(&error, &self.inner)),
         }
+    }
+}
+
+/// A scenario with so many variants, and how many it has.
+pub(crate) fn with_variants(
+    of: &barrelstack::Scenario,
+    variants: Option<u32>,
+) -> PyResult<(barrelstack::Scenario, u32)> {
+    let mut scenario = of.clone();
+    let count = match &mut scenario.scene {
+        Scene::Stack { imperfections, .. } => {
+            imperfections.variants = variants.unwrap_or(imperfections.variants);
+            imperfections.variants
+        }
+        Scene::Free(_) if variants.is_some_and(|count| count > 0) => {
+            return Err(PyValueError::new_err(
+                "a free scene has no variants, since nothing says how it may differ",
+            ));
+        }
+        Scene::Free(_) => 0,
+    };
+    Ok((scenario, count))
+}
+
+/// A run and its variants have come this far.
+pub(crate) fn told(hear: &Hear, now: Told) -> ControlFlow<()> {
+    match now {
+        Told::Variants { done, of } => hear.tell(done as f64, of as f64, "variants"),
+        Told::Run(now) => hear.tell(now.time, now.end_time, "s"),
     }
 }
 

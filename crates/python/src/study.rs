@@ -14,6 +14,7 @@ use pyo3::prelude::*;
 
 use crate::errors;
 use crate::listen::{Hear, listening};
+use crate::page::Page;
 use crate::table::Table;
 
 /// A study of the library.
@@ -159,18 +160,17 @@ fn request(hazard: Option<&Path>, years: Option<f64>) -> PyResult<Request> {
     Ok(Request { hazard, years })
 }
 
-/// What the study of a folder says: as JSON, and as a page.
+/// What the study of a folder says.
 #[pyfunction]
 pub(crate) fn decision(
     py: Python<'_>,
     folder: PathBuf,
     hazard: Option<PathBuf>,
     years: Option<f64>,
-) -> PyResult<(String, String)> {
+) -> PyResult<Page> {
     let request = request(hazard.as_deref(), years)?;
     let (decision, _) = py.detach(|| decide_folder(&folder, &request)).map_err(errors::told)?;
-    let numbers = serde_json::to_string(&decision.to_document()).map_err(errors::general)?;
-    Ok((numbers, decision.html()))
+    Page::of(&decision.to_document(), decision.document)
 }
 
 /// The curves of the study of a folder for other programs: name and text of each file, and what is missing.

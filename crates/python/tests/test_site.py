@@ -16,7 +16,7 @@ from conftest import ROOT
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    for needed in ("mkdocs", "nbclient", "nbformat", "ipykernel", "matplotlib", "polars", "pandas"):
+    for needed in ("mkdocs", "nbclient", "nbformat", "ipykernel", "matplotlib", "polars", "pandas", "distributed"):
         pytest.importorskip(needed, reason=f"no {needed}")
     kept = os.environ.get("BARRELSTACK_SITE")
     folder = Path(kept) if kept else tmp_path_factory.mktemp("site")
@@ -34,7 +34,7 @@ def test_the_site_is_built_without_a_warning(site: Path) -> None:
 
 def test_every_notebook_runs_and_draws(site: Path) -> None:
     books = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
-    assert len(books) >= 4
+    assert len(books) == 10
     for book in books:
         assert list((site / "source" / "notebooks").glob(f"{book.stem}-*.png")), book.stem
 

@@ -21,6 +21,7 @@ mod study;
 mod tornado;
 mod vary;
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use barrelstack::ground::GroundError;
@@ -65,6 +66,9 @@ pub enum ReproduceError {
         /// The case.
         case: String,
     },
+    /// It was told to stop: half of the table would say nothing.
+    #[error("the runs were stopped")]
+    Stopped,
 }
 
 impl From<ScenarioError> for ReproduceError {
@@ -87,7 +91,7 @@ impl From<GroundError> for ReproduceError {
 /// the motion is compared.
 /// `studies` asks for the studies too: what moves each case, and contact parameters 10 % off; they are
 /// most of the work.
-/// `tell` hears how many runs are done, of how many.
+/// `tell` hears how many runs are done, of how many, from several threads, and may stop them.
 ///
 /// The result depends on the program, the platform and the record alone.
 ///
@@ -96,7 +100,7 @@ impl From<GroundError> for ReproduceError {
 pub fn reproduce(
     record: Option<&Path>,
     studies: bool,
-    tell: &(dyn Fn(usize, usize) + Sync),
+    tell: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
 ) -> Result<Reproduction, ReproduceError> {
     let cases = cases::Cases::new(record)?;
     let plan = results::Plan::new(&cases, studies);

@@ -1,5 +1,8 @@
 //! Many runs on all cores, with results in the order of the jobs.
 
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
 use barrelstack::pool;
 use barrelstack::run::Run;
 use barrelstack::scenario::Scenario;
@@ -25,19 +28,42 @@ pub(super) struct Done {
     pub(super) run: Option<Box<Run>>,
 }
 
-/// Runs all jobs on all cores, the first first; `tell` hears how many are done, of how many.
+/// Runs all jobs on all cores, the first first; `tell` hears again and again how many are done, of how many, and may
+/// stop them.
 pub(super) fn run_all(
     jobs: &[Job],
-    tell: &(dyn Fn(usize, usize) + Sync),
+    tell: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
 ) -> Result<Vec<Done>, ReproduceError> {
-    pool::map(jobs, run_one, &|done| tell(done, jobs.len())).into_iter().collect()
+    let done = AtomicUsize::new(0);
+    let stopped = AtomicBool::new(false);
+    let told = || {
+        if tell(done.load(Ordering::Relaxed), jobs.len()).is_break() {
+            stopped.store(true, Ordering::Relaxed);
+        }
+        if stopped.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let finished = |now| {
+        done.fetch_max(now, Ordering::Relaxed);
+        let _: ControlFlow<()> = told();
+    };
+    pool::map(jobs, |job| run_one(job, &told), &finished).into_iter().collect()
 }
 
-fn run_one(job: &Job) -> Result<Done, ReproduceError> {
-    let run = job.scenario.run().map_err(|source| ReproduceError::Run {
+fn run_one(job: &Job, told: &dyn Fn() -> ControlFlow<()>) -> Result<Done, ReproduceError> {
+    if told().is_break() {
+        return Err(ReproduceError::Stopped);
+    }
+    let run = job.scenario.run_watched(&mut |_| told()).map_err(|source| ReproduceError::Run {
         case: job.label.clone(),
         source: Box::new(source),
     })?;
+    if run.interrupted {
+        return Err(ReproduceError::Stopped);
+    }
     let summary = Summary::of(&run, None);
     Ok(Done { summary, run: job.keep.then(|| Box::new(run)) })
 }

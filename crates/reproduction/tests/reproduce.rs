@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
 use std::io::Write as _;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -13,7 +14,7 @@ use barrelstack_reproduction::{
 /// The page without the paper's record and without the studies, made once.
 fn found() -> &'static Reproduction {
     static FOUND: LazyLock<Reproduction> =
-        LazyLock::new(|| reproduce(None, false, &|_, _| ()).unwrap());
+        LazyLock::new(|| reproduce(None, false, &|_, _| ControlFlow::Continue(())).unwrap());
     &FOUND
 }
 
@@ -130,7 +131,7 @@ fn every_figure_of_the_paper_is_drawn() {
 #[test]
 #[cfg_attr(debug_assertions, ignore = "runs every case a second time; run in release")]
 fn the_page_is_the_same_every_time() {
-    let again = reproduce(None, false, &|_, _| ()).unwrap();
+    let again = reproduce(None, false, &|_, _| ControlFlow::Continue(())).unwrap();
     assert_eq!(html(&again), html(found()));
     assert_eq!(markdown(&again, "figures"), markdown(found(), "figures"));
 }

@@ -41,6 +41,14 @@ impl Part {
     pub const ALL: [Self; 5] =
         [Self::Figures, Self::Report, Self::Animation, Self::Frames, Self::Paraview];
 
+    /// Its name, as it is asked for.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Report => "report",
+            other => other.place(),
+        }
+    }
+
     /// The name of its folder, or of its file.
     pub fn place(self) -> &'static str {
         match self {
@@ -80,6 +88,40 @@ impl Default for Rendering {
             rate: 20.0,
             between: None,
             largest: 480,
+        }
+    }
+}
+
+impl Rendering {
+    /// Checks that a run can be rendered so, in a sentence where it cannot.
+    ///
+    /// # Errors
+    /// When a number is out of range, or the run ends before it is to be filmed.
+    pub fn check(&self, run: &Run) -> Result<(), String> {
+        if !(20.0..=1200.0).contains(&self.dpi) {
+            return Err(format!(
+                "expected 20 to 1200 dots per inch, such as 300, found {}",
+                self.dpi
+            ));
+        }
+        if !(self.rate.is_finite() && self.rate > 0.0) {
+            return Err(format!(
+                "expected pictures a second above zero, such as 20, found {}",
+                self.rate
+            ));
+        }
+        if !(64..=4096).contains(&self.largest) {
+            return Err(format!("expected 64 to 4096 pixels, such as 480, found {}", self.largest));
+        }
+        match self.between {
+            Some([from, to]) if !(from >= 0.0 && to > from) => Err(format!(
+                "expected two times (s), the first from 0 on, the second later, found {from} and {to}"
+            )),
+            Some([from, _]) if from > run.end_time => Err(format!(
+                "the run ends at {:.2} s, and there is nothing to film from {from} s on",
+                run.end_time
+            )),
+            _ => Ok(()),
         }
     }
 }

@@ -51,20 +51,17 @@ impl Seen {
 
 /// Simulates all cases on all cores, in their order; none where one cannot be simulated.
 ///
-/// `done` hears how many cases are done.
+/// `done` hears again and again how many cases are done and may stop them; then there is nothing.
 pub(super) fn simulate(
     cases: Vec<Prepared>,
     lanes: Option<Width>,
-    done: &(dyn Fn(usize) + Sync),
-) -> Vec<Option<Seen>> {
+    done: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
+) -> Option<Vec<Option<Seen>>> {
     let finished = AtomicUsize::new(0);
-    let observer = |_: &CaseResult| {
-        done(finished.fetch_add(1, Ordering::Relaxed) + 1);
-        ControlFlow::Continue(())
-    };
-    // Nobody stops it, so every case has its result.
-    let results = Ensemble { cases, lanes }.run_watched(&observer).unwrap_or_default();
-    results.iter().map(Seen::of).collect()
+    let observer = |_: &CaseResult| done(finished.fetch_add(1, Ordering::Relaxed) + 1);
+    let stop = || done(finished.load(Ordering::Relaxed)).is_break();
+    let results = Ensemble { cases, lanes }.run_until(&observer, &stop)?;
+    Some(results.iter().map(Seen::of).collect())
 }
 
 /// A scenario with every rack and every barrel set down a little beside its place, by normal deviates

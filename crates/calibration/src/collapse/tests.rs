@@ -1,6 +1,7 @@
 //! Coverage of the intervals over a hundred campaigns.
 #![allow(clippy::print_stdout, reason = "the coverage is shown")]
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use barrelstack::ground::Ground;
@@ -71,7 +72,11 @@ fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
             scenarios.iter().zip(&grounds).map(built).collect::<Vec<_>>()
         })
         .collect();
-    let seen: Vec<Seen> = simulate(batch, None, &|_| ()).into_iter().map(Option::unwrap).collect();
+    let seen: Vec<Seen> = simulate(batch, None, &|_| ControlFlow::Continue(()))
+        .unwrap()
+        .into_iter()
+        .map(Option::unwrap)
+        .collect();
     let collapsed = seen.iter().filter(|seen| seen.mode != Mode::Stands).count();
     let courses: Vec<&[Seen]> = seen.chunks_exact(TESTS).collect();
     let (table, truths) = courses.split_at(TABLE);

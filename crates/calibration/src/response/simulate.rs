@@ -1,6 +1,7 @@
 //! A scenario with changed constants, simulated at the times of a recording.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use barrelstack::assemble::assemble;
 use barrelstack::outcome::Outcome;
@@ -68,7 +69,12 @@ pub(super) struct Simulator<'a> {
     measured: &'a Measured,
     pub(super) tunable: Tunable,
     count: AtomicUsize,
+    tell: &'a Tell<'a>,
+    stopped: AtomicBool,
 }
+
+/// Hears again and again how many simulations were begun, from several threads, and may stop them.
+pub(super) type Tell<'a> = dyn Fn(usize) -> ControlFlow<()> + Sync + 'a;
 
 /// What the first simulation says.
 pub(super) struct First {
@@ -80,6 +86,7 @@ impl<'a> Simulator<'a> {
         scenario: &Scenario,
         measured: &'a Measured,
         parameters: &[Parameter],
+        tell: &'a Tell<'a>,
     ) -> Result<Self, CalibrateError> {
         let tunable = Tunable::new(scenario, parameters)?;
         let mut scenario = scenario.clone();
@@ -95,8 +102,8 @@ impl<'a> Simulator<'a> {
         // Every step is sampled, so that interpolation adds nothing to the residuals.
         scenario.record.history_rate = 1.0 / step;
         scenario.record.frame_rate = 1.0;
-        let count = AtomicUsize::new(0);
-        Ok(Self { scenario, measured, tunable, count })
+        let (count, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
+        Ok(Self { scenario, measured, tunable, count, tell, stopped })
     }
 
     /// How many simulations were run.
@@ -104,9 +111,17 @@ impl<'a> Simulator<'a> {
         self.count.load(Ordering::Relaxed)
     }
 
+    /// Whether the simulations were stopped.
+    pub(super) fn stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+
     /// Runs the scenario as it is, and checks that it shows the channels that were recorded.
     pub(super) fn first(&self) -> Result<First, CalibrateError> {
         let run = self.run(&self.tunable.origin())?;
+        if self.stopped() {
+            return Err(CalibrateError::Stopped);
+        }
         for (name, _) in &self.measured.channels {
             if run.recording.channel(name).is_none() {
                 let bodies = run.recording.channels.iter().map(|channel| channel.name.as_str());
@@ -135,14 +150,22 @@ impl<'a> Simulator<'a> {
     }
 
     fn run(&self, point: &[f64]) -> Result<Run, barrelstack::run::RunFailure> {
-        self.count.fetch_add(1, Ordering::Relaxed);
-        self.tunable.at(&self.scenario, point).run()
+        let count = self.count.fetch_add(1, Ordering::Relaxed) + 1;
+        self.tunable.at(&self.scenario, point).run_watched(&mut |_| {
+            if (self.tell)(count).is_break() {
+                self.stopped.store(true, Ordering::Relaxed);
+            }
+            if self.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })
     }
 
     /// All channels at the recorded times; none where the stack cannot be simulated.
     fn channels(&self, point: &[f64]) -> Option<Vec<Vec<f64>>> {
+        if self.stopped() {
+            return None;
+        }
         let run = self.run(point).ok()?;
-        if matches!(run.outcome, Outcome::Invalid { .. }) {
+        if run.interrupted || matches!(run.outcome, Outcome::Invalid { .. }) {
             return None;
         }
         let times = &run.recording.times;

@@ -15,6 +15,7 @@ use barrelstack_calibration::{
 use clap::{Subcommand, ValueEnum};
 
 use crate::args::ScenarioArgs;
+use crate::interrupt::Stopped;
 use crate::lanes::LanesArgs;
 use crate::printer;
 use crate::progress::Progress;
@@ -317,6 +318,7 @@ fn placed(error: CalibrateError, scenario: &Scenario, args: &ScenarioArgs) -> an
         CalibrateError::Run(failure) => super::placed(failure, scenario, args),
         CalibrateError::Scenario(reason) => anyhow::anyhow!("{}: {reason}", args.scenario),
         CalibrateError::Table(error) => error.into(),
+        CalibrateError::Stopped => Stopped.into(),
     }
 }
 
@@ -334,8 +336,12 @@ fn fitted(args: &ResponseArgs) -> anyhow::Result<Calibration> {
     };
     let scenario = super::load(&scenario_args)?;
     let table = Table::load(&args.file)?;
-    response::response(&scenario, &table, &parameters, until)
-        .map_err(|error| placed(error, &scenario, &scenario_args))
+    let progress = Progress::new(true);
+    let found = response::response(&scenario, &table, &parameters, until, &|done| {
+        progress.searched(done as u64, "simulations")
+    });
+    drop(progress);
+    found.map_err(|error| placed(error, &scenario, &scenario_args))
 }
 
 fn collapsed(args: &CollapseArgs) -> anyhow::Result<Calibration> {
@@ -368,8 +374,7 @@ fn collapsed(args: &CollapseArgs) -> anyhow::Result<Calibration> {
         .collect::<anyhow::Result<_>>()?;
     let progress = Progress::new(true);
     let found = collapse::collapse(&seen, &scenarios, &parameters, &settings, &|done, of| {
-        // What was found from a part of the simulations is no estimate: the program ends as a whole.
-        let _ = progress.counted(done as u64, of as u64, "runs");
+        progress.counted(done as u64, of as u64, "runs")
     });
     drop(progress);
     found.map_err(|error| placed(error, &scenarios[0], &of(&args.scenario)))

@@ -4,19 +4,16 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context as _, bail};
-use barrelstack::compare::{document, sides};
 use barrelstack::scenario::{Dimension, quantity::Quantity};
-use barrelstack::variants::Asked;
 use barrelstack_campaign::decision::SiteHazard;
 use barrelstack_campaign::protect::{
     ProtectError, Ranking, Reached, Request, Shaking, VELOCITIES, protect,
 };
 use barrelstack_campaign::study::{RunOptions, StudyError};
-use barrelstack_report::{Block, significant};
+use barrelstack_report::significant;
 
 use crate::args::ScenarioArgs;
 use crate::commands::heights::page;
-use crate::commands::run::answered;
 use crate::interrupt::{Stopped, keeps};
 use crate::lanes::LanesArgs;
 use crate::printer;
@@ -80,8 +77,7 @@ pub(crate) fn run(args: &ProtectArgs) -> anyhow::Result<ExitCode> {
         Err(ProtectError::Study(StudyError::Stopped)) => return Err(Stopped.into()),
         other => other?,
     };
-    let shown = before_and_after(args, &found)?;
-    found.describe(shown);
+    before_and_after(args, &mut found)?;
     // The answer is printed even where it cannot be written.
     let written = write(&args.out, &found);
     if args.json {
@@ -138,23 +134,19 @@ fn velocities(typed: &[String]) -> anyhow::Result<Vec<f64>> {
     Ok(all)
 }
 
-/// The stack as it is and with the best protection side by side, under the motion of the scenario.
-fn before_and_after(args: &ProtectArgs, found: &Ranking) -> anyhow::Result<Vec<Block>> {
-    let Some(best) = found.best() else { return Ok(Vec::new()) };
-    let mut answers = Vec::new();
-    let own = &found.request.scenario;
-    let protected = best.protection.on(own)?;
-    for (name, scenario) in [("as it is", own), (&*best.protection.name, &protected)] {
-        let answer = answered(scenario, Asked::Typical, !args.quiet)
-            .map_err(|error| super::placed(error, scenario, &args.scenario))?;
-        if answer.decides.run.interrupted {
-            return Err(Stopped.into());
+/// Shows the stack as it is and with the best protection side by side, under the motion of the scenario.
+fn before_and_after(args: &ProtectArgs, found: &mut Ranking) -> anyhow::Result<()> {
+    let progress = Progress::new(!args.quiet);
+    let shown = found.show_before_and_after(&mut |told| progress.told_of(told));
+    drop(progress);
+    match shown {
+        Ok(true) => Ok(()),
+        Ok(false) => Err(Stopped.into()),
+        Err(ProtectError::Stack(failure)) => {
+            Err(super::placed(failure, &found.request.scenario, &args.scenario))
         }
-        answers.push((name.to_owned(), answer));
+        Err(error) => Err(error.into()),
     }
-    let compared = document(&sides(answers));
-    let players = compared.blocks.into_iter().filter(|block| matches!(block, Block::Players(_)));
-    Ok(players.collect())
 }
 
 fn write(out: &Path, found: &Ranking) -> anyhow::Result<()> {

@@ -126,11 +126,7 @@ pub(crate) fn render(args: &RenderArgs) -> anyhow::Result<ExitCode> {
     let answer = super::run::answered(&scenario, asked, !args.quiet)
         .map_err(|error| super::placed(error, &scenario, &args.scenario))?;
     let Shown { run, summary, .. } = &answer.decides;
-    if let Some([from, _]) = how.between
-        && from > run.end_time
-    {
-        bail!("--from {from}: the run ends at {:.2} s, and there is nothing to film", run.end_time);
-    }
+    how.check(run).map_err(anyhow::Error::msg)?;
     keeps(format!("the parts that are whole are in {}", args.out.display()));
     let written = folder.write(run, summary, &how)?;
     printer::lines(written.iter().map(|part| match part.files {

@@ -6,9 +6,12 @@ use std::process::ExitCode;
 use anyhow::Context;
 use barrelstack::render::write_figures;
 use barrelstack_report::{Paper, document_pdf};
-use barrelstack_reproduction::{Comparison, Reproduction, percent, reproduce as run_all};
+use barrelstack_reproduction::{
+    Comparison, ReproduceError, Reproduction, percent, reproduce as run_all,
+};
 
 use crate::args::ReproduceArgs;
+use crate::interrupt::Stopped;
 use crate::printer;
 use crate::progress::Progress;
 use crate::store::{store, writable};
@@ -18,11 +21,13 @@ pub(crate) fn reproduce(args: &ReproduceArgs) -> anyhow::Result<ExitCode> {
     prepare(&args.out)?;
     let progress = Progress::new(true);
     let result = run_all(args.record.as_deref(), !args.no_studies, &|done, of| {
-        // Half of the table would say nothing, so the runs are not asked to stop: the program is.
-        let _ = progress.counted(done as u64, of as u64, "runs");
+        progress.counted(done as u64, of as u64, "runs")
     });
     drop(progress);
-    let found = result?;
+    let found = match result {
+        Err(ReproduceError::Stopped) => return Err(Stopped.into()),
+        other => other?,
+    };
     let written = write(args, &found);
     print(&found)?;
     written?;

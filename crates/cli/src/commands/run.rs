@@ -8,7 +8,7 @@ use anyhow::{Context as _, bail};
 use barrelstack::export::{ExportError, Folder};
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario::Scene;
-use barrelstack::variants::{self, Answer, Asked, Shown, Told};
+use barrelstack::variants::{self, Answer, Asked, Shown};
 use barrelstack::verify::{Verification, verify};
 use barrelstack::{Run, RunFailure, Scenario, Summary};
 use barrelstack_report::Characters;
@@ -107,10 +107,7 @@ pub(super) fn answered(
 ) -> Result<Answer, RunFailure> {
     let start = Instant::now();
     let progress = Progress::new(show);
-    let mut answer = variants::answer(scenario, asked, &mut |told| match told {
-        Told::Run(reached) => progress.at(reached),
-        Told::Variants { done, of } => progress.counted(done as u64, of as u64, "variants"),
-    })?;
+    let mut answer = variants::answer(scenario, asked, &mut |told| progress.told_of(told))?;
     answer.decides.summary.run.wall_seconds = Some(start.elapsed().as_secs_f64());
     Ok(answer)
 }

@@ -7,6 +7,8 @@
     ensemble ──────────▶ Table       many cases at once
     Study    ── run ──▶ Fragility    hundreds of cases in a folder, on one machine or on many
     Scene    ── run ──▶ Run          any planar bodies
+    compare, heights, protect ─▶ Page        runs side by side; how high is safe; what helps most for its cost
+    Calibration.friction, …  ──▶ Page        contact parameters from one's own tests
 
 All numbers are SI: m, s, kg, N, rad; z is up. Quantities that are given carry their unit as text (``"60 cm/s"``).
 """
@@ -14,8 +16,21 @@ All numbers are SI: m, s, kg, N, rad; z is up. Quantities that are given carry t
 from __future__ import annotations
 
 from . import _native
+from ._calibration import Calibration, Estimate
+from ._decide import (
+    Comparison,
+    Difference,
+    Heights,
+    Protections,
+    Reproduction,
+    compare,
+    heights,
+    protect,
+    reproduce,
+)
 from ._ensemble import ensemble
 from ._errors import BarrelstackWarning, Error, RecordError, RunError, ScenarioError, StudyError
+from ._page import Page
 from ._record import Channel, Intensity, Record
 from ._run import Demands, Envelope, Force, Frames, Glance, Histories, Outcome, Run
 from ._scenario import Scenario, Section
@@ -27,23 +42,31 @@ __version__ = _native.VERSION
 
 __all__ = [
     "BarrelstackWarning",
+    "Calibration",
     "Channel",
     "Chunk",
     "Column",
+    "Comparison",
     "Curve",
     "Demands",
+    "Difference",
     "Envelope",
     "Error",
+    "Estimate",
     "Force",
     "Fragility",
     "Frames",
     "Glance",
+    "Heights",
     "Histories",
     "Hunts",
     "Intensity",
     "Outcome",
+    "Page",
+    "Protections",
     "Record",
     "RecordError",
+    "Reproduction",
     "Run",
     "RunError",
     "Scenario",
@@ -54,8 +77,12 @@ __all__ = [
     "StudyError",
     "Table",
     "__version__",
+    "compare",
     "ensemble",
     "formats",
+    "heights",
+    "protect",
+    "reproduce",
     "scenarios",
     "studies",
 ]

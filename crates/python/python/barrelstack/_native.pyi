@@ -13,21 +13,31 @@ _Told = Callable[[float, float, str], object]
 
 __all__ = [
     "Glance",
+    "Page",
     "Record",
     "Run",
     "Scenario",
     "Study",
     "Table",
     "VERSION",
+    "calibrate_collapse",
+    "calibrate_drop",
+    "calibrate_friction",
+    "calibrate_response",
+    "calibrate_stiffness",
+    "compare",
     "decision",
     "ensemble",
     "export",
     "fields",
     "formats",
+    "heights",
     "measured",
+    "protect",
     "provenance",
     "read_table",
     "reference",
+    "reproduce",
     "scenarios",
     "schema",
     "standard_periods",
@@ -168,6 +178,30 @@ class Run:
     def variants(self) -> Table | None: ...
     def html(self) -> str: ...
     def pdf(self, paper: str) -> bytes: ...
+    def render(
+        self,
+        folder: str | os.PathLike[str],
+        parts: list[str],
+        formats: list[str],
+        dpi: float,
+        paper: str,
+        rate: float,
+        between: list[float] | None,
+        largest: int,
+        overwrite: bool,
+    ) -> list[tuple[os.PathLike[str], int]]: ...
+    def write(self, folder: str | os.PathLike[str], overwrite: bool) -> None: ...
+
+@final
+class Page:
+    @property
+    def numbers(self) -> str: ...
+    @property
+    def headline(self) -> str: ...
+    @property
+    def warnings(self) -> list[str]: ...
+    def html(self) -> str: ...
+    def pdf(self, paper: str) -> bytes: ...
     def write(self, folder: str | os.PathLike[str], overwrite: bool) -> None: ...
 
 @final
@@ -255,5 +289,68 @@ def decision(
     folder: str | os.PathLike[str],
     hazard: str | os.PathLike[str] | None,
     years: float | None,
-) -> tuple[str, str]: ...
+) -> Page: ...
 def export(folder: str | os.PathLike[str], asset: str) -> tuple[list[tuple[str, str]], list[str]]: ...
+def compare(
+    scenarios: list[tuple[str, Scenario]],
+    named: bool,
+    variants: int | None,
+    progress: _Told | None,
+) -> Page: ...
+def heights(
+    folder: str | os.PathLike[str],
+    rack: str,
+    barrel: str,
+    records: list[str],
+    synthetic: int,
+    seed: int,
+    progress: _Told | None,
+) -> Page: ...
+def protect(
+    scenario: Scenario,
+    folder: str | os.PathLike[str],
+    site: str | os.PathLike[str] | None,
+    velocities: list[float] | None,
+    records: list[str],
+    motions: str | os.PathLike[str] | None,
+    count: int,
+    rounds: int,
+    budget: float | None,
+    seed: int,
+    progress: _Told | None,
+) -> Page: ...
+def reproduce(
+    record: str | os.PathLike[str] | None,
+    studies: bool,
+    progress: _Told | None,
+) -> Page: ...
+def calibrate_stiffness(name: str, text: str, nodes: int, interface: str) -> Page: ...
+def calibrate_drop(
+    name: str,
+    text: str,
+    striker: tuple[str, str] | None,
+    nodes: int,
+    interface: str,
+) -> Page: ...
+def calibrate_friction(name: str, text: str, interface: str) -> Page: ...
+def calibrate_response(
+    scenario: Scenario,
+    name: str,
+    text: str,
+    fit: list[str],
+    until: str | None,
+    progress: _Told | None,
+) -> Page: ...
+def calibrate_collapse(
+    scenario: Scenario,
+    others: list[tuple[str, Scenario]],
+    name: str,
+    text: str,
+    fit: list[str],
+    within: float,
+    timing: str,
+    placement: str,
+    simulations: int,
+    seed: int,
+    progress: _Told | None,
+) -> Page: ...

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import difflib
-import html
 import json
 import os
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._errors import BarrelstackWarning
+from ._page import frame
 from ._table import Table
 
 if TYPE_CHECKING:
@@ -324,6 +324,60 @@ class Run:
         """
         self._native.write(os.fspath(folder), overwrite)
 
+    def render(
+        self,
+        folder: str | os.PathLike[str],
+        *parts: str,
+        formats: Iterable[str] = (),
+        dpi: float = 200.0,
+        paper: str = "a4",
+        rate: float = 20.0,
+        between: tuple[float, float] | None = None,
+        size: int = 480,
+        overwrite: bool = False,
+    ) -> dict[str, int]:
+        """Writes pictures and films of the run that is shown, as ``barrelstack render``.
+
+        Parameters
+        ----------
+        folder
+            Where to write.
+        *parts
+            Among ``"figures"`` (SVG and the formats, each with its numbers), ``"report"`` (PDF), ``"animation"`` (GIF
+            and animated PNG), ``"frames"`` (numbered pictures) and ``"paraview"``; all of them without.
+        formats
+            Of figures beside SVG: ``"png"``, ``"pdf"``; both without.
+        dpi
+            Dots per inch of figures as PNG, 20 to 1200.
+        paper
+            ``"a4"`` or ``"letter"``.
+        rate
+            Pictures for every second of the run (1/s); animations show at most 50.
+        between
+            What is filmed, from and to (s); all of the run without.
+        size
+            Longer side of animations (pixels), 64 to 4096.
+        overwrite
+            Whether to remove what an earlier rendering wrote in the places of these parts.
+
+        Returns
+        -------
+        dict
+            The place of each part, and the count of its files.
+
+        Raises
+        ------
+        ValueError
+            When there is no such part or format, or a number is out of range.
+        Error
+            When the folder holds an earlier rendering, or cannot be written.
+        """
+        window = None if between is None else [float(time) for time in between]
+        written = self._native.render(
+            os.fspath(folder), list(parts), list(formats), dpi, paper, rate, window, size, overwrite
+        )
+        return {os.fspath(place): files for place, files in written}
+
     def plot(self, *names: str, ax: Axes | None = None) -> Axes:
         """Histories over time.
 
@@ -361,8 +415,7 @@ class Run:
         return [f"{name} displacement x" for name in chosen]
 
     def _repr_html_(self) -> str:
-        page = html.escape(self.html(), quote=True)
-        return f'<iframe srcdoc="{page}" style="width: 100%; height: 720px; border: 0"></iframe>'
+        return frame(self.html())
 
     def __repr__(self) -> str:
         return f"<Run: {self.headline}>"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
+from ._page import Page
 from ._progress import Progress, told
+from ._quantity import literal
 from ._table import Table
 
 __all__ = ["Chunk", "Curve", "Fragility", "Hunts", "Study"]
@@ -65,23 +68,8 @@ class Curve(NamedTuple):
         return np.array(chances, dtype=np.float64).reshape(z.shape)
 
 
-class Fragility:
-    """What a study says: curves, modes, losses, what matters.
-
-    Attributes
-    ----------
-    document : dict
-        All numbers, as ``barrelstack study report --json`` prints them.
-    """
-
-    def __init__(self, document: dict[str, Any], page: str) -> None:
-        self.document = document
-        self._page = page
-
-    @property
-    def headline(self) -> str:
-        """The answer in a sentence."""
-        return str(self.document["headline"])
+class Fragility(Page):
+    """What a study says: curves, modes, losses, what matters; made by :meth:`Study.fragility`."""
 
     @property
     def measure(self) -> tuple[str, str]:
@@ -107,15 +95,6 @@ class Fragility:
                 one["no_curve"],
             )
         return found
-
-    def html(self) -> str:
-        """The page of the study.
-
-        Returns
-        -------
-        str
-        """
-        return self._page
 
     def plot(self, *limit_states: str, ax: Any = None) -> Any:
         """Raw fractions, curves and bands.
@@ -153,15 +132,6 @@ class Fragility:
         ax.legend(loc="upper left", fontsize="small")
         return ax
 
-    def _repr_html_(self) -> str:
-        import html
-
-        page = html.escape(self._page, quote=True)
-        return f'<iframe srcdoc="{page}" style="width: 100%; height: 720px; border: 0"></iframe>'
-
-    def __repr__(self) -> str:
-        return f"<Fragility: {self.headline}>"
-
 
 class Hunts(NamedTuple):
     """An incremental dynamic analysis: what each motion did at each level that was tried."""
@@ -176,13 +146,19 @@ class Hunts(NamedTuple):
     capacities: NDArray[np.float64]
 
 
+def tables(of: Mapping[str, Any]) -> dict[str, Any]:
+    """The tables of a study, its schema stated."""
+    return {"schema": 1, **of}
+
+
 class Study:
     """A study: what is varied, what shakes it, and which cases are run.
 
     Parameters
     ----------
-    text
-        The text of a study file (TOML); it may extend scenarios that come with the library.
+    of
+        The text of a study file (TOML), or a nested dict of the same tables, with quantities of Pint or astropy, too;
+        it may extend scenarios that come with the library.
     name
         What errors call it.
 
@@ -193,7 +169,9 @@ class Study:
     >>> study.fragility("napa").curves["first-seat"].median
     """
 
-    def __init__(self, text: str, name: str = "study") -> None:
+    def __init__(self, of: str | Mapping[str, Any], name: str = "study") -> None:
+        # What is kept in folders and crosses to workers is text: a line a table.
+        text = of if isinstance(of, str) else "".join(f"{key} = {literal(item)}\n" for key, item in tables(of).items())
         self._source: tuple[str, str | None] = (text, name)
         self._native = _native.Study.parse(name, text)
 
@@ -460,8 +438,7 @@ class Study:
             When no case has a verdict.
         """
         path = None if hazard is None else os.fspath(hazard)
-        document, page = _native.decision(os.fspath(folder), path, years)
-        return Fragility(json.loads(document), page)
+        return Fragility(_native.decision(os.fspath(folder), path, years))
 
     @staticmethod
     def ida(folder: str | os.PathLike[str], demand: str = "top_drift_ratio") -> Hunts:

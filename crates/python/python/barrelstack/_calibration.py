@@ -1,0 +1,271 @@
+"""Contact parameters, with their uncertainty, from one's own tests."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from . import _native
+from ._page import Page
+from ._progress import Progress, told
+from ._quantity import plain
+from ._scenario import Scenario
+
+__all__ = ["Calibration", "Estimate"]
+
+#: What all parameters are called that a response or a collapse may tell.
+_ALL = ("k", "c", "mu-br", "mu-rg")
+
+
+class Estimate(NamedTuple):
+    """A parameter with its 95 % interval."""
+
+    name: str
+    #: SI.
+    value: float
+    #: Lower end of the interval (SI); None where the test does not bound it.
+    low: float | None
+    #: Upper end of the interval (SI); None where the test does not bound it.
+    high: float | None
+    #: SI unit.
+    unit: str
+
+
+def _text(measured: Any) -> tuple[str, str]:
+    """What errors call a test, and its measurements as CSV."""
+    if isinstance(measured, (str, os.PathLike)):
+        with open(measured, encoding="utf-8-sig") as file:
+            return os.fspath(measured), file.read()
+    if isinstance(measured, Mapping):
+        columns = [(str(name), plain(list(values))) for name, values in measured.items()]
+        return "measurements", _native.Table.from_columns(columns).to_csv()
+    return "measurements", _native.Table.from_arrow(measured).to_csv()
+
+
+class Calibration(Page):
+    """Contact parameters from tests.
+
+    Measurements are a CSV file, a mapping of columns to values, or any table that speaks Arrow; headings carry the
+    unit, such as ``"angle (deg)"``. Intervals are of 95 % and hold what scatters in the measurements; a mass or a
+    stiffness that is given, and the model itself, are taken as exact.
+
+    Examples
+    --------
+    >>> found = Calibration.friction({"angle (deg)": [21.4, 22.0, 21.7, 22.9, 21.1]}, interface="rack-ground")
+    >>> found.estimates["static friction"].value
+    0.4
+    >>> print(found.scenario)  # lines to paste
+    """
+
+    @property
+    def estimates(self) -> dict[str, Estimate]:
+        """The parameters by name."""
+        return {one["name"]: Estimate(**one) for one in self.document["estimates"]}
+
+    @property
+    def correlation(self) -> list[list[float]]:
+        """Correlations between the estimates (1), in their order; empty where they are not fitted together."""
+        found: list[list[float]] = self.document["correlation"]
+        return found
+
+    @property
+    def scenario(self) -> str:
+        """Lines to paste into a scenario (TOML)."""
+        return str(self.document["scenario"])
+
+    @classmethod
+    def stiffness(cls, measured: Any, *, nodes: int = 1, interface: str = "barrel-rack") -> Calibration:
+        """Stiffness from a press test.
+
+        Parameters
+        ----------
+        measured
+            Columns ``penetration`` and ``force``, as above.
+        nodes
+            Contact nodes that share the force; k is that of one.
+        interface
+            The pair that was tested, for the lines to paste.
+
+        Returns
+        -------
+        Calibration
+
+        Raises
+        ------
+        Error
+            When a column or a row is missing, or force does not grow with penetration.
+        """
+        return cls(_native.calibrate_stiffness(*_text(measured), nodes, interface))
+
+    @classmethod
+    def drop(
+        cls,
+        measured: Any,
+        *,
+        mass: Any = None,
+        stiffness: Any = None,
+        nodes: int = 1,
+        interface: str = "barrel-rack",
+    ) -> Calibration:
+        """Restitution and damping from drops.
+
+        Parameters
+        ----------
+        measured
+            Columns ``drop height`` and ``rebound height``, or ``time`` of the impacts of one bounce sequence.
+        mass, stiffness
+            Of what falls, and of one contact node, with their units; both give the damping, too.
+        nodes
+            Contact nodes that it falls on at once.
+        interface
+            The pair that was tested.
+
+        Returns
+        -------
+        Calibration
+
+        Raises
+        ------
+        Error
+            When a column or a row is missing, or what rebounds does not fit a drop.
+        ValueError
+            When one of mass and stiffness is given alone.
+        """
+        if (mass is None) != (stiffness is None):
+            raise ValueError("damping needs mass and stiffness: give both or none")
+        striker = None if mass is None else (plain(mass), plain(stiffness))
+        return cls(_native.calibrate_drop(*_text(measured), striker, nodes, interface))
+
+    @classmethod
+    def friction(cls, measured: Any, *, interface: str = "barrel-rack") -> Calibration:
+        """Friction from pulls or from tilts.
+
+        Parameters
+        ----------
+        measured
+            Columns ``normal force``, ``breakaway force`` and, if measured, ``sliding force``; or ``angle`` of first
+            slip and, if measured, ``sliding distance`` and ``sliding time`` from rest at that angle.
+        interface
+            The pair that was tested.
+
+        Returns
+        -------
+        Calibration
+
+        Raises
+        ------
+        Error
+            When a column or a row is missing.
+        """
+        return cls(_native.calibrate_friction(*_text(measured), interface))
+
+    @classmethod
+    def response(
+        cls,
+        scenario: Scenario,
+        measured: Any,
+        *,
+        fit: Sequence[str] = _ALL,
+        until: Any = None,
+        progress: Progress = None,
+    ) -> Calibration:
+        """Stiffness, damping and friction together from the recorded response of a shaken stack.
+
+        Parameters
+        ----------
+        scenario
+            That of the test; fits start from its values.
+        measured
+            A column ``time`` from the start of the motion, and columns named as histories,
+            ``"B1.1 displacement x (mm)"``.
+        fit
+            Among ``"k"`` and ``"c"`` of barrel-rack, ``"mu-br"`` and ``"mu-rg"``.
+        until
+            Time with its unit after which rows are left out: take short windows of mild shaking, and no collapse.
+        progress
+            As for :meth:`Scenario.run`.
+
+        Returns
+        -------
+        Calibration
+
+        Raises
+        ------
+        Error
+            When the measurements do not go with the scenario.
+        RunError
+            When it cannot be simulated.
+        KeyboardInterrupt
+            Within a second of Ctrl-C.
+        """
+        end = None if until is None else plain(until)
+        with told(progress, "calibration from a response") as hear:
+            return cls(_native.calibrate_response(scenario._shaken, *_text(measured), list(fit), end, hear))
+
+    @classmethod
+    def collapse(
+        cls,
+        scenario: Scenario,
+        measured: Any,
+        *,
+        others: Mapping[str, Scenario] | None = None,
+        fit: Sequence[str] = _ALL,
+        within: float = 2.0,
+        timing: Any = "0.05 s",
+        placement: Any = "1 mm",
+        simulations: int = 1000,
+        seed: int = 1,
+        progress: Progress = None,
+    ) -> Calibration:
+        """Stiffness, damping and friction together from collapses that were seen, on video or by eye.
+
+        Parameters
+        ----------
+        scenario
+            That of the tests that name none.
+        measured
+            A row a test: ``mode``, ``first fall (s)``, ``first barrel``, ``B4.1 fell (s)``, ``loss of seat (s)``,
+            ``until (s)``, ``scenario``.
+        others
+            Scenarios that the tests name.
+        fit
+            As for :meth:`response`.
+        within
+            Parameters lie within this factor of those of the scenario.
+        timing, placement
+            How well times were read off, and bodies put in their places: standard deviations with their units.
+        simulations
+            Sets of parameters that are simulated, each once for every test.
+        seed
+            Of all random numbers.
+        progress
+            As for :meth:`Scenario.run`.
+
+        Returns
+        -------
+        Calibration
+
+        Raises
+        ------
+        Error
+            When a cell cannot be what it stands for, or nothing within the range is like what was seen.
+        KeyboardInterrupt
+            Within a second of Ctrl-C.
+        """
+        named = [(name, one._shaken) for name, one in (others or {}).items()]
+        with told(progress, "calibration from collapses") as hear:
+            return cls(
+                _native.calibrate_collapse(
+                    scenario._shaken,
+                    named,
+                    *_text(measured),
+                    list(fit),
+                    within,
+                    plain(timing),
+                    plain(placement),
+                    simulations,
+                    seed,
+                    hear,
+                )
+            )

@@ -1,0 +1,325 @@
+"""What many runs say: comparisons, heights, protections, the cases of the paper."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from . import _native
+from ._page import Page, table_of
+from ._progress import Progress, told
+from ._quantity import plain
+from ._scenario import Scenario
+from ._table import Table
+
+__all__ = ["Comparison", "Difference", "Heights", "Protections", "Reproduction", "compare", "heights", "protect", "reproduce"]
+
+Path = str | os.PathLike[str]
+
+
+class Difference(NamedTuple):
+    """One input that is not the same in all runs."""
+
+    #: Its path, as in :meth:`Scenario.set`.
+    path: str
+    #: The value in each run; None where a run has no such field.
+    values: list[str | None]
+    #: What the field means.
+    help: str
+
+
+class Comparison(Page):
+    """Two or more runs side by side, made by :func:`compare`."""
+
+    @property
+    def runs(self) -> dict[str, dict[str, Any]]:
+        """The summary of each run by its name, as :attr:`Run.summary`."""
+        return {run["name"]: run["summary"] for run in self.document["runs"]}
+
+    @property
+    def differences(self) -> list[Difference]:
+        """The inputs that differ, in the order of the file."""
+        return [Difference(one["path"], one["values"], one["help"]) for one in self.document["differences"]]
+
+
+def compare(
+    runs: Mapping[str, Scenario] | Sequence[Scenario],
+    *,
+    variants: int | None = None,
+    progress: Progress = None,
+) -> Comparison:
+    """Runs scenarios with their variants and sets them side by side, on one clock.
+
+    Parameters
+    ----------
+    runs
+        Two to six scenarios; of a mapping, the keys are what they are called, else words for what differs.
+    variants
+        As for :meth:`Scenario.run`.
+    progress
+        As for :meth:`Scenario.run`.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    Error
+        When there are too few or too many, or two of them ask for the same run.
+    RunError
+        When one cannot be built or does not stand.
+    KeyboardInterrupt
+        Within a second of Ctrl-C.
+
+    Examples
+    --------
+    >>> stack = Scenario.load("demo-napa")
+    >>> compare({"as it is": stack, "one level less": stack.set("stack.levels", 4)}).report("both.html")
+    """
+    named = isinstance(runs, Mapping)
+    pairs = list(runs.items()) if isinstance(runs, Mapping) else [(one.title, one) for one in runs]
+    with told(progress, f"comparison of {len(pairs)} runs") as hear:
+        native = [(name, one._shaken) for name, one in pairs]
+        return Comparison(_native.compare(native, named, variants, hear))
+
+
+class Heights(Page):
+    """How high is safe, made by :func:`heights`."""
+
+    @property
+    def table(self) -> Table:
+        """A row for every height, direction and level of shaking: cases, collapses, Wilson's 95 % interval (1) of the
+        chance of collapse, mean share of the barrels that fall (1)."""
+        rows = [
+            {**one, "levels": height["levels"], "direction": height["direction"], "low": low, "high": high}
+            for height in self.document["heights"]
+            for one in height["at"]
+            for low, high in [one["interval"]]
+        ]
+        names = {name: name for name in ("levels", "direction")} | {"pgv": "pgv (m/s)"}
+        return table_of(rows, names | {name: name for name in ("cases", "collapsed", "low", "high", "fallen_share")})
+
+
+def heights(
+    folder: Path,
+    *,
+    rack: str = "two-barrel",
+    barrel: str = "bordeaux-225",
+    records: Iterable[Path] = (),
+    synthetic: int = 22,
+    seed: int = 1,
+    progress: Progress = None,
+) -> Heights:
+    """How high is safe: stacks of two to six levels in both directions under the same motions.
+
+    Parameters
+    ----------
+    folder
+        Where the studies behind it are kept; what is there of the same question is not run again.
+    rack, barrel
+        Names of the catalog.
+    records
+        Files of further motions, such as that of one's own site.
+    synthetic
+        Synthetic motions beside the bundled record.
+    seed
+        Of motions and friction.
+    progress
+        As for :meth:`Scenario.run`.
+
+    Returns
+    -------
+    Heights
+
+    Raises
+    ------
+    StudyError
+        When the catalog has no such rack or barrel, or the folder belongs to something else.
+    RecordError
+        When a record cannot be read.
+    KeyboardInterrupt
+        Within a second of Ctrl-C; what was run is kept.
+
+    Notes
+    -----
+    The numbers are those of ``barrelstack heights``, bit for bit.
+    """
+    with told(progress, "heights") as hear:
+        files = [os.fspath(path) for path in records]
+        return Heights(_native.heights(os.fspath(folder), rack, barrel, files, synthetic, seed, hear))
+
+
+class Protections(Page):
+    """What protects a stack best for what it costs, made by :func:`protect`."""
+
+    @property
+    def best(self) -> str | None:
+        """The one that saves most barrels for its cost; None where nothing helps beyond doubt."""
+        best: str | None = self.document["best"]
+        return best
+
+    @property
+    def table(self) -> Table:
+        """A row for every protection that was tried, in the order of the page: cost for a stack (US$, from and to),
+        chance of collapse (1, or 1/year at a site), barrels that fall and that are saved, each with its 95 % interval.
+        """
+        rows = []
+        for one in self.document["protections"]:
+            row = {"name": one["name"], "kind": one["kind"], "on_front": one["on_front"]}
+            row |= {"cost_low": one["cost"][0], "cost_high": one["cost"][1]}
+            for key in ("collapse", "barrels_fallen", "barrels_saved"):
+                found = one[key] or {"mean": None, "low": None, "high": None}
+                row |= {key: found["mean"], f"{key}_low": found["low"], f"{key}_high": found["high"]}
+            rows.append(row)
+        units = {"cost_low": "cost_low (US$)", "cost_high": "cost_high (US$)"}
+        return table_of(rows, {name: units.get(name, name) for name in rows[0]})
+
+    def changes(self, name: str) -> list[str]:
+        """What a protection changes.
+
+        Parameters
+        ----------
+        name
+            Its name in the table.
+
+        Returns
+        -------
+        list of str
+            Overrides, ``path=value``, as the command takes them.
+
+        Raises
+        ------
+        KeyError
+            When none of that name was tried.
+        """
+        for one in self.document["protections"]:
+            if one["name"] == name:
+                found: list[str] = one["changes"]
+                return found
+        raise KeyError(f"no protection {name!r} was tried")
+
+
+def protect(
+    scenario: Scenario | str,
+    folder: Path,
+    *,
+    site: Path | None = None,
+    pgv: Iterable[Any] | None = None,
+    records: Iterable[Path] = (),
+    motions: Path | None = None,
+    count: int = 12,
+    rounds: int = 3,
+    budget: float | None = None,
+    seed: int = 1,
+    progress: Progress = None,
+) -> Protections:
+    """What protects a stack best for what it costs: fewer levels, other racks, devices, single and in pairs.
+
+    Parameters
+    ----------
+    scenario
+        The stack, or the name of one.
+    folder
+        Where the studies behind it are kept; what is there of the same question is not run again.
+    site
+        How often the site is shaken how hard: a CSV of ``pgv (cm/s)`` and ``rate (1/year)``.
+    pgv
+        Peak ground velocities to which motions are scaled, texts or quantities such as ``"50 cm/s"``; 25, 50 and
+        75 cm/s without. Not beside ``site``.
+    records
+        Files of the motions, in place of the bundled and synthetic ones.
+    motions
+        A folder of such files.
+    count
+        Motions of a round, where none are named.
+    rounds
+        Everything is tried in the first, half of it in each that follows.
+    budget
+        Most that a protection may cost for a stack (US$).
+    seed
+        Of motions and friction.
+    progress
+        As for :meth:`Scenario.run`.
+
+    Returns
+    -------
+    Protections
+
+    Raises
+    ------
+    StudyError
+        When the scenario is no stack, the hazard is over another measure, or the folder belongs to something else.
+    RunError
+        When the stack does not stand.
+    KeyboardInterrupt
+        Within a second of Ctrl-C; what was run is kept.
+
+    Notes
+    -----
+    The numbers are those of ``barrelstack protect``, bit for bit.
+    """
+    if site is not None and pgv is not None:
+        raise ValueError("a site says how hard it is shaken: give site or pgv")
+    stack = scenario if isinstance(scenario, Scenario) else Scenario.load(scenario)
+    levels = None if pgv is None else sorted({_native.measured("pgv", plain(one)) for one in pgv})
+    with told(progress, f"protections of {stack.title!r}") as hear:
+        return Protections(
+            _native.protect(
+                stack._shaken,
+                os.fspath(folder),
+                None if site is None else os.fspath(site),
+                levels,
+                [os.fspath(path) for path in records],
+                None if motions is None else os.fspath(motions),
+                count,
+                rounds,
+                budget,
+                seed,
+                hear,
+            )
+        )
+
+
+class Reproduction(Page):
+    """The paper's numbers beside ours, made by :func:`reproduce`."""
+
+    @property
+    def table(self) -> Table:
+        """A row for every number and every finding that the paper states: where, what, published and ours with their
+        units, the relative difference (1), the verdict and why."""
+        names = ("place", "quantity", "published", "ours", "difference", "band", "verdict", "why")
+        return table_of(self.document, {name: name for name in names})
+
+
+def reproduce(record: Path | None = None, *, studies: bool = True, progress: Progress = None) -> Reproduction:
+    """Runs every case of the paper behind the model and sets its numbers beside ours.
+
+    Parameters
+    ----------
+    record
+        The file of the Hollywood Storage record of Northridge, north-south, which cannot come with the package;
+        without it the six barrels are shaken by South Napa, and what hangs on the motion is not compared.
+    studies
+        Whether to run the studies around each case, too: most of the work.
+    progress
+        As for :meth:`Scenario.run`.
+
+    Returns
+    -------
+    Reproduction
+
+    Raises
+    ------
+    RecordError
+        When the record cannot be used.
+    KeyboardInterrupt
+        Within a second of Ctrl-C.
+
+    Notes
+    -----
+    Candia, de la Llera and Almazán (2008), 14th World Conference on Earthquake Engineering.
+    """
+    with told(progress, "the cases of the paper") as hear:
+        return Reproduction(_native.reproduce(None if record is None else os.fspath(record), studies, hear))

@@ -1,0 +1,115 @@
+"""Results that are numbers for programs and a page for people."""
+
+from __future__ import annotations
+
+import html
+import json
+import os
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+from typing import Any
+
+from . import _native
+from ._table import Table
+
+__all__ = ["Page", "frame", "table_of"]
+
+
+def frame(page: str) -> str:
+    """A page as it is shown in a notebook.
+
+    Parameters
+    ----------
+    page
+        HTML.
+
+    Returns
+    -------
+    str
+        An element that holds it.
+    """
+    quoted = html.escape(page, quote=True)
+    return f'<iframe srcdoc="{quoted}" style="width: 100%; height: 720px; border: 0"></iframe>'
+
+
+def table_of(rows: Iterable[Mapping[str, Any]], names: Mapping[str, str]) -> Table:
+    """Rows of a document as a table.
+
+    Parameters
+    ----------
+    rows
+        The rows.
+    names
+        Keys of the rows, and the headings of their columns: a name, with its SI unit in parentheses.
+
+    Returns
+    -------
+    Table
+    """
+    rows = list(rows)
+    return Table(_native.Table.from_columns([(head, [row[key] for row in rows]) for key, head in names.items()]))
+
+
+class Page:
+    """A result with its numbers and its page."""
+
+    def __init__(self, native: _native.Page) -> None:
+        self._native = native
+
+    @cached_property
+    def document(self) -> Any:
+        """All numbers, as the command prints them with ``--json``; SI units."""
+        return json.loads(self._native.numbers)
+
+    @property
+    def headline(self) -> str:
+        """The answer in a sentence."""
+        return self._native.headline
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the reader should know, one sentence each."""
+        return self._native.warnings
+
+    def html(self) -> str:
+        """The page as one file that asks the network for nothing.
+
+        Returns
+        -------
+        str
+        """
+        return self._native.html()
+
+    def report(self, path: str | os.PathLike[str], *, paper: str = "a4") -> None:
+        """Writes the page.
+
+        Parameters
+        ----------
+        path
+            A file that ends with ``.html`` or ``.pdf``.
+        paper
+            ``"a4"`` or ``"letter"``.
+        """
+        name = os.fspath(path)
+        pdf = name.lower().endswith(".pdf")
+        data = self._native.pdf(paper) if pdf else self.html().encode()
+        with open(name, "wb") as file:
+            file.write(data)
+
+    def write(self, folder: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Writes the page as HTML and as Markdown with its figures and their numbers.
+
+        Parameters
+        ----------
+        folder
+            A folder that is new or empty.
+        overwrite
+            Whether to write into one that holds an earlier page.
+        """
+        self._native.write(os.fspath(folder), overwrite)
+
+    def _repr_html_(self) -> str:
+        return frame(self.html())
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self.headline}>"

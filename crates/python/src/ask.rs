@@ -1,0 +1,172 @@
+//! What is asked of many runs at once: comparisons, heights, protections, the paper's cases.
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+
+use barrelstack::RunFailure;
+use barrelstack::compare::{Comparison, check, document, labels, sides};
+use barrelstack::variants::{self, Asked};
+use barrelstack_campaign::decision::SiteHazard;
+use barrelstack_campaign::heights::{
+    HeightsError, Request as HeightsRequest, heights as all_heights,
+};
+use barrelstack_campaign::protect::{
+    ProtectError, Reached, Request as ProtectRequest, Shaking, VELOCITIES, protect as rank,
+};
+use barrelstack_campaign::study::RunOptions;
+use barrelstack_reproduction::{ReproduceError, reproduce as run_all};
+use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::prelude::*;
+use serde_json::json;
+
+use crate::errors;
+use crate::listen::listening;
+use crate::page::Page;
+use crate::scenario::{Scenario, told, with_variants};
+
+/// Runs scenarios and sets them side by side; without names they are called by what differs.
+#[pyfunction]
+pub(crate) fn compare(
+    py: Python<'_>,
+    scenarios: Vec<(String, PyRef<'_, Scenario>)>,
+    named: bool,
+    variants: Option<u32>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Page> {
+    let mut all = Vec::new();
+    for (name, scenario) in &scenarios {
+        all.push((name.clone(), with_variants(&scenario.inner, variants)?.0));
+    }
+    check(&all).map_err(errors::general)?;
+    if !named {
+        let found = labels(&all);
+        all.iter_mut().zip(found).for_each(|((name, _), label)| *name = label);
+    }
+    let compared = listening(py, progress, |hear| {
+        let mut answers = Vec::new();
+        for (at, (name, scenario)) in all.iter().enumerate() {
+            let answer = variants::answer(scenario, Asked::Typical, &mut |now| told(hear, now));
+            answers.push((name.clone(), answer.map_err(|failure| (failure, at))?));
+            if hear.stopped() {
+                break;
+            }
+        }
+        Ok(sides(answers))
+    })?;
+    let compared =
+        compared.map_err(|(failure, at): (RunFailure, usize)| errors::run(&failure, &all[at].1))?;
+    py.detach(|| Page::of(&Comparison::of(&compared), document(&compared)))
+}
+
+/// How high is safe.
+#[pyfunction]
+pub(crate) fn heights(
+    py: Python<'_>,
+    folder: PathBuf,
+    rack: String,
+    barrel: String,
+    records: Vec<PathBuf>,
+    synthetic: u32,
+    seed: u32,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Page> {
+    let request = HeightsRequest { rack, barrel, records, synthetic, seed };
+    let found = listening(py, progress, |hear| {
+        all_heights(&request, &folder, &RunOptions::default(), &|done, of| {
+            hear.tell(done as f64, of as f64, "runs")
+        })
+    })?;
+    let found = found.map_err(|error| match error {
+        HeightsError::Study(error) => errors::study(error),
+        other => errors::told(other),
+    })?;
+    let mut document = found.document.clone();
+    document.warnings.clone_from(&found.warnings);
+    Page::of(&found.to_document(), document)
+}
+
+/// What protects a stack best for what it costs; at a site where there is a hazard, else at velocities (m/s).
+#[pyfunction]
+pub(crate) fn protect(
+    py: Python<'_>,
+    scenario: &Scenario,
+    folder: PathBuf,
+    site: Option<PathBuf>,
+    velocities: Option<Vec<f64>>,
+    records: Vec<PathBuf>,
+    motions: Option<PathBuf>,
+    count: u32,
+    rounds: u32,
+    budget: Option<f64>,
+    seed: u32,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Page> {
+    let shaking = match (site, velocities) {
+        (Some(file), _) => Shaking::Site(SiteHazard::load(&file).map_err(errors::told)?),
+        (None, Some(velocities)) => Shaking::Levels(velocities),
+        (None, None) => Shaking::Levels(VELOCITIES.to_vec()),
+    };
+    let request = ProtectRequest {
+        scenario: (*scenario.inner).clone(),
+        shaking,
+        records,
+        folder: motions,
+        motions: count,
+        rounds,
+        budget,
+        seed,
+    };
+    let found = listening(py, progress, |hear| {
+        let tell = |Reached { done, of, .. }| hear.tell(done as f64, of as f64, "runs");
+        let mut found = rank(&request, &folder, &RunOptions::default(), &tell)?;
+        found.show_before_and_after(&mut |now| told(hear, now))?;
+        Ok(found)
+    })?;
+    let found = found.map_err(|error| match error {
+        ProtectError::Study(error) => errors::study(error),
+        ProtectError::Scenario(error) => errors::scenario(&error),
+        ProtectError::Ground(error) => errors::ground(&error),
+        ProtectError::Stack(failure) => errors::run(&failure, &request.scenario),
+        other @ (ProtectError::NoStack(_)
+        | ProtectError::Hazard { .. }
+        | ProtectError::Decision(_)) => errors::told(other),
+    })?;
+    Page::of(&found.to_document(), found.document.clone())
+}
+
+/// The numbers and figures of the paper beside ours.
+#[pyfunction]
+pub(crate) fn reproduce(
+    py: Python<'_>,
+    record: Option<PathBuf>,
+    studies: bool,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Page> {
+    let found = listening(py, progress, |hear| {
+        run_all(record.as_deref(), studies, &|done, of| -> ControlFlow<()> {
+            hear.tell(done as f64, of as f64, "runs")
+        })
+    })?;
+    let found = found.map_err(|error| match error {
+        ReproduceError::Scenario(error) => errors::scenario(&error),
+        ReproduceError::Record(error) => errors::ground(&error),
+        ReproduceError::Stopped => PyKeyboardInterrupt::new_err(()),
+        other @ (ReproduceError::Run { .. } | ReproduceError::Lost { .. }) => {
+            errors::general(other)
+        }
+    })?;
+    let row = |one: &barrelstack_reproduction::Comparison| {
+        json!({
+            "place": one.place,
+            "quantity": one.quantity,
+            "published": one.published,
+            "ours": one.ours,
+            "difference": one.difference,
+            "band": one.band,
+            "verdict": one.verdict.words(),
+            "why": one.why,
+        })
+    };
+    let rows: Vec<_> = found.comparisons.iter().map(row).collect();
+    Page::of(&rows, found.document)
+}

@@ -1,0 +1,171 @@
+//! Contact parameters from tests.
+
+use barrelstack::scenario::{Dimension, Quantity};
+use barrelstack_calibration::collapse::{Errors, Observations, Settings};
+use barrelstack_calibration::drop::{GRAVITY, Striker};
+use barrelstack_calibration::{
+    CalibrateError, Calibration, Parameter, Table, collapse, drop, friction, response, stiffness,
+};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
+use pyo3::prelude::*;
+
+use crate::errors;
+use crate::listen::listening;
+use crate::page::Page;
+use crate::scenario::Scenario;
+
+fn page(found: Result<Calibration, CalibrateError>, of: Option<&Scenario>) -> PyResult<Page> {
+    let found = found.map_err(|error| match (error, of) {
+        (CalibrateError::Stopped, _) => PyKeyboardInterrupt::new_err(()),
+        (CalibrateError::Run(failure), Some(scenario)) => errors::run(&failure, &scenario.inner),
+        (other, _) => errors::general(other),
+    })?;
+    let mut document = found.document();
+    document.warnings.clone_from(&found.warnings);
+    Page::of(&found.to_document(), document)
+}
+
+fn table(name: &str, text: &str) -> PyResult<Table> {
+    Table::parse(name, text).map_err(errors::general)
+}
+
+/// A positive quantity (SI).
+fn positive(name: &str, text: &str, dimension: Dimension) -> PyResult<f64> {
+    let value = Quantity::parse_as(text, &[dimension]).map(|quantity| quantity.value);
+    let example = dimension.example();
+    match value {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        Ok(_) | Err(_) => Err(PyValueError::new_err(format!(
+            "{name}: expected {dimension} above zero such as \"{example}\", found \"{text}\""
+        ))),
+    }
+}
+
+/// Parameters by their words, each once.
+fn parameters(fit: &[String]) -> PyResult<Vec<Parameter>> {
+    let known = Parameter::NAMES.map(|(word, _)| word).join(", ");
+    let mut found = Vec::new();
+    for word in fit {
+        let parameter = Parameter::NAMES.iter().find(|(name, _)| name == word);
+        let Some((_, parameter)) = parameter.filter(|(_, one)| !found.contains(one)) else {
+            return Err(PyValueError::new_err(format!(
+                "fit: expected some of {known}, each once, found \"{word}\""
+            )));
+        };
+        found.push(*parameter);
+    }
+    Ok(found)
+}
+
+/// Stiffness from a press test.
+#[pyfunction]
+pub(crate) fn calibrate_stiffness(
+    name: &str,
+    text: &str,
+    nodes: u32,
+    interface: &str,
+) -> PyResult<Page> {
+    page(stiffness::stiffness(&table(name, text)?, nodes, interface), None)
+}
+
+/// Restitution and damping from drops.
+#[pyfunction]
+pub(crate) fn calibrate_drop(
+    name: &str,
+    text: &str,
+    striker: Option<(String, String)>,
+    nodes: u32,
+    interface: &str,
+) -> PyResult<Page> {
+    let striker = match striker {
+        Some((mass, stiffness)) => Some(Striker {
+            mass: positive("mass", &mass, Dimension::MASS)?,
+            stiffness: positive("stiffness", &stiffness, Dimension::STIFFNESS)?,
+            nodes,
+            gravity: GRAVITY,
+        }),
+        None => None,
+    };
+    page(drop::drop(&table(name, text)?, striker, interface), None)
+}
+
+/// Friction from pulls or tilts.
+#[pyfunction]
+pub(crate) fn calibrate_friction(name: &str, text: &str, interface: &str) -> PyResult<Page> {
+    page(friction::friction(&table(name, text)?, interface), None)
+}
+
+/// Parameters from the recorded response of a shaken stack.
+#[pyfunction]
+pub(crate) fn calibrate_response(
+    py: Python<'_>,
+    scenario: &Scenario,
+    name: &str,
+    text: &str,
+    fit: Vec<String>,
+    until: Option<&str>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Page> {
+    let parameters = parameters(&fit)?;
+    let until = until.map(|until| positive("until", until, Dimension::TIME)).transpose()?;
+    let table = table(name, text)?;
+    let found = listening(py, progress, |hear| {
+        response::response(&scenario.inner, &table, &parameters, until, &|done| {
+            hear.tell(done as f64, f64::NAN, "simulations")
+        })
+    })?;
+    page(found, Some(scenario))
+}
+
+/// Parameters from collapses that were seen.
+#[pyfunction]
+pub(crate) fn calibrate_collapse(
+    py: Python<'_>,
+    scenario: &Scenario,
+    others: Vec<(String, PyRef<'_, Scenario>)>,
+    name: &str,
+    text: &str,
+    fit: Vec<String>,
+    within: f64,
+    timing: &str,
+    placement: &str,
+    simulations: usize,
+    seed: u64,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Page> {
+    let parameters = parameters(&fit)?;
+    if !(within > 1.0 && within <= 100.0) {
+        return Err(PyValueError::new_err(format!(
+            "within: expected a factor between 1 and 100 such as 2, found {within}"
+        )));
+    }
+    let reading = positive("timing", timing, Dimension::TIME)?;
+    let settings = Settings {
+        within,
+        placement: positive("placement", placement, Dimension::LENGTH)?,
+        errors: Errors { reading, ..Errors::default() },
+        simulations,
+        seed,
+        lanes: None,
+    };
+    let seen =
+        Observations::read(&table(name, text)?, &settings.errors).map_err(errors::general)?;
+    let mut scenarios = Vec::new();
+    for named in seen.scenarios() {
+        let Some(named) = named else {
+            scenarios.push((*scenario.inner).clone());
+            continue;
+        };
+        let found = others.iter().find(|(name, _)| name == named);
+        let (_, found) = found.ok_or_else(|| {
+            PyValueError::new_err(format!("no scenario of the name \"{named}\" was given"))
+        })?;
+        scenarios.push((*found.inner).clone());
+    }
+    let found = listening(py, progress, |hear| {
+        collapse::collapse(&seen, &scenarios, &parameters, &settings, &|done, of| {
+            hear.tell(done as f64, of as f64, "runs")
+        })
+    })?;
+    page(found, Some(scenario))
+}
