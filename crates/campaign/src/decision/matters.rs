@@ -7,6 +7,7 @@ use super::Decision;
 use super::cases::Measure;
 use super::indices::Sensitivity;
 use super::measures::MeasureRow;
+use super::sensitivity::alike;
 use super::words::{count, percent};
 
 pub(super) fn effects(decision: &Decision) -> Table {
@@ -41,7 +42,7 @@ pub(super) fn effects(decision: &Decision) -> Table {
                 )),
             ];
             row.extend(levels.iter().map(|level| {
-                let own = group.levels.iter().find(|own| own.intensity == level.intensity);
+                let own = group.levels.iter().find(|own| alike(own.intensity, level.intensity));
                 own.map_or(Cell::Missing, |own| {
                     let share = f64::from(own.collapsed) / f64::from(own.cases);
                     Cell::text(told(share, own.interval))

@@ -37,6 +37,11 @@ pub struct Level {
     pub interval: Interval,
 }
 
+/// Whether two intensities are one level; levels went through text and back.
+pub(super) fn alike(one: f64, other: f64) -> bool {
+    (one - other).abs() < 1e-6 * one
+}
+
 impl Group {
     /// Share of collapse.
     pub fn share(&self) -> f64 {
@@ -140,13 +145,12 @@ fn levels(of: &[&Case], cases: &Cases) -> Vec<Level> {
     let mut at: Vec<(f64, &Case)> =
         leveled.filter_map(|case| Some((case.intensity(cases.main)?, *case))).collect();
     at.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // Levels went through text and back.
-    at.chunk_by(|a, b| b.0 - a.0 < 1e-6 * b.0)
-        .map(|same| {
-            let of: Vec<&Case> = same.iter().map(|(_, case)| *case).collect();
-            Level { intensity: same[0].0, ..by_motion(&of) }
-        })
-        .collect()
+    let parts = at.chunk_by(|a, b| alike(a.0, b.0));
+    let level = |part: &[(f64, &Case)]| {
+        let of: Vec<&Case> = part.iter().map(|(_, case)| *case).collect();
+        Level { intensity: part[0].0, ..by_motion(&of) }
+    };
+    parts.map(level).collect()
 }
 
 fn groups<'a>(
