@@ -29,6 +29,8 @@ use crate::study::{RunOptions, Study, StudyError};
 
 pub use json::ProtectDocument;
 pub use options::{Kind, Protection};
+pub(crate) use options::{changed, slug};
+pub(crate) use plan::{NAPA, shaken};
 pub use rank::Estimate;
 
 use rank::{Quantity, Runs, weights};
