@@ -70,8 +70,9 @@ pub(super) fn one_level(settings: &[String], motion: &str, seconds: f64) -> Resu
 
 /// The same under a push (g) that grows for a second and stays for another one.
 pub(super) fn pressed(settings: &[String], push: f64) -> Result<Run, Failure> {
-    // In steps so small that stiff elements do not ring with them.
-    let samples = (0..2000).map(|at| push * GRAVITY * f64::from(at.min(1000)) / 1000.0).collect();
+    // So smoothly, and in steps so small, that stiff elements do not ring with it.
+    let grown = |at: u32| 0.5 * (1.0 - cos(0.5 * TAU * f64::from(at.min(1000)) / 1000.0));
+    let samples = (0..2000).map(|at| push * GRAVITY * grown(at)).collect();
     let motion = GroundMotion::from_acceleration("push", 0.001, samples);
     let motion = motion.map_err(|error| Failure::Absent(error.to_string()))?;
     let any = self::push(push, 1.0);

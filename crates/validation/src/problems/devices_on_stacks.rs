@@ -41,9 +41,14 @@ fn holding(push: f64) -> f64 {
 
 const HELD: &str = "statics: F = m g (A/(g tan φ) − 1)";
 
+/// So hard that the barrel stays on its support where it was drawn.
+const HARD: &str = "interface.barrel-rack.stiffness=\"500 MN/m\"";
+
 fn lids() -> Vec<String> {
-    let fields = ["levels=1", "gap=\"0 m\"", "stiffness=\"50 MN/m\""];
-    fields.map(|field| format!("stack.lid.{field}")).into()
+    let fields = ["levels=1", "gap=\"0 m\"", "stiffness=\"500 MN/m\""];
+    let mut settings = fields.map(|field| format!("stack.lid.{field}")).to_vec();
+    settings.push(HARD.into());
+    settings
 }
 
 /// The largest force (N) in any element.
@@ -93,8 +98,8 @@ fn strap() -> Problem {
         ("tension of one of its two straps", "N"),
         (exact, 5e-3, 5e-3),
         Box::new(|_| {
-            let settings =
-                ["stack.strap.levels=1".to_owned(), "stack.strap.stiffness=\"50 MN/m\"".into()];
+            let settings = ["stack.strap.levels=1", "stack.strap.stiffness=\"500 MN/m\"", HARD];
+            let settings = settings.map(str::to_owned);
             Ok(Outcome::of(largest(&pressed(&settings, 0.9)?)))
         }),
     )
