@@ -189,6 +189,7 @@ fn one_at_a_time_rests_on_the_base_where_the_first_chunk_is_missing() {
     collected.table = StudyTable::new(columns).unwrap();
     collected.provenance.columns = collected.table.specs().cloned().collect();
     collected.provenance.design = "one-at-a-time".into();
+    collected.provenance.drawn.clear();
     let effects = decide(&collected, &Request::default()).unwrap().effects;
     let told: Vec<_> = effects.iter().map(|of| (of.factor.as_str(), of.groups.len())).collect();
     assert_eq!(told, [("cask", 2)]);

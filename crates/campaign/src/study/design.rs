@@ -257,7 +257,8 @@ fn one_at_a_time(study: &Study, changes: &[(usize, Setting)], draws: u64, number
     for (factor, setting) in study.factors.iter().zip(&mut settings).filter(|_| draws > 0) {
         if let Variation::Distribution(distribution) = &factor.variation {
             let words = format!("draw {draw} of {}", study.motions[motion].name);
-            *setting = Some(distribution.quantile(uniform(seed_of(study.seed, &words), &factor.name)));
+            *setting =
+                Some(distribution.quantile(uniform(seed_of(study.seed, &words), &factor.name)));
         }
     }
     if let Some((factor, setting)) = change.checked_sub(1).and_then(|change| changes.get(change)) {

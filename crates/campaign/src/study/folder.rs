@@ -455,10 +455,8 @@ impl Study {
     fn drawn(&self) -> Vec<String> {
         let drawn = self.factors.iter().filter(|factor| factor.crossed().is_none());
         let names = drawn.map(|factor| factor.name.clone());
-        match self.design {
-            Design::Stripes | Design::OneAtATime { draws: 1.., .. } => names.collect(),
-            _ => Vec::new(),
-        }
+        let draws = matches!(self.design, Design::Stripes | Design::OneAtATime { draws: 1.., .. });
+        if draws { names.collect() } else { Vec::new() }
     }
 
     /// When there are enough cases; none where all are run.

@@ -209,12 +209,7 @@ fn tie() -> Problem {
 const SPRINGS: f64 = 1e5;
 
 /// A platform on springs with a mass on the rack that it carries.
-fn with_mass(
-    mass: f64,
-    tuning: Tuning,
-    motion: (f64, f64),
-    seconds: f64,
-) -> Result<Run, Failure> {
+fn with_mass(mass: f64, tuning: Tuning, motion: (f64, f64), seconds: f64) -> Result<Run, Failure> {
     let own = TAU / (tuning.frequency * (SPRINGS / ABOARD).sqrt());
     let mut settings = platform(SPRINGS);
     settings.extend([
@@ -249,12 +244,12 @@ fn frequency(upper: usize) -> Problem {
         (square.sqrt() / TAU, 2e-3, 2e-3),
         Box::new(move |_| {
             let run = with_mass(mass, tuning, (0.2, 0.05), 10.0)?;
-            let (platform, other) = (way(&run, "platform of R1", "x")?, way(&run, "mass on R1", "x")?);
+            let (platform, other) =
+                (way(&run, "platform of R1", "x")?, way(&run, "mass on R1", "x")?);
             // By itself a mode is seen in what the other one, orthogonal in the masses, does not move.
             let shape = own / (own - square);
-            let seen = |((t, x), (_, y)): (&(f64, f64), &(f64, f64))| {
-                (*t, ABOARD * x + mass * shape * y)
-            };
+            let seen =
+                |((t, x), (_, y)): (&(f64, f64), &(f64, f64))| (*t, ABOARD * x + mass * shape * y);
             let mode: Vec<(f64, f64)> = platform.iter().zip(&other).map(seen).collect();
             period(&mode, 0.1).map(|period| Outcome::of(1.0 / period))
         }),
