@@ -204,7 +204,9 @@ fn shares_of_one_change_at_a_time_are_told_at_each_level_with_intervals_that_cou
     let rows: Vec<usize> = (0..96).flat_map(|row| [row, row]).collect();
     for column in &mut columns {
         let mut values = Values::empty(column.spec.kind);
-        rows.iter().for_each(|row| values.push(column.values.get(*row)).unwrap());
+        for row in &rows {
+            values.push(column.values.get(*row)).unwrap();
+        }
         column.values = values;
     }
     columns.insert(2, number("cask", "", Role::Factor, (0..192).map(cask).collect()));
