@@ -49,7 +49,7 @@ pub use limit::LimitState;
 pub use loss::{Breakage, Losses};
 pub use measures::MeasureRow;
 pub use modes::ModeIncidence;
-pub use sensitivity::{Effect, Group};
+pub use sensitivity::{Effect, Group, Level};
 
 /// What else a decision rests on.
 #[derive(Clone, Debug, Default)]

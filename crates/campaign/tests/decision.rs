@@ -189,9 +189,46 @@ fn one_at_a_time_rests_on_the_base_where_the_first_chunk_is_missing() {
     collected.table = StudyTable::new(columns).unwrap();
     collected.provenance.columns = collected.table.specs().cloned().collect();
     collected.provenance.design = "one-at-a-time".into();
+    collected.provenance.drawn.clear();
     let effects = decide(&collected, &Request::default()).unwrap().effects;
     let told: Vec<_> = effects.iter().map(|of| (of.factor.as_str(), of.groups.len())).collect();
     assert_eq!(told, [("cask", 2)]);
+}
+
+#[test]
+fn shares_of_one_change_at_a_time_are_told_at_each_level_with_intervals_that_count_motions() {
+    let mut collected = ordinary();
+    let mut columns = collected.table.columns().to_vec();
+    // Every record is drawn a friction; another cask is tried on all of them.
+    let cask = |k: usize| Some(if k.is_multiple_of(2) { 1.0 } else { 2.0 });
+    let rows: Vec<usize> = (0..96).flat_map(|row| [row, row]).collect();
+    for column in &mut columns {
+        let mut values = Values::empty(column.spec.kind);
+        for row in &rows {
+            values.push(column.values.get(*row)).unwrap();
+        }
+        column.values = values;
+    }
+    columns.insert(2, number("cask", "", Role::Factor, (0..192).map(cask).collect()));
+    collected.table = StudyTable::new(columns).unwrap();
+    collected.provenance.columns = collected.table.specs().cloned().collect();
+    collected.provenance.design = "one-at-a-time".into();
+    let found = decide(&collected, &Request::default()).unwrap();
+    let effect = found.effects.iter().find(|effect| effect.factor == "cask").unwrap();
+    for group in &effect.groups {
+        assert_eq!((group.cases, group.levels.len()), (96, 8));
+        for level in &group.levels {
+            let failed = (0..12).filter(|record| capacity(*record) <= level.intensity).count();
+            assert_eq!((level.cases, level.collapsed as usize), (12, failed));
+            // A case a motion: the interval of Wilson, a little wider by Student's t.
+            let one = barrelstack_fragility::wilson(level.collapsed, 12, 0.95);
+            assert!(level.interval.high - level.interval.low >= one.high - one.low - 1e-9);
+        }
+        // Of a motion all levels go together, so that is wider than of as many cases alone.
+        let alone = barrelstack_fragility::wilson(group.collapsed, 96, 0.95);
+        assert!(group.interval.low < alone.low && group.interval.high > alone.high);
+    }
+    assert!(found.html().contains("Intervals count motions"));
 }
 
 #[test]

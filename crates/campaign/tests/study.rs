@@ -4,7 +4,7 @@
 
 mod common;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -111,6 +111,28 @@ fn one_at_a_time_has_the_base_and_each_other_value_once() {
         drawn.iter().any(|v| (v - 0.24).abs() < 1e-12)
             && drawn.iter().any(|v| (v - 0.56).abs() < 1e-12)
     );
+}
+
+#[test]
+fn every_change_meets_the_same_motions_on_the_same_drawn_stacks() {
+    let drawn = "[[factor]]\nname = \"drawn\"\nfield = \"interface.barrel-rack.friction.coefficient\"\n\
+                 distribution = { kind = \"uniform\", from = 0.2, to = 0.6 }\n";
+    let design = "[design]\nkind = \"one-at-a-time\"\ndraws = 3";
+    let study = study(&format!("{PULSE}{TWO_FACTORS}{drawn}{design}"));
+    let table = run(&study);
+    assert_eq!(table.rows() as u64, study.cases());
+    let levels = table.integers("stack.levels").unwrap();
+    let mut stacks: BTreeMap<String, Vec<u64>> = BTreeMap::new();
+    for (row, friction) in numbers(&table, "friction").iter().enumerate() {
+        let change = format!("{friction} {:?}", levels[row]);
+        stacks.entry(change).or_default().push(numbers(&table, "drawn")[row].to_bits());
+    }
+    let base = &stacks.values().next().unwrap();
+    assert!(stacks.len() > 2 && stacks.values().all(|own| own == *base), "{stacks:?}");
+    assert_eq!(base.iter().collect::<BTreeSet<_>>().len(), 3, "each stack is another one");
+    let alone = format!("{HEAD}{RUN}{PULSE}{drawn}{design}");
+    let error = Study::parse("test.toml", &alone).unwrap_err().to_string();
+    assert!(error.contains("every factor is drawn"), "{error}");
 }
 
 /// A study of one drawn factor and a drawn level that needs no motion file.

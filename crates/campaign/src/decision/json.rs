@@ -8,7 +8,7 @@ use super::hazard::{LimitRate, Lost, Site};
 use super::loss::{Breakage, Loss, Losses};
 use super::measures::MeasureRow;
 use super::modes::ModeIncidence;
-use super::sensitivity::{Effect, Group};
+use super::sensitivity::{Effect, Group, Level};
 use super::{Cases, Decision, Sensitivity};
 
 described! {
@@ -261,8 +261,22 @@ described! {
         pub cases: u32 = group.cases,
         /// Those that collapse.
         pub collapsed: u32 = group.collapsed,
-        /// 95 % interval of the share (Wilson).
+        /// 95 % interval of the share (Wilson); of one change at a time the cases of one motion go together.
         pub interval: [Option<f64>; 2] as "1" = bounds(group.interval),
+        /// The same at each level, where one thing is changed at a time.
+        pub levels: Vec<EffectLevel> = group.levels.iter().map(EffectLevel::of).collect(),
+    }
+
+    /// Cases with neighboring values of a factor at one level.
+    pub struct EffectLevel of level: &Level {
+        /// The level.
+        pub intensity: f64 as "of the measure" = level.intensity,
+        /// Cases.
+        pub cases: u32 = level.cases,
+        /// Those that collapse.
+        pub collapsed: u32 = level.collapsed,
+        /// 95 % interval of the share, for which the cases of one motion go together.
+        pub interval: [Option<f64>; 2] as "1" = bounds(level.interval),
     }
 
     /// What it means at a site.

@@ -1,12 +1,13 @@
 //! Tables of what matters: varied quantities, and measures of shaking.
 
 use barrelstack_fragility::Interval;
-use barrelstack_report::{Cell, Table};
+use barrelstack_report::{Cell, Column, Table};
 
 use super::Decision;
 use super::cases::Measure;
 use super::indices::Sensitivity;
 use super::measures::MeasureRow;
+use super::sensitivity::alike;
 use super::words::{count, percent};
 
 pub(super) fn effects(decision: &Decision) -> Table {
@@ -14,10 +15,22 @@ pub(super) fn effects(decision: &Decision) -> Table {
         "Share of collapse at the values of every varied quantity, over all motions and levels.",
         &[("quantity", ""), ("value", ""), ("cases", ""), ("collapsed", ""), ("95 % interval", "")],
     );
+    let levels = decision.effects.iter().flat_map(|effect| &effect.groups).map(|g| &g.levels);
+    let levels = levels.max_by_key(|levels| levels.len()).cloned().unwrap_or_default();
+    let measure = decision.cases.measure();
+    table.columns.extend(levels.iter().map(|level| {
+        Column::new(format!("{} {}", measure.label, measure.words(level.intensity)), "")
+    }));
+    if !levels.is_empty() {
+        table.caption += " Intervals count motions, not cases.";
+    }
+    let told = |share: f64, interval: Interval| {
+        format!("{} ({} to {})", percent(share), percent(interval.low), percent(interval.high))
+    };
     for effect in &decision.effects {
         for (at, group) in effect.groups.iter().enumerate() {
             let first = |text: String| Cell::text(if at == 0 { text } else { String::new() });
-            table.rows.push(vec![
+            let mut row = vec![
                 first(effect.factor.clone()),
                 Cell::text(&group.label),
                 count(group.cases),
@@ -27,7 +40,15 @@ pub(super) fn effects(decision: &Decision) -> Table {
                     percent(group.interval.low),
                     percent(group.interval.high)
                 )),
-            ]);
+            ];
+            row.extend(levels.iter().map(|level| {
+                let own = group.levels.iter().find(|own| alike(own.intensity, level.intensity));
+                own.map_or(Cell::Missing, |own| {
+                    let share = f64::from(own.collapsed) / f64::from(own.cases);
+                    Cell::text(told(share, own.interval))
+                })
+            }));
+            table.rows.push(row);
         }
     }
     table

@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
-use barrelstack_fragility::{Interval, wilson};
+use barrelstack_fragility::{Interval, grouped_mean, wilson};
 
 use super::cases::{Case, Cases, told};
 use super::curve::LEVEL;
@@ -20,6 +20,26 @@ pub struct Group {
     pub collapsed: u32,
     /// Interval of the share of collapse.
     pub interval: Interval,
+    /// The same at each intensity (SI) that cases were scaled to, where one thing is changed at a time.
+    pub levels: Vec<Level>,
+}
+
+/// Cases of a group at one intensity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    /// The intensity (SI).
+    pub intensity: f64,
+    /// Cases.
+    pub cases: u32,
+    /// Of which collapsed.
+    pub collapsed: u32,
+    /// Interval of the share of collapse, for which the cases of one motion go together.
+    pub interval: Interval,
+}
+
+/// Whether two intensities are one level; levels went through text and back.
+pub(super) fn alike(one: f64, other: f64) -> bool {
+    (one - other).abs() < 1e-6 * one
 }
 
 impl Group {
@@ -53,6 +73,7 @@ const MOST: usize = 6;
 pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> Vec<Effect> {
     // One at a time: a factor's cases are those in which every other stands at its base.
     let alone = made.design == "one-at-a-time";
+    let drawn = |factor: &Column| made.drawn.contains(&factor.spec.name);
     let base: Vec<Option<Value>> = factors.iter().filter(|_| alone).map(most_frequent).collect();
     let mut found: Vec<Effect> = factors
         .iter()
@@ -61,7 +82,8 @@ pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> V
             let belongs = |case: &&Case| {
                 !alone
                     || factors.iter().zip(&base).enumerate().all(|(other, (column, base))| {
-                        other == at || column.values.get(case.row as usize) == *base
+                        let value = || column.values.get(case.row as usize);
+                        other == at || drawn(column) || value() == *base
                     })
             };
             let seen = cases
@@ -70,7 +92,12 @@ pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> V
                 .map(AsRef::as_ref)
                 .filter(belongs)
                 .map(|case| (factor.values.get(case.row as usize), case));
-            let groups = groups(seen, &factor.spec.unit);
+            let mut groups = groups(seen, &factor.spec.unit);
+            for (group, of) in groups.iter_mut().filter(|_| alone && cases.records.len() > 1) {
+                group.interval = by_motion(of).interval;
+                group.levels = levels(of, cases);
+            }
+            let groups: Vec<Group> = groups.into_iter().map(|(group, _)| group).collect();
             (groups.len() > 1).then(|| Effect { factor: factor.spec.name.clone(), groups })
         })
         .collect();
@@ -88,17 +115,49 @@ fn most_frequent(factor: &Column) -> Option<Value> {
     factor.values.get(first)
 }
 
-fn group(label: String, of: &[&Case]) -> Group {
+fn group(label: String, of: Vec<&Case>) -> (Group, Vec<&Case>) {
     let cases = u32::try_from(of.len()).unwrap_or(u32::MAX);
     let collapsed = of.iter().map(|case| u32::from(case.collapsed)).sum();
-    Group { label, cases, collapsed, interval: wilson(collapsed, cases, LEVEL) }
+    let interval = wilson(collapsed, cases, LEVEL);
+    (Group { label, cases, collapsed, interval, levels: Vec::new() }, of)
+}
+
+/// What cases come to of which those of one motion go together.
+fn by_motion(of: &[&Case]) -> Level {
+    let mut motions: BTreeMap<u32, (u32, u32)> = BTreeMap::new();
+    for case in of {
+        let (collapsed, cases) = motions.entry(case.record).or_default();
+        (*collapsed, *cases) = (*collapsed + u32::from(case.collapsed), *cases + 1);
+    }
+    let shares: Vec<(f64, f64)> =
+        motions.values().map(|(sum, cases)| (f64::from(*sum), f64::from(*cases))).collect();
+    Level {
+        intensity: f64::NAN,
+        cases: motions.values().map(|(_, cases)| cases).sum(),
+        collapsed: motions.values().map(|(collapsed, _)| collapsed).sum(),
+        interval: grouped_mean(&shares, LEVEL),
+    }
+}
+
+/// The same at each intensity, ascending; none where cases were not scaled to any.
+fn levels(of: &[&Case], cases: &Cases) -> Vec<Level> {
+    let leveled = of.iter().filter(|_| cases.leveled);
+    let mut at: Vec<(f64, &Case)> =
+        leveled.filter_map(|case| Some((case.intensity(cases.main)?, *case))).collect();
+    at.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let parts = at.chunk_by(|a, b| alike(a.0, b.0));
+    let level = |part: &[(f64, &Case)]| {
+        let of: Vec<&Case> = part.iter().map(|(_, case)| *case).collect();
+        Level { intensity: part[0].0, ..by_motion(&of) }
+    };
+    parts.map(level).collect()
 }
 
 fn groups<'a>(
     seen: impl Iterator<Item = (Option<Value>, &'a Case)> + Clone,
     unit: &str,
-) -> Vec<Group> {
-    let numbers: Option<Vec<(f64, &Case)>> = seen
+) -> Vec<(Group, Vec<&'a Case>)> {
+    let numbers: Option<Vec<(f64, &'a Case)>> = seen
         .clone()
         .map(|(value, case)| match value {
             Some(Value::Number(x)) => Some((x, case)),
@@ -112,15 +171,15 @@ fn groups<'a>(
         if x.fract() == 0.0 { format!("{x}") } else { barrelstack_report::significant(x, 3) }
     };
     let Some(mut numbers) = numbers else {
-        let mut by_text: BTreeMap<String, Vec<&Case>> = BTreeMap::new();
+        let mut by_text: BTreeMap<String, Vec<&'a Case>> = BTreeMap::new();
         for (value, case) in seen {
             by_text.entry(told(value)).or_default().push(case);
         }
-        return by_text.into_iter().map(|(label, of)| group(label, &of)).collect();
+        return by_text.into_iter().map(|(label, of)| group(label, of)).collect();
     };
     numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let same: Vec<&[(f64, &Case)]> = numbers.chunk_by(|a, b| a.0 == b.0).collect();
-    let parts: Vec<&[(f64, &Case)]> = if same.len() <= MOST {
+    let same: Vec<&[(f64, &'a Case)]> = numbers.chunk_by(|a, b| a.0 == b.0).collect();
+    let parts: Vec<&[(f64, &'a Case)]> = if same.len() <= MOST {
         same
     } else {
         let third = |i: usize| &numbers[i * numbers.len() / 3..(i + 1) * numbers.len() / 3];
@@ -135,7 +194,7 @@ fn groups<'a>(
             } else {
                 format!("{} to {}", short(first), short(last))
             };
-            Some(group(with_unit(label), &part.iter().map(|(_, case)| *case).collect::<Vec<_>>()))
+            Some(group(with_unit(label), part.iter().map(|(_, case)| *case).collect()))
         })
         .collect()
 }

@@ -3,6 +3,11 @@
 const ALL: &[(&str, &str)] = &[
     ("napa-four-levels", include_str!("../../studies/napa-four-levels.toml")),
     ("demo-devices", include_str!("../../studies/demo-devices.toml")),
+    ("demo-devices-across", include_str!("../../studies/demo-devices-across.toml")),
+    ("demo-isolators", include_str!("../../studies/demo-isolators.toml")),
+    ("demo-racks", include_str!("../../studies/demo-racks.toml")),
+    ("demo-slosh", include_str!("../../studies/demo-slosh.toml")),
+    ("tuned-mass", include_str!("../../studies/tuned-mass.toml")),
 ];
 
 /// Names of all built-in studies.

@@ -18,6 +18,8 @@ pub enum Design {
     OneAtATime {
         /// Quantiles that stand for a distribution.
         quantiles: Vec<f64>,
+        /// Stacks for each motion, for which the distributions are drawn instead; 0 where quantiles stand for them.
+        draws: u32,
     },
     /// Samples with one in each of `count` equal shares of every factor.
     LatinHypercube {
@@ -92,10 +94,12 @@ pub(super) struct Case {
 pub(super) enum Cases {
     /// Every combination: the motion slowest, then the factors in order, the level fastest.
     Crossed,
-    /// The base and one change at a time: the motion slowest, then the level, then the changes.
+    /// The base and one change at a time: the motion slowest, then the draw, then the level, then the changes.
     OneAtATime {
         /// Factor and value of each change.
         changes: Vec<(usize, Setting)>,
+        /// Draws of everything else for each motion, alike for all changes and levels.
+        draws: u64,
     },
     /// Points of the unit cube whose axes are motion, level and factors.
     Sampled(Sampling),
@@ -140,9 +144,10 @@ impl Cases {
         let axes = study.axes();
         match &study.design {
             Design::FullFactorial | Design::Stripes | Design::Ida(_) => Self::Crossed,
-            Design::OneAtATime { quantiles } => {
-                Self::OneAtATime { changes: changes(&study.factors, quantiles) }
-            }
+            Design::OneAtATime { quantiles, draws } => Self::OneAtATime {
+                changes: changes(&study.factors, quantiles, *draws > 0),
+                draws: u64::from(*draws),
+            },
             Design::MonteCarlo { .. } => Self::Sampled(Sampling::Random),
             Design::LatinHypercube { count } => {
                 let permutation = |axis: &String| {
@@ -188,7 +193,9 @@ impl Cases {
                 u64::from(*count) * (exchanged.len() as u64 + 2)
             }
             (Self::Sampled(_), Design::MonteCarlo { most, .. }) => u64::from(*most),
-            (Self::OneAtATime { changes }, _) => motions * levels * (1 + changes.len() as u64),
+            (Self::OneAtATime { changes, draws }, _) => {
+                motions * (*draws).max(1) * levels * (1 + changes.len() as u64)
+            }
             (Self::Crossed | Self::Sampled(_), _) => {
                 let lists =
                     study.factors.iter().map(|factor| factor.crossed().map_or(1, <[_]>::len));
@@ -201,7 +208,7 @@ impl Cases {
     pub(super) fn case(&self, study: &Study, number: u64) -> Case {
         match self {
             Self::Crossed => crossed(study, number),
-            Self::OneAtATime { changes } => one_at_a_time(study, changes, number),
+            Self::OneAtATime { changes, draws } => one_at_a_time(study, changes, *draws, number),
             Self::Sampled(sampling) => sampled(study, sampling, number),
         }
     }
@@ -237,25 +244,36 @@ fn crossed(study: &Study, number: u64) -> Case {
     Case { number, id, motion, level, settings }
 }
 
-fn one_at_a_time(study: &Study, changes: &[(usize, Setting)], number: u64) -> Case {
+fn one_at_a_time(study: &Study, changes: &[(usize, Setting)], draws: u64, number: u64) -> Case {
     let mut rest = number;
     let change = digit(&mut rest, 1 + changes.len());
     let levels = study.crossed_levels();
     let level = levels[digit(&mut rest, levels.len())];
+    let draw = rest % draws.max(1);
+    rest /= draws.max(1);
     let motion = digit(&mut rest, study.motions.len());
     let mut settings = vec![None; study.factors.len()];
+    // What is drawn knows of the motion and of nothing else, so that rows differ in their change alone.
+    for (factor, setting) in study.factors.iter().zip(&mut settings).filter(|_| draws > 0) {
+        if let Variation::Distribution(distribution) = &factor.variation {
+            let words = format!("draw {draw} of {}", study.motions[motion].name);
+            *setting =
+                Some(distribution.quantile(uniform(seed_of(study.seed, &words), &factor.name)));
+        }
+    }
     if let Some((factor, setting)) = change.checked_sub(1).and_then(|change| changes.get(change)) {
         settings[*factor] = Some(setting.clone());
     }
     Case { number, id: study.identity(motion, level, &settings), motion, level, settings }
 }
 
-/// Every value of every factor that is not that of the base.
-fn changes(factors: &[Factor], quantiles: &[f64]) -> Vec<(usize, Setting)> {
+/// Every value of every factor that is not that of the base, but for those that are drawn.
+fn changes(factors: &[Factor], quantiles: &[f64], drawn: bool) -> Vec<(usize, Setting)> {
     let mut changes = Vec::new();
     for (index, factor) in factors.iter().enumerate() {
         let values: Vec<Setting> = match &factor.variation {
             Variation::Values(values) => values.clone(),
+            Variation::Distribution(_) if drawn => continue,
             Variation::Distribution(distribution) => match distribution.settings() {
                 Some(settings) => settings.cloned().collect(),
                 None => quantiles.iter().map(|u| distribution.quantile(*u)).collect(),

@@ -256,12 +256,20 @@ static DESIGN: Section = Section {
             Variant {
                 name: "one-at-a-time",
                 help: "The base, and every other value of one factor at a time, for every level and motion.",
-                fields: &[Field::new(
-                    "quantiles",
-                    Kind::Values,
-                    Default::Value("[0.1, 0.9]"),
-                    "Quantiles that stand for a distribution.",
-                )],
+                fields: &[
+                    Field::new(
+                        "quantiles",
+                        Kind::Values,
+                        Default::Value("[0.1, 0.9]"),
+                        "Quantiles that stand for a distribution.",
+                    ),
+                    Field::new(
+                        "draws",
+                        Kind::Integer(0, 10_000),
+                        Default::Value("0"),
+                        "Stacks for each motion: with any, factors of a distribution are drawn for each of them, alike for all changes and levels, and no quantiles stand for them.",
+                    ),
+                ],
             },
             Variant {
                 name: "latin-hypercube",

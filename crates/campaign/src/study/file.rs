@@ -321,7 +321,15 @@ fn read_design(
             let nodes = reader.nodes("quantiles")?.unwrap_or_default();
             let range = Range { least: 0.0, above: true, greatest: 1.0 - 1e-9 };
             let quantiles = nodes.iter().map(|node| reader.read_number("quantiles", node, range));
-            Design::OneAtATime { quantiles: quantiles.collect::<Result<_, _>>()? }
+            let (quantiles, draws) =
+                (quantiles.collect::<Result<_, _>>()?, reader.integer("draws")?);
+            if draws > 0 && factors.iter().all(|factor| factor.crossed().is_none()) {
+                return refuse(
+                    "every factor is drawn, so nothing is changed one at a time: give one of them `values`, or take \
+                     \"stripes\"",
+                );
+            }
+            Design::OneAtATime { quantiles, draws }
         }
         DesignKind::LatinHypercube => Design::LatinHypercube { count: reader.integer("count")? },
         DesignKind::Sobol => {

@@ -451,11 +451,12 @@ impl Study {
         format!("{:016x}", self.hash())
     }
 
-    /// The factors that a design of stripes draws anew for each case.
+    /// The factors that stripes draw anew for each case, and changes one at a time for each of some stacks.
     fn drawn(&self) -> Vec<String> {
         let drawn = self.factors.iter().filter(|factor| factor.crossed().is_none());
         let names = drawn.map(|factor| factor.name.clone());
-        if matches!(self.design, Design::Stripes) { names.collect() } else { Vec::new() }
+        let draws = matches!(self.design, Design::Stripes | Design::OneAtATime { draws: 1.., .. });
+        if draws { names.collect() } else { Vec::new() }
     }
 
     /// When there are enough cases; none where all are run.

@@ -36,7 +36,8 @@ impl Study {
         let design = match &self.design {
             Design::LatinHypercube { count } => format!("latin-hypercube of {count}"),
             Design::Ida(hunt) => format!("{hunt:?}"),
-            Design::OneAtATime { quantiles } => format!("one-at-a-time {quantiles:?}"),
+            Design::OneAtATime { quantiles, draws: 0 } => format!("one-at-a-time {quantiles:?}"),
+            Design::OneAtATime { draws, .. } => format!("one-at-a-time of {draws} draws"),
             Design::FullFactorial
             | Design::Sobol { .. }
             | Design::Saltelli { .. }

@@ -20,6 +20,7 @@ pub(super) static WORDS: Words = Words {
         name: "chocks knocked aside",
         overrides: &["stack.chock.gap=\"4 cm\"", "stack.chock.angle=\"45 deg\""],
     }],
+    idle: &["stack.chock.levels=3", "stack.chock.gap=\"4 cm\""],
     cost: Cost {
         dollars: [15.0, 60.0],
         each: Each::Level,

@@ -44,6 +44,8 @@ pub(super) static WORDS: Words = Words {
         Setting { name: "seized rollers", overrides: &["stack.isolator.friction=0.6"] },
         Setting { name: "rusty rollers", overrides: &["stack.isolator.friction=0.1"] },
     ],
+    // A platform is a body more: only without it the bits are those of the stack.
+    idle: &["stack.isolator.path=\"none\"", "stack.isolator.recentring=\"10 kN/m\""],
     cost: Cost {
         dollars: [800.0, 2500.0],
         each: Each::Stack,

@@ -24,6 +24,7 @@ pub(super) static WORDS: Words = Words {
         Setting { name: "lids on the top three levels", overrides: &["stack.lid.levels=3"] },
     ],
     degraded: &[Setting { name: "lids that sit loose", overrides: &["stack.lid.gap=\"4 cm\""] }],
+    idle: &["stack.lid.levels=3", "stack.lid.gap=\"1 m\""],
     cost: Cost {
         dollars: [100.0, 250.0],
         each: Each::Level,

@@ -118,6 +118,9 @@ pub struct Words {
     pub candidates: &'static [Setting],
     /// What becomes of it in use: to be put [over](Setting::over) a candidate.
     pub degraded: &'static [Setting],
+    /// Settings to be put [over](Setting::over) a candidate, with which it does nothing: out of reach, as slack or as
+    /// weak as can be. Such a stack is the one without it, to the last bit.
+    pub idle: &'static [&'static str],
     /// What it costs.
     pub cost: Cost,
 }
@@ -173,6 +176,7 @@ impl Words {
             broken: "broken",
             candidates: &[],
             degraded: &[],
+            idle: &[],
             cost: Cost { dollars: [0.0, 0.0], each: Each::Stack, source: "" },
         }
     }

@@ -22,6 +22,16 @@ pub(super) static WORDS: Words = Words {
             "stack.pad.friction=0.22",
         ],
     }],
+    // As hard and as smooth as the seats, where these are springs and dampers.
+    idle: &[
+        "interface.barrel-rack.law=kelvin-voigt",
+        "interface.barrel-rack.basis=node",
+        "interface.barrel-rack.stiffness=\"980 kN/m\"",
+        "interface.barrel-rack.damping=\"5 kN s/m\"",
+        "interface.barrel-rack.friction.coefficient=0.3",
+        "stack.pad.stiffness=\"980 kN/m\"",
+        "stack.pad.friction=0.3",
+    ],
     cost: Cost {
         dollars: [20.0, 60.0],
         each: Each::Level,

@@ -39,6 +39,7 @@ pub(super) static WORDS: Words = Words {
         name: "loose straps",
         overrides: &["stack.strap.pretension=\"0 N\"", "stack.strap.slack=\"3 cm\""],
     }],
+    idle: &["stack.strap.levels=3", "stack.strap.pretension=\"0 N\"", "stack.strap.slack=\"1 m\""],
     cost: Cost {
         dollars: [40.0, 120.0],
         each: Each::Level,

@@ -33,6 +33,7 @@ pub(super) static WORDS: Words = Words {
         },
     ],
     degraded: &[Setting { name: "slack ties", overrides: &["stack.tie.slack=\"5 cm\""] }],
+    idle: &["stack.tie.levels=2", "stack.tie.slack=\"9 m\""],
     cost: Cost {
         dollars: [150.0, 600.0],
         each: Each::Level,

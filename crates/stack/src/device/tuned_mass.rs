@@ -32,6 +32,8 @@ pub(super) static WORDS: Words = Words {
         name: "a tuned mass without its damper",
         overrides: &["stack.tuned_mass.damping_ratio=0.01"],
     }],
+    // A mass is a body more: one that weighs nothing is none.
+    idle: &["stack.tuned_mass.mass=\"0 kg\"", "stack.tuned_mass.level=2"],
     cost: Cost {
         dollars: [400.0, 1500.0],
         each: Each::Stack,

@@ -33,6 +33,11 @@ pub(super) static WORDS: Words = Words {
         name: "bent stops",
         overrides: &["stack.walking_stop.gap=\"6 cm\"", "stack.walking_stop.lip=\"1 cm\""],
     }],
+    idle: &[
+        "stack.walking_stop.levels=12",
+        "stack.walking_stop.holds=\"both\"",
+        "stack.walking_stop.gap=\"9 m\"",
+    ],
     cost: Cost {
         dollars: [20.0, 80.0],
         each: Each::Level,

@@ -29,7 +29,7 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-fn problem(
+pub(super) fn problem(
     id: &str,
     title: String,
     source: &str,
@@ -64,28 +64,30 @@ fn scenario(settings: &[String], motion: &str, seconds: f64) -> Result<Scenario,
     Ok(Scenario::parse("device.toml", &text, settings)?)
 }
 
-fn one_level(settings: &[String], motion: &str, seconds: f64) -> Result<Run, Failure> {
+pub(super) fn one_level(settings: &[String], motion: &str, seconds: f64) -> Result<Run, Failure> {
     Ok(scenario(settings, motion, seconds)?.run()?)
 }
 
 /// The same under a push (g) that grows for a second and stays for another one.
-fn pressed(settings: &[String], push: f64) -> Result<Run, Failure> {
-    let samples = (0..200).map(|at| push * GRAVITY * f64::from(at.min(100)) / 100.0).collect();
-    let motion = GroundMotion::from_acceleration("push", 0.01, samples);
+pub(super) fn pressed(settings: &[String], push: f64) -> Result<Run, Failure> {
+    // So smoothly, and in steps so small, that stiff elements do not ring with it.
+    let grown = |at: u32| 0.5 * (1.0 - cos(0.5 * TAU * f64::from(at.min(1000)) / 1000.0));
+    let samples = (0..2000).map(|at| push * GRAVITY * grown(at)).collect();
+    let motion = GroundMotion::from_acceleration("push", 0.001, samples);
     let motion = motion.map_err(|error| Failure::Absent(error.to_string()))?;
     let any = self::push(push, 1.0);
     let scenario = scenario(settings, &any, 1.99)?;
     Ok(scenario.run_on(Ground::from(motion), &mut |_| ControlFlow::Continue(()))?)
 }
 
-fn push(amplitude: f64, seconds: f64) -> String {
+pub(super) fn push(amplitude: f64, seconds: f64) -> String {
     format!(
         "[motion.pulse]\nkind = \"rectangular\"\namplitude = \"{amplitude} g\"\nperiod = \"{seconds} s\""
     )
 }
 
 /// The displacement (m) of a body along an axis, with its times (s).
-fn way(run: &Run, body: &str, axis: &str) -> Result<Vec<(f64, f64)>, Failure> {
+pub(super) fn way(run: &Run, body: &str, axis: &str) -> Result<Vec<(f64, f64)>, Failure> {
     let name = format!("{body} displacement {axis}");
     let channel = run.recording.channel(&name).ok_or(Failure::Absent(name))?;
     Ok(run.recording.times.iter().copied().zip(channel.values.iter().copied()).collect())

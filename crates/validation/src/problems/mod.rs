@@ -2,6 +2,7 @@
 
 pub mod consensus;
 mod devices;
+mod devices_on_stacks;
 mod fragility;
 mod gravity;
 mod housner;
@@ -37,6 +38,7 @@ pub fn all() -> Vec<Problem> {
         gravity::problems(),
         stacks::problems(),
         devices::problems(),
+        devices_on_stacks::problems(),
         slosh::problems(),
         ode::problems(),
         space::problems(),

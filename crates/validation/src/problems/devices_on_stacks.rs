@@ -1,0 +1,311 @@
+//! Protection devices that hold a stack, as a scenario puts them on it: forces, periods and frequencies.
+
+use std::f64::consts::TAU;
+
+use barrelstack::device::Tuning;
+use barrelstack::{Run, assemble::Assembly};
+use barrelstack_dynamics::math::{cos, sin, tan};
+
+use crate::problem::border;
+use crate::{Failure, GRAVITY, Outcome, Problem};
+
+use super::devices::{one_level, pressed, problem, push, way};
+use super::housner::halvings;
+
+/// The problems of this theory.
+pub(super) fn problems() -> Vec<Problem> {
+    let mut list = vec![lid(), lid_breaks(), strap()];
+    list.extend(walking_stop());
+    list.push(tie());
+    list.extend([0, 1].map(frequency));
+    list.extend([0.05, 0.15].map(tuned));
+    list
+}
+
+/// Angle (rad) of the supports of a cradle of the scenario.
+const CRADLE: f64 = 28.0 * TAU / 360.0;
+
+/// Mass of a full barrel (kg).
+const BARREL: f64 = 46.0 + 990.0 * 0.225;
+
+/// The push (g) under which a barrel leans on one support of its cradle and on what holds it down with a force (N):
+/// `N sin φ = m A`, `N cos φ = m g + F`.
+fn held_at(force: f64) -> f64 {
+    tan(CRADLE) * (1.0 + force / (BARREL * GRAVITY))
+}
+
+/// The force (N) that holds it down under a push (g).
+fn holding(push: f64) -> f64 {
+    BARREL * GRAVITY * (push / tan(CRADLE) - 1.0)
+}
+
+const HELD: &str = "statics: F = m g (A/(g tan φ) − 1)";
+
+/// So hard that the barrel stays on its support where it was drawn.
+const HARD: &str = "interface.barrel-rack.stiffness=\"500 MN/m\"";
+
+fn lids() -> Vec<String> {
+    let fields = ["levels=1", "gap=\"0 m\"", "stiffness=\"500 MN/m\""];
+    let mut settings = fields.map(|field| format!("stack.lid.{field}")).to_vec();
+    settings.push(HARD.into());
+    settings
+}
+
+/// The largest force (N) in any element.
+fn largest(run: &Run) -> f64 {
+    run.elements.iter().map(|element| element.peak.0.abs()).fold(0.0, f64::max)
+}
+
+fn lid() -> Problem {
+    let exact = holding(0.9);
+    problem(
+        "lid",
+        "a barrel in a cradle of 28° under a lid without a gap, pushed with 0.9 g".into(),
+        HELD,
+        ("force on the lid", "N"),
+        (exact, 5e-3, 5e-3),
+        Box::new(|_| Ok(Outcome::of(largest(&pressed(&lids(), 0.9)?)))),
+    )
+}
+
+fn lid_breaks() -> Problem {
+    let strength = 1000.0;
+    let exact = held_at(strength);
+    problem(
+        "lid-breaks",
+        "a barrel in a cradle of 28° under a lid that breaks at 1 kN".into(),
+        HELD,
+        ("push from which the barrel rolls out", "g"),
+        (exact, 5e-3, 2e-2),
+        Box::new(move |effort| {
+            let found = border((0.95 * exact, 1.05 * exact), halvings(effort), |amplitude| {
+                let mut settings = lids();
+                settings.push(format!("stack.lid.strength=\"{strength} N\""));
+                Ok(pressed(&settings, amplitude)?.fates.collapse_time().is_some())
+            })?;
+            Ok(Outcome::of(found))
+        }),
+    )
+}
+
+fn strap() -> Problem {
+    // A strap down each side of the barrel; without friction it turns until both pull alike.
+    let exact = 0.5 * holding(0.9);
+    problem(
+        "strap",
+        "a barrel strapped into a cradle of 28° without slack, pushed with 0.9 g".into(),
+        HELD,
+        ("tension of one of its two straps", "N"),
+        (exact, 5e-3, 5e-3),
+        Box::new(|_| {
+            let settings = ["stack.strap.levels=1", "stack.strap.stiffness=\"500 MN/m\"", HARD];
+            let settings = settings.map(str::to_owned);
+            Ok(Outcome::of(largest(&pressed(&settings, 0.9)?)))
+        }),
+    )
+}
+
+/// The period (s) with which a quantity crosses zero after a time (s).
+fn period(ways: &[(f64, f64)], after: f64) -> Result<f64, Failure> {
+    let crossings: Vec<f64> = ways
+        .windows(2)
+        .filter(|w| w[0].0 > after && w[0].1 * w[1].1 < 0.0)
+        .map(|w| w[0].0 + w[0].1 / (w[0].1 - w[1].1) * (w[1].0 - w[0].0))
+        .collect();
+    match (crossings.first(), crossings.last()) {
+        (Some(first), Some(last)) if crossings.len() > 2 => {
+            Ok(2.0 * (last - first) / (crossings.len() - 1) as f64)
+        }
+        _ => Err(Failure::Absent("it does not swing".into())),
+    }
+}
+
+/// The mass (kg) of bodies whose names a filter lets through.
+fn mass_of(run: &Run, counts: impl Fn(&str) -> bool) -> f64 {
+    let bodies = run.assembly.model.bodies().iter().enumerate();
+    let counted = bodies.filter(|(at, body)| *at != Assembly::GROUND && counts(&body.name));
+    counted.map(|(_, body)| body.mass).sum()
+}
+
+/// The upper of two levels slides without friction between the stops of the two barrels below.
+fn walking_stop() -> [Problem; 2] {
+    let (gap, stiffness) = (0.01, 1e5);
+    let (push_g, seconds) = (0.1, 0.1);
+    let speed = push_g * GRAVITY * seconds;
+    let mass = 400.0 + 2.0 * BARREL;
+    let omega = (2.0 * stiffness / mass).sqrt();
+    let run = move || {
+        let settings = [
+            "stack.levels=2".to_owned(),
+            "stack.walking_stop.levels=12".into(),
+            "stack.walking_stop.holds=\"across\"".into(),
+            format!("stack.walking_stop.gap=\"{gap} m\""),
+            "stack.walking_stop.lip=\"20 cm\"".into(),
+            format!("stack.walking_stop.stiffness=\"{stiffness} N/m\""),
+            "stack.walking_stop.damping=\"0 N s/m\"".into(),
+        ];
+        one_level(&settings, &push(push_g, seconds), 4.0)
+    };
+    let title = || "a rack that slides between stops of ±1 cm on the barrels below".to_owned();
+    [
+        problem(
+            "walking-stop-period",
+            title(),
+            "4 δ/v + 2π/ω",
+            ("period", "s"),
+            (4.0 * gap / speed + TAU / omega, 5e-3, 5e-3),
+            Box::new(move |_| period(&way(&run()?, "R2", "x")?, seconds).map(Outcome::of)),
+        ),
+        problem(
+            "walking-stop-force",
+            title(),
+            "energy: ½ m v² = F²/2k on two stops",
+            ("largest force in one of two stops", "N"),
+            (0.5 * mass * omega * speed, 5e-3, 5e-3),
+            Box::new(move |_| Ok(Outcome::of(largest(&run()?)))),
+        ),
+    ]
+}
+
+/// A platform that moves as freely as can be.
+fn platform(recentring: f64) -> Vec<String> {
+    vec![
+        "stack.isolator.path=\"flat\"".to_owned(),
+        "stack.isolator.friction=0".into(),
+        "stack.isolator.stroke=\"5 m\"".into(),
+        format!("stack.isolator.recentring=\"{recentring} N/m\""),
+        "interface.barrel-rack.friction.coefficient=0.6".into(),
+    ]
+}
+
+/// What moves with a platform that has the default mass (kg).
+const ABOARD: f64 = 60.0 + 400.0 + 2.0 * BARREL;
+
+fn tie() -> Problem {
+    let (slack, stiffness) = (0.02, 4e4);
+    let (push_g, seconds) = (0.1, 0.15);
+    let speed = push_g * GRAVITY * seconds;
+    let omega = (stiffness / ABOARD).sqrt();
+    problem(
+        "tie",
+        "a stack that glides between ties to both walls, each with 2 cm of slack".into(),
+        "4 δ/v + 2π/ω",
+        ("period", "s"),
+        (4.0 * slack / speed + TAU / omega, 5e-3, 5e-3),
+        Box::new(move |_| {
+            let mut settings = platform(0.0);
+            settings.extend([
+                "stack.tie.levels=1".into(),
+                format!("stack.tie.slack=\"{slack} m\""),
+                format!("stack.tie.stiffness=\"{stiffness} N/m\""),
+            ]);
+            let run = one_level(&settings, &push(push_g, seconds), 6.0)?;
+            period(&way(&run, "R1", "x")?, seconds).map(Outcome::of)
+        }),
+    )
+}
+
+/// Stiffness (N/m) of the springs of a platform on which a mass is tuned.
+const SPRINGS: f64 = 1e5;
+
+/// A platform on springs with a mass on the rack that it carries.
+fn with_mass(mass: f64, tuning: Tuning, motion: (f64, f64), seconds: f64) -> Result<Run, Failure> {
+    let own = TAU / (tuning.frequency * (SPRINGS / ABOARD).sqrt());
+    let mut settings = platform(SPRINGS);
+    settings.extend([
+        format!("stack.tuned_mass.mass=\"{mass} kg\""),
+        format!("stack.tuned_mass.period=\"{own} s\""),
+        format!("stack.tuned_mass.damping_ratio={}", tuning.damping_ratio),
+        "stack.tuned_mass.stroke=\"5 m\"".into(),
+    ]);
+    let run = one_level(&settings, &push(motion.0, motion.1), seconds)?;
+    let aboard = mass_of(&run, |name| name != "mass on R1");
+    if (aboard / ABOARD - 1.0).abs() > 1e-9 {
+        return Err(Failure::Absent(format!("{aboard} kg aboard, not {ABOARD} kg")));
+    }
+    Ok(run)
+}
+
+/// The lower or the upper frequency of platform and mass without damping.
+fn frequency(upper: usize) -> Problem {
+    let (mass, tuning) = (150.0, Tuning { frequency: 0.9, damping_ratio: 0.0 });
+    let whole = SPRINGS / ABOARD;
+    let own = tuning.frequency * tuning.frequency * whole;
+    // (k₁ + k₂ − ω² m₁)(k₂ − ω² m₂) = k₂².
+    let sum = whole + own * (1.0 + mass / ABOARD);
+    let root = (0.25 * sum * sum - whole * own).sqrt();
+    let square = 0.5 * sum + if upper == 1 { root } else { -root };
+    let name = ["lower", "upper"][upper];
+    problem(
+        &format!("tuned-mass-{name}"),
+        "a stack on a sprung platform with a mass of 150 kg on its rack, undamped".into(),
+        "two degrees of freedom",
+        (["lower frequency", "upper frequency"][upper], "Hz"),
+        (square.sqrt() / TAU, 2e-3, 2e-3),
+        Box::new(move |_| {
+            let run = with_mass(mass, tuning, (0.2, 0.05), 10.0)?;
+            let (platform, other) =
+                (way(&run, "platform of R1", "x")?, way(&run, "mass on R1", "x")?);
+            // By itself a mode is seen in what the other one, orthogonal in the masses, does not move.
+            let shape = own / (own - square);
+            let seen =
+                |((t, x), (_, y)): (&(f64, f64), &(f64, f64))| (*t, ABOARD * x + mass * shape * y);
+            let mode: Vec<(f64, f64)> = platform.iter().zip(&other).map(seen).collect();
+            period(&mode, 0.1).map(|period| Outcome::of(1.0 / period))
+        }),
+    )
+}
+
+/// The frequencies (rad/s) at which answers are looked for.
+fn frequencies() -> impl Iterator<Item = f64> {
+    (0..=60).map(|i| (SPRINGS / ABOARD).sqrt() * (0.65 + 0.01 * f64::from(i)))
+}
+
+/// The largest displacement of a platform under harmonic ground accelerations, over that under a steady one, with
+/// a mass tuned by Den Hartog's formula: closed form, and from the answer to a blow, which holds all frequencies.
+fn tuned(share: f64) -> Problem {
+    let tuning = Tuning::den_hartog(share);
+    let whole = SPRINGS / ABOARD;
+    let own = tuning.frequency * whole.sqrt();
+    let closed = |omega: f64| {
+        // Of the mass, against the platform: y (ω₂² − ω² + 2 i ζ ω₂ ω) = −a + ω² x.
+        let (re, im) = (own * own - omega * omega, 2.0 * tuning.damping_ratio * own * omega);
+        let size = re * re + im * im;
+        // The platform: x (ω₁² − ω²) = −a + μ (ω₂² + 2 i ζ ω₂ ω) y.
+        let (spring_re, spring_im) = (own * own, im);
+        let (ratio_re, ratio_im) =
+            ((spring_re * re + spring_im * im) / size, (spring_im * re - spring_re * im) / size);
+        let (left_re, left_im) =
+            (whole - omega * omega * (1.0 + share * ratio_re), -omega * omega * share * ratio_im);
+        let (right_re, right_im) = (1.0 + share * ratio_re, share * ratio_im);
+        let square = |a: f64, b: f64| a * a + b * b;
+        whole * (square(right_re, right_im) / square(left_re, left_im)).sqrt()
+    };
+    let exact = frequencies().map(closed).fold(0.0, f64::max);
+    let (blow, seconds) = (0.5, 0.02);
+    problem(
+        &format!("tuned-mass-{share}"),
+        format!("a stack on a sprung platform with a mass tuned by Den Hartog, {share} of its own"),
+        "two degrees of freedom",
+        ("largest displacement over that at rest", ""),
+        (exact, 1e-2, 1e-2),
+        Box::new(move |_| {
+            let run = with_mass(share * ABOARD, tuning, (blow, seconds), 16.0)?;
+            let ways = way(&run, "platform of R1", "x")?;
+            let answer = |omega: f64| {
+                let (mut re, mut im) = (0.0, 0.0);
+                for pair in ways.windows(2) {
+                    let step = 0.5 * (pair[1].0 - pair[0].0);
+                    for (t, x) in pair {
+                        re += step * x * cos(omega * t);
+                        im += step * x * sin(omega * t);
+                    }
+                }
+                // The blow holds a v sin(ωT/2)/(ωT/2) of every frequency.
+                let held = blow * GRAVITY * sin(0.5 * omega * seconds) / (0.5 * omega);
+                (re * re + im * im).sqrt() * whole / held
+            };
+            Ok(Outcome::of(frequencies().map(answer).fold(0.0, f64::max)))
+        }),
+    )
+}
