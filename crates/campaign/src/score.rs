@@ -1,4 +1,4 @@
-//! The `RockScore`: one number by which racks and devices compare, from a protocol that never changes.
+//! The RockScore: one number by which racks and devices compare, from a protocol that never changes.
 //!
 //! Stacks of one height on the rack that is scored, with its devices, are shaken across and along the barrels by fixed
 //! motions at fixed levels of peak ground velocity, as good as new and in every state that use brings.

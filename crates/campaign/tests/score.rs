@@ -1,4 +1,4 @@
-//! The `RockScore`: the least of all states and directions, the same after a stop, and refused where there is no rack.
+//! The RockScore: the least of all states and directions, the same after a stop, and refused where there is no rack.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 

@@ -60,6 +60,7 @@ pub(crate) fn compare(
 
 /// How high is safe.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
 pub(crate) fn heights(
     py: Python<'_>,
     folder: PathBuf,
@@ -78,7 +79,9 @@ pub(crate) fn heights(
     })?;
     let found = found.map_err(|error| match error {
         HeightsError::Study(error) => errors::study(error),
-        other => errors::told(other),
+        other @ (HeightsError::Rack(..) | HeightsError::Barrel(..) | HeightsError::Decision(_)) => {
+            errors::told(other)
+        }
     })?;
     let mut document = found.document.clone();
     document.warnings.clone_from(&found.warnings);
@@ -87,6 +90,7 @@ pub(crate) fn heights(
 
 /// What protects a stack best for what it costs; at a site where there is a hazard, else at velocities (m/s).
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
 pub(crate) fn protect(
     py: Python<'_>,
     scenario: &Scenario,
@@ -131,7 +135,7 @@ pub(crate) fn protect(
         | ProtectError::Hazard { .. }
         | ProtectError::Decision(_)) => errors::told(other),
     })?;
-    Page::of(&found.to_document(), found.document.clone())
+    Page::of(&found.to_document(), found.document)
 }
 
 /// The numbers and figures of the paper beside ours.

@@ -119,6 +119,7 @@ pub(crate) fn calibrate_response(
 
 /// Parameters from collapses that were seen.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
 pub(crate) fn calibrate_collapse(
     py: Python<'_>,
     scenario: &Scenario,

@@ -245,6 +245,7 @@ impl Run {
     }
 
     /// Writes parts as pictures, films and series: the place and the count of files of each.
+    #[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
     fn render(
         &self,
         py: Python<'_>,

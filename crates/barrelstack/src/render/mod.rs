@@ -43,10 +43,7 @@ impl Part {
 
     /// Its name, as it is asked for.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Report => "report",
-            other => other.place(),
-        }
+        if self == Self::Report { "report" } else { self.place() }
     }
 
     /// The name of its folder, or of its file.

@@ -6,7 +6,7 @@ use barrelstack_report::described;
 use super::{Capacity, Scored, Sheet};
 
 described! {
-    /// The `RockScore` of a rack and its devices.
+    /// The RockScore of a rack and its devices.
     pub struct ScoreDocument of sheet: &Sheet {
         /// Name and version of this layout.
         pub schema: &'static str ["rockscore/1"] = "rockscore/1",

@@ -39,7 +39,7 @@ pub struct State {
 }
 
 impl Protocol {
-    /// The protocol of the `RockScore`: stacks of four levels; six velocity pulses, both components of the bundled
+    /// The protocol of the RockScore: stacks of four levels; six velocity pulses, both components of the bundled
     /// record and sixteen synthetic motions, at six levels.
     pub fn rockscore() -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! `barrelstack score`: the `RockScore` of a rack or a device, on one sheet.
+//! `barrelstack score`: the RockScore of a rack or a device, on one sheet.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -74,8 +74,9 @@ fn print(sheet: &Sheet) -> anyhow::Result<()> {
     let mut lines = vec![verdict.headline.clone()];
     lines.extend(verdict.sentences.iter().map(|sentence| format!("  {sentence}")));
     let velocities = &sheet.protocol.velocities;
-    let cells = |of: &dyn Fn(f64) -> String| -> String {
-        velocities.iter().map(|velocity| format!("{:>7}", of(*velocity))).collect()
+    let cells = |of: &dyn Fn(f64) -> String| {
+        let cells: Vec<String> = velocities.iter().map(|at| format!("{:>7}", of(*at))).collect();
+        cells.concat()
     };
     lines.push(String::new());
     let heads = cells(&|velocity| format!("{:.0}", 100.0 * velocity));
