@@ -1,7 +1,7 @@
 // The page that holds the program, as a winery manager has it: a file, opened from disk, without a network.
 
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, dirname, join } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
@@ -53,6 +53,19 @@ async function type(page, changes) {
   }
   await page.waitForTimeout(400);
 }
+
+/** What is changed, for the command; its record goes by an option. */
+const sets = async (page) => {
+  const changes = await page.evaluate(() => Object.entries(window.barrelstack.state().cellar.changes));
+  return changes.filter(([path]) => path !== "motion.record").flatMap(([path, value]) => ["--set", `${path}=${value}`]);
+};
+
+/** Drops files on the page. */
+const drop = (page, files) => page.evaluate((files) => {
+  const data = new DataTransfer();
+  for (const [name, base64] of files) data.items.add(new File([Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0))], name));
+  document.dispatchEvent(new DragEvent("drop", { dataTransfer: data, cancelable: true, bubbles: true }));
+}, files.map(([name, bytes]) => [name, Buffer.from(bytes).toString("base64")]));
 
 /** The spread of each plane by its name, of a summary. */
 const spreads = ({ view, ensemble, other_plane: other }) => ({ [view]: ensemble, ...(other ? spreads(other) : {}) });
@@ -125,12 +138,7 @@ export async function checkPage(browser, suite, { file, program, native }) {
   const record = existsSync(shared) ? shared : bundled;
   await suite.check("a record is dropped on it, and its 64 cases are those of the program", async () => {
     await type(page, { "imperfections.variants": "32", "run.duration": '"12 s"' });
-    const bytes = readFileSync(record).toString("base64");
-    await page.evaluate(([name, base64]) => {
-      const data = new DataTransfer();
-      data.items.add(new File([Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0))], name));
-      document.dispatchEvent(new DragEvent("drop", { dataTransfer: data, cancelable: true, bubbles: true }));
-    }, [basename(record), bytes]);
+    await drop(page, [[basename(record), readFileSync(record)]]);
     await page.waitForFunction((name) => window.barrelstack.state().cellar.records[0]?.path === name, basename(record));
     await page.click("#go");
     await idle(page, 2);
@@ -140,6 +148,58 @@ export async function checkPage(browser, suite, { file, program, native }) {
     sameSpreads((await last(page)).verdict, JSON.parse(expected));
     const { name } = (await look(page)).checked[0].motion;
     return `${name}${record === bundled ? "; skipped: no record of ../shared/ground-motions is here, the bundled one was dropped as a file" : ""}`;
+  });
+  await suite.check("files dropped at once become one record, of which the command makes the same; a wrong one says why", async () => {
+    const other = await opened(browser, file);
+    const { page } = other;
+    const parts = ["E", "N", "UP"].map((component) => {
+      const name = `napa-${component.toLowerCase()}.txt`;
+      native("motion", "convert", "napa-college-2014", "--component", component, "-o", join(folder, name));
+      return [name, readFileSync(join(folder, name))];
+    });
+    await type(page, { "imperfections.variants": "2", "run.duration": '"9 s"' });
+    await drop(page, [["cellar.png", Buffer.from("\x89PNG\r\n")], ...parts]);
+    await page.waitForFunction(() => window.barrelstack.state().cellar.records[0]?.path === "napa-set.txt");
+    const said = await page.locator("#given li").allTextContents();
+    demand(["is horizontal, 90°", "is horizontal, 0°", "is up and down", "across the barrels by", "along the barrels by", "No record: cellar.png: expected"].every((part) => said.join().includes(part)), said.join(" | "));
+    await page.click("#go");
+    await idle(page, 1);
+    const commands = (await page.textContent("#command")).split("\n");
+    demand(commands.length === 2 && commands[0].startsWith("barrelstack motion convert napa-e.txt napa-n.txt napa-up.txt"), commands.join("\n"));
+    // As somebody types what the page shows.
+    const typed = commands.map((line) => line.replace(/^barrelstack/, `"${program}"`)).join(" >/dev/null && ");
+    const json = execFileSync("sh", ["-c", `${typed} --json --quiet --no-remedy`], { cwd: folder, encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] });
+    sameSpreads((await last(page)).verdict, JSON.parse(json));
+    // What is no record leaves the stack as it was.
+    await drop(page, [["cellar.png", Buffer.from("\x89PNG\r\n")]]);
+    await page.waitForFunction(() => document.getElementById("given").textContent.includes("shaken as before"));
+    demand((await page.evaluate(() => window.barrelstack.state().cellar.records[0].path)) === "napa-set.txt", "the record is gone");
+    // Two stations are two earthquakes for the chart of heights, and one shakes the stack.
+    const elsewhere = parts[0][1].toString().replace(/# station: .*/, "# station: Elsewhere").replace(/# event: .*/, "# event: Another, 2020");
+    await drop(page, [parts[0], ["other.txt", Buffer.from(elsewhere)]]);
+    await page.waitForFunction(() => document.getElementById("which-motion").length === 2);
+    await page.selectOption("#which-motion", "1");
+    await page.waitForFunction(() => window.barrelstack.state().cellar.records[0]?.path === "other.txt");
+    await page.click("#heights-go");
+    await page.waitForFunction(() => window.barrelstack.heights?.some(({ asked, all }) => asked === all));
+    await page.click("#heights-stop");
+    const caption = await page.textContent("#heights-table caption");
+    demand(/Another.*; |; .*Another/.test(caption), caption);
+    // What a file does not say, its reader may.
+    const column = Array.from({ length: 1500 }, (_, at) => (0.3 * Math.sin(at / 12)).toFixed(6)).join("\n");
+    await drop(page, [["plain.csv", Buffer.from(column)]]);
+    await page.locator("#unsaid").waitFor();
+    for (let asks = 0; asks < 2 && await page.locator("#unsaid").isVisible(); asks += 1) {
+      await page.click("#unsaid-go");
+      await page.waitForFunction(() => document.querySelector("#given li"));
+    }
+    await page.waitForFunction(() => window.barrelstack.state().cellar.records[0].path === "plain.csv");
+    writeFileSync(join(folder, "plain.csv"), column);
+    const checked = JSON.parse(native("check", "demo-napa", "--record", join(folder, "plain.csv"), ...(await sets(page)), "--json"));
+    demand(checked.motion.pgv === (await look(page)).checked[0].motion.pgv, `${checked.motion.pgv}`);
+    demand(other.faults.length === 0, other.faults.join("\n"));
+    await other.context.close();
+    return said.at(-1);
   });
   await suite.check("one thing is changed: the run before stays as a ghost, its verdict beside the new one", async () => {
     await type(page, { "imperfections.variants": "3" });
@@ -155,12 +215,36 @@ export async function checkPage(browser, suite, { file, program, native }) {
     await page.click("#history button >> nth=0");
     await page.waitForFunction(() => window.barrelstack.state().look.settings.find(({ path }) => path === "stack.levels").value === "4");
   });
-  await suite.check("straps go with the height, and off again", async () => {
-    await page.click("#changes button:has-text('Strap it together')");
+  await suite.check("every device is offered, tells what it does beside the stack without it, goes with the height, and off again", async () => {
+    const strap = "all levels strapped together at 3 kN";
+    await page.locator("#devices-box").waitFor();
+    const offered = await page.locator("#devices tbody th").allTextContents();
+    const known = await page.evaluate(() => [...new Set(window.barrelstack.runs.now().devices.candidates.map(({ device }) => device))]);
+    // All of `crates/stack/src/device`, where one may be named only by a file of its own.
+    const devices = readdirSync(join(here, "../../stack/src/device")).filter((name) => name !== "mod.rs").map((name) => name.replace(".rs", "").replace("_", " "));
+    demand(devices.every((name) => known.includes(name)), `${known} of ${devices}`);
+    await page.click("#devices-go");
+    await page.waitForFunction(() => document.getElementById("devices-go").checkVisibility());
+    const effects = await page.locator("#devices tbody td:nth-child(2)").allTextContents();
+    demand(effects.every((text) => /^\d+ of \d+ fall$|^does not go on it$/.test(text)), effects.join(" | "));
+    await page.click(`#devices button[aria-label="Try ${strap}"]`);
     await idle(page, 4);
-    demand((await last(page)).label.includes("strapped"), (await last(page)).label);
+    demand((await last(page)).label.includes("straps"), (await last(page)).label);
+    const cards = await page.locator(".card .when").allTextContents();
+    demand(cards.length === 2 && cards[0].includes("straps") && !cards[1].includes("straps"), cards.join(" | "));
+    const expected = native("run", "demo-napa", "--record", record, ...(await sets(page)), "--json", "--quiet", "--no-remedy");
+    sameSpreads((await last(page)).verdict, JSON.parse(expected));
     await page.click("[data-step='-1']");
     await page.waitForFunction(() => window.barrelstack.state().look.settings.find(({ path }) => path === "stack.strap.levels").value === "3");
+    await page.click("#undo");
+    await page.waitForFunction(() => window.barrelstack.state().look.devices.length === 0);
+    const told = await page.locator("#devices tr", { hasText: strap }).locator("td").first().textContent();
+    demand(/^\d+ of 3 fall$/.test(told), told);
+    await page.click("#history button >> nth=0");
+    await page.locator("#off button").click();
+    await idle(page, 5);
+    demand((await look(page)).devices.length === 0, "it is still on");
+    return `${offered.length - 1} settings of ${known.length} devices`;
   });
   await suite.check("stopping ends all work within 0.3 s", async () => {
     await type(page, { "imperfections.variants": "64" });
@@ -360,6 +444,8 @@ async function checkFirefox(suite, file, native) {
         const until = async (test) => { while (!test()) await new Promise((next) => setTimeout(next, 50)); };
         const page = () => window.barrelstack ?? window.wrappedJSObject.barrelstack;
         await until(() => page()?.started > 0);
+        document.getElementById("engineer-fold").open = true;
+        await until(() => document.querySelector("#fields input"));
         const input = document.querySelector('#fields input[aria-label="imperfections.variants"]');
         input.value = "3";
         input.dispatchEvent(new Event("input"));
