@@ -226,7 +226,7 @@ pub struct Shell<'a> {
     pub worker: &'a str,
     /// Its scripts, which see those of the player.
     pub scripts: &'a [&'a str],
-    /// Bytes that it holds for later, each under the id of an element.
+    /// Bytes in gzip that it holds for later, each under the id of an element.
     pub held: &'a [(&'a str, &'a [u8])],
 }
 
@@ -235,7 +235,9 @@ impl Shell<'_> {
     pub fn html(&self) -> String {
         let mut out = head(self.title, PROGRAM_POLICY, "", self.style);
         out.push_str(self.body);
-        hold(&mut out, self.at_hand);
+        for (id, bytes) in self.at_hand {
+            hold(&mut out, id, &pack::gzip_letters(bytes));
+        }
         let worker = lean(self.worker);
         // Writing to a String cannot fail.
         let _ = write!(out, "<script type=\"text/plain\" id=\"worker\">\n{worker}</script>\n");
@@ -249,18 +251,18 @@ impl Shell<'_> {
             out.push_str(&lean(script));
         }
         out.push_str("}\n})();\n</script>\n");
-        hold(&mut out, self.held);
+        for (id, packed) in self.held {
+            hold(&mut out, id, &pack::letters(packed));
+        }
         out.push_str("</body>\n</html>\n");
         out
     }
 }
 
-/// Writes bytes into elements, packed.
-fn hold(out: &mut String, held: &[(&str, &[u8])]) {
-    for (id, bytes) in held {
-        let packed = pack::gzip_letters(bytes);
-        let _ = writeln!(out, "<script type=\"text/plain\" id=\"{id}\">{packed}</script>");
-    }
+/// Writes letters into an element.
+fn hold(out: &mut String, id: &str, letters: &str) {
+    // Writing to a String cannot fail.
+    let _ = writeln!(out, "<script type=\"text/plain\" id=\"{id}\">{letters}</script>");
 }
 
 /// A script without indents and without lines that only explain: a fifth shorter. None of ours has a text that goes

@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scripts = names.iter().map(|name| text(name)).collect::<Result<Vec<String>, _>>()?;
     let first = first()?.to_string();
     let (style, body, worker) = (text("page.css")?, text("page.html")?, text("worker.js")?);
-    let module = std::fs::read(module)?;
+    let module = packed(&std::fs::read(module)?)?;
     let page = Shell {
         title,
         style: &style,
@@ -48,6 +48,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     std::fs::write(file, page.html())?;
     Ok(())
+}
+
+/// Bytes in gzip, as small as that gets.
+fn packed(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
+    let mut packed = Vec::new();
+    zopfli::compress(zopfli::Options::default(), zopfli::Format::Gzip, bytes, &mut packed)?;
+    Ok(packed)
 }
 
 /// What the engine says of the first stack, and what there is to choose from.
