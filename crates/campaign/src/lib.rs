@@ -1,9 +1,9 @@
-//! Many runs of stacks: studies, what they mean for decisions, how high is safe, and what protects best.
+//! Many runs of stacks: studies, what they mean for decisions, how high is safe, what protects best, and how racks compare.
 //!
 //! ```text
 //! STUDY.toml ─▶ study ─▶ table of cases ─▶ decision (fragility, losses, annual rates) ─▶ page
 //!                 ▲                            │
-//!        heights, protect ◀────────────────────┘
+//! heights, protect, score ◀────────────────────┘
 //! ```
 //!
 //! ```
@@ -22,6 +22,7 @@
 pub mod decision;
 pub mod heights;
 pub mod protect;
+pub mod score;
 pub mod study;
 
 pub use study::Study;

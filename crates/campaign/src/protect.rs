@@ -29,6 +29,8 @@ use crate::study::{RunOptions, Study, StudyError};
 
 pub use json::ProtectDocument;
 pub use options::{Kind, Protection};
+pub(crate) use options::{changed, slug};
+pub(crate) use plan::{NAPA, shaken};
 pub use rank::Estimate;
 
 use rank::{Quantity, Runs, weights};
@@ -37,7 +39,7 @@ use rank::{Quantity, Runs, weights};
 pub const VELOCITIES: [f64; 3] = [0.25, 0.50, 0.75];
 
 /// The same where a hazard says how often each is to be expected.
-const SITE_VELOCITIES: [f64; 6] = [0.10, 0.18, 0.30, 0.50, 0.80, 1.20];
+const SITE_VELOCITIES: [f64; 4] = [0.15, 0.30, 0.60, 1.20];
 
 /// How hard stacks are shaken.
 #[derive(Clone, Debug, PartialEq)]
@@ -285,22 +287,16 @@ pub fn protect(
     let mut open: Vec<usize> = (0..trials.len()).collect();
     for round in 0..request.rounds {
         search.round(&mut trials, &open, round)?;
-        let judged: Vec<(&Runs, f64)> = open
-            .iter()
-            .map(|at| {
-                (&trials[*at].runs[trials[*at].worse(&weights)], middle(&trials[*at].protection))
-            })
-            .collect();
-        let kept = rank::contenders(&judged, Quantity::Fallen, &weights);
-        open = kept.into_iter().map(|at| open[at]).collect();
+        open = contenders(&trials, &open, &weights);
         if round == 0 && request.rounds > 1 {
             let pairs = pairs(&base, &best_of_kinds(&trials, &open, &weights));
             let first = trials.len();
             trials.extend(search.trials(pairs));
             let added: Vec<usize> = (first..trials.len()).collect();
-            // They meet the motions that the others have met.
+            // They meet the motions that the others have met, and half of all goes on.
             search.round(&mut trials, &added, 0)?;
             open.extend(added);
+            open = contenders(&trials, &open, &weights);
         }
     }
     let mut all: Vec<Ranked> =
@@ -318,6 +314,17 @@ pub fn protect(
         Ranking { request: request.clone(), all, not_tried, runs, document: Document::default() };
     ranking.describe(Vec::new());
     Ok(ranking)
+}
+
+/// Of the trials that are open those that go on.
+fn contenders(trials: &[Trial], open: &[usize], weights: &[f64]) -> Vec<usize> {
+    let judged = |at: &usize| {
+        let trial = &trials[*at];
+        (&trial.runs[trial.worse(weights)], middle(&trial.protection))
+    };
+    let judged: Vec<(&Runs, f64)> = open.iter().map(judged).collect();
+    let kept = rank::contenders(&judged, Quantity::Fallen, weights);
+    kept.into_iter().map(|at| open[at]).collect()
 }
 
 /// Of each kind of protection the two under which fewest barrels fall.

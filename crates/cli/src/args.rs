@@ -42,6 +42,8 @@ pub(crate) enum Command {
     Heights(crate::commands::heights::HeightsArgs),
     /// What protects a stack best for what it costs: levels, racks, devices, pairs of these.
     Protect(crate::commands::protect::ProtectArgs),
+    /// The RockScore of a rack or a device: one number from a protocol that never changes, on one sheet.
+    Score(crate::commands::score::ScoreArgs),
     /// Read a scenario, build the stack and let it settle, without shaking it.
     Check(CheckArgs),
     /// Run two or more scenarios and set them side by side in one page.

@@ -52,6 +52,12 @@ impl Progress {
         self.told(done as f64, of as f64, || format!("{done} of {of} {things}"))
     }
 
+    /// So many of so many things are done of a part of the work, after which there may be others.
+    pub(crate) fn counted_of_part(&self, done: u64, of: u64, things: &str) -> ControlFlow<()> {
+        self.lines.part();
+        self.counted(done, of, things)
+    }
+
     /// So many tries are done of a search whose length is not known.
     pub(crate) fn searched(&self, done: u64, things: &str) -> ControlFlow<()> {
         let words = || format!("{done} {things}");
@@ -79,49 +85,73 @@ impl Progress {
 
 /// Lines where there is no terminal: how long all of it takes, then every few seconds how far it is.
 pub(crate) struct Lines {
-    start: Instant,
-    /// When a line was last printed; none where none is wanted.
-    last: Option<Mutex<Instant>>,
+    /// None where no lines are wanted.
+    told: Option<Mutex<Told>>,
+}
+
+/// What was told of some work.
+struct Told {
+    /// When a line was last printed.
+    last: Instant,
+    /// Whether it was told how long all of it takes, or nobody knows.
+    whole: bool,
+    /// When this work, or this part of it, was first looked at, and how much was done by then: what an earlier run had
+    /// done took this one no time.
+    start: Option<(Instant, f64)>,
+    /// How much was done when last looked at, and of how much.
+    done: f64,
+    of: f64,
 }
 
 impl Lines {
     /// Starts; prints something only when asked to, and only where there is no terminal.
     pub(crate) fn new(show: bool) -> Self {
-        let start = Instant::now();
-        let last = (show && !std::io::stderr().is_terminal()).then(|| Mutex::new(start));
-        Self { start, last }
+        let told = Told { last: Instant::now(), whole: false, start: None, done: 0.0, of: 0.0 };
+        let wanted = show && !std::io::stderr().is_terminal();
+        Self { told: wanted.then(|| Mutex::new(told)) }
+    }
+
+    /// What is told of is a part, and nobody knows how long all of it takes.
+    fn part(&self) {
+        if let Some(Ok(mut told)) = self.told.as_ref().map(Mutex::lock) {
+            told.whole = true;
+        }
     }
 
     /// Work of unknown length has come this far.
     fn now_and_then(&self, words: impl Fn() -> String) {
-        let Some(Ok(mut last)) = self.last.as_ref().map(Mutex::lock) else { return };
-        if last.elapsed() > EVERY {
+        let Some(Ok(mut told)) = self.told.as_ref().map(Mutex::lock) else { return };
+        if told.last.elapsed() > EVERY {
             printer::note(&words());
-            *last = Instant::now();
+            told.last = Instant::now();
         }
     }
 
     /// Work has come this far.
     pub(crate) fn at(&self, done: f64, of: f64, words: impl Fn() -> String) {
-        let spent = self.start.elapsed();
-        let Some(Ok(mut last)) = self.last.as_ref().map(Mutex::lock) else { return };
+        let Some(Ok(mut told)) = self.told.as_ref().map(Mutex::lock) else { return };
+        // Far less than before is the next part; a little less comes from another thread.
+        let anew = of != told.of || done < 0.5 * told.done;
+        (told.done, told.of) = (done, of);
+        let (start, first) = match told.start {
+            Some(start) if !anew => start,
+            _ => *told.start.insert((Instant::now(), done)),
+        };
+        let (spent, gone, left) = (start.elapsed(), done - first, of - done);
         // The first of many things that go on together says little of the rest.
-        if spent < LOOKED_AT || done <= 0.0 || (done < SHARE * of && spent < EVERY) {
+        if spent < LOOKED_AT || gone <= 0.0 || (gone < SHARE * of && spent < EVERY) {
             return;
         }
-        let whole = spent.mul_f64((of / done).clamp(1.0, 1e6));
-        if *last == self.start && whole > LONG {
-            printer::note(&format!("this takes about {}", rounded(whole)));
-        } else if last.elapsed() > EVERY {
-            printer::note(&format!(
-                "{}, about {} to go",
-                words(),
-                rounded(whole.saturating_sub(spent))
-            ));
+        let to_go = spent.mul_f64((left / gone).clamp(0.0, 1e6));
+        if !told.whole && spent + to_go > LONG {
+            told.whole = true;
+            printer::note(&format!("this takes about {}", rounded(spent + to_go)));
+        } else if told.last.elapsed() > EVERY {
+            printer::note(&format!("{}, about {} to go", words(), rounded(to_go)));
         } else {
             return;
         }
-        *last = Instant::now();
+        told.last = Instant::now();
     }
 }
 

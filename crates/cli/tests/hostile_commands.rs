@@ -204,6 +204,8 @@ fn sizes_beyond_all_cellars_are_refused_before_they_are_spent() {
         &["protect", "--budget=nan"],
         &["protect", "--rounds=0"],
         &["protect", "sliding-block"],
+        &["score", "sliding-block"],
+        &["score", "--set=stack.rack=shelf"],
         &["run", "demo-napa", "--paper=a4"],
         &["render", "demo-napa", "--out=o", "--dpi=nan"],
         &["render", "demo-napa", "--out=o", "--dpi=1e9"],

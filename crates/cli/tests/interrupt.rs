@@ -89,6 +89,7 @@ fn every_command_ends_within_a_second_and_says_what_is_kept() {
         vec!["run", "-"],
         vec!["heights", "--out=heights"],
         vec!["protect", "--out=protect"],
+        vec!["score", "--out=score"],
         vec!["reproduce", "--out=reproduced"],
         vec!["study", "study.toml", "--out=study"],
         vec!["study", "run-chunk", "study.toml", "--chunk=0", "--out=chunk"],

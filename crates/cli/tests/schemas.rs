@@ -268,7 +268,7 @@ fn every_document_has_the_schema_that_it_names_in_every_outcome() {
     seen.run(&["motion", "info", &bad], 2);
     #[cfg(unix)]
     {
-        for command in ["heights", "protect"] {
+        for command in ["heights", "protect", "score"] {
             let long = [command, "--json", "--quiet", "--out", &at(command)];
             let error = seen.output("stopped", &interrupted(&long), 130);
             assert!(error["error"].as_str().unwrap().contains("goes on from there"), "{error}");
@@ -276,7 +276,7 @@ fn every_document_has_the_schema_that_it_names_in_every_outcome() {
     }
 
     // What takes minutes is seen by the test below.
-    let slow = ["heights", "protect"].map(str::to_owned);
+    let slow = ["heights", "protect", "rockscore"].map(str::to_owned);
     let seen: BTreeSet<String> = seen.0.into_keys().chain(slow).collect();
     assert_eq!(seen, listed());
 }
@@ -321,4 +321,9 @@ fn what_takes_a_minute_has_its_schema() {
     assert!(value["protections"].as_array().unwrap().len() > 2);
     let file = fs::read_to_string(folder.path().join("protect/protect.json")).unwrap();
     seen.document("protect.json", &file);
+    let out = path(folder.path(), "score");
+    let value = seen.run(&["score", "candia-8-barrels", "--quiet", "--out", &out], 0);
+    assert_eq!(value["states"].as_array().unwrap().len(), 4);
+    let file = fs::read_to_string(folder.path().join("score/rockscore.json")).unwrap();
+    seen.document("rockscore.json", &file);
 }

@@ -138,6 +138,23 @@ pub struct Body<S: Space> {
     pub faces: Vec<Face<S>>,
 }
 
+/// What of a body every step asks for, without its boundaries: thousands of them stay in the cache.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Inert<S: Space> {
+    pub(crate) motion: Motion,
+    /// Whether viscous damping acts on it.
+    pub(crate) damped: bool,
+    pub(crate) mass: S::Real,
+    pub(crate) inertia: S::Inertia,
+}
+
+impl<S: Space> Inert<S> {
+    pub(crate) fn of(body: &Body<S>) -> Self {
+        let Body { motion, mass, inertia, .. } = *body;
+        Self { motion, damped: body.damping.is_some(), mass, inertia }
+    }
+}
+
 impl Body<Planar> {
     /// The ground: a half-plane below its origin, turned by an angle (rad).
     pub fn ground(orientation: f64) -> Self {

@@ -67,6 +67,7 @@ pub struct EnergyLedger<S: Space> {
     poses: Vec<Pose<S>>,
     /// Forces on the bodies that take energy, at the last entry.
     losses: Vec<Losses<S>>,
+    viscous: Vec<Wrench<S>>,
     /// Contact forces on the bodies at the last entry.
     wrenches: Vec<Wrench<S>>,
     /// What the force elements remembered then.
@@ -108,6 +109,7 @@ impl<S: Space> EnergyLedger<S> {
             works: Works::default(),
             poses: state.poses.clone(),
             losses: scratch.losses.clone(),
+            viscous: scratch.viscous.clone(),
             wrenches: scratch.wrenches.clone(),
             memory: state.memory.clone(),
             springs: scratch.loads.iter().map(|load| load.elastic).collect(),
@@ -129,13 +131,14 @@ impl<S: Space> EnergyLedger<S> {
     fn book(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
         let half = S::Real::splat(0.5);
         let mut step = Works::<S::Real>::default();
-        for (i, body) in model.bodies.iter().enumerate() {
+        for (i, body) in model.inert.iter().enumerate() {
             let way = self.poses[i].way_to(state.poses[i]);
             let (old, new) = (&self.losses[i], &scratch.losses[i]);
             step.damped -= old.damped.plus(new.damped).power(way) * half;
             step.friction -= old.friction.plus(new.friction).power(way) * half;
-            if body.damping.is_some() {
-                step.viscous -= old.viscous.plus(new.viscous).power(way) * half;
+            if body.damped {
+                let viscous = self.viscous[i].plus(scratch.viscous[i]);
+                step.viscous -= viscous.power(way) * half;
             }
             if body.motion == Motion::Prescribed {
                 step.ground -= self.wrenches[i].plus(scratch.wrenches[i]).power(way) * half;
@@ -155,6 +158,7 @@ impl<S: Space> EnergyLedger<S> {
         self.ground_flow += step.ground.abs();
         self.poses.copy_from_slice(&state.poses);
         self.losses.copy_from_slice(&scratch.losses);
+        self.viscous.copy_from_slice(&scratch.viscous);
         self.wrenches.copy_from_slice(&scratch.wrenches);
         self.stored = stored(model, state, scratch);
         self.deepest = self.deepest.min(self.stored.potential);
@@ -192,14 +196,14 @@ impl<S: Space> EnergyLedger<S> {
 lanewise!(struct Works<R> { damped, friction, viscous, ground });
 lanewise!(struct Stored<R> { kinetic, potential, elastic, stick });
 lanewise!(struct EnergyLedger<Planar<R>> {
-    initial, potential_start, stick_start, works, poses, losses, wrenches, memory, springs, stored, ground_flow,
+    initial, potential_start, stick_start, works, poses, losses, viscous, wrenches, memory, springs, stored, ground_flow,
     deepest
 });
 
 #[inline(always)]
 fn stored<S: Space>(model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) -> Stored<S::Real> {
     let mut stored = Stored::default();
-    for (i, body) in model.bodies.iter().enumerate() {
+    for (i, body) in model.inert.iter().enumerate() {
         if body.motion == Motion::Prescribed {
             continue;
         }

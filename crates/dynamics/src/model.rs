@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::body::{Body, BodyId, Motion, Nodes};
+use crate::body::{Body, BodyId, Inert, Motion, Nodes};
 use crate::contact::Interface;
 use crate::element::Element;
 use crate::pairs::Pairs;
@@ -66,6 +66,8 @@ pub type Meet<'a, S> = dyn Fn(&[Body<S>], [BodyId; 2]) -> Vec<ContactPair> + 'a;
 #[derive(Clone, Debug)]
 pub struct Model<S: Space> {
     pub(crate) bodies: Vec<Body<S>>,
+    /// Of every body what each step asks for.
+    pub(crate) inert: Vec<Inert<S>>,
     pub(crate) interfaces: Vec<Interface<S>>,
     pub(crate) pairs: Pairs,
     pub(crate) elements: Vec<Element<S>>,
@@ -230,10 +232,11 @@ impl<S: Space> Model<S> {
         dangling?;
         let reach: Vec<f64> = bodies.iter().map(Body::reach).collect();
         let alike = alike(&bodies, &reach);
+        let inert = bodies.iter().map(Inert::of).collect();
         let whole_step_depth = vec![S::Real::splat(f64::INFINITY); interfaces.len()];
         let substepping = Substepping { substeps: S::Real::splat(1.0), whole_step_depth };
         let elements = Vec::new();
-        Ok(Self { bodies, interfaces, pairs, elements, gravity, reach, alike, substepping })
+        Ok(Self { bodies, inert, interfaces, pairs, elements, gravity, reach, alike, substepping })
     }
 
     /// Divides time steps while impacts ask for it; without this no step is divided.
@@ -311,6 +314,11 @@ impl<S: Space> Model<S> {
     /// The body of a name.
     pub fn body_named(&self, name: &str) -> Option<BodyId> {
         self.bodies.iter().position(|b| b.name == name)
+    }
+
+    /// Whether viscous damping acts on any body.
+    pub(crate) fn is_damped(&self) -> bool {
+        self.inert.iter().any(|body| body.damped)
     }
 
     /// The body whose boundaries are those of a body.

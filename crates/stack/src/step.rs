@@ -155,6 +155,9 @@ fn of_elements<'a>(
     for element in loose.chain(model.elements()) {
         for (id, point) in element.ends() {
             let body = &model.bodies()[id];
+            if body.motion != Motion::Free {
+                continue;
+            }
             rates[id] += constant(element) * (1.0 / body.mass + point.dot(point) / body.inertia);
         }
     }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{HeightsError, Request};
+use crate::protect::NAPA;
 use crate::scenario::{View, catalog};
 
 /// Levels of the stacks.
@@ -71,12 +72,7 @@ pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<Stri
             );
         }
     }
-    text.push_str(
-        "[[motion]]\n\
-         bundled = \"napa-college-2014\"\n\
-         components = [\"horizontal-1\", \"horizontal-2\"]\n\
-         each = { vertical = \"UP\" }\n\n",
-    );
+    text.push_str(NAPA);
     if recorded {
         text.push_str("[design]\nkind = \"full-factorial\"\n");
         return Ok(text);

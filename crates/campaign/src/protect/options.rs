@@ -133,7 +133,7 @@ fn price(cost: &Cost, changes: &[String], levels: u32) -> [f64; 2] {
 }
 
 /// A name as that of a folder.
-fn slug(name: &str) -> String {
+pub(crate) fn slug(name: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
     let dashed: String = name.chars().map(plain).collect();
     dashed.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
@@ -169,7 +169,7 @@ pub(super) fn pair(
 }
 
 /// A scenario with overrides, whatever it was made with; nothing is read from the disk.
-fn changed(scenario: &Scenario, changes: &[String]) -> Result<Scenario, ScenarioError> {
+pub(crate) fn changed(scenario: &Scenario, changes: &[String]) -> Result<Scenario, ScenarioError> {
     let mut still = scenario.clone();
     still.motion.source = MotionSource::None;
     let mut changed = Scenario::parse(&scenario.title, &still.to_resolved_toml(), changes)?;

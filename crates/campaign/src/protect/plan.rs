@@ -15,6 +15,12 @@ const CHUNK: usize = 24;
 /// of the scenario: assumptions, since floors are washed daily and racks differ.
 const FRICTION: [(&str, f64); 2] = [("rack-ground", 0.2), ("barrel-rack", 0.25)];
 
+/// Both components of the bundled record, with its vertical.
+pub(crate) const NAPA: &str = "[[motion]]\n\
+     bundled = \"napa-college-2014\"\n\
+     components = [\"horizontal-1\", \"horizontal-2\"]\n\
+     each = { vertical = \"UP\" }\n\n";
+
 /// Name of the folder of a study below that of its protection.
 pub(super) fn name(direction: &str, round: u32) -> String {
     format!("{direction}-{}", round + 1)
@@ -31,10 +37,24 @@ pub(super) fn study(
     levels: &[f64],
     round: u32,
 ) -> Result<Study, StudyError> {
+    let seed = request.seed.wrapping_add(round);
+    shaken("protection", scenario, seed, &motions(request, round), levels)
+}
+
+/// The study of a stack under motions, each scaled to levels of peak ground velocity (m/s), with friction drawn for each
+/// run by a seed.
+///
+/// # Errors
+/// When a record cannot be read.
+pub(crate) fn shaken(
+    title: &str,
+    scenario: &Scenario,
+    seed: u32,
+    motions: &str,
+    levels: &[f64],
+) -> Result<Study, StudyError> {
     let mut text = format!(
-        "schema = 1\ntitle = \"{}\"\nseed = {}\n\n{}\n",
-        "protection",
-        request.seed.wrapping_add(round),
+        "schema = 1\ntitle = \"{title}\"\nseed = {seed}\n\n{}\n",
         scenario.to_toml_table("base")
     );
     let settings = scenario.settings();
@@ -56,14 +76,14 @@ pub(super) fn study(
             median.value
         );
     }
-    text.push_str(&motions(request, round));
+    text.push_str(motions);
     let levels: Vec<String> = levels.iter().map(|v| format!("\"{} cm/s\"", 100.0 * v)).collect();
     let _ = write!(
         text,
         "[intensity]\nmeasure = \"pgv\"\nlevels = [{}]\n\n[design]\nkind = \"stripes\"\nchunk = {CHUNK}\n",
         levels.join(", ")
     );
-    Study::parse("protection.toml", &text)
+    Study::parse(&format!("{title}.toml"), &text)
 }
 
 /// The motions of a round: the records that were named, or else the bundled one in the first round and synthetic ones in
@@ -81,12 +101,7 @@ fn motions(request: &Request, round: u32) -> String {
     }
     let bundled = round == 0;
     if bundled {
-        text.push_str(
-            "[[motion]]\n\
-             bundled = \"napa-college-2014\"\n\
-             components = [\"horizontal-1\", \"horizontal-2\"]\n\
-             each = { vertical = \"UP\" }\n\n",
-        );
+        text.push_str(NAPA);
     }
     let made = request.motions.saturating_sub(if bundled { 2 } else { 0 });
     text + &synthetic(made, &format!(", {}", round + 1))

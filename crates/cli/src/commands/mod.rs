@@ -12,6 +12,7 @@ mod reproduce;
 mod run;
 mod scenarios;
 pub(crate) mod schema;
+pub(crate) mod score;
 pub(crate) mod shell;
 pub(crate) mod study;
 
@@ -36,6 +37,7 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
         Command::Demo(args) => demo::demo(&args),
         Command::Heights(args) => heights::run(&args),
         Command::Protect(args) => protect::run(&args),
+        Command::Score(args) => score::run(&args),
         Command::Calibrate(args) => calibrate::calibrate(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check::check(&args),

@@ -73,7 +73,7 @@ pub(crate) fn run(args: &ProtectArgs) -> anyhow::Result<ExitCode> {
     let progress = Progress::new(!args.quiet);
     let options = RunOptions { lanes: args.lanes.lanes, ..RunOptions::default() };
     let result = protect(&request, &args.out, &options, &|Reached { round, done, of }| {
-        progress.counted(done, of, &format!("runs of round {round}"))
+        progress.counted_of_part(done, of, &format!("runs of round {round}"))
     });
     drop(progress);
     let mut found = match result {

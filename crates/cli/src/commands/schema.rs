@@ -9,6 +9,7 @@ use barrelstack_calibration::CalibrationDocument;
 use barrelstack_campaign::decision::DecisionDocument;
 use barrelstack_campaign::heights::HeightsDocument;
 use barrelstack_campaign::protect::ProtectDocument;
+use barrelstack_campaign::score::ScoreDocument;
 use barrelstack_report::described;
 use serde_json::Value;
 
@@ -51,6 +52,7 @@ documents! {
     "comparison" Comparison: "compare --json";
     "heights" HeightsDocument: "heights --json, and heights.json of --out";
     "protect" ProtectDocument: "protect --json, and protect.json of --out";
+    "rockscore" ScoreDocument: "score --json, and rockscore.json of --out";
     "scenarios" ScenarioList: "scenarios --json";
     "study-plan" StudyPlan: "study plan --json";
     "study-result" StudyResult: "study --json and study collect --json";

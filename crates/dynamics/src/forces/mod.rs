@@ -58,15 +58,13 @@ pub struct Losses<S: Space> {
     pub damped: Wrench<S>,
     /// Of friction, sticks included.
     pub friction: Wrench<S>,
-    /// Of the body's own viscous damping.
-    pub viscous: Wrench<S>,
 }
 
 impl<S: Space> Default for Losses<S> {
     #[inline(always)]
     fn default() -> Self {
         let none = Wrench::default();
-        Self { damped: none, friction: none, viscous: none }
+        Self { damped: none, friction: none }
     }
 }
 
@@ -103,6 +101,8 @@ pub struct Scratch<S: Space> {
     pub wrenches: Vec<Wrench<S>>,
     /// What of the forces on every body takes energy away.
     pub losses: Vec<Losses<S>>,
+    /// What the viscous damping of every body takes away; empty where no body has any.
+    pub viscous: Vec<Wrench<S>>,
     /// Acceleration of every body; zero for prescribed ones.
     pub accelerations: Vec<Twist<S>>,
     /// Rotation of every body.
@@ -157,6 +157,7 @@ impl<S: Space> Scratch<S> {
             loads: vec![Load::default(); model.elements.len()],
             wrenches: vec![Wrench::default(); count],
             losses: vec![Losses::default(); count],
+            viscous: vec![Wrench::default(); if model.is_damped() { count } else { 0 }],
             accelerations: vec![Twist::default(); count],
             rotations: model.bodies.iter().map(|b| S::rotation(b.pose.orientation)).collect(),
             slip_rates: Vec::new(),
@@ -264,16 +265,18 @@ fn clear<S: Space>(state: &State<S>, scratch: &mut Scratch<S>) {
 /// Newton's law for every free body: contact, gravity and viscous damping (eq. 2.8).
 #[inline(always)]
 fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
-    for (i, body) in model.bodies.iter().enumerate() {
+    for (i, body) in model.inert.iter().enumerate() {
         if body.motion == Motion::Prescribed {
             scratch.accelerations[i] = Twist::default();
             continue;
         }
         let mut wrench = scratch.wrenches[i];
-        if let Some(damping) = body.damping {
+        if body.damped
+            && let Some(damping) = model.bodies[i].damping
+        {
             let (force, moment) = S::damp(damping, state.twists[i].linear, state.twists[i].angular);
             let viscous = Wrench { force, moment };
-            scratch.losses[i].viscous = viscous;
+            scratch.viscous[i] = viscous;
             wrench += viscous;
         }
         let inverse_mass = S::Real::splat(1.0) / body.mass;

@@ -155,20 +155,16 @@ pub(crate) fn place_prescribed<S: Space>(
     state: &mut State<S>,
 ) {
     let (displacement, velocity) = drive.at(state.time);
-    for (i, body) in model.bodies.iter().enumerate() {
-        if body.motion == Motion::Prescribed {
-            state.poses[i] = Pose {
-                position: body.pose.position + displacement,
-                orientation: body.pose.orientation,
-            };
-            state.twists[i] = Twist { linear: velocity, angular: S::Spin::default() };
-        }
+    for i in (0..model.inert.len()).filter(|i| model.inert[*i].motion == Motion::Prescribed) {
+        let Pose { position, orientation } = model.bodies[i].pose;
+        state.poses[i] = Pose { position: position + displacement, orientation };
+        state.twists[i] = Twist { linear: velocity, angular: S::Spin::default() };
     }
 }
 
 /// The bodies that forces move.
 fn free<S: Space>(model: &Model<S>) -> impl Iterator<Item = usize> + '_ {
-    model.bodies.iter().enumerate().filter(|(_, b)| b.motion == Motion::Free).map(|(i, _)| i)
+    model.inert.iter().enumerate().filter(|(_, b)| b.motion == Motion::Free).map(|(i, _)| i)
 }
 
 /// Ends a step: the state that `scratch` was evaluated at is accepted.

@@ -1,6 +1,6 @@
 //! From things made of single numbers to the same things made of bundles, lane by lane.
 
-use crate::body::{Body, Face, Motion, Node, Nodes, Placed, Round};
+use crate::body::{Body, Face, Inert, Motion, Node, Nodes, Placed, Round};
 use crate::contact::{Basis, Exponent, FrictionLaw, Interface, NormalLaw, Rolling, Stick, Stop};
 use crate::forces::Losses;
 use crate::model::{Model, Substepping};
@@ -253,7 +253,7 @@ lanewise!(struct Rotation2<R> { cos, sin });
 lanewise!(struct Pose<Planar<R>> { position, orientation });
 lanewise!(struct Twist<Planar<R>> { linear, angular });
 lanewise!(struct Wrench<Planar<R>> { force, moment });
-lanewise!(struct Losses<Planar<R>> { damped, friction, viscous });
+lanewise!(struct Losses<Planar<R>> { damped, friction });
 lanewise!(struct Node<Planar<R>> { position, tributary_length });
 lanewise!(struct Face<Planar<R>> { point, outward, widest });
 lanewise!(struct Placed<Planar<R>> { surface, offset, rotation });
@@ -297,6 +297,7 @@ lanewise!(struct Body<Planar<R>> {
     name, motion, mass, inertia, damping, pose, twist, surfaces, nodes, faces
 });
 
+lanewise!(struct Inert<Planar<R>> { motion, damped, mass, inertia });
 lanewise!(struct Substepping<R> { substeps, whole_step_depth });
 
 impl<R: Real> Model<Planar<R>> {
@@ -304,6 +305,7 @@ impl<R: Real> Model<Planar<R>> {
     pub(crate) fn in_all(single: &Model<Planar>) -> Self {
         Self {
             bodies: Lanewise::in_all(&single.bodies),
+            inert: Lanewise::in_all(&single.inert),
             interfaces: Lanewise::in_all(&single.interfaces),
             pairs: single.pairs.clone(),
             elements: Lanewise::in_all(&single.elements),
@@ -318,6 +320,7 @@ impl<R: Real> Model<Planar<R>> {
     /// Puts the model of a case into one lane.
     pub(crate) fn put(&mut self, lane: usize, single: &Model<Planar>) {
         self.bodies.put(lane, &single.bodies);
+        self.inert.put(lane, &single.inert);
         self.interfaces.put(lane, &single.interfaces);
         self.elements.put(lane, &single.elements);
         self.gravity.put(lane, &single.gravity);

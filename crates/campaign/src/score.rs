@@ -1,0 +1,251 @@
+//! The `RockScore`: one number by which racks and devices compare, from a protocol that never changes.
+//!
+//! Stacks of one height on the rack that is scored, with its devices, are shaken across and along the barrels by fixed
+//! motions at fixed levels of peak ground velocity, as good as new and in every state that use brings.
+//! The score is the peak ground velocity (cm/s, rounded down) at which one stack in ten collapses, in the weakest state
+//! and direction.
+
+mod json;
+mod page;
+mod protocol;
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use barrelstack::check;
+use barrelstack::variants::planes;
+use barrelstack_fragility::{FitError, Interval, Stripe};
+use barrelstack_report::Document;
+
+use crate::decision::{Cases, DecisionError, LimitCurve, LimitState};
+use crate::ground::GroundError;
+use crate::protect::{changed, shaken, slug};
+use crate::run::RunFailure;
+use crate::scenario::{MotionSource, Scenario, ScenarioError, View};
+use crate::study::{Progress, RunOptions, Study, StudyError};
+
+pub use json::ScoreDocument;
+pub use protocol::{Protocol, State};
+
+/// Level of all intervals.
+const LEVEL: f64 = 0.95;
+
+/// The peak ground velocity (m/s) at which one stack in ten collapses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Capacity {
+    /// Of the lognormal curve, with its 95 % interval where records tell one.
+    Fitted(f64, Option<Interval>),
+    /// Between the highest level at which none collapsed and the lowest at which some did, where no level has some of
+    /// each; the lower one counts.
+    Between(f64, f64),
+    /// Above the highest level.
+    Above(f64),
+    /// Below the lowest level.
+    Below(f64),
+}
+
+impl Capacity {
+    fn of(curve: &LimitCurve, protocol: &Protocol) -> Result<Self, FitError> {
+        let (lowest, highest) =
+            (protocol.velocities[0], *protocol.velocities.last().unwrap_or(&0.0));
+        let fit = match &curve.fit {
+            Ok(fit) => fit,
+            Err(FitError::NothingFailed { .. }) => return Ok(Self::Above(highest)),
+            Err(FitError::EverythingFailed { .. }) => return Ok(Self::Below(lowest)),
+            Err(FitError::Separated { above, below }) => return Ok(Self::Between(*above, *below)),
+            Err(other) => return Err(other.clone()),
+        };
+        let at = fit.curve.intensity(protocol.chance);
+        // A curve says nothing of shaking that nobody met.
+        Ok(if at < lowest {
+            Self::Below(lowest)
+        } else if at > highest {
+            Self::Above(highest)
+        } else {
+            let of = |found: &barrelstack_fragility::LeaveOneOut| {
+                found.intensity(LEVEL, protocol.chance)
+            };
+            Self::Fitted(at, curve.left_out.as_ref().map(of))
+        })
+    }
+
+    /// The velocity (m/s) that counts: what is below the lowest level counts as nothing.
+    pub fn velocity(self) -> f64 {
+        match self {
+            Self::Fitted(at, _) | Self::Between(at, _) | Self::Above(at) => at,
+            Self::Below(_) => 0.0,
+        }
+    }
+}
+
+/// A stack in one state, shaken in one direction.
+#[derive(Clone, Debug)]
+pub struct Scored {
+    /// The state.
+    pub state: State,
+    /// The direction.
+    pub view: View,
+    /// What it bears.
+    pub capacity: Capacity,
+    /// The curve of collapse; with the shares that collapsed at each level.
+    pub curve: LimitCurve,
+    /// Runs.
+    pub runs: usize,
+    /// Runs without a verdict.
+    pub left_out: usize,
+}
+
+impl Scored {
+    /// How many collapsed at a level (m/s) of the protocol; none where no run of that level has a verdict.
+    pub fn at(&self, velocity: f64) -> Option<Stripe> {
+        // Levels went through text and back, and motions were scaled to them.
+        let same = |stripe: &&Stripe| (stripe.intensity / velocity - 1.0).abs() < 1e-6;
+        self.curve.stripes.iter().find(same).copied()
+    }
+}
+
+/// A score sheet.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    /// What is scored, as the protocol stacks it.
+    pub scenario: Scenario,
+    /// By which protocol.
+    pub protocol: Protocol,
+    /// Every state in every direction.
+    pub rows: Vec<Scored>,
+    /// The page.
+    pub document: Document,
+}
+
+impl Sheet {
+    /// The weakest state and direction.
+    pub fn weakest(&self) -> Option<&Scored> {
+        let by = |a: &&Scored, b: &&Scored| a.capacity.velocity().total_cmp(&b.capacity.velocity());
+        self.rows.iter().min_by(by)
+    }
+
+    /// The score (cm/s).
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a velocity of the protocol, positive and below a hundred meters a second"
+    )]
+    pub fn score(&self) -> u32 {
+        // A level such as 0.15 m/s is a little less in bits.
+        self.weakest().map_or(0, |row| (100.0 * row.capacity.velocity() + 1e-6).floor() as u32)
+    }
+
+    /// The page as one file that asks the network for nothing.
+    pub fn html(&self) -> String {
+        barrelstack_report::html(&self.document)
+    }
+
+    /// The page as text, with its figures and tables as files for a folder named `figure_dir`.
+    pub fn markdown(&self, figure_dir: &str) -> barrelstack_report::MarkdownBundle {
+        barrelstack_report::markdown(&self.document, figure_dir)
+    }
+
+    /// The numbers for programs, in SI units.
+    pub fn to_document(&self) -> ScoreDocument {
+        ScoreDocument::of(self)
+    }
+}
+
+/// Why there is no score.
+#[derive(Debug, thiserror::Error)]
+pub enum ScoreError {
+    /// A free scene has no racks.
+    #[error(
+        "\"{0}\" is a free scene, and a RockScore is that of racks and devices: take the scenario of a stack"
+    )]
+    NoStack(String),
+    /// A state does not go on this stack.
+    #[error("the state \"{state}\" cannot be tried on this stack")]
+    State {
+        /// Its name.
+        state: String,
+        /// Why.
+        #[source]
+        source: ScenarioError,
+    },
+    /// Its motion cannot be read.
+    #[error(transparent)]
+    Ground(#[from] GroundError),
+    /// A stack cannot be built, or does not stand.
+    #[error(transparent)]
+    Stack(#[from] RunFailure),
+    /// A study cannot be run.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// Its cases decide nothing.
+    #[error(transparent)]
+    Decision(#[from] DecisionError),
+    /// No curve describes the runs.
+    #[error("no score of \"{state}\", shaken {direction}")]
+    Curve {
+        /// The state.
+        state: String,
+        /// The direction, in words.
+        direction: &'static str,
+        /// Why.
+        #[source]
+        source: FitError,
+    },
+}
+
+/// Scores the rack and the devices of a scenario, in folders below `folder`, and goes on where an earlier run stopped.
+///
+/// `tell` hears of every run that is done, of how many in all, and may stop it.
+///
+/// # Errors
+/// When the scenario has no stack, a state cannot be built, or a folder cannot be written.
+pub fn score(
+    scenario: &Scenario,
+    protocol: &Protocol,
+    folder: &Path,
+    options: &RunOptions,
+    tell: &(dyn Fn(u64, u64) -> ControlFlow<()> + Sync),
+) -> Result<Sheet, ScoreError> {
+    if scenario.stack().is_none() {
+        return Err(ScoreError::NoStack(scenario.title.clone()));
+    }
+    // What shakes it is the business of the protocol.
+    let mut still = scenario.clone();
+    still.motion.source = MotionSource::None;
+    let refused = |state: &str| {
+        let state = state.to_owned();
+        move |source| ScoreError::State { state, source }
+    };
+    let stack =
+        changed(&still, &protocol.stacked()).map_err(refused("as the protocol stacks it"))?;
+    let mut studies: Vec<(State, View, Study)> = Vec::new();
+    for state in protocol.states(&stack) {
+        let worn = changed(&stack, &state.changes).map_err(refused(&state.name))?;
+        for plane in planes(&worn)? {
+            let Some(view) = plane.view() else { continue };
+            check(&plane.scenario)?;
+            let (motions, velocities) = (protocol.motions(), &protocol.velocities);
+            let study = shaken("rockscore", &plane.scenario, protocol.seed, &motions, velocities)?;
+            studies.push((state.clone(), view, study));
+        }
+    }
+    let all: u64 = studies.iter().map(|(.., study)| study.cases()).sum();
+    let (mut before, mut rows) = (0, Vec::new());
+    for (state, view, study) in studies {
+        let place = folder.join(slug(&state.name)).join(view.name());
+        let report = |progress: &Progress| tell(before + progress.tally.cases, all);
+        let cases = Cases::read(&study.run(&place, options, &report)?)?;
+        before += study.cases();
+        let curve = LimitCurve::of(&cases, LimitState::SeatLost, cases.main);
+        let capacity = Capacity::of(&curve, protocol).map_err(|source| {
+            let direction = view.words();
+            ScoreError::Curve { state: state.name.clone(), direction, source }
+        })?;
+        let (runs, left_out) = (cases.all.len() + cases.left_out, cases.left_out);
+        rows.push(Scored { state, view, capacity, curve, runs, left_out });
+    }
+    let document = Document::default();
+    let mut sheet = Sheet { scenario: stack, protocol: protocol.clone(), rows, document };
+    sheet.document = page::document(&sheet);
+    Ok(sheet)
+}

@@ -1,0 +1,77 @@
+//! The score sheet for programs, in SI units.
+
+use barrelstack_fragility::Interval;
+use barrelstack_report::described;
+
+use super::{Capacity, Scored, Sheet};
+
+described! {
+    /// The `RockScore` of a rack and its devices.
+    pub struct ScoreDocument of sheet: &Sheet {
+        /// Name and version of this layout.
+        pub schema: &'static str ["rockscore/1"] = "rockscore/1",
+        /// Name and version of the protocol; scores of another one do not compare.
+        pub protocol: &'static str = sheet.protocol.name,
+        /// What was scored.
+        pub title: String = sheet.scenario.title.clone(),
+        /// The rack.
+        pub rack: Option<String> = sheet.scenario.stack().map(|stack| stack.rack.base.to_owned()),
+        /// The score: the least of all velocities, rounded down.
+        pub score: u32 as "cm/s" = sheet.score(),
+        /// Levels of the stack.
+        pub levels: u32 = sheet.protocol.levels,
+        /// Peak ground velocities to which every motion was scaled.
+        pub velocities: Vec<f64> as "m/s" = sheet.protocol.velocities.clone(),
+        /// Motions.
+        pub motions: usize = sheet.protocol.count(),
+        /// The chance of collapse at which the velocity is the score.
+        pub chance: f64 as "1" = sheet.protocol.chance,
+        /// Every state in every direction.
+        pub states: Vec<StateRow> = sheet.rows.iter().map(|row| StateRow::of(row, sheet)).collect(),
+    }
+
+    /// A stack in one state, shaken in one direction.
+    pub struct StateRow {
+        /// The state.
+        pub state: String,
+        /// What it changes, as overrides of the scenario.
+        pub changes: Vec<String>,
+        /// The direction of shaking.
+        pub direction: &'static str ["transverse", "longitudinal"],
+        /// The velocity at which the chance is reached.
+        pub velocity: f64 as "m/s",
+        /// Whether it comes from a curve, is the highest at which none collapsed, or lies beyond all levels.
+        pub found: &'static str ["curve", "between-levels", "above-all-levels", "below-all-levels"],
+        /// Its 95 % interval, for which the runs of one motion go together; null where there is none.
+        pub interval: Option<[f64; 2]> as "m/s",
+        /// Share that collapsed at each of the velocities; null where no run has a verdict.
+        pub collapsed: Vec<Option<f64>> as "1",
+        /// Runs.
+        pub runs: usize,
+        /// Runs without a verdict.
+        pub runs_without_verdict: usize,
+    }
+}
+
+impl StateRow {
+    fn of(row: &Scored, sheet: &Sheet) -> Self {
+        let share = |velocity: &f64| row.at(*velocity).map(|stripe| stripe.fraction());
+        let (found, interval) = match row.capacity {
+            Capacity::Fitted(_, interval) => ("curve", interval),
+            Capacity::Between(..) => ("between-levels", None),
+            Capacity::Above(_) => ("above-all-levels", None),
+            Capacity::Below(_) => ("below-all-levels", None),
+        };
+        Self {
+            state: row.state.name.clone(),
+            changes: row.state.changes.clone(),
+            direction: row.view.name(),
+            velocity: row.capacity.velocity(),
+            found,
+            interval: interval.map(|Interval { low, high }| [low, high]),
+            collapsed: sheet.protocol.velocities.iter().map(share).collect(),
+            runs: row.runs,
+            runs_without_verdict: row.left_out,
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! The score sheet: the number, every state in every direction, the curves, the protocol.
+
+use barrelstack_report::{
+    Axis, Block, Cell, Document, Figure, FigureKind, Plot, Rating, Series, Table, Verdict,
+};
+
+use barrelstack_input::listing::{Setting, Source};
+
+use super::{Capacity, Scored, Sheet};
+use crate::decision::{chance_axis, heading, percent, points, text};
+
+pub(super) fn document(sheet: &Sheet) -> Document {
+    let protocol = &sheet.protocol;
+    Document {
+        title: format!("RockScore: {}", sheet.scenario.title),
+        verdict: Verdict {
+            headline: headline(sheet),
+            sentences: sentences(sheet),
+            ..Verdict::default()
+        },
+        blocks: vec![
+            Block::Table(table(sheet)),
+            text(
+                "Velocity at which one in ten collapses: of the lognormal curve of greatest likelihood through all runs, in \
+                 brackets its 95 % interval, for which the runs of one motion go together. The least of all, rounded down, \
+                 is the score.",
+            ),
+            Block::Figure(chart(sheet)),
+            heading("The protocol"),
+            Block::List(rules(sheet)),
+            heading("What was scored"),
+            Block::Table(inputs(sheet)),
+        ],
+        provenance: vec![
+            ("protocol".into(), protocol.name.into()),
+            ("runs".into(), sheet.rows.iter().map(|row| row.runs).sum::<usize>().to_string()),
+            ("seed".into(), protocol.seed.to_string()),
+            ("program".into(), format!("barrelstack {}", env!("CARGO_PKG_VERSION"))),
+        ],
+        warnings: warnings(sheet),
+        words: barrelstack::report::WORDS.to_vec(),
+    }
+}
+
+/// A velocity (m/s) in whole cm/s.
+fn shown(velocity: f64) -> String {
+    format!("{:.0}", 100.0 * velocity)
+}
+
+fn headline(sheet: &Sheet) -> String {
+    let Some(weakest) = sheet.weakest() else { return "Nothing was run.".to_owned() };
+    let score = sheet.score();
+    let levels = sheet.protocol.levels;
+    match weakest.capacity {
+        Capacity::Fitted(..) => format!(
+            "RockScore {score}: shaken to {score} cm/s, nine in ten of these stacks of {levels} levels stand."
+        ),
+        Capacity::Between(..) => format!(
+            "RockScore {score}: shaken to {score} cm/s, all of these stacks of {levels} levels stand."
+        ),
+        Capacity::Above(_) => format!(
+            "RockScore {score} at least: nothing in the protocol is stronger than what these stacks of {levels} levels bear."
+        ),
+        Capacity::Below(lowest) => format!(
+            "RockScore 0: of these stacks of {levels} levels more than one in ten collapses at {} cm/s, the weakest \
+             shaking of the protocol.",
+            shown(lowest)
+        ),
+    }
+}
+
+fn sentences(sheet: &Sheet) -> Vec<String> {
+    let Some(weakest) = sheet.weakest() else { return Vec::new() };
+    let mut said =
+        vec![format!("Weakest: {}, shaken {}.", weakest.state.name, weakest.view.words())];
+    let new = sheet.rows.iter().filter(|row| row.state == sheet.rows[0].state);
+    let new: Vec<String> =
+        new.map(|row| format!("{} {}", bears(row.capacity), row.view.words())).collect();
+    said.push(format!("As good as new: {}.", new.join(", ")));
+    said
+}
+
+/// "42 cm/s".
+fn bears(capacity: Capacity) -> String {
+    match capacity {
+        Capacity::Fitted(at, _) => format!("{} cm/s", shown(at)),
+        Capacity::Between(above, below) => format!("{}–{} cm/s", shown(above), shown(below)),
+        Capacity::Above(highest) => format!("above {} cm/s", shown(highest)),
+        Capacity::Below(lowest) => format!("below {} cm/s", shown(lowest)),
+    }
+}
+
+fn table(sheet: &Sheet) -> Table {
+    let velocities = &sheet.protocol.velocities;
+    let heads: Vec<String> = velocities.iter().map(|v| format!("at {} cm/s", shown(*v))).collect();
+    let mut columns = vec![("state", ""), ("shaken", ""), ("one in ten collapses at", "")];
+    columns.extend(heads.iter().map(|head| (head.as_str(), "")));
+    let mut table = Table::new(
+        "What the stack bears in every state and direction, and the share that collapses at every level of shaking.",
+        &columns,
+    );
+    let weakest = sheet.weakest();
+    for row in &sheet.rows {
+        let interval = match row.capacity {
+            Capacity::Fitted(_, Some(interval)) => {
+                format!(" ({}–{})", shown(interval.low), shown(interval.high))
+            }
+            Capacity::Fitted(_, None)
+            | Capacity::Between(..)
+            | Capacity::Above(_)
+            | Capacity::Below(_) => String::new(),
+        };
+        let bears = format!("{}{interval}", bears(row.capacity));
+        let is_weakest = weakest.is_some_and(|weakest| std::ptr::eq(weakest, row));
+        let mut cells = vec![
+            Cell::text(row.state.name.clone()),
+            Cell::text(row.view.words()),
+            if is_weakest { Cell::Rated(Rating::Poor, bears) } else { Cell::text(bears) },
+        ];
+        cells.extend(velocities.iter().map(|velocity| {
+            row.at(*velocity).map_or(Cell::Missing, |stripe| Cell::text(percent(stripe.fraction())))
+        }));
+        table.rows.push(cells);
+    }
+    table
+}
+
+fn chart(sheet: &Sheet) -> Figure {
+    let label = |row: &Scored| format!("{}, {}", row.state.name, row.view.words());
+    let series = sheet.rows.iter().enumerate().map(|(index, row)| {
+        if let Ok(fit) = &row.curve.fit {
+            let x: Vec<f64> = row.curve.grid.iter().map(|x| 100.0 * x).collect();
+            let y = row.curve.grid.iter().map(|x| fit.curve.probability(*x)).collect();
+            Series::new(label(row), x, y)
+        } else {
+            let stripes = &row.curve.stripes;
+            let x: Vec<f64> = stripes.iter().map(|stripe| 100.0 * stripe.intensity).collect();
+            let y = stripes.iter().map(|stripe| stripe.fraction());
+            points(&label(row), &x, y, row.curve.intervals.iter().copied(), index)
+        }
+    });
+    Figure {
+        id: "rockscore".into(),
+        caption: "Chance of collapse against peak ground velocity. Lines are fitted curves; where the runs determine none, \
+                  dots are the shares with their 95 % intervals."
+            .into(),
+        kind: FigureKind::Plot(Plot {
+            x: Axis::new("peak ground velocity", "cm/s"),
+            y: chance_axis("chance of collapse"),
+            series: series.collect(),
+            ..Plot::default()
+        }),
+    }
+}
+
+fn inputs(sheet: &Sheet) -> Table {
+    let columns = [("input", ""), ("value", ""), ("meaning", "")];
+    let mut table =
+        Table::new("Inputs that differ from their defaults. Quantities are in SI units.", &columns);
+    let row = |setting: Setting| {
+        vec![Cell::text(setting.path), Cell::text(setting.value), Cell::text(setting.help)]
+    };
+    let given =
+        sheet.scenario.settings().into_iter().filter(|setting| setting.source == Source::Given);
+    table.rows = given.map(row).collect();
+    table
+}
+
+fn rules(sheet: &Sheet) -> Vec<String> {
+    let protocol = &sheet.protocol;
+    let list = |values: &[f64], scale: f64| {
+        let words: Vec<String> =
+            values.iter().map(|value| format!("{}", (scale * value * 1e6).round() / 1e6)).collect();
+        words.join(", ")
+    };
+    vec![
+        format!(
+            "The stack: {} levels on the rack that is scored, with its barrels, interfaces and devices, on level ground, \
+             across the barrels and along them.",
+            protocol.levels
+        ),
+        format!(
+            "The motions: {} velocity pulses of Mavroeidis and Papageorgiou (2003; γ 1.5, 90°) of {} s, both components of \
+             South Napa 2014 at Napa College with its vertical, and {} synthetic ones (half M 6 at 8 km, a quarter M 7 at \
+             20 km, a quarter with pulses of near faults), each scaled to peak ground velocities of {} cm/s.",
+            protocol.periods.len(),
+            list(&protocol.periods, 1.0),
+            protocol.synthetic,
+            list(&protocol.velocities, 100.0)
+        ),
+        "Friction is drawn for every run about that of the scenario, rack on floor with a scatter of 20 %, barrel on rack of \
+         25 %; all racks meet the same quantiles and the same motions."
+            .into(),
+        "States: as good as new; wet cradles, with a friction of barrels on racks of 0.2; and each device as use leaves it, \
+         one at a time."
+            .into(),
+        "Collapse: a barrel or a rack loses its seat. A run goes on until nothing moves.".into(),
+        "A protocol never changes under its name; what is changed gets the next number.".into(),
+    ]
+}
+
+fn warnings(sheet: &Sheet) -> Vec<String> {
+    let left_out: usize = sheet.rows.iter().map(|row| row.left_out).sum();
+    let runs: usize = sheet.rows.iter().map(|row| row.runs).sum();
+    let lost = (left_out > 0).then(|| {
+        format!("{left_out} of {runs} runs have no verdict and are left out; the column `error` of the tables says why.")
+    });
+    lost.into_iter().collect()
+}
