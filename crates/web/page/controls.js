@@ -84,7 +84,7 @@ function makeControls(find, catalog, changed) {
   function feel(velocity) {
     const { name, felt, roman, like } = feels(velocity);
     find("feels").replaceChildren(make("b", {}, `${name[0].toUpperCase()}${name.slice(1)}`), `: ${felt}.`,
-      make("span", { class: "soft" }, `peak velocity ${velocity.toFixed(0)} cm/s, intensity ${roman}${like ? `; like ${like}` : ""}`));
+      make("span", { class: "soft" }, `peak velocity ${velocity < 1 ? "below 1" : velocity.toFixed(0)} cm/s, intensity ${roman}${like ? `; like ${like}` : ""}`));
     strength.setAttribute("aria-valuetext", `${name}, ${velocity.toFixed(0)} centimeters per second`);
   }
 
@@ -115,7 +115,7 @@ function makeControls(find, catalog, changed) {
         // Not while it is being moved.
         if (document.activeElement !== strength) strength.value = stepAt(velocity);
         feel(velocity);
-        find("motion").textContent = `${motion.name}, ${motion.duration.toFixed(0)} s, peak acceleration ${(motion.pga / 9.80665).toFixed(2)} g`;
+        find("motion").textContent = `${motion.name}, ${motion.duration.toFixed(0)} s, peak acceleration ${(motion.pga / 9.80665).toPrecision(2)} g`;
       } else {
         find("feels").textContent = "Nothing shakes it.";
         find("motion").textContent = "Drop a record here.";

@@ -6,7 +6,8 @@ const GLANCE = 8; // variants that tell at a glance what a device does
 // The plane in which most variants fall.
 const worstOf = (verdict) => verdict.planes.reduce((a, b) => ((b.spread.share ?? -1) > (a.spread.share ?? -1) ? b : a));
 
-function makeDevices(find, { crew, desk, change, writers, states, refuse }) {
+// `lasts` tells how long (s) some variants of a stack take.
+function makeDevices(find, { crew, desk, change, writers, states, refuse, lasts }) {
   let now = null, going = 0; // the run whose devices are shown, and how often they were tried
 
   const group = "devices";
@@ -15,6 +16,8 @@ function makeDevices(find, { crew, desk, change, writers, states, refuse }) {
     const { collapsed, variants } = worstOf(verdict).spread;
     return `${collapsed} of ${variants} fall`;
   };
+
+  const unknown = ({ glance, run, refused }) => !glance && !run && !refused;
 
   // What is known of a device: from a run with it, or from a glance.
   function effectOf(candidate) {
@@ -41,10 +44,13 @@ function makeDevices(find, { crew, desk, change, writers, states, refuse }) {
       button.addEventListener("click", () => change((cellar) => writers.device(cellar, table, Number(states(`stack.${table}.levels`) || 0) > 0 ? [`stack.${table}.levels=0`] : []), true));
       return button;
     }));
-    const head = make("tr", {}, ...["device", "what it does", ""].map((name) => (name ? make("th", { scope: "col" }, name) : make("td"))));
-    const plain = make("tr", {}, make("th", { scope: "row" }, "the stack as it is"), make("td", {}, now.verdict && now.verdict.planes.length > 0 ? tell(now.verdict) : ""), make("td"));
+    const head = make("tr", {}, ...["device", "with it", ""].map((name) => (name ? make("th", { scope: "col" }, name) : make("td"))));
+    const plain = make("tr", {}, make("th", { scope: "row" }, "none, the stack as it is"), make("td", {}, now.verdict && now.verdict.planes.length > 0 ? tell(now.verdict) : ""), make("td"));
     find("devices").replaceChildren(make("thead", {}, head), make("tbody", {}, plain, ...candidates.map(row)));
     find("devices-box").hidden = candidates.length === 0 && present.length === 0;
+    const open = candidates.filter(unknown).length;
+    find("devices-go").disabled = open === 0;
+    if (open > 0) find("devices-said").textContent = `${open} devices in ${GLANCE} variants each: about ${lasting(lasts(now.look, open * (GLANCE + 1)))}`;
   }
 
   // Whether leaving out changes, or a number of levels, takes a device off.
@@ -97,8 +103,8 @@ function makeDevices(find, { crew, desk, change, writers, states, refuse }) {
       find("devices-said").textContent = `${(done += 1)} of ${candidates.length} devices tried`;
     };
     try {
-      await Promise.all(candidates.filter(({ glance, run, refused }) => !glance && !run && !refused).map(one));
-      if (own === going) find("devices-said").textContent = `each in ${GLANCE} variants; try one to know more`;
+      await Promise.all(candidates.filter(unknown).map(one));
+      if (own === going) find("devices-said").textContent = `Each in ${GLANCE} variants; try one to know more.`;
     } catch (error) {
       if (!error.stopped) refuse(error);
     }
@@ -120,5 +126,5 @@ function makeDevices(find, { crew, desk, change, writers, states, refuse }) {
 
   find("devices-go").addEventListener("click", glance);
   find("devices-stop").addEventListener("click", stop);
-  return { show };
+  return { show, hide: () => { find("devices-box").hidden = true; } };
 }

@@ -128,7 +128,7 @@ async function start() {
 
   const controls = makeControls(find, first.catalog, (write) => change(write, false));
   const { writers, states } = controls;
-  const devices = makeDevices(find, { crew, desk, change, writers, states, refuse });
+  const devices = makeDevices(find, { crew, desk, change, writers, states, refuse, lasts: (...of) => runs.lasts(...of) });
   const runs = makeRuns(find, { crew, desk, picture, state, apply, change, refuse, controls, devices });
   const engineer = makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf: runs.tallyOf });
   const records = makeRecords(find, { desk, shake, refuse });

@@ -12,11 +12,11 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
   let cost = 4e-7; // time (s) of a step of a body, as measured
   let marks = {}; // when things were there (ms), for those who measure
 
-  const seconds = (look) => (cost * look.work * (look.variants + 1)) / crew.most;
+  const lasts = (look, variants) => (cost * look.work * variants) / crew.most;
 
   // Says so before something takes long.
   function forecast(look) {
-    const due = seconds(look), slow = due > SLOW;
+    const due = lasts(look, look.variants + 1), slow = due > SLOW;
     find("costs").hidden = !slow;
     find("costs").textContent = slow ? `This takes about ${lasting(due)} on this computer; the first picture comes after about ${lasting(cost * look.work)}.` : "";
   }
@@ -58,11 +58,11 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     box.hidden = !(run.done && run.verdict && run.verdict.planes.length > 0);
     if (box.hidden) return;
     const { typical, gentlest, worst } = run.verdict.planes[0].spread;
-    const offers = new Map([[0, "as it is stated"]]);
-    for (const [one, name] of [[typical, "the most typical"], [gentlest, "the gentlest"], [worst, "the worst"]]) {
+    const offers = new Map([[0, "the stack as you chose it"]]);
+    for (const [one, name] of [[typical, "the most typical variant"], [gentlest, "the gentlest"], [worst, "the worst"]]) {
       offers.set(one, offers.has(one) ? `${offers.get(one)}, ${name}` : name);
     }
-    box.replaceChildren(make("span", {}, "Shown is"), ...[...offers].map(([one, name]) => {
+    box.replaceChildren(make("span", {}, "You see"), ...[...offers].map(([one, name]) => {
       const button = make("button", { type: "button", class: "tool", "aria-pressed": String(run.shown && run.shown.variant === one) }, name);
       button.addEventListener("click", () => show(run, one).then(() => tell(run)).catch(refuse));
       return button;
@@ -73,7 +73,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
   function offerChanges(run) {
     const values = valuesOf(run.look), levels = Number(values["stack.levels"] || 0);
     find("next").hidden = !run.shown || levels === 0;
-    if (find("next").hidden) return;
+    if (find("next").hidden) return devices.hide();
     const { writers } = controls;
     const velocity = run.look.checked[0].motion ? 100 * run.look.checked[0].motion.pgv : 0;
     const offers = [
@@ -219,5 +219,5 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     tell(now);
   });
   find("undo").addEventListener("click", () => { if (previous()) back(previous()); });
-  return { run, stop, forecast, tallyOf, past: () => past, now: () => now };
+  return { run, stop, forecast, lasts, tallyOf, past: () => past, now: () => now };
 }

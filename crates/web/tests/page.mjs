@@ -8,74 +8,13 @@ import { fileURLToPath, pathToFileURL } from "node:url";
 import { accessible } from "../../report/tests/browser/lib/access.mjs";
 import { DESKTOP, PHONE } from "../../report/tests/browser/lib/browser.mjs";
 import { drive, firefox } from "./firefox.mjs";
+import { traced } from "./traced.mjs";
+import { PATIENCE, opened, idle, look, last, type, sets, drop, sorted, sameSpreads } from "./using.mjs";
 import { demand } from "../../report/tests/browser/lib/suite.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const bundled = join(here, "../../motion/records/napa-college-2014.txt");
 const shared = join(here, "../../../../shared/ground-motions/renadic/hualane1002271.v1");
-const PATIENCE = 300_000; // ms: other programs may have the cores
-
-/** A page of the file, with everything it must not do noted in `faults`. */
-async function opened(browser, file, options = {}, hash = "") {
-  const context = await browser.newContext({ viewport: DESKTOP, reducedMotion: "no-preference", ...options });
-  const page = await context.newPage();
-  page.setDefaultTimeout(PATIENCE);
-  const url = pathToFileURL(file).href;
-  const faults = [];
-  page.on("console", (message) => faults.push(`console: ${message.text()}`));
-  page.on("pageerror", (error) => faults.push(`error: ${error.message}`));
-  page.on("request", (request) => {
-    if (request.url().split("#")[0] !== url && !/^(data|blob):/.test(request.url())) faults.push(`asks for ${request.url()}`);
-  });
-  await page.goto(url + hash);
-  await page.waitForFunction(() => window.barrelstack?.started > 0);
-  return { page, faults, context };
-}
-
-/** Waits until as many runs are there and the last is done. */
-const idle = (page, runs) => page.waitForFunction((runs) => {
-  const past = window.barrelstack.runs.past();
-  return document.getElementById("stop").hidden && past.length === runs && past.at(-1).done;
-}, runs);
-const look = (page) => page.evaluate(() => window.barrelstack.state().look);
-const last = (page) => page.evaluate(() => {
-  const { verdict, label, shown } = window.barrelstack.runs.past().at(-1);
-  return { verdict, label, variant: shown.variant };
-});
-
-/** Sets fields as an engineer types them. */
-async function type(page, changes) {
-  await page.evaluate(() => { document.getElementById("engineer-fold").open = true; });
-  for (const [path, value] of Object.entries(changes)) {
-    await page.fill(`#fields input[aria-label="${path}"]`, value);
-    await page.waitForFunction(([path, value]) => window.barrelstack.state().cellar.changes[path] === value, [path, value]);
-    await page.waitForFunction((path) => window.barrelstack.state().look.settings.some((one) => one.path === path), path);
-  }
-  await page.waitForTimeout(400);
-}
-
-/** What is changed, for the command; its record goes by an option. */
-const sets = async (page) => {
-  const changes = await page.evaluate(() => Object.entries(window.barrelstack.state().cellar.changes));
-  return changes.filter(([path]) => path !== "motion.record").flatMap(([path, value]) => ["--set", `${path}=${value}`]);
-};
-
-/** Drops files on the page. */
-const drop = (page, files) => page.evaluate((files) => {
-  const data = new DataTransfer();
-  for (const [name, base64] of files) data.items.add(new File([Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0))], name));
-  document.dispatchEvent(new DragEvent("drop", { dataTransfer: data, cancelable: true, bubbles: true }));
-}, files.map(([name, bytes]) => [name, Buffer.from(bytes).toString("base64")]));
-
-/** The spread of each plane by its name, of a summary. */
-const spreads = ({ view, ensemble, other_plane: other }) => ({ [view]: ensemble, ...(other ? spreads(other) : {}) });
-const sameSpreads = (verdict, summary) => {
-  const found = Object.fromEntries(verdict.planes.map(({ view, spread }) => [view, spread]));
-  const expected = spreads(summary);
-  for (const view of Object.keys(expected)) {
-    demand(JSON.stringify(found[view]) === JSON.stringify(expected[view]), `${view}: ${JSON.stringify(found[view])}\nexpected ${JSON.stringify(expected[view])}`);
-  }
-};
 
 export async function checkPage(browser, suite, { file, program, native }) {
   const folder = mkdtempSync(join(tmpdir(), "barrelstack-page-"));
@@ -85,18 +24,44 @@ export async function checkPage(browser, suite, { file, program, native }) {
     return `${megabytes.toFixed(3)} MB`;
   });
   const { page, faults, context } = await opened(browser, file);
-  await suite.check("it opens from disk with a stack that stands", async () => {
-    const [started, still] = await page.evaluate(() => [window.barrelstack.started, document.getElementById("stage").classList.contains("still")]);
-    // Measured: 240 ms on an idle core; other programs may have it.
-    demand(started < 5000 && still, `${started.toFixed(0)} ms`);
+  await suite.check("its first screen can be used within 0.3 s, from the disk", async () => {
+    const opens = [];
+    for (let time = 0; time < 5; time += 1) {
+      const context = await browser.newContext({ viewport: DESKTOP });
+      const page = await context.newPage();
+      const { tasks } = await traced(page, async () => {
+        await page.goto(pathToFileURL(file).href);
+        await page.waitForFunction(() => window.barrelstack?.started > 0);
+      });
+      await page.waitForFunction(() => window.barrelstack.ready > 0);
+      const [started, ready] = await page.evaluate(() => [window.barrelstack.started, window.barrelstack.ready]);
+      opens.push({ started, ready, work: tasks.reduce((sum, task) => sum + task, 0) });
+      await context.close();
+    }
+    const least = (of) => Math.min(...opens.map((one) => one[of]));
+    // What the page's thread computes until all controls can be used and the stack is drawn is held, since other programs
+    // on the machine change it little.
+    const note = `${least("started").toFixed(0)} ms until it can be used, of which the page computes ${least("work").toFixed(0)} ms; ${least("ready").toFixed(0)} ms until there is an engine`;
+    demand(least("work") < 300 && least("started") < 1500, note);
+    return note;
+  });
+  await suite.check("it opens from disk with a stack that stands, which is what the engine says", async () => {
+    demand(await page.evaluate(() => document.getElementById("stage").classList.contains("still")), "it moves");
     const ink = await page.evaluate(() => {
       const canvas = document.querySelector("#stage canvas.scene"), { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
       return new Set(Array.from({ length: data.length / 4 }, (_, at) => data[4 * at] * 65536 + data[4 * at + 1] * 256 + data[4 * at + 2])).size;
     });
     demand(ink > 20, `${ink} colors`);
-    return `${started.toFixed(0)} ms until it can be used`;
+    // The first look comes with the page; every other is asked of the engine.
+    const first = JSON.stringify(sorted(await look(page)));
+    await page.click("[data-step='1']");
+    await page.waitForFunction(() => window.barrelstack.state().look.settings.find(({ path }) => path === "stack.levels").value === "6");
+    await page.click("[data-step='-1']");
+    await page.waitForFunction(() => window.barrelstack.state().look.settings.find(({ path }) => path === "stack.levels").value === "5");
+    const again = JSON.stringify(sorted(await look(page)));
+    demand(first === again, `the page holds ${first.length} letters, the engine says ${again.length}`);
   });
-  await suite.check("by keyboard alone a stack is chosen and shaken", async () => {
+  await suite.check("by keyboard alone a stack is chosen and shaken, and no frame waits for the page while engines work", async () => {
     await page.focus("#barrel");
     const path = [];
     for (let key = 0; key < 20 && path.at(-1) !== "go"; key += 1) {
@@ -113,22 +78,32 @@ export async function checkPage(browser, suite, { file, program, native }) {
       };
       requestAnimationFrame((now) => { gaps.last = now; tick(now); });
     });
-    await page.keyboard.press("Enter");
-    await page.waitForFunction(() => window.barrelstack.marks?.moved);
-    return path.join(", ");
+    const { tasks } = await traced(page, async () => {
+      await page.keyboard.press("Enter");
+      await page.waitForFunction(() => window.barrelstack.runs.now()?.shown && window.barrelstack.marks.variants >= 12);
+      await page.waitForTimeout(500);
+    });
+    const gap = await page.evaluate(() => {
+      window.gaps.on = false;
+      return window.gaps.longest;
+    });
+    // A task of the page is what a frame may have to wait for. Its time of the processor is held: on two cores that run two
+    // engines and whatever else, the time on the clock is that of who else waits.
+    const longest = Math.max(...tasks);
+    demand(tasks.length > 100 && longest < 50, `${longest.toFixed(0)} ms of ${tasks.length} tasks`);
+    return `${path.join(", ")}; longest task ${longest.toFixed(0)} ms, longest time between frames ${gap.toFixed(0)} ms`;
   });
   await suite.check("it moves soon, and the verdict sharpens until all variants are in", async () => {
     await page.waitForFunction(() => window.barrelstack.marks.variants > 0 && window.barrelstack.marks.variants < 64);
     demand(/of 64 variants so far/.test(await page.textContent("#sofar")), await page.textContent("#sofar"));
     await idle(page, 1);
-    const { moved, all, gap, engines } = await page.evaluate(() => {
+    const { moved, all, engines } = await page.evaluate(() => {
       const { from, moved, last } = window.barrelstack.marks;
-      window.gaps.on = false;
-      return { moved: moved - from, all: last - from, gap: window.gaps.longest, engines: window.barrelstack.crew.most };
+      return { moved: moved - from, all: last - from, engines: window.barrelstack.crew.most };
     });
-    // Measured on two idle cores: 0.5 s, 25 s, 45 ms.
-    demand(moved < 10_000 && gap < 1000, `${moved} ms until it moves, ${gap} ms between frames`);
-    return `${(moved / 1000).toFixed(2)} s until it moves, ${(all / 1000).toFixed(1)} s until 64 variants in each plane with ${engines} engines, longest time between frames ${gap.toFixed(0)} ms`;
+    // Measured on two idle cores: 0.5 s, 25 s.
+    demand(moved < 10_000, `${moved} ms until it moves`);
+    return `${(moved / 1000).toFixed(2)} s until it moves, ${(all / 1000).toFixed(1)} s until 64 variants in each plane with ${engines} engines`;
   });
   await suite.check("its verdict is that of the program, to the last digit", async () => {
     const { verdict } = await last(page);
@@ -262,6 +237,29 @@ export async function checkPage(browser, suite, { file, program, native }) {
     demand(took < 300, `${took.toFixed(0)} ms`);
     return `${took.toFixed(0)} ms`;
   });
+  await suite.check("after a hundred runs the page holds no more than after thirty", async () => {
+    const other = await opened(browser, file);
+    await type(other.page, { "imperfections.variants": "0", "run.duration": '"1 s"', "stack.levels": "1" });
+    const session = await other.page.context().newCDPSession(other.page);
+    const held = async () => {
+      await session.send("HeapProfiler.collectGarbage");
+      return (await session.send("Runtime.getHeapUsage")).usedSize / 1e6;
+    };
+    const run = (count) => other.page.evaluate(async (count) => {
+      for (let time = 0; time < count; time += 1) {
+        const one = window.barrelstack.runs.run();
+        while (!one.done) await new Promise((next) => setTimeout(next, 5));
+      }
+    }, count);
+    await run(30);
+    const early = await held();
+    await run(70);
+    const late = await held();
+    demand(late < early + 2, `${early.toFixed(1)} MB and ${late.toFixed(1)} MB`);
+    demand(other.faults.length === 0, other.faults.join("\n"));
+    await other.context.close();
+    return `${early.toFixed(1)} MB after 30, ${late.toFixed(1)} MB after 100`;
+  });
   await suite.check("how high is safe fills in cell by cell", async () => {
     await type(page, { "run.duration": '"4 s"' });
     await page.click("#heights-go");
@@ -333,7 +331,7 @@ export async function checkPage(browser, suite, { file, program, native }) {
     // A browser takes ten files in a row and then asks; so one is saved, and all are compared where they are.
     const [download] = await Promise.all([page.waitForEvent("download"), page.click('#files button:has-text("variants.csv")')]);
     demand(readFileSync(await download.path()).equals(readFileSync(join(out, "variants.csv"))), "what is saved differs");
-    for (const name of names.filter((one) => /csv|npz|toml/.test(one))) {
+    for (const name of names.filter((one) => /csv|npz|toml|html/.test(one))) {
       const base64 = await page.evaluate(async (name) => {
         const [, bytes] = window.barrelstack.files.find(([known]) => known === name);
         const reader = new FileReader();
