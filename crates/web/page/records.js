@@ -22,7 +22,7 @@ async function filesIn(transfer) {
 
 // `shake` takes a motion into the cellar at hand and gives what the engine says then; none where it refuses.
 function makeRecords(find, { desk, shake, refuse }) {
-  let motions = [], unread = []; // what was given, and the files that wait for their unit or step
+  let motions = [], unread = null; // what was given; the files that wait for their unit or step, and what is said of them
 
   // The motions of files, with what cannot be read.
   async function read(files, reading) {
@@ -47,10 +47,10 @@ function makeRecords(find, { desk, shake, refuse }) {
         const look = await shake(found[0]);
         if (!look) return;
         motions = found;
-        lines.unshift(...told(found, look));
+        lines.unshift(...told(found[0], look));
       } else lines.push("The stack is shaken as before. A record is a file of accelerations, as agencies publish them.");
       say(lines);
-      ask(files, refused);
+      ask(files, refused, reading);
       offer();
     } catch (error) {
       refuse(error);
@@ -59,22 +59,22 @@ function makeRecords(find, { desk, shake, refuse }) {
 
   const say = (lines) => find("given").replaceChildren(...lines.map((line) => make("li", {}, line)));
 
-  // Which file became what.
-  function told(found, look) {
-    const lines = found.length > 1
-      ? [`${found.length} earthquakes: the first shakes the stack, and the chart of heights takes them all.`, ...found.map(({ path, of }) => `${path}${of ? `: ${of.join(", ")}` : ""}`)]
-      : found[0].channels;
+  // Which file became what, where one of the motions shakes the stack.
+  function told(motion, look) {
+    const lines = motions.length > 1
+      ? [...motions.map(({ path, of }) => `${path} is an earthquake of its own${of ? `, from ${of.join(", ")}` : ""}`), `${motion.path} shakes the stack; the chart of heights takes all ${motions.length}.`]
+      : motion.channels;
     const plane = ({ view, motion }) => `${view === "longitudinal" ? "along the barrels" : "across the barrels"} by ${motion.name}`;
     const up = look.checked[0].motion.vertical ? "and up and down" : "and not up and down";
     return [...lines, `The stack is shaken ${look.checked.map(plane).join(", ")}, ${up}.`];
   }
 
   // What a file does not say of itself the reader may.
-  function ask(files, refused) {
+  function ask(files, refused, reading) {
     const missing = refused.map(({ missing }) => missing).filter(Boolean);
     find("unsaid").hidden = missing.length === 0;
     if (missing.length === 0) return;
-    unread = files;
+    unread = { files, reading };
     find("unsaid-unit").closest("label").hidden = !missing.some((what) => what.includes("unit"));
     find("unsaid-step").closest("label").hidden = !missing.includes("step");
   }
@@ -86,12 +86,15 @@ function makeRecords(find, { desk, shake, refuse }) {
     box.replaceChildren(...motions.map(({ path }, at) => make("option", { value: at }, path)));
   }
 
-  find("which-motion").addEventListener("change", (event) => shake(motions[event.target.value]).catch(refuse));
+  find("which-motion").addEventListener("change", async (event) => {
+    const motion = motions[event.target.value], look = await shake(motion).catch(refuse);
+    if (look) say(told(motion, look));
+  });
   find("unsaid-unit").append(...UNITS.map(([name]) => make("option", { value: name }, name)));
   find("unsaid-go").addEventListener("click", () => {
     const step = Number(find("unsaid-step").value);
     const shown = (id) => !find(id).closest("label").hidden;
-    take(unread, { ...(shown("unsaid-unit") ? { unit: find("unsaid-unit").value } : {}), ...(shown("unsaid-step") && step > 0 ? { time_step: step } : {}) });
+    take(unread.files, { ...unread.reading, ...(shown("unsaid-unit") ? { unit: find("unsaid-unit").value } : {}), ...(shown("unsaid-step") && step > 0 ? { time_step: step } : {}) });
   });
   const given = async (files) => take(await Promise.all(files.map(async (file) => ({ path: file.name, bytes: new Uint8Array(await file.arrayBuffer()) }))));
   return {

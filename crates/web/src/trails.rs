@@ -84,7 +84,8 @@ mod tests {
             [((0, 0), trail(1.0)), ((1, 0), trail(0.3)), ((0, 5), Trail::default())].into();
         let bytes = written(all.iter().map(|(key, trail)| (*key, trail)));
         assert_eq!(read(&bytes).unwrap(), all);
-        let ends: Vec<usize> = (0..bytes.len()).filter(|end| read(&bytes[..*end]).is_some()).collect();
+        let ends: Vec<usize> =
+            (0..bytes.len()).filter(|end| read(&bytes[..*end]).is_some()).collect();
         // After none, one and two of them.
         assert_eq!(ends.len(), 3);
     }

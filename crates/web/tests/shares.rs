@@ -111,7 +111,12 @@ fn devices_are_offered_as_they_go_on_the_stack_and_those_on_it_are_told() {
         all.iter().map(|one| one["name"].as_str().unwrap().to_owned()).collect()
     };
     let of = |devices: &Value, device: &str| {
-        devices["candidates"].as_array().unwrap().iter().filter(|one| one["device"] == device).count()
+        devices["candidates"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .filter(|one| one["device"] == device)
+            .count()
     };
     let three = offered(&[]);
     for words in barrelstack::device::DEVICES {
@@ -155,7 +160,8 @@ fn files_given_at_once_are_one_record_or_several_or_told_to_be_none() {
     };
     let napa = |channel| text("Napa", "College", channel);
     let (e, n, up) = (napa("E az=90"), napa("N az=0"), napa("UP vertical"));
-    let (one, bytes) = given(&[("site-e.txt", e.clone()), ("site-n.txt", n), ("site-up.txt", up.clone())]);
+    let (one, bytes) =
+        given(&[("site-e.txt", e.clone()), ("site-n.txt", n), ("site-up.txt", up.clone())]);
     assert_eq!(one["motions"][0]["name"], "site-set.txt");
     assert_eq!(one["motions"][0]["channels"][2], "site-up.txt (UP) is up and down");
     let read = barrelstack_motion::read(&bytes, "site-set.txt", &Default::default()).unwrap();
