@@ -29,7 +29,7 @@ function makeDevices(find, { crew, desk, change, writers, states, refuse, lasts 
 
   function row(candidate) {
     const button = make("button", { type: "button", class: "tool" }, "Try it");
-    button.setAttribute("aria-label", `Try ${candidate.name}`);
+    button.setAttribute("aria-label", `Try it: ${candidate.name}`);
     button.addEventListener("click", async () => {
       candidate.run = await change((cellar) => writers.device(cellar, tableOf(candidate.changes), candidate.changes), true);
     });
@@ -67,6 +67,9 @@ function makeDevices(find, { crew, desk, change, writers, states, refuse, lasts 
       if (!(run.done || run.stopped) || run.asking) return;
       run.asking = true;
       try {
+        // Whoever goes on at once has no need of it.
+        await new Promise((next) => setTimeout(next, 300));
+        if (run !== now) return;
         run.devices = jsonOf(await desk.ask(headOf(run.cellar, "devices"), { records: run.cellar.records }));
       } catch (error) {
         if (!error.stopped) refuse(error);

@@ -202,10 +202,14 @@ async function start() {
   Object.assign(window.barrelstack, { crew, desk, runs, state, players });
   await opening();
   window.barrelstack.started = performance.now();
-  await module;
-  crew.warm();
-  await desk.ask({ ask: "catalog" });
-  window.barrelstack.ready = performance.now();
+  try {
+    await module;
+    crew.warm();
+    await desk.ask({ ask: "catalog" });
+    window.barrelstack.ready = performance.now();
+  } catch (error) {
+    refuse(Object.assign(error, { broken: true }));
+  }
 }
 
 start().catch((error) => broken(Object.assign(error, { broken: true })));
