@@ -33,7 +33,8 @@ function makePicture(box, players) {
     figure.querySelector("figcaption b").remove();
     player = makePlayer(raw, figure, dashes, before);
     players.splice(0, players.length, player);
-    if (!still) [ghostly, moved] = [moved, player.panes];
+    // What is shown as a ghost later are numbers alone, since panes hold on to their player.
+    if (!still) [ghostly, moved] = [moved, player.panes.map((pane) => ({ data: pane.data }))];
     if (before) {
       for (const { stage } of player.panes) stage.ghosts = true;
       const check = figure.querySelector('[data-act="ghosts"]');
