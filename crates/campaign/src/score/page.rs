@@ -12,7 +12,7 @@ use crate::decision::{chance_axis, heading, percent, points, text};
 pub(super) fn document(sheet: &Sheet) -> Document {
     let protocol = &sheet.protocol;
     Document {
-        title: format!("RockScore: {}", sheet.scenario.title),
+        title: format!("RockScore of {}", scored(sheet)),
         verdict: Verdict {
             headline: headline(sheet),
             sentences: sentences(sheet),
@@ -40,6 +40,14 @@ pub(super) fn document(sheet: &Sheet) -> Document {
         warnings: warnings(sheet),
         words: barrelstack::report::WORDS.to_vec(),
     }
+}
+
+/// "`two-barrel` racks with chocks and straps".
+fn scored(sheet: &Sheet) -> String {
+    let Some(stack) = sheet.scenario.stack() else { return sheet.scenario.title.clone() };
+    let devices: Vec<&str> = stack.devices.present().iter().map(|words| words.many).collect();
+    let with = if devices.is_empty() { "" } else { " with " };
+    format!("`{}` racks{with}{}", stack.rack.base, devices.join(" and "))
 }
 
 /// A velocity (m/s) in whole cm/s.
