@@ -74,7 +74,7 @@ pub(crate) fn of(
     }
     let mut gathered = Vec::new();
     for records in records_of(records) {
-        let (motion, bytes) = Motion::of(records, !stations.is_empty())?;
+        let (motion, bytes) = Motion::of(&records, !stations.is_empty())?;
         found.motions.push(motion);
         gathered.push(bytes);
     }
@@ -113,7 +113,7 @@ fn records_of(records: Vec<Record>) -> Vec<Vec<Record>> {
 
 impl Motion {
     /// Of the files of one record; read with what other files say, one file is not enough by itself.
-    fn of(records: Vec<Record>, told: bool) -> Result<(Self, Vec<u8>), String> {
+    fn of(records: &[Record], told: bool) -> Result<(Self, Vec<u8>), String> {
         let files: Vec<String> = records.iter().map(|record| record.file.clone()).collect();
         let said = |record: &Record| -> Vec<String> {
             let said = |channel: &Channel| format!("{} {}", record.file, role(channel));
@@ -123,7 +123,7 @@ impl Motion {
         let (name, bytes) = match files.as_slice() {
             [file] if !told => (file.clone(), Vec::new()),
             _ => {
-                let mut record = Record::gather(&records).map_err(|error| error.to_string())?;
+                let mut record = Record::gather(records).map_err(|error| error.to_string())?;
                 record.cut_to_shortest();
                 let text = write::text(&record).map_err(|error| error.to_string())?;
                 (name_of(&files), text.into_bytes())

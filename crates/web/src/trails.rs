@@ -18,7 +18,9 @@ pub(crate) fn written<'a>(trails: impl IntoIterator<Item = ((u32, u32), &'a Trai
         out.extend([plane, variant].iter().flat_map(|number| number.to_le_bytes()));
         for bodies in [&trail.top, &trail.barrels] {
             number(bodies.len(), &mut out);
-            bodies.iter().for_each(|body| number(*body, &mut out));
+            for body in bodies {
+                number(*body, &mut out);
+            }
         }
         for way in &trail.ways {
             number(way.len(), &mut out);

@@ -412,6 +412,7 @@ export async function checkPage(browser, suite, { file, program, native }) {
   });
   await suite.check("a panic shows its text", async () => {
     const hurt = await opened(browser, file);
+    await hurt.page.waitForFunction(() => window.barrelstack.ready > 0);
     await hurt.page.evaluate(() => {
       const { postMessage } = Worker.prototype;
       // More room than there is.
