@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use barrelstack_motion::{ReadOptions, read};
 use barrelstack_web::{Ask, Request, answered};
 use serde_json::Value;
 
@@ -18,14 +19,14 @@ fn asked(request: &Request) -> Result<Value, String> {
 
 /// The head of an answer, and the bytes that follow it.
 fn parts(answer: &[u8]) -> (Value, &[u8]) {
-    let (length, rest) = answer.split_first_chunk::<4>().unwrap();
+    let (length, rest) = answer.split_first_chunk::<4>().expect("an answer with a length");
     let (head, rest) = rest.split_at(u32::from_le_bytes(*length) as usize);
-    (serde_json::from_slice(head).unwrap(), rest)
+    (serde_json::from_slice(head).expect("a head of JSON"), rest)
 }
 
 /// What became of variants in each plane, and their trails.
 fn run(numbers: &[u32]) -> (Value, Vec<u8>) {
-    let answer = bytes_of(&request(Ask::Variants, numbers), &[]).unwrap();
+    let answer = bytes_of(&request(Ask::Variants, numbers), &[]).expect("a sound request");
     let (cases, trails) = parts(&answer);
     (cases, trails.to_vec())
 }
@@ -164,8 +165,8 @@ fn files_given_at_once_are_one_record_or_several_or_told_to_be_none() {
         given(&[("site-e.txt", e.clone()), ("site-n.txt", n), ("site-up.txt", up.clone())]);
     assert_eq!(one["motions"][0]["name"], "site-set.txt");
     assert_eq!(one["motions"][0]["channels"][2], "site-up.txt (UP) is up and down");
-    let read = barrelstack_motion::read(&bytes, "site-set.txt", &Default::default()).unwrap();
-    assert_eq!(read.channels.len(), 3);
+    let again = read(&bytes, "site-set.txt", &ReadOptions::default()).unwrap();
+    assert_eq!(again.channels.len(), 3);
     // A horizontal and a vertical.
     let (pair, _) = given(&[("h.txt", e.clone()), ("v.txt", up)]);
     assert_eq!(pair["motions"].as_array().unwrap().len(), 1);
@@ -176,7 +177,8 @@ fn files_given_at_once_are_one_record_or_several_or_told_to_be_none() {
     assert_eq!(names, ["a.txt", "b.txt"]);
     assert!(bytes.is_empty());
     // A picture is no record, and takes nothing away from one beside it; a column of numbers lacks its unit.
-    let column: String = (0..600).map(|at| format!("{}\n", f64::from(at).sin())).collect();
+    let numbers: Vec<String> = (0..600).map(|at| f64::from(at).sin().to_string()).collect();
+    let column = numbers.join("\n");
     let (some, _) =
         given(&[("a.txt", e), ("b.png", b"\x89PNG\r\n".to_vec()), ("c.csv", column.into_bytes())]);
     assert_eq!(some["motions"][0]["name"], "a.txt");
