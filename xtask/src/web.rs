@@ -63,10 +63,10 @@ impl Build {
         }
         println!("{}: {:.2} MB, asks for {}", file.display(), megabytes(&bytes), asked.join(", "));
         let page = page(&self.root);
-        let example = ["run", "--quiet", "--release", "--package", "barrelstack-report"];
+        let example = ["run", "--quiet", "--release", "--package", "barrelstack-web"];
         let status = Command::new(cargo())
             .args(example)
-            .args(["--example", "shell", "--"])
+            .args(["--example", "page", "--"])
             .args([file.as_path(), &self.root.join(PARTS), Path::new(TITLE), &page])
             .current_dir(&self.root)
             .status()

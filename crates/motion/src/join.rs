@@ -76,6 +76,22 @@ impl Record {
         Ok(gathered)
     }
 
+    /// Ends all channels together, as a file with a column for each has them; the longer ones lose their last
+    /// samples, which the notes tell.
+    pub fn cut_to_shortest(&mut self) {
+        let shortest = self.channels.iter().map(|c| c.acceleration.len()).min().unwrap_or(0);
+        for channel in &mut self.channels {
+            let extra = channel.acceleration.len() - shortest;
+            if extra > 0 {
+                channel.acceleration.truncate(shortest);
+                self.notes.push(format!(
+                    "{}: the last {extra} samples cut, as the shortest channel ends there",
+                    channel.name
+                ));
+            }
+        }
+    }
+
     /// Why two files hold no components of one record, if they tell.
     pub fn unlike(&self, other: &Self) -> Option<String> {
         let one = self;

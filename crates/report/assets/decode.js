@@ -8,7 +8,9 @@ function bytesOf(text) {
 }
 
 // One Float64Array for each channel. Integers stay below 2^53, so sums and products are exact.
+// What a worker has unpacked before is taken as it is.
 function unpack(packed) {
+  if (Array.isArray(packed)) return packed;
   const bytes = bytesOf(packed.d);
   const channels = [];
   let at = 0;
@@ -38,7 +40,7 @@ function unpack(packed) {
 }
 
 function columnOf(column) {
-  if (Array.isArray(column)) return Float64Array.from(column, (v) => (v === null ? NaN : v));
+  if (Array.isArray(column) && !ArrayBuffer.isView(column[0])) return Float64Array.from(column, (v) => (v === null ? NaN : v));
   return unpack(column)[0];
 }
 

@@ -1,8 +1,7 @@
 // What a page holds in gzip: a count of bytes, a space, and five letters of 85 for every four bytes.
 
-// The bytes that the element of an id holds.
-async function held(id) {
-  const text = document.getElementById(id).textContent;
+// The bytes of such a text, as a stream.
+function unpacked(text) {
   const from = text.indexOf(" ") + 1;
   const view = new DataView(new ArrayBuffer((4 * (text.length - from)) / 5));
   for (let at = from, to = 0; at < text.length; to += 4) {
@@ -14,5 +13,10 @@ async function held(id) {
     view.setUint32(to, number);
   }
   const packed = new Uint8Array(view.buffer, 0, Number(text.slice(0, from)));
-  return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+  return new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+}
+
+// The bytes that the element of an id holds.
+function held(id) {
+  return new Response(unpacked(document.getElementById(id).textContent)).arrayBuffer();
 }

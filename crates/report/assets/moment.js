@@ -28,10 +28,12 @@ function makeLoop(screen, time, [start, end], show, marked) {
     request = 0;
     marked(false);
   }
-  // Out of sight it costs nothing.
-  new IntersectionObserver(([entry]) => {
+  // Out of sight it costs nothing; gone from the page it is watched no more, since a watch keeps all that it sees.
+  const watch = new IntersectionObserver(([entry]) => {
     seen = entry.isIntersecting;
+    if (!screen.isConnected) watch.disconnect();
     if (seen && looping && !request) request = requestAnimationFrame(tick);
-  }).observe(screen);
+  });
+  watch.observe(screen);
   return { run, stop, isLooping: () => looping, from, to };
 }

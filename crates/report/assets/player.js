@@ -16,10 +16,11 @@ function makePlayer(raw, figure, dashes, earlier) {
   const ground = raw.ground.map((h) => ({ ...h, t: columnOf(h.t), v: columnOf(h.v) }));
   const boxes = [...figure.querySelectorAll(".screen .stage")];
   const panes = raw.panes.map((one, at) => makePane(readPane(one, dashes), boxes[at]));
-  // Arrows and tints of all panes have one scale each.
-  for (const scale of ["strong", "full"]) {
-    const common = Math.max(0, ...panes.map(({ stage }) => stage[scale]));
-    for (const { stage } of panes) stage[scale] = common;
+  // Arrows and tints of all panes have one scale each, which is looked for once they are shown.
+  for (const [scale, most] of [["strong", strongForce], ["full", fullTint]]) {
+    let common = null;
+    const get = () => (common ??= Math.max(0, ...panes.map(({ data }) => most(data))));
+    for (const { stage } of panes) Object.defineProperty(stage, scale, { get });
   }
   // The bodies of the first pane, to be drawn over the others; or those of an earlier run.
   if (earlier) panes.forEach(({ data }, at) => { data.overlay = earlier[at].data; });
@@ -72,11 +73,17 @@ function makePlayer(raw, figure, dashes, earlier) {
     opens = false;
   }
 
-  function open() {
+  // Puts the player where it opens, without drawing.
+  function ready() {
     opens = true;
     pause();
     head = begins;
-    show(nearest(times, moment ? moment.t : begins));
+    frame = nearest(times, moment ? moment.t : begins);
+  }
+
+  function open() {
+    ready();
+    show(frame);
   }
 
   const settled = () => { if (!playing && !opens) for (const listener of rests) listener(times[frame] ?? 0); };
@@ -234,7 +241,7 @@ function makePlayer(raw, figure, dashes, earlier) {
   }
 
   fitStages(panes, figure);
-  open();
+  ready();
   refresh();
   if (loop && !window.matchMedia("(prefers-reduced-motion: reduce)").matches) loop.run();
   return {

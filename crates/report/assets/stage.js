@@ -37,7 +37,7 @@ function makeStage(data, canvas) {
     lens: { factor: 1, x: 0, z: 0 },
     // The largest scale (px/m) that may be drawn to: panes side by side are drawn to one.
     most: Infinity,
-    strong: strongForce(data), full: fullTint(data), canvas, draw, resize, retheme, viewAt, scale,
+    canvas, draw, resize, retheme, viewAt, scale,
     // The point of the canvas (px) about which the view is, and the size of the view (m).
     origin: () => [0.5 * width, height - FOOT],
     size: () => [right - left, top - bottom],

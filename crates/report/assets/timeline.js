@@ -9,7 +9,7 @@ function makeTimeline(canvas, panes, ground, start, end) {
   const several = panes.length > 1;
   const lanes = panes.filter((pane) => pane.events.length > 0);
   const head = lanes.length > 0 ? EVENT_LANE * lanes.length : 4;
-  let width = 0, height = 0, dpr = 1, tint = "";
+  let width = 0, height = 0, dpr = 1, tint = "", drawn = "";
   // Marks of panes stand left of their events.
   let left = SIDE;
   const toX = (t) => left + ((t - start) / (end - start || 1)) * (width - left - SIDE);
@@ -19,6 +19,9 @@ function makeTimeline(canvas, panes, ground, start, end) {
     height = head + LANE * ground.length;
     dpr = Math.min(window.devicePixelRatio || 1, 3);
     tint = color("accent");
+    const look = [width, dpr, tint].join();
+    if (look === drawn) return;
+    drawn = look;
     for (const one of [canvas, still]) {
       one.width = Math.round(width * dpr);
       one.height = Math.round(height * dpr);

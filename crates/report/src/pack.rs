@@ -111,13 +111,17 @@ pub fn base64(bytes: &[u8]) -> String {
     BASE64.encode(bytes)
 }
 
-/// Bytes in gzip, written in 85 letters: their count, a space, and five letters for every four bytes, the highest first.
-///
-/// That takes a sixteenth less than base64. Letters go on from `!` and leave out `<`, so that no script ends in them.
+/// Bytes in gzip, in [`letters`].
 pub(crate) fn gzip_letters(bytes: &[u8]) -> String {
     let mut packer = GzEncoder::new(Vec::new(), Compression::best());
     // Writing to memory cannot fail.
-    let packed = packer.write_all(bytes).and_then(|()| packer.finish()).unwrap_or_default();
+    letters(&packer.write_all(bytes).and_then(|()| packer.finish()).unwrap_or_default())
+}
+
+/// Bytes in 85 letters: their count, a space, and five letters for every four bytes, the highest first.
+///
+/// That takes a sixteenth less than base64. Letters go on from `!` and leave out `<`, so that no script ends in them.
+pub(crate) fn letters(packed: &[u8]) -> String {
     let mut text = format!("{} ", packed.len());
     for four in packed.chunks(4) {
         let mut whole = [0; 4];

@@ -210,6 +210,8 @@ fn head(title: &str, policy: &str, before: &str, after: &str) -> String {
 /// A page that holds a program: what it shows, and what it runs, in the look and with the player of all pages.
 ///
 /// Its policy lets it run what is in it, also in workers, and ask for nothing.
+/// What it holds for later stands at its end, behind its scripts, so that it is seen and can be used before all of it
+/// is read.
 #[derive(Clone, Copy, Debug)]
 pub struct Shell<'a> {
     /// Title of the file.
@@ -218,10 +220,14 @@ pub struct Shell<'a> {
     pub style: &'a str,
     /// Its body, as markup.
     pub body: &'a str,
-    /// Bytes that it holds, each under the id of an element.
-    pub held: &'a [(&'a str, &'a [u8])],
+    /// Bytes that its scripts find when they start, each under the id of an element.
+    pub at_hand: &'a [(&'a str, &'a [u8])],
+    /// The script of its workers, in the element `worker`.
+    pub worker: &'a str,
     /// Its scripts, which see those of the player.
     pub scripts: &'a [&'a str],
+    /// Bytes in gzip that it holds for later, each under the id of an element.
+    pub held: &'a [(&'a str, &'a [u8])],
 }
 
 impl Shell<'_> {
@@ -229,23 +235,42 @@ impl Shell<'_> {
     pub fn html(&self) -> String {
         let mut out = head(self.title, PROGRAM_POLICY, "", self.style);
         out.push_str(self.body);
-        for (id, bytes) in self.held {
-            let packed = pack::gzip_letters(bytes);
-            // Writing to a String cannot fail.
-            let _ = writeln!(out, "<script type=\"text/plain\" id=\"{id}\">{packed}</script>");
+        for (id, bytes) in self.at_hand {
+            hold(&mut out, id, &pack::gzip_letters(bytes));
         }
+        let worker = lean(self.worker);
+        // Writing to a String cannot fail.
+        let _ = write!(out, "<script type=\"text/plain\" id=\"worker\">\n{worker}</script>\n");
         out.push_str("<script>\n(() => {\n\"use strict\";\n");
         for script in PLAYER.into_iter().chain([HELD]) {
-            out.push_str(script);
+            out.push_str(&lean(script));
         }
         // In a block of their own, so that equal names of constants are no mistake.
         out.push_str("{\n");
         for script in self.scripts {
-            out.push_str(script);
+            out.push_str(&lean(script));
         }
-        out.push_str("}\n})();\n</script>\n</body>\n</html>\n");
+        out.push_str("}\n})();\n</script>\n");
+        for (id, packed) in self.held {
+            hold(&mut out, id, &pack::letters(packed));
+        }
+        out.push_str("</body>\n</html>\n");
         out
     }
+}
+
+/// Writes letters into an element.
+fn hold(out: &mut String, id: &str, letters: &str) {
+    // Writing to a String cannot fail.
+    let _ = writeln!(out, "<script type=\"text/plain\" id=\"{id}\">{letters}</script>");
+}
+
+/// A script without indents and without lines that only explain: a fifth shorter. None of ours has a text that goes
+/// over several lines.
+fn lean(script: &str) -> String {
+    let lines = script.lines().map(str::trim);
+    let kept = lines.filter(|line| !line.is_empty() && !line.starts_with("//"));
+    kept.flat_map(|line| [line, "\n"]).collect()
 }
 
 /// The palette as custom properties: light, dark where asked for, light again on paper.

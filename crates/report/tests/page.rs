@@ -251,7 +251,19 @@ fn a_program_that_a_page_holds_cannot_end_its_script_and_may_ask_for_nothing() {
     let trial = Trial { page: HOSTILE, start: &start };
     let report = html_with(&document(vec![Block::Paragraph("x".into())]), &trial);
     let held: &[(&str, &[u8])] = &[("engine", HOSTILE.as_bytes())];
-    let shell = Shell { title: HOSTILE, style: "", body: "<main></main>\n", held, scripts: &[] };
+    let shell = Shell {
+        title: HOSTILE,
+        style: "",
+        body: "<main></main>\n",
+        at_hand: held,
+        worker: "",
+        scripts: &["// of no use there\n  let kept = 1;\n"],
+        held,
+    };
+    let page = shell.html();
+    assert!(page.contains("\nlet kept = 1;\n") && !page.contains("of no use there"));
+    // What is held for later stands behind the scripts.
+    assert!(page.rfind("id=\"engine\"") > page.find("let kept"));
     for page in [report, shell.html()] {
         assert!(!page.contains(HOSTILE));
         // Every script ends where it was meant to.

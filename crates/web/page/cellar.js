@@ -14,18 +14,25 @@ const copied = ({ base, changes, records }) => ({ base, changes: { ...changes },
 
 const setOf = ({ changes }) => Object.entries(changes).map(([path, value]) => `${path}=${value}`);
 
+// What two cellars of the same have in common, but for the bytes of their records.
+const keyOf = (cellar) => JSON.stringify([cellar.base.name, cellar.base.text, cellar.changes, cellar.records.map(({ path }) => path)]);
+
 // The request for it.
 function headOf(cellar, ask, more) {
   const { base } = cellar;
   return { ask, scenario: base.text, name: base.own ? base.name : `${base.name}.toml`, set: setOf(cellar), ...more };
 }
 
-// The command that gives the same bits.
+// The command that gives the same bits; that which makes one file of several goes before it.
 function commandOf(cellar) {
+  const made = cellar.records.filter(({ of }) => of).map(({ path, of, reading }) => {
+    const told = [...(reading.unit ? ["--unit", reading.unit] : []), ...(reading.time_step ? ["--time-step", `${reading.time_step} s`] : [])];
+    return `barrelstack motion convert ${[...of, ...told, "-o", path].map(shellWord).join(" ")}\n`;
+  });
   const set = setOf(cellar).filter((change) => !change.startsWith("motion.record="));
   const own = cellar.records.map(({ path }) => ` --record ${shellWord(path)}`);
   const words = set.map((change) => ` --set ${shellWord(change)}`);
-  return `barrelstack run ${shellWord(cellar.base.name)}${own.join("")}${words.join("")}`;
+  return `${made.join("")}barrelstack run ${shellWord(cellar.base.name)}${own.join("")}${words.join("")}`;
 }
 
 async function through(stream, bytes) {

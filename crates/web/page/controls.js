@@ -3,7 +3,6 @@
 
 const STRENGTHS = [3, 160]; // ends of the slider (cm/s)
 const STEPS = 200;
-const TENSION = "3 kN"; // of straps, which a ratchet reaches by hand
 
 const velocityAt = (step) => STRENGTHS[0] * (STRENGTHS[1] / STRENGTHS[0]) ** (step / STEPS);
 const stepAt = (velocity) => Math.round((STEPS * Math.log(velocity / STRENGTHS[0])) / Math.log(STRENGTHS[1] / STRENGTHS[0]));
@@ -14,7 +13,7 @@ const valuesOf = (look) => Object.fromEntries(look.settings.filter(({ value }) =
 // `changed` is called when the reader has changed something: it gets a function that writes that into a cellar.
 function makeControls(find, catalog, changed) {
   const [barrel, rack, levels, view, fill, strength] = ["barrel", "rack", "levels", "view", "fill", "strength"].map(find);
-  let stated = null; // what the scenario says without changes
+  let stated = null, shown = null; // what the scenario says without changes, and with them
   let own = 0; // peak velocity (cm/s) of its motion as it is recorded; 0 where nothing shakes
   const offer = (select, names) => select.replaceChildren(...names.map((name) => make("option", { value: name }, called(name))));
   offer(barrel, catalog.barrels.map(({ name }) => name));
@@ -33,11 +32,18 @@ function makeControls(find, catalog, changed) {
       write(cellar, "stack.barrel", text, is("stack.barrel.base", barrel.value) && is("stack.barrel.fill", fill.value));
     },
     rack: (cellar) => write(cellar, "stack.rack", `"${rack.value}"`, is("stack.rack.base", rack.value)),
-    levels(cellar, count = Number(levels.value)) {
-      const most = Math.min(Math.max(Math.round(count) || 1, 1), 12);
-      levels.value = most;
+    // `now` is what the cellar says, with all its changes.
+    levels(cellar, count = Number(levels.value), now = shown) {
+      const most = Math.min(Math.max(Math.round(count) || 1, 1), 12), values = valuesOf(now);
+      const had = Number(values["stack.levels"]);
       write(cellar, "stack.levels", String(most), is("stack.levels", most));
-      if (cellar.changes["stack.strap"]) writers.straps(cellar, true, most);
+      // A device on all levels stays on all, and none is on more than there are.
+      for (const [path, value] of Object.entries(values)) {
+        if (!/^stack\.\w+\.levels$/.test(path) || Number(value) === 0) continue;
+        const on = Number(value) >= Math.min(had, most) ? most : Number(value);
+        if (on !== Number(value)) write(cellar, path, String(on), is(path, on));
+      }
+      if (most === 1 && values["stack.strap.ties"] === "levels-together") cellar.changes["stack.strap.ties"] = '"barrels-to-racks"';
     },
     view(cellar) {
       write(cellar, "stack.view", `"${view.value}"`, is("stack.view", view.value));
@@ -45,10 +51,13 @@ function makeControls(find, catalog, changed) {
       const along = stated["stack.columns_along"];
       if (along !== undefined) write(cellar, "stack.columns", along, view.value !== "longitudinal");
     },
-    straps(cellar, on, count = Number(levels.value)) {
-      const ties = count > 1 ? "levels-together" : "barrels-to-racks";
-      const text = on ? `{ levels = ${count}, ties = "${ties}", pretension = "${TENSION}" }` : "{ levels = 0 }";
-      write(cellar, "stack.strap", text, !on && is("stack.strap.levels", 0));
+    // In place of whatever is said of the same device.
+    device(cellar, table, settings) {
+      for (const path of Object.keys(cellar.changes)) if (path === `stack.${table}` || path.startsWith(`stack.${table}.`)) delete cellar.changes[path];
+      for (const setting of settings) {
+        const at = setting.indexOf("=");
+        cellar.changes[setting.slice(0, at)] = setting.slice(at + 1);
+      }
     },
     strength(cellar, velocity = velocityAt(Number(strength.value))) {
       if (stated["motion.scale.pgv"] !== undefined) {
@@ -75,7 +84,7 @@ function makeControls(find, catalog, changed) {
   function feel(velocity) {
     const { name, felt, roman, like } = feels(velocity);
     find("feels").replaceChildren(make("b", {}, `${name[0].toUpperCase()}${name.slice(1)}`), `: ${felt}.`,
-      make("span", { class: "soft" }, `peak velocity ${velocity.toFixed(0)} cm/s, intensity ${roman}${like ? `; like ${like}` : ""}`));
+      make("span", { class: "soft" }, `peak velocity ${velocity < 1 ? "below 1" : velocity.toFixed(0)} cm/s, intensity ${roman}${like ? `; like ${like}` : ""}`));
     strength.setAttribute("aria-valuetext", `${name}, ${velocity.toFixed(0)} centimeters per second`);
   }
 
@@ -85,8 +94,10 @@ function makeControls(find, catalog, changed) {
     state(look) {
       stated = valuesOf(look);
     },
+    states: (path) => stated[path],
     // Shows what a scenario says.
     show(look) {
+      shown = look;
       const values = valuesOf(look), motion = look.checked[0].motion;
       const stack = values["stack.levels"] !== undefined;
       for (const element of [barrel, rack, levels, view, fill]) element.disabled = !stack;
@@ -104,7 +115,7 @@ function makeControls(find, catalog, changed) {
         // Not while it is being moved.
         if (document.activeElement !== strength) strength.value = stepAt(velocity);
         feel(velocity);
-        find("motion").textContent = `${motion.name}, ${motion.duration.toFixed(0)} s, peak acceleration ${(motion.pga / 9.80665).toFixed(2)} g`;
+        find("motion").textContent = `${motion.name}, ${motion.duration.toFixed(0)} s, peak acceleration ${(motion.pga / 9.80665).toPrecision(2)} g`;
       } else {
         find("feels").textContent = "Nothing shakes it.";
         find("motion").textContent = "Drop a record here.";
@@ -122,7 +133,7 @@ function labelOf(look) {
   if (values["stack.rack.base"] !== "two-barrel") words.push(called(values["stack.rack.base"]));
   if (values["stack.barrel.base"] !== "bordeaux-225") words.push(called(values["stack.barrel.base"]));
   if (values["stack.barrel.fill"] === "empty") words.push("empty");
-  if (Number(values["stack.strap.levels"] || 0) > 0) words.push("strapped");
+  words.push(...look.devices);
   if (values["stack.view"] !== "both") words.push(values["stack.view"] === "transverse" ? "across" : "along");
   if (motion) words.push(`${(100 * motion.pgv).toFixed(0)} cm/s`);
   return words.join(", ");

@@ -1,7 +1,8 @@
 // For the engineer: every field, the text, the command, the link, and the report with its files.
 
-// `change` writes into the cellar at hand and looks at it; `open` takes another base.
-function makeEngineer(find, { desk, crew, state, change, open, refuse }) {
+// `change` writes into the cellar at hand and looks at it; `open` takes another base; `tallyOf` gives what is known of the
+// variants of a cellar.
+function makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf }) {
   const rows = new Map();
 
   function field({ path, value, help, source }) {
@@ -40,8 +41,10 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse }) {
     for (const { row, words } of rows.values()) row.hidden = !words.includes(wanted);
   }
 
-  // Shows what a scenario says; what is being typed stays.
-  function show(cellar, look) {
+  // Shows what a scenario says, once somebody looks; what is being typed stays.
+  function show() {
+    if (!find("engineer-fold").open) return;
+    const { cellar, look } = state();
     const paths = look.settings.map(({ path }) => path).join();
     if (paths !== [...rows.keys()].join()) {
       rows.clear();
@@ -70,6 +73,7 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse }) {
     find(id).classList.toggle("bad", Boolean(bad));
   }
 
+  find("engineer-fold").addEventListener("toggle", show);
   let checking = 0;
   find("text").addEventListener("input", () => {
     clearTimeout(checking);
@@ -128,12 +132,18 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse }) {
   }
 
   find("report-go").addEventListener("click", async () => {
-    const { cellar } = state();
+    const { look } = state(), cellar = copied(state().cellar);
     busy(true);
     try {
-      const told = (done, of) => { find("report-said").textContent = `${percentOf(of > 0 ? done / of : 0)} of this step`; };
-      const { bytes } = await crew.ask(headOf(cellar, "files"), { records: cellar.records, urgency: 1, group: "report", told });
-      showFiles(filesOf(bytes));
+      // What the variants did is known, or is shared among the engines; the run that is shown is one engine's.
+      const tally = tallyOf(cellar);
+      const said = (what) => (done, of) => { find("report-said").textContent = `${what}: ${percentOf(of > 0 ? done / of : 0)}`; };
+      const heard = (_, count) => said("variants")(count - 1, look.variants);
+      if (look.variants > 0) await runAll({ crew, cellar, tally, count: look.variants, group: "report", heard });
+      const trails = { bytes: new Uint8Array(await new Blob(tally.trails).arrayBuffer()) };
+      const known = look.variants > 0 ? { ...tally.given(), trails: trails.bytes.length } : {};
+      const files = look.variants > 0 ? [...cellar.records, trails] : cellar.records;
+      showFiles(filesOf(await crew.ask(headOf(cellar, "files", known), { records: files, urgency: 1, group: "report", told: said("the run that is shown") })));
       find("report-said").textContent = "";
     } catch (error) {
       find("report-said").textContent = "";
@@ -141,7 +151,10 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse }) {
     }
     busy(false);
   });
-  find("report-stop").addEventListener("click", () => crew.stop("report"));
+  find("report-stop").addEventListener("click", () => {
+    crew.stop("report");
+    desk.stop("report");
+  });
 
   function showFiles(files) {
     window.barrelstack.files = files;
@@ -160,12 +173,12 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse }) {
 }
 
 // Files with their names, from an answer that has their list before them.
-function filesOf(bytes) {
-  const length = new DataView(bytes.buffer, bytes.byteOffset).getUint32(0, true);
-  let at = 4 + length;
-  return JSON.parse(new TextDecoder().decode(bytes.subarray(4, at))).map(([name, size]) => {
+function filesOf(answer) {
+  const { head, rest } = partsOf(answer);
+  let at = 0;
+  return head.map(([name, size]) => {
     at += size;
-    return [name, bytes.slice(at - size, at)];
+    return [name, rest.slice(at - size, at)];
   });
 }
 

@@ -3,21 +3,36 @@
 
 const ROOM = 384e6; // memory of an engine (bytes) above which it is ended once it has answered, since it gives none back
 
-// A request as the engine reads it: the length of its head, the head, the records.
-function requestOf(head, records) {
+// A request as the engine reads it: the length of its head, the head, the records, and what else goes with it.
+function requestOf(head, files) {
+  const records = files.filter(({ path }) => path !== undefined);
   const text = new TextEncoder().encode(JSON.stringify({ ...head, records: records.map(({ path, bytes }) => [path, bytes.length]) }));
-  const request = new Uint8Array(4 + text.length + records.reduce((sum, { bytes }) => sum + bytes.length, 0));
+  const request = new Uint8Array(4 + text.length + files.reduce((sum, { bytes }) => sum + bytes.length, 0));
   new DataView(request.buffer).setUint32(0, text.length, true);
   request.set(text, 4);
   let at = 4 + text.length;
-  for (const { bytes } of records) {
+  for (const { bytes } of files) {
     request.set(bytes, at);
     at += bytes.length;
   }
   return request;
 }
 
-// As many engines as `most`, each started when there is work for it.
+// The module, unpacked and compiled in a worker, so that nobody waits for it.
+function compiled(address, packed) {
+  return new Promise((resolve, reject) => {
+    const worker = new Worker(address);
+    worker.onmessage = ({ data: { module, refused } }) => {
+      worker.terminate();
+      if (module) resolve(module);
+      else reject(new Error(refused));
+    };
+    worker.onerror = (event) => reject(new Error(event.message || "the engine does not start"));
+    worker.postMessage({ packed });
+  });
+}
+
+// As many engines as `most`, each started when there is work for it; the module may still be on its way.
 function makeEngines(module, address, most) {
   const all = new Set();
   let waiting = [];
@@ -26,7 +41,10 @@ function makeEngines(module, address, most) {
     const one = { worker: new Worker(address), job: null, ready: false };
     one.worker.onmessage = ({ data }) => hear(one, data);
     one.worker.onerror = (event) => fail(one, event.message || "the engine does not start");
-    one.worker.postMessage({ module });
+    module.then((module) => one.worker.postMessage({ module }), (error) => {
+      end(one);
+      for (const job of waiting.splice(0)) job.reject(Object.assign(new Error(error.message), { broken: true }));
+    });
     all.add(one);
   }
 
@@ -52,7 +70,7 @@ function makeEngines(module, address, most) {
       if (data.status === 2) return fail(one, `${new TextDecoder().decode(data.answer) || "no words"} (${data.trap})`);
       one.job = null;
       if (data.memory > ROOM) end(one);
-      if (data.status === 0) job.resolve({ bytes: data.answer, took: data.took, memory: data.memory });
+      if (data.status === 0) job.resolve({ bytes: data.answer, said: data.said, took: data.took, memory: data.memory });
       else job.reject(new Error(new TextDecoder().decode(data.answer)));
     }
     next();
@@ -64,7 +82,7 @@ function makeEngines(module, address, most) {
       if (waiting.length === 0) return;
       one.job = waiting.shift();
       const request = one.job.request();
-      one.worker.postMessage({ request }, [request.buffer]);
+      one.worker.postMessage({ request, draws: one.job.draws }, [request.buffer]);
     }
     const starting = [...all].filter(({ ready }) => !ready).length;
     for (let more = waiting.length - starting; more > 0 && all.size < most; more -= 1) start();
@@ -76,10 +94,11 @@ function makeEngines(module, address, most) {
     warm() {
       while (all.size < most) start();
     },
-    // Answers in bytes. `group` is what it is stopped by, `told` hears how far it is.
-    ask(head, { records = [], urgency = 0, group = "", told } = {}) {
+    // Answers in bytes, or as `said` where it `draws` a picture. `group` is what it is stopped by, `told` hears how far
+    // it is.
+    ask(head, { records = [], urgency = 0, group = "", told, draws } = {}) {
       return new Promise((resolve, reject) => {
-        const job = { request: () => requestOf(head, records), urgency, group, told, resolve, reject };
+        const job = { request: () => requestOf(head, records), urgency, group, told, draws, resolve, reject };
         const at = waiting.findIndex((other) => other.urgency < urgency);
         waiting.splice(at < 0 ? waiting.length : at, 0, job);
         next();
@@ -102,5 +121,10 @@ function makeEngines(module, address, most) {
   };
 }
 
-const textOf = ({ bytes }) => new TextDecoder().decode(bytes);
-const jsonOf = (answer) => JSON.parse(textOf(answer));
+const jsonOf = ({ said, bytes }) => said || JSON.parse(new TextDecoder().decode(bytes));
+
+// An answer of which bytes follow a head.
+function partsOf({ bytes }) {
+  const end = 4 + new DataView(bytes.buffer, bytes.byteOffset).getUint32(0, true);
+  return { head: JSON.parse(new TextDecoder().decode(bytes.subarray(4, end))), rest: bytes.subarray(end) };
+}

@@ -13,30 +13,40 @@ function orderOf(count) {
   return order;
 }
 
-// Collects results of variants, and asks what they say together.
-function makeTally(desk, cellar) {
+// Collects results of variants, and asks what they say together; keeps what a report needs where `reports` says so.
+function makeTally(desk, cellar, reports) {
   const results = new Map(); // by number, a result in each plane
+  const trails = []; // where barrels were, as bytes, for a report
   const planes = () => (results.get(0) || []).length;
+  // What is known, as the engine takes it.
+  const given = () => {
+    const numbers = [...results.keys()].sort((a, b) => a - b);
+    return { numbers, cases: Array.from({ length: planes() }, (_, plane) => numbers.map((number) => results.get(number)[plane])) };
+  };
   return {
     count: () => results.size,
-    add(numbers, cases) {
-      numbers.forEach((number, at) => results.set(number, cases.map((plane) => plane[at])));
+    has: (number) => results.has(number),
+    given, trails,
+    // Takes an answer about variants, whose numbers may be others here than there.
+    add(numbers, answer) {
+      const { head, rest } = partsOf(answer);
+      numbers.forEach((number, at) => results.set(number, head.map((plane) => plane[at])));
+      if (reports) trails.push(rest);
     },
     // What they say; none before the stack as it is stated is among them.
     async verdict(group) {
       if (!results.has(0)) return null;
-      const numbers = [...results.keys()].sort((a, b) => a - b);
-      const cases = Array.from({ length: planes() }, (_, plane) => numbers.map((number) => results.get(number)[plane]));
-      return jsonOf(await desk.ask(headOf(cellar, "verdict", { numbers, cases }), { records: cellar.records, urgency: 1, group }));
+      return jsonOf(await desk.ask(headOf(cellar, "verdict", given()), { records: cellar.records, urgency: 1, group }));
     },
   };
 }
 
-// Runs all variants; `heard` gets what they say after each share, and whether that was the last one.
-async function runAll({ crew, desk, cellar, count, group, heard, took }) {
-  const order = orderOf(count), tally = makeTally(desk, cellar);
+// Runs all variants that a tally has not; `heard` gets what they say after each share, and whether that was the last one.
+async function runAll({ crew, cellar, tally, count, group, heard }) {
+  const order = orderOf(count).filter((number) => !tally.has(number));
   const shares = [];
   for (let at = 0; at < order.length; at += SHARE) shares.push(order.slice(at, at + SHARE));
+  if (shares.length === 0) return heard(await tally.verdict(group), tally.count(), true);
   let asking = false, behind = false, left = shares.length, ended;
   const all = new Promise((resolve, reject) => { ended = { resolve, reject }; });
 
@@ -52,15 +62,14 @@ async function runAll({ crew, desk, cellar, count, group, heard, took }) {
       const last = left === 0;
       const verdict = await tally.verdict(group);
       if (verdict) heard(verdict, tally.count(), last);
-      if (last) ended.resolve(verdict);
+      if (last) ended.resolve();
     } while (behind);
     asking = false;
   }
 
   for (const numbers of shares) {
     crew.ask(headOf(cellar, "variants", { numbers }), { records: cellar.records, group }).then((answer) => {
-      took(answer.took / numbers.length);
-      tally.add(numbers, jsonOf(answer));
+      tally.add(numbers, answer);
       left -= 1;
       return tell();
     }).catch(ended.reject);

@@ -5,6 +5,7 @@ const HEIGHTS = [6, 5, 4, 3, 2];
 const VELOCITIES = [12, 24, 36, 50, 70, 100]; // cm/s, as in `barrelstack heights`
 const CELL = 32; // variants after which a cell is done
 const BATCH = 4; // that are run at once
+const OTHER = 1e5; // more than there are variants, between numbers of two motions
 const ENOUGH = 8; // variants from which a cell is colored, and its neighbors are taken to be like it
 const FALLS = 0.9, STANDS = 0.05; // shares from and up to which a cell is said to fall and to stand, as in a verdict
 
@@ -21,11 +22,12 @@ function nextCell(cells) {
   };
   const middle = (cell) => -0.01 * (Math.abs(cell.levels - 4) + Math.abs(VELOCITIES.indexOf(cell.velocity) - 2.5));
   const worth = (cell) => cell.width - (sure(cell) ? 1 : 0) - 0.5 * cell.running + middle(cell);
-  const open = cells.filter((cell) => !cell.refused && cell.asked < cell.order.length);
+  const open = cells.filter((cell) => !cell.refused && cell.shares.length > 0);
   return open.reduce((best, cell) => (best && worth(best) >= worth(cell) ? best : cell), null);
 }
 
-function makeHeights(find, { crew, desk, state, refuse }) {
+// `motionsOf` gives the motions for a cellar: that at hand, or all that the reader gave.
+function makeHeights(find, { crew, desk, state, refuse, writers, motionsOf }) {
   let cells = [], going = 0;
 
   // What is known of a cell, in words and a color.
@@ -36,21 +38,20 @@ function makeHeights(find, { crew, desk, state, refuse }) {
       return;
     }
     if (!verdict) return;
-    const [worst] = [...verdict.planes].sort((a, b) => (b.spread.share ?? -1) - (a.spread.share ?? -1));
-    const { collapsed, variants, interval: [low, high], share } = worst.spread;
+    const { collapsed, variants, interval: [low, high], share } = worstOf(verdict).spread;
     // A few say little.
     place.className = variants < ENOUGH ? "" : share >= FALLS ? "poor" : share <= STANDS ? "good" : "fair";
     place.replaceChildren(`${collapsed} of ${variants} fall`, make("small", {}, `${percentOf(low)} to ${percentOf(high)}`));
   }
 
-  function draw() {
+  function draw(motions) {
     const head = make("tr", {}, make("th", { scope: "col" }, "levels"), ...VELOCITIES.map((velocity) => {
       const { name } = feels(velocity);
       return make("th", { scope: "col" }, `${velocity} cm/s`, make("br"), make("span", { class: "unit" }, name));
     }));
     const rows = HEIGHTS.map((levels) => make("tr", {}, make("th", { scope: "row" }, String(levels)),
       ...cells.filter((cell) => cell.levels === levels).map(({ place }) => place)));
-    const caption = make("caption", {}, make("span", {}, "Variants of a stack that fall in the worse plane, with the 95 % interval of the share of all such stacks; across: peak ground velocity."));
+    const caption = make("caption", {}, make("span", {}, `Variants of a stack that fall in the worse plane, with the 95 % interval of the share of all such stacks; across: peak ground velocity. Shaken by ${motions.join("; ")}.`));
     find("heights-table").replaceChildren(caption, make("thead", {}, head), make("tbody", {}, ...rows));
     find("heights-table").parentElement.hidden = false;
   }
@@ -60,18 +61,18 @@ function makeHeights(find, { crew, desk, state, refuse }) {
     find("heights-go").hidden = on;
   }
 
+  // Runs the next variants of a cell, under one motion.
   async function runCell(cell, own) {
-    const numbers = cell.order.slice(cell.asked, cell.asked + BATCH);
-    cell.asked += numbers.length;
+    const batch = cell.shares.shift();
+    cell.asked += batch.numbers.length;
     cell.running += 1;
     try {
-      const answer = await crew.ask(headOf(cell.cellar, "variants", { numbers }), { records: cell.cellar.records, group: "heights" });
-      cell.tally.add(numbers, jsonOf(answer));
+      const { cellar, numbers, names } = batch;
+      cell.tally.add(names, await crew.ask(headOf(cellar, "variants", { numbers }), { records: cellar.records, group: "heights" }));
       cell.verdict = await cell.tally.verdict("heights");
-      if (own !== going) return;
-      const shares = cell.verdict.planes.map(({ spread }) => spread);
-      const worst = shares.reduce((a, b) => ((b.share ?? -1) > (a.share ?? -1) ? b : a));
-      Object.assign(cell, { run: worst.variants, share: worst.share ?? 1, width: worst.interval[1] - worst.interval[0] });
+      if (own !== going || !cell.verdict) return;
+      const { spread } = worstOf(cell.verdict);
+      Object.assign(cell, { run: spread.variants, share: spread.share ?? 1, width: spread.interval[1] - spread.interval[0] });
     } catch (error) {
       if (error.stopped || error.broken) throw error;
       cell.refused = error.message;
@@ -81,34 +82,63 @@ function makeHeights(find, { crew, desk, state, refuse }) {
     tell(cell);
   }
 
+  // The variants of a cell in shares, of one motion after the other; numbers of other motions than the first get names of
+  // their own, and the stack as it is stated counts once.
+  function sharesOf(cellars, count) {
+    const order = orderOf(count), shares = [];
+    const each = Math.min(Math.ceil(CELL / cellars.length), count);
+    for (let at = 0; at <= each; at += BATCH) {
+      cellars.forEach((cellar, motion) => {
+        const numbers = order.slice(Math.max(at, motion > 0 ? 1 : 0), Math.min(at + BATCH, each + 1));
+        if (numbers.length > 0) shares.push({ cellar, numbers, names: numbers.map((number) => number + OTHER * motion) });
+      });
+    }
+    return shares;
+  }
+
+  // What the engine says of the cellar under each of the motions.
+  async function underEach(cellar, look) {
+    const motions = motionsOf(cellar);
+    if (motions.length < 2) return [{ cellar, look }];
+    return Promise.all(motions.map(async (motion) => {
+      const shaken = shakenBy(cellar, motion);
+      return { cellar: shaken, look: jsonOf(await desk.ask(headOf(shaken, "look"), { records: shaken.records, urgency: 1, group: "heights" })) };
+    }));
+  }
+
+  // A cellar of so many levels, its motion brought to a peak velocity; one factor for all components, as the slider has it.
+  function cellAt({ cellar, look }, levels, velocity) {
+    const one = copied(cellar), values = valuesOf(look);
+    writers.levels(one, levels, look);
+    if (values["motion.scale.pgv"] !== undefined) one.changes["motion.scale.pgv"] = `"${velocity} cm/s"`;
+    else {
+      const factor = Number(values["motion.scale.factor"] ?? 1);
+      one.changes["motion.scale.factor"] = String(Number(((factor * velocity) / (100 * look.checked[0].motion.pgv)).toPrecision(6)));
+    }
+    return one;
+  }
+
   async function go() {
     const { cellar, look } = state();
-    const values = valuesOf(look), motion = look.checked[0].motion;
-    if (values["stack.levels"] === undefined || !motion) return refuse(new Error("heights need a stack, and a motion that shakes it"));
+    if (valuesOf(look)["stack.levels"] === undefined || !look.checked[0].motion) return refuse(new Error("heights need a stack, and a motion that shakes it"));
     const own = (going += 1);
-    const strapped = Number(values["stack.strap.levels"] || 0) > 0;
-    const factor = Number(values["motion.scale.factor"] ?? 1);
-    cells = HEIGHTS.flatMap((levels) => VELOCITIES.map((velocity) => {
-      const one = copied(cellar);
-      one.changes["stack.levels"] = String(levels);
-      if (strapped) one.changes["stack.strap"] = `{ levels = ${levels}, ties = "${values["stack.strap.ties"]}", pretension = "${values["stack.strap.pretension"]}" }`;
-      // One factor for all components, as the slider has it.
-      if (values["motion.scale.pgv"] !== undefined) one.changes["motion.scale.pgv"] = `"${velocity} cm/s"`;
-      else one.changes["motion.scale.factor"] = String(Number(((factor * velocity) / (100 * motion.pgv)).toPrecision(6)));
-      const order = orderOf(look.variants).slice(0, CELL + 1);
-      return { levels, velocity, cellar: one, order, asked: 0, running: 0, run: 0, share: 0.5, width: 1, tally: makeTally(desk, one), verdict: null, place: make("td", {}, "…") };
-    }));
-    draw();
     busy(true);
-    window.barrelstack.heights = cells;
-    const line = async () => {
-      for (let cell = nextCell(cells); cell && own === going; cell = nextCell(cells)) {
-        await runCell(cell, own);
-        const done = cells.reduce((sum, { asked }) => sum + asked, 0), all = cells.reduce((sum, { order }) => sum + order.length, 0);
-        find("heights-said").textContent = done < all ? `${percentOf(done / all)} done` : "";
-      }
-    };
     try {
+      const under = await underEach(cellar, look);
+      cells = HEIGHTS.flatMap((levels) => VELOCITIES.map((velocity) => {
+        const cellars = under.map((one) => cellAt(one, levels, velocity));
+        const shares = sharesOf(cellars, look.variants), all = shares.reduce((sum, { numbers }) => sum + numbers.length, 0);
+        return { levels, velocity, shares, all, asked: 0, running: 0, run: 0, share: 0.5, width: 1, tally: makeTally(desk, cellars[0]), verdict: null, place: make("td", {}, "…") };
+      }));
+      draw(under.map((one) => one.look.checked[0].motion.name));
+      window.barrelstack.heights = cells;
+      const line = async () => {
+        for (let cell = nextCell(cells); cell && own === going; cell = nextCell(cells)) {
+          await runCell(cell, own);
+          const sum = (of) => cells.reduce((sum, cell) => sum + cell[of], 0);
+          find("heights-said").textContent = sum("asked") < sum("all") ? `${percentOf(sum("asked") / sum("all"))} done` : "";
+        }
+      };
       await Promise.all(Array.from({ length: crew.most }, line));
       if (own === going) find("heights-said").textContent = safest();
     } catch (error) {

@@ -2,16 +2,26 @@
 
 const find = (id) => document.getElementById(id);
 document.documentElement.classList.add("js");
-window.barrelstack = { started: null, marks: null };
+// Times (ms) since the page was asked for: when it can be used, and when there is an engine.
+window.barrelstack = { started: null, ready: null, marks: null };
 
 function broken(error) {
   find("broken-text").textContent = `${error.message}\n\n${navigator.userAgent}\n\n${error.about || ""}`;
   if (!find("broken").open) find("broken").showModal();
 }
 
+// The text of an element that stands behind the scripts.
+async function later(id) {
+  if (!find(id)) await new Promise((done) => document.addEventListener("DOMContentLoaded", done, { once: true }));
+  return find(id).textContent;
+}
+
 async function start() {
-  const [module, worker] = await Promise.all([held("engine").then((bytes) => WebAssembly.compile(bytes)), held("worker")]);
-  const address = URL.createObjectURL(new Blob([worker], { type: "text/javascript" }));
+  const first = JSON.parse(new TextDecoder().decode(await held("first")));
+  // What workers share with the page goes before their own text.
+  const shared = [bytesOf, unpack, unpacked].map(String);
+  const address = URL.createObjectURL(new Blob([...shared, find("worker").textContent], { type: "text/javascript" }));
+  const module = later("engine").then((packed) => compiled(address, packed));
   const cores = navigator.hardwareConcurrency || 2;
   // One engine answers what cannot wait; the others leave a core to the page where there are enough.
   const desk = makeEngines(module, address, 1);
@@ -19,9 +29,7 @@ async function start() {
   const players = [];
   const picture = makePicture(find("stage"), players);
   listenEverywhere(players);
-  const [scenarios, catalog] = await Promise.all([desk.ask({ ask: "scenarios" }), desk.ask({ ask: "catalog" })]);
-  const known = jsonOf(scenarios).map(([name, text]) => ({ name, text }));
-  let cellar = makeCellar(known.find(({ name }) => name === "demo-napa")), look = null, missing = [];
+  let cellar = makeCellar({ name: first.name, text: first.text, look: first.look }), look = first.look, missing = [];
 
   function refuse(error) {
     if (error.stopped) return;
@@ -57,20 +65,19 @@ async function start() {
 
   function showAll() {
     controls.show(look);
-    engineer.show(cellar, look);
+    engineer.show();
     runs.forecast(look);
     if (missing.length > 0) find("motion").textContent = `The link is about a record that it does not hold: drop ${missing.join(", ")} here. Until then: ${find("motion").textContent}`;
   }
 
-  // Changes the cellar at hand, shows it standing, and shakes it where that is asked for.
+  // Changes the cellar at hand, shows it standing, and shakes it where that is asked for, which gives the run.
   async function change(write, shake) {
     write(cellar);
-    if (!(await seen(cellar))) return;
+    if (!(await seen(cellar))) return null;
     showAll();
-    if (shake) {
-      find("result").scrollIntoView({ block: "start" });
-      runs.run();
-    } else await picture.put(look.stage, { still: true });
+    if (!shake) return picture.put(look.stage, { still: true });
+    find("result").scrollIntoView({ block: "start" });
+    return runs.run();
   }
 
   async function apply(other, lookOfIt) {
@@ -108,29 +115,27 @@ async function start() {
     await picture.put(look.stage, { still: true });
   }
 
-  const controls = makeControls(find, jsonOf(catalog), (write) => change(write, false));
-  const runs = makeRuns(find, { crew, desk, picture, state, apply, change, refuse, controls });
-  const engineer = makeEngineer(find, { desk, crew, state, change, open, refuse });
-  makeHeights(find, { crew, desk, state, refuse });
-
-  // A record of one's own: its bytes stay in the page.
-  async function take(files) {
-    const [file] = files;
-    if (!file) return;
-    const record = { path: file.name, bytes: new Uint8Array(await file.arrayBuffer()) };
-    const tried = copied(cellar);
-    tried.records = [record];
-    tried.changes["motion.record"] = JSON.stringify(record.path);
-    delete tried.changes["motion.scale.factor"];
-    if (!(await seen(tried))) return;
+  // Takes a motion that the reader gave; gives what the engine says of the stack under it.
+  async function shake(motion) {
+    const tried = shakenBy(cellar, motion);
+    if (!(await seen(tried))) return null;
     cellar = tried;
     missing = [];
     showAll();
     await picture.put(look.stage, { still: true });
-    find("said").textContent = `The stack is now shaken by ${look.checked[0].motion.name}.`;
+    return look;
   }
+
+  const controls = makeControls(find, first.catalog, (write) => change(write, false));
+  const { writers, states } = controls;
+  const devices = makeDevices(find, { crew, desk, change, writers, states, refuse, lasts: (...of) => runs.lasts(...of) });
+  const runs = makeRuns(find, { crew, desk, picture, state, apply, change, refuse, controls, devices });
+  const engineer = makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf: runs.tallyOf });
+  const records = makeRecords(find, { desk, shake, refuse });
+  makeHeights(find, { crew, desk, state, refuse, writers, motionsOf: records.all });
+
   find("record").addEventListener("change", (event) => {
-    take([...event.target.files]);
+    records.given([...event.target.files]);
     event.target.value = "";
   });
   const over = (on) => document.body.classList.toggle("over", on);
@@ -139,13 +144,17 @@ async function start() {
     over(true);
   });
   document.addEventListener("dragleave", () => over(false));
-  document.addEventListener("drop", (event) => {
+  document.addEventListener("drop", async (event) => {
     event.preventDefault();
     over(false);
-    const files = [...event.dataTransfer.files];
-    const scenario = files.find(({ name }) => name.endsWith(".toml"));
-    if (scenario) scenario.text().then((text) => open({ name: scenario.name, text, own: true })).catch(refuse);
-    else take(files);
+    try {
+      const files = await filesIn(event.dataTransfer);
+      const scenario = files.find(({ name }) => name.endsWith(".toml"));
+      if (scenario) await open({ name: scenario.name, text: await scenario.text(), own: true });
+      else await records.given(files);
+    } catch (error) {
+      refuse(error);
+    }
   });
 
   // What the page is given where it is part of another.
@@ -158,6 +167,8 @@ async function start() {
   }
 
   async function fromAddress() {
+    if (!location.hash.startsWith("#s=")) return false;
+    const known = jsonOf(await desk.ask({ ask: "scenarios" })).map(([name, text]) => ({ name, text }));
     const link = await linked(location.hash, known);
     if (!link) return false;
     missing = link.missing;
@@ -165,14 +176,18 @@ async function start() {
     return true;
   }
   window.addEventListener("hashchange", () => fromAddress().catch(refuse));
-  let opened = false;
-  try {
-    opened = (await fromReport()) || (await fromAddress());
-  } catch (error) {
-    refuse(error);
-  }
-  if (!opened) await open(cellar.base, cellar);
-  crew.warm();
+  // What came with the page is there before an engine is.
+  const opening = async () => {
+    try {
+      if ((await fromReport()) || (await fromAddress())) return;
+    } catch (error) {
+      refuse(error);
+    }
+    await stated();
+    showAll();
+    find("go").disabled = false;
+    await picture.put(look.stage, { still: true });
+  };
 
   let width = window.innerWidth, waiting = 0;
   window.addEventListener("resize", () => {
@@ -184,7 +199,17 @@ async function start() {
   });
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", picture.refresh);
   find("broken-copy").addEventListener("click", () => copyText(find("broken-text").textContent));
-  Object.assign(window.barrelstack, { crew, desk, runs, state, players, started: performance.now() });
+  Object.assign(window.barrelstack, { crew, desk, runs, state, players });
+  await opening();
+  window.barrelstack.started = performance.now();
+  try {
+    await module;
+    crew.warm();
+    await desk.ask({ ask: "catalog" });
+    window.barrelstack.ready = performance.now();
+  } catch (error) {
+    refuse(Object.assign(error, { broken: true }));
+  }
 }
 
 start().catch((error) => broken(Object.assign(error, { broken: true })));

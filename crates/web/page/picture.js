@@ -8,13 +8,10 @@ function makePicture(box, players) {
   // in motion.
   async function put({ markup, data }, { still = false, ghost = false, goesOn = false }) {
     const own = (turn += 1);
-    const { players: [raw], dashes } = JSON.parse(data);
-    // Reading it and showing it are work for a frame each.
-    // A page that is not in sight has no frames.
-    await new Promise((next) => {
-      requestAnimationFrame(() => setTimeout(next));
-      setTimeout(next, 200);
-    });
+    // A worker has read it, or it came with the page.
+    const { players: [read], dashes } = typeof data === "string" ? JSON.parse(data) : data;
+    const raw = { ...read };
+    if (player) await frame();
     if (own !== turn) return;
     const time = goesOn && player ? player.time() : null, playing = Boolean(player && player.isPlaying());
     const ended = time !== null && !playing && time >= player.times().at(-1);
@@ -36,7 +33,8 @@ function makePicture(box, players) {
     figure.querySelector("figcaption b").remove();
     player = makePlayer(raw, figure, dashes, before);
     players.splice(0, players.length, player);
-    if (!still) [ghostly, moved] = [moved, player.panes];
+    // What is shown as a ghost later are numbers alone, since panes hold on to their player.
+    if (!still) [ghostly, moved] = [moved, player.panes.map((pane) => ({ data: pane.data }))];
     if (before) {
       for (const { stage } of player.panes) stage.ghosts = true;
       const check = figure.querySelector('[data-act="ghosts"]');
@@ -51,6 +49,12 @@ function makePicture(box, players) {
       player.play();
     }
   }
+
+  // After the next frame; a page that is not in sight has none.
+  const frame = () => new Promise((next) => {
+    requestAnimationFrame(() => setTimeout(next));
+    setTimeout(next, 200);
+  });
 
   return {
     put,

@@ -1,20 +1,22 @@
 // Runs: the stack in motion, what its variants say as they come, and those that were tried before.
 
 const SLOW = 60; // a run that takes longer (s) is announced
-const KEPT = 8; // runs whose pictures are kept
+const KEPT = 4; // runs whose pictures and results are kept
+const LISTED = 24; // runs that are listed
 
-// `state` is { cellar, look }, where `look` is what the engine says of the cellar; `apply` makes a cellar the one at hand.
-function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, controls }) {
+// `state` is { cellar, look }, where `look` is what the engine says of the cellar; `apply` makes a cellar the one at hand;
+// `devices` shows those of a run.
+function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, controls, devices }) {
   const past = [];
   let now = null; // the run that is shown
   let cost = 4e-7; // time (s) of a step of a body, as measured
   let marks = {}; // when things were there (ms), for those who measure
 
-  const seconds = (look) => (cost * look.work * (look.variants + 1)) / crew.most;
+  const lasts = (look, variants) => (cost * look.work * variants) / crew.most;
 
   // Says so before something takes long.
   function forecast(look) {
-    const due = seconds(look), slow = due > SLOW;
+    const due = lasts(look, look.variants + 1), slow = due > SLOW;
     find("costs").hidden = !slow;
     find("costs").textContent = slow ? `This takes about ${lasting(due)} on this computer; the first picture comes after about ${lasting(cost * look.work)}.` : "";
   }
@@ -56,11 +58,11 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     box.hidden = !(run.done && run.verdict && run.verdict.planes.length > 0);
     if (box.hidden) return;
     const { typical, gentlest, worst } = run.verdict.planes[0].spread;
-    const offers = new Map([[0, "as it is stated"]]);
-    for (const [one, name] of [[typical, "the most typical"], [gentlest, "the gentlest"], [worst, "the worst"]]) {
+    const offers = new Map([[0, "the stack as you chose it"]]);
+    for (const [one, name] of [[typical, "the most typical variant"], [gentlest, "the gentlest"], [worst, "the worst"]]) {
       offers.set(one, offers.has(one) ? `${offers.get(one)}, ${name}` : name);
     }
-    box.replaceChildren(make("span", {}, "Shown is"), ...[...offers].map(([one, name]) => {
+    box.replaceChildren(make("span", {}, "You see"), ...[...offers].map(([one, name]) => {
       const button = make("button", { type: "button", class: "tool", "aria-pressed": String(run.shown && run.shown.variant === one) }, name);
       button.addEventListener("click", () => show(run, one).then(() => tell(run)).catch(refuse));
       return button;
@@ -71,14 +73,12 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
   function offerChanges(run) {
     const values = valuesOf(run.look), levels = Number(values["stack.levels"] || 0);
     find("next").hidden = !run.shown || levels === 0;
+    if (find("next").hidden) return devices.hide();
     const { writers } = controls;
-    const strapped = Number(values["stack.strap.levels"] || 0) > 0;
     const velocity = run.look.checked[0].motion ? 100 * run.look.checked[0].motion.pgv : 0;
     const offers = [
       [levels > 1, "One level less", (cellar) => writers.levels(cellar, levels - 1)],
       [levels < 12, "One level more", (cellar) => writers.levels(cellar, levels + 1)],
-      [!strapped, `Strap it together, ${TENSION}`, (cellar) => writers.straps(cellar, true, levels)],
-      [strapped, "Take the straps off", (cellar) => writers.straps(cellar, false)],
       [values["stack.rack.base"] !== "rack-on-rack", "Racks on posts", (cellar) => { cellar.changes["stack.rack"] = '"rack-on-rack"'; }],
       [velocity > 0, "Half the shaking", (cellar) => writers.strength(cellar, velocity / 2)],
     ];
@@ -87,6 +87,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
       button.addEventListener("click", () => change(write, true));
       return button;
     }));
+    devices.show(run);
   }
 
   function list() {
@@ -112,9 +113,9 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
 
   // Makes a variant move: at first as far as it takes to see it under way, then all of it.
   async function show(run, variant) {
-    const { cellar, look } = run, first = !run.shown, from = performance.now();
+    const { cellar, look } = run, first = !run.shown;
     const asked = (shorter) => crew.ask(headOf({ ...cellar, changes: { ...cellar.changes, ...shorter } }, "show", { numbers: [variant] }), {
-      records: cellar.records, urgency: shorter ? 3 : 2, group: "run",
+      records: cellar.records, urgency: shorter ? 3 : 2, group: "run", draws: true,
       told: (done, of) => { if (!run.shown) find("sofar").textContent = `shaking it: ${percentOf(done / of)}`; },
     });
     const put = async (answer, options) => {
@@ -138,17 +139,26 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     cost = answer.took / 1000 / Math.max(look.work, 1);
     run.shown = await put(answer, opened ? { ghost: past.length > 1, goesOn: true } : { ghost: first && past.length > 1 });
     if (run === now && !opened) marks.moved = performance.now();
-    if (past.length > KEPT) past.find(({ shown }) => shown && shown.stage && shown !== run.shown).shown.stage = null;
-    return performance.now() - from;
+    // The oldest are kept by what is said of them alone.
+    const full = past.filter((one) => one !== run && one !== now && one.shown && one.shown.stage);
+    for (const one of full.slice(0, Math.max(full.length + 1 - KEPT, 0))) one.shown.stage = one.tally = null;
   }
 
-  async function run() {
+  // What is known of the variants of a cellar: that of the run which is shown, where it is of it.
+  function tallyOf(cellar) {
+    const same = now && now.tally && keyOf(now.cellar) === keyOf(cellar) && now.cellar.records.every((record, at) => record === cellar.records[at]);
+    return same ? now.tally : makeTally(desk, cellar, true);
+  }
+
+  // Starts a run of the cellar at hand, and gives it.
+  function run() {
     stop();
-    const { cellar, look } = state();
-    const mine = { cellar: copied(cellar), look, label: labelOf(look), verdict: null, shown: null, done: false };
+    const { look } = state(), cellar = copied(state().cellar);
+    const mine = { cellar, look, label: labelOf(look), verdict: null, shown: null, done: false, tally: makeTally(desk, cellar, true) };
     // What was stopped before anything was seen of it is forgotten.
-    if (now && !now.shown) past.splice(past.indexOf(now), 1);
-    past.splice(past.indexOf(now) + 1, 0, mine);
+    const at = past.indexOf(now), seen = Boolean(now && now.shown);
+    past.splice(seen ? at + 1 : Math.max(at, 0), now && !seen ? 1 : 0, mine);
+    if (past.length > LISTED) past.splice(past[0] === now ? 1 : 0, 1);
     now = mine;
     busy(true);
     const from = performance.now();
@@ -159,6 +169,13 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     tell(mine);
     // On a phone the stack stands below the choices.
     if (find("result").getBoundingClientRect().top > 0.5 * window.innerHeight) find("result").scrollIntoView({ block: "start" });
+    follow(mine);
+    return mine;
+  }
+
+  // Shows a run and what its variants say, until all are in.
+  async function follow(mine) {
+    const { cellar, look } = mine;
     const heard = (verdict, count, last) => {
       mine.verdict = verdict;
       mine.done = last;
@@ -172,7 +189,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     };
     try {
       const showing = show(mine, 0).then(() => tell(mine));
-      const varying = look.variants > 0 ? runAll({ crew, desk, cellar: mine.cellar, count: look.variants, group: "run", heard, took: () => {} }) : null;
+      const varying = look.variants > 0 ? runAll({ crew, cellar, tally: mine.tally, count: look.variants, group: "run", heard }) : null;
       await Promise.all([showing, varying]);
       mine.done = true;
       const typical = mine.verdict && mine.verdict.planes[0] ? mine.verdict.planes[0].spread.typical : 0;
@@ -197,8 +214,10 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
   });
   find("stop").addEventListener("click", () => {
     stop();
-    if (now) tell(now);
+    if (!now) return;
+    now.stopped = true;
+    tell(now);
   });
   find("undo").addEventListener("click", () => { if (previous()) back(previous()); });
-  return { run, stop, forecast, past: () => past };
+  return { run, stop, forecast, lasts, tallyOf, past: () => past, now: () => now };
 }

@@ -1,4 +1,5 @@
-// An engine in a worker: takes the module, then requests one after the other; says how far it is, and answers.
+// An engine in a worker: unpacks and compiles the module, or takes it; then answers requests, one after the other, and
+// says how far it is. It finds `unpacked` and `unpack` of the page before this text.
 
 let engine = null, last = 0;
 const bytes = (address, length) => new Uint8Array(engine.memory.buffer, address, length);
@@ -13,12 +14,17 @@ function told(done, of) {
   return 0;
 }
 
-onmessage = async ({ data: { module, request } }) => {
-  if (module) {
-    engine = (await WebAssembly.instantiate(module, { page: { told } })).exports;
-    postMessage({ ready: true });
-    return;
-  }
+// A picture whose numbers are unpacked here, where nobody waits for a frame; their buffers go to the page.
+function drawn(value, buffers) {
+  if (value === null || typeof value !== "object") return value;
+  if (Array.isArray(value)) return typeof value[0] === "object" ? value.map((one) => drawn(one, buffers)) : value;
+  if (typeof value.d !== "string") return Object.fromEntries(Object.entries(value).map(([name, one]) => [name, drawn(one, buffers)]));
+  const channels = unpack(value);
+  buffers.push(...channels.map(({ buffer }) => buffer));
+  return channels;
+}
+
+function answer(request, draws) {
   const from = performance.now();
   let status = 2, trap = "";
   try {
@@ -28,6 +34,23 @@ onmessage = async ({ data: { module, request } }) => {
     trap = String(error);
   }
   const answer = bytes(engine.answer(), engine.answer_length()).slice();
-  const memory = engine.memory.buffer.byteLength;
-  postMessage({ status, trap, answer, memory, took: performance.now() - from }, [answer.buffer]);
+  const about = { status, trap, memory: engine.memory.buffer.byteLength, took: performance.now() - from };
+  if (status !== 0 || !draws) return postMessage({ ...about, answer }, [answer.buffer]);
+  const said = JSON.parse(new TextDecoder().decode(answer)), buffers = [];
+  said.stage.data = drawn(JSON.parse(said.stage.data), buffers);
+  postMessage({ ...about, said }, buffers);
+}
+
+onmessage = async ({ data: { packed, module, request, draws } }) => {
+  if (request) return answer(request, draws);
+  if (module) {
+    engine = (await WebAssembly.instantiate(module, { page: { told } })).exports;
+    return postMessage({ ready: true });
+  }
+  try {
+    const response = new Response(unpacked(packed), { headers: { "content-type": "application/wasm" } });
+    postMessage({ module: await WebAssembly.compileStreaming(response) });
+  } catch (error) {
+    postMessage({ refused: String(error) });
+  }
 };

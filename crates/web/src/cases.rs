@@ -58,7 +58,7 @@ impl Case {
         }
     }
 
-    /// The result again, with nothing in it that a verdict does not read.
+    /// The result again, with nothing in it that a verdict does not read; its trail goes by itself.
     pub(crate) fn result(self) -> Result<CaseResult, String> {
         let outcome = match self.outcome {
             Ended::Stable => Ok(Outcome::Stable),

@@ -30,22 +30,27 @@
 //! says what all results so far say together ([`Ask::Verdict`]), with the bits of one that runs them all.
 
 mod cases;
+mod devices;
 mod look;
 #[cfg(target_family = "wasm")]
 mod page;
+mod records;
+mod trails;
+mod verdict;
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::ops::ControlFlow;
 
-use barrelstack::scenario::{View, builtin};
-use barrelstack::variants::{Answer, Asked, Plane, Spread, Told, answer, planes, run_some};
-use barrelstack::variants::{together, words};
+use barrelstack::scenario::builtin;
+use barrelstack::variants::{Answer, Asked, Plane, Told, answer, answer_of, planes, run_some};
 use barrelstack::{RunFailure, Scenario, export, report};
-use barrelstack_report::{Fragment, badge, fragment};
+use barrelstack_report::{Fragment, fragment};
 use serde::{Deserialize, Serialize};
 
 pub use cases::Case;
+pub use records::Reading;
+use verdict::Verdict;
 
 /// What a page may ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
@@ -57,9 +62,15 @@ pub enum Ask {
     Catalog,
     /// The stack as it is put up, and all that the scenario says, before anything is run, as JSON.
     Look,
+    /// The devices on the stack, and the settings of others that go on it, in words and as changes, as JSON.
+    Devices,
+    /// Which of the files that are given as records are components of one, and which hold none, as JSON; then the
+    /// bytes of what is of several files. Of a scenario nothing is asked.
+    Records,
     /// A variant in motion, by the first of the numbers, as JSON: 0 is the stack as it is stated.
     Show,
-    /// What became of the variants of some numbers in each plane, as JSON.
+    /// What became of the variants of some numbers in each plane, as JSON; then where their barrels were, as bytes
+    /// that a report of them needs.
     Variants,
     /// What results say together, as JSON: of numbers, the first of which is 0, with their results in each plane.
     Verdict,
@@ -68,7 +79,7 @@ pub enum Ask {
     /// The report of the same, as a page.
     Report,
     /// All files that the command writes of the same, the report among them: in the form of a request, with
-    /// their names and lengths as its head.
+    /// their names and lengths as its head. Where results of all variants are given, none is run again.
     Files,
 }
 
@@ -96,6 +107,12 @@ pub struct Request {
     /// What became of them in each plane.
     #[serde(default)]
     pub cases: Vec<Vec<Case>>,
+    /// How many bytes follow the records that tell where their barrels were.
+    #[serde(default)]
+    pub trails: usize,
+    /// What files do not say of themselves.
+    #[serde(default)]
+    pub reading: Reading,
 }
 
 impl Request {
@@ -109,6 +126,8 @@ impl Request {
             records: Vec::new(),
             numbers: Vec::new(),
             cases: Vec::new(),
+            trails: 0,
+            reading: Reading::default(),
         }
     }
 
@@ -145,14 +164,20 @@ pub fn answered(
     request: &[u8],
     observer: &mut (dyn FnMut(f64, f64) -> ControlFlow<()> + Send),
 ) -> Result<Vec<u8>, String> {
-    let (request, records) = read(request)?;
+    let Opened { request, records, trails } = read(request)?;
     match request.ask {
         Ask::Scenarios => {
             let text = |name| Some((name, builtin::get(name)?));
             return json(&builtin::names().filter_map(text).collect::<Vec<_>>());
         }
         Ask::Catalog => return json(&look::Catalog::new()),
+        Ask::Records => {
+            let (found, bytes) = records::of(&records, &request.reading)?;
+            let bytes: Vec<&[u8]> = bytes.iter().map(Vec::as_slice).collect();
+            return Ok(enveloped(&json(&found)?, &bytes));
+        }
         Ask::Look
+        | Ask::Devices
         | Ask::Show
         | Ask::Variants
         | Ask::Verdict
@@ -169,46 +194,50 @@ pub fn answered(
     let placed = |error| placed(&error, &scenario);
     let scenario = &with_records.map_err(|error| placed(error.into()))?;
     let planes = || planes(scenario).map_err(|error| placed(error.into()));
-    let mut answer = |asked| {
-        let mut told = |told| match told {
-            Told::Variants { done, of } => observer(done as f64, of as f64),
-            Told::Run(progress) => observer(progress.time, progress.end_time),
-        };
-        answer(scenario, asked, &mut told).map_err(placed)
+    let mut told = |told| match told {
+        Told::Variants { done, of } => observer(done as f64, of as f64),
+        Told::Run(progress) => observer(progress.time, progress.end_time),
     };
     match request.ask {
+        Ask::Devices => json(&devices::Devices::of(scenario)),
         Ask::Look => json(&look::Looked::of(scenario, &planes()?).map_err(placed)?),
         Ask::Show => {
             let number = request.numbers.first().copied().unwrap_or(0);
-            json(&Shown::of(&answer(Asked::Alone(number))?, number))
+            let shown = answer(scenario, Asked::Alone(number), &mut told).map_err(placed)?;
+            json(&Shown::of(&shown, number))
         }
-        Ask::Variants => {
-            let found = some(&planes()?, &request.numbers, observer)?;
-            json(&found)
-        }
+        Ask::Variants => some(&planes()?, &request.numbers, observer),
         Ask::Verdict => json(&Verdict::of(&planes()?, request)?),
         Ask::Report => {
-            let document = report::answer_document(&answer(Asked::Typical)?, None);
+            let found = answer(scenario, Asked::Typical, &mut told).map_err(placed)?;
+            let document = report::answer_document(&found, None);
             Ok(barrelstack_report::html(&document).into_bytes())
         }
         Ask::Files => {
-            let files = export::files(&answer(Asked::Typical)?, None).map_err(words_of)?;
+            let found = if request.numbers.is_empty() {
+                answer(scenario, Asked::Typical, &mut told)
+            } else {
+                let results = verdict::results(&planes()?, request, trails)?;
+                answer_of(scenario, results, &mut told)
+            };
+            let files = export::files(&found.map_err(placed)?, None).map_err(words_of)?;
             let head: Vec<_> = files.iter().map(|(name, bytes)| (name, bytes.len())).collect();
             let rest: Vec<&[u8]> = files.iter().map(|(_, bytes)| bytes.as_slice()).collect();
             Ok(enveloped(&json(&head)?, &rest))
         }
-        Ask::Summary | Ask::Scenarios | Ask::Catalog => {
-            Ok((answer(Asked::Typical)?.decides.summary.to_json() + "\n").into_bytes())
+        Ask::Summary | Ask::Scenarios | Ask::Catalog | Ask::Records => {
+            let found = answer(scenario, Asked::Typical, &mut told).map_err(placed)?;
+            Ok((found.decides.summary.to_json() + "\n").into_bytes())
         }
     }
 }
 
-/// What became of some variants, in each plane.
+/// What became of some variants, in each plane, and where their barrels were.
 fn some(
     planes: &[Plane],
     numbers: &[u32],
     observer: &mut (dyn FnMut(f64, f64) -> ControlFlow<()> + Send),
-) -> Result<Vec<Vec<Case>>, String> {
+) -> Result<Vec<u8>, String> {
     let observer = std::sync::Mutex::new(observer);
     let told = |done: usize, of: usize| match observer.lock() {
         Ok(mut observer) => observer(done as f64, of as f64),
@@ -216,7 +245,13 @@ fn some(
     };
     let found = run_some(planes, numbers, &told).map_err(words_of)?;
     let found = found.ok_or("stopped")?;
-    Ok(found.iter().map(|results| results.iter().map(Case::of).collect()).collect())
+    let cases: Vec<Vec<Case>> =
+        found.iter().map(|results| results.iter().map(Case::of).collect()).collect();
+    let trails = (0..).zip(&found).flat_map(|(plane, results)| {
+        let numbered = numbers.iter().zip(results);
+        numbered.map(move |(number, result)| ((plane, *number), &result.trail))
+    });
+    Ok(enveloped(&json(&cases)?, &[&trails::written(trails)]))
 }
 
 /// A variant in motion.
@@ -245,60 +280,6 @@ impl<'a> Shown<'a> {
     }
 }
 
-/// What results say together.
-#[derive(Serialize)]
-struct Verdict {
-    /// In one sentence.
-    headline: String,
-    /// Its sign and its word, as markup, and the class of its color.
-    badge: String,
-    tone: &'static str,
-    /// In each plane.
-    planes: Vec<Judged>,
-}
-
-/// What they say in one plane.
-#[derive(Serialize)]
-struct Judged {
-    view: &'static str,
-    /// Such as "across the barrels".
-    words: &'static str,
-    /// Such as "falls in 97 % of variants".
-    fate: String,
-    spread: Spread,
-}
-
-impl Verdict {
-    fn of(planes: &[Plane], request: Request) -> Result<Self, String> {
-        let Request { numbers, cases, .. } = request;
-        let whole = cases.iter().all(|plane| plane.len() == numbers.len());
-        if cases.len() != planes.len() || !whole || numbers.first() != Some(&0) {
-            return Err(format!(
-                "a verdict needs a result for each of its numbers, the first of which is 0, in each of {} planes",
-                planes.len()
-            ));
-        }
-        let results = cases.into_iter().map(|plane| plane.into_iter().map(Case::result).collect());
-        let results: Result<Vec<_>, String> = results.collect();
-        let found = together(planes, &numbers, results?);
-        let spreads: Vec<(View, &Spread)> =
-            found.iter().filter_map(|one| Some((one.view?, &one.spread))).collect();
-        let tone = words::tone(&spreads);
-        let judged = |&(view, spread): &(View, &Spread)| Judged {
-            view: view.name(),
-            words: view.words(),
-            fate: words::fate(spread),
-            spread: spread.clone(),
-        };
-        Ok(Self {
-            headline: words::headline(&spreads),
-            badge: badge(tone),
-            tone: tone.class(),
-            planes: spreads.iter().map(judged).collect(),
-        })
-    }
-}
-
 fn json(value: &impl Serialize) -> Result<Vec<u8>, String> {
     serde_json::to_vec(value).map_err(words_of)
 }
@@ -315,8 +296,15 @@ fn placed(error: &RunFailure, scenario: &Scenario) -> String {
     }
 }
 
-/// A request with its records by their paths.
-fn read(bytes: &[u8]) -> Result<(Request, BTreeMap<String, &[u8]>), String> {
+/// A request with what follows it.
+struct Opened<'a> {
+    request: Request,
+    /// By their paths.
+    records: BTreeMap<String, &'a [u8]>,
+    trails: &'a [u8],
+}
+
+fn read(bytes: &[u8]) -> Result<Opened<'_>, String> {
     let cut = |what: &str| format!("the request ends within {what}");
     let (length, rest) = bytes.split_first_chunk::<4>().ok_or_else(|| cut("its length"))?;
     let length = usize::try_from(u32::from_le_bytes(*length)).unwrap_or(usize::MAX);
@@ -329,8 +317,9 @@ fn read(bytes: &[u8]) -> Result<(Request, BTreeMap<String, &[u8]>), String> {
         records.insert(path.clone(), record);
         rest = after;
     }
+    let (trails, rest) = rest.split_at_checked(request.trails).ok_or_else(|| cut("its trails"))?;
     if !rest.is_empty() {
-        return Err(format!("the request has {} bytes more than its records", rest.len()));
+        return Err(format!("the request has {} bytes more than it says", rest.len()));
     }
-    Ok((request, records))
+    Ok(Opened { request, records, trails })
 }

@@ -46,6 +46,8 @@ pub(crate) struct Looked {
     settings: Vec<Stated>,
     /// What was found of each plane.
     checked: Vec<Checked>,
+    /// What the devices on it are called.
+    devices: Vec<&'static str>,
     /// Steps of one variant in all planes times the bodies that each moves, to tell how long it takes.
     work: f64,
     /// When (s) a first picture may end that shows the stack under way, while the whole run is made; none where
@@ -121,11 +123,13 @@ impl Looked {
         let mut settings: Vec<Stated> = settings.collect();
         let present: Vec<String> = settings.iter().map(|one| one.path.clone()).collect();
         absent(&mut settings, &present, "", &ROOT);
+        let devices = scenario.stack().map(|stack| stack.devices.present()).unwrap_or_default();
         Ok(Self {
             title: scenario.title.clone(),
             variants: planes.first().map_or(0, Plane::count),
             resolved: scenario.to_resolved_toml(),
             settings,
+            devices: devices.iter().map(|words| words.many).collect(),
             work: work.sum(),
             opening: ground.and_then(|ground| ground.motion.as_ref().map(opening)),
             stage: fragment(&[report::still(planes)?]),

@@ -1,68 +1,20 @@
 // The page that holds the program, as a winery manager has it: a file, opened from disk, without a network.
 
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, dirname, join } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { accessible } from "../../report/tests/browser/lib/access.mjs";
 import { DESKTOP, PHONE } from "../../report/tests/browser/lib/browser.mjs";
 import { drive, firefox } from "./firefox.mjs";
+import { traced } from "./traced.mjs";
+import { PATIENCE, opened, idle, look, last, type, sets, drop, sorted, sameSpreads } from "./using.mjs";
 import { demand } from "../../report/tests/browser/lib/suite.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const bundled = join(here, "../../motion/records/napa-college-2014.txt");
 const shared = join(here, "../../../../shared/ground-motions/renadic/hualane1002271.v1");
-const PATIENCE = 300_000; // ms: other programs may have the cores
-
-/** A page of the file, with everything it must not do noted in `faults`. */
-async function opened(browser, file, options = {}, hash = "") {
-  const context = await browser.newContext({ viewport: DESKTOP, reducedMotion: "no-preference", ...options });
-  const page = await context.newPage();
-  page.setDefaultTimeout(PATIENCE);
-  const url = pathToFileURL(file).href;
-  const faults = [];
-  page.on("console", (message) => faults.push(`console: ${message.text()}`));
-  page.on("pageerror", (error) => faults.push(`error: ${error.message}`));
-  page.on("request", (request) => {
-    if (request.url().split("#")[0] !== url && !/^(data|blob):/.test(request.url())) faults.push(`asks for ${request.url()}`);
-  });
-  await page.goto(url + hash);
-  await page.waitForFunction(() => window.barrelstack?.started > 0);
-  return { page, faults, context };
-}
-
-/** Waits until as many runs are there and the last is done. */
-const idle = (page, runs) => page.waitForFunction((runs) => {
-  const past = window.barrelstack.runs.past();
-  return document.getElementById("stop").hidden && past.length === runs && past.at(-1).done;
-}, runs);
-const look = (page) => page.evaluate(() => window.barrelstack.state().look);
-const last = (page) => page.evaluate(() => {
-  const { verdict, label, shown } = window.barrelstack.runs.past().at(-1);
-  return { verdict, label, variant: shown.variant };
-});
-
-/** Sets fields as an engineer types them. */
-async function type(page, changes) {
-  await page.evaluate(() => { document.getElementById("engineer-fold").open = true; });
-  for (const [path, value] of Object.entries(changes)) {
-    await page.fill(`#fields input[aria-label="${path}"]`, value);
-    await page.waitForFunction(([path, value]) => window.barrelstack.state().cellar.changes[path] === value, [path, value]);
-    await page.waitForFunction((path) => window.barrelstack.state().look.settings.some((one) => one.path === path), path);
-  }
-  await page.waitForTimeout(400);
-}
-
-/** The spread of each plane by its name, of a summary. */
-const spreads = ({ view, ensemble, other_plane: other }) => ({ [view]: ensemble, ...(other ? spreads(other) : {}) });
-const sameSpreads = (verdict, summary) => {
-  const found = Object.fromEntries(verdict.planes.map(({ view, spread }) => [view, spread]));
-  const expected = spreads(summary);
-  for (const view of Object.keys(expected)) {
-    demand(JSON.stringify(found[view]) === JSON.stringify(expected[view]), `${view}: ${JSON.stringify(found[view])}\nexpected ${JSON.stringify(expected[view])}`);
-  }
-};
 
 export async function checkPage(browser, suite, { file, program, native }) {
   const folder = mkdtempSync(join(tmpdir(), "barrelstack-page-"));
@@ -72,18 +24,44 @@ export async function checkPage(browser, suite, { file, program, native }) {
     return `${megabytes.toFixed(3)} MB`;
   });
   const { page, faults, context } = await opened(browser, file);
-  await suite.check("it opens from disk with a stack that stands", async () => {
-    const [started, still] = await page.evaluate(() => [window.barrelstack.started, document.getElementById("stage").classList.contains("still")]);
-    // Measured: 240 ms on an idle core; other programs may have it.
-    demand(started < 5000 && still, `${started.toFixed(0)} ms`);
+  await suite.check("its first screen can be used within 0.3 s, from the disk", async () => {
+    const opens = [];
+    for (let time = 0; time < 5; time += 1) {
+      const context = await browser.newContext({ viewport: DESKTOP });
+      const page = await context.newPage();
+      const { tasks } = await traced(page, async () => {
+        await page.goto(pathToFileURL(file).href);
+        await page.waitForFunction(() => window.barrelstack?.started > 0);
+      });
+      await page.waitForFunction(() => window.barrelstack.ready > 0);
+      const [started, ready] = await page.evaluate(() => [window.barrelstack.started, window.barrelstack.ready]);
+      opens.push({ started, ready, work: tasks.reduce((sum, task) => sum + task, 0) });
+      await context.close();
+    }
+    const least = (of) => Math.min(...opens.map((one) => one[of]));
+    // What the page's thread computes until all controls can be used and the stack is drawn is held, since other programs
+    // on the machine change it little.
+    const note = `${least("started").toFixed(0)} ms until it can be used, of which the page computes ${least("work").toFixed(0)} ms; ${least("ready").toFixed(0)} ms until there is an engine`;
+    demand(least("work") < 300 && least("started") < 1500, note);
+    return note;
+  });
+  await suite.check("it opens from disk with a stack that stands, which is what the engine says", async () => {
+    demand(await page.evaluate(() => document.getElementById("stage").classList.contains("still")), "it moves");
     const ink = await page.evaluate(() => {
       const canvas = document.querySelector("#stage canvas.scene"), { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
       return new Set(Array.from({ length: data.length / 4 }, (_, at) => data[4 * at] * 65536 + data[4 * at + 1] * 256 + data[4 * at + 2])).size;
     });
     demand(ink > 20, `${ink} colors`);
-    return `${started.toFixed(0)} ms until it can be used`;
+    // The first look comes with the page; every other is asked of the engine.
+    const first = JSON.stringify(sorted(await look(page)));
+    await page.click("[data-step='1']");
+    await page.waitForFunction(() => window.barrelstack.state().look.settings.find(({ path }) => path === "stack.levels").value === "6");
+    await page.click("[data-step='-1']");
+    await page.waitForFunction(() => window.barrelstack.state().look.settings.find(({ path }) => path === "stack.levels").value === "5");
+    const again = JSON.stringify(sorted(await look(page)));
+    demand(first === again, `the page holds ${first.length} letters, the engine says ${again.length}`);
   });
-  await suite.check("by keyboard alone a stack is chosen and shaken", async () => {
+  await suite.check("by keyboard alone a stack is chosen and shaken, and no frame waits for the page while engines work", async () => {
     await page.focus("#barrel");
     const path = [];
     for (let key = 0; key < 20 && path.at(-1) !== "go"; key += 1) {
@@ -100,22 +78,32 @@ export async function checkPage(browser, suite, { file, program, native }) {
       };
       requestAnimationFrame((now) => { gaps.last = now; tick(now); });
     });
-    await page.keyboard.press("Enter");
-    await page.waitForFunction(() => window.barrelstack.marks?.moved);
-    return path.join(", ");
+    const { tasks } = await traced(page, async () => {
+      await page.keyboard.press("Enter");
+      await page.waitForFunction(() => window.barrelstack.runs.now()?.shown && window.barrelstack.marks.variants >= 12);
+      await page.waitForTimeout(500);
+    });
+    const gap = await page.evaluate(() => {
+      window.gaps.on = false;
+      return window.gaps.longest;
+    });
+    // A task of the page is what a frame may have to wait for. Its time of the processor is held: on two cores that run two
+    // engines and whatever else, the time on the clock is that of who else waits.
+    const longest = Math.max(...tasks);
+    demand(tasks.length > 100 && longest < 50, `${longest.toFixed(0)} ms of ${tasks.length} tasks`);
+    return `${path.join(", ")}; longest task ${longest.toFixed(0)} ms, longest time between frames ${gap.toFixed(0)} ms`;
   });
   await suite.check("it moves soon, and the verdict sharpens until all variants are in", async () => {
     await page.waitForFunction(() => window.barrelstack.marks.variants > 0 && window.barrelstack.marks.variants < 64);
     demand(/of 64 variants so far/.test(await page.textContent("#sofar")), await page.textContent("#sofar"));
     await idle(page, 1);
-    const { moved, all, gap, engines } = await page.evaluate(() => {
+    const { moved, all, engines } = await page.evaluate(() => {
       const { from, moved, last } = window.barrelstack.marks;
-      window.gaps.on = false;
-      return { moved: moved - from, all: last - from, gap: window.gaps.longest, engines: window.barrelstack.crew.most };
+      return { moved: moved - from, all: last - from, engines: window.barrelstack.crew.most };
     });
-    // Measured on two idle cores: 0.5 s, 25 s, 45 ms.
-    demand(moved < 10_000 && gap < 1000, `${moved} ms until it moves, ${gap} ms between frames`);
-    return `${(moved / 1000).toFixed(2)} s until it moves, ${(all / 1000).toFixed(1)} s until 64 variants in each plane with ${engines} engines, longest time between frames ${gap.toFixed(0)} ms`;
+    // Measured on two idle cores: 0.5 s, 25 s.
+    demand(moved < 10_000, `${moved} ms until it moves`);
+    return `${(moved / 1000).toFixed(2)} s until it moves, ${(all / 1000).toFixed(1)} s until 64 variants in each plane with ${engines} engines`;
   });
   await suite.check("its verdict is that of the program, to the last digit", async () => {
     const { verdict } = await last(page);
@@ -125,12 +113,7 @@ export async function checkPage(browser, suite, { file, program, native }) {
   const record = existsSync(shared) ? shared : bundled;
   await suite.check("a record is dropped on it, and its 64 cases are those of the program", async () => {
     await type(page, { "imperfections.variants": "32", "run.duration": '"12 s"' });
-    const bytes = readFileSync(record).toString("base64");
-    await page.evaluate(([name, base64]) => {
-      const data = new DataTransfer();
-      data.items.add(new File([Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0))], name));
-      document.dispatchEvent(new DragEvent("drop", { dataTransfer: data, cancelable: true, bubbles: true }));
-    }, [basename(record), bytes]);
+    await drop(page, [[basename(record), readFileSync(record)]]);
     await page.waitForFunction((name) => window.barrelstack.state().cellar.records[0]?.path === name, basename(record));
     await page.click("#go");
     await idle(page, 2);
@@ -140,6 +123,59 @@ export async function checkPage(browser, suite, { file, program, native }) {
     sameSpreads((await last(page)).verdict, JSON.parse(expected));
     const { name } = (await look(page)).checked[0].motion;
     return `${name}${record === bundled ? "; skipped: no record of ../shared/ground-motions is here, the bundled one was dropped as a file" : ""}`;
+  });
+  await suite.check("files dropped at once become one record, of which the command makes the same; a wrong one says why", async () => {
+    const other = await opened(browser, file);
+    const { page } = other;
+    const parts = ["E", "N", "UP"].map((component) => {
+      const name = `napa-${component.toLowerCase()}.txt`;
+      native("motion", "convert", "napa-college-2014", "--component", component, "-o", join(folder, name));
+      return [name, readFileSync(join(folder, name))];
+    });
+    await type(page, { "imperfections.variants": "2", "run.duration": '"9 s"' });
+    await drop(page, [["cellar.png", Buffer.from("\x89PNG\r\n")], ...parts]);
+    await page.waitForFunction(() => window.barrelstack.state().cellar.records[0]?.path === "napa-set.txt");
+    const said = await page.locator("#given li").allTextContents();
+    demand(["is horizontal, 90°", "is horizontal, 0°", "is up and down", "across the barrels by", "along the barrels by", "No record: cellar.png: expected"].every((part) => said.join().includes(part)), said.join(" | "));
+    await page.click("#go");
+    await idle(page, 1);
+    const commands = (await page.textContent("#command")).split("\n");
+    demand(commands.length === 2 && commands[0].startsWith("barrelstack motion convert napa-e.txt napa-n.txt napa-up.txt"), commands.join("\n"));
+    // As somebody types what the page shows.
+    const typed = commands.map((line) => line.replace(/^barrelstack/, `"${program}"`)).join(" >/dev/null && ");
+    const json = execFileSync("sh", ["-c", `${typed} --json --quiet --no-remedy`], { cwd: folder, encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] });
+    sameSpreads((await last(page)).verdict, JSON.parse(json));
+    // What is no record leaves the stack as it was.
+    await drop(page, [["cellar.png", Buffer.from("\x89PNG\r\n")]]);
+    await page.waitForFunction(() => document.getElementById("given").textContent.includes("shaken as before"));
+    demand((await page.evaluate(() => window.barrelstack.state().cellar.records[0].path)) === "napa-set.txt", "the record is gone");
+    // Two stations are two earthquakes for the chart of heights, and one shakes the stack.
+    const elsewhere = parts[0][1].toString().replace(/# station: .*/, "# station: Elsewhere").replace(/# event: .*/, "# event: Another, 2020");
+    await drop(page, [parts[0], ["other.txt", Buffer.from(elsewhere)]]);
+    await page.waitForFunction(() => document.getElementById("which-motion").length === 2);
+    await page.selectOption("#which-motion", "1");
+    await page.waitForFunction(() => document.getElementById("given").textContent.includes("other.txt shakes the stack"));
+    await page.click("#heights-go");
+    await page.waitForFunction(() => window.barrelstack.heights?.some(({ asked, running }) => asked > 4 && running === 0));
+    await page.click("#heights-stop");
+    const caption = await page.textContent("#heights-table caption");
+    demand(/Another.*; |; .*Another/.test(caption), caption);
+    // What a file does not say, its reader may.
+    const column = Array.from({ length: 1500 }, (_, at) => (0.3 * Math.sin(at / 12)).toFixed(6)).join("\n");
+    await drop(page, [["plain.csv", Buffer.from(column)]]);
+    await page.locator("#unsaid").waitFor();
+    // Its step, then its unit.
+    for (const what of ["unsaid-step", "unsaid-unit"]) {
+      await page.locator(`#${what}`).waitFor();
+      await page.click("#unsaid-go");
+    }
+    await page.waitForFunction(() => window.barrelstack.state().cellar.records[0].path === "plain.csv");
+    writeFileSync(join(folder, "plain.csv"), column);
+    const checked = JSON.parse(native("check", "demo-napa", "--record", join(folder, "plain.csv"), ...(await sets(page)), "--json"));
+    demand(checked.motion.pgv === (await look(page)).checked[0].motion.pgv, `${checked.motion.pgv}`);
+    demand(other.faults.length === 0, other.faults.join("\n"));
+    await other.context.close();
+    return said.find((line) => line.startsWith("The stack is shaken"));
   });
   await suite.check("one thing is changed: the run before stays as a ghost, its verdict beside the new one", async () => {
     await type(page, { "imperfections.variants": "3" });
@@ -155,12 +191,36 @@ export async function checkPage(browser, suite, { file, program, native }) {
     await page.click("#history button >> nth=0");
     await page.waitForFunction(() => window.barrelstack.state().look.settings.find(({ path }) => path === "stack.levels").value === "4");
   });
-  await suite.check("straps go with the height, and off again", async () => {
-    await page.click("#changes button:has-text('Strap it together')");
+  await suite.check("every device is offered, tells what it does beside the stack without it, goes with the height, and off again", async () => {
+    const strap = "all levels strapped together at 3 kN";
+    await page.locator("#devices-box").waitFor();
+    const offered = await page.locator("#devices tbody th").allTextContents();
+    const known = await page.evaluate(() => [...new Set(window.barrelstack.runs.now().devices.candidates.map(({ device }) => device))]);
+    // All of `crates/stack/src/device`, where one may be named only by a file of its own.
+    const devices = readdirSync(join(here, "../../stack/src/device")).filter((name) => name !== "mod.rs").map((name) => name.replace(".rs", "").replace("_", " "));
+    demand(devices.every((name) => known.includes(name)), `${known} of ${devices}`);
+    await page.click("#devices-go");
+    await page.waitForFunction(() => document.getElementById("devices-go").checkVisibility());
+    const effects = await page.locator("#devices tbody td:nth-child(2)").allTextContents();
+    demand(effects.every((text) => /^\d+ of \d+ fall$|^does not go on it$/.test(text)), effects.join(" | "));
+    await page.click(`#devices button[aria-label="Try it: ${strap}"]`);
     await idle(page, 4);
-    demand((await last(page)).label.includes("strapped"), (await last(page)).label);
+    demand((await last(page)).label.includes("straps"), (await last(page)).label);
+    const cards = await page.locator(".card .when").allTextContents();
+    demand(cards.length === 2 && cards[0].includes("straps") && !cards[1].includes("straps"), cards.join(" | "));
+    const expected = native("run", "demo-napa", "--record", record, ...(await sets(page)), "--json", "--quiet", "--no-remedy");
+    sameSpreads((await last(page)).verdict, JSON.parse(expected));
     await page.click("[data-step='-1']");
     await page.waitForFunction(() => window.barrelstack.state().look.settings.find(({ path }) => path === "stack.strap.levels").value === "3");
+    await page.click("#undo");
+    await page.waitForFunction(() => window.barrelstack.state().look.devices.length === 0);
+    const told = await page.locator("#devices tr", { hasText: strap }).locator("td").first().textContent();
+    demand(/^\d+ of 3 fall$/.test(told), told);
+    await page.click("#history button >> nth=0");
+    await page.locator("#off button").click();
+    await idle(page, 5);
+    demand((await look(page)).devices.length === 0, "it is still on");
+    return `${offered.length - 1} settings of ${known.length} devices`;
   });
   await suite.check("stopping ends all work within 0.3 s", async () => {
     await type(page, { "imperfections.variants": "64" });
@@ -177,6 +237,29 @@ export async function checkPage(browser, suite, { file, program, native }) {
     demand((await page.evaluate(() => window.barrelstack.marks.variants)) === before, "it goes on");
     demand(took < 300, `${took.toFixed(0)} ms`);
     return `${took.toFixed(0)} ms`;
+  });
+  await suite.check("after a hundred runs the page holds no more than after thirty", async () => {
+    const other = await opened(browser, file);
+    await type(other.page, { "imperfections.variants": "0", "run.duration": '"1 s"', "stack.levels": "1" });
+    const session = await other.page.context().newCDPSession(other.page);
+    const held = async () => {
+      await session.send("HeapProfiler.collectGarbage");
+      return (await session.send("Runtime.getHeapUsage")).usedSize / 1e6;
+    };
+    const run = (count) => other.page.evaluate(async (count) => {
+      for (let time = 0; time < count; time += 1) {
+        const one = window.barrelstack.runs.run();
+        while (!one.done) await new Promise((next) => setTimeout(next, 5));
+      }
+    }, count);
+    await run(30);
+    const early = await held();
+    await run(70);
+    const late = await held();
+    demand(late < early + 2, `${early.toFixed(1)} MB and ${late.toFixed(1)} MB`);
+    demand(other.faults.length === 0, other.faults.join("\n"));
+    await other.context.close();
+    return `${early.toFixed(1)} MB after 30, ${late.toFixed(1)} MB after 100`;
   });
   await suite.check("how high is safe fills in cell by cell", async () => {
     await type(page, { "run.duration": '"4 s"' });
@@ -249,7 +332,7 @@ export async function checkPage(browser, suite, { file, program, native }) {
     // A browser takes ten files in a row and then asks; so one is saved, and all are compared where they are.
     const [download] = await Promise.all([page.waitForEvent("download"), page.click('#files button:has-text("variants.csv")')]);
     demand(readFileSync(await download.path()).equals(readFileSync(join(out, "variants.csv"))), "what is saved differs");
-    for (const name of names.filter((one) => /csv|npz|toml/.test(one))) {
+    for (const name of names.filter((one) => /csv|npz|toml|html/.test(one))) {
       const base64 = await page.evaluate(async (name) => {
         const [, bytes] = window.barrelstack.files.find(([known]) => known === name);
         const reader = new FileReader();
@@ -329,6 +412,7 @@ export async function checkPage(browser, suite, { file, program, native }) {
   });
   await suite.check("a panic shows its text", async () => {
     const hurt = await opened(browser, file);
+    await hurt.page.waitForFunction(() => window.barrelstack.ready > 0);
     await hurt.page.evaluate(() => {
       const { postMessage } = Worker.prototype;
       // More room than there is.
@@ -360,6 +444,8 @@ async function checkFirefox(suite, file, native) {
         const until = async (test) => { while (!test()) await new Promise((next) => setTimeout(next, 50)); };
         const page = () => window.barrelstack ?? window.wrappedJSObject.barrelstack;
         await until(() => page()?.started > 0);
+        document.getElementById("engineer-fold").open = true;
+        await until(() => document.querySelector("#fields input"));
         const input = document.querySelector('#fields input[aria-label="imperfections.variants"]');
         input.value = "3";
         input.dispatchEvent(new Event("input"));

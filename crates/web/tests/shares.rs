@@ -2,15 +2,33 @@
 
 use std::ops::ControlFlow;
 
+use barrelstack_motion::{ReadOptions, read};
 use barrelstack_web::{Ask, Request, answered};
 use serde_json::Value;
 
 const SCENARIO: &str = "schema = 1\nextends = \"demo-napa\"\n[stack]\nlevels = 3\n\
                         [imperfections]\nvariants = 6\n[run]\nduration = \"9 s\"\n";
 
+fn bytes_of(request: &Request, files: &[&[u8]]) -> Result<Vec<u8>, String> {
+    answered(&request.to_bytes(files), &mut |_, _| ControlFlow::Continue(()))
+}
+
 fn asked(request: &Request) -> Result<Value, String> {
-    let answer = answered(&request.to_bytes(&[]), &mut |_, _| ControlFlow::Continue(()))?;
-    serde_json::from_slice(&answer).map_err(|error| error.to_string())
+    serde_json::from_slice(&bytes_of(request, &[])?).map_err(|error| error.to_string())
+}
+
+/// The head of an answer, and the bytes that follow it.
+fn parts(answer: &[u8]) -> (Value, &[u8]) {
+    let (length, rest) = answer.split_first_chunk::<4>().expect("an answer with a length");
+    let (head, rest) = rest.split_at(u32::from_le_bytes(*length) as usize);
+    (serde_json::from_slice(head).expect("a head of JSON"), rest)
+}
+
+/// What became of variants in each plane, and their trails.
+fn run(numbers: &[u32]) -> (Value, Vec<u8>) {
+    let answer = bytes_of(&request(Ask::Variants, numbers), &[]).expect("a sound request");
+    let (cases, trails) = parts(&answer);
+    (cases, trails.to_vec())
 }
 
 fn request(ask: Ask, numbers: &[u32]) -> Request {
@@ -21,8 +39,10 @@ fn request(ask: Ask, numbers: &[u32]) -> Request {
 fn shares_in_any_order_have_the_spread_of_all() {
     let shares = [vec![0, 4, 1], vec![5], vec![2, 6, 3]];
     let mut found: Vec<(u32, [Value; 2])> = Vec::new();
+    let mut trails = Vec::new();
     for numbers in &shares {
-        let planes = asked(&request(Ask::Variants, numbers)).unwrap();
+        let (planes, more) = run(numbers);
+        trails.extend(more);
         let case = |plane: usize, at: usize| planes[plane][at].clone();
         found.extend(
             numbers.iter().enumerate().map(|(at, number)| (*number, [case(0, at), case(1, at)])),
@@ -35,6 +55,16 @@ fn shares_in_any_order_have_the_spread_of_all() {
         cases: serde_json::from_value(serde_json::to_value(cases).unwrap()).unwrap(),
         ..request(Ask::Verdict, &[0, 1, 2, 3, 4, 5, 6])
     };
+    let files = Request { ask: Ask::Files, trails: trails.len(), ..verdict.clone() };
+    let of_shares = bytes_of(&files, &[&trails]).unwrap();
+    let of_one = bytes_of(&request(Ask::Files, &[]), &[]).unwrap();
+    // The report among them, with the ways of all variants.
+    assert!(of_shares == of_one, "files of shares differ from those of one engine");
+    let cut = bytes_of(&Request { trails: 40, ..files.clone() }, &[&trails[..40]]).unwrap_err();
+    assert!(cut.contains("ends within its trails"), "{cut}");
+    let fewer = Request { numbers: vec![0, 1], trails: 0, cases: Vec::new(), ..files };
+    let fewer = bytes_of(&fewer, &[]).unwrap_err();
+    assert!(fewer.contains("the results of all 6 variants, and has those of 1"), "{fewer}");
     let verdict = asked(&verdict).unwrap();
     let summary = asked(&request(Ask::Summary, &[])).unwrap();
     let planes = [&summary, &summary["other_plane"]];
@@ -69,4 +99,89 @@ fn a_look_tells_every_field_and_stands_still() {
         "{}",
         look["opening"]
     );
+}
+
+#[test]
+fn devices_are_offered_as_they_go_on_the_stack_and_those_on_it_are_told() {
+    let offered = |changes: &[&str]| {
+        let set = changes.iter().map(|change| (*change).to_owned()).collect();
+        asked(&Request { set, ..request(Ask::Devices, &[]) }).unwrap()
+    };
+    let names = |devices: &Value| -> Vec<String> {
+        let all = devices["candidates"].as_array().unwrap();
+        all.iter().map(|one| one["name"].as_str().unwrap().to_owned()).collect()
+    };
+    let of = |devices: &Value, device: &str| {
+        devices["candidates"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .filter(|one| one["device"] == device)
+            .count()
+    };
+    let three = offered(&[]);
+    for words in barrelstack::device::DEVICES {
+        assert!(of(&three, words.one) >= words.candidates.len(), "{}", words.one);
+    }
+    assert!(names(&three).contains(&"all levels strapped together at 3 kN".to_owned()));
+    assert_eq!(three["candidates"][0]["changes"][0], "stack.strap.levels=1");
+    // Two levels have no top three.
+    let two = offered(&["stack.levels=2"]);
+    assert!(names(&two).iter().all(|name| !name.contains("top three")), "{two}");
+    let strapped = offered(&["stack.strap.levels=1"]);
+    assert_eq!(strapped["present"], serde_json::json!([{ "name": "straps", "table": "strap" }]));
+    assert_eq!(of(&strapped, "strap"), 0);
+    // Each of them goes on.
+    for candidate in three["candidates"].as_array().unwrap() {
+        let set = serde_json::from_value(candidate["changes"].clone()).unwrap();
+        asked(&Request { set, ..request(Ask::Look, &[]) }).unwrap();
+    }
+}
+
+#[test]
+fn files_given_at_once_are_one_record_or_several_or_told_to_be_none() {
+    let text = |name: &str, station: &str, channel: &str| {
+        let rows: Vec<String> =
+            (0..600).map(|at| format!("{:e}", (f64::from(at) * 0.1).sin())).collect();
+        let head = format!(
+            "# barrelstack motion 1\n# station: {station}\n# event: {name}\n# stage: corrected\n\
+             # unit: m/s2\n# time_step: 0.01\n# channels: {channel}\n"
+        );
+        (head + &rows.join("\n") + "\n").into_bytes()
+    };
+    let given = |files: &[(&str, Vec<u8>)]| {
+        let request = Request {
+            records: files.iter().map(|(name, bytes)| ((*name).to_owned(), bytes.len())).collect(),
+            ..Request::of(Ask::Records, "")
+        };
+        let bytes: Vec<&[u8]> = files.iter().map(|(_, bytes)| bytes.as_slice()).collect();
+        let answer = bytes_of(&request, &bytes).unwrap();
+        let (head, rest) = parts(&answer);
+        (head, rest.to_vec())
+    };
+    let napa = |channel| text("Napa", "College", channel);
+    let (e, n, up) = (napa("E az=90"), napa("N az=0"), napa("UP vertical"));
+    let (one, bytes) =
+        given(&[("site-e.txt", e.clone()), ("site-n.txt", n), ("site-up.txt", up.clone())]);
+    assert_eq!(one["motions"][0]["name"], "site-set.txt");
+    assert_eq!(one["motions"][0]["channels"][2], "site-up.txt (UP) is up and down");
+    let again = read(&bytes, "site-set.txt", &ReadOptions::default()).unwrap();
+    assert_eq!(again.channels.len(), 3);
+    // A horizontal and a vertical.
+    let (pair, _) = given(&[("h.txt", e.clone()), ("v.txt", up)]);
+    assert_eq!(pair["motions"].as_array().unwrap().len(), 1);
+    // Two stations are two motions, each the file that it was.
+    let (two, bytes) = given(&[("a.txt", e.clone()), ("b.txt", text("Napa", "Other", "E az=90"))]);
+    let names: Vec<&Value> =
+        two["motions"].as_array().unwrap().iter().map(|one| &one["name"]).collect();
+    assert_eq!(names, ["a.txt", "b.txt"]);
+    assert!(bytes.is_empty());
+    // A picture is no record, and takes nothing away from one beside it; a column of numbers lacks its unit.
+    let numbers: Vec<String> = (0..600).map(|at| f64::from(at).sin().to_string()).collect();
+    let column = numbers.join("\n");
+    let (some, _) =
+        given(&[("a.txt", e), ("b.png", b"\x89PNG\r\n".to_vec()), ("c.csv", column.into_bytes())]);
+    assert_eq!(some["motions"][0]["name"], "a.txt");
+    assert_eq!(some["refused"][0]["file"], "b.png");
+    assert!(some["refused"][1]["missing"].as_str().is_some(), "{some}");
 }

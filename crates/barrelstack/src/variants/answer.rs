@@ -3,8 +3,9 @@
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
-use super::{Plane, Spread, Variants, planes, run};
+use super::{Plane, Spread, Variants, planes, run, together};
 use crate::check::check;
+use crate::ensemble::CaseResult;
 use crate::pool;
 use crate::report::headline;
 use crate::run::{Progress, Run, RunFailure};
@@ -75,6 +76,28 @@ pub fn answer(
     asked: Asked,
     observer: &mut (dyn FnMut(Told) -> ControlFlow<()> + Send),
 ) -> Result<Answer, RunFailure> {
+    answered(scenario, asked, None, observer)
+}
+
+/// As [`answer`] of the most typical run, where others have run the variants ([`run_some`](super::run_some)): what
+/// became of all of them in each plane, in the order of their numbers.
+///
+/// # Errors
+/// As [`answer`].
+pub fn answer_of(
+    scenario: &Scenario,
+    results: Vec<Vec<CaseResult>>,
+    observer: &mut (dyn FnMut(Told) -> ControlFlow<()> + Send),
+) -> Result<Answer, RunFailure> {
+    answered(scenario, Asked::Typical, Some(results), observer)
+}
+
+fn answered(
+    scenario: &Scenario,
+    asked: Asked,
+    known: Option<Vec<Vec<CaseResult>>>,
+    observer: &mut (dyn FnMut(Told) -> ControlFlow<()> + Send),
+) -> Result<Answer, RunFailure> {
     let scenario = &scenario.with_event()?;
     let planes = planes(scenario)?;
     let observer = Mutex::new(observer);
@@ -89,8 +112,12 @@ pub fn answer(
     for plane in planes.iter().filter(|_| varied) {
         check(&plane.scenario)?;
     }
-    let found =
-        if varied { run(&planes, &|done, of| told(Told::Variants { done, of }))? } else { None };
+    let numbers = || planes.first().map(Plane::numbers).unwrap_or_default();
+    let found = match known {
+        Some(results) if varied => Some(together(&planes, &numbers(), results)),
+        _ if varied => run(&planes, &|done, of| told(Told::Variants { done, of }))?,
+        _ => None,
+    };
     let stopped = varied && found.is_none();
     let variants: Vec<Option<Variants>> = match found {
         Some(found) => found.into_iter().map(Some).collect(),

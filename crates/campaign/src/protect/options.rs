@@ -63,9 +63,6 @@ const RACK_ON_POSTS: [f64; 2] = [200.0, 400.0];
 /// Cost (US$) of a barrel's place elsewhere, half a rack and its floor: an assumption.
 const PLACE: [f64; 2] = [100.0, 300.0];
 
-/// Pretensions (kN) of straps about the whole stack; by hand a ratchet for webbing of 50 mm reaches 5 kN at most.
-const PRETENSIONS: [u32; 2] = [1, 3];
-
 /// All that can be done for a stack, which as it is comes first.
 pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
     let Some(stack) = scenario.stack() else { return Vec::new() };
@@ -116,28 +113,13 @@ pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
             cost: price(&words.cost, &changes, levels),
             source: words.cost.source.to_owned(),
             changes,
-            degraded: words.degraded.iter().map(told).collect(),
+            degraded: words.degraded.iter().map(Setting::told).collect(),
             ..none(Kind::Device(words.one), &slug(name), name)
         };
-        all.extend(words.candidates.iter().map(told).map(|(name, changes)| device(&name, changes)));
-        if words.many == "straps" && levels > 1 {
-            all.extend(PRETENSIONS.iter().map(|pretension| {
-                let fields = [
-                    format!("levels={levels}"),
-                    "ties=\"levels-together\"".to_owned(),
-                    format!("pretension=\"{pretension} kN\""),
-                ];
-                let changes = fields.iter().map(|field| format!("stack.strap.{field}")).collect();
-                device(&format!("all levels strapped together at {pretension} kN"), changes)
-            }));
-        }
+        let settings = words.settings(levels);
+        all.extend(settings.into_iter().map(|(name, changes)| device(&name, changes)));
     }
     all
-}
-
-fn told(setting: &Setting) -> (String, Vec<String>) {
-    let overrides = setting.overrides.iter().map(|change| (*change).to_owned());
-    (setting.name.to_owned(), overrides.collect())
 }
 
 /// What a device costs (US$) on so many levels as it is set to, or else on all.

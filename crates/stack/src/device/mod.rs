@@ -135,6 +135,12 @@ pub struct Setting {
 }
 
 impl Setting {
+    /// In words and as changes, as others keep them.
+    pub fn told(&self) -> (String, Vec<String>) {
+        let overrides = self.overrides.iter().map(|change| (*change).to_owned());
+        (self.name.to_owned(), overrides.collect())
+    }
+
     /// These settings in place of those of another one for the same fields, and with its others.
     pub fn over(&self, other: &Self) -> Vec<&'static str> {
         let field = |setting: &&'static str| setting.split('=').next();
@@ -165,6 +171,17 @@ pub enum Each {
 }
 
 impl Words {
+    /// Settings worth trying on a stack of so many levels, each in words and as changes of the scenario.
+    ///
+    /// Whether one goes on the stack is for the scenario to tell.
+    pub fn settings(&self, levels: u32) -> Vec<(String, Vec<String>)> {
+        let mut all: Vec<_> = self.candidates.iter().map(Setting::told).collect();
+        if self == &strap::WORDS {
+            all.extend(strap::about_all(levels));
+        }
+        all
+    }
+
     /// Of what no report tells.
     pub(crate) const fn silent(one: &'static str) -> Self {
         Self {

@@ -47,6 +47,22 @@ pub(super) static WORDS: Words = Words {
     },
 };
 
+/// Pretensions (kN) of straps about the whole stack; by hand a ratchet for webbing of 50 mm reaches 5 kN at most.
+const PRETENSIONS: [u32; 2] = [1, 3];
+
+/// Straps about all levels of a stack, which one level alone cannot have.
+pub(super) fn about_all(levels: u32) -> impl Iterator<Item = (String, Vec<String>)> {
+    PRETENSIONS.into_iter().filter(move |_| levels > 1).map(move |pretension| {
+        let fields = [
+            format!("levels={levels}"),
+            "ties=\"levels-together\"".to_owned(),
+            format!("pretension=\"{pretension} kN\""),
+        ];
+        let changes = fields.iter().map(|field| format!("stack.strap.{field}")).collect();
+        (format!("all levels strapped together at {pretension} kN"), changes)
+    })
+}
+
 /// What straps tie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ties {

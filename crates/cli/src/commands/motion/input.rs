@@ -276,24 +276,9 @@ impl Choice {
                 chosen.channels.push(channel);
             }
         }
-        cut_to_shortest(&mut chosen);
+        chosen.cut_to_shortest();
         let chain = self.processing.unwrap_or(usual).of(record.stage);
         Ok(if chain.is_none() { chosen } else { chosen.processed(&chain)? })
-    }
-}
-
-/// Channels of one record end together; the longer ones lose their last samples.
-pub(super) fn cut_to_shortest(record: &mut Record) {
-    let shortest = record.channels.iter().map(|c| c.acceleration.len()).min().unwrap_or(0);
-    for channel in &mut record.channels {
-        let extra = channel.acceleration.len() - shortest;
-        if extra > 0 {
-            channel.acceleration.truncate(shortest);
-            record.notes.push(format!(
-                "{}: the last {extra} samples cut, as the shortest channel ends there",
-                channel.name
-            ));
-        }
     }
 }
 

@@ -216,7 +216,7 @@ fn by_noise(before: &Record, chain: &Processing) -> anyhow::Result<Record> {
         after.channels.extend(done.channels);
     }
     after.stage = Stage::Corrected;
-    input::cut_to_shortest(&mut after);
+    after.cut_to_shortest();
     Ok(after)
 }
 

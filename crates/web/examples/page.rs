@@ -1,0 +1,74 @@
+//! Writes the page that holds the program: `page MODULE FOLDER TITLE FILE`.
+//!
+//! The folder has the body (`page.html`), the style sheet (`page.css`), the scripts (`*.js`, of which `main.js` comes
+//! last), and what its workers run (`worker.js`).
+//! What the engine says of the stack that the page opens with is asked here and held by the page, so that it stands
+//! there before there is an engine.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use barrelstack::scenario::builtin;
+use barrelstack_report::Shell;
+use barrelstack_web::{Ask, Request, answered};
+use serde_json::{Value, json};
+
+/// The scenario that the page opens with.
+const FIRST: &str = "demo-napa";
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let [module, folder, title, file] = words.as_slice() else {
+        return Err("expected: page MODULE FOLDER TITLE FILE".into());
+    };
+    let folder = PathBuf::from(folder);
+    let text = |name: &str| {
+        let path = folder.join(name);
+        std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))
+    };
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(&folder)? {
+        names.push(entry?.file_name().to_string_lossy().into_owned());
+    }
+    let is_script = |name: &String| Path::new(name).extension().is_some_and(|end| end == "js");
+    names.retain(|name| is_script(name) && name != "worker.js");
+    names.sort_by_key(|name| (name == "main.js", name.clone()));
+    let scripts = names.iter().map(|name| text(name)).collect::<Result<Vec<String>, _>>()?;
+    let first = first()?.to_string();
+    let (style, body, worker) = (text("page.css")?, text("page.html")?, text("worker.js")?);
+    let module = packed(&std::fs::read(module)?)?;
+    let page = Shell {
+        title,
+        style: &style,
+        body: &body,
+        at_hand: &[("first", first.as_bytes())],
+        worker: &worker,
+        scripts: &scripts.iter().map(String::as_str).collect::<Vec<_>>(),
+        held: &[("engine", &module)],
+    };
+    std::fs::write(file, page.html())?;
+    Ok(())
+}
+
+/// Bytes in gzip, as small as that gets.
+fn packed(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
+    let mut packed = Vec::new();
+    zopfli::compress(zopfli::Options::default(), zopfli::Format::Gzip, bytes, &mut packed)?;
+    Ok(packed)
+}
+
+/// What the engine says of the first stack, and what there is to choose from.
+fn first() -> Result<Value, Box<dyn std::error::Error>> {
+    let scenario = builtin::get(FIRST).ok_or("the first scenario is not there")?;
+    let asked = |ask| -> Result<Value, Box<dyn std::error::Error>> {
+        let request = Request { name: format!("{FIRST}.toml"), ..Request::of(ask, scenario) };
+        let answer = answered(&request.to_bytes(&[]), &mut |_, _| ControlFlow::Continue(()))?;
+        Ok(serde_json::from_slice(&answer)?)
+    };
+    Ok(json!({
+        "name": FIRST,
+        "text": scenario,
+        "catalog": asked(Ask::Catalog)?,
+        "look": asked(Ask::Look)?,
+    }))
+}

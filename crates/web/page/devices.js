@@ -1,0 +1,133 @@
+// What could be put on the stack: the devices that the engine knows, each with what it does beside what the stack does
+// without it.
+
+const GLANCE = 8; // variants that tell at a glance what a device does
+
+// The plane in which most variants fall.
+const worstOf = (verdict) => verdict.planes.reduce((a, b) => ((b.spread.share ?? -1) > (a.spread.share ?? -1) ? b : a));
+
+// `lasts` tells how long (s) some variants of a stack take.
+function makeDevices(find, { crew, desk, change, writers, states, refuse, lasts }) {
+  let now = null, going = 0; // the run whose devices are shown, and how often they were tried
+
+  const group = "devices";
+  const tableOf = (changes) => changes[0].split(".")[1];
+  const tell = (verdict) => {
+    const { collapsed, variants } = worstOf(verdict).spread;
+    return `${collapsed} of ${variants} fall`;
+  };
+
+  const unknown = ({ glance, run, refused }) => !glance && !run && !refused;
+
+  // What is known of a device: from a run with it, or from a glance.
+  function effectOf(candidate) {
+    if (candidate.refused) return "does not go on it";
+    if (candidate.run && candidate.run.verdict) return tell(candidate.run.verdict);
+    if (candidate.glance) return tell(candidate.glance);
+    return candidate.running ? "…" : "";
+  }
+
+  function row(candidate) {
+    const button = make("button", { type: "button", class: "tool" }, "Try it");
+    button.setAttribute("aria-label", `Try it: ${candidate.name}`);
+    button.addEventListener("click", async () => {
+      candidate.run = await change((cellar) => writers.device(cellar, tableOf(candidate.changes), candidate.changes), true);
+    });
+    candidate.place = make("td", {}, effectOf(candidate));
+    return make("tr", {}, make("th", { scope: "row" }, candidate.name), candidate.place, make("td", {}, button));
+  }
+
+  function draw() {
+    const { present, candidates } = now.devices;
+    find("off").replaceChildren(...present.filter(({ table }) => removable(table)).map(({ name, table }) => {
+      const button = make("button", { type: "button", class: "tool" }, `Without the ${name}`);
+      button.addEventListener("click", () => change((cellar) => writers.device(cellar, table, Number(states(`stack.${table}.levels`) || 0) > 0 ? [`stack.${table}.levels=0`] : []), true));
+      return button;
+    }));
+    const head = make("tr", {}, ...["device", "with it", ""].map((name) => (name ? make("th", { scope: "col" }, name) : make("td"))));
+    const plain = make("tr", {}, make("th", { scope: "row" }, "none, the stack as it is"), make("td", {}, now.verdict && now.verdict.planes.length > 0 ? tell(now.verdict) : ""), make("td"));
+    find("devices").replaceChildren(make("thead", {}, head), make("tbody", {}, plain, ...candidates.map(row)));
+    find("devices-box").hidden = candidates.length === 0 && present.length === 0;
+    const open = candidates.filter(unknown).length;
+    find("devices-go").disabled = open === 0;
+    if (open > 0) find("devices-said").textContent = `${open} devices in ${GLANCE} variants each: about ${lasting(lasts(now.look, open * (GLANCE + 1)))}`;
+  }
+
+  // Whether leaving out changes, or a number of levels, takes a device off.
+  const removable = (table) => states(`stack.${table}.levels`) !== undefined || Object.keys(now.cellar.changes).some((path) => path.startsWith(`stack.${table}`));
+
+  // Shows the devices of a run; the engine is asked once it has nothing else to do.
+  async function show(run) {
+    if (now !== run) {
+      stop();
+      find("devices-box").hidden = true;
+    }
+    now = run;
+    if (!run.devices) {
+      if (!(run.done || run.stopped) || run.asking) return;
+      run.asking = true;
+      try {
+        // Whoever goes on at once has no need of it.
+        await new Promise((next) => setTimeout(next, 300));
+        if (run !== now) return;
+        run.devices = jsonOf(await desk.ask(headOf(run.cellar, "devices"), { records: run.cellar.records }));
+      } catch (error) {
+        if (!error.stopped) refuse(error);
+        return;
+      } finally {
+        run.asking = false;
+      }
+    }
+    if (run === now) draw();
+  }
+
+  // A few variants with each device, which all share the engines.
+  async function glance() {
+    const own = (going += 1), { cellar, look, devices: { candidates } } = now;
+    const numbers = orderOf(look.variants).slice(0, GLANCE + 1);
+    busy(true);
+    let done = 0;
+    const one = async (candidate) => {
+      const tried = copied(cellar);
+      writers.device(tried, tableOf(candidate.changes), candidate.changes);
+      const tally = makeTally(desk, tried);
+      candidate.running = true;
+      try {
+        tally.add(numbers, await crew.ask(headOf(tried, "variants", { numbers }), { records: tried.records, group }));
+        candidate.glance = await tally.verdict(group);
+      } catch (error) {
+        if (error.stopped || error.broken) throw error;
+        candidate.refused = error.message;
+      } finally {
+        candidate.running = false;
+      }
+      if (own !== going) return;
+      candidate.place.textContent = effectOf(candidate);
+      find("devices-said").textContent = `${(done += 1)} of ${candidates.length} devices tried`;
+    };
+    try {
+      await Promise.all(candidates.filter(unknown).map(one));
+      if (own === going) find("devices-said").textContent = `Each in ${GLANCE} variants; try one to know more.`;
+    } catch (error) {
+      if (!error.stopped) refuse(error);
+    }
+    if (own === going) busy(false);
+  }
+
+  function busy(on) {
+    find("devices-stop").hidden = !on;
+    find("devices-go").hidden = on;
+  }
+
+  function stop() {
+    going += 1;
+    crew.stop(group);
+    desk.stop(group);
+    busy(false);
+    find("devices-said").textContent = "";
+  }
+
+  find("devices-go").addEventListener("click", glance);
+  find("devices-stop").addEventListener("click", stop);
+  return { show, hide: () => { find("devices-box").hidden = true; } };
+}

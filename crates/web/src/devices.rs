@@ -1,0 +1,69 @@
+//! What could be put on a stack, one device at a time.
+
+use barrelstack::Scenario;
+use barrelstack::device::DEVICES;
+use barrelstack::report;
+use barrelstack::scenario::MotionSource;
+use barrelstack::variants::planes;
+use serde::Serialize;
+
+/// The devices of a stack, and those that it could have.
+#[derive(Serialize)]
+pub(crate) struct Devices {
+    /// What those are called that it has, and their tables in `[stack]`.
+    present: Vec<Known>,
+    /// Settings that go on it as it is, of devices that it has not.
+    candidates: Vec<Candidate>,
+}
+
+#[derive(Serialize)]
+struct Known {
+    name: &'static str,
+    table: String,
+}
+
+/// A setting of a device.
+#[derive(Serialize)]
+struct Candidate {
+    device: &'static str,
+    /// In words.
+    name: String,
+    /// Such as `stack.lid.levels=1`.
+    changes: Vec<String>,
+}
+
+impl Devices {
+    /// Of a scenario, whose settings are tried without its motion.
+    pub(crate) fn of(scenario: &Scenario) -> Self {
+        let mut still = scenario.clone();
+        still.motion.source = MotionSource::None;
+        let text = still.to_resolved_toml();
+        let Some(stack) = scenario.stack() else {
+            return Self { present: Vec::new(), candidates: Vec::new() };
+        };
+        let on = stack.devices.present();
+        let fits = |changes: &[String]| {
+            let tried = Scenario::parse("scenario", &text, changes).ok();
+            let planes = tried.and_then(|tried| planes(&tried).ok());
+            planes.is_some_and(|planes| report::still(&planes).is_ok())
+        };
+        let mut candidates = Vec::new();
+        let mut present = Vec::new();
+        for words in DEVICES {
+            let settings = words.settings(stack.levels);
+            if on.contains(words) {
+                let table = settings.iter().find_map(|(_, changes)| table(changes.first()?));
+                present.extend(table.map(|table| Known { name: words.many, table }));
+                continue;
+            }
+            let of = |(name, changes)| Candidate { device: words.one, name, changes };
+            candidates.extend(settings.into_iter().filter(|(_, changes)| fits(changes)).map(of));
+        }
+        Self { present, candidates }
+    }
+}
+
+/// The table of a change of the stack.
+fn table(change: &str) -> Option<String> {
+    Some(change.strip_prefix("stack.")?.split_once('.')?.0.to_owned())
+}

@@ -1,0 +1,172 @@
+//! Files that a reader gives at once: which of them are components of one record, and which hold none.
+
+use std::collections::BTreeMap;
+
+use barrelstack::motion::{
+    Channel, Given, Instrument, ReadError, ReadOptions, Record, Refusal, group_files, read,
+    station_xml, write,
+};
+use serde::{Deserialize, Serialize};
+
+/// What the reader says of files that do not say it themselves.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Reading {
+    /// The unit of acceleration, such as "g".
+    pub unit: Option<String>,
+    /// The step (s).
+    pub time_step: Option<f64>,
+}
+
+/// What files are.
+#[derive(Default, Serialize)]
+pub(crate) struct Files {
+    /// The motions that they hold; the bytes of those that are no file as it was given follow in this order.
+    motions: Vec<Motion>,
+    /// Those that hold none.
+    refused: Vec<Refused>,
+}
+
+/// A motion.
+#[derive(Serialize)]
+pub(crate) struct Motion {
+    /// A file for it.
+    name: String,
+    /// The files that it is of.
+    files: Vec<String>,
+    /// What each of its channels is, in words.
+    channels: Vec<String>,
+    /// How many bytes follow: one file for all; 0 where it is a file as it was given.
+    length: usize,
+}
+
+/// A file that holds no motion.
+#[derive(Serialize)]
+struct Refused {
+    file: String,
+    why: String,
+    /// What a reader of the page can say of it, so that it can be read: "unit", "step", "unit or sensitivity" or "sensitivity".
+    missing: Option<&'static str>,
+}
+
+/// Most channels of one record.
+const COMPONENTS: usize = 3;
+
+/// Reads files and says what they are; and the bytes of the motions of several.
+pub(crate) fn of(
+    files: &BTreeMap<String, &[u8]>,
+    reading: &Reading,
+) -> Result<(Files, Vec<Vec<u8>>), String> {
+    let mut options = ReadOptions { time_step: reading.time_step, ..ReadOptions::default() };
+    if let Some(unit) = &reading.unit {
+        options.unit = Some(unit.parse().map_err(|error| format!("unit: {error}"))?);
+    }
+    let stations: BTreeMap<&String, Vec<Instrument>> =
+        files.iter().filter_map(|(name, bytes)| Some((name, station(bytes)?))).collect();
+    options.instruments = stations.values().flatten().cloned().collect();
+    let mut found = Files::default();
+    let mut records: Vec<Record> = Vec::new();
+    for (name, bytes) in files.iter().filter(|(name, _)| !stations.contains_key(name)) {
+        match read(bytes, name, &options) {
+            Ok(record) => records.push(record),
+            Err(error) => found.refused.push(Refused::of(name, &error)),
+        }
+    }
+    let mut gathered = Vec::new();
+    for records in records_of(records) {
+        let (motion, bytes) = Motion::of(&records, !stations.is_empty())?;
+        found.motions.push(motion);
+        gathered.push(bytes);
+    }
+    Ok((found, gathered))
+}
+
+/// What a file says of the channels of its station, where it is about nothing else.
+fn station(bytes: &[u8]) -> Option<Vec<Instrument>> {
+    let text = std::str::from_utf8(bytes).ok().filter(|text| text.trim_start().starts_with('<'))?;
+    station_xml(text).ok().filter(|found| !found.is_empty())
+}
+
+/// The records of files: one where nothing tells the files apart and together they have no more than the components
+/// of one; else by the names of the files, as in a folder; and alone what does not fit together.
+fn records_of(records: Vec<Record>) -> Vec<Vec<Record>> {
+    let whole = |records: &[Record]| {
+        records.iter().map(|record| record.channels.len()).sum::<usize>() <= COMPONENTS
+            && Record::gather(records).is_ok()
+    };
+    if whole(&records) {
+        return vec![records];
+    }
+    let names: Vec<String> = records.iter().map(|record| record.file.clone()).collect();
+    let mut all = Vec::new();
+    for group in group_files(&names) {
+        let of_group = |record: &&Record| group.files.contains(&record.file);
+        let group: Vec<Record> = records.iter().filter(of_group).cloned().collect();
+        if whole(&group) {
+            all.push(group);
+        } else {
+            all.extend(group.into_iter().map(|record| vec![record]));
+        }
+    }
+    all
+}
+
+impl Motion {
+    /// Of the files of one record; read with what other files say, one file is not enough by itself.
+    fn of(records: &[Record], told: bool) -> Result<(Self, Vec<u8>), String> {
+        let files: Vec<String> = records.iter().map(|record| record.file.clone()).collect();
+        let said = |record: &Record| -> Vec<String> {
+            let said = |channel: &Channel| format!("{} {}", record.file, role(channel));
+            record.channels.iter().map(said).collect()
+        };
+        let channels = records.iter().flat_map(said).collect();
+        let (name, bytes) = match files.as_slice() {
+            [file] if !told => (file.clone(), Vec::new()),
+            _ => {
+                let mut record = Record::gather(records).map_err(|error| error.to_string())?;
+                record.cut_to_shortest();
+                let text = write::text(&record).map_err(|error| error.to_string())?;
+                (name_of(&files), text.into_bytes())
+            }
+        };
+        Ok((Self { name, files, channels, length: bytes.len() }, bytes))
+    }
+}
+
+/// A name for a file of several: what their names begin with, or the first of them.
+fn name_of(files: &[String]) -> String {
+    let first = files.first().map_or("", String::as_str);
+    let same = |end: &usize| files.iter().all(|file| file.starts_with(&first[..*end]));
+    let ends = (0..=first.len()).rev().filter(|end| first.is_char_boundary(*end));
+    let stem = ends.clone().find(same).map_or("", |end| &first[..end]);
+    let stem = stem.trim_end_matches(|c: char| !c.is_alphanumeric());
+    let whole = first.rsplit_once('.').map_or(first, |(stem, _)| stem);
+    format!("{}-set.txt", if files.len() == 1 || stem.len() < 3 { whole } else { stem })
+}
+
+/// What a channel is, in words.
+fn role(channel: &Channel) -> String {
+    let direction = match channel.direction.azimuth {
+        _ if channel.is_vertical() => "is up and down".to_owned(),
+        Some(azimuth) => format!("is horizontal, {azimuth:.0}° from north"),
+        None => "is horizontal".to_owned(),
+    };
+    format!("({}) {direction}", channel.name)
+}
+
+impl Refused {
+    fn of(file: &str, error: &ReadError) -> Self {
+        let missing = match error.refusal {
+            Refusal::Missing(Given::Unit) => Some("unit"),
+            Refusal::Missing(Given::Step) => Some("step"),
+            Refusal::Missing(Given::Sensitivity) => Some("sensitivity"),
+            Refusal::Missing(Given::UnitOrSensitivity) => Some("unit or sensitivity"),
+            Refusal::Unrecognized
+            | Refusal::NotAcceleration
+            | Refusal::Damaged
+            | Refusal::OtherInstrument
+            | Refusal::Options => None,
+        };
+        Self { file: file.to_owned(), why: error.to_string(), missing }
+    }
+}

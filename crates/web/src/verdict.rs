@@ -1,0 +1,92 @@
+//! What the results of engines say together.
+
+use barrelstack::ensemble::CaseResult;
+use barrelstack::scenario::View;
+use barrelstack::variants::{Plane, Spread, together, words};
+use barrelstack_report::badge;
+use serde::Serialize;
+
+use crate::{Case, Request, trails};
+
+/// What results say together.
+#[derive(Serialize)]
+pub(crate) struct Verdict {
+    /// In one sentence.
+    headline: String,
+    /// Its sign and its word, as markup, and the class of its color.
+    badge: String,
+    tone: &'static str,
+    /// In each plane.
+    planes: Vec<Judged>,
+}
+
+/// What they say in one plane.
+#[derive(Serialize)]
+struct Judged {
+    view: &'static str,
+    /// Such as "across the barrels".
+    words: &'static str,
+    /// Such as "falls in 97 % of variants".
+    fate: String,
+    spread: Spread,
+}
+
+impl Verdict {
+    pub(crate) fn of(planes: &[Plane], request: Request) -> Result<Self, String> {
+        let numbers = request.numbers.clone();
+        let found = together(planes, &numbers, given(planes, request)?);
+        let spreads: Vec<(View, &Spread)> =
+            found.iter().filter_map(|one| Some((one.view?, &one.spread))).collect();
+        let tone = words::tone(&spreads);
+        let judged = |&(view, spread): &(View, &Spread)| Judged {
+            view: view.name(),
+            words: view.words(),
+            fate: words::fate(spread),
+            spread: spread.clone(),
+        };
+        Ok(Self {
+            headline: words::headline(&spreads),
+            badge: badge(tone),
+            tone: tone.class(),
+            planes: spreads.iter().map(judged).collect(),
+        })
+    }
+}
+
+/// The results that a request gives, the stack as it is stated first.
+fn given(planes: &[Plane], request: Request) -> Result<Vec<Vec<CaseResult>>, String> {
+    let Request { numbers, cases, .. } = request;
+    let whole = cases.iter().all(|plane| plane.len() == numbers.len());
+    if cases.len() != planes.len() || !whole || numbers.first() != Some(&0) {
+        return Err(format!(
+            "a verdict needs a result for each of its numbers, the first of which is 0, in each of {} planes",
+            planes.len()
+        ));
+    }
+    cases.into_iter().map(|plane| plane.into_iter().map(Case::result).collect()).collect()
+}
+
+/// The same of all variants, with where their barrels were.
+pub(crate) fn results(
+    planes: &[Plane],
+    request: Request,
+    trails: &[u8],
+) -> Result<Vec<Vec<CaseResult>>, String> {
+    let all = planes.first().map(Plane::numbers).unwrap_or_default();
+    let mut trails = trails::read(trails).ok_or("the request ends within its trails")?;
+    if request.numbers != all {
+        return Err(format!(
+            "a report needs the results of all {} variants, and has those of {}",
+            all.len().saturating_sub(1),
+            request.numbers.len().saturating_sub(1)
+        ));
+    }
+    let mut results = given(planes, request)?;
+    for (plane, results) in (0..).zip(&mut results) {
+        for (number, result) in all.iter().zip(results) {
+            let trail = trails.remove(&(plane, *number));
+            result.trail = trail.ok_or_else(|| format!("variant {number} has no trail"))?;
+        }
+    }
+    Ok(results)
+}
