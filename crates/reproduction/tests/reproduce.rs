@@ -139,7 +139,10 @@ fn the_page_is_the_same_every_time() {
 #[test]
 fn a_missing_record_is_an_error_before_any_run() {
     let counted = std::sync::atomic::AtomicUsize::new(0);
-    let tell = |_, _| _ = counted.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+    let tell = |_, _| {
+        counted.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        ControlFlow::Continue(())
+    };
     let error =
         reproduce(Some(Path::new("no/such/file.at2")), true, &tell).unwrap_err().to_string();
     assert!(error.contains("no/such/file.at2"), "{error}");
