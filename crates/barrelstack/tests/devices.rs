@@ -17,7 +17,12 @@ fn run(name: &str, changes: &[&str]) -> Run {
 
 /// Eight barrels under a sine that moves them and fells none, with a step of its own for no device.
 fn small(name: &str, changes: &[&str]) -> Run {
-    let all = ["run.duration=\"2 s\"", "run.step=\"0.1 ms\"", "motion.sine.amplitude=\"5 cm\""];
+    shaken(name, "5 cm", changes)
+}
+
+fn shaken(name: &str, amplitude: &str, changes: &[&str]) -> Run {
+    let amplitude = format!("motion.sine.amplitude=\"{amplitude}\"");
+    let all = ["run.duration=\"2 s\"", "run.step=\"0.1 ms\"", &amplitude];
     run(name, &[&all[..], changes].concat())
 }
 
@@ -60,11 +65,9 @@ fn every_device_as_it_is_worth_trying_changes_the_bits_of_a_stack() {
     for words in DEVICES {
         let changes = |name: &str| {
             // Strong enough to throw the barrels at the top against their lids.
-            let shaken = |changes: &[&str]| {
-                bits(&small(name, &[&["motion.sine.amplitude=\"4 in\""], changes].concat()))
-            };
-            let bare = shaken(&[]);
-            words.candidates.iter().any(|it| shaken(it.overrides) != bare)
+            let bits_with = |changes: &[&str]| bits(&shaken(name, "4 in", changes));
+            let bare = bits_with(&[]);
+            words.candidates.iter().any(|it| bits_with(it.overrides) != bare)
         };
         assert!(changes(ACROSS) || changes(ALONG), "{}", words.one);
     }

@@ -323,7 +323,7 @@ fn what_takes_a_minute_has_its_schema() {
     seen.document("protect.json", &file);
     let out = path(folder.path(), "score");
     let value = seen.run(&["score", "candia-8-barrels", "--quiet", "--out", &out], 0);
-    assert_eq!(value["states"].as_array().unwrap().len(), 4);
+    assert_eq!(value["states"].as_array().unwrap().len(), 2);
     let file = fs::read_to_string(folder.path().join("score/rockscore.json")).unwrap();
     seen.document("rockscore.json", &file);
 }

@@ -152,13 +152,18 @@ fn of_elements<'a>(
     constant: fn(&Element<Planar>) -> f64,
 ) -> f64 {
     let mut rates = vec![0.0; model.bodies().len()];
+    let place = |id: BodyId| model.bodies()[id].pose.position;
     for element in loose.chain(model.elements()) {
+        // Some push both bodies where the point of the second one is, which may be far from the first.
+        let [first, second] = element.link().bodies;
+        let apart = place(second) - place(first);
         for (id, point) in element.ends() {
             let body = &model.bodies()[id];
             if body.motion != Motion::Free {
                 continue;
             }
-            rates[id] += constant(element) * (1.0 / body.mass + point.dot(point) / body.inertia);
+            let arm = if id == first && element.acts_at_second() { apart } else { point };
+            rates[id] += constant(element) * (1.0 / body.mass + arm.dot(arm) / body.inertia);
         }
     }
     // The body at its other end may swing against it, so each counts twice.

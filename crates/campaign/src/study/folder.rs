@@ -344,6 +344,9 @@ pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     write().map_err(|error| StudyError::system("write", path, &error))
 }
 
+/// How often a folder is made anew that others take away.
+const TRIES: u32 = 10;
+
 /// A file that is being written under another name; gone again where it never gets its own.
 pub(super) struct Draft {
     pub(super) file: File,
@@ -355,13 +358,18 @@ impl Draft {
     /// Begins a file, under a name that no other process has, on this machine or another.
     pub(super) fn create(whole: &Path) -> std::io::Result<Self> {
         let name = whole.file_name().unwrap_or_default().to_string_lossy();
-        let mut number = 0;
+        let mut number = 0_u32;
         loop {
             let path = whole.with_file_name(format!(".{name}.{number}.part"));
             number += 1;
             let file = match File::options().write(true).create_new(true).open(&path) {
                 Ok(file) => file,
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
+                // Another process that only tried whether it may write here took its empty folder away again.
+                Err(error) if error.kind() == ErrorKind::NotFound && number < TRIES => {
+                    whole.parent().map_or(Ok(()), fs::create_dir_all)?;
+                    continue;
+                }
                 Err(error) => return Err(error),
             };
             // Tells those who tidy the folder that its writer is alive. One of them may have come before.

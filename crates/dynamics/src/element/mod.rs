@@ -137,6 +137,14 @@ impl<S: Space> Element<S> {
     pub fn ends(&self) -> impl Iterator<Item = (BodyId, S::Vector)> + use<S> {
         self.link().bodies.into_iter().zip(self.link().points)
     }
+
+    /// Whether it pushes both bodies where the point of the second one is, not each at its own.
+    pub fn acts_at_second(&self) -> bool {
+        match self {
+            Self::Strap(_) => false,
+            Self::Rod(_) | Self::Guide(_) => true,
+        }
+    }
 }
 
 /// Whether a number is sound in every lane.

@@ -294,6 +294,6 @@ fn of_momentum<S: Space>(
     orientation: S::Orientation,
     momentum: Twist<S>,
 ) -> Twist<S> {
-    let (inertia, rotation) = (model.inert[body].inertia, S::rotation(orientation));
-    Twist { linear: momentum.linear, angular: S::spin_of(inertia, rotation, momentum.angular) }
+    let inertia = model.inert[body].inertia;
+    Twist { linear: momentum.linear, angular: S::spin_of(inertia, orientation, momentum.angular) }
 }

@@ -111,7 +111,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// The spin of a body with what [`Space::momentum`] tells.
     fn spin_of(
         inertia: Self::Inertia,
-        rotation: Self::Rotation,
+        orientation: Self::Orientation,
         momentum: Self::Spin,
     ) -> Self::Spin;
     /// How a body is turned and spins after a time without moments.

@@ -226,7 +226,7 @@ impl<R: Real> Space for Planar<R> {
         spin
     }
     #[inline(always)]
-    fn spin_of(_inertia: R, _rotation: Rotation2<R>, momentum: R) -> R {
+    fn spin_of(_inertia: R, _orientation: R, momentum: R) -> R {
         momentum
     }
     #[inline(always)]

@@ -115,7 +115,8 @@ impl<R: Real> Space for Spatial<R> {
     /// Refined once: a matrix is orthogonal but for rounding, and what that takes always from one side adds
     /// up over a run.
     #[inline(always)]
-    fn spin_of(inertia: Vec3<R>, rotation: Rotation3<R>, momentum: Vec3<R>) -> Vec3<R> {
+    fn spin_of(inertia: Vec3<R>, orientation: Quaternion<R>, momentum: Vec3<R>) -> Vec3<R> {
+        let rotation = orientation.matrix();
         let spin = Self::spin_rate(inertia, rotation, momentum);
         let missing = momentum - Self::momentum(inertia, rotation, spin);
         spin + Self::spin_rate(inertia, rotation, missing)
@@ -155,7 +156,7 @@ impl<R: Real> Space for Spatial<R> {
         let about_momentum = Quaternion::turn(momentum * (time * across));
         let turned =
             about_momentum.after(orientation).after(first).after(axial).after(last).normalized();
-        (turned, Self::spin_of(inertia, turned.matrix(), momentum))
+        (turned, Self::spin_of(inertia, turned, momentum))
     }
     /// The inverse of the derivative of the exponential map, to the order that methods of fourth order
     /// need: `ω − ½ u × ω + ¹⁄₁₂ u × (u × ω)` (Munthe-Kaas 1999).
