@@ -1,6 +1,6 @@
 //! How much arithmetic a step takes, how much of the machine's peak that is, and what lanes hold.
 
-use barrelstack_dynamics::lanes::{Case, Crew, End, Task, Width, march};
+use barrelstack_dynamics::lanes::{Case, Batch, End, Task, Width, run_batch};
 use barrelstack_dynamics::real::Real;
 use barrelstack_dynamics::{Method, Planar, Scratch, State};
 use barrelstack_validation::counting::Work;
@@ -113,9 +113,9 @@ impl Task for Many<'_> {
     fn run<R: Real>(self) -> usize {
         let Self { scene, step, end_time } = self;
         let before = memory::in_use();
-        let mut crew = Repeated { scene, step, end_time, left: MANY, before, held: 0 };
-        march::<R, _>(Method::VelocityVerlet, &mut crew);
-        crew.held
+        let mut batch = Repeated { scene, step, end_time, left: MANY, before, held: 0 };
+        run_batch::<R, _>(Method::VelocityVerlet, &mut batch);
+        batch.held
     }
 }
 
@@ -128,7 +128,7 @@ struct Repeated<'a> {
     held: usize,
 }
 
-impl<'a, R: Real> Crew<'a, R> for Repeated<'a> {
+impl<'a, R: Real> Batch<'a, R> for Repeated<'a> {
     type Drive = Shake;
 
     fn next(&mut self, _: usize) -> Option<Case<'a, Shake>> {

@@ -1,6 +1,6 @@
 //! Many cases in lanes, against their width.
 
-use barrelstack_dynamics::lanes::{Case, Crew, End, Task, Width, march};
+use barrelstack_dynamics::lanes::{Case, Batch, End, Task, Width, run_batch};
 use barrelstack_dynamics::real::Real;
 use barrelstack_dynamics::{Method, Planar, Scratch, State};
 use barrelstack_validation::drive::Shake;
@@ -8,7 +8,7 @@ use barrelstack_validation::drive::Shake;
 use crate::scene::Scene;
 use crate::time;
 
-/// Cases of a march; more than any bundle has lanes.
+/// Cases of a batch; more than any bundle has lanes.
 const CASES: usize = 64;
 
 /// Until then (s) the stack stands.
@@ -16,9 +16,9 @@ const STANDING: f64 = 1.2;
 
 /// What the widest lanes take for a simulated second of a case (s).
 pub(crate) fn of_widest(scene: &Scene, step: f64) -> f64 {
-    let march = || Width::widest().run(Marching { scene, step });
+    let run = || Width::widest().run(InLanes { scene, step });
     time::least(|| {
-        march();
+        run();
     }) / (CASES as f64 * STANDING)
 }
 
@@ -33,7 +33,7 @@ pub(crate) fn against_width(scene: &Scene, step: f64) {
     let mut scalar = None;
     for width in Width::ALL.into_iter().filter(|width| width.is_here()) {
         let spent = time::least(|| {
-            width.run(Marching { scene, step });
+            width.run(InLanes { scene, step });
         });
         let scalar = *scalar.get_or_insert(spent);
         println!(
@@ -47,17 +47,17 @@ pub(crate) fn against_width(scene: &Scene, step: f64) {
 }
 
 /// Cases that differ in the amplitude of the ground.
-struct Marching<'a> {
+struct InLanes<'a> {
     scene: &'a Scene,
     step: f64,
 }
 
-impl Task for Marching<'_> {
+impl Task for InLanes<'_> {
     type Output = ();
 
     fn run<R: Real>(self) {
         let mut cases = Cases { scene: self.scene, step: self.step, next: 0, ended: 0 };
-        march::<R, _>(Method::VelocityVerlet, &mut cases);
+        run_batch::<R, _>(Method::VelocityVerlet, &mut cases);
         assert_eq!(cases.ended, CASES, "every case ends");
     }
 }
@@ -69,7 +69,7 @@ struct Cases<'a> {
     ended: usize,
 }
 
-impl<'a, R: Real> Crew<'a, R> for Cases<'a> {
+impl<'a, R: Real> Batch<'a, R> for Cases<'a> {
     type Drive = Shake;
 
     fn next(&mut self, _lane: usize) -> Option<Case<'a, Shake>> {

@@ -27,7 +27,7 @@ const TESTS: [&str; 15] = [
 ];
 
 /// What some of them need that takes long to install.
-const HEAVY: [&str; 2] = ["obspy", "dask-jobqueue"];
+const HEAVY: [&str; 3] = ["obspy", "dask-jobqueue", "pyright"];
 
 /// OpenQuake, which with all that it asks for has to build GDAL: its readers need none of that.
 const OPENQUAKE: &str = "openquake-engine";

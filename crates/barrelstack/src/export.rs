@@ -165,7 +165,10 @@ impl Folder {
     }
 
     /// Writes files under temporary names, then renames them all.
-    fn put<'a>(
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn put<'a>(
         &self,
         files: &(impl Iterator<Item = (&'a str, &'a [u8])> + Clone),
     ) -> Result<(), ExportError> {

@@ -26,7 +26,7 @@ pub use glossary::WORDS;
 pub(crate) use inputs::{setting_row, shown};
 pub(crate) use sections::traces;
 pub use sections::{standing_range, stress_figure};
-pub(crate) use words::{capital, headline, provenance};
+pub(crate) use words::{headline, provenance};
 
 /// What happened, in three plain sentences: the verdict, the why, and how far to trust it.
 pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {

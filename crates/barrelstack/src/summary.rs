@@ -107,6 +107,8 @@ described! {
         pub landed_at: Option<f64> as "s",
         /// Its largest speed downward until then.
         pub landing_speed: Option<f64> as "m/s",
+        /// Largest force on it since it had fallen.
+        pub fall_force: Option<f64> as "N",
         /// Displacement along x relative to the ground, at the end.
         pub residual_displacement: f64 as "m",
         /// Largest displacement along x relative to the ground, while the stack stood.
@@ -216,7 +218,8 @@ described! {
 }
 
 impl EnergyBooks {
-    fn of(books: &EnergySummary) -> Self {
+    /// Those of a run.
+    pub fn of(books: &EnergySummary) -> Self {
         Self {
             kinetic: books.kinetic,
             potential: books.potential,
@@ -247,7 +250,7 @@ impl Summary {
             // Numbers of a run that broke down look like results and are none.
             bodies: if sound(run) { bodies(run) } else { Vec::new() },
             demands: if sound(run) {
-                Demands::of(&run.assembly, &run.fates, &run.stresses)
+                Demands::of(&run.assembly, &run.fates, &run.stresses, run.recording.forces())
             } else {
                 Demands::default()
             },
@@ -363,6 +366,7 @@ fn bodies(run: &Run) -> Vec<BodySummary> {
                 fall_height: fate.fell_at.map(|_| fate.drop),
                 landed_at: fate.landed_at,
                 landing_speed: fate.landing_speed,
+                fall_force: fate.fall_force,
                 residual_displacement: fate.residual_displacement,
                 peak_displacement: fate.peak_displacement,
                 residual_slip: fate.residual_slip,

@@ -209,9 +209,11 @@ fn disturbed(scenario: &Scenario, seed: u64) -> Scenario {
                 body: StackBody::Barrel,
                 level,
                 column: Some(column),
+                row: None,
                 mass: None,
                 fill: None,
                 offset_x: offset(),
+                offset_y: 0.0,
             }));
         }
         Scene::Free(scene) => {

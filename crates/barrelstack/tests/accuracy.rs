@@ -9,6 +9,7 @@
 
 use std::sync::Arc;
 
+use barrelstack::assemble::assemble;
 use barrelstack::ensemble::{CaseResult, Ensemble, Prepared};
 use barrelstack::outcome::Outcome;
 use barrelstack::{Ground, Scenario};
@@ -144,5 +145,20 @@ fn accuracies_against_ten_times_shorter_steps() {
             errors.drift,
             errors.fall
         );
+    }
+}
+
+/// The arcs of such staves have their centers hundreds of meters away, and are pressed within the barrel all the same.
+#[test]
+fn steps_along_nearly_straight_barrels_are_no_shorter_than_along_others() {
+    let step = |head: &str| {
+        let barrel =
+            format!("stack.barrel={{ head_diameter = \"{head}\", bilge_diameter = \"0.646 m\" }}");
+        let changes = ["stack.view=longitudinal".to_owned(), barrel];
+        let scenario = Scenario::builtin("demo-napa", &changes).unwrap();
+        assemble(&scenario).unwrap().step
+    };
+    for head in ["0.6459 m", "0.645 m", "0.64 m"] {
+        assert!(step(head) >= step("0.52 m"), "{head}: {} s", step(head));
     }
 }

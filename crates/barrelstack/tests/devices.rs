@@ -4,7 +4,7 @@
 
 use barrelstack::assemble::PartKind;
 use barrelstack::device::{DEVICES, Setting};
-use barrelstack::{Run, Scenario};
+use barrelstack::{Run, Scenario, Summary};
 
 fn scenario(name: &str, changes: &[&str]) -> Scenario {
     let changes: Vec<String> = changes.iter().map(|change| (*change).to_owned()).collect();
@@ -235,4 +235,21 @@ fn devices_that_do_not_go_on_a_stack_are_refused_with_what_to_do() {
         println!("{message}");
         assert!(message.contains(words), "{changes:?}: {message}");
     }
+}
+
+#[test]
+fn a_report_lists_the_inputs_of_a_device_where_it_is_on_the_stack_or_stated() {
+    let lists = |changes: &[&str], input: &str| {
+        let run = small(ACROSS, changes);
+        let text = barrelstack_report::html(&barrelstack::report::document(
+            &run,
+            &Summary::of(&run, None),
+        ));
+        assert!(text.contains("stack.levels"));
+        text.contains(input)
+    };
+    assert!(!lists(&[], "stack.chock.gap"));
+    assert!(lists(&["stack.chock.levels=1"], "stack.chock.gap"));
+    // What is stated of one that is not there is said, since somebody thought that it was.
+    assert!(lists(&["stack.chock.gap=\"7 mm\""], "stack.chock.gap"));
 }

@@ -232,7 +232,7 @@ fn a_slippery_floor_keeps_six_barrels_up_and_moves_them_further() {
 fn nothing_stands_in_anything_while_it_falls() {
     let run = eight();
     let parts = &run.assembly.parts;
-    let boundaries = Boundaries::new(&run.assembly.model);
+    let boundaries = Boundaries::new(&run.assembly);
     let (mut deepest, mut at_end) = (0.0_f64, 0.0_f64);
     let frames = &run.recording.frames;
     for (index, poses) in frames.all_poses().enumerate() {

@@ -68,6 +68,7 @@ fn a_thin_straight_shell_has_the_inertia_of_a_tube_with_lids() {
         stave_thickness: wall,
         capacity: 10.0,
         section_diameter: 2.0 * radius,
+        stave_capacity: 4e4,
         fill: Fill::Empty,
         filled: 1.0,
     };

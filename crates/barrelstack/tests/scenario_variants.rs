@@ -161,18 +161,22 @@ fn bodies_that_differ() {
         body: StackBody::Barrel,
         level: 4,
         column: None,
+        row: None,
         mass: None,
         fill: Some(Fill::Empty),
         offset_x: 0.0,
+        offset_y: 0.0,
     };
     assert_eq!(stack.overrides[0], regular);
     let rack = BodyOverride {
         body: StackBody::Rack,
         level: 1,
         column: Some(1),
+        row: None,
         mass: Some(35.0),
         fill: None,
         offset_x: -0.01,
+        offset_y: 0.0,
     };
     assert_eq!(stack.overrides[1], rack);
 }

@@ -31,18 +31,14 @@ fn random_stack(seed: u64) -> Vec<String> {
         ("puncheon-500", 0.930),
     ]);
     let view = random.pick(&["transverse", "longitudinal"]);
-    let racks: &[&str] = match view {
-        "transverse" => &[
-            "two-barrel",
-            "two-barrel-feet",
-            "single-bar",
-            "four-barrel",
-            "rack-on-rack",
-            "candia-2008",
-        ],
-        _ => &["two-barrel", "two-barrel-feet", "single-bar", "four-barrel", "candia-2008"],
-    };
-    let rack = random.pick(racks);
+    let rack = random.pick(&[
+        "two-barrel",
+        "two-barrel-feet",
+        "single-bar",
+        "four-barrel",
+        "rack-on-rack",
+        "candia-2008",
+    ]);
     let pitch = diameter + 0.05;
     let posts = format!(
         ", post_height=\"{:.3} m\", post_half_spacing=\"{:.4} m\"",

@@ -4,7 +4,7 @@
 
 use barrelstack::Scenario;
 use barrelstack::assemble::{Outline, PartKind, assemble};
-use barrelstack::scenario::{RackKind, catalog};
+use barrelstack::scenario::catalog;
 
 /// Least width (m) of a convex outline over all directions: that across one of its sides.
 fn least_width(outline: &Outline) -> f64 {
@@ -26,9 +26,6 @@ fn what_falls_from_six_levels_passes_through_nothing() {
     let mut most = 0.0_f64;
     for rack in catalog::RACKS {
         for view in ["transverse", "longitudinal"] {
-            if view == "longitudinal" && rack.rack.kind == RackKind::OnRacks {
-                continue;
-            }
             let name = rack.rack.base;
             let text = format!(
                 "schema = 1\n[stack]\nview = \"{view}\"\nlevels = 6\ncolumns = 2\nrack = \"{name}\"\n\

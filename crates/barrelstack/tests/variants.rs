@@ -77,9 +77,11 @@ fn variants_that_cannot_stand_are_counted_and_told() {
         body: StackBody::Barrel,
         level: 2,
         column: Some(1),
+        row: None,
         mass: None,
         fill: None,
         offset_x: 0.0185,
+        offset_y: 0.0,
     });
     let all = found(&planes(&stated).unwrap());
     assert!(all[0].results[0].outcome.is_ok(), "{:?}", all[0].results[0].outcome);

@@ -41,7 +41,7 @@ pub struct Settings {
     pub simulations: usize,
     /// Start of all random numbers.
     pub seed: u64,
-    /// The vector unit in which simulations march; the widest of the machine without. The result does not
+    /// The vector unit in which simulations run; the widest of the machine without. The result does not
     /// depend on it.
     pub lanes: Option<Width>,
 }

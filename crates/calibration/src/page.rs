@@ -1,6 +1,6 @@
 //! The page of a calibration: the parameters, and what was measured beside the fit.
 
-use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, significant};
+use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, capital, significant};
 
 use super::{Calibration, Estimate};
 
@@ -61,10 +61,7 @@ impl Calibration {
             format!("{} {}", estimate.name, value.trim_end())
         };
         let all: Vec<String> = self.estimates.iter().map(told).collect();
-        let text = all.join(", ");
-        let mut letters = text.chars();
-        let first = letters.next().map(|first| first.to_uppercase().collect::<String>());
-        format!("{}{}.", first.unwrap_or_default(), letters.as_str())
+        format!("{}.", capital(&all.join(", ")))
     }
 
     fn parameters(&self) -> Table {

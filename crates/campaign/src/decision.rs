@@ -120,6 +120,17 @@ pub enum DecisionError {
         "the table of the study has no column `{0}`; it was written by another version of the program"
     )]
     Column(&'static str),
+    /// A cell of a list of numbers holds something else.
+    #[error(
+        "the table of the study has \"{found}\" in a row of its column `{column}`, where numbers with semicolons between \
+         them are expected; run its chunk again"
+    )]
+    List {
+        /// The column.
+        column: &'static str,
+        /// What stands there.
+        found: String,
+    },
     /// The hazard curve cannot be used.
     #[error(transparent)]
     Hazard(#[from] TableError),

@@ -10,23 +10,20 @@ mod options;
 mod page;
 mod plan;
 mod rank;
+mod search;
 
-use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
 
-use barrelstack::check;
 use barrelstack::compare;
-use barrelstack::variants::{Asked, Told, answer, planes};
+use barrelstack::variants::{Asked, Told, answer};
 use barrelstack_report::{Block, Document};
 
-use crate::decision::{Cases, DecisionError, SiteHazard};
+use crate::decision::{DecisionError, SiteHazard};
 use crate::ground::GroundError;
-use crate::pool;
 use crate::run::RunFailure;
 use crate::scenario::{MotionSource, Scenario, ScenarioError, View};
-use crate::study::{RunOptions, Study, StudyError};
+use crate::study::{RunOptions, StudyError};
 
 pub use json::ProtectDocument;
 pub use options::{Kind, Protection};
@@ -35,6 +32,7 @@ pub(crate) use plan::{NAPA, shaken};
 pub use rank::Estimate;
 
 use rank::{Quantity, Runs, weights};
+use search::{Search, Trial};
 
 /// Levels of peak ground velocity (m/s) that are shaken where nothing else is asked for.
 pub const VELOCITIES: [f64; 3] = [0.25, 0.50, 0.75];
@@ -246,35 +244,6 @@ pub struct Reached {
     pub of: u64,
 }
 
-/// A protection while it is tried.
-struct Trial {
-    protection: Protection,
-    /// The stack in each direction.
-    stacks: Vec<(View, Scenario)>,
-    runs: Vec<Runs>,
-    round: u32,
-}
-
-impl Trial {
-    fn new(base: &Scenario, protection: Protection) -> Result<Self, ProtectError> {
-        let changed = protection.on(base)?;
-        let stacks: Vec<(View, Scenario)> = planes(&changed)?
-            .into_iter()
-            .filter_map(|plane| Some((plane.view()?, plane.scenario)))
-            .collect();
-        // Whether it can be built, and stands by itself, in every direction.
-        stacks.iter().try_for_each(|(_, stack)| check(stack).map(drop))?;
-        let runs = stacks.iter().map(|_| Runs::default()).collect();
-        Ok(Self { protection, stacks, runs, round: 0 })
-    }
-
-    /// The direction in which more barrels fall.
-    fn worse(&self, weights: &[f64]) -> usize {
-        let fallen = |at: usize| self.runs[at].estimate(Quantity::Fallen, weights, 1.0).mean;
-        (0..self.runs.len()).max_by(|a, b| fallen(*a).total_cmp(&fallen(*b))).unwrap_or(0)
-    }
-}
-
 /// Tries everything that can be done for a stack, in folders below `folder`, and goes on where an earlier run stopped.
 ///
 /// `tell` hears how far it is, from several threads, and may stop it.
@@ -412,101 +381,5 @@ fn mark_front(all: &mut [Ranked]) {
         finalists.iter().map(|one| (one.cost(), one.fallen.mean)).collect();
     for at in rank::front(&points) {
         finalists[at].on_front = true;
-    }
-}
-
-/// What all trials of a search share.
-struct Search<'a> {
-    request: &'a Request,
-    base: &'a Scenario,
-    folder: &'a Path,
-    options: &'a RunOptions,
-    tell: &'a (dyn Fn(Reached) -> ControlFlow<()> + Sync),
-    levels: &'a [f64],
-    not_tried: Vec<(String, String)>,
-}
-
-impl Search<'_> {
-    /// Those that can be built and paid for; why not of the others is kept.
-    fn trials(&mut self, protections: Vec<Protection>) -> Vec<Trial> {
-        let mut trials = Vec::new();
-        for protection in protections {
-            let name = protection.name.clone();
-            let cost = middle(&protection);
-            if let Some(budget) = self.request.budget.filter(|budget| cost > *budget) {
-                let reason = format!("costs US${cost:.0}, above the budget of US${budget:.0}");
-                self.not_tried.push((name, reason));
-                continue;
-            }
-            match Trial::new(self.base, protection) {
-                Ok(trial) => trials.push(trial),
-                // Where a field stands in the text that was made here tells nobody anything.
-                Err(error) => {
-                    let reason = error.to_string();
-                    self.not_tried
-                        .push((name, reason.lines().next().unwrap_or_default().to_owned()));
-                }
-            }
-        }
-        trials
-    }
-
-    /// Runs a round of some trials.
-    fn round(&self, trials: &mut [Trial], open: &[usize], round: u32) -> Result<(), ProtectError> {
-        let mut studies = Vec::new();
-        for at in open {
-            for (direction, (view, stack)) in trials[*at].stacks.iter().enumerate() {
-                let study = plan::study(self.request, stack, self.levels, round)?;
-                let folder = self
-                    .folder
-                    .join(&trials[*at].protection.key)
-                    .join(plan::name(view.name(), round));
-                studies.push((*at, direction, folder, study));
-            }
-        }
-        let of: u64 = studies.iter().map(|(.., study)| study.cases()).sum();
-        let done = AtomicU64::new(0);
-        // Each on one thread, and as many at once as there are cores.
-        let options = RunOptions { threads: Some(NonZero::<usize>::MIN), ..*self.options };
-        let work = |(.., folder, study): &(usize, usize, PathBuf, Study)| {
-            let before = AtomicU64::new(0);
-            let collected = study.run(folder, &options, &|progress| {
-                let now = progress.tally.cases;
-                let news = now.saturating_sub(before.fetch_max(now, Ordering::Relaxed));
-                let done = done.fetch_add(news, Ordering::Relaxed) + news;
-                (self.tell)(Reached { round: round + 1, done, of })
-            })?;
-            Ok::<Cases, ProtectError>(Cases::read(&collected)?)
-        };
-        let found = pool::map(&studies, work, &|_| ());
-        for ((at, direction, ..), cases) in studies.iter().zip(found) {
-            trials[*at].runs[*direction].add(&cases?, self.levels);
-            trials[*at].round = round + 1;
-        }
-        Ok(())
-    }
-
-    /// What is left of those on the front when they are worn, under the motions of the first round.
-    fn worn(
-        &mut self,
-        trials: &[Trial],
-        all: &mut [Ranked],
-        weights: &[f64],
-    ) -> Result<(), ProtectError> {
-        for (trial, found) in trials.iter().zip(all).filter(|(_, found)| found.on_front) {
-            for (words, worn) in trial.protection.worn() {
-                let mut one = self.trials(vec![worn]);
-                let open: Vec<usize> = (0..one.len()).collect();
-                self.round(&mut one, &open, 0)?;
-                let Some(one) = one.first() else { continue };
-                let most = one.stacks[0].1.stack().map_or(0, |stack| stack.levels * stack.columns);
-                let runs = &one.runs[one.worse(weights)];
-                let fallen = runs.estimate(Quantity::Fallen, weights, f64::from(most));
-                if found.worn.as_ref().is_none_or(|(_, worst)| worst.mean < fallen.mean) {
-                    found.worn = Some((words.to_owned(), fallen));
-                }
-            }
-        }
-        Ok(())
     }
 }

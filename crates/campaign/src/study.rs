@@ -58,7 +58,7 @@ pub use error::StudyError;
 pub use execute::{ChunkRun, Progress, RunOptions};
 pub use fields::STUDY;
 pub(crate) use folder::manifest_of;
-pub use folder::{MotionSource, Provenance};
+pub use folder::{MotionSource, Provenance, remove_drafts};
 pub use grow::Common;
 pub use ida::Hunt;
 pub use plan::Chunk;

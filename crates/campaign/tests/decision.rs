@@ -43,6 +43,7 @@ fn study(falls: impl Fn(usize, f64) -> usize) -> Collected {
         text("mode", Role::Outcome, say(&|n| (n > 0).then(|| "rocking".into()))),
         integer("barrels", Role::Outcome, vec![Some(6); rows]),
         text("fall_heights", Role::Outcome, say(&|n| (n > 0).then(|| vec!["1.8"; n].join(";")))),
+        text("fall_forces", Role::Outcome, say(&|n| (n > 0).then(|| vec!["1.1e6"; n].join(";")))),
         number("top_drift_ratio", "", Role::Demand, each(&|_, x, n| (n == 0).then_some(0.05 * x))),
     ];
     made(columns, "stripes", &["friction"], "record ", 12)
@@ -117,6 +118,10 @@ fn losses_count_barrels_and_burst_them_by_the_height_of_their_fall() {
     assert!((chance - 0.0443).abs() < 5e-4, "{chance}");
     assert!((last.burst[1] - chance * last.fallen).abs() < 1e-12);
     assert!(last.burst[0] < last.burst[1] && last.burst[1] < last.burst[2]);
+    // Φ(ln(1.1/2.2)/0.36) = Φ(−1.9254).
+    let by_force = last.burst_by_force.unwrap() / last.fallen;
+    assert!((by_force - 0.02709).abs() < 1e-4, "{by_force}");
+    assert!(found.html().contains("burst, by force"));
 }
 
 #[test]
@@ -160,6 +165,18 @@ fn a_hazard_curve_that_does_not_serve_is_refused_with_the_place() {
     let request = Request { hazard: Some(hazard), years: None };
     let error = decide(&ordinary(), &request).unwrap_err();
     assert!(error.to_string().contains("are over pgv; give"), "{error}");
+}
+
+#[test]
+fn a_table_that_tells_no_forces_says_nothing_of_what_bursts_by_them() {
+    let mut collected = ordinary();
+    let mut columns = collected.table.columns().to_vec();
+    columns.retain(|column| column.spec.name != "fall_forces");
+    collected.table = StudyTable::new(columns).unwrap();
+    let found = decide(&collected, &Request::default()).unwrap();
+    let last = found.losses.as_ref().unwrap().levels.last().unwrap();
+    assert!(last.burst_by_force.is_none() && last.burst[1] > 0.0);
+    assert!(!found.html().contains("burst, by force"));
 }
 
 #[test]

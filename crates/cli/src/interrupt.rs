@@ -52,6 +52,7 @@ pub(crate) fn watch(json: bool) {
 /// Ends the program, says what is kept and removes what is unfinished.
 #[expect(clippy::exit, reason = "the work does not end by itself")]
 fn end(json: bool) -> ! {
+    system::write_no_more();
     let folders = FOLDERS.lock().map(|folders| folders.clone()).unwrap_or_default();
     for entry in
         folders.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().flatten()
@@ -61,6 +62,7 @@ fn end(json: bool) -> ! {
             let _ = std::fs::remove_file(entry.path());
         }
     }
+    barrelstack_campaign::study::remove_drafts();
     printer::stopped(json);
     std::process::exit(i32::from(STATUS))
 }

@@ -1,11 +1,11 @@
-//! `--lanes`: the vector unit in which the cases of an ensemble march.
+//! `--lanes`: the vector unit in which the cases of an ensemble run.
 
 use barrelstack::ensemble::Width;
 
 /// The option of all commands that run ensembles.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub(crate) struct LanesArgs {
-    /// Vector unit in which cases march side by side: avx512, avx2, or scalar for one after the other;
+    /// Vector unit in which cases run side by side: avx512, avx2, or scalar for one after the other;
     /// the widest of this machine without. Results do not depend on it.
     #[arg(long, value_name = "UNIT", value_parser = here)]
     pub(crate) lanes: Option<Width>,

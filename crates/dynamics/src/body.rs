@@ -111,7 +111,7 @@ impl<S: Space> Nodes<S> {
             Self::Fixed(nodes) => nodes.len(),
             Self::Rounds(rounds) => rounds.len(),
             Self::Rolling { .. } => 1,
-            Self::Whole(whole) => whole.most_contacts(),
+            Self::Whole(whole) => whole.most_sticks(),
         }
     }
 }

@@ -394,7 +394,7 @@ impl<S: Space> ContactElements<S> {
                 let (center, radius) = whole.ball();
                 if let Some(gap) = self.near(surface, frame.to_surface(center), radius, margin) {
                     least = least.min(gap);
-                    for index in 0..whole.most_contacts() {
+                    for index in 0..whole.most_sticks() {
                         self.nodes.push(u32::try_from(index).unwrap_or(u32::MAX));
                         self.positions.push(center);
                         self.weights.push(basis.weight(whole.tributary_length()));

@@ -9,7 +9,7 @@
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign};
 
-/// A number, or a bundle of numbers that march in lockstep.
+/// A number, or a bundle of numbers that advance in lockstep.
 pub trait Real:
     Copy
     + Debug
@@ -48,7 +48,7 @@ pub trait Real:
     /// The number that `value` gives for each lane.
     #[must_use]
     fn from_lanes(value: impl FnMut(usize) -> f64) -> Self;
-    /// How many numbers march together.
+    /// How many numbers run together.
     const LANES: usize;
 
     /// Does work that is full of these numbers, compiled for the unit that computes them.

@@ -2,18 +2,21 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
+mod common;
+
 use std::f64::consts::PI;
 
 use barrelstack_dynamics::contact::Stick;
 use barrelstack_dynamics::math::{cos, sin};
 use barrelstack_dynamics::shape::{Surface, Whole};
-use barrelstack_dynamics::solid::{Ball, Barrel, Capsule, Hull, Rounded};
+use barrelstack_dynamics::solid::{Ball, Barrel, Block, Capsule, Hull, Rounded};
 use barrelstack_dynamics::space::Linear;
 use barrelstack_dynamics::{
     FrictionLaw, NormalLaw, Quaternion, Rotation3, Solid, Space, Spatial, Vec3, evaluate,
 };
 use barrelstack_scenes::scene::{Scene, interface};
 use barrelstack_scenes::spatial::{floor, solid};
+use common::Dice;
 
 /// A barrel of 225 liters with a chime rounded by 10 mm.
 fn bordeaux() -> Barrel {
@@ -89,12 +92,9 @@ fn barrels_are_as_far_from_each_other_as_they_are() {
 /// Points and gaps of a hull on the floor.
 fn on_floor(hull: Hull, height: f64, turned: Rotation3) -> Vec<f64> {
     let mut gaps = Vec::new();
-    Rounded::centered(hull).meet(
-        &Solid::HalfSpace,
-        Vec3::new(0.0, 0.0, height),
-        turned,
-        |_, _, gap| gaps.push(gap.distance),
-    );
+    Rounded::centered(hull).meet(&Solid::HalfSpace, Vec3::new(0.0, 0.0, height), turned, |patch| {
+        gaps.push(patch.deepest.gap.distance);
+    });
     gaps
 }
 
@@ -118,36 +118,14 @@ fn a_barrel_stands_as_high_on_the_floor_as_it_does() {
     }
 }
 
-/// Random numbers between -1 and 1, the same ones every time.
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self) -> f64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let x = self.0 ^ (self.0 >> 33);
-        (x.wrapping_mul(0xff51_afd7_ed55_8ccd) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-    fn vector(&mut self) -> Vec3 {
-        Vec3::new(self.roll(), self.roll(), self.roll())
-    }
-    /// Any orientation.
-    fn orientation(&mut self) -> Quaternion {
-        loop {
-            let (w, v) = (self.roll(), self.vector());
-            if w * w + v.dot(v) <= 1.0 {
-                return Quaternion { w, v }.normalized();
-            }
-        }
-    }
-}
-
 /// A solid as target and as contactor, and how far its boundary lies outside of its core.
 fn as_both(hull: Hull) -> (Solid, Rounded, f64) {
-    match hull {
-        Hull::Barrel(barrel) => (Solid::Barrel(barrel), Rounded::centered(hull), barrel.rounding),
-        Hull::Capsule(tube) => (Solid::Capsule(tube), Rounded::centered(hull), tube.radius),
-    }
+    let grown = match hull {
+        Hull::Barrel(barrel) => barrel.rounding,
+        Hull::Capsule(tube) => tube.radius,
+        Hull::Block(block) => block.rounding,
+    };
+    (hull.surface(), Rounded::centered(hull), grown)
 }
 
 /// Poses of one solid about another: all must be found, be optimal, and the same from both sides.
@@ -211,6 +189,10 @@ fn all_pairs(poses: u32) {
     meet_anyhow(barrel, barrel, poses);
     meet_anyhow(barrel, small, poses);
     meet_anyhow(TUBE, TUBE, poses);
+    let block = Hull::Block(Block { half: Vec3::new(0.5, 0.04, 0.3), rounding: 0.01 });
+    meet_anyhow(block, TUBE, poses);
+    meet_anyhow(block, barrel, poses);
+    meet_anyhow(block, block, poses);
 }
 
 #[test]
@@ -321,8 +303,13 @@ fn a_barrel_settles_on_its_head_and_stays() {
     let scene = Scene::new(vec![floor(), body], interface(law, friction), gravity).unwrap();
     let scene = scene.settled(1e-9).unwrap();
     let forces: Vec<f64> = scene.scratch.contacts.iter().map(|c| c.normal_force).collect();
-    assert_eq!(forces.len(), 4);
     let weight: f64 = forces.iter().sum();
+    // All of it on the four sticks about the center of pressure, which is the middle of the head.
+    for force in &forces[1..] {
+        assert!((force / weight - 0.25).abs() < 1e-6, "{forces:?}");
+    }
+    let sunk = 0.4725 - scene.state.poses[1].position.z;
+    assert!((sunk * 4e7 / weight - 1.0).abs() < 1e-6, "{sunk}");
     assert!((weight / (269.0 * 9.81) - 1.0).abs() < 1e-6, "{weight}");
 }
 

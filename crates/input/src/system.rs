@@ -1,7 +1,10 @@
 //! Files as the system gives them: read with a limit, refused in plain words.
 
 use std::io::{self, Read as _};
+use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
+use std::time::Duration;
 
 /// What the system says of a file, in words that a person can act on.
 pub fn words(error: &io::Error) -> String {
@@ -46,12 +49,36 @@ pub fn unfinished() -> String {
     format!(".{}.part", std::process::id())
 }
 
+/// Held while a file is not yet under its own name.
+static WRITING: Mutex<()> = Mutex::new(());
+
+/// A lock that whoever ends the process never gives back, so that nobody begins what it guards; none after a fifth of a
+/// second, for a disk that hangs.
+pub fn taken<T>(lock: &'static Mutex<T>) -> ManuallyDrop<Option<MutexGuard<'static, T>>> {
+    for _ in 0..20 {
+        match lock.try_lock() {
+            Ok(guard) => return ManuallyDrop::new(Some(guard)),
+            Err(TryLockError::Poisoned(guard)) => {
+                return ManuallyDrop::new(Some(guard.into_inner()));
+            }
+            Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(10)),
+        }
+    }
+    ManuallyDrop::new(None)
+}
+
+/// Waits for the file that is being written, and lets nobody begin another one: the process ends.
+pub fn write_no_more() {
+    taken(&WRITING);
+}
+
 /// Writes under a name of this process alone and renames, so that the file is never half there.
 ///
 /// # Errors
 /// When the system refuses.
 pub fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let part = temporary(path);
+    let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
     let written = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, path));
     if written.is_err() {
         // It may never have been made, and that is well.

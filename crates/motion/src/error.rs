@@ -149,7 +149,8 @@ pub enum MotionError {
 }
 
 impl MotionError {
-    pub(crate) fn parameter(
+    /// A number that is not what it should be: what it is, what was expected, what was found.
+    pub fn parameter(
         what: impl Into<String>,
         expected: impl Into<String>,
         found: impl fmt::Display,
@@ -158,7 +159,10 @@ impl MotionError {
     }
 
     /// `Ok` when `value` is finite and above zero.
-    pub(crate) fn require_positive(what: &str, value: f64) -> Result<(), Self> {
+    ///
+    /// # Errors
+    /// When it is not, in words that begin with `what` it is.
+    pub fn require_positive(what: &str, value: f64) -> Result<(), Self> {
         if value.is_finite() && value > 0.0 {
             Ok(())
         } else {

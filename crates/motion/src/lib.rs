@@ -41,7 +41,7 @@
 //!   [`Record::fault_axes`].
 //! - Measuring: [`IntensityMeasure`], [`Horizontals`], [`ResponseSpectrum`], [`rotated_spectrum`],
 //!   [`dominant_pulse`], [`classify_component`], [`classify_pair`].
-//! - Many records: [`group_files`], [`measure`], [`Flatfile`]; a set for a target: [`select`].
+//! - Many records: [`group_files`], [`measure`], [`Flatfile`].
 //! - Scaling and matching: [`GroundMotion::scale_to`], [`GroundMotion::froude`],
 //!   [`GroundMotion::match_spectrum`], [`TargetSpectrum`].
 //! - Making: [`Pulse`], [`CloughPenzien`], [`BooreSource`], [`NearFault`], all from stated seeds of
@@ -87,7 +87,6 @@ mod response;
 mod rotd;
 mod sampled;
 mod select;
-mod selection;
 mod site;
 mod synthesis;
 mod target;
@@ -126,10 +125,6 @@ pub use response::{ResponsePeaks, ResponseSpectrum, response, standard_periods};
 pub use rotd::{RotatedPeak, rotated_peak, rotated_spectrum};
 pub use sampled::{Kinematics, Sampled};
 pub use select::Component;
-pub use selection::{
-    Candidate, Choosing, Chosen, Condition, Selection, SelectionTarget, select,
-    spectral_correlation,
-};
 pub use site::Site;
 pub use synthesis::{BooreSource, CloughPenzien, Envelope, NearFault, Path, SiteAmplification};
 pub use target::{ChileanZone, NCh2745Soil, SiteClass, TargetSpectrum};

@@ -5,6 +5,8 @@ use std::fmt;
 use crate::direction::{Direction, Orientation};
 use crate::error::MotionError;
 use crate::format::{self, Printed, Source};
+use crate::ground_motion::GroundMotion;
+use crate::history::History;
 use crate::math;
 use crate::site::Site;
 use crate::units::AccelerationUnit;
@@ -132,6 +134,23 @@ impl Channel {
             site: Site::default(),
             peaks: Vec::new(),
         }
+    }
+
+    /// A channel of a motion that was made, at steps of at most `time_step` (s).
+    ///
+    /// # Errors
+    /// As [`History::sampled`].
+    pub fn of_history(
+        name: &str,
+        direction: Direction,
+        history: &History,
+        time_step: f64,
+    ) -> Result<Self, MotionError> {
+        let sampled = history.sampled(time_step)?;
+        let acceleration = sampled.acceleration().to_vec();
+        let mut channel = Self::new(name, direction, sampled.time_step(), acceleration);
+        channel.initial_velocity = sampled.velocity()[0];
+        Ok(channel)
     }
 
     /// Time from the first to the last sample (s).
@@ -277,6 +296,27 @@ impl Record {
                 remedy: "correct the samples, their step or their unit".to_owned(),
             }
         })?;
+        Ok(record)
+    }
+
+    /// A record out of a motion that was made, at steps of at most `time_step` (s): its horizontal component `H1`, and
+    /// `UP` where it has a vertical one.
+    ///
+    /// Its notes are the motion's provenance, and its numbers are taken as they are.
+    ///
+    /// # Errors
+    /// As [`History::sampled`].
+    pub fn of_motion(motion: &GroundMotion, time_step: f64) -> Result<Self, MotionError> {
+        let mut record = Self::new("synthetic", &motion.name, Stage::Corrected);
+        record.event.clone_from(&motion.name);
+        "synthetic".clone_into(&mut record.station);
+        record.notes.clone_from(&motion.provenance);
+        let across =
+            Channel::of_history("H1", Direction::some_horizontal(), &motion.horizontal, time_step)?;
+        record.channels.push(across);
+        if let Some(vertical) = &motion.vertical {
+            record.channels.push(Channel::of_history("UP", Direction::up(), vertical, time_step)?);
+        }
         Ok(record)
     }
 

@@ -1,4 +1,4 @@
-//! What is asked of many runs at once: comparisons, heights, protections, the paper's cases.
+//! What is asked of many at once: comparisons, heights, protections, scores, the paper's cases, sets of records.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -13,8 +13,11 @@ use barrelstack_campaign::heights::{
 use barrelstack_campaign::protect::{
     ProtectError, Reached, Request as ProtectRequest, Shaking, VELOCITIES, protect as rank,
 };
+use barrelstack_campaign::score::{Protocol, ScoreError, score as score_of};
 use barrelstack_campaign::study::RunOptions;
+use barrelstack_motion::TargetSpectrum;
 use barrelstack_reproduction::{ReproduceError, reproduce as run_all};
+use barrelstack_selection::{Candidate, Choosing, Condition, SelectionTarget, select as choose};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use serde_json::json;
@@ -136,6 +139,69 @@ pub(crate) fn protect(
         | ProtectError::Decision(_)) => errors::told(other),
     })?;
     Page::of(&found.to_document(), found.document)
+}
+
+/// The RockScore of a rack and its devices.
+#[pyfunction]
+pub(crate) fn score(
+    py: Python<'_>,
+    scenario: &Scenario,
+    folder: PathBuf,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Page> {
+    let sheet = listening(py, progress, |hear| {
+        let tell = |done: u64, of: u64| hear.tell(done as f64, of as f64, "runs");
+        let protocol = Protocol::rockscore();
+        score_of(&scenario.inner, &protocol, &folder, &RunOptions::default(), &tell)
+    })?;
+    let sheet = sheet.map_err(|error| match error {
+        ScoreError::Study(error) => errors::study(error),
+        ScoreError::Ground(error) => errors::ground(&error),
+        ScoreError::Stack(failure) => errors::run(&failure, &scenario.inner),
+        ScoreError::State { ref source, .. } => errors::told(format!("{error}: {source}")),
+        ScoreError::Curve { ref source, .. } => errors::told(format!("{error}: {source}")),
+        other @ (ScoreError::NoStack(_) | ScoreError::Decision(_)) => errors::told(other),
+    })?;
+    Page::of(&sheet.to_document(), sheet.document)
+}
+
+/// A set: places and factors of the chosen ones; mean and standard deviation of ln Sa of the target, then of the set;
+/// how many could be chosen.
+type SetFacts = (Vec<(usize, f64)>, [Vec<f64>; 4], usize);
+
+/// Of spectra (m/s²) at the periods (s) of a target those that together have its mean and spread.
+///
+/// A target is a code's name, or medians (m/s²) and standard deviations of ln Sa; `given` is a period (s) with the
+/// pseudo-acceleration (m/s²) there.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
+pub(crate) fn select(
+    py: Python<'_>,
+    periods: Vec<f64>,
+    target: &Bound<'_, PyAny>,
+    given: Option<(f64, f64)>,
+    candidates: Vec<(String, Vec<f64>, String)>,
+    count: usize,
+    scale: [f64; 2],
+    most_of_group: Option<usize>,
+    seed: u64,
+) -> PyResult<SetFacts> {
+    let target = if let Ok(code) = target.extract::<String>() {
+        let spectrum: TargetSpectrum = code.parse().map_err(errors::motion)?;
+        SelectionTarget::of_spectrum(&spectrum, &periods)
+    } else {
+        let (median, deviation): (Vec<f64>, Vec<f64>) = target.extract()?;
+        let given = given.map(|(period, acceleration)| Condition { period, acceleration });
+        SelectionTarget::new(&periods, &median, &deviation, given)
+    };
+    let target = target.map_err(errors::motion)?;
+    let candidate = |(name, spectrum, group)| Candidate { name, spectrum, group };
+    let candidates: Vec<Candidate> = candidates.into_iter().map(candidate).collect();
+    let choosing = Choosing { count, scale, most_of_group, seed };
+    let set = py.detach(|| choose(&target, &candidates, &choosing)).map_err(errors::motion)?;
+    let chosen = set.chosen.iter().map(|one| (one.candidate, one.scale)).collect();
+    let (mean, deviation) = (target.mean().to_vec(), target.deviation().to_vec());
+    Ok((chosen, [mean, deviation, set.mean, set.deviation], set.eligible))
 }
 
 /// The numbers and figures of the paper beside ours.

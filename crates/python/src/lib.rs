@@ -23,7 +23,7 @@ mod view;
 #[pyo3::pymodule]
 mod _native {
     #[pymodule_export]
-    use crate::ask::{compare, heights, protect, reproduce};
+    use crate::ask::{compare, heights, protect, reproduce, score, select};
     #[pymodule_export]
     use crate::calibrate::{
         calibrate_collapse, calibrate_drop, calibrate_friction, calibrate_response,
@@ -32,7 +32,7 @@ mod _native {
     #[pymodule_export]
     use crate::page::Page;
     #[pymodule_export]
-    use crate::record::{Record, formats, measured, standard_periods};
+    use crate::record::{Record, formats, group_files, measured, standard_periods};
     #[pymodule_export]
     use crate::run::{Glance, Run};
     #[pymodule_export]
@@ -42,6 +42,8 @@ mod _native {
     #[pymodule_export]
     use crate::table::{Table, ensemble};
 
+    #[pymodule_export]
+    const PERIODS: [f64; 22] = barrelstack_selection::PERIODS;
     #[pymodule_export]
     const VERSION: &str = env!("CARGO_PKG_VERSION");
 }

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use barrelstack::scenario::{Dimension, Quantity};
 use barrelstack_motion::{
-    AccelerationUnit, Channel, Component, FORMATS, Horizontals, IntensityMeasure, MatchMethod,
-    Matching, MeanRemoval, MotionError, Pads, Processing, ReadOptions, ResponseSpectrum, Stage,
-    TargetSpectrum, Utc, bundled, read, rotated_spectrum, write,
+    AccelerationUnit, Channel, Component, FORMATS, GroundMotion, Horizontals, IntensityMeasure,
+    MatchMethod, Matching, MeanRemoval, MotionError, Pads, Processing, ReadOptions,
+    ResponseSpectrum, Stage, TargetSpectrum, Utc, bundled, read, rotated_spectrum, write,
 };
 use numpy::{IntoPyArray as _, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::{PyIndexError, PyValueError};
@@ -350,8 +350,7 @@ impl Record {
         }
         let channel = self.inner.component(&of.parse::<Component>()?)?;
         let horizontal = barrelstack_motion::History::Sampled(channel.sampled()?);
-        barrelstack_motion::GroundMotion::new(channel.name, horizontal, None)
-            .scale_factor(measure, value)
+        GroundMotion::new(channel.name, horizontal, None).scale_factor(measure, value)
     }
 
     fn pseudo_acceleration(
@@ -385,6 +384,16 @@ impl Record {
     }
 }
 
+/// A motion as a record, at the step of its own samples or the natural one of its formula.
+pub(crate) fn of_motion(motion: &GroundMotion) -> PyResult<Record> {
+    let step = match &motion.vertical {
+        // A motion that is vertical alone has a horizontal component of no length.
+        Some(vertical) if motion.horizontal.duration() == 0.0 => vertical.natural_step(),
+        Some(_) | None => motion.horizontal.natural_step(),
+    };
+    barrelstack_motion::Record::of_motion(motion, step).map(Record::from).map_err(errors::motion)
+}
+
 /// Periods (s) from 0.01 to 10 s, so many to a decade.
 #[pyfunction]
 pub(crate) fn standard_periods(py: Python<'_>, per_decade: usize) -> Bound<'_, PyArray1<f64>> {
@@ -410,6 +419,15 @@ pub(crate) fn measured(measure: &str, text: &str) -> PyResult<f64> {
     quantity
         .map(|quantity| quantity.value)
         .map_err(|error| PyValueError::new_err(format!("{measure}: {error}")))
+}
+
+/// Names and files of the records that paths, relative to a folder, are of.
+#[pyfunction]
+pub(crate) fn group_files(paths: Vec<String>) -> Vec<(String, Vec<String>)> {
+    barrelstack_motion::group_files(&paths)
+        .into_iter()
+        .map(|record| (record.name, record.files))
+        .collect()
 }
 
 /// Names and titles of the formats that are read.

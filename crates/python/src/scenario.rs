@@ -17,7 +17,7 @@ use pyo3::types::{PyBytes, PyDict};
 
 use crate::errors;
 use crate::listen::{Hear, listening};
-use crate::record::Record;
+use crate::record::{Record, of_motion};
 use crate::run::{Glance, Run};
 use crate::value;
 
@@ -89,6 +89,12 @@ impl Scenario {
     fn settings(&self) -> Vec<(String, String, &'static str)> {
         let settings = self.inner.settings().into_iter();
         settings.map(|setting| (setting.path, setting.value, setting.help)).collect()
+    }
+
+    /// What moves its ground, if anything does.
+    fn ground(&self, py: Python<'_>) -> PyResult<Option<Record>> {
+        let ground = py.detach(|| self.inner.ground()).map_err(|error| errors::ground(&error))?;
+        ground.motion.as_ref().map(of_motion).transpose()
     }
 
     /// What a check of every plane finds, each as JSON.

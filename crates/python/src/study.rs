@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use barrelstack::ensemble::Width;
+use barrelstack::ground::Ground;
 use barrelstack_campaign::decision::{Request, SiteHazard, decide_folder, export as exported};
 use barrelstack_campaign::study::{
     self, ChunkRun, Collected, Progress, RunOptions, StudyError, collect,
@@ -15,6 +16,7 @@ use pyo3::prelude::*;
 use crate::errors;
 use crate::listen::{Hear, listening};
 use crate::page::Page;
+use crate::record::{Record, of_motion};
 use crate::table::Table;
 
 /// A study of the library.
@@ -116,6 +118,16 @@ impl Study {
             self.inner.run_chunk(&folder, chunk, Width::widest(), &|| hear.stopped())
         })?;
         Ok(done.map_err(errors::study)? != ChunkRun::Before)
+    }
+
+    /// Its motions by their names, as their sources have them.
+    fn records(&self, py: Python<'_>) -> PyResult<Vec<(String, Record)>> {
+        let grounds = py.detach(|| self.inner.grounds()).map_err(errors::study)?;
+        let record = |(name, ground): (String, Arc<Ground>)| {
+            let motion = ground.motion.as_ref()?;
+            Some(of_motion(motion).map(|record| (name, record)))
+        };
+        grounds.into_iter().filter_map(record).collect()
     }
 
     /// Its table, without a folder.

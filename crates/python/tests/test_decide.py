@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 import barrelstack
-from barrelstack import Calibration, Scenario, Study, compare, heights, protect, reproduce
+from barrelstack import Calibration, Scenario, Study, compare, heights, protect, reproduce, score
 
 TILT = "angle (deg)\n21.4\n22.0\n21.7\n22.9\n21.1\n"
 PRESS = "penetration (mm),force (kN)\n0.5,0.49\n1,0.99\n1.5,1.46\n2,1.97\n"
@@ -68,6 +68,22 @@ def test_protections_are_those_of_the_command(command: str, tmp_path: Path) -> N
         protect(stack, tmp_path / "no", site="hazard.csv", pgv=["1 m/s"])
     with pytest.raises(barrelstack.StudyError, match="free scene"):
         protect("sliding-block", tmp_path / "free")
+
+
+@pytest.mark.heavy
+def test_a_score_is_that_of_the_command(command: str, tmp_path: Path) -> None:
+    told = by_command(command, "score", "demo-napa", "--out", str(tmp_path / "theirs"), "--quiet")
+    shutil.copytree(tmp_path / "theirs", tmp_path / "ours")
+    found = score("demo-napa", tmp_path / "ours")
+    assert found.document == told
+    assert found.score == told["score"]
+    assert found.html() == (tmp_path / "theirs" / "index.html").read_text(encoding="utf-8")
+    assert len(found.table) == len(told["states"])
+
+
+def test_a_free_scene_has_no_score(tmp_path: Path) -> None:
+    with pytest.raises(barrelstack.StudyError, match="free scene"):
+        score("sliding-block", tmp_path)
 
 
 @pytest.mark.heavy

@@ -114,3 +114,16 @@ def test_a_check_says_how_a_stack_comes_to_rest_and_a_run_why_it_does_not() -> N
 def test_the_schema_has_the_fields() -> None:
     schema = Scenario.schema()
     assert "stack" in str(schema["$defs"]["scenario"])
+
+
+def test_a_scene_has_force_elements() -> None:
+    scene = barrelstack.Scene("A weight on a spring", run={"duration": "0.5 s", "settle": False})
+    ball = {"type": "circle", "radius": "5 cm"}
+    scene.body("ball", shape=ball, mass="20 kg", position=["0 m", "1 m"])
+    scene.element("spring", "guide", "ground", "ball", stiffness="8 kN/m", axis="90 deg", at=["0 m", "1 m"])
+    (element,) = scene.run().summary["elements"]
+    # Let go at rest, it presses with twice its weight. Measured: 1e-5.
+    assert abs(element["peak_force"]) == pytest.approx(2 * 20 * 9.80665, rel=1e-4)
+    scene.element("spring", "rod", "ball", "bell", stiffness="1 kN/m")
+    with pytest.raises(barrelstack.ScenarioError, match="two elements are called"):
+        scene.run()

@@ -33,6 +33,17 @@ def test_package_and_examples_are_strictly_typed(tmp_path: Path) -> None:
     mypy("mypy", "--strict", "--cache-dir", str(tmp_path), str(PACKAGE / "python" / "barrelstack"), *examples)
 
 
+@pytest.mark.heavy
+def test_another_checker_knows_every_public_type(tmp_path: Path) -> None:
+    pytest.importorskip("pyright", reason="no pyright")
+    words = [sys.executable, "-m", "pyright", "--verifytypes", "barrelstack", "--ignoreexternal"]
+    home = Path(sys.executable).parent
+    environment = {**os.environ, "PATH": f"{home}{os.pathsep}{os.environ['PATH']}", "VIRTUAL_ENV": str(home.parent)}
+    done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "Type completeness score: 100%" in done.stdout, done.stdout
+
+
 def test_everything_public_is_documented() -> None:
     for name in barrelstack.__all__:
         thing = getattr(barrelstack, name)

@@ -22,6 +22,16 @@ pub(crate) fn html(text: &str) -> String {
     out
 }
 
+/// Words with a capital letter at their start.
+///
+/// ```
+/// assert_eq!(barrelstack_report::capital("it stands"), "It stands");
+/// ```
+pub fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// JSON text that cannot end the script element it sits in.
 ///
 /// In JSON `<` occurs only inside strings, where `\u003c` means the same.

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use barrelstack_report::capital;
+
 /// Largest difference, as a share of the published number, that counts as agreement.
 pub(super) const CLOSE: f64 = 0.20;
 
@@ -84,10 +86,8 @@ pub(super) fn table(rows: &[Comparison]) -> String {
 
 /// Words as a sentence.
 fn sentence(words: &str) -> String {
-    let mut letters = words.chars();
-    let Some(first) = letters.next() else { return String::new() };
-    let end = if words.ends_with('.') { "" } else { "." };
-    format!("{}{}{end}", first.to_uppercase(), letters.as_str())
+    let end = if words.is_empty() || words.ends_with('.') { "" } else { "." };
+    format!("{}{end}", capital(words))
 }
 
 /// A number and the words around it.

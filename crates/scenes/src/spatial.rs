@@ -73,12 +73,8 @@ pub fn corners(x: f64, y: f64, z: f64) -> [Vec3; 4] {
 
 /// A free capsule or barrel that touches, and can be touched, with its center of mass in its middle.
 pub fn solid(name: &str, hull: Hull, mass: f64, inertia: Vec3, position: Vec3) -> Body<Spatial> {
-    let surface = match hull {
-        Hull::Capsule(capsule) => Solid::Capsule(capsule),
-        Hull::Barrel(barrel) => Solid::Barrel(barrel),
-    };
     Body {
-        surfaces: vec![centered(surface)],
+        surfaces: vec![centered(hull.surface())],
         nodes: vec![Nodes::Whole(Rounded::centered(hull))],
         ..free(name, mass, inertia, position)
     }

@@ -117,7 +117,7 @@ impl Checked {
 pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
     let scenario = &scenario.with_records(&mut from_disk)?;
     let ground = scenario.ground()?;
-    let end_time = end_time(scenario, &ground, scenario.run.similitude.sqrt())?;
+    let end_time = end_time(scenario, ground.motion_end(), scenario.run.similitude.sqrt())?;
     let Standing { assembly, state, scratch, settled, step } = stand(scenario, end_time)?;
     let scale = scenario.run.similitude.sqrt();
     let rates = (scenario.record.frame_rate / scale, scenario.record.history_rate / scale);

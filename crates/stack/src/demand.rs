@@ -4,7 +4,7 @@ use barrelstack_report::described::{self, Described, Field, Objects};
 use serde::Serialize;
 
 use crate::assemble::{Assembly, PartKind};
-use crate::watch::{Fate, Fates, StressEnvelope, Stresses};
+use crate::watch::{Fate, Fates, Joint, Joints, StressEnvelope, Stresses};
 
 /// A demand on a stack.
 #[derive(Clone, Copy, Debug)]
@@ -64,8 +64,9 @@ macro_rules! demands {
                 assembly: &Assembly,
                 fates: &Fates,
                 stresses: &Stresses,
+                joints: &Joints,
             ) -> Self {
-                let seen = Seen { assembly, fates, stresses };
+                let seen = Seen { assembly, fates, stresses, joints };
                 Self { $($name: seen.most($of)),* }
             }
         }
@@ -85,6 +86,14 @@ demands! {
     /// Average stress amplification over the loaded boundary of the bottom-level barrels.
     mean_stress_amplification "1": "stress amplification, average over the loaded boundary", 1.0 "× at rest" 2,
         |seen, body| seen.stress(body)?.mean_amplification();
+    /// Largest vertical force between a barrel and a rack in any step, over what its staves bear
+    /// (`stack.barrel.stave_capacity`).
+    stave_utilization "1": "load of a barrel between its racks, of what its staves bear", 100.0 "%" 0, |seen, body| {
+        seen.fate(body, PartKind::Barrel, None)?;
+        let of = |joint: &&Joint| joint.upper == body || joint.lower == body;
+        let loads = seen.joints.joints.iter().filter(of).map(|joint| joint.peak_vertical.0);
+        loads.reduce(f64::max).map(|load| load / seen.assembly.stave_capacity)
+    };
     /// Largest slip of the bottom rack on the ground.
     base_slip_peak "m": "slip of the bottom rack on the ground, largest", 100.0 "cm" 1,
         |seen, body| Some(seen.fate(body, PartKind::Rack, Some(1))?.peak_slip);
@@ -94,7 +103,7 @@ demands! {
     /// The same at the end of the run.
     base_slip_residual "m": "slip of the bottom rack, at the end of the run", 100.0 "cm" 1,
         |seen, body| Some(seen.fate(body, PartKind::Rack, Some(1))?.residual_slip);
-    /// Largest walk of any rack on the barrels below.
+    /// Largest walk of any rack on the barrels below, or of its foot on the posts of the rack below.
     rack_walk_peak "m": "walk of a rack on the barrels below, largest", 100.0 "cm" 1, |seen, body| {
         let fate = seen.fate(body, PartKind::Rack, None)?;
         (!seen.assembly.parts[body].supports.is_empty()).then_some(fate.peak_slip)
@@ -125,6 +134,7 @@ struct Seen<'a> {
     assembly: &'a Assembly,
     fates: &'a Fates,
     stresses: &'a Stresses,
+    joints: &'a Joints,
 }
 
 impl Seen<'_> {

@@ -1,15 +1,15 @@
 //! Many cases at once: what became of each, and nothing else of it.
 //!
-//! Cases of one topology march side by side in the lanes of a vector register; a lane whose case has
+//! Cases of one topology run side by side in the lanes of a vector register; a lane whose case has
 //! ended takes the next one.
 //! Every case comes to the same bits as it would alone, whatever runs beside it and however wide the
 //! lanes are.
 
-mod alone;
+mod batch;
 mod case;
 mod columns;
-mod crew;
 mod rows;
+mod single;
 mod trail;
 
 use std::ops::ControlFlow;
@@ -64,7 +64,7 @@ pub struct Audience<'a> {
 pub struct Ensemble {
     /// The cases; those of one stack or one motion share it.
     pub cases: Vec<Prepared>,
-    /// The vector unit in which they march; the widest of the machine without. Results do not depend on it.
+    /// The vector unit in which they run; the widest of the machine without. Results do not depend on it.
     pub lanes: Option<Width>,
 }
 
@@ -142,10 +142,10 @@ pub fn simulate_in(
     }
     for (method, group) in groups(&ready, &stacks) {
         let done = if method.is_adaptive() {
-            alone::run(&group, &stacks, audience)
+            single::run(&group, &stacks, audience)
         } else {
             let width = if group.len() < FEWEST { Width::Scalar } else { width };
-            crew::run(width, method, &group, &stacks, audience)
+            batch::run(width, method, &group, &stacks, audience)
         }?;
         for (index, result) in done {
             results[index] = Some(result);
@@ -188,7 +188,8 @@ fn prepare<'a>(
 ) -> Result<Run<'a>, String> {
     let scenario = &case.scenario;
     let time_scale = scenario.run.similitude.sqrt();
-    let end_time = end_time(scenario, &case.ground, time_scale).map_err(|e| e.to_string())?;
+    let end_time =
+        end_time(scenario, case.ground.motion_end(), time_scale).map_err(|e| e.to_string())?;
     let known = stacks.iter().rposition(|stack| stack.is_of(scenario));
     let stack = known.unwrap_or(stacks.len());
     if known.is_none() {
@@ -204,7 +205,7 @@ fn prepare<'a>(
     Ok(Run { case, index, stack, end_time })
 }
 
-/// The runs that may march together, in the order of their cases.
+/// The runs that may run together, in the order of their cases.
 fn groups<'a>(runs: &[Run<'a>], stacks: &[Stack<'_>]) -> Vec<(Method, Vec<Run<'a>>)> {
     let topology = |stack: &Stack<'_>| Some(Topology::of(&stack.found().ok()?.assembly.model));
     let topologies: Vec<_> = stacks.iter().map(topology).collect();

@@ -93,12 +93,26 @@ pub fn judge(assembly: &Assembly, fates: &Fates) -> Outcome {
     let part = &assembly.parts[first];
     let from_level = part.level.unwrap_or(1);
     let slid = matches!(fates.fate(first).left_seat, Some((_, Loss::Slid)));
-    let mode = match part.kind {
+    collapse(
+        time,
+        (&part.name, part.kind, from_level),
+        slid && assembly.view == Some(View::Longitudinal),
+        assembly.levels,
+    )
+}
+
+/// The collapse that begins at a time (s) with a body, by its name, kind and level, in a stack of so many levels; `slid`
+/// tells whether a rack has slid off along the barrels.
+pub fn collapse(
+    time: f64,
+    (first, kind, from_level): (&str, PartKind, u32),
+    slid: bool,
+    levels: u32,
+) -> Outcome {
+    let mode = match kind {
         PartKind::Rack if from_level == 1 => CollapseMode::Overturning,
-        PartKind::Rack if slid && assembly.view == Some(View::Longitudinal) => {
-            CollapseMode::RackSliding
-        }
-        PartKind::Rack if from_level < assembly.levels => CollapseMode::Rocking,
+        PartKind::Rack if slid => CollapseMode::RackSliding,
+        PartKind::Rack if from_level < levels => CollapseMode::Rocking,
         PartKind::Rack
         | PartKind::Barrel
         | PartKind::Device
@@ -106,7 +120,7 @@ pub fn judge(assembly: &Assembly, fates: &Fates) -> Outcome {
         | PartKind::Body
         | PartKind::Ground => CollapseMode::Ejection,
     };
-    let barrel_alone = mode == CollapseMode::Ejection && part.kind == PartKind::Barrel;
-    let to_level = if barrel_alone { from_level } else { assembly.levels };
-    Outcome::Collapse { mode, time, first: part.name.clone(), from_level, to_level }
+    let barrel_alone = mode == CollapseMode::Ejection && kind == PartKind::Barrel;
+    let to_level = if barrel_alone { from_level } else { levels };
+    Outcome::Collapse { mode, time, first: first.to_owned(), from_level, to_level }
 }

@@ -2,12 +2,12 @@
 //! contact elements and laws.
 
 use barrelstack_dynamics::space::Rotation2;
-use barrelstack_dynamics::{BodyId, Linear as _, Model, Planar, Pose, Shape, State, Vec2};
+use barrelstack_dynamics::{Body, BodyId, Linear as _, Planar, Pose, Shape, State, Vec2};
 
-use crate::assemble::{AssembleError, Assembly};
+use crate::assemble::{AssembleError, Assembly, Part, PartKind};
 
 /// Deepest overlap (m) of two bodies at the start that sinking under weight can explain.
-const ALLOWED: f64 = 2e-3;
+pub const ALLOWED: f64 = 2e-3;
 
 /// Corners (1) of the polygon that stands for a circle; it lies at most `r (1 − cos π/n)` inside.
 const AROUND: usize = 256;
@@ -21,7 +21,7 @@ pub(crate) fn check_overlap(
     state: &State<Planar>,
     length_scale: f64,
 ) -> Result<(), AssembleError> {
-    match Boundaries::new(&assembly.model).deepest(&state.poses) {
+    match Boundaries::new(assembly).deepest(&state.poses) {
         Some(Overlap { bodies: [first, second], depth }) if depth > ALLOWED * length_scale => {
             let name = |body: BodyId| assembly.parts[body].name.clone();
             Err(AssembleError::Overlap { first: name(first), second: name(second), depth })
@@ -41,7 +41,18 @@ pub struct Overlap {
 
 /// The convex outlines of all bodies of a model, in their frames.
 pub struct Boundaries {
-    bodies: Vec<Vec<Outline>>,
+    bodies: Vec<Vec<(Outline, Depth)>>,
+}
+
+/// Where a part is, out of the plane that shows it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Depth {
+    /// In a barrel.
+    Barrel,
+    /// Beside the barrels, so that it meets none.
+    Beside,
+    /// Wherever anything is.
+    Any,
 }
 
 /// A convex part.
@@ -53,8 +64,8 @@ enum Outline {
 }
 
 impl Boundaries {
-    /// The boundaries of a model as they are drawn.
-    pub fn new(model: &Model<Planar>) -> Self {
+    /// The boundaries of the bodies of a model as they are drawn.
+    pub fn new(assembly: &Assembly) -> Self {
         let outline = |placed: &barrelstack_dynamics::Placed<Planar>| {
             let place = |point: Vec2| placed.offset + placed.rotation.apply(point);
             match &placed.surface {
@@ -77,8 +88,16 @@ impl Boundaries {
                 }
             }
         };
-        let bodies = model.bodies().iter();
-        Self { bodies: bodies.map(|b| b.surfaces.iter().filter_map(outline).collect()).collect() }
+        let placed = |(part, body): (&Part, &Body<Planar>)| {
+            let depth = |at: usize| match part.out_of_plane.get(at) {
+                _ if part.kind == PartKind::Barrel => Depth::Barrel,
+                Some(true) => Depth::Beside,
+                Some(false) | None => Depth::Any,
+            };
+            let surfaces = body.surfaces.iter().enumerate();
+            surfaces.filter_map(|(at, surface)| Some((outline(surface)?, depth(at)))).collect()
+        };
+        Self { bodies: assembly.parts.iter().zip(assembly.model.bodies()).map(placed).collect() }
     }
 
     /// The deepest overlap of any two bodies at these poses; none where no two overlap.
@@ -88,17 +107,19 @@ impl Boundaries {
 
     /// All bodies that overlap at these poses.
     pub fn overlaps(&self, poses: &[Pose<Planar>]) -> Vec<Overlap> {
-        let placed: Vec<Vec<(Outline, [f64; 4])>> = self
-            .bodies
-            .iter()
-            .zip(poses)
-            .map(|(outlines, pose)| outlines.iter().map(|o| o.at(pose)).collect())
-            .collect();
+        let at = |pose: &Pose<Planar>, (outline, depth): &(Outline, Depth)| {
+            let (outline, around) = outline.at(pose);
+            (outline, around, *depth)
+        };
+        let bodies = self.bodies.iter().zip(poses);
+        let placed: Vec<Vec<Solid>> =
+            bodies.map(|(solids, pose)| solids.iter().map(|s| at(pose, s)).collect()).collect();
         // A sweep along x, so that a row of bodies costs by its length and not by its square.
         let mut extents: Vec<(f64, f64, BodyId)> = Vec::new();
         for (body, outlines) in placed.iter().enumerate() {
-            let least = outlines.iter().map(|(_, around)| around[0]).fold(f64::INFINITY, f64::min);
-            let most = outlines.iter().map(|(_, around)| around[2]);
+            let least =
+                outlines.iter().map(|(_, around, _)| around[0]).fold(f64::INFINITY, f64::min);
+            let most = outlines.iter().map(|(_, around, _)| around[2]);
             extents.push((least, most.fold(f64::NEG_INFINITY, f64::max), body));
         }
         extents.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
@@ -147,13 +168,20 @@ impl Outline {
     }
 }
 
+/// A part at a pose, the box that holds it, and where it is out of the plane.
+type Solid = (Outline, [f64; 4], Depth);
+
 /// The deepest overlap (m) of the parts of two bodies, each in its box; zero where there is none.
-fn deepest_of(first: &[(Outline, [f64; 4])], second: &[(Outline, [f64; 4])]) -> f64 {
+fn deepest_of(first: &[Solid], second: &[Solid]) -> f64 {
     let mut depth = 0.0_f64;
-    for (a, box_a) in first {
-        for (b, box_b) in second {
+    for (a, box_a, of_a) in first {
+        for (b, box_b, of_b) in second {
             let apart = (0..2).any(|k| box_a[k] > box_b[k + 2] || box_b[k] > box_a[k + 2]);
-            if !apart {
+            let past = matches!(
+                (of_a, of_b),
+                (Depth::Barrel, Depth::Beside) | (Depth::Beside, Depth::Barrel)
+            );
+            if !apart && !past {
                 depth = depth.max(parting(a, b));
             }
         }

@@ -1,14 +1,12 @@
 //! One run: scenario in, everything that was seen out.
 
 mod failure;
+mod verdict;
 
 use std::ops::ControlFlow;
 
 use barrelstack_dynamics::contact::Basis;
-use barrelstack_dynamics::simulate::RunTotals;
-use barrelstack_dynamics::{
-    EnergySummary, Method, Planar, RunError, Settled, Simulation, simulate,
-};
+use barrelstack_dynamics::{EnergySummary, Method, RunError, Settled, Simulation, simulate};
 
 use crate::assemble::Assembly;
 use crate::ground::{Ground, from_disk};
@@ -21,8 +19,10 @@ use crate::watch::{
     ElementFate, End, Ending, Eye, Fates, Glance, Pace, Recording, Stresses, Thresholds, Watch,
 };
 
+pub use crate::stand::UNBALANCED;
 use failure::MOST_KEPT;
 pub use failure::RunFailure;
+pub use verdict::{Ended, Verdict};
 
 /// Everything that was seen of a run.
 ///
@@ -92,11 +92,6 @@ pub struct Progress {
     pub end_time: f64,
 }
 
-/// Share of the energy that went through, missing from the books, above which a run is invalid.
-///
-/// A hundred times what leads to a warning, and two thousand times what a sound step leaves open.
-const BOOKS_BROKEN: f64 = 0.1;
-
 /// Time (s) of a motion that is left at the end of a run which counts as cut short.
 pub const CUT: f64 = 0.01;
 
@@ -162,7 +157,7 @@ impl Scenario {
         ground: Ground,
         observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Run, RunFailure> {
-        let end_time = end_time(self, &ground, self.run.similitude.sqrt())?;
+        let end_time = end_time(self, ground.motion_end(), self.run.similitude.sqrt())?;
         let mut eye = |glance: Glance<'_>| observer(Progress { time: glance.time, end_time });
         self.run_before(ground, Pace::Time, &mut eye)
     }
@@ -196,7 +191,7 @@ impl Scenario {
         eye: &mut Eye<'_>,
     ) -> Result<Run, RunFailure> {
         let time_scale = self.run.similitude.sqrt();
-        let end_time = end_time(self, &ground, time_scale)?;
+        let end_time = end_time(self, ground.motion_end(), time_scale)?;
         let Standing { assembly, mut state, mut scratch, settled, step } = stand(self, end_time)?;
         let model = &assembly.model;
 
@@ -261,28 +256,7 @@ impl Scenario {
     }
 }
 
-/// What a run that came to its end leaves behind.
-pub(crate) struct Ended {
-    pub(crate) energy: EnergySummary,
-    pub(crate) steps: u64,
-}
-
-impl Ended {
-    pub(crate) fn of(totals: &RunTotals<Planar>) -> Self {
-        Self { energy: totals.energy.summary(0), steps: totals.steps }
-    }
-}
-
-/// What the end of a run says of it.
-pub(crate) struct Verdict {
-    pub(crate) outcome: Outcome,
-    pub(crate) energy: Option<EnergySummary>,
-    pub(crate) steps: u64,
-    pub(crate) warnings: Vec<String>,
-    pub(crate) ending: Ending,
-}
-
-/// Judges a run that ended at a time (s), and says what its end leaves open.
+/// Judges a run in a plane that ended at a time (s), and says what its end leaves open.
 pub(crate) fn conclude(
     assembly: &Assembly,
     ground: &Ground,
@@ -291,26 +265,11 @@ pub(crate) fn conclude(
     time: f64,
     ending: Ending,
 ) -> Verdict {
-    let mut warnings = ground.warnings.clone();
-    let (outcome, energy, steps, ending) = match ended {
-        Ok(Ended { energy, steps }) => {
-            let broken = energy.residual_ratio() > BOOKS_BROKEN;
-            warnings.extend(energy_warning(&energy).filter(|_| !broken));
-            let outcome = if broken {
-                Outcome::Invalid { reason: broken_books(&energy) }
-            } else {
-                judge(assembly, fates)
-            };
-            warnings.extend(ending_warning(ending, &outcome, ground, time));
-            (outcome, Some(energy), steps, ending)
-        }
-        Err(error) => {
-            let RunError::NotFinite { steps, .. } = error;
-            (Outcome::Invalid { reason: error.to_string() }, None, steps, Ending::Broken)
-        }
-    };
-    warnings.extend(creep_warning(assembly));
-    Verdict { outcome, energy, steps, warnings, ending }
+    let judge = || judge(assembly, fates);
+    let mut verdict = Verdict::of(ended, judge, time, ground.end(), ending);
+    verdict.warnings.splice(0..0, ground.warnings.iter().cloned());
+    verdict.warnings.extend(creep_warning(assembly));
+    verdict
 }
 
 /// The step (s) that a scenario asks for, or the one its stiffest contact suggests.
@@ -342,7 +301,8 @@ fn milliseconds(step: f64) -> f64 {
     (1e9 * step).round() / 1e6
 }
 
-pub(crate) fn method(scenario: &Scenario) -> Method {
+/// How a scenario is integrated.
+pub fn method(scenario: &Scenario) -> Method {
     match scenario.run.method {
         scenario::Method::SemiImplicitEuler => Method::SemiImplicitEuler,
         scenario::Method::VelocityVerlet => Method::VelocityVerlet,
@@ -351,7 +311,8 @@ pub(crate) fn method(scenario: &Scenario) -> Method {
     }
 }
 
-pub(crate) fn thresholds(scenario: &Scenario) -> Thresholds {
+/// When a body of a scenario has left its seat, and when it has fallen.
+pub fn thresholds(scenario: &Scenario) -> Thresholds {
     match &scenario.scene {
         Scene::Stack { outcome, .. } => Thresholds::of(outcome, scenario.run.similitude),
         // A free scene is not judged: nothing in it has a seat.
@@ -365,18 +326,23 @@ pub(crate) fn thresholds(scenario: &Scenario) -> Thresholds {
     }
 }
 
-pub(crate) fn end_time(
+/// When (s) a run ends at the latest, by what its scenario asks for and by the end of its motion (s), where one moves
+/// the ground; `time_scale` is that of similitude.
+///
+/// # Errors
+/// When neither says.
+pub fn end_time(
     scenario: &Scenario,
-    ground: &Ground,
+    motion_end: Option<f64>,
     time_scale: f64,
 ) -> Result<f64, RunFailure> {
     let run = &scenario.run;
     if let Some(duration) = run.duration {
         return Ok(duration * time_scale);
     }
-    match (run.until, &ground.motion) {
-        (Until::Rest, _) => Ok(ground.end() + run.patience * time_scale),
-        (Until::Duration, Some(motion)) => Ok(motion.duration + 5.0 * time_scale),
+    match (run.until, motion_end) {
+        (Until::Rest, end) => Ok(end.unwrap_or(0.0) + run.patience * time_scale),
+        (Until::Duration, Some(end)) => Ok(end + 5.0 * time_scale),
         (Until::Duration, None) => Err(RunFailure::Duration(
             "the scenario has no motion, so the run has no natural end: set run.duration, such as \
              \"10 s\""
@@ -385,8 +351,11 @@ pub(crate) fn end_time(
     }
 }
 
-/// Refuses a run that would not end in a day.
-pub(crate) fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
+/// Refuses a run that would not end in a day; both times in s.
+///
+/// # Errors
+/// When it takes more than a thousand million steps.
+pub fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
     let steps = end_time / step;
     if steps <= MOST_STEPS {
         return Ok(());
@@ -405,57 +374,26 @@ pub(crate) fn check_memory(
     end_time: f64,
     (frame_rate, history_rate): (f64, f64),
 ) -> Result<(), RunFailure> {
-    const NUMBER: f64 = size_of::<f64>() as f64;
-    let bodies = assembly.parts.len();
-    let channels = Recording::histories(assembly);
-    let (samples, frames) = (end_time * history_rate + 1.0, end_time * frame_rate + 1.0);
     // A frame holds the pose and the stress of every body, and the forces of about four contacts of each.
-    let kept = NUMBER * (samples * channels as f64 + frames * (bodies * (3 + 1 + 4 * 4)) as f64);
+    let frame = (end_time * frame_rate + 1.0, assembly.parts.len(), 3 + 1 + 4 * 4);
+    let channels = Recording::histories(assembly);
+    check_kept(frame, (end_time * history_rate + 1.0, channels))
+}
+
+/// The same for so many frames of so many bodies, each with some numbers, and so many samples of channels.
+///
+/// # Errors
+/// When they take more than 2 GB.
+pub fn check_kept(
+    (frames, bodies, numbers): (f64, usize, usize),
+    (samples, channels): (f64, usize),
+) -> Result<(), RunFailure> {
+    const NUMBER: f64 = size_of::<f64>() as f64;
+    let kept = NUMBER * (samples * channels as f64 + frames * (bodies * numbers) as f64);
     if kept <= MOST_KEPT {
         return Ok(());
     }
     Err(RunFailure::Memory { samples, channels, frames, bodies, gigabytes: kept / 1e9 })
-}
-
-/// Why a run whose energy books do not balance has no outcome.
-fn broken_books(energy: &EnergySummary) -> String {
-    format!(
-        "the energy books miss {:.2e} times the energy that went through, so the steps follow no \
-         motion of these bodies: leave out run.step, or try a tenth of it",
-        energy.residual_ratio()
-    )
-}
-
-fn energy_warning(energy: &EnergySummary) -> Option<String> {
-    let ratio = energy.residual_ratio();
-    (ratio > 1e-3).then(|| {
-        format!(
-            "the energy books miss {:.2} % of the energy that went through: try half the step \
-             (run.step)",
-            100.0 * ratio
-        )
-    })
-}
-
-/// What the end of a run leaves open.
-fn ending_warning(ending: Ending, outcome: &Outcome, ground: &Ground, time: f64) -> Option<String> {
-    let left = ground.end() - time;
-    match ending {
-        Ending::Interrupted => {
-            Some(format!("the run was stopped at {time:.3} s; the results hold until then"))
-        }
-        // A stack that stands in the middle of a motion has not stood it.
-        Ending::Duration if *outcome == Outcome::Stable && left > CUT => Some(format!(
-            "the run ends at {time:.1} s, the motion at {:.1} s: what the rest of it does is not \
-             known; leave out run.duration to see all of it",
-            ground.end()
-        )),
-        Ending::Patience => Some(format!(
-            "something still moved at {time:.1} s, when the run ended; a longer run.patience shows \
-             more"
-        )),
-        Ending::Duration | Ending::AfterCollapse | Ending::Rest | Ending::Broken => None,
-    }
 }
 
 /// Laws that cannot hold a body at rest say how fast it creeps.

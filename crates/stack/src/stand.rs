@@ -12,7 +12,7 @@ use crate::run::{RunFailure, check_length, time_step};
 use crate::scenario::{Scenario, Scene};
 
 /// Largest share of gravity that may be left unbalanced at rest.
-const TOLERANCE: f64 = 1e-10;
+pub const UNBALANCED: f64 = 1e-10;
 
 /// Fewer stacks or cases than this of one topology go one after the other: a bundle costs as much as some
 /// three single runs, however few of its lanes are used.
@@ -165,6 +165,6 @@ impl Task for Settling<'_> {
     type Output = Option<Vec<Result<Settled, SettleError>>>;
 
     fn run<R: Real>(mut self) -> Self::Output {
-        settle_all::<R>(&mut self.stacks, TOLERANCE, self.stop)
+        settle_all::<R>(&mut self.stacks, UNBALANCED, self.stop)
     }
 }

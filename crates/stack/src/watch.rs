@@ -4,7 +4,7 @@ mod elements;
 mod fate;
 mod joints;
 mod recording;
-mod rest;
+pub mod rest;
 mod stress;
 
 use std::num::NonZero;
@@ -22,7 +22,7 @@ pub use fate::{Fate, Fates, Loss, Thresholds};
 pub use joints::{Joint, Joints};
 pub use recording::{Channel, Frames, JointForces, Recording};
 pub use rest::{Ending, Rest};
-pub(crate) use stress::Pressing;
+pub(crate) use stress::StressWatch;
 pub use stress::{BoundaryPoint, StressEnvelope, Stresses};
 
 /// Everything that watches a run, together.
@@ -30,7 +30,7 @@ pub struct Watch<'a> {
     /// Frames and histories.
     pub recording: Recording,
     /// Normal stress along every boundary.
-    pub(crate) stresses: Pressing,
+    pub(crate) stresses: StressWatch,
     /// Seats, falls, slips and tilts.
     pub fates: Fates,
     /// What force elements bore.
@@ -134,7 +134,7 @@ impl<'a> Watch<'a> {
     ) -> Self {
         Self {
             recording: Recording::new(assembly, state, rates),
-            stresses: Pressing::new(assembly, scratch),
+            stresses: StressWatch::new(assembly, scratch),
             fates: Fates::new(assembly, state, thresholds),
             elements: ElementFates::default(),
             ground,
@@ -150,7 +150,7 @@ impl<'a> Watch<'a> {
 }
 
 /// Simulated time (s) between two looks of an eye whose pace is time.
-const PROGRESS: f64 = 0.05;
+pub const PROGRESS: f64 = 0.05;
 
 impl Observer<Planar> for Watch<'_> {
     fn observe(

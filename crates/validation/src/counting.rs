@@ -6,7 +6,7 @@
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use barrelstack_dynamics::lanes::{Case, Crew, End, march};
+use barrelstack_dynamics::lanes::{Batch, Case, End, run_batch};
 use barrelstack_dynamics::real::Real;
 use barrelstack_dynamics::{Drive, Method, Planar, Scratch, State};
 
@@ -139,7 +139,7 @@ impl Work {
     /// Runs a case with numbers that count.
     pub fn of<D: Drive<Planar>>(method: Method, case: Case<'_, D>) -> Self {
         let mut one = One { case: Some(case), touching: 0, steps: 0 };
-        let operations = Operations::of(|| march::<Counting, _>(method, &mut one));
+        let operations = Operations::of(|| run_batch::<Counting, _>(method, &mut one));
         Self { steps: one.steps, touching: one.touching, operations }
     }
 }
@@ -151,7 +151,7 @@ struct One<'a, D> {
     steps: u64,
 }
 
-impl<'a, D: Drive<Planar>> Crew<'a, Counting> for One<'a, D> {
+impl<'a, D: Drive<Planar>> Batch<'a, Counting> for One<'a, D> {
     type Drive = D;
 
     fn next(&mut self, _: usize) -> Option<Case<'a, D>> {

@@ -45,6 +45,7 @@ function feels(velocity) {
 const NAMES = {
   "bordeaux-225": "Bordeaux, 225 L", "burgundy-228": "Burgundy, 228 L", "hogshead-300": "hogshead, 300 L", "puncheon-500": "puncheon, 500 L",
   "two-barrel": "two barrels", "two-barrel-feet": "two barrels, with feet", "single-bar": "two barrels, one bar",
+  "two-barrel-inclined": "two barrels, one end up",
   "four-barrel": "four barrels", "rack-on-rack": "two barrels, on posts", "candia-2008": "two barrels, Chile 2008",
 };
 const called = (name) => NAMES[name] || name;

@@ -3,13 +3,13 @@
 use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
     Axis, Block, Document, Figure, FigureKind, History, Mark, Pane, Players, Plot, Series,
-    SeriesStyle, Verdict, significant,
+    SeriesStyle, Verdict, capital, significant,
 };
 
 use super::{Difference, Side, differences, letter, tables};
 use crate::assemble::PartKind;
 use crate::outcome::Outcome;
-use crate::report::{self, capital};
+use crate::report;
 use crate::scenario::title;
 use crate::variants::{Spread, words};
 

@@ -9,6 +9,7 @@ use barrelstack_report::{
 };
 
 use crate::assemble::{Assembly, Part, PartKind};
+use crate::device::FREE;
 use crate::outcome::Outcome;
 use crate::run::Run;
 use crate::variants::Variants;
@@ -89,7 +90,7 @@ fn ghosts(variants: &Variants) -> Option<Ghosts> {
 pub(crate) fn legend(scene: &Scene) -> String {
     let mut legend = String::new();
     if !scene.ties.is_empty() {
-        legend += " Bands with a buckle are straps and ties; one that tears is gone.";
+        legend += " Bands with a buckle are straps and ties, in a free scene all force elements; one that breaks is gone.";
     }
     let devices = scene.bodies.iter().filter(|body| body.role == Role::Device);
     let (wine, others): (Vec<_>, Vec<_>) =
@@ -219,11 +220,14 @@ fn body(assembly: &Assembly, index: usize) -> SceneBody {
     }
 }
 
+/// What is drawn as a line between two bodies: straps, and all elements of a free scene.
 fn ties(assembly: &Assembly, torn_at: impl Fn(usize) -> Option<f64>) -> Vec<Tie> {
     assembly
         .elements()
         .enumerate()
-        .filter(|(_, element)| matches!(element, Element::Strap(_)))
+        .filter(|(at, element)| {
+            matches!(element, Element::Strap(_)) || assembly.devices.get(*at) == Some(&&FREE)
+        })
         .map(|(at, element)| Tie {
             bodies: element.link().bodies,
             points: element.link().points.map(|point| [point.x, point.z]),

@@ -53,7 +53,12 @@ pub(super) fn inputs(run: &Run) -> Vec<Block> {
         &[("input", ""), ("value", ""), ("meaning", "")],
     );
     let mut all = Table::new("Every input.", &columns);
+    let absent = run.stated.stack().map(|stack| stack.devices.absent()).unwrap_or_default();
     for setting in run.stated.settings() {
+        let inside = setting.path.strip_prefix("stack.").and_then(|path| path.split('.').next());
+        if inside.is_some_and(|table| absent.contains(&table)) && setting.source != Source::Given {
+            continue;
+        }
         let row = setting_row(&setting);
         if setting.source == Source::Given {
             let [input, value, _, meaning] = &row;
@@ -61,11 +66,15 @@ pub(super) fn inputs(run: &Run) -> Vec<Block> {
         }
         all.rows.push(row.to_vec());
     }
+    let left_out = (!absent.is_empty()).then(|| {
+        let names = absent.join(", ").replace('_', " ");
+        Block::Paragraph(format!("Without those of devices that are not on the stack: {names}."))
+    });
     let mut blocks = vec![Block::Table(chosen)];
     blocks.extend(dimensions(run));
     blocks.push(Block::Details {
         summary: format!("All {} inputs with every default written out", all.rows.len()),
-        blocks: vec![Block::Table(all)],
+        blocks: [Block::Table(all)].into_iter().chain(left_out).collect(),
     });
     blocks
 }

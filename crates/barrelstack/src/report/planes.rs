@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
-use barrelstack_report::{Block, Cell, History, Pane, Player, Players, Scene, Table, Tone};
+use barrelstack_report::{
+    Block, Cell, History, Pane, Player, Players, Scene, Table, Tone, capital,
+};
 
-use super::{capital, drawing, sections, tone, words};
+use super::{drawing, sections, tone, words};
 use crate::assemble::Assembly;
 use crate::run::Run;
 use crate::scenario::View;

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
     Axis, Block, BoundarySample, Cell, Envelope, Figure, FigureKind, Mark, Player, Plot, Scene,
-    Series, SeriesStyle, Strip, Table, Trace, significant,
+    Series, SeriesStyle, Strip, Table, Trace, capital, significant,
 };
 
-use super::{drawing, inputs, planes, spectrum, trust, words};
+use super::{drawing, inputs, planes, spectrum, trust};
 use crate::assemble::PartKind;
 use crate::demand::DEMANDS;
 use crate::ensemble::RATE;
@@ -65,7 +65,7 @@ fn engineering(run: &Run, summary: &Summary, variants: Option<&Variants>) -> Vec
     section(&mut blocks, 3, "Normal stress on barrels and racks", stresses(run));
     section(&mut blocks, 3, "Forces between bodies", forces(run, summary));
     for one in &summary.devices.0 {
-        section(&mut blocks, 3, &words::capital(one.words.many), device(one));
+        section(&mut blocks, 3, &capital(one.words.many), device(one));
     }
     section(&mut blocks, 3, "Ground motion", motion(run));
     section(&mut blocks, 3, "Energy books", energy(run, summary));

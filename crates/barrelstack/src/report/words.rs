@@ -1,7 +1,7 @@
 //! The sentences of a report: what a person would say who had watched the run.
 
 use barrelstack_motion::STANDARD_GRAVITY;
-use barrelstack_report::significant;
+use barrelstack_report::{capital, significant};
 
 use crate::assemble::PartKind;
 use crate::ground::MotionSummary;
@@ -211,13 +211,6 @@ pub(super) fn details(
         );
     }
     sentences
-}
-
-pub(crate) fn capital(text: &str) -> String {
-    let mut chars = text.chars();
-    chars
-        .next()
-        .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + chars.as_str())
 }
 
 /// What made the result, in pairs of name and value.

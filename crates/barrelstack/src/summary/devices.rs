@@ -5,10 +5,10 @@ use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use serde_json::{Map, Value, json};
 
-use crate::device::{DEVICES, Words};
+use crate::device::{DEVICES, FREE, Words};
 use crate::run::Run;
 
-/// Every device with its force elements; a device that is not there has none.
+/// Every device with its force elements, and those of a free scene; a device that is not there has none.
 #[derive(Clone, Debug)]
 pub struct Devices(pub Vec<Device>);
 
@@ -40,8 +40,8 @@ impl Devices {
     pub(super) fn of(run: &Run) -> Self {
         let assembly = &run.assembly;
         let all = || assembly.model.elements().iter().zip(&assembly.devices).zip(&run.elements);
-        let device = |words: &&'static Words| {
-            let own = all().filter(|((_, device), _)| device == &words);
+        let device = |words: &'static Words| {
+            let own = all().filter(|((_, device), _)| ***device == *words);
             let element = |((element, _), fate): ((&barrelstack_dynamics::Element<_>, _), &_)| {
                 let crate::watch::ElementFate { peak, broken_at } = *fate;
                 let name = element.link().name.clone();
@@ -49,7 +49,7 @@ impl Devices {
             };
             Device { words, elements: own.map(element).collect() }
         };
-        Self(DEVICES.iter().map(device).collect())
+        Self(all_words().map(device).collect())
     }
 
     /// The elements of a device by its word for more than one; none where there is no such device.
@@ -86,7 +86,7 @@ impl Described for Devices {
             Map::new(),
             |unit: &str, meaning: String| json!({ "type": "number", "unit": unit, "description": meaning }),
         );
-        for Words { one, many, force, broken, .. } in DEVICES {
+        for Words { one, many, force, broken, .. } in all_words() {
             let mut element = Map::new();
             let name = json!({ "type": "string", "description": "What it joins, and where." });
             element.insert("name".into(), name);
@@ -109,6 +109,11 @@ impl Described for Devices {
         objects.insert("Devices".into(), closed("The devices.", &properties));
         json!({ "$ref": "#/$defs/Devices" })
     }
+}
+
+/// The words of every device, and of the elements of free scenes.
+fn all_words() -> impl Iterator<Item = &'static Words> {
+    DEVICES.iter().copied().chain([&FREE])
 }
 
 /// Words as a key of a document.

@@ -1,10 +1,9 @@
 //! What would have kept a stack up, in a sentence and as a table.
 
-use barrelstack_report::{Cell, Table};
+use barrelstack_report::{Cell, Table, capital};
 
 use super::remedy::{PRETENSIONS, Remedy, Tried};
 use super::words::percent;
-use crate::report::capital;
 use crate::scenario::title::{counted, number};
 
 impl Remedy {

@@ -8,7 +8,8 @@ use crate::scenario::{
 };
 
 /// The quantities that a whole stack shares, in the order of their axes; bodies come after them, two axes
-/// each.
+/// each, and in space their places along the barrels after all of these, so that the first row is drawn as in the
+/// plane across the barrels.
 #[derive(Clone, Copy)]
 enum Shared {
     FrictionGround,
@@ -101,32 +102,50 @@ fn ignorance(laws: &mut StackInterfaces, spread: &Imperfections, point: &Point) 
 
 /// Place and mass of every rack and barrel.
 fn hair(stack: &mut StackSpec, spread: &Imperfections, point: &Point) {
-    let mut axis = Shared::Count as usize;
-    let mut drawn = Vec::new();
+    let rows = |body: StackBody| {
+        let many = match (body, stack.space) {
+            (_, None) => return vec![None],
+            (StackBody::Rack, Some(_)) => stack.racks_along(),
+            (StackBody::Barrel, Some(space)) => space.columns_along,
+        };
+        (1..=many).map(Some).collect()
+    };
+    let mut places = Vec::new();
     for (body, columns) in
         [(StackBody::Rack, stack.racks_per_level()), (StackBody::Barrel, stack.columns)]
     {
-        for level in 1..=stack.levels {
-            for column in 1..=columns {
-                let factor = 1.0 + spread.mass * point.normal(axis + 1);
-                drawn.push(BodyOverride {
-                    body,
-                    level,
-                    column: Some(column),
-                    mass: Some(mass(stack, body, level, column) * factor),
-                    fill: None,
-                    offset_x: spread.placement * (2.0 * point.uniform(axis) - 1.0),
-                });
-                axis += 2;
+        for row in rows(body) {
+            for level in 1..=stack.levels {
+                places.extend((1..=columns).map(|column| (body, level, column, row)));
             }
         }
     }
+    // The first row of all bodies has the axes of a stack in the plane.
+    places.sort_by_key(|(.., row)| row.unwrap_or(1));
+    let first = Shared::Count as usize;
+    let aside = |axis: usize| spread.placement * (2.0 * point.uniform(axis) - 1.0);
+    let draw = |(at, (body, level, column, row)): (usize, &(StackBody, u32, u32, Option<u32>))| {
+        let axis = first + 2 * at;
+        let factor = 1.0 + spread.mass * point.normal(axis + 1);
+        BodyOverride {
+            body: *body,
+            level: *level,
+            column: Some(*column),
+            row: *row,
+            mass: Some(mass(stack, *body, *level, *column, *row) * factor),
+            fill: None,
+            offset_x: aside(axis),
+            offset_y: row.map_or(0.0, |_| aside(first + 2 * places.len() + at)),
+        }
+    };
+    let drawn: Vec<BodyOverride> = places.iter().enumerate().map(draw).collect();
     stack.overrides.extend(drawn);
 }
 
 /// The mass (kg) that the scenario states for a body.
-fn mass(stack: &StackSpec, body: StackBody, level: u32, column: u32) -> f64 {
-    let changes = stack.changes_of(body, level, column);
+fn mass(stack: &StackSpec, body: StackBody, level: u32, column: u32, row: Option<u32>) -> f64 {
+    let here = |change: &&BodyOverride| change.row.is_none() || change.row == row;
+    let changes = stack.changes_of(body, level, column).filter(here);
     match body {
         StackBody::Rack => changes.fold(stack.rack.mass, |mass, one| one.mass.unwrap_or(mass)),
         StackBody::Barrel => {

@@ -87,7 +87,7 @@ impl Range {
 
 impl Spread {
     /// Of the results of the case as it is stated and of its variants, in this order.
-    pub(super) fn of(imperfections: &Imperfections, results: &[CaseResult]) -> Self {
+    pub fn of(imperfections: &Imperfections, results: &[CaseResult]) -> Self {
         let variants = results.get(1..).unwrap_or_default();
         let judged = || variants.iter().filter(|result| judged(result));
         let falling = || judged().filter(|result| collapsed(result));

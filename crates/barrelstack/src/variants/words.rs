@@ -1,9 +1,8 @@
 //! What variants say, in sentences.
 
-use barrelstack_report::Tone;
+use barrelstack_report::{Tone, capital};
 
 use super::{Range, Spread};
-use crate::report::capital;
 use crate::scenario::{Imperfection, Imperfections, View};
 use crate::summary::Summary;
 

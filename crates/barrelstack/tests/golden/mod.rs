@@ -48,7 +48,7 @@ const RUNS: [(&str, &str, &[&str]); 12] = [
     ),
 ];
 
-/// How many cases march in lanes: more than two bundles of the widest.
+/// How many cases run in lanes: more than two bundles of the widest.
 const IN_LANES: u32 = 20;
 
 /// The bits of a case and the work that it was.

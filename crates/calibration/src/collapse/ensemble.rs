@@ -77,9 +77,11 @@ pub(super) fn placed(scenario: &Scenario, scatter: f64, random: &mut Random) -> 
                     body,
                     level,
                     column: Some(column),
+                    row: None,
                     mass: None,
                     fill: None,
                     offset_x: scatter * random.normal(),
+                    offset_y: 0.0,
                 });
             }
         }

@@ -98,6 +98,8 @@ pub struct Case {
     pub barrels: u32,
     /// Drop (m) of each barrel that fell.
     pub falls: Box<[f64]>,
+    /// Largest force (N) on each of them since it had fallen; none where the study does not tell it.
+    pub forces: Option<Box<[f64]>>,
     /// Peak drift of the top over its height, while the stack stood; not a number where it is not known.
     drift: f64,
     /// Intensities (SI), one for each of [`Cases::measures`]; not a number where it has none.
@@ -250,6 +252,7 @@ impl Reading {
         let (outcomes, records, ended) = (text("outcome")?, text("record")?, text("ended")?);
         let barrels = table.integers("barrels").ok_or(DecisionError::Column("barrels"))?;
         let (modes, heights) = (table.texts("mode"), table.texts("fall_heights"));
+        let forces = table.texts("fall_forces");
         let (drift, level) = (table.numbers("top_drift_ratio"), table.numbers("level"));
         let columns: Vec<Option<&[Option<f64>]>> =
             self.cases.measures.iter().map(|measure| table.numbers(&measure.name)).collect();
@@ -283,7 +286,15 @@ impl Reading {
             }
             let mode = modes.and_then(|of| of[row].as_deref());
             let mode = mode.and_then(|mode| u8::try_from(self.modes.of(mode)).ok());
-            let falls = heights.and_then(|of| of[row].as_deref()).unwrap_or_default();
+            let numbers = |column, of: Option<&[Option<String>]>| {
+                let told = of.and_then(|of| of[row].as_deref()).unwrap_or_default();
+                let filled = told.split(';').map(str::trim).filter(|number| !number.is_empty());
+                let parsed = filled.map(|number| {
+                    let list = || DecisionError::List { column, found: told.to_owned() };
+                    number.parse::<f64>().map_err(|_| list())
+                });
+                parsed.collect::<Result<Box<[f64]>, _>>()
+            };
             let curve = if self.cases.sampled {
                 small(self.cases.all.len())
             } else {
@@ -298,7 +309,11 @@ impl Reading {
                 mode,
                 followed: ended[row].as_deref() == Some(Ending::Rest.name()),
                 barrels: u32::try_from(barrels[row].unwrap_or(0)).unwrap_or(0),
-                falls: falls.split(';').filter_map(|height| height.trim().parse().ok()).collect(),
+                falls: numbers("fall_heights", heights)?,
+                forces: match forces {
+                    Some(_) => Some(numbers("fall_forces", forces)?),
+                    None => None,
+                },
                 drift: cell(drift).unwrap_or(f64::NAN),
                 intensities,
                 curve,

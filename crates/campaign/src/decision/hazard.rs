@@ -8,7 +8,7 @@ use super::DecisionError;
 use super::cases::Cases;
 use super::curve::{LEVEL, LimitCurve};
 use super::limit::LimitState;
-use super::loss::{Losses, WINE};
+use super::loss::{COST, Losses, WINE};
 use crate::measured::{Table, TableError};
 use crate::scenario::Dimension;
 
@@ -98,6 +98,8 @@ pub struct Lost {
     pub burst: [Rate; 3],
     /// Wine (m³) that is lost, likewise.
     pub wine: [f64; 3],
+    /// What those that burst under the central assumption cost (US$), with their wine, from and to.
+    pub money: [f64; 2],
 }
 
 /// What a study means at a site.
@@ -148,6 +150,7 @@ impl Site {
             Lost {
                 fallen: curve.expected(most, |x| losses.fallen(x)),
                 wine: burst.map(|rate| rate.low * WINE),
+                money: COST.map(|cost| burst[1].low * cost),
                 burst,
             }
         });

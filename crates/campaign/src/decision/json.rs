@@ -217,6 +217,8 @@ described! {
         pub barrels_fallen_interval: [Option<f64>; 2] as "barrels" = bounds(loss.interval),
         /// Mean number of barrels that burst, under each assumption.
         pub barrels_burst: [f64; 3] as "barrels" = loss.burst,
+        /// Mean number of barrels that burst, by the largest force on them; null where the study does not tell forces.
+        pub barrels_burst_by_force: Option<f64> as "barrels" = loss.burst_by_force,
     }
 
     /// What varied quantities do to the variance of a result.
@@ -297,6 +299,8 @@ described! {
             site.lost.as_ref().map(|lost: &Lost| lost.burst.iter().map(YearlyRate::of).collect()),
         /// Wine lost, under each assumption.
         pub wine_lost_m3_per_year: Option<[f64; 3]> as "m3/year" = site.lost.as_ref().map(|lost| lost.wine),
+        /// What the barrels that burst under the central assumption cost, with their wine, from and to.
+        pub money_lost_per_year: Option<[f64; 2]> as "US$/year" = site.lost.as_ref().map(|lost| lost.money),
         /// Shares of the rate of collapse by intensity.
         pub contributions: Vec<RatePart> = site.contributions.iter().map(RatePart::of).collect(),
     }

@@ -1,7 +1,7 @@
 //! What the page says in words: verdict and warnings.
 
 use barrelstack_fragility::{FitError, wilson};
-use barrelstack_report::{Cell, measured, significant};
+use barrelstack_report::{Cell, capital, measured, significant};
 
 use super::Decision;
 use super::cases::Cases;
@@ -325,11 +325,6 @@ fn of_site(cases: &Cases, losses: Option<&Losses>, site: &Site) -> Vec<String> {
         ));
     }
     said
-}
-
-pub(super) fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 #[cfg(test)]

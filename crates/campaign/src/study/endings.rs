@@ -8,7 +8,7 @@ use barrelstack_report::described;
 
 use super::Study;
 use super::error::StudyError;
-use super::motions::Shelf;
+use super::motions::MotionCache;
 use super::table::StudyTable;
 use crate::scenario::Until;
 use crate::watch::Ending;
@@ -140,7 +140,7 @@ impl Study {
     /// When a motion cannot be read.
     pub fn following(&self) -> Result<Following, StudyError> {
         let base = self.scenario(&[])?;
-        let (run, shelf) = (&base.run, Shelf::default());
+        let (run, cache) = (&base.run, MotionCache::default());
         let mut found = Following {
             to_rest: run.until == Until::Rest,
             patience: run.patience,
@@ -152,7 +152,7 @@ impl Study {
         if let Some(duration) = run.duration {
             let mut seen = BTreeSet::new();
             for motion in &self.motions {
-                let shaken = shelf.unscaled(motion, &base.motion, run.similitude)?;
+                let shaken = cache.unscaled(motion, &base.motion, run.similitude)?;
                 let left = shaken.ground.end() / run.similitude.sqrt() - duration;
                 if left > crate::run::CUT && seen.insert(&motion.name) {
                     found.cut.push(motion.name.clone());

@@ -13,8 +13,8 @@ use super::Study;
 use super::collect::{Collected, collect};
 use super::error::StudyError;
 use super::folder::{Folder, read_shard};
-use super::motions::Shelf;
-use super::prepare::Bench;
+use super::motions::MotionCache;
+use super::prepare::Resources;
 use super::stop::{StopRule, Tally};
 use super::table::StudyTable;
 use crate::ensemble::{CaseResult, Width};
@@ -28,7 +28,7 @@ const LOOK_AGAIN: Duration = Duration::from_millis(200);
 pub struct RunOptions {
     /// Threads; as many as there are cores without.
     pub threads: Option<NonZero<usize>>,
-    /// The vector unit in which cases march; the widest of the machine without. The table does not depend on it.
+    /// The vector unit in which cases run; the widest of the machine without. The table does not depend on it.
     pub lanes: Option<Width>,
 }
 
@@ -75,7 +75,7 @@ struct Done {
 struct Shared<'a> {
     study: &'a Study,
     folder: &'a Folder,
-    shelf: Shelf,
+    cache: MotionCache,
     /// What tells the motions from all others.
     motions: Vec<u64>,
     lanes: Width,
@@ -131,9 +131,9 @@ impl Study {
         options: &RunOptions,
         tell: &(dyn Fn(&Progress) -> ControlFlow<()> + Sync),
     ) -> Result<(), StudyError> {
-        let shelf = Shelf::default();
+        let cache = MotionCache::default();
         // Before the folder is made: a study that cannot run leaves none behind.
-        self.try_motions(&shelf)?;
+        self.try_motions(&cache)?;
         let place = Folder::open(folder, self, true)?;
         place.clean()?;
         let motions = self.motion_keys()?;
@@ -155,7 +155,7 @@ impl Study {
         let shared = Shared {
             study: self,
             folder: &place,
-            shelf,
+            cache,
             motions,
             lanes: options.lanes.unwrap_or_else(Width::widest),
             rule,
@@ -207,13 +207,17 @@ impl Study {
     /// # Errors
     /// When a motion cannot be read.
     pub fn table(&self) -> Result<StudyTable, StudyError> {
-        let shelf = Shelf::default();
-        self.try_motions(&shelf)?;
+        let cache = MotionCache::default();
+        self.try_motions(&cache)?;
         let chunks: Vec<usize> = (0..self.chunk_count()).collect();
         let compute = |chunk: &usize| {
-            let mut bench =
-                Bench { shelf: &shelf, lanes: Width::widest(), tell: &mut |_| {}, stop: &|| false };
-            self.compute(*chunk, &mut bench)?.ok_or(StudyError::Stopped)
+            let mut resources = Resources {
+                cache: &cache,
+                lanes: Width::widest(),
+                tell: &mut |_| {},
+                stop: &|| false,
+            };
+            self.compute(*chunk, &mut resources)?.ok_or(StudyError::Stopped)
         };
         let rule = self.stop_rule();
         // Without a rule all at once; with one, no chunk is begun that may not be needed.
@@ -265,8 +269,9 @@ impl Study {
         if !found.tallies.is_empty() {
             return Ok(ChunkRun::Before);
         }
-        let mut bench = Bench { shelf: &Shelf::default(), lanes, tell: &mut |_| {}, stop };
-        let table = self.compute(chunk, &mut bench)?.ok_or(StudyError::Stopped)?;
+        let mut resources =
+            Resources { cache: &MotionCache::default(), lanes, tell: &mut |_| {}, stop };
+        let table = self.compute(chunk, &mut resources)?.ok_or(StudyError::Stopped)?;
         place.write_shard(chunk, self.chunk_key(chunk, &motions), &table)?;
         Ok(if found.damaged > 0 { ChunkRun::Again } else { ChunkRun::Now })
     }
@@ -374,9 +379,9 @@ impl Shared<'_> {
             self.tell(&mut self.state());
             self.stop.load(Ordering::Relaxed)
         };
-        let mut bench =
-            Bench { shelf: &self.shelf, lanes: self.lanes, tell: &mut tell, stop: &stop };
-        let Some(table) = self.study.compute(chunk, &mut bench)? else { return Ok(()) };
+        let mut resources =
+            Resources { cache: &self.cache, lanes: self.lanes, tell: &mut tell, stop: &stop };
+        let Some(table) = self.study.compute(chunk, &mut resources)? else { return Ok(()) };
         self.folder.write_shard(chunk, self.study.chunk_key(chunk, &self.motions), &table)?;
         let mut state = self.state();
         state.done.insert(chunk, Tally::of(&table));

@@ -12,6 +12,7 @@
 use std::fs::{self, File, TryLockError};
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use barrelstack_report::described;
 
@@ -347,6 +348,19 @@ pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
 /// How often a folder is made anew that others take away.
 const TRIES: u32 = 10;
 
+/// Files of this process that have not got their names.
+static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Removes the files that this process is writing and that have not got their names, and lets it begin no others: it
+/// ends.
+pub fn remove_drafts() {
+    let drafts = system::taken(&DRAFTS);
+    for draft in drafts.iter().flat_map(|drafts| drafts.iter()) {
+        // It may have got its name since, and then it is whole.
+        drop(fs::remove_file(draft));
+    }
+}
+
 /// A file that is being written under another name; gone again where it never gets its own.
 pub(super) struct Draft {
     pub(super) file: File,
@@ -362,6 +376,7 @@ impl Draft {
         loop {
             let path = whole.with_file_name(format!(".{name}.{number}.part"));
             number += 1;
+            let mut drafts = DRAFTS.lock().unwrap_or_else(PoisonError::into_inner);
             let file = match File::options().write(true).create_new(true).open(&path) {
                 Ok(file) => file,
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
@@ -375,6 +390,7 @@ impl Draft {
             // Tells those who tidy the folder that its writer is alive. One of them may have come before.
             let taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
             if !taken && path.exists() {
+                drafts.push(path.clone());
                 return Ok(Self { file, path, whole: whole.to_owned() });
             }
         }
@@ -392,6 +408,9 @@ impl Drop for Draft {
     fn drop(&mut self) {
         // Not there any more where it got its name.
         drop(fs::remove_file(&self.path));
+        if let Ok(mut drafts) = DRAFTS.lock() {
+            drafts.retain(|path| *path != self.path);
+        }
     }
 }
 

@@ -202,13 +202,13 @@ struct Kept {
 
 /// The motions that were used last, so that none is read for every case.
 #[derive(Debug, Default)]
-pub(super) struct Shelf(Mutex<Vec<Kept>>);
+pub(super) struct MotionCache(Mutex<Vec<Kept>>);
 
-/// Most memory (bytes) that the shelf takes.
-const SHELF: usize = 64 << 20;
+/// Most memory (bytes) that the cache takes.
+const CACHE: usize = 64 << 20;
 
-impl Shelf {
-    /// A motion as its source has it: from the shelf, or read.
+impl MotionCache {
+    /// A motion as its source has it: from the cache, or read.
     pub(super) fn unscaled(
         &self,
         motion: &Motion,
@@ -219,13 +219,13 @@ impl Shelf {
         let same = |kept: &Kept| {
             kept.similitude == similitude && kept.base == own && kept.shaking == motion.shaking
         };
-        if let Ok(mut shelf) = self.0.lock()
-            && let Some(at) = shelf.iter().position(same)
+        if let Ok(mut cache) = self.0.lock()
+            && let Some(at) = cache.iter().position(same)
         {
             // What was used last stands last, and what stands first goes first.
-            let kept = shelf.remove(at);
+            let kept = cache.remove(at);
             let shaken = Arc::clone(&kept.shaken);
-            shelf.push(kept);
+            cache.push(kept);
             return Ok(shaken);
         }
         let failed = |error: GroundError| StudyError::Motion {
@@ -237,12 +237,12 @@ impl Shelf {
         let measures = measures.map_err(|error| failed(error.into()))?;
         let size = ground.motion.as_ref().map_or(0, size);
         let shaken = Arc::new(Shaken { ground: Arc::new(ground), factor: 1.0, measures });
-        if let Ok(mut shelf) = self.0.lock() {
+        if let Ok(mut cache) = self.0.lock() {
             let shaking = motion.shaking.clone();
-            shelf.push(Kept { shaking, base: own, similitude, shaken: Arc::clone(&shaken), size });
-            let mut total: usize = shelf.iter().map(|kept| kept.size).sum();
-            while total > SHELF && shelf.len() > 1 {
-                total -= shelf.remove(0).size;
+            cache.push(Kept { shaking, base: own, similitude, shaken: Arc::clone(&shaken), size });
+            let mut total: usize = cache.iter().map(|kept| kept.size).sum();
+            while total > CACHE && cache.len() > 1 {
+                total -= cache.remove(0).size;
             }
         }
         Ok(shaken)

@@ -8,21 +8,22 @@ use crate::scenario::{Scenario, ScenarioError};
 use super::design::{Case, Design, seed_of};
 use super::error::StudyError;
 use super::ida::{Hunt, Seen};
-use super::motions::{Shaken, Shaking, Shelf, Synthetic};
+use super::motions::{Motion, MotionCache, Shaken, Shaking, Synthetic};
 use super::setting::Setting;
 use super::table::StudyTable;
 use super::{Study, Value};
 use crate::ensemble::{Audience, CaseResult, Prepared, Width, simulate_in};
+use crate::ground::Ground;
 use crate::outcome::Outcome;
 
 /// Most cases that are built at once: many enough to run in lockstep, few enough to hold their motions.
 const BATCH: usize = 128;
 
 /// What a chunk needs while it runs.
-pub(super) struct Bench<'a> {
+pub(super) struct Resources<'a> {
     /// Motions that were used before.
-    pub(super) shelf: &'a Shelf,
-    /// The vector unit in which cases march.
+    pub(super) cache: &'a MotionCache,
+    /// The vector unit in which cases run.
     pub(super) lanes: Width,
     /// Hears of every case that is done.
     pub(super) tell: &'a mut dyn FnMut(&CaseResult),
@@ -41,12 +42,12 @@ impl Study {
     pub(super) fn compute(
         &self,
         chunk: usize,
-        bench: &mut Bench<'_>,
+        resources: &mut Resources<'_>,
     ) -> Result<Option<StudyTable>, StudyError> {
         let numbers = self.chunks.numbers(chunk);
         let mut table = StudyTable::empty(&self.columns());
         if let Design::Ida(hunt) = &self.design {
-            let Some(rows) = self.hunts(hunt, &numbers, chunk, bench) else { return Ok(None) };
+            let Some(rows) = self.hunts(hunt, &numbers, chunk, resources) else { return Ok(None) };
             for row in rows {
                 table.push(row)?;
             }
@@ -55,7 +56,7 @@ impl Study {
         for numbers in numbers.chunks(BATCH) {
             let cases: Vec<Case> =
                 numbers.iter().map(|number| self.cases.case(self, *number)).collect();
-            let Some(done) = self.shake(&cases, bench) else { return Ok(None) };
+            let Some(done) = self.shake(&cases, resources) else { return Ok(None) };
             for (case, (shaken, result)) in cases.iter().zip(done) {
                 table.push(self.row(case, chunk, shaken.as_ref(), &result))?;
             }
@@ -69,7 +70,7 @@ impl Study {
         hunt: &Hunt,
         numbers: &[u64],
         chunk: usize,
-        bench: &mut Bench<'_>,
+        resources: &mut Resources<'_>,
     ) -> Option<Vec<Vec<Option<Value>>>> {
         let hunts: Vec<Case> =
             numbers.iter().map(|number| self.cases.case(self, *number)).collect();
@@ -89,7 +90,8 @@ impl Study {
             }
             for part in round.chunks(BATCH) {
                 let cases: Vec<Case> = part.iter().map(|(_, case)| case.clone()).collect();
-                for ((index, case), (shaken, result)) in part.iter().zip(self.shake(&cases, bench)?)
+                for ((index, case), (shaken, result)) in
+                    part.iter().zip(self.shake(&cases, resources)?)
                 {
                     let fell = match &result.outcome {
                         Ok(Outcome::Collapse { .. }) => Some(true),
@@ -109,20 +111,20 @@ impl Study {
     fn shake(
         &self,
         cases: &[Case],
-        bench: &mut Bench<'_>,
+        resources: &mut Resources<'_>,
     ) -> Option<Vec<(Option<Shaken>, CaseResult)>> {
-        let built = self.build(cases, bench.shelf);
+        let built = self.build(cases, resources.cache);
         let ready: Vec<Prepared> =
             built.iter().filter_map(|built| built.prepared.as_ref().ok()).cloned().collect();
-        let mut audience = Audience { tell: &mut *bench.tell, stop: bench.stop };
-        let mut results = simulate_in(bench.lanes, &ready, &mut audience)?.into_iter();
+        let mut audience = Audience { tell: &mut *resources.tell, stop: resources.stop };
+        let mut results = simulate_in(resources.lanes, &ready, &mut audience)?.into_iter();
         let mut done = Vec::with_capacity(cases.len());
         for Built { shaken, prepared } in built {
             let result = match prepared {
                 Ok(_) => results.next()?,
                 Err(reason) => {
                     let result = CaseResult::failed(reason);
-                    (bench.tell)(&result);
+                    (resources.tell)(&result);
                     result
                 }
             };
@@ -131,7 +133,7 @@ impl Study {
         Some(done)
     }
 
-    fn build(&self, cases: &[Case], shelf: &Shelf) -> Vec<Built> {
+    fn build(&self, cases: &[Case], cache: &MotionCache) -> Vec<Built> {
         let mut built: Vec<Built> = Vec::with_capacity(cases.len());
         // Cases with the same values share a scenario, and those of the same level a motion.
         let mut scenarios: Vec<(&Case, Result<Arc<Scenario>, String>)> = Vec::new();
@@ -160,7 +162,7 @@ impl Study {
             };
             let shaken = match shakings.iter().find(same) {
                 Some((_, _, shaken)) => Ok(shaken.clone()),
-                None => self.shaken(case, &scenario, shelf),
+                None => self.shaken(case, &scenario, cache),
             };
             built.push(match shaken {
                 Ok(shaken) => {
@@ -190,23 +192,36 @@ impl Study {
         Ok(scenario)
     }
 
+    /// The motions of the study with their names, as their sources have them: a level scales them later.
+    ///
+    /// # Errors
+    /// Names the first motion that cannot be had.
+    pub fn grounds(&self) -> Result<Vec<(String, Arc<Ground>)>, StudyError> {
+        let (cache, base) = (MotionCache::default(), self.scenario(&[])?);
+        let ground = |motion: &Motion| {
+            let shaken = cache.unscaled(motion, &base.motion, base.run.similitude)?;
+            Ok((motion.name.clone(), Arc::clone(&shaken.ground)))
+        };
+        self.motions.iter().map(ground).collect()
+    }
+
     /// The motion of a case.
     fn shaken(
         &self,
         case: &Case,
         scenario: &Scenario,
-        shelf: &Shelf,
+        cache: &MotionCache,
     ) -> Result<Shaken, StudyError> {
         let level = self.intensity.as_ref().map(|intensity| intensity.measure).zip(case.level);
         let motion = &self.motions[case.motion];
-        shelf.at_level(motion, &scenario.motion, scenario.run.similitude, level)
+        cache.at_level(motion, &scenario.motion, scenario.run.similitude, level)
     }
 
     /// Reads every record once, so that one which is no record is told before the work and not after it.
     ///
     /// # Errors
     /// Names the first motion that cannot be had.
-    pub(super) fn try_motions(&self, shelf: &Shelf) -> Result<(), StudyError> {
+    pub(super) fn try_motions(&self, cache: &MotionCache) -> Result<(), StudyError> {
         let scenario = self.scenario(&[])?;
         let mut tried: Option<&Synthetic> = None;
         for motion in &self.motions {
@@ -219,7 +234,7 @@ impl Study {
                 }
                 tried = Some(synthetic);
             }
-            shelf.unscaled(motion, &scenario.motion, scenario.run.similitude)?;
+            cache.unscaled(motion, &scenario.motion, scenario.run.similitude)?;
         }
         Ok(())
     }

@@ -24,6 +24,9 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let asked = asked(&mut scenario, args.variants)?;
     // The folder is looked at before the work is done, not after.
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
+    if scenario.stack().is_some_and(|stack| stack.space.is_some()) {
+        return super::space::run(args, &scenario, asked, folder.as_ref());
+    }
     let engine = args.with_engine.as_deref().map(engine).transpose()?;
     let placed = |error| super::placed(error, &scenario, &args.scenario);
     let mut answer = answered(&scenario, asked, !args.quiet).map_err(placed)?;

@@ -48,6 +48,7 @@ macro_rules! documents {
 
 documents! {
     "summary" Summary: "run --json, and summary.json of --out";
+    "space" barrelstack_space::Summary: "run --json where stack.view is \"spatial\", and summary.json of --out";
     "check" barrelstack::check::Checked: "check --json";
     "comparison" Comparison: "compare --json";
     "heights" HeightsDocument: "heights --json, and heights.json of --out";

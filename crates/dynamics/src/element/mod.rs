@@ -3,7 +3,7 @@
 //! An element is of one of the kinds in the list below, each a file beside this one that says what it
 //! does at a state, and whether it can hold ([`Load`]).
 //! All else is the same for all: they are fastened to a model, remember what they gave for good and whether
-//! they are broken, enter the forces and the energy books, and march in lanes.
+//! they are broken, enter the forces and the energy books, and run in lanes.
 
 mod guide;
 mod link;

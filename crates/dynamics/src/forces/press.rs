@@ -1,5 +1,7 @@
 //! The contacts of one pair: from gaps to forces on both bodies.
 
+mod patch;
+
 use crate::body::{Nodes, Round};
 use crate::contact::{FrictionLaw, NormalLaw, Rolling, Stop};
 use crate::contact_elements::{ContactElements, Group};
@@ -132,12 +134,7 @@ fn touch_by<S: Space>(
             frame.contactor,
             frame.relative,
             #[inline(always)]
-            |index, node, gap| {
-                press.look_ahead(node, gap);
-                if gap.distance.lt(S::Real::zero()).any() {
-                    press.node(group.first + index, node, gap, one);
-                }
-            },
+            |patch| press.patch(group.first + patch.first, &patch),
         ),
     }
     let Press { meeting, sum, totals, needs_substeps, pressed, .. } = press;
@@ -334,6 +331,16 @@ impl<'a, S: Space> Press<'a, S> {
         }
     }
 
+    /// The moment by which a normal force (N) resists rolling.
+    #[inline(always)]
+    fn resist_rolling(&mut self, normal_force: S::Real) {
+        let Some(rolling) = self.rolling else { return };
+        let spin = self.meeting().spin;
+        let scale = (spin.dot(spin) + rolling.spin * rolling.spin).sqrt();
+        let resisted = normal_force * rolling.lever / scale;
+        self.sum.friction += Wrench { force: S::Vector::default(), moment: -(spin * resisted) };
+    }
+
     /// The forces of a node at `node` (m), which penetrates in at least one lane; in the frame of the
     /// target's surface. Returns the energy (J) that its spring would store if its share were one.
     #[inline(always)]
@@ -354,10 +361,7 @@ impl<'a, S: Space> Press<'a, S> {
         let whole = self.elements.weights[element] * share;
         let weight = S::Real::select(touching, whole, S::Real::zero());
         let (depth, rate) = (contact.penetration, contact.penetration_rate);
-        let mut normal = self.normal.force_of_step(depth, rate, self.step);
-        if let Some(stop) = self.stop {
-            normal = stop.add(normal, depth, rate, self.step);
-        }
+        let normal = self.law(depth, rate);
         let normal_force = normal.total * weight;
         let tangent_plane = S::tangent_plane(contact.normal);
         let stick = self.elements.sticks[element].carried(tangent_plane);
@@ -373,12 +377,7 @@ impl<'a, S: Space> Press<'a, S> {
         sum.damped += Wrench { force: contact.normal * damped, moment: lever * damped };
         let sliding = -S::along(friction.force, contact.normal);
         sum.friction += Wrench { force: sliding, moment: S::moment(arm, sliding) };
-        if let Some(rolling) = self.rolling {
-            let spin = meeting.spin;
-            let scale = (spin.dot(spin) + rolling.spin * rolling.spin).sqrt();
-            let resisted = normal_force * rolling.lever / scale;
-            sum.friction += Wrench { force: S::Vector::default(), moment: -(spin * resisted) };
-        }
+        self.resist_rolling(normal_force);
 
         self.slip_rates[element] = contact.slip_rate;
         self.pressed.push(Pressed {

@@ -16,7 +16,7 @@ pub(super) trait Unit: Simd + fmt::Debug + Send + Sync + 'static {
     const TOKEN: Self;
 }
 
-/// Eight numbers that march together.
+/// Eight numbers that run together.
 #[derive(Clone, Copy)]
 pub(super) struct Bundle<U: Unit>(f64x8<U>);
 

@@ -5,22 +5,22 @@
 //! Which vector unit they use is found out when the program runs.
 //!
 //! - `Bundle`: eight numbers of one vector unit.
-//! - [`Topology`]: what cases must share to march in one bundle.
+//! - [`Topology`]: what cases must share to run in one bundle.
 //! - [`Lanewise`]: how a single thing is put into a lane, and taken out of it.
-//! - [`march`]: the run loop of all lanes, which refills the lane of a case that has ended.
+//! - [`run_batch`]: the run loop of all lanes, which refills the lane of a case that has ended.
 
+mod batch;
 #[cfg(target_arch = "x86_64")]
 mod bundle;
 mod lanewise;
-mod march;
 mod topology;
 
 use crate::real::Real;
 
+pub use batch::{Batch, Case, End, run_batch};
 #[doc(hidden)]
 pub use lanewise::{ALIKE, put_truth};
 pub use lanewise::{Lanewise, PerLane};
-pub use march::{Case, Crew, End, march};
 pub use topology::Topology;
 
 /// No bundle has more lanes.

@@ -10,7 +10,7 @@ use crate::pairs::Pairs;
 use crate::shape::Shape;
 use crate::space::Planar;
 
-/// What two models must share to march in one bundle: their bodies, boundaries, laws and pairs in
+/// What two models must share to run in one bundle: their bodies, boundaries, laws and pairs in
 /// kind and number. Masses, places, sizes and constants may differ.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Topology {

@@ -10,6 +10,7 @@ mod cradle;
 mod half_plane;
 mod polygon;
 mod profile;
+mod whole;
 
 use crate::body::Round;
 use crate::real::{Mask, Real};
@@ -20,6 +21,7 @@ pub use cradle::Cradle;
 pub use half_plane::HalfPlane;
 pub use polygon::{Polygon, PolygonError};
 pub use profile::BarrelProfile;
+pub use whole::{Axes, NoWhole, Patch, Shares, Spread, Touch, Whole};
 
 /// How far a point is from a surface, and which way is out.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,59 +95,6 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
 
     /// Radius (m) of a ball about the origin that holds the surface; infinite for a half-plane.
     fn reach(&self) -> f64;
-}
-
-/// A convex body that touches as a whole: with the point of it that lies deepest, and with more of them
-/// where it lies flat.
-pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + 'static {
-    /// Visits the contacts with a surface, of which some may be apart: which of
-    /// [`Whole::most_contacts`] it is, the point of this body (m) and its gap, in the frame of the surface.
-    ///
-    /// `position` is the center of mass (m) of the body that carries it, `rotation` leads from there to the
-    /// frame of the surface.
-    fn meet(
-        &self,
-        surface: &S::Surface,
-        position: S::Vector,
-        rotation: S::Rotation,
-        visit: impl FnMut(usize, S::Vector, Gap<S>),
-    );
-
-    /// How many contacts with one surface there may be.
-    fn most_contacts(&self) -> usize;
-
-    /// Center, in the body frame from the center of mass, and radius (m) of a ball that holds it.
-    fn ball(&self) -> (S::Vector, S::Real);
-
-    /// Length of boundary (m) that a contact stands for.
-    fn tributary_length(&self) -> S::Real;
-}
-
-/// What touches as a whole in the plane: nothing, since there a convex boundary is a chain of round
-/// pieces ([`Round`]).
-#[derive(Clone, Debug, PartialEq)]
-pub enum NoWhole {}
-
-impl<R: Real> Whole<Planar<R>> for NoWhole {
-    #[inline(always)]
-    fn meet(
-        &self,
-        _: &Shape<R>,
-        _: Vec2<R>,
-        _: crate::space::Rotation2<R>,
-        _: impl FnMut(usize, Vec2<R>, Gap<Planar<R>>),
-    ) {
-        match *self {}
-    }
-    fn most_contacts(&self) -> usize {
-        match *self {}
-    }
-    fn ball(&self) -> (Vec2<R>, R) {
-        match *self {}
-    }
-    fn tributary_length(&self) -> R {
-        match *self {}
-    }
 }
 
 /// A node of a discretized boundary.

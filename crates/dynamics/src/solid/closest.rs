@@ -21,8 +21,9 @@ pub struct Closest {
     pub converged: bool,
 }
 
-/// Evaluations after which the search along an axis gives up; bisection alone needs 50.
-const MOST_ALONG: u32 = 120;
+/// Evaluations after which the search along an axis gives up; bisection alone needs 50, and every third
+/// evaluation bisects where false position is slower, as on a line that is flat to nine digits up to a kink.
+const MOST_ALONG: u32 = 180;
 
 /// The point of a segment that is closest to a convex body: share of the way from `from` to `to`, gap,
 /// evaluations, and whether it was found.
@@ -57,7 +58,7 @@ pub(super) fn along_axis(
         // Every third time the interval has to be half as long, or it is halved.
         let slow = evaluation % 3 == 0 && narrowed > 0.5 * wide;
         if evaluation % 3 == 0 {
-            wide = narrowed;
+            wide = if slow { 0.5 * narrowed } else { narrowed };
         }
         let inside = secant > low.0 && secant < high.0;
         let share = if inside && !slow { secant } else { 0.5 * (low.0 + high.0) };
@@ -223,6 +224,9 @@ pub(super) fn barrels(
         evaluations += 2;
     }
 
+    if let Some((normal, point, distance)) = rims_crossed(&one, &other) {
+        return found(normal, point, distance, evaluations + 2, true);
+    }
     let mut from = one.project(center);
     let mut to = other.project(from);
     let mut normal = (to - from).unit_or(center.unit_or(Vec3::new(0.0, 0.0, 1.0)));
@@ -281,6 +285,78 @@ fn on_head(bearing: &Set<'_>, resting: &Set<'_>) -> Option<(Vec3, Vec3, f64)> {
         support.point,
         distance,
     ))
+}
+
+/// Where the rims of two heads that face each other are closest, where they cross as seen along the axis:
+/// normal out of the target, point of the contactor's core and distance (m).
+///
+/// Two such heads share a lens, at a corner of which they are closest unless the rim of one is inside of
+/// the other. Newton's method on the angles of both points; the normal must lie between the head and the
+/// stave of both, or something else is closer.
+fn rims_crossed(target: &Set<'_>, contactor: &Set<'_>) -> Option<(Vec3, Vec3, f64)> {
+    let side = contactor.center.x.signum();
+    let facing = contactor.axis() * -(side * contactor.axis().x.signum());
+    if facing.x.abs() < 0.99 {
+        return None;
+    }
+    let (radius, other_radius) = (target.barrel.head_radius, contactor.barrel.head_radius);
+    let head = Vec3::new(side * target.barrel.half_length, 0.0, 0.0);
+    let other_head = contactor.center + facing * contactor.barrel.half_length;
+    let aside = Vec3::new(0.0, other_head.y, other_head.z);
+    let apart = aside.length();
+    let along = 0.5 * (apart + (radius * radius - other_radius * other_radius) / apart);
+    let square = radius * radius - along * along;
+    // Rims that nearly coincide cross nowhere for sure.
+    if apart < 1e-6 || square <= 1e-6 * radius * radius {
+        return None;
+    }
+    let toward = aside * (1.0 / apart);
+    let across = Vec3::new(0.0, -toward.z, toward.y);
+    let axis = Vec3::new(side, 0.0, 0.0);
+    let mut best: Option<(Vec3, Vec3, f64)> = None;
+    for root in [square.sqrt(), -square.sqrt()] {
+        // Unit vectors from the centers of both heads to their points.
+        let mut out = (toward * along + across * root) * (1.0 / radius);
+        let corner = head + out * radius - other_head;
+        let mut other_out =
+            (corner - facing * corner.dot(facing)).unit_or(Vec3::new(0.0, 0.0, 1.0));
+        let mut way = Vec3::default();
+        for _ in 0..12 {
+            way = other_head + other_out * other_radius - head - out * radius;
+            // Along both rims, as if the points turned by a radian.
+            let (slope, other_slope) =
+                (axis.cross(out) * radius, facing.cross(other_out) * other_radius);
+            let (a, c) = (
+                radius * radius + way.dot(out) * radius,
+                other_radius * other_radius - way.dot(other_out) * other_radius,
+            );
+            let b = -slope.dot(other_slope);
+            let (f, g) = (-way.dot(slope), way.dot(other_slope));
+            let determinant = a * c - b * b;
+            let (turn, other_turn) = ((b * g - c * f) / determinant, (b * f - a * g) / determinant);
+            if turn.abs().max(other_turn.abs()) > 0.5 {
+                return None;
+            }
+            out = (out + axis.cross(out) * turn).unit_or(out);
+            other_out = (other_out + facing.cross(other_out) * other_turn).unit_or(other_out);
+            if turn.abs().max(other_turn.abs()) < 1e-15 {
+                break;
+            }
+        }
+        let distance = way.length();
+        let normal = way.unit_or(axis);
+        let borne = |barrel: &Barrel, outward: f64, radial: f64| {
+            let corner = barrel.head_radius + barrel.stave_offset;
+            radial >= -1e-12 && outward > 0.0 && radial * barrel.half_length <= outward * corner
+        };
+        if borne(target.barrel, normal.dot(axis), normal.dot(out))
+            && borne(contactor.barrel, -normal.dot(facing), -normal.dot(other_out))
+            && best.is_none_or(|best| distance < best.2)
+        {
+            best = Some((normal, other_head + other_out * other_radius, distance));
+        }
+    }
+    best
 }
 
 /// Normal, point of the contactor's core and distance (m), from the surer of both supports: the place of one

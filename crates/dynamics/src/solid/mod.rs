@@ -1,14 +1,18 @@
-//! Boundaries in space: ball, half-space, capsule, barrel of revolution.
+//! Boundaries in space: ball, half-space, capsule, block, barrel of revolution.
 //!
 //! All are convex cores grown by a radius, so that at the depths of contact the cores are apart, and
 //! what is asked is the distance of convex bodies that do not meet.
-//! A target answers how far a point is from it ([`Surface::gap`]); a capsule or a barrel touches as a
-//! whole ([`Rounded`]), a ball with its center ([`Nodes::Rolling`](crate::body::Nodes::Rolling)), and feet, legs and
-//! boxes with their points ([`Nodes::Fixed`](crate::body::Nodes::Fixed)).
+//! A target answers how far a point is from it ([`Surface::gap`]); a capsule, a block or a barrel touches as
+//! a whole ([`Rounded`]), a ball with its center ([`Nodes::Rolling`](crate::body::Nodes::Rolling)), and feet and
+//! legs with their points ([`Nodes::Fixed`](crate::body::Nodes::Fixed)).
 //! One file holds one solid; [`Solid`] is the table.
 
 mod barrel;
+mod block;
 mod closest;
+mod compound;
+mod flat;
+mod mass;
 mod rounded;
 
 use crate::real::Real;
@@ -16,7 +20,10 @@ use crate::shape::{Gap, Nearest, Surface};
 use crate::space::{Spatial, Vec3};
 
 pub use barrel::{Barrel, BarrelError};
+pub use block::Block;
 pub use closest::Closest;
+pub use compound::{Part, compound, pairs_between};
+pub use mass::{Bulk, Cask, Fill};
 pub use rounded::{Hull, Rounded};
 
 /// A ball about the origin.
@@ -68,6 +75,8 @@ pub enum Solid<R = f64> {
     Capsule(Capsule<R>),
     /// A barrel.
     Barrel(Barrel<R>),
+    /// A block.
+    Block(Block<R>),
 }
 
 impl<R: Real> Surface<Spatial<R>> for Solid<R> {
@@ -81,6 +90,7 @@ impl<R: Real> Surface<Spatial<R>> for Solid<R> {
             Self::Ball(ball) => ball.gap(point),
             Self::Capsule(capsule) => capsule.gap(point),
             Self::Barrel(barrel) => barrel.gap(point),
+            Self::Block(block) => block.gap(point),
         }
     }
 
@@ -89,7 +99,7 @@ impl<R: Real> Surface<Spatial<R>> for Solid<R> {
         let none = R::Mask::default();
         let flat = match self {
             Self::HalfSpace => !none,
-            Self::Ball(_) | Self::Capsule(_) | Self::Barrel(_) => none,
+            Self::Ball(_) | Self::Capsule(_) | Self::Barrel(_) | Self::Block(_) => none,
         };
         Nearest::endless(self.gap(point), !flat)
     }
@@ -100,6 +110,7 @@ impl<R: Real> Surface<Spatial<R>> for Solid<R> {
             Self::Ball(ball) => ball.radius.largest_lane(),
             Self::Capsule(capsule) => (capsule.half_length + capsule.radius).largest_lane(),
             Self::Barrel(barrel) => barrel.reach().largest_lane(),
+            Self::Block(block) => block.reach().largest_lane(),
         }
     }
 }

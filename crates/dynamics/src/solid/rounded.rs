@@ -1,19 +1,23 @@
 //! Capsules and barrels as they touch: with the points that lie deepest.
 
 use super::barrel::Barrel;
+use super::block::{Block, from_block};
 use super::closest::{Closest, along_axis, barrels};
+use super::flat::shared;
 use super::{Capsule, Solid};
 use crate::real::Real;
-use crate::shape::{self, Gap};
+use crate::shape::{Axes, Gap, Patch, Shares, Spread, Touch, Whole};
 use crate::space::{Rotation3, Spatial, Vec3};
 
-/// What touches as a whole, along `x` about the origin.
+/// What touches as a whole, about the origin, along `x`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Hull<R = f64> {
     /// A tube with round ends.
     Capsule(Capsule<R>),
     /// A barrel.
     Barrel(Barrel<R>),
+    /// A block.
+    Block(Block<R>),
 }
 
 /// A hull at its place on a body.
@@ -29,8 +33,11 @@ pub struct Rounded<R = f64> {
     pub tributary_length: R,
 }
 
-/// Contacts of a barrel on a plane: the deepest point, and three more around the lower head.
-const ON_PLANE: usize = 4;
+/// Sticks of a patch: one at the center of pressure, and two along each of its axes.
+const OF_LINE: usize = 3;
+const OF_FACE: usize = 5;
+/// A block touches the half-space with each of its corners.
+const CORNERS: usize = 8;
 
 impl<R: Real> Rounded<R> {
     /// A hull at the center of mass of its body.
@@ -44,50 +51,42 @@ impl<R: Real> Rounded<R> {
     }
 }
 
-impl<R: Real> shape::Whole<Spatial<R>> for Rounded<R> {
+impl<R: Real> Whole<Spatial<R>> for Rounded<R> {
     #[inline(always)]
     fn meet(
         &self,
         surface: &Solid<R>,
         position: Vec3<R>,
         rotation: Rotation3<R>,
-        mut visit: impl FnMut(usize, Vec3<R>, Gap<Spatial<R>>),
+        mut visit: impl FnMut(Patch<Spatial<R>>),
     ) {
-        // Both bodies feel the force midway between their surfaces, whichever of them is the target.
-        let mut midway = |index: usize, point: Vec3<R>, gap: Gap<Spatial<R>>| {
-            visit(index, point + gap.normal * (gap.distance * R::splat(0.5)), gap);
-        };
         let origin = position + rotation.apply(self.center);
         let frame = rotation.after(self.rotation);
         match (&self.hull, surface) {
             (Hull::Capsule(capsule), Solid::HalfSpace) => {
                 let end = frame.apply(Vec3::new(capsule.half_length, R::zero(), R::zero()));
-                on_plane([origin - end, origin + end], capsule.radius, &mut midway);
-            }
-            (Hull::Barrel(barrel), Solid::HalfSpace) => {
-                let points = bearing_points(barrel, frame).map(|point| origin + frame.apply(point));
-                on_plane(points, barrel.rounding, &mut midway);
-            }
-            (hull, Solid::Ball(_) | Solid::Capsule(_) | Solid::Barrel(_)) => {
-                let mut gap: Gap<Spatial<R>> = Gap { distance: R::zero(), normal: Vec3::default() };
-                let mut point = Vec3::default();
-                for lane in 0..R::LANES {
-                    let Some(target) = bounded(surface, lane) else { continue };
-                    let turned = Rotation3 { rows: frame.rows.map(|row| row.lane(lane)) };
-                    let found = closest(&hull.lane(lane), &target, origin.lane(lane), turned);
-                    gap.distance = gap.distance.with_lane(lane, found.distance);
-                    put(&mut gap.normal, lane, found.normal);
-                    put(&mut point, lane, found.point);
+                for (first, center) in [origin - end, origin + end].into_iter().enumerate() {
+                    visit(Patch { first, deepest: on_plane(center, capsule.radius), spread: None });
                 }
-                midway(0, point, gap);
+            }
+            (Hull::Barrel(barrel), Solid::HalfSpace) => visit(standing(barrel, origin, frame)),
+            (Hull::Block(block), Solid::HalfSpace) => {
+                for (first, corner) in block.corners().into_iter().enumerate() {
+                    let deepest = on_plane(origin + frame.apply(corner), block.rounding);
+                    visit(Patch { first, deepest, spread: None });
+                }
+            }
+            (hull, Solid::Ball(_) | Solid::Capsule(_) | Solid::Barrel(_) | Solid::Block(_)) => {
+                visit(meeting(hull, surface, origin, frame));
             }
         }
     }
 
-    fn most_contacts(&self) -> usize {
+    fn most_sticks(&self) -> usize {
         match self.hull {
-            Hull::Capsule(_) => 2,
-            Hull::Barrel(_) => ON_PLANE,
+            Hull::Capsule(_) => OF_LINE,
+            Hull::Barrel(_) => OF_FACE,
+            Hull::Block(_) => CORNERS,
         }
     }
 
@@ -95,6 +94,7 @@ impl<R: Real> shape::Whole<Spatial<R>> for Rounded<R> {
         let radius = match &self.hull {
             Hull::Capsule(capsule) => capsule.half_length + capsule.radius,
             Hull::Barrel(barrel) => barrel.reach(),
+            Hull::Block(block) => block.reach(),
         };
         (self.center, radius)
     }
@@ -104,36 +104,89 @@ impl<R: Real> shape::Whole<Spatial<R>> for Rounded<R> {
     }
 }
 
-/// Balls of a radius (m) on the half-space, one after the other.
+/// Both bodies feel the force midway between their surfaces, whichever of them is the target.
 #[inline(always)]
-fn on_plane<R: Real, const N: usize>(
-    centers: [Vec3<R>; N],
-    radius: R,
-    visit: &mut impl FnMut(usize, Vec3<R>, Gap<Spatial<R>>),
-) {
-    let up = Vec3::new(R::zero(), R::zero(), R::splat(1.0));
-    for (index, center) in centers.into_iter().enumerate() {
-        visit(index, center - up * radius, Gap { distance: center.z - radius, normal: up });
-    }
+fn midway<R: Real>(point: Vec3<R>, gap: Gap<Spatial<R>>) -> Touch<Spatial<R>> {
+    Touch { node: point + gap.normal * (gap.distance * R::splat(0.5)), gap }
 }
 
-/// The points of a barrel's core (m, in its frame) that bear it on the half-space: the deepest one, and
-/// three more a quarter turn apart on the circle of the lower head.
-///
-/// A barrel that stands on its head thus stands on four points, one that leans or lies on the first
-/// alone. They turn with the direction in which it leans, which has none where it stands upright; there
-/// all are equally deep, and the force of four equal springs and its moment are the same however they
-/// are turned. The energy is a function of height and tilt alone, so the force is its slope, and smooth.
+/// A ball of a radius (m) on the half-space.
 #[inline(always)]
-fn bearing_points<R: Real>(barrel: &Barrel<R>, frame: Rotation3<R>) -> [Vec3<R>; ON_PLANE] {
+fn on_plane<R: Real>(center: Vec3<R>, radius: R) -> Touch<Spatial<R>> {
+    let up = Vec3::new(R::zero(), R::zero(), R::splat(1.0));
+    midway(center - up * radius, Gap { distance: center.z - radius, normal: up })
+}
+
+/// A barrel on the half-space: its deepest point, and the middle of its lower head.
+///
+/// Energy and force of one that stands are those of four points of its rim, the deepest and three more a
+/// quarter turn apart: smooth in height and tilt, though upright no direction is that of the lean.
+#[inline(always)]
+fn standing<R: Real>(
+    barrel: &Barrel<R>,
+    origin: Vec3<R>,
+    frame: Rotation3<R>,
+) -> Patch<Spatial<R>> {
     let (zero, one) = (R::zero(), R::splat(1.0));
     let down = frame.unapply(Vec3::new(zero, zero, -one));
     let side = R::select(down.x.lt(zero), -one, one);
-    let lowest = Vec3::new(zero, down.y, down.z).unit_or(Vec3::new(zero, zero, one));
-    let aside = Vec3::new(zero, -lowest.z, lowest.y);
-    let head = Vec3::new(side * barrel.half_length, zero, zero);
-    let radius = barrel.head_radius;
-    [barrel.furthest(down), head + aside * radius, head - aside * radius, head - lowest * radius]
+    let place = |point: Vec3<R>| on_plane(origin + frame.apply(point), barrel.rounding);
+    let [y, z] = [Vec3::new(zero, one, zero), Vec3::new(zero, zero, one)];
+    let spread = Spread {
+        middle: place(Vec3::new(side * barrel.half_length, zero, zero)),
+        shares: Shares { deepest: one, others: one, aside: one },
+        radius: barrel.head_radius,
+        axes: Axes::Face([frame.apply(y), frame.apply(z)]),
+    };
+    Patch { first: 0, deepest: place(barrel.furthest(down)), spread: Some(spread) }
+}
+
+/// Two bounded solids, one lane after the other.
+#[inline(always)]
+fn meeting<R: Real>(
+    hull: &Hull<R>,
+    surface: &Solid<R>,
+    origin: Vec3<R>,
+    frame: Rotation3<R>,
+) -> Patch<Spatial<R>> {
+    let nothing = Gap { distance: R::splat(1.0), normal: Vec3::default() };
+    let (mut gap, mut point) = (nothing, Vec3::default());
+    let (mut middle_gap, mut middle, mut axes) = (nothing, Vec3::default(), [Vec3::default(); 2]);
+    let (one, mut radius) = (R::splat(1.0), R::zero());
+    let mut shares = Shares { deepest: one, others: R::zero(), aside: R::zero() };
+    for lane in 0..R::LANES {
+        let Some(target) = bounded(surface, lane) else { continue };
+        let turned = Rotation3 { rows: frame.rows.map(|row| row.lane(lane)) };
+        let (contactor, at) = (hull.lane(lane), origin.lane(lane));
+        let found = closest(&contactor, &target, at, turned);
+        put_gap(&mut gap, lane, Gap { distance: found.distance, normal: found.normal });
+        put(&mut point, lane, found.point);
+        if found.distance >= 0.0 {
+            continue;
+        }
+        if let Some(flat) = shared(&contactor, &target, at, turned, found.normal) {
+            put_gap(&mut middle_gap, lane, flat.gap);
+            put(&mut middle, lane, flat.point);
+            shares.deepest = shares.deepest.with_lane(lane, flat.shares.deepest);
+            shares.others = shares.others.with_lane(lane, flat.shares.others);
+            shares.aside = shares.aside.with_lane(lane, flat.shares.aside);
+            radius = radius.with_lane(lane, flat.radius);
+            for (axis, single) in axes.iter_mut().zip(flat.axes) {
+                put(axis, lane, single);
+            }
+        }
+    }
+    let axes = match (hull, surface) {
+        (Hull::Capsule(_), _) | (_, Solid::Ball(_) | Solid::Capsule(_)) => Axes::Line([axes[0]]),
+        _ => Axes::Face(axes),
+    };
+    let spread = Spread { middle: midway(middle, middle_gap), shares, radius, axes };
+    Patch { first: 0, deepest: midway(point, gap), spread: Some(spread) }
+}
+
+fn put_gap<R: Real>(gap: &mut Gap<Spatial<R>>, lane: usize, single: Gap<Spatial>) {
+    gap.distance = gap.distance.with_lane(lane, single.distance);
+    put(&mut gap.normal, lane, single.normal);
 }
 
 fn put<R: Real>(vector: &mut Vec3<R>, lane: usize, single: Vec3) {
@@ -148,6 +201,48 @@ impl<R: Real> Hull<R> {
         match self {
             Self::Capsule(capsule) => Hull::Capsule(capsule.lane(lane)),
             Self::Barrel(barrel) => Hull::Barrel(barrel.lane(lane)),
+            Self::Block(block) => Hull::Block(block.lane(lane)),
+        }
+    }
+
+    /// Distance and normal at a point (m).
+    #[inline(always)]
+    pub(super) fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
+        match self {
+            Self::Capsule(capsule) => capsule.gap(point),
+            Self::Barrel(barrel) => barrel.gap(point),
+            Self::Block(block) => block.gap(point),
+        }
+    }
+}
+
+impl Hull {
+    /// The same as a surface that can be touched.
+    pub fn surface(self) -> Solid {
+        match self {
+            Self::Capsule(capsule) => Solid::Capsule(capsule),
+            Self::Barrel(barrel) => Solid::Barrel(barrel),
+            Self::Block(block) => Solid::Block(block),
+        }
+    }
+
+    /// How far (m) it reaches beyond its core.
+    pub(super) fn rounding(&self) -> f64 {
+        match self {
+            Self::Capsule(capsule) => capsule.radius,
+            Self::Barrel(barrel) => barrel.rounding,
+            Self::Block(block) => block.rounding,
+        }
+    }
+
+    /// The point of the core (m) that lies furthest in a direction of length one.
+    pub(super) fn furthest(&self, direction: Vec3) -> Vec3 {
+        match self {
+            Self::Capsule(capsule) => {
+                Vec3::new(capsule.half_length * direction.x.signum(), 0.0, 0.0)
+            }
+            Self::Barrel(barrel) => barrel.furthest(direction),
+            Self::Block(block) => block.furthest(direction),
         }
     }
 }
@@ -161,6 +256,7 @@ fn bounded<R: Real>(surface: &Solid<R>, lane: usize) -> Option<Hull> {
         }
         Solid::Capsule(capsule) => Some(Hull::Capsule(capsule.lane(lane))),
         Solid::Barrel(barrel) => Some(Hull::Barrel(barrel.lane(lane))),
+        Solid::Block(block) => Some(Hull::Block(block.lane(lane))),
     }
 }
 
@@ -171,10 +267,7 @@ fn closest(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Close
         (Hull::Barrel(barrel), Hull::Barrel(target)) => barrels(target, barrel, at, frame),
         (Hull::Capsule(capsule), _) => {
             let end = frame.apply(Vec3::new(capsule.half_length, 0.0, 0.0));
-            let gap = |point| match target {
-                Hull::Capsule(target) => target.gap(point),
-                Hull::Barrel(target) => target.gap(point),
-            };
+            let gap = |point| target.gap(point);
             let (share, gap, evaluations, converged) = along_axis(gap, at - end, at + end);
             let center = at + end * (2.0 * share - 1.0);
             Closest {
@@ -185,12 +278,12 @@ fn closest(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Close
                 converged,
             }
         }
-        // The barrel tells how far the axis of the capsule is, in its own frame.
-        (Hull::Barrel(barrel), Hull::Capsule(target)) => {
+        // The contactor tells how far the axis of the capsule is, in its own frame.
+        (hull, Hull::Capsule(target)) => {
             let end = frame.unapply(Vec3::new(target.half_length, 0.0, 0.0));
             let middle = frame.unapply(-at);
             let (share, gap, evaluations, converged) =
-                along_axis(|point| barrel.gap(point), middle - end, middle + end);
+                along_axis(|point| hull.gap(point), middle - end, middle + end);
             let nearest = middle + end * (2.0 * share - 1.0) - gap.normal * gap.distance;
             Closest {
                 distance: gap.distance - target.radius,
@@ -200,11 +293,22 @@ fn closest(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Close
                 converged,
             }
         }
+        (other, Hull::Block(block)) => from_block(block, other, at, frame),
+        // The block tells where the target is closest, in its own frame.
+        (Hull::Block(block), target) => {
+            let found = from_block(block, target, frame.unapply(-at), frame.back());
+            let on_block = found.point - found.normal * found.distance;
+            Closest {
+                normal: -frame.apply(found.normal),
+                point: at + frame.apply(on_block),
+                ..found
+            }
+        }
     }
 }
 
 impl Rounded {
-    /// Where it is closest to a surface; `position` and `rotation` as in [`shape::Whole::meet`].
+    /// Where it is closest to a surface; `position` and `rotation` as in [`Whole::meet`].
     ///
     /// None for the half-space, on which it may lie with more than one point.
     pub fn closest(&self, surface: &Solid, position: Vec3, rotation: Rotation3) -> Option<Closest> {

@@ -1,7 +1,8 @@
 //! What the suites share beside the scenes.
 #![allow(dead_code, unused_imports, unreachable_pub, reason = "every suite uses its own share")]
 
-use barrelstack_dynamics::{Method, Planar, Pose, State, Twist};
+use barrelstack_dynamics::space::Linear as _;
+use barrelstack_dynamics::{Method, Planar, Pose, Quaternion, State, Twist, Vec3};
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};
 
 pub use barrelstack_scenes::GRAVITY;
@@ -61,5 +62,33 @@ pub fn cases(cases: u32) -> ProptestConfig {
         failure_persistence: None,
         rng_seed: RngSeed::Fixed(2008),
         ..ProptestConfig::default()
+    }
+}
+
+/// Random numbers between -1 and 1, the same ones every time.
+pub struct Dice(pub u64);
+
+impl Dice {
+    /// The next one.
+    pub fn roll(&mut self) -> f64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let x = self.0 ^ (self.0 >> 33);
+        (x.wrapping_mul(0xff51_afd7_ed55_8ccd) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// Three of them.
+    pub fn vector(&mut self) -> Vec3 {
+        Vec3::new(self.roll(), self.roll(), self.roll())
+    }
+
+    /// Any orientation, all as likely.
+    pub fn orientation(&mut self) -> Quaternion {
+        loop {
+            let (w, v) = (self.roll(), self.vector());
+            if w * w + v.dot(v) <= 1.0 {
+                return Quaternion { w, v }.normalized();
+            }
+        }
     }
 }

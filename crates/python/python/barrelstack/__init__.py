@@ -7,13 +7,17 @@
     ensemble ──────────▶ Table       many cases at once
     Study    ── run ──▶ Fragility    hundreds of cases in a folder, on one machine or on many
     Scene    ── run ──▶ Run          any planar bodies
-    compare, heights, protect ─▶ Page        runs side by side; how high is safe; what helps most for its cost
+    read_folder ── select ─▶ Selection       many records; a set of them for a target
+    compare, heights, protect, score ─▶ Page runs side by side; how high is safe; what helps most; one number for a rack
     Calibration.friction, …  ──▶ Page        contact parameters from one's own tests
 
 All numbers are SI: m, s, kg, N, rad; z is up. Quantities that are given carry their unit as text (``"60 cm/s"``).
 """
 
 from __future__ import annotations
+
+import json
+from typing import Any
 
 from . import _native
 from ._calibration import Calibration, Estimate
@@ -23,15 +27,18 @@ from ._decide import (
     Heights,
     Protections,
     Reproduction,
+    RockScore,
     compare,
     heights,
     protect,
     reproduce,
+    score,
 )
 from ._ensemble import ensemble
 from ._errors import BarrelstackWarning, Error, RecordError, RunError, ScenarioError, StudyError
 from ._page import Page
 from ._record import Channel, Intensity, Record
+from ._records import Selection, intensities, read_folder, select
 from ._run import Demands, Envelope, Force, Frames, Glance, Histories, Outcome, Run
 from ._scenario import Scenario, Section
 from ._scene import Scene
@@ -67,12 +74,14 @@ __all__ = [
     "Record",
     "RecordError",
     "Reproduction",
+    "RockScore",
     "Run",
     "RunError",
     "Scenario",
     "ScenarioError",
     "Scene",
     "Section",
+    "Selection",
     "Study",
     "StudyError",
     "Table",
@@ -81,9 +90,14 @@ __all__ = [
     "ensemble",
     "formats",
     "heights",
+    "intensities",
     "protect",
+    "read_folder",
     "reproduce",
     "scenarios",
+    "schema",
+    "score",
+    "select",
     "studies",
 ]
 
@@ -97,6 +111,22 @@ def scenarios() -> dict[str, str]:
         Names, and their texts with all comments: places to start from.
     """
     return dict(_native.scenarios())
+
+
+def schema(of: str = "scenario") -> dict[str, Any]:
+    """A JSON Schema (2020-12).
+
+    Parameters
+    ----------
+    of
+        ``"scenario"`` or ``"study"`` for their files, ``"summary"`` for :attr:`Run.summary`.
+
+    Returns
+    -------
+    dict
+    """
+    found: dict[str, Any] = json.loads(_native.schema(of))
+    return found
 
 
 def studies() -> dict[str, str]:

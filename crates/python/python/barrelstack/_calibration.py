@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple, cast
 
 from . import _native
 from ._page import Page
@@ -35,10 +35,12 @@ class Estimate(NamedTuple):
 def _text(measured: Any) -> tuple[str, str]:
     """What errors call a test, and its measurements as CSV."""
     if isinstance(measured, (str, os.PathLike)):
-        with open(measured, encoding="utf-8-sig") as file:
-            return os.fspath(measured), file.read()
+        name = os.fspath(cast("str | os.PathLike[str]", measured))
+        with open(name, encoding="utf-8-sig") as file:
+            return name, file.read()
     if isinstance(measured, Mapping):
-        columns = [(str(name), plain(list(values))) for name, values in measured.items()]
+        given = cast("Mapping[object, Iterable[object]]", measured)
+        columns = [(str(name), plain(list(values))) for name, values in given.items()]
         return "measurements", _native.Table.from_columns(columns).to_csv()
     return "measurements", _native.Table.from_arrow(measured).to_csv()
 

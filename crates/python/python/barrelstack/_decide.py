@@ -1,4 +1,4 @@
-"""What many runs say: comparisons, heights, protections, the cases of the paper."""
+"""What many runs say: comparisons, heights, protections, scores, the cases of the paper."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ._quantity import plain
 from ._scenario import Scenario
 from ._table import Table
 
-__all__ = ["Comparison", "Difference", "Heights", "Protections", "Reproduction", "compare", "heights", "protect", "reproduce"]
+__all__ = ["Comparison", "Difference", "Heights", "Protections", "Reproduction", "RockScore", "compare", "heights", "protect", "reproduce", "score"]
 
 Path = str | os.PathLike[str]
 
@@ -165,9 +165,9 @@ class Protections(Page):
         """A row for every protection that was tried, in the order of the page: cost for a stack (US$, from and to),
         chance of collapse (1, or 1/year at a site), barrels that fall and that are saved, each with its 95 % interval.
         """
-        rows = []
+        rows: list[dict[str, Any]] = []
         for one in self.document["protections"]:
-            row = {"name": one["name"], "kind": one["kind"], "on_front": one["on_front"]}
+            row: dict[str, Any] = {"name": one["name"], "kind": one["kind"], "on_front": one["on_front"]}
             row |= {"cost_low": one["cost"][0], "cost_high": one["cost"][1]}
             for key in ("collapse", "barrels_fallen", "barrels_saved"):
                 found = one[key] or {"mean": None, "low": None, "high": None}
@@ -280,6 +280,66 @@ def protect(
                 hear,
             )
         )
+
+
+class RockScore(Page):
+    """The RockScore of a rack and its devices, made by :func:`score`."""
+
+    @property
+    def score(self) -> int:
+        """The score (cm/s): the peak ground velocity at which one stack in ten collapses, in the weakest state and
+        direction, rounded down."""
+        score: int = self.document["score"]
+        return score
+
+    @property
+    def table(self) -> Table:
+        """A row for every state in every direction: the velocity (m/s) that counts, how it was found, its 95 %
+        interval, and the share (1) that collapsed at each level of shaking."""
+        rows: list[dict[str, Any]] = []
+        for one in self.document["states"]:
+            low, high = one["interval"] or (None, None)
+            row: dict[str, Any] = {key: one[key] for key in ("state", "direction", "velocity", "found", "runs")}
+            row |= {"low": low, "high": high}
+            levels = zip(self.document["velocities"], one["collapsed"], strict=True)
+            rows.append(row | {f"collapsed_{100.0 * velocity:g}": share for velocity, share in levels})
+        units = {key: f"{key} (m/s)" for key in ("velocity", "low", "high")}
+        return table_of(rows, {name: units.get(name, name) for name in rows[0]})
+
+
+def score(scenario: Scenario | str, folder: Path, *, progress: Progress = None) -> RockScore:
+    """The RockScore of a rack and its devices: one number by which they compare, by a protocol that never changes.
+
+    Parameters
+    ----------
+    scenario
+        A stack on the rack and with the devices that are scored, or the name of one; its height and its motion are
+        those of the protocol.
+    folder
+        Where the studies behind it are kept; what is there of the same question is not run again.
+    progress
+        As for :meth:`Scenario.run`.
+
+    Returns
+    -------
+    RockScore
+
+    Raises
+    ------
+    StudyError
+        When the scenario is no stack, or the folder belongs to something else.
+    RunError
+        When the stack does not stand.
+    KeyboardInterrupt
+        Within a second of Ctrl-C; what was run is kept.
+
+    Notes
+    -----
+    The numbers are those of ``barrelstack score``, bit for bit.
+    """
+    stack = scenario if isinstance(scenario, Scenario) else Scenario.load(scenario)
+    with told(progress, f"RockScore of {stack.title!r}") as hear:
+        return RockScore(_native.score(stack._shaken, os.fspath(folder), hear))
 
 
 class Reproduction(Page):

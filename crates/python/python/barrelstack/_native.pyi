@@ -13,6 +13,7 @@ _Told = Callable[[float, float, str], object]
 
 __all__ = [
     "Glance",
+    "PERIODS",
     "Page",
     "Record",
     "Run",
@@ -31,6 +32,7 @@ __all__ = [
     "export",
     "fields",
     "formats",
+    "group_files",
     "heights",
     "measured",
     "protect",
@@ -40,10 +42,13 @@ __all__ = [
     "reproduce",
     "scenarios",
     "schema",
+    "score",
+    "select",
     "standard_periods",
     "studies",
 ]
 
+PERIODS: list[float]
 VERSION: str
 
 @final
@@ -66,6 +71,7 @@ class Scenario:
     def is_free(self) -> bool: ...
     def to_toml(self) -> str: ...
     def settings(self) -> list[tuple[str, str, str]]: ...
+    def ground(self) -> Record | None: ...
     def check(self) -> list[str]: ...
     def run(
         self,
@@ -251,6 +257,7 @@ class Study:
         progress: _Told | None,
     ) -> None: ...
     def run_chunk(self, folder: str | os.PathLike[str], chunk: int) -> bool: ...
+    def records(self) -> list[tuple[str, Record]]: ...
     def table(self) -> Table: ...
 
 @final
@@ -319,6 +326,22 @@ def protect(
     seed: int,
     progress: _Told | None,
 ) -> Page: ...
+def score(
+    scenario: Scenario,
+    folder: str | os.PathLike[str],
+    progress: _Told | None,
+) -> Page: ...
+def group_files(paths: list[str]) -> list[tuple[str, list[str]]]: ...
+def select(
+    periods: list[float],
+    target: str | tuple[list[float], list[float]],
+    given: tuple[float, float] | None,
+    candidates: list[tuple[str, list[float], str]],
+    count: int,
+    scale: tuple[float, float],
+    most_of_group: int | None,
+    seed: int,
+) -> tuple[list[tuple[int, float]], list[list[float]], int]: ...
 def reproduce(
     record: str | os.PathLike[str] | None,
     studies: bool,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol, cast, runtime_checkable
 
 __all__ = ["plain"]
 
@@ -77,9 +77,9 @@ def plain(value: Any) -> Any:
         When a quantity has a base unit that no field of a scenario has, such as the kelvin.
     """
     if isinstance(value, dict):
-        return {str(key): plain(item) for key, item in value.items()}
+        return {str(key): plain(item) for key, item in cast("dict[object, object]", value).items()}
     if isinstance(value, (list, tuple)):
-        return [plain(item) for item in value]
+        return [plain(item) for item in cast("list[object]", value)]
     if isinstance(value, (str, bool, int, float)):
         return value
     try:
@@ -117,8 +117,9 @@ def literal(value: Any) -> str:
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False)
     if isinstance(value, list):
-        return "[" + ", ".join(literal(item) for item in value) + "]"
+        return "[" + ", ".join(literal(item) for item in cast("list[object]", value)) + "]"
     if isinstance(value, dict):
-        pairs = (f"{json.dumps(key)} = {literal(item)}" for key, item in value.items())
+        given = cast("dict[str, object]", value)
+        pairs = (f"{json.dumps(key)} = {literal(item)}" for key, item in given.items())
         return "{ " + ", ".join(pairs) + " }"
     raise TypeError(f"a scenario holds texts, numbers, truths, lists and dicts, not a {type(value).__name__}")

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
+from ._quantity import literal
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["Channel", "Intensity", "Record"]
 
@@ -45,7 +49,7 @@ class Intensity(NamedTuple):
 class Record:
     """Accelerations of one instrument in one event; never changed, only made anew.
 
-    Made by :meth:`read`, :meth:`bundled`, :meth:`from_arrays` or :meth:`from_obspy`.
+    Made by :meth:`read`, :meth:`bundled`, :meth:`made`, :meth:`from_arrays` or :meth:`from_obspy`.
 
     Examples
     --------
@@ -122,6 +126,50 @@ class Record:
         if found is None:
             raise ValueError(f'no record {name!r} comes with the library; "napa-college-2014" does')
         return cls(found)
+
+    @classmethod
+    def made(cls, **motion: Any) -> Record:
+        """A motion from a formula, or from random numbers of a seed.
+
+        Parameters
+        ----------
+        **motion
+            One of ``sine``, ``pulse`` and ``synthetic``, as a ``[[motion]]`` of a study has it, and ``scale`` where it
+            is scaled: ``pulse={"kind": "ricker", "amplitude": "0.4 g", "period": "0.8 s"}``,
+            ``synthetic={"kind": "boore", "magnitude": 6, "distance": "8 km", "seed": 4}``. Quantities of Pint and
+            astropy are taken as well.
+
+        Returns
+        -------
+        Record
+            At the step of its samples, or a 400th of the period of a formula; its notes say how it was made.
+
+        Raises
+        ------
+        ScenarioError
+            At the first field that cannot be.
+        TypeError
+            When it is not exactly one of these kinds.
+        ValueError
+            When it makes several motions.
+
+        Notes
+        -----
+        A synthetic motion is the first realization of its seed, as in a study.
+        """
+        kinds = [name for name in ("sine", "pulse", "synthetic") if name in motion]
+        if len(kinds) != 1:
+            raise TypeError(f"a motion is made by one of sine, pulse and synthetic, found {', '.join(motion) or 'none'}")
+        fields = dict(motion)
+        if "synthetic" in fields:
+            fields["synthetic"] = {"count": 1, **fields["synthetic"]}
+        base, design = {"extends": "sliding-block"}, {"kind": "full-factorial"}
+        tables = {"schema": 1, "base": base, "motion": [fields], "design": design}
+        text = "".join(f"{key} = {literal(value)}\n" for key, value in tables.items())
+        records = _native.Study.parse("motion", text).records()
+        if len(records) != 1:
+            raise ValueError(f"one motion is made at a time, and this makes {len(records)}: Study.records has them all")
+        return cls(records[0][1])
 
     @classmethod
     def from_arrays(
@@ -322,6 +370,11 @@ class Record:
         Returns
         -------
         ndarray, shape (samples,)
+
+        Raises
+        ------
+        RecordError
+            When the record has no such component.
         """
         return self._native.integrated(self._native.find(component))[0]
 
@@ -350,6 +403,11 @@ class Record:
         Returns
         -------
         Record
+
+        Raises
+        ------
+        RecordError
+            When the record has no such component, or an azimuth is asked for and two horizontals do not say theirs.
         """
         return Record(self._native.component(name))
 
@@ -506,7 +564,7 @@ class Record:
             When there is no such measure.
         """
         names = [channel[0] for channel in self._native.channels()]
-        rows = []
+        rows: list[Intensity] = []
         for measure in measures or USUAL:
             values, unit = self._native.intensity(measure)
             rows.append(Intensity(measure, unit, dict(zip(names, values, strict=True))))
@@ -540,6 +598,48 @@ class Record:
         at = _native.standard_periods(30) if periods is None else np.ascontiguousarray(periods, dtype=np.float64)
         return at, self._native.spectrum(at, damping, of)
 
+    def plot(self, component: str = "h1", *, damping: float = 0.05) -> Figure:
+        """Acceleration, velocity and displacement of a component, and its response spectrum.
+
+        Parameters
+        ----------
+        component
+            As for :meth:`component`.
+        damping
+            Damping ratio of the spectrum.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        import matplotlib.pyplot as plt
+
+        one = self.component(component)
+        channel = one.channels[0]
+        time = channel.time_step * np.arange(len(channel.acceleration))
+        figure = plt.figure(figsize=(9, 5), layout="constrained")
+        grid = figure.add_gridspec(3, 2, width_ratios=(2, 1))
+        rows = (
+            ("acceleration (m/s²)", channel.acceleration),
+            ("velocity (m/s)", one.velocity(channel.name)),
+            ("displacement (m)", one.displacement(channel.name)),
+        )
+        axes: Any = None
+        for row, (label, values) in enumerate(rows):
+            axes = figure.add_subplot(grid[row, 0], sharex=axes)
+            axes.plot(time, values, linewidth=0.8)
+            axes.set_ylabel(label)
+            axes.tick_params(labelbottom=row == len(rows) - 1)
+        axes.set_xlabel("time (s)")
+        axes = figure.add_subplot(grid[:, 1])
+        periods, spectrum = one.spectrum(damping=damping, of=channel.name)
+        axes.semilogx(periods, spectrum)
+        axes.set_xlabel("period (s)")
+        axes.set_ylabel(f"pseudo-acceleration (m/s²), damping {100.0 * damping:g} %")
+        axes.set_ylim(bottom=0.0)
+        figure.suptitle(f"{self.event or self.name}, {channel.name}")
+        return figure
+
     def write(self, path: str | os.PathLike[str]) -> None:
         """Writes it in the form of the ending: ``.txt`` and ``.npz`` (exact), ``.csv``, ``.at2``.
 
@@ -547,6 +647,13 @@ class Record:
         ----------
         path
             The file.
+
+        Raises
+        ------
+        RecordError
+            When the ending is of no form that is written, or the form cannot hold the record.
+        OSError
+            When the file cannot be written.
         """
         name = os.fspath(path)
         data = self._native.written(os.path.splitext(name)[1].lstrip(".").lower())
@@ -569,7 +676,3 @@ class Record:
         names = ", ".join(channel.name for channel in channels)
         step, count = channels[0].time_step, len(channels[0].acceleration)
         return f"<Record {self.name!r}: {names}; {count} samples of {step:g} s, {self.stage}>"
-
-
-def _records(items: Iterable[tuple[str, Record]]) -> dict[str, _native.Record]:
-    return {name: record._native for name, record in items}

@@ -237,7 +237,7 @@ class Run:
     @cached_property
     def envelopes(self) -> dict[str, Envelope]:
         """Stress along the boundary of every barrel and rack, by its name."""
-        found = {}
+        found: dict[str, Envelope] = {}
         for at, (name, closed) in enumerate(self._native.envelopes()):
             points = self._native.envelope_points(at)
             stresses = self._native.envelope_stresses(at)

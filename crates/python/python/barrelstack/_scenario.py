@@ -276,6 +276,22 @@ class Scenario:
         """
         return _schema("scenario")
 
+    def ground(self) -> Record | None:
+        """What moves its ground: the record or the formula after processing and scaling.
+
+        Returns
+        -------
+        Record or None
+            ``H1``, positive along x, and ``UP``; None for ground at rest.
+
+        Raises
+        ------
+        RecordError
+            When the record cannot be read.
+        """
+        found = self._shaken.ground()
+        return None if found is None else Record(found)
+
     def check(self) -> list[dict[str, Any]]:
         """Is it sound, and does the stack stand by itself?
 

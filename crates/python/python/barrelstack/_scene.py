@@ -38,6 +38,7 @@ class Scene:
         self.tables = tables
         self.bodies: list[dict[str, Any]] = []
         self.interfaces: list[dict[str, Any]] = []
+        self.elements: list[dict[str, Any]] = []
 
     def body(
         self,
@@ -59,7 +60,8 @@ class Scene:
         mass
             With its unit.
         position
-            Center of mass, x and z with their units; z is up and 0 on the ground.
+            Place of the reference point of its shape at the start, x and z with their units; z is up and 0 on the
+            ground.
         **fields
             Other fields of a body: ``angle``, ``velocity``, ``spin``, ``nodes``, ``group``.
 
@@ -90,6 +92,34 @@ class Scene:
         self.interfaces.append({"between": [first, second], **fields})
         return self
 
+    def element(self, name: str, kind: str, first: str, second: str, *, stiffness: Any, **fields: Any) -> Scene:
+        """Puts a force element between two bodies.
+
+        Parameters
+        ----------
+        name
+            Its name in results: ``run.summary["elements"]``.
+        kind
+            ``"strap"``, which pulls only; ``"rod"``, which holds a distance; ``"guide"``, a spring with stops along an
+            axis of the first body.
+        first, second
+            Names of the bodies; ``"ground"`` is one.
+        stiffness
+            With its unit.
+        **fields
+            ``at`` and ``to``, where it is made fast on each body, from the reference point of its shape; ``damping``; of
+            a strap ``length``, ``yields_at``, ``strength``; of a rod ``length``, ``sway_damping``; of a guide ``axis``,
+            ``gap`` with ``stop_stiffness`` and ``stop_damping``, ``strength``, ``reach``.
+
+        Returns
+        -------
+        Scene
+            This one.
+        """
+        between = [first, second]
+        self.elements.append({"name": name, "kind": kind, "between": between, "stiffness": stiffness, **fields})
+        return self
+
     def scenario(self) -> Scenario:
         """The scene as a scenario.
 
@@ -102,7 +132,8 @@ class Scene:
         ScenarioError
             At the first field that cannot be; its ``value`` has the path, items of lists counted from 1.
         """
-        tree = {"title": self.title, "kind": "free", **self.tables, "body": self.bodies, "interface": self.interfaces}
+        tree = {"title": self.title, "kind": "free", **self.tables}
+        tree |= {"body": self.bodies, "interface": self.interfaces, "element": self.elements}
         return Scenario({key: value for key, value in tree.items() if value != []}, name=self.title)
 
     def run(self, record: Record | None = None, progress: Progress = None) -> Run:

@@ -15,6 +15,7 @@ from . import _native
 from ._page import Page
 from ._progress import Progress, told
 from ._quantity import literal
+from ._record import Record
 from ._table import Table
 
 __all__ = ["Chunk", "Curve", "Fragility", "Hunts", "Study"]
@@ -80,7 +81,7 @@ class Fragility(Page):
     @property
     def curves(self) -> dict[str, Curve]:
         """A curve for every limit state, by its name; the first is the loss of the first seat."""
-        found = {}
+        found: dict[str, Curve] = {}
         for one in self.document["fragility"]:
             raw = [[row["intensity"], row["cases"], row["failures"], *row["interval"]] for row in one["raw"]]
             band = [[row["intensity"], *row["interval"]] for row in one["band_at"]]
@@ -234,6 +235,20 @@ class Study:
     def motions(self) -> int:
         """How many motions there are."""
         return self._native.motions
+
+    def records(self) -> dict[str, Record]:
+        """Its motions by their names, as their sources have them: levels of intensity scale them later.
+
+        Returns
+        -------
+        dict
+
+        Raises
+        ------
+        RecordError
+            When a motion cannot be had.
+        """
+        return {name: Record(one) for name, one in self._native.records()}
 
     def plan(self, folder: str | os.PathLike[str] | None = None) -> list[Chunk]:
         """The chunks of the study.
@@ -460,7 +475,9 @@ class Study:
         level, value = table.numbers("level"), table.numbers(demand)
         fell = np.array([outcome == "collapse" for outcome in table["outcome"]])
         motions = [str(name) for name in dict.fromkeys(names.tolist())]
-        levels, demands, capacities = [], [], []
+        levels: list[NDArray[np.float64]] = []
+        demands: list[NDArray[np.float64]] = []
+        capacities: list[float] = []
         for motion in motions:
             rows = np.flatnonzero(names == motion)
             rows = rows[np.argsort(level[rows], kind="stable")]

@@ -137,7 +137,7 @@ impl<'a> Builder<'a> {
             faces: Vec::new(),
         };
         let add = |solid: Solid| solid.add_to(&mut body, center, length);
-        let touches = draft.solids.into_iter().map(add).collect();
+        let touches: Vec<Touch> = draft.solids.into_iter().map(add).collect();
         let outlines = body.surfaces.iter().map(outline_of);
         self.parts.push(Part {
             name: draft.name,
@@ -147,7 +147,9 @@ impl<'a> Builder<'a> {
             carrier: draft.carrier,
             supports: draft.supports,
             size: draft.size * length,
+            foot: center.z * length,
             outlines: outlines.collect(),
+            out_of_plane: touches.iter().map(|touch| touch.out_of_plane).collect(),
         });
         self.bodies.push(body);
         self.touches.push(touches);
@@ -212,6 +214,10 @@ impl<'a> Builder<'a> {
         let flip = |v: &mut Vec2| v.x = -v.x;
         for body in &mut self.bodies {
             flip(&mut body.pose.position);
+            // As it is where it is zero, to the last bit.
+            if body.pose.orientation != 0.0 {
+                body.pose.orientation = -body.pose.orientation;
+            }
             for face in &mut body.faces {
                 flip(&mut face.point);
                 flip(&mut face.outward);

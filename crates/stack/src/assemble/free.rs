@@ -7,12 +7,14 @@ use std::ops::Range;
 use barrelstack_dynamics::shape::{BarrelProfile, Circle, Cradle, Polygon};
 use barrelstack_dynamics::space::Space;
 use barrelstack_dynamics::{
-    Body, BodyId, ContactPair, Counts, Model, Motion, Node, Nodes, Placed, Planar, Pose, Shape,
-    Twist, Vec2,
+    Body, BodyId, ContactPair, Counts, Element, Guide, Link, Model, Motion, Node, Nodes, Placed,
+    Planar, Pose, Rod, Shape, State, Strap, Twist, Vec2,
 };
 
 use super::interfaces::interface;
 use super::{AssembleError, Assembly, Part, PartKind, Similitude, outline_of};
+use crate::device::FREE;
+use crate::scenario::element::{ElementLaw, FreeElement};
 use crate::scenario::{self, FreeBody, FreeInterface, FreeScene};
 
 /// Builds a free scene.
@@ -38,18 +40,80 @@ pub(super) fn assemble(
     let kinds = kinds(scene, &bodies, &outer);
     let gravity = Vec2::new(0.0, -gravity);
     let meet = |bodies: &[Body<Planar>], between| pairs(scene, between, bodies, &outer);
-    let model = Model::of_kinds(bodies, interfaces, kinds, &meet, gravity)?;
+    let mut model = Model::of_kinds(bodies, interfaces, kinds, &meet, gravity)?;
+    let start = State::initial(&model);
+    let elements = scene.elements.iter().map(|spec| element(spec, scene, &start, scale));
+    model.fasten(elements.collect())?;
     Ok(Assembly {
         model,
         parts,
         loose: Vec::new(),
         step: f64::INFINITY,
-        devices: Vec::new(),
+        devices: vec![&FREE; scene.elements.len()],
         height: 0.0,
         levels: 0,
         view: None,
+        stave_capacity: f64::INFINITY,
         rack_reach: 0.0,
     })
+}
+
+/// A force element between two bodies, of its natural length where none is stated.
+fn element(
+    spec: &FreeElement,
+    scene: &FreeScene,
+    start: &State<Planar>,
+    scale: Similitude,
+) -> Element<Planar> {
+    let place = |name: &String, point: [f64; 2]| {
+        let point = Vec2::new(point[0], point[1]) * scale.length;
+        // The ground comes before all bodies, and is about the origin.
+        match scene.bodies.iter().position(|body| body.name == *name) {
+            Some(at) => {
+                let [x, z] = scene.bodies[at].center_of_mass;
+                (at + 1, point - Vec2::new(x, z) * scale.length)
+            }
+            None => (Assembly::GROUND, point),
+        }
+    };
+    let [first, second] = [0, 1].map(|end| place(&spec.between[end], spec.points[end]));
+    let link =
+        Link { name: spec.name.clone(), bodies: [first.0, second.0], points: [first.1, second.1] };
+    let never = |force: Option<f64>| force.map_or(f64::INFINITY, |it| it * scale.force());
+    let spring = |it: f64| it * scale.stiffness(1.0, false);
+    let damper = |it: f64| it * scale.damping(false);
+    let (stiffness, damping) = (spring(spec.stiffness), damper(spec.damping));
+    let length = match spec.law {
+        ElementLaw::Strap { length, .. } | ElementLaw::Rod { length, .. } => length,
+        ElementLaw::Guide { .. } => None,
+    };
+    let mut element: Element<Planar> = match spec.law {
+        ElementLaw::Strap { yields_at, strength, .. } => {
+            let (yields_at, strength) = (never(yields_at), never(strength));
+            Strap { link, length: 0.0, stiffness, damping, yields_at, strength }.into()
+        }
+        ElementLaw::Rod { sway_damping, .. } => {
+            let sway_damping = damper(sway_damping);
+            Rod { link, length: 0.0, stiffness, damping, sway_damping }.into()
+        }
+        ElementLaw::Guide { axis, gap, stop_stiffness, stop_damping, strength, reach } => Guide {
+            gap: gap.map_or(f64::INFINITY, |gap| gap * scale.length),
+            stop_stiffness: spring(stop_stiffness),
+            stop_damping: damper(stop_damping),
+            strength: never(strength),
+            reach: reach.map_or(f64::INFINITY, |reach| reach * scale.length),
+            ..Guide::spring(
+                link,
+                <Planar as Space>::rotation(axis).apply(Vec2::new(1.0, 0.0)),
+                stiffness,
+                damping,
+            )
+        }
+        .into(),
+    };
+    let span = element.link().span(start);
+    element.fit(start, length.map_or(0.0, |length| length * scale.length - span));
+    element
 }
 
 /// What of a body touches others.

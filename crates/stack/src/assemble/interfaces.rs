@@ -1,7 +1,7 @@
 //! From the laws of a scenario to the laws of the model.
 
 use barrelstack_dynamics::contact::{Exponent, restitution};
-use barrelstack_dynamics::{Basis, FrictionLaw, Interface, NormalLaw, Planar};
+use barrelstack_dynamics::{Basis, FrictionLaw, Interface, NormalLaw, Space};
 
 use super::Similitude;
 use crate::scenario;
@@ -16,12 +16,12 @@ const STICK_MASS: f64 = 50.0;
 /// An interface of the model.
 ///
 /// `elements` is how many contact elements stand one behind the other where the plane shows one.
-pub(super) fn interface(
+pub(super) fn interface<S: Space<Real = f64>>(
     name: &str,
     law: &scenario::Interface,
     elements: f64,
     scale: Similitude,
-) -> Interface<Planar> {
+) -> Interface<S> {
     let basis = match law.basis {
         scenario::Basis::Node => Basis::Node,
         scenario::Basis::Length => Basis::Length,

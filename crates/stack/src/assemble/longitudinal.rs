@@ -1,21 +1,23 @@
-//! A stack along its barrels: barrel profiles on the rails of racks that lie on the profiles below.
+//! A stack along its barrels: barrel profiles on the rails of racks that lie on the profiles below, or on the posts of
+//! the racks below.
 //!
 //! The model is a slice one barrel wide: a rack that carries several barrels side by side lends each
 //! of them its share of the mass.
 //! A rail is a tube whose upper side carries the barrel above and whose lower side lies on the barrel below
 //! or on the ground: with nodes, as in the paper, or exactly, with one contact element where they touch.
+//! Posts stand beside the barrels, at the corners of a rack: they meet racks and the ground, and no barrel.
 
-use barrelstack_dynamics::shape::{BarrelProfile, Polygon};
-use barrelstack_dynamics::{BodyId, Shape, Vec2};
+use barrelstack_dynamics::shape::{BarrelProfile, Polygon, PolygonError};
+use barrelstack_dynamics::{BodyId, Shape, Vec2, math};
 
 use super::builder::{Builder, Draft};
 use super::solid::{Seat, Solid, row};
 use super::transverse::TUBE_CORNER;
-use super::{AssembleError, PartKind};
-use crate::scenario::{Rack, RackKind, SeatContact};
+use super::{AssembleError, PartKind, posts};
+use crate::scenario::{Posts, Rack, RackKind, SeatContact};
 
 /// Radius (m) of the round of a barrel's chime: an assumption.
-const CHIME_RADIUS: f64 = 0.01;
+pub const CHIME_RADIUS: f64 = 0.01;
 
 /// Cosine of the angle (73°) to a rail's seat up to which the nodes of the seat bear; what touches the rail
 /// more from the side, as the chime of a barrel that has slid off does, is tested exactly. Of cosines from 0 to 0.7
@@ -26,13 +28,6 @@ const WIDEST: f64 = 0.3;
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
     let spec = builder.spec;
     let (rack, barrel) = (&spec.rack, &spec.barrel);
-    if rack.kind == RackKind::OnRacks {
-        return Err(AssembleError::Stack(
-            "the longitudinal view knows racks that lie on barrels; a rack-on-rack stack carries its \
-             load on posts, so use stack.view = \"transverse\", or another rack"
-                .into(),
-        ));
-    }
     let profile = BarrelProfile::new(barrel.length, barrel.head_diameter, barrel.bilge_diameter)
         .and_then(|sharp| sharp.rounded(CHIME_RADIUS))
         .ok_or_else(|| {
@@ -49,9 +44,9 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
             rack.rail_half_spacing, barrel.length
         )));
     }
-    let seat = seat_height(&profile, rack);
-    let level_pitch = rack.clearance + 2.0 * seat;
-    let pitch = barrel.length + spec.gap;
+    let seating = Seating::of(&profile, rack)?;
+    let level_pitch = rack.posts.map_or(rack.clearance + 2.0 * seating.seat, |posts| posts.height);
+    let pitch = rack_pitch(rack, barrel.length, spec.gap);
     let racks = spec.racks_per_level();
     let mut below: Vec<Vec<BodyId>> = vec![Vec::new(); racks as usize];
     for level in 1..=spec.levels {
@@ -60,29 +55,50 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
             let supports = std::mem::take(&mut below[column as usize - 1]);
             let deep = f64::from(rack.barrels_deep);
             let middle = (f64::from(column) - 0.5 * f64::from(racks + 1)) * deep * pitch;
-            below[column as usize - 1] = add_rack(
+            let (rack_id, barrels) = add_rack(
                 builder,
                 &profile,
                 (level, column),
                 Vec2::new(middle, underside),
-                seat,
+                &seating,
                 supports,
             )?;
+            below[column as usize - 1] = match rack.kind {
+                RackKind::OnBarrels => barrels,
+                RackKind::OnRacks => vec![rack_id],
+            };
         }
     }
-    let reach = profile.half_length - rack.rail_half_spacing;
-    Ok((f64::from(spec.levels) * level_pitch, reach))
+    let below_top = f64::from(spec.levels - 1) * level_pitch;
+    Ok(match rack.posts {
+        Some(posts) => (
+            below_top + rack.clearance + seating.seat + profile.bilge_radius,
+            posts::reach(rack, posts.half_spacing_along),
+        ),
+        None => (below_top + level_pitch, profile.half_length - rack.rail_half_spacing),
+    })
 }
 
-/// One rack with its barrels end to end; returns the ids of the barrels.
+/// Distance (m) of one rack from the next, for each barrel that it carries end to end: as long as a barrel, or as its
+/// frame where that is longer.
+fn rack_pitch(rack: &Rack, barrel: f64, gap: f64) -> f64 {
+    let pitch = barrel + gap;
+    let deep = f64::from(rack.barrels_deep);
+    rack.posts.map_or(pitch, |posts| {
+        let frame = 2.0 * (posts.half_spacing_along + posts::cup(rack));
+        pitch.max(((deep - 1.0) * pitch + frame + gap) / deep)
+    })
+}
+
+/// One rack with its barrels end to end; returns its id and those of the barrels.
 fn add_rack(
     builder: &mut Builder<'_>,
     profile: &BarrelProfile,
     (level, column): (u32, u32),
     underside: Vec2,
-    seat: f64,
+    seating: &Seating,
     supports: Vec<BodyId>,
-) -> Result<Vec<BodyId>, AssembleError> {
+) -> Result<(BodyId, Vec<BodyId>), AssembleError> {
     let spec = builder.spec;
     let rack = &spec.rack;
     let pitch = spec.barrel.length + spec.gap;
@@ -92,23 +108,42 @@ fn add_rack(
 
     let (name, mass, offset) = builder.rack_at(level, column);
     let mass = mass / f64::from(rack.barrels);
-    let half_width = places.last().copied().unwrap_or(0.0) + rack.rail_half_spacing;
-    let tube = Polygon::rectangle(rack.rail_width, rack.clearance, corner_of(rack)).map_err(
-        |problem| AssembleError::Shape { body: name.clone(), problem: problem.to_string() },
-    )?;
-    let rail = |(barrel, x): (usize, f64)| {
-        let at = Vec2::new(x, 0.5 * rack.clearance);
-        let mut rail = Solid::exact(Shape::Polygon(tube.clone()), at, Seat::Along(barrel));
+    let outer = places.last().copied().unwrap_or(0.0);
+    let half_width =
+        outer + rack.posts.map_or(rack.rail_half_spacing, |posts| posts.half_spacing_along);
+    let shape = |problem: PolygonError| AssembleError::Shape {
+        body: name.clone(),
+        problem: problem.to_string(),
+    };
+    // What the frame stands on, the rails meet once its seats are at the end of their stroke.
+    let lift = rack.posts.map_or(0.0, |_| rack.seat_stroke.min(rack.beam_height));
+    let on_barrels = rack.posts.is_none() && level > 1;
+    let rail = |(barrel, place, side): (usize, f64, f64)| {
+        let x = place + side * rack.rail_half_spacing;
+        // What lies on barrels lies on their slope, too; the floor and posts are level.
+        let rise = side * seating.rise;
+        let (bottom, top) = (if on_barrels { rise } else { lift }, rack.clearance + rise);
+        let tube = Polygon::rectangle(rack.rail_width, top - bottom, corner_of(rack))?;
+        let at = Vec2::new(x, 0.5 * (bottom + top));
+        let seat = if rack.posts.is_some() { Seat::Barrel(barrel) } else { Seat::Along(barrel) };
+        let mut rail = Solid::exact(Shape::Polygon(tube), at, seat);
         if rack.contact == SeatContact::Nodes {
             rail.widest = WIDEST;
-            rail.below = noded_face(rack, x, 0.0, -1.0);
-            rail.above = noded_face(rack, x, rack.clearance, 1.0);
+            if rack.posts.is_none() {
+                rail.below = noded_face(rack, x, bottom, -1.0);
+            }
+            rail.above = noded_face(rack, x, top, 1.0);
         }
-        rail
+        Ok(rail)
     };
-    let rails = places.iter().enumerate().flat_map(|(barrel, place)| {
-        [-1.0, 1.0].map(|side| (barrel, place + side * rack.rail_half_spacing))
-    });
+    let rails = places
+        .iter()
+        .enumerate()
+        .flat_map(|(barrel, place)| [-1.0, 1.0].map(|side| (barrel, *place, side)));
+    let mut solids = rails.map(rail).collect::<Result<Vec<Solid>, _>>().map_err(shape)?;
+    if let Some(posts) = &rack.posts {
+        solids.extend(frame(rack, posts, outer, level).map_err(shape)?);
+    }
     let rack_id = builder.add(Draft {
         name,
         kind: PartKind::Rack,
@@ -118,15 +153,35 @@ fn add_rack(
         inertia: None,
         position: Vec2::new(underside.x + offset, underside.z),
         size: half_width,
-        solids: rails.map(rail).collect(),
+        solids,
         carrier: None,
         supports,
     });
 
-    let origin = Vec2::new(underside.x + offset, underside.z + rack.clearance + seat);
+    let origin = Vec2::new(underside.x + offset, underside.z + rack.clearance + seating.seat);
     let shape = Shape::BarrelProfile(*profile);
     let at = (level, column);
-    Ok(builder.add_barrels(rack_id, at, (origin, &places), (&shape, profile.bilge_radius)))
+    let size = profile.bilge_radius;
+    let barrels = builder.add_barrels(rack_id, at, (origin, &places), (&shape, size));
+    for barrel in &barrels {
+        builder.bodies[*barrel].pose.orientation = rack.incline;
+    }
+    Ok((rack_id, barrels))
+}
+
+/// What of a rack on posts stands beside its barrels: the tube from post to post, the posts, and the cups over
+/// those below. `outer` is the distance (m) of the outer barrels from the middle of the rack.
+fn frame(rack: &Rack, posts: &Posts, outer: f64, level: u32) -> Result<Vec<Solid>, PolygonError> {
+    let spacing = outer + posts.half_spacing_along;
+    let length = 2.0 * (spacing + posts::cup(rack));
+    let corner = TUBE_CORNER.min(0.25 * rack.beam_height);
+    let mut solids = vec![Solid::exact(
+        Shape::Polygon(Polygon::rectangle(length, rack.beam_height, corner)?),
+        Vec2::new(0.0, 0.5 * rack.beam_height),
+        Seat::OnSupports,
+    )];
+    solids.extend(posts::posts_and_cups(rack, posts, spacing, level)?);
+    Ok(solids.into_iter().map(|solid| Solid { out_of_plane: true, ..solid }).collect())
 }
 
 /// Nodes of the lower or upper face of a rail about `x` (m) at height `z` (m): along its flat part, and one
@@ -150,13 +205,39 @@ fn corner_of(rack: &Rack) -> f64 {
     TUBE_CORNER.min(0.25 * rack.rail_width)
 }
 
-/// Height (m) of a barrel's axis above the level of the rails that carry it: staves slope, so a rail
-/// touches with the round of its inner corner.
-fn seat_height(profile: &BarrelProfile, rack: &Rack) -> f64 {
-    let corner = corner_of(rack);
-    let across = rack.rail_half_spacing - 0.5 * rack.rail_width + corner;
-    let apart = profile.stave_radius + corner;
-    (apart * apart - across * across).sqrt()
-        - corner
-        - (profile.stave_radius - profile.bilge_radius)
+/// How a barrel lies on its rails, which may raise its right end.
+struct Seating {
+    /// Height (m) of the middle of the barrel above the mean of the tops of its rails.
+    seat: f64,
+    /// How much higher than that mean (m) the right rail is, and the left one lower.
+    ///
+    /// The upper side of a barrel is its underside seen upside down, so a rack that lies on inclined barrels has
+    /// the same rise below as above: its rails are as high as any, one a little further up than the other.
+    rise: f64,
+}
+
+impl Seating {
+    /// Staves slope, so a rail touches with the round of its inner corner.
+    fn of(profile: &BarrelProfile, rack: &Rack) -> Result<Self, AssembleError> {
+        let corner = corner_of(rack);
+        let across = rack.rail_half_spacing - 0.5 * rack.rail_width + corner;
+        let apart = profile.stave_radius + corner;
+        let (sin, cos) = math::sin_cos(rack.incline);
+        // From the middle of the barrel to the center of the round of its staves.
+        let up = profile.stave_radius - profile.bilge_radius;
+        if up * sin.abs() >= across {
+            return Err(AssembleError::Stack(format!(
+                "a barrel inclined by {:.1}° leans on the outer corners of its rails: make stack.rack.incline smaller, at \
+                 most {:.1}° for this barrel, or stack.rack.rail_half_spacing larger",
+                rack.incline.to_degrees(),
+                math::asin((across / up).min(1.0)).to_degrees()
+            )));
+        }
+        let depth = |side: f64| {
+            let x = side * across + up * sin;
+            (apart * apart - x * x).sqrt() - corner - up * cos
+        };
+        let (left, right) = (depth(-1.0), depth(1.0));
+        Ok(Self { seat: 0.5 * (left + right), rise: 0.5 * (left - right) })
+    }
 }

@@ -6,20 +6,25 @@ mod free;
 mod interfaces;
 mod longitudinal;
 mod pairs;
+mod posts;
 mod similitude;
 mod solid;
 mod stack;
 mod transverse;
 
-use barrelstack_dynamics::{BodyId, Element, Model, ModelError, Placed, Planar, Vec2};
+use barrelstack_dynamics::{
+    BodyId, Element, Interface, Model, ModelError, Placed, Planar, Spatial, Vec2,
+};
 
 use crate::device::{Loose, Words};
-use crate::scenario::{Scenario, Scene, View};
+use crate::scenario::{Scenario, Scene, StackSpec, View};
 use crate::step::TimeStepping;
 
 pub(crate) use builder::{Builder, Draft};
+pub use longitudinal::CHIME_RADIUS;
 pub use similitude::Similitude;
 pub(crate) use solid::{Seat, Solid};
+pub use transverse::{BAR_RADIUS, TUBE_CORNER};
 
 /// What kind of thing a body is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,8 +83,12 @@ pub struct Part {
     pub supports: Vec<BodyId>,
     /// A length (m) that tells the size of the body: the radius of a barrel.
     pub size: f64,
+    /// Height (m) of the center of mass over what a rack stands with.
+    pub foot: f64,
     /// Lines to draw, in the body frame.
     pub outlines: Vec<Outline>,
+    /// Which of its surfaces stand beside the barrels, out of the plane that shows them: such never meet barrels.
+    pub out_of_plane: Vec<bool>,
 }
 
 impl Part {
@@ -93,7 +102,9 @@ impl Part {
             carrier: None,
             supports: Vec::new(),
             size: 0.0,
+            foot: 0.0,
             outlines: Vec::new(),
+            out_of_plane: Vec::new(),
         }
     }
 
@@ -124,6 +135,8 @@ pub struct Assembly {
     pub levels: u32,
     /// The plane of a stack; none for a free scene.
     pub view: Option<View>,
+    /// Force (N) between a barrel and a rack that its staves bear; infinite for a free scene.
+    pub stave_capacity: f64,
     /// How far (m) a rack may move on the barrels below before nothing holds it there: across the
     /// barrels until friction cannot hold its bearing on the round, along them until its rail passes
     /// the end.
@@ -173,10 +186,27 @@ pub enum AssembleError {
         /// How deep (m).
         depth: f64,
     },
+    /// A stack in space, asked for in a plane.
+    #[error(
+        "this works in a plane, and the scenario looks at its stack in space: set stack.view to \"transverse\", across \
+         the barrels, to \"longitudinal\", along them, or to \"both\""
+    )]
+    Space,
+    /// What is not known in space yet.
+    #[error("{reason}")]
+    NotInSpace {
+        /// The field.
+        field: &'static str,
+        /// What it says, what is known in space, and the next move.
+        reason: String,
+    },
     /// A stack that cannot stand as described.
     #[error("{0}")]
     Stack(String),
 }
+
+/// Largest step (s) of a free scene with force elements at full scale: a swing of 0.3 s loses 5e-5 by it.
+const SWINGING_STEP: f64 = 1e-3;
 
 /// Builds the model of a scenario.
 ///
@@ -192,7 +222,17 @@ pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
     let stepping = TimeStepping::of(&assembly.model, &loose, scale.time());
     assembly.model.set_substepping(stepping.substepping);
     assembly.step = stepping.step;
+    if matches!(scenario.scene, Scene::Free(_)) && !assembly.model.elements().is_empty() {
+        // Springs that are put between bodies are slow, and their swing is what is looked at.
+        assembly.step = assembly.step.min(SWINGING_STEP * scale.time());
+    }
     Ok(assembly)
+}
+
+/// The laws of contact of a stack in space, at the places of [`StackPair::ALL`](crate::scenario::StackPair::ALL): those of the plane, of which every
+/// element is a contact of its own.
+pub fn laws_in_space(spec: &StackSpec, scale: Similitude) -> Vec<Interface<Spatial>> {
+    stack::laws(spec, 1.0, scale)
 }
 
 /// The outline of a shape that sits at an offset on a body.

@@ -133,6 +133,9 @@ impl Pairs<'_> {
         let support = parts[rack].supports.iter().position(|support| *support == barrel);
         for solid in self.solids(rack) {
             let touch = self.touch(rack, solid);
+            if touch.out_of_plane {
+                continue;
+            }
             let seat = match touch.seat {
                 Seat::Barrel(column) => carried == Some(column),
                 Seat::OnSupport(column) => support == Some(column),

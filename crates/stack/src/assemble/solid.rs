@@ -21,6 +21,8 @@ pub(crate) struct Solid {
     pub(super) widest: f64,
     /// Whether the mass of its body is spread over it, too.
     pub(super) weighs: bool,
+    /// Whether it stands beside the barrels, out of the plane that shows them, and never meets one.
+    pub(super) out_of_plane: bool,
 }
 
 /// What a solid is there to bear.
@@ -55,6 +57,8 @@ impl Seat {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
     pub(super) seat: Seat,
+    /// Whether it never meets a barrel.
+    pub(super) out_of_plane: bool,
     /// The node set of its round pieces, which tests exactly; for a circle, of its rolling node.
     pub(super) exact: usize,
     /// Its underside, if that carries nodes.
@@ -91,6 +95,7 @@ impl Solid {
             above: Vec::new(),
             widest: ROUND,
             weighs: true,
+            out_of_plane: false,
         }
     }
 
@@ -124,7 +129,7 @@ impl Solid {
         };
         let (below, above) = (face(&self.below, -1.0), face(&self.above, 1.0));
         body.surfaces.push(placed);
-        Touch { seat: self.seat, exact, below, above }
+        Touch { seat: self.seat, out_of_plane: self.out_of_plane, exact, below, above }
     }
 }
 

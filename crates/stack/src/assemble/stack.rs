@@ -1,7 +1,7 @@
 //! A stack in one of its two views, with its laws of contact.
 
 use barrelstack_dynamics::contact::{Rolling, Stop};
-use barrelstack_dynamics::{Interface, Model, Planar, Vec2};
+use barrelstack_dynamics::{Interface, Model, Space, Vec2};
 
 use super::builder::Builder;
 use super::interfaces::interface;
@@ -29,6 +29,9 @@ pub(super) fn assemble(
                 .into(),
         ));
     }
+    if spec.space.is_some() {
+        return Err(AssembleError::Space);
+    }
     let mut builder = Builder::new(spec, scale);
     let (height, rack_reach) = match spec.view {
         View::Transverse => transverse::build(&mut builder)?,
@@ -41,7 +44,7 @@ pub(super) fn assemble(
     content::pour(&mut builder, gravity);
     let pairs = pairs::pairs(&builder);
     let Builder { bodies, parts, laws: more, cradle_law, held, loose, raised, .. } = builder;
-    let mut interfaces = laws(spec, scale);
+    let mut interfaces = laws(spec, behind_each_other(spec), scale);
     interfaces.extend(more);
     // Pads have as much stroke as bare cradles.
     interfaces[cradle_law].stop = interfaces[StackPair::BarrelRack as usize].stop;
@@ -57,6 +60,7 @@ pub(super) fn assemble(
         height: height * scale.length + raised,
         levels: spec.levels,
         view: Some(spec.view),
+        stave_capacity: spec.barrel.stave_capacity * scale.force(),
         rack_reach: rack_reach * scale.length,
     })
 }
@@ -69,10 +73,13 @@ pub(super) fn behind_each_other(spec: &StackSpec) -> f64 {
     }
 }
 
-/// The laws of contact, each at the place of its pair. Across the barrels a seat may stand for several
-/// elements one behind the other.
-fn laws(spec: &StackSpec, scale: Similitude) -> Vec<Interface<Planar>> {
-    let behind = behind_each_other(spec);
+/// The laws of contact, each at the place of its pair. Across the barrels a seat stands for the elements that are
+/// there one `behind` the other; in space every element is a contact of its own.
+pub(super) fn laws<S: Space<Real = f64>>(
+    spec: &StackSpec,
+    behind: f64,
+    scale: Similitude,
+) -> Vec<Interface<S>> {
     let stroke = spec.rack.seat_stroke * scale.length;
     // What an element of a seat is weighed by is its length where the seat's constants hold for a meter.
     let each = match spec.rack.contact {
@@ -85,7 +92,7 @@ fn laws(spec: &StackSpec, scale: Similitude) -> Vec<Interface<Planar>> {
             (Basis::Node, Basis::Length) => each,
             (Basis::Node, Basis::Node) | (Basis::Length, Basis::Length) => 1.0,
         };
-        interface("stop", law, elements, scale).normal
+        interface::<S>("stop", law, elements, scale).normal
     };
     let laws = &spec.interfaces;
     let law = |pair: &StackPair| {

@@ -17,22 +17,16 @@ use barrelstack_dynamics::{BodyId, Shape, Vec2, math};
 
 use super::builder::{Builder, Draft};
 use super::solid::{Seat, Solid, row};
-use super::{AssembleError, PartKind};
+use super::{AssembleError, PartKind, posts};
 use crate::device::Chocks;
-use crate::scenario::{Cradle, Friction, Posts, Rack, RackKind, SeatContact};
-
-/// Play (m) between the cup of a foot and the post in it: an assumption.
-const SPIGOT_PLAY: f64 = 0.005;
+use crate::scenario::{Cradle, Friction, Rack, RackKind, SeatContact};
 
 /// Half the thickness (m) of the bars of a cradle, whose ends are round: an assumption.
-const BAR_RADIUS: f64 = 0.015;
-
-/// Half the thickness (m) of the lips of a cup: an assumption.
-const LIP_RADIUS: f64 = 0.004;
+pub const BAR_RADIUS: f64 = 0.015;
 
 /// Radius (m) of the corners of tubes: an assumption. Two of them are more than the stroke of a seat, so
 /// that the cores of tubes never meet.
-pub(super) const TUBE_CORNER: f64 = 0.012;
+pub const TUBE_CORNER: f64 = 0.012;
 
 /// Builds all levels; returns the height of the stack and the reach of a rack on its barrels (m).
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
@@ -68,8 +62,7 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
 /// to a slope of arctan μ.
 fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
     if let (RackKind::OnRacks, Some(posts)) = (rack.kind, &rack.posts) {
-        // A post stands on a post: half of its width, and it is off.
-        return rack.rail_width.min(posts.half_spacing);
+        return posts::reach(rack, posts.half_spacing);
     }
     let coefficient = match *friction {
         Friction::None => 0.0,
@@ -184,7 +177,7 @@ fn rack_solids(
         cradle(&mut solids, rack, *place, radius, top, Seat::Barrel(column))?;
     }
     if let Some(posts) = stands_on_racks {
-        posts_and_cups(&mut solids, rack, &posts, level)?;
+        solids.extend(posts::posts_and_cups(rack, &posts, posts.half_spacing, level)?);
     }
     Ok(solids)
 }
@@ -273,39 +266,3 @@ fn chocks(
 
 /// Length (m) of the straight bars of which a trough is made.
 const TROUGH_BAR: f64 = 0.04;
-
-/// The posts on which the next rack stands, and above the first level the cups over the posts below:
-/// lips beside them hold the rack in place until it is lifted off. On the floor there is nothing to hold.
-fn posts_and_cups(
-    solids: &mut Vec<Solid>,
-    rack: &Rack,
-    posts: &Posts,
-    level: u32,
-) -> Result<(), PolygonError> {
-    let height = posts.height - rack.beam_height;
-    let half = 0.5 * rack.rail_width;
-    for side in [-1.0, 1.0] {
-        let post = side * posts.half_spacing;
-        solids.push(Solid::exact(
-            Shape::Polygon(Polygon::rectangle(rack.rail_width, height, TUBE_CORNER.min(half))?),
-            Vec2::new(post, rack.beam_height + 0.5 * height),
-            Seat::Rack,
-        ));
-        if level > 1 && posts.spigot > 0.0 {
-            for beside in [-1.0, 1.0] {
-                let x = post + beside * (half + SPIGOT_PLAY + LIP_RADIUS);
-                let hang = (posts.spigot - LIP_RADIUS).max(LIP_RADIUS);
-                solids.push(Solid::exact(
-                    Shape::Polygon(Polygon::bar(
-                        Vec2::new(0.0, 0.5 * hang),
-                        Vec2::new(0.0, -0.5 * hang),
-                        LIP_RADIUS,
-                    )?),
-                    Vec2::new(x, -0.5 * hang),
-                    Seat::None,
-                ));
-            }
-        }
-    }
-    Ok(())
-}

@@ -71,6 +71,12 @@ macro_rules! devices {
                 Ok(())
             }
 
+            /// The tables of those that are not on the stack.
+            pub fn absent(&self) -> Vec<&'static str> {
+                let all = [$((stringify!($name), self.$name.is_on())),*];
+                all.into_iter().filter(|(_, on)| !on).map(|(name, _)| name).collect()
+            }
+
             /// The words of those that are on the stack.
             pub fn present(&self) -> Vec<&'static Words> {
                 let all = [$((&$name::WORDS, self.$name.is_on())),*];
@@ -98,6 +104,9 @@ devices! {
     /// Masses on springs.
     tuned_mass: TunedMass,
 }
+
+/// The words of the force elements of a free scene, which are no device of a stack.
+pub static FREE: Words = Words { many: "elements", ..Words::silent("element") };
 
 /// What is said of a device, in files, in reports, and to who looks for the best of them.
 #[derive(Debug, PartialEq)]

@@ -45,6 +45,8 @@ pub struct CaseResult {
     pub falls: Vec<(String, Option<f64>)>,
     /// Largest drop (m) of each barrel that fell, in the order of the barrels.
     pub fall_heights: Vec<f64>,
+    /// Largest force (N) on each of them since it had fallen.
+    pub fall_forces: Vec<f64>,
     /// Demands on the stack; all none where it could not run or broke down.
     pub demands: Demands,
     /// Forces between bodies that lean on each other, by name, at rest and at their largest; none where it could
@@ -90,7 +92,7 @@ impl CaseResult {
         let barrels: Vec<usize> = assembly.of_kind(PartKind::Barrel).collect();
         let all = || barrels.iter().map(|body| fates.fate(*body));
         let fall = |body: &usize| (assembly.parts[*body].name.clone(), fates.fate(*body).fell_at);
-        let heights = || all().filter(|fate| fate.fell_at.is_some()).map(|fate| fate.drop);
+        let fallen = || all().filter(|fate| fate.fell_at.is_some());
         let named = |joint: &Joint| (joint.name(assembly), joint.clone());
         let residual = all().map(|fate| fate.residual_displacement);
         let largest = |most: f64, value: f64| if value.abs() > most.abs() { value } else { most };
@@ -99,9 +101,14 @@ impl CaseResult {
             first_fall: fates.first_fall().filter(|_| sound),
             barrels: barrels.len(),
             falls: if sound { barrels.iter().map(fall).collect() } else { Vec::new() },
-            fall_heights: if sound { heights().collect() } else { Vec::new() },
+            fall_heights: if sound { fallen().map(|fate| fate.drop).collect() } else { Vec::new() },
+            fall_forces: if sound {
+                fallen().filter_map(|f| f.fall_force).collect()
+            } else {
+                Vec::new()
+            },
             demands: if sound {
-                Demands::of(assembly, fates, stresses)
+                Demands::of(assembly, fates, stresses, joints)
             } else {
                 Demands::default()
             },
@@ -127,6 +134,7 @@ impl CaseResult {
             barrels: 0,
             falls: Vec::new(),
             fall_heights: Vec::new(),
+            fall_forces: Vec::new(),
             demands: Demands::default(),
             joints: Vec::new(),
             residual_displacement: None,

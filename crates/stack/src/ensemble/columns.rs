@@ -128,9 +128,9 @@ columns! {
         judged.then_some(case.fall_heights.len())
     };
     /// largest drop of each barrel that fell (m), divided by semicolons
-    fall_heights "m": Outcome Text |case| {
-        Some(case.fall_heights.iter().map(|height| plain(*height)).collect::<Vec<_>>().join(";"))
-    };
+    fall_heights "m": Outcome Text |case| Some(list(&case.fall_heights));
+    /// largest force on each of these barrels since it had fallen (N), divided by semicolons
+    fall_forces "N": Outcome Text |case| Some(list(&case.fall_forces));
     /// peak displacement of the top over its height, before the collapse
     top_drift_ratio "": Demand Number |case| case.demands.top_drift_ratio;
     /// largest slip of the bottom rack, before the collapse
@@ -149,6 +149,8 @@ columns! {
     vertical_force_peak "N": Demand Number |case| force(case, |joint| joint.peak_vertical.0);
     /// largest horizontal force between two of them
     horizontal_force_peak "N": Demand Number |case| force(case, |joint| joint.peak_horizontal.0.abs());
+    /// largest vertical force between a barrel and a rack, over what its staves bear
+    stave_utilization "": Demand Number |case| case.demands.stave_utilization;
     /// largest displacement of a barrel at the end
     residual_displacement "m": Demand Number |case| case.residual_displacement;
     /// why the case ended: rest, after-collapse, duration, patience or broken
@@ -168,6 +170,11 @@ columns! {
         Ok(Outcome::Invalid { reason }) | Err(reason) => Some(reason.clone()),
         Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Collapse { .. }) => None,
     };
+}
+
+/// Numbers divided by semicolons.
+fn list(numbers: &[f64]) -> String {
+    numbers.iter().map(|number| plain(*number)).collect::<Vec<_>>().join(";")
 }
 
 /// The largest of all forces of a case.

@@ -69,7 +69,7 @@ impl Grounds {
 /// may stop them all; their table, a row each in the order of their numbers, or none when it was stopped.
 ///
 /// A case that cannot be made is a row with the reason as its error.
-/// `kind` tells which cases have one topology, so that those march together; that changes nothing about any of them.
+/// `kind` tells which cases have one topology, so that those run together; that changes nothing about any of them.
 ///
 /// ```
 /// use std::ops::ControlFlow;

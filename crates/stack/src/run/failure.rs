@@ -79,6 +79,8 @@ impl RunFailure {
                 "stack.override".into(),
             ],
             Self::Assemble(AssembleError::Shape { body, .. }) => vec![format!("body.{body}.shape")],
+            Self::Assemble(AssembleError::Space) => of(&["stack.view"]),
+            Self::Assemble(AssembleError::NotInSpace { field, .. }) => of(&[field]),
             Self::Assemble(AssembleError::Stack(_)) => of(&["stack.override", "stack"]),
             Self::Assemble(AssembleError::Model(_)) => Vec::new(),
             Self::Settle(Restless { error }) => {

@@ -81,6 +81,8 @@ pub const BARRELS: &[CatalogBarrel] = &[
 pub struct CatalogRack {
     /// The rack.
     pub rack: Rack,
+    /// What it is, in a sentence.
+    pub help: &'static str,
     /// Where the numbers come from.
     pub source: &'static str,
 }
@@ -97,6 +99,7 @@ const TWO_BARREL: Rack = Rack {
     width: 1.473,
     rail_half_spacing: 0.27,
     rail_width: 0.05,
+    incline: 0.0,
     clearance: 0.20,
     beam_height: 0.05,
     foot_height: 0.0,
@@ -112,22 +115,26 @@ const TWO_BARREL: Rack = Rack {
 pub const RACKS: &[CatalogRack] = &[
     CatalogRack {
         rack: TWO_BARREL,
+        help: "Lies on the barrels below with straight tubes.",
         source: "portable steel rack for two barrels on a footprint of 38 in by 58 in, which makes pitch and width (Wines & \
              Vines 2016); clearance for the 7 in between the bilges of neighboring levels that make six levels 18 ft \
              high (UC Berkeley 2000); straight tubes without feet; mass, rails, tubes and cradle are assumptions",
     },
     CatalogRack {
         rack: Rack { base: "two-barrel-feet", foot_height: 0.06, ..TWO_BARREL },
+        help: "Stands on the barrels below with feet.",
         source: "`two-barrel` with a foot over each barrel below, as wide as that of the reconstructed `candia-2008`: \
                  an assumption",
     },
     CatalogRack {
         rack: Rack { base: "single-bar", mass: 35.0, contact: SeatContact::Element, ..TWO_BARREL },
+        help: "Lies on the barrels below with one bar in place of two.",
         source: "single-bar version of the rack for two barrels (Wines & Vines 2016); the numbers are those of \
                  `two-barrel`, the mass is an assumption",
     },
     CatalogRack {
         rack: Rack { base: "four-barrel", mass: 80.0, barrels_deep: 2, ..TWO_BARREL },
+        help: "Two racks end to end.",
         source: "two racks for two barrels end to end (Wines & Vines 2016); the numbers of one are those of \
                  `two-barrel`, the mass is an assumption",
     },
@@ -137,11 +144,25 @@ pub const RACKS: &[CatalogRack] = &[
             kind: RackKind::OnRacks,
             mass: 60.0,
             width: 1.60,
-            posts: Some(Posts { height: 0.89, half_spacing: 0.77, spigot: 0.03 }),
+            posts: Some(Posts {
+                height: 0.89,
+                half_spacing: 0.77,
+                half_spacing_along: 0.44,
+                spigot: 0.03,
+            }),
             ..TWO_BARREL
         },
-        source: "racks that carry load on posts (Wines & Vines 2014, 2016); every number is an assumption, the post \
-                 height makes the usual level pitch, and the posts stand clear of the barrels",
+        help: "Stands on the posts of the rack below.",
+        source: "racks that carry load on posts at their four corners (Wines & Vines 2014, 2016); every number is an \
+                 assumption, the post height makes the usual level pitch, the posts stand clear of the barrels on both \
+                 sides of them, and along the barrels within the 38 in on which racks for two barrels stand",
+    },
+    CatalogRack {
+        rack: Rack { base: "two-barrel-inclined", incline: 3.5 * PI / 180.0, ..TWO_BARREL },
+        help: "Lies on the barrels below with straight tubes, and raises one end of every barrel.",
+        source: "`two-barrel` with the tilt of 3.5° that kept pallets on the shelves of shaken racks (Sideris, \
+                 Filiatrault et al. 2010), across the shelf as here along the barrels; no maker of such a rack is \
+                 known: an assumption",
     },
     CatalogRack {
         rack: Rack {
@@ -159,6 +180,7 @@ pub const RACKS: &[CatalogRack] = &[
             contact: SeatContact::Nodes,
             ..TWO_BARREL
         },
+        help: "The rack of the paper, reconstructed where its text leaves it open.",
         source: "rack of Candia, de la Llera and Almazán (2008), whose text gives no dimensions: a solid beam on feet, \
                  reconstructed so that one geometry shows the paper's modes, times, drift and stress amplification",
     },
@@ -176,11 +198,6 @@ pub(super) fn barrel_names() -> Vec<&'static str> {
 
 pub(super) fn rack_names() -> Vec<&'static str> {
     RACKS.iter().map(|known| known.rack.base).collect()
-}
-
-/// Names of the records shipped with the program.
-pub fn record_names() -> Vec<&'static str> {
-    RECORDS.iter().map(|(name, _)| *name).collect()
 }
 
 /// A barrel of the catalog.

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::dimension::Dimension;
+use super::element::{self, FreeElement};
 use super::error::ScenarioError;
 use super::field::{Default, Field, Kind, Range, Section, names};
 use super::interface::{self, Interface};
@@ -100,6 +101,8 @@ pub struct FreeScene {
     pub bodies: Vec<FreeBody>,
     /// Interfaces, in the order of the file.
     pub interfaces: Vec<FreeInterface>,
+    /// Force elements, in the order of the file.
+    pub elements: Vec<FreeElement>,
 }
 
 impl FreeBody {
@@ -278,7 +281,8 @@ pub(super) fn read(root: &Reader<'_>) -> Result<FreeScene, ScenarioError> {
         return Err(root.missing("body"));
     }
     let interfaces = read_interfaces(root, &ground, &bodies)?;
-    Ok(FreeScene { ground, bodies, interfaces })
+    let elements = element::read(root, &ground, &bodies)?;
+    Ok(FreeScene { ground, bodies, interfaces, elements })
 }
 
 fn read_ground(reader: Reader<'_>) -> Result<Ground, ScenarioError> {
@@ -428,6 +432,7 @@ pub(super) fn write(writer: &mut Writer, scene: &FreeScene) {
     writer.tables("body", scene.bodies.iter().map(write_body).collect());
     let interfaces = scene.interfaces.iter().map(interface::write_free).collect();
     writer.tables("interface", interfaces);
+    writer.tables("element", scene.elements.iter().map(element::write).collect());
 }
 
 fn write_boundary(boundary: &Boundary) -> Table {

@@ -35,13 +35,14 @@
 //! leaving one out fails the tests.
 
 pub mod barrel;
+pub mod body_override;
 pub mod builtin;
 pub mod catalog;
+pub mod element;
 pub mod free;
 pub mod imperfections;
 pub mod interface;
 mod load;
-pub mod motion;
 pub mod nodes;
 pub mod pair;
 pub mod rack;
@@ -60,11 +61,13 @@ pub use barrelstack_input::{
     quantity,
 };
 pub use barrelstack_input::{fnv1a, reader, tree};
+pub use barrelstack_shaking::motion;
 use std::sync::Arc;
 
 use barrelstack_input::{merge, writer};
 
 pub use barrel::{Barrel, Fill};
+pub use body_override::{BodyOverride, StackBody};
 pub use error::ScenarioError;
 pub use free::{
     Boundary, ChosenNode, FreeBody, FreeInterface, FreeScene, Ground, Nodes, PartShape, Viscous,
@@ -80,7 +83,7 @@ pub use rack::{Cradle, Posts, Rack, RackKind, SeatContact};
 pub use root::ROOT;
 pub use run::{Accuracy, Method, OutcomeSpec, RecordSpec, RunSpec, Until};
 pub use shape::Shape;
-pub use stack::{BodyOverride, StackBody, StackSpec, View};
+pub use stack::{InSpace, StackSpec, View};
 pub use uniform::Uniform;
 
 /// What can be wrong with a scenario, where, and what to do about it.

@@ -68,6 +68,8 @@ pub struct Posts {
     pub height: f64,
     /// Distance of each post from the middle of the rack in the transverse view (m).
     pub half_spacing: f64,
+    /// Distance of each post from the middle of the outer barrels of the rack in the longitudinal view (m).
+    pub half_spacing_along: f64,
     /// How far the foot of the next rack reaches over the sides of the post (m); it must be lifted by
     /// this much before it can slide off.
     pub spigot: f64,
@@ -94,6 +96,8 @@ pub struct Rack {
     pub rail_half_spacing: f64,
     /// Width of one rail along the barrel axis (m).
     pub rail_width: f64,
+    /// Angle by which the rails raise the right end of a barrel in the longitudinal view (rad).
+    pub incline: f64,
     /// Height of the lowest point of a carried barrel above the underside of the rack (m).
     pub clearance: f64,
     /// Height of the beams (m), above the feet where there are any.
@@ -115,25 +119,20 @@ pub struct Rack {
     pub posts: Option<Posts>,
 }
 
+/// A rack of the catalog, by its place there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Base {
-    TwoBarrel,
-    TwoBarrelFeet,
-    SingleBar,
-    FourBarrel,
-    RackOnRack,
-    Candia2008,
-}
+struct Base(usize);
 
 impl Named for Base {
-    const NAMES: &'static [(&'static str, Self)] = &[
-        ("two-barrel", Self::TwoBarrel),
-        ("two-barrel-feet", Self::TwoBarrelFeet),
-        ("single-bar", Self::SingleBar),
-        ("four-barrel", Self::FourBarrel),
-        ("rack-on-rack", Self::RackOnRack),
-        ("candia-2008", Self::Candia2008),
-    ];
+    const NAMES: &'static [(&'static str, Self)] = &{
+        let mut names = [("", Self(0)); catalog::RACKS.len()];
+        let mut at = 0;
+        while at < names.len() {
+            names[at] = (catalog::RACKS[at].rack.base, Self(at));
+            at += 1;
+        }
+        names
+    };
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -250,6 +249,12 @@ pub static RACK: Section = Section {
             "Width of one rail along the barrel axis.",
         ),
         Field::new(
+            "incline",
+            Kind::Quantity(&[Dimension::ANGLE], Range::between(-0.2, 0.2)),
+            CATALOG,
+            "Angle by which the rails raise the right end of a barrel, in the longitudinal view.",
+        ),
+        Field::new(
             "clearance",
             size(1e-3, 10.0),
             CATALOG,
@@ -294,85 +299,68 @@ pub static RACK: Section = Section {
             "Distance between contact nodes on flat undersides.",
         ),
     ],
-    variants: Some(Variants {
-        tag: "base",
-        list: &[
-            Variant {
-                name: "two-barrel",
-                help: "Lies on the barrels below with straight tubes.",
-                fields: &[],
-            },
-            Variant {
-                name: "two-barrel-feet",
-                help: "Stands on the barrels below with feet.",
-                fields: &[],
-            },
-            Variant {
-                name: "single-bar",
-                help: "Lies on the barrels below with one bar in place of two.",
-                fields: &[],
-            },
-            Variant { name: "four-barrel", help: "Two racks end to end.", fields: &[] },
-            Variant {
-                name: "rack-on-rack",
-                help: "Stands on the posts of the rack below.",
-                fields: &[
-                    Field::new(
-                        "post_height",
-                        size(0.01, 10.0),
-                        CATALOG,
-                        "Height from the foot of the post to the seat of the next rack.",
-                    ),
-                    Field::new(
-                        "post_half_spacing",
-                        size(0.01, 100.0),
-                        CATALOG,
-                        "Distance of each post from the middle of the rack, in the transverse view.",
-                    ),
-                    Field::new(
-                        "post_spigot",
-                        size(0.01, 100.0),
-                        CATALOG,
-                        "How far the foot of the next rack reaches over the sides of the post.",
-                    ),
-                ],
-            },
-            Variant {
-                name: "candia-2008",
-                help: "The rack of the paper, reconstructed where its text leaves it open.",
-                fields: &[],
-            },
-        ],
-    }),
+    variants: Some(Variants { tag: "base", list: &BASES }),
     exclusive: &[],
+};
+
+/// The fields of racks on posts.
+const POSTS: &[Field] = &[
+    Field::new(
+        "post_height",
+        size(0.01, 10.0),
+        CATALOG,
+        "Height from the foot of the post to the seat of the next rack.",
+    ),
+    Field::new(
+        "post_half_spacing",
+        size(0.01, 100.0),
+        CATALOG,
+        "Distance of each post from the middle of the rack, in the transverse view.",
+    ),
+    Field::new(
+        "post_half_spacing_along",
+        size(0.01, 100.0),
+        CATALOG,
+        "Distance of each post from the middle of the barrel beside it, in the longitudinal view.",
+    ),
+    Field::new(
+        "post_spigot",
+        size(0.01, 100.0),
+        CATALOG,
+        "How far the foot of the next rack reaches over the sides of the post.",
+    ),
+];
+
+/// What each rack of the catalog is, and the fields that it has beside those of all.
+static BASES: [Variant; catalog::RACKS.len()] = {
+    let mut bases = [const { Variant { name: "", help: "", fields: &[] } }; catalog::RACKS.len()];
+    let mut at = 0;
+    while at < bases.len() {
+        let catalog::CatalogRack { rack, help, .. } = &catalog::RACKS[at];
+        let fields = if rack.posts.is_some() { POSTS } else { &[] };
+        bases[at] = Variant { name: rack.base, help, fields };
+        at += 1;
+    }
+    bases
 };
 
 /// Reads a rack.
 pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
-    let base: Base = reader.choice("base")?;
-    let Some(catalog::CatalogRack { rack: known, .. }) = catalog::rack(base.name()) else {
-        return Err(reader.missing("base"));
-    };
+    let Base(base) = reader.choice("base")?;
+    let known = &catalog::RACKS[base].rack;
     let or = |name, regular| Ok(reader.optional_quantity(name)?.unwrap_or(regular));
     let cradle = match reader.optional_section("cradle")? {
         Some(cradle) => read_cradle(cradle, known)?,
         None => known.cradle,
     };
-    let posts = match (base, known.posts) {
-        (Base::RackOnRack, Some(posts)) => Some(Posts {
+    let posts = match known.posts {
+        Some(posts) => Some(Posts {
             height: or("post_height", posts.height)?,
             half_spacing: or("post_half_spacing", posts.half_spacing)?,
+            half_spacing_along: or("post_half_spacing_along", posts.half_spacing_along)?,
             spigot: or("post_spigot", posts.spigot)?,
         }),
-        (
-            Base::TwoBarrel
-            | Base::TwoBarrelFeet
-            | Base::SingleBar
-            | Base::FourBarrel
-            | Base::RackOnRack
-            | Base::Candia2008,
-            _,
-        ) => None,
+        None => None,
     };
     let rack = Rack {
         base: known.base,
@@ -384,6 +372,7 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
         width: or("width", known.width)?,
         rail_half_spacing: or("rail_half_spacing", known.rail_half_spacing)?,
         rail_width: or("rail_width", known.rail_width)?,
+        incline: or("incline", known.incline)?,
         clearance: or("clearance", known.clearance)?,
         beam_height: or("beam_height", known.beam_height)?,
         cradle,
@@ -437,8 +426,8 @@ fn read_cradle(reader: Reader<'_>, known: &Rack) -> Result<Cradle, ScenarioError
 
 /// Writes a rack.
 pub(super) fn write(rack: &Rack) -> Table {
-    let base = Base::NAMES.iter().find(|(name, _)| *name == rack.base);
-    let mut writer = Writer::variant(&RACK, base.map_or(Base::TwoBarrel, |(_, base)| *base));
+    let base = catalog::RACKS.iter().position(|known| known.rack.base == rack.base);
+    let mut writer = Writer::variant(&RACK, Base(base.unwrap_or(0)));
     writer.quantity("mass", rack.mass);
     writer.integer("barrels", rack.barrels);
     writer.integer("barrels_deep", rack.barrels_deep);
@@ -446,6 +435,7 @@ pub(super) fn write(rack: &Rack) -> Table {
     writer.quantity("width", rack.width);
     writer.quantity("rail_half_spacing", rack.rail_half_spacing);
     writer.quantity("rail_width", rack.rail_width);
+    writer.quantity("incline", rack.incline);
     writer.quantity("clearance", rack.clearance);
     writer.quantity("beam_height", rack.beam_height);
     writer.table("cradle", write_cradle(&rack.cradle));
@@ -457,6 +447,7 @@ pub(super) fn write(rack: &Rack) -> Table {
     if let Some(posts) = rack.posts {
         writer.quantity("post_height", posts.height);
         writer.quantity("post_half_spacing", posts.half_spacing);
+        writer.quantity("post_half_spacing_along", posts.half_spacing_along);
         writer.quantity("post_spigot", posts.spigot);
     }
     writer.finish()

@@ -45,7 +45,7 @@ fn catalog_tables(text: &mut String) {
         "| name | mass (kg) | barrels | pitch (m) | width (m) | rails ± (m) | clearance (m) | source |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
-    for catalog::CatalogRack { rack: r, source } in catalog::RACKS {
+    for catalog::CatalogRack { rack: r, source, .. } in catalog::RACKS {
         let _ = writeln!(
             text,
             "| `{}` | {} | {} by {} | {} | {} | {} | {} | {} |",

@@ -9,7 +9,7 @@ use super::run::Until;
 use super::tree::Table;
 use super::writer::Writer;
 use super::{
-    Imperfections, OutcomeSpec, RecordSpec, Scenario, Scene, Written, free, imperfections,
+    Imperfections, OutcomeSpec, RecordSpec, Scenario, Scene, Written, element, free, imperfections,
     interface, motion, pair, run, stack,
 };
 
@@ -108,6 +108,12 @@ pub static ROOT: Section = Section {
                         Kind::Tables(&interface::FREE_INTERFACE),
                         Default::Nothing,
                         "Laws of contact between kinds of body.",
+                    ),
+                    Field::new(
+                        "element",
+                        Kind::Tables(&element::ELEMENT),
+                        Default::Nothing,
+                        "Force elements between bodies.",
                     ),
                 ],
             },

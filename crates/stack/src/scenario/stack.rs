@@ -2,7 +2,8 @@
 
 use crate::device::{self, Devices};
 
-use super::barrel::{self, BARREL, Barrel, Fill};
+use super::barrel::{self, BARREL, Barrel};
+use super::body_override::{self, BodyOverride, OVERRIDE, StackBody};
 use super::catalog;
 use super::dimension::Dimension;
 use super::error::ScenarioError;
@@ -35,6 +36,9 @@ pub struct StackSpec {
     /// Barrels per level along the barrels, where the stack is looked at in both planes and `view` is
     /// the one across them; none where it is looked at in one.
     pub columns_along: Option<u32>,
+    /// How it stands in space, where it is looked at there and `view` is the one across its barrels; none where it
+    /// is looked at in a plane.
+    pub space: Option<InSpace>,
     /// The barrel used everywhere unless overridden.
     pub barrel: Barrel,
     /// The rack used everywhere unless overridden.
@@ -72,6 +76,19 @@ impl StackSpec {
         })
     }
 
+    /// A stack that is looked at in space as a plane shows it; of the bodies that differ those of all rows, and along
+    /// the barrels those of whole levels.
+    #[must_use]
+    pub fn in_plane(&self, view: View) -> Self {
+        let mut plane = Self { view, space: None, ..self.clone() };
+        plane.overrides.retain(|change| change.row.is_none());
+        if let (View::Longitudinal, Some(space)) = (view, self.space) {
+            plane.columns = space.columns_along;
+            plane.overrides.retain(|change| change.column.is_none());
+        }
+        plane
+    }
+
     /// The stack across its barrels alone, where it is looked at in both planes.
     pub fn across(&self) -> Option<Self> {
         self.columns_along.map(|_| Self { columns_along: None, ..self.clone() })
@@ -87,37 +104,25 @@ impl StackSpec {
         Some(along)
     }
 
+    /// Racks one behind the other on one level in space; one in a plane.
+    pub fn racks_along(&self) -> u32 {
+        self.space.map_or(1, |space| space.columns_along / self.rack.barrels_deep.max(1))
+    }
+
     /// Racks side by side on one level in this view.
     pub fn racks_per_level(&self) -> u32 {
         self.columns / self.barrels_per_rack().max(1)
     }
 }
 
-/// The kind of body that an override changes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum StackBody {
-    /// A barrel; columns count barrels.
-    Barrel,
-    /// A rack; columns count racks.
-    Rack,
-}
-
-/// What differs at one body of a stack.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BodyOverride {
-    /// Kind of body.
-    pub body: StackBody,
-    /// Level, 1 at the bottom.
-    pub level: u32,
-    /// Column, 1 at the left before any mirroring: of barrels, or of racks when `body` is a rack;
-    /// `None` for the whole level.
-    pub column: Option<u32>,
-    /// Mass in place of the regular one (kg).
-    pub mass: Option<f64>,
-    /// Contents in place of the regular ones; barrels only.
-    pub fill: Option<Fill>,
-    /// Displacement from the regular place, positive to the right before any mirroring (m).
-    pub offset_x: f64,
+/// How a stack stands in space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InSpace {
+    /// Barrels per level along the barrels.
+    pub columns_along: u32,
+    /// Angle (rad) by which the stack is turned, seen from above against the clock, from where the component of the
+    /// scenario shakes it across its barrels.
+    pub azimuth: f64,
 }
 
 impl View {
@@ -147,6 +152,7 @@ enum Planes {
     Transverse,
     Longitudinal,
     Both,
+    Spatial,
 }
 
 impl Named for Planes {
@@ -154,26 +160,25 @@ impl Named for Planes {
         ("transverse", Self::Transverse),
         ("longitudinal", Self::Longitudinal),
         ("both", Self::Both),
+        ("spatial", Self::Spatial),
     ];
 }
 
-impl Named for StackBody {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("barrel", Self::Barrel), ("rack", Self::Rack)];
-}
-
 /// Most levels and columns of a stack.
-const LEVELS: Kind = Kind::Integer(1, 12);
-const COLUMNS: Kind = Kind::Integer(1, 40);
+pub(super) const LEVELS: Kind = Kind::Integer(1, 12);
+pub(super) const COLUMNS: Kind = Kind::Integer(1, 40);
+
+/// A whole turn (rad).
+const TURN: f64 = 2.0 * std::f64::consts::PI;
 
 /// The fields of a stack of its own.
-const OWN: [Field; 8] = [
+const OWN: [Field; 9] = [
     Field::new(
         "view",
         Kind::Choice(names::<Planes>),
         Default::Value("\"transverse\""),
         "Plane of the model: across the barrels, along them, or one after the other, each with a horizontal \
-         component of the record.",
+         component of the record; or \"spatial\", the stack in space under all components at once.",
     ),
     Field::new("levels", LEVELS, Default::Required, "Levels of barrels."),
     Field::new(
@@ -181,15 +186,22 @@ const OWN: [Field; 8] = [
         COLUMNS,
         Default::Required,
         "Barrels per level in this view, a multiple of those that one rack carries; across the barrels where \
-         it is looked at in both planes.",
+         it is looked at in both planes or in space.",
     ),
     Field::new(
         "columns_along",
         COLUMNS,
         Default::Derived(
-            "in both planes, those that one rack carries; must not be given otherwise",
+            "in both planes and in space, those that one rack carries; must not be given otherwise",
         ),
-        "Barrels per level along the barrels, where the stack is looked at in both planes.",
+        "Barrels per level along the barrels, where the stack is looked at in both planes or in space.",
+    ),
+    Field::new(
+        "azimuth",
+        Kind::Quantity(&[Dimension::ANGLE], Range::between(-TURN, TURN)),
+        Default::Derived("in space, 0 deg; must not be given otherwise"),
+        "Angle by which the stack is turned, seen from above against the clock, from where `motion.component` shakes \
+         it across its barrels and the other horizontal component along them.",
     ),
     Field::new(
         "barrel",
@@ -252,48 +264,6 @@ pub static STACK: Section = Section {
     exclusive: &[],
 };
 
-/// A body that differs.
-pub static OVERRIDE: Section = Section {
-    name: "override",
-    help: "A body of the stack that differs from the others.",
-    fields: &[
-        Field::new(
-            "kind",
-            Kind::Choice(names::<StackBody>),
-            Default::Value("\"barrel\""),
-            "Kind of body.",
-        ),
-        Field::new("level", LEVELS, Default::Required, "Level, 1 at the bottom."),
-        Field::new(
-            "column",
-            COLUMNS,
-            Default::Derived("every column of the level"),
-            "Column, 1 at the left before mirroring: of barrels, or of racks for a rack; across the barrels where \
-             the stack is looked at in both planes.",
-        ),
-        Field::new(
-            "mass",
-            Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)),
-            Default::Nothing,
-            "Mass in place of the regular one.",
-        ),
-        Field::new(
-            "fill",
-            Kind::Choice(names::<Fill>),
-            Default::Nothing,
-            "Contents in place of the regular ones; barrels only.",
-        ),
-        Field::new(
-            "offset_x",
-            Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)),
-            Default::Value("\"0 m\""),
-            "Displacement from the regular place, positive to the right before mirroring.",
-        ),
-    ],
-    variants: None,
-    exclusive: &[],
-};
-
 /// Reads a stack.
 pub(super) fn read(
     reader: Reader<'_>,
@@ -303,11 +273,23 @@ pub(super) fn read(
     let barrel = barrel::read(reader.section("barrel")?, rack.rail_half_spacing)?;
     let levels = reader.integer("levels")?;
     let planes: Planes = reader.choice("view")?;
-    let columns_along = match (planes, reader.optional_integer("columns_along")?) {
-        (Planes::Both, along) => Some(along.unwrap_or(rack.barrels_deep)),
-        (Planes::Transverse | Planes::Longitudinal, None) => None,
+    let along = reader.optional_integer("columns_along")?;
+    let azimuth = reader.optional_quantity("azimuth")?;
+    if planes != Planes::Spatial && azimuth.is_some() {
+        let message = "`stack.azimuth` is for `stack.view = \"spatial\"`; in a plane `motion.component` says what \
+                       shakes the stack, and \"az:30\" is the component in a direction"
+            .to_owned();
+        return Err(reader.inconsistent("azimuth", message));
+    }
+    let (columns_along, space) = match (planes, along) {
+        (Planes::Both, along) => (Some(along.unwrap_or(rack.barrels_deep)), None),
+        (Planes::Spatial, along) => {
+            let columns_along = along.unwrap_or(rack.barrels_deep);
+            (None, Some(InSpace { columns_along, azimuth: azimuth.unwrap_or(0.0) }))
+        }
+        (Planes::Transverse | Planes::Longitudinal, None) => (None, None),
         (Planes::Transverse | Planes::Longitudinal, Some(_)) => {
-            let message = "`stack.columns_along` is for `stack.view = \"both\"`; in one plane \
+            let message = "`stack.columns_along` is for `stack.view = \"both\"` and \"spatial\"; in one plane \
                            `stack.columns` says how many barrels stand side by side"
                 .to_owned();
             return Err(reader.inconsistent("columns_along", message));
@@ -318,6 +300,7 @@ pub(super) fn read(
         levels,
         columns: reader.integer("columns")?,
         columns_along,
+        space,
         barrel,
         rack,
         mirror: reader.flag("mirror")?,
@@ -327,11 +310,12 @@ pub(super) fn read(
         interfaces,
     };
     check_geometry(&reader, &stack, "columns")?;
-    if let Some(along) = stack.along() {
+    let in_space = stack.space.map(|_| stack.in_plane(View::Longitudinal));
+    if let Some(along) = stack.along().or(in_space) {
         check_geometry(&reader, &along, "columns_along")?;
     }
     for item in reader.sections("override")? {
-        let body = read_override(item, &stack)?;
+        let body = body_override::read(item, &stack)?;
         stack.overrides.push(body);
     }
     reader.finish();
@@ -378,83 +362,28 @@ fn check_geometry(
     Ok(())
 }
 
-fn read_override(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride, ScenarioError> {
-    let body: StackBody = reader.choice("kind")?;
-    let level = reader.integer("level")?;
-    let column = reader.optional_integer("column")?;
-    let mass = reader.optional_quantity("mass")?;
-    let fill: Option<Fill> = reader.optional_choice("fill")?;
-    let offset_x = reader.quantity("offset_x")?;
-    let columns = match body {
-        StackBody::Barrel => stack.columns,
-        StackBody::Rack => stack.racks_per_level(),
-    };
-    for (name, given, most) in [("level", Some(level), stack.levels), ("column", column, columns)] {
-        if let Some(given) = given
-            && given > most
-        {
-            let message = format!(
-                "`{}` is {given}, but the stack has {most} {name}{} of {}s",
-                reader.path_of(name),
-                if most == 1 { "" } else { "s" },
-                body.name()
-            );
-            return Err(reader.inconsistent(name, message));
-        }
-    }
-    if body == StackBody::Rack && fill.is_some() {
-        let message = format!("`{}` is for barrels; a rack holds no wine", reader.path_of("fill"));
-        return Err(reader.inconsistent("fill", message));
-    }
-    if let Some(mass) = mass
-        && body == StackBody::Barrel
-        && mass < stack.barrel.empty_mass
-    {
-        let message = format!(
-            "`{}` is {mass} kg, less than the wood of {} kg",
-            reader.path_of("mass"),
-            stack.barrel.empty_mass
-        );
-        return Err(reader.inconsistent("mass", message));
-    }
-    reader.finish();
-    Ok(BodyOverride { body, level, column, mass, fill, offset_x })
-}
-
 /// Writes a stack.
 pub(super) fn write(stack: &StackSpec) -> Table {
     let mut writer = Writer::new(&STACK);
-    let planes = match (stack.columns_along, stack.view) {
-        (Some(_), _) => Planes::Both,
-        (None, View::Transverse) => Planes::Transverse,
-        (None, View::Longitudinal) => Planes::Longitudinal,
+    let planes = match (stack.columns_along, stack.space, stack.view) {
+        (_, Some(_), _) => Planes::Spatial,
+        (Some(_), None, _) => Planes::Both,
+        (None, None, View::Transverse) => Planes::Transverse,
+        (None, None, View::Longitudinal) => Planes::Longitudinal,
     };
     writer.choice("view", planes);
     writer.integer("levels", stack.levels);
     writer.integer("columns", stack.columns);
-    match stack.columns_along {
+    match stack.columns_along.or(stack.space.map(|space| space.columns_along)) {
         Some(along) => writer.integer("columns_along", along),
         None => writer.omit(&["columns_along"]),
     }
+    writer.optional_quantity("azimuth", stack.space.map(|space| space.azimuth));
     writer.flag("mirror", stack.mirror);
     writer.quantity("gap", stack.gap);
     writer.table("barrel", barrel::write(&stack.barrel));
     writer.table("rack", rack::write(&stack.rack));
     stack.devices.write(&mut writer);
-    writer.tables("override", stack.overrides.iter().map(write_override).collect());
-    writer.finish()
-}
-
-fn write_override(body: &BodyOverride) -> Table {
-    let mut writer = Writer::new(&OVERRIDE);
-    writer.choice("kind", body.body);
-    writer.integer("level", body.level);
-    match body.column {
-        Some(column) => writer.integer("column", column),
-        None => writer.omit(&["column"]),
-    }
-    writer.optional_quantity("mass", body.mass);
-    writer.optional_text("fill", body.fill.map(Named::name));
-    writer.quantity("offset_x", body.offset_x);
+    writer.tables("override", stack.overrides.iter().map(body_override::write).collect());
     writer.finish()
 }

@@ -60,6 +60,8 @@ pub struct Fate {
     pub landed_at: Option<f64>,
     /// Its largest speed downward (m/s) from when it had fallen until it landed.
     pub landing_speed: Option<f64>,
+    /// Largest force (N) on it since it had fallen.
+    pub fall_force: Option<f64>,
     /// Largest drop (m) below its place at rest.
     pub drop: f64,
     /// Largest displacement (m) along `x` relative to the ground, before the collapse.
@@ -102,11 +104,13 @@ struct Place {
     supports: Vec<BodyId>,
     /// The rack below, against which a rack's tilt is measured.
     below: Option<BodyId>,
+    /// For a rack that stands on that rack: height (m) of its center over its foot.
+    foot: Option<f64>,
 }
 
 lanewise!(same Place);
 lanewise!(struct Followed<R> {
-    place, rest, most_slip, most_tilt, left_seat, loss, fell_at, landed_at, landing_speed, drop,
+    place, rest, most_slip, most_tilt, left_seat, loss, fell_at, landed_at, landing_speed, fall_force, drop,
     peak_displacement, residual_displacement, displacement_at_collapse, peak_slip, residual_slip,
     peak_tilt, peak_uplift
 });
@@ -132,6 +136,8 @@ struct Followed<R: Real> {
     landed_at: R,
     /// Largest speed downward (m/s) between the two.
     landing_speed: R,
+    /// Largest force (N) since it had fallen.
+    fall_force: R,
     drop: R,
     peak_displacement: R,
     residual_displacement: R,
@@ -148,6 +154,7 @@ impl Fates {
         let ground = state.poses[Assembly::GROUND].position;
         let follow = |(i, part): (usize, &Part)| {
             let below = part.supports.first().copied();
+            let on_rack = below.is_some_and(|body| assembly.parts[body].kind == PartKind::Rack);
             let foot = part.supports.is_empty();
             let most_slip = match part.kind {
                 PartKind::Barrel => thresholds.seat_loss_ratio * part.size,
@@ -166,6 +173,7 @@ impl Fates {
                     carrier: part.carrier,
                     supports: part.supports.clone(),
                     below: below.map(|body| assembly.parts[body].carrier.unwrap_or(body)),
+                    foot: on_rack.then_some(part.foot),
                 },
                 rest: state.poses[i].position - ground,
                 most_slip,
@@ -175,6 +183,7 @@ impl Fates {
                 fell_at: f64::INFINITY,
                 landed_at: f64::INFINITY,
                 landing_speed: 0.0,
+                fall_force: 0.0,
                 drop: 0.0,
                 peak_displacement: 0.0,
                 residual_displacement: 0.0,
@@ -207,6 +216,7 @@ impl Fates {
             fell_at: known(followed.fell_at),
             landed_at: known(followed.landed_at),
             landing_speed: known(followed.landed_at).map(|_| followed.landing_speed),
+            fall_force: known(followed.fell_at).map(|_| followed.fall_force),
             drop: followed.drop,
             peak_displacement: followed.peak_displacement,
             residual_displacement: followed.residual_displacement,
@@ -282,6 +292,8 @@ impl<R: Real> Fates<R> {
             if fallen.any() {
                 let first = fallen & !body.fell_at.lt(R::splat(f64::INFINITY));
                 body.fell_at = R::select(first, state.time, body.fell_at);
+                let down = body.fell_at.lt(R::splat(f64::INFINITY));
+                raise(&mut body.fall_force, seen(down, scratch.wrenches[i].force.length()));
                 if body.place.kind == PartKind::Barrel {
                     let first = first & !self.first_fall.lt(R::splat(f64::INFINITY));
                     self.first_fall = R::select(first, state.time, self.first_fall);
@@ -342,8 +354,9 @@ impl<R: Real> Fates<R> {
         self.collapse = R::select(collapses, state.time, self.collapse);
     }
 
-    /// Displacement (m) of a body relative to what it stands on: a barrel in the frame of its rack, a
-    /// rack against the mean of the barrels below, the rest against the ground.
+    /// Displacement (m) of a body relative to what it stands on: a barrel in the frame of its rack, the foot of a
+    /// rack in that of the rack on whose posts it stands, a rack against the mean of the barrels below, the rest
+    /// against the ground.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
     fn slip(&self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>, i: BodyId) -> Vec2<R> {
@@ -355,6 +368,13 @@ impl<R: Real> Fates<R> {
         }
         if body.place.supports.is_empty() {
             return here - state.poses[Assembly::GROUND].position - body.rest;
+        }
+        if let (Some(rack), Some(foot)) = (body.place.below, body.place.foot) {
+            // Racks that lean together, or one that rocks on the posts of the other, do not slide.
+            let foot = Vec2::new(R::zero(), R::splat(-foot));
+            let from = here + scratch.rotations[i].apply(foot) - state.poses[rack].position;
+            let rest = body.rest + foot - self.bodies[rack].rest;
+            return scratch.rotations[rack].unapply(from) - rest;
         }
         let share = R::splat(1.0 / body.place.supports.len() as f64);
         let mut below = Vec2::default();

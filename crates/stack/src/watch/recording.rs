@@ -90,6 +90,11 @@ pub struct Recording {
 }
 
 impl Recording {
+    /// The forces between bodies that lean on each other, at rest and at their largest.
+    pub fn forces(&self) -> &Joints {
+        &self.forces
+    }
+
     /// Starts with the state at rest; `rates` are those of frames and histories (Hz).
     pub(super) fn new(
         assembly: &Assembly,

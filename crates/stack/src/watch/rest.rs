@@ -2,7 +2,9 @@
 //! became of the stack.
 
 use barrelstack_dynamics::real::{Mask, Real};
-use barrelstack_dynamics::{BodyId, FrictionLaw, Linear, Motion, Planar, State, lanewise};
+use barrelstack_dynamics::{
+    BodyId, FrictionLaw, Interface, Linear, Motion, Planar, Space, State, lanewise,
+};
 
 use crate::assemble::{Assembly, PartKind};
 use crate::ground::Ground;
@@ -12,21 +14,22 @@ use crate::scenario::{Scenario, Until};
 ///
 /// A tenth of what lifts a barrel out of the shallowest cradle of the catalog: 0.31 m/s.
 /// Stacks sway on their round barrels for minutes with less, since seats do not resist rolling.
-const CLIMB: f64 = 0.005;
+pub const CLIMB: f64 = 0.005;
 
 /// How long (s) every body stays so, at full size: longer than half a swing of the tallest stack, so
 /// that no turning point passes for rest.
-const HOLD: f64 = 3.0;
+pub const HOLD: f64 = 3.0;
 
-/// Acceleration of calm ground over gravity, and over the least friction that holds.
+/// Acceleration of calm ground over gravity.
 ///
 /// What lies after a collapse neither slides nor tips by that, and the last third of many records is weaker.
 /// What still stands is followed to the end: swaying on round barrels gathers what little comes.
 const CALM: f64 = 0.02;
+/// The same over the least friction that holds.
 const CALM_OF_FRICTION: f64 = 0.1;
 
 /// Height of the center over the radius up to which a barrel is on the floor.
-const ON_FLOOR: f64 = 1.05;
+pub const ON_FLOOR: f64 = 1.05;
 
 /// Why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +62,7 @@ impl Ending {
     }
 
     /// Why a run of a scenario ended that was not at rest.
-    pub(crate) fn of_time(scenario: &Scenario) -> Self {
+    pub fn of_time(scenario: &Scenario) -> Self {
         match scenario.run.until {
             Until::Rest if scenario.run.duration.is_none() => Self::Patience,
             Until::Rest | Until::Duration => Self::Duration,
@@ -125,7 +128,9 @@ impl Rest {
         };
         Self {
             still_from: by_rest(ground.end()),
-            calm_from: by_rest(ground.calm_from(scenario.run.gravity * calm(assembly))),
+            calm_from: by_rest(
+                ground.calm_from(scenario.run.gravity * calm(assembly.model.interfaces())),
+            ),
             slow: scenario.run.gravity * CLIMB * scale,
             hold: HOLD * scale.sqrt(),
             bodies: assembly.parts.iter().enumerate().filter_map(mover).collect(),
@@ -134,9 +139,9 @@ impl Rest {
     }
 }
 
-/// The acceleration of calm ground over gravity.
-fn calm(assembly: &Assembly) -> f64 {
-    let holding = assembly.model.interfaces().iter().map(|interface| match interface.friction {
+/// The acceleration of calm ground over gravity, under a stack that is held by some laws.
+pub fn calm<S: Space<Real = f64>>(laws: &[Interface<S>]) -> f64 {
+    let holding = laws.iter().map(|interface| match interface.friction {
         FrictionLaw::Coulomb { kinetic_coefficient, .. } => CALM_OF_FRICTION * kinetic_coefficient,
         // What holds by nothing else than the shape of its seats, or creeps.
         FrictionLaw::Frictionless | FrictionLaw::Regularized { .. } => 0.0,

@@ -90,12 +90,12 @@ pub struct Stresses {
     /// Index of a body's envelope.
     of_body: Vec<Option<usize>>,
     /// Where every node of every pair presses; one entry per node, pair after pair.
-    presses: Vec<Press>,
+    presses: Vec<LoadedNode>,
 }
 
 /// Where a node presses.
 #[derive(Clone, Debug)]
-struct Press {
+struct LoadedNode {
     /// Length (m) that the node stands for.
     length: f64,
     /// The cells of the target; past the last one they go on with the first.
@@ -168,7 +168,7 @@ impl<R: Real> Bounds<R> {
 
 /// Follows the stresses of a run, or of as many runs as there are lanes; sees every step.
 #[derive(Clone, Debug)]
-pub(crate) struct Pressing<R: Real = f64> {
+pub(crate) struct StressWatch<R: Real = f64> {
     /// The stresses in every lane; nothing where there is no run.
     lanes: Vec<Stresses>,
     /// The lanes that have a run.
@@ -179,7 +179,7 @@ pub(crate) struct Pressing<R: Real = f64> {
     pairs: Vec<(usize, BodyId)>,
 }
 
-impl Pressing {
+impl StressWatch {
     /// Starts with the stresses at rest in `scratch`.
     pub(crate) fn new(assembly: &Assembly, scratch: &Scratch<Planar>) -> Self {
         let model = &assembly.model;
@@ -213,7 +213,7 @@ impl Pressing {
                 sets[..pair.nodes].iter().filter(|set| fixed(set)).map(Nodes::count).sum::<usize>();
             let rack = of_body[pair.contactor]
                 .filter(|at: &usize| fixed(&sets[pair.nodes]) && envelopes[*at].is_on_nodes());
-            presses.extend((0..sets[pair.nodes].count()).map(|node| Press {
+            presses.extend((0..sets[pair.nodes].count()).map(|node| LoadedNode {
                 length: tributary_length(model, &pair, node),
                 cells: 0..0,
                 on_rack: rack.map(|at| (at, before + node)),
@@ -257,7 +257,7 @@ impl Pressing {
     }
 }
 
-impl<R: Real> Pressing<R> {
+impl<R: Real> StressWatch<R> {
     /// Watches nothing yet.
     pub(crate) fn nothing() -> Self {
         let lanes = vec![Stresses::default(); R::LANES];
@@ -265,7 +265,7 @@ impl<R: Real> Pressing<R> {
     }
 
     /// Puts a run into a lane; all runs that are watched together are of one topology.
-    pub(crate) fn begin(&mut self, lane: usize, mut single: Pressing) {
+    pub(crate) fn begin(&mut self, lane: usize, mut single: StressWatch) {
         if self.bounds.is_empty() {
             self.bounds = Lanewise::in_all(&single.bounds);
         } else {

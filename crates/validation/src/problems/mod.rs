@@ -3,6 +3,7 @@
 pub mod consensus;
 mod devices;
 mod devices_on_stacks;
+mod falls;
 mod fragility;
 mod gravity;
 mod housner;
@@ -12,6 +13,7 @@ mod measured;
 mod ode;
 mod overlaps;
 mod pulses;
+mod racks_along;
 mod regimes;
 mod restitution;
 mod rolling;
@@ -35,10 +37,12 @@ pub fn all() -> Vec<Problem> {
         solids::problems(),
         restitution::problems(),
         measured::problems(),
+        falls::problems(),
         gravity::problems(),
         stacks::problems(),
         devices::problems(),
         devices_on_stacks::problems(),
+        racks_along::problems(),
         slosh::problems(),
         ode::problems(),
         space::problems(),

@@ -70,7 +70,7 @@ struct Survey {
 
 impl Survey {
     fn look(&mut self, run: &barrelstack::Run) {
-        let boundaries = Boundaries::new(&run.assembly.model);
+        let boundaries = Boundaries::new(&run.assembly);
         let parts = &run.assembly.parts;
         let joined = |a: usize, b: usize| {
             parts[b].carrier == Some(a)

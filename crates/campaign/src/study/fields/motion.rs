@@ -1,11 +1,10 @@
 //! The fields of `[[motion]]` in a study file.
 
 use crate::scenario::Dimension;
-use crate::scenario::catalog;
 use crate::scenario::field::{
     Default, Field, Kind, Named, Range, Section, Variant, Variants, names,
 };
-use crate::scenario::motion::{MOTION, PULSE, SCALE, SINE};
+use crate::scenario::motion::{MOTION, PULSE, SCALE, SINE, record_names};
 
 use super::MOST;
 
@@ -202,7 +201,7 @@ pub(super) static MOTIONS: Section = Section {
         ),
         Field::new(
             "bundled",
-            Kind::Choice(catalog::record_names),
+            Kind::Choice(record_names),
             Default::Nothing,
             "Record shipped with the program.",
         ),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use barrelstack_motion::Record;
 use barrelstack_report::{
-    Block, Cell, Document, Figure, FigureKind, Panels, Plot, Table, Tone, Verdict, html,
+    Block, Cell, Document, Figure, FigureKind, Panels, Plot, Table, Tone, Verdict, capital, html,
 };
 
 use super::output::vacant;
@@ -90,12 +90,6 @@ fn live(id: &str, at: usize, plot: &Plot) -> Block {
         caption: format!("{}: {lines}.", capital(&what)),
         kind: FigureKind::Plot(Plot { interactive: true, ..plot.clone() }),
     })
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(|first| first.to_uppercase().collect::<String>());
-    first.unwrap_or_default() + letters.as_str()
 }
 
 /// A table of the terminal as one of a page.

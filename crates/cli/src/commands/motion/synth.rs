@@ -4,7 +4,7 @@ use anyhow::anyhow;
 use barrelstack::scenario::Dimension;
 use barrelstack_motion::{
     BooreSource, Channel, CloughPenzien, Direction, Envelope, GroundMotion, NearFault, Pulse,
-    Record, SiteAmplification, Stage,
+    Record, SiteAmplification,
 };
 use clap::{Subcommand, ValueEnum};
 
@@ -336,26 +336,12 @@ fn write(
         .transpose()?;
     let motion = make(given.unwrap_or(RANDOM_STEP))?;
     let step = given.unwrap_or_else(|| motion.horizontal.natural_step());
-    let sampled = motion.horizontal.sampled(step)?;
-    let (name, direction) = if common.vertical {
-        ("UP", Direction::up())
-    } else {
-        ("H1", Direction::some_horizontal())
-    };
-    let mut channel =
-        Channel::new(name, direction, sampled.time_step(), sampled.acceleration().to_vec());
-    channel.initial_velocity = sampled.velocity()[0];
-    let record = Record {
-        format: "synthetic",
-        file: common.output.output.display().to_string(),
-        event: motion.name.clone(),
-        station: "synthetic".to_owned(),
-        stage: Stage::Corrected,
-        channels: vec![channel],
-        warnings: Vec::new(),
-        mixed: false,
-        notes: motion.provenance,
-    };
+    let mut record = Record::of_motion(&motion, step)?;
+    record.file = common.output.output.display().to_string();
+    if common.vertical {
+        let turned = Channel::of_history("UP", Direction::up(), &motion.horizontal, step)?;
+        record.channels = vec![turned];
+    }
     let columns: Vec<_> = record.channels.iter().map(|c| (c.name.clone(), c)).collect();
     let table = measures::table(&columns, &USUAL.iter().collect::<Vec<_>>())?;
     super::change::finish(&target, &record, &record, table.lines())

@@ -2,6 +2,7 @@
 
 mod barrels;
 mod blocks;
+mod flat;
 mod free;
 mod rolling;
 mod sliding;
@@ -30,6 +31,7 @@ pub(super) fn problems() -> Vec<Problem> {
         sliding::problems(),
         blocks::problems(),
         barrels::problems(),
+        flat::problems(),
     ];
     theories.into_iter().flatten().collect()
 }

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use barrelstack_campaign::study::StudyTable;
-use barrelstack_motion::{Candidate, Choosing, select as choose};
+use barrelstack_selection::{Candidate, Choosing, select as choose};
 use clap::ValueEnum;
 
 use super::folder::{self, Batch, FolderArgs, Worked};

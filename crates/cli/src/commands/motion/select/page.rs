@@ -1,10 +1,11 @@
 //! The page of a selection: spectra against the target, spread, and the records.
 
-use barrelstack_motion::{Candidate, STANDARD_GRAVITY, SelectionTarget};
+use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
     Axis, Block, Cell, Document, Figure, FigureKind, Plot, Series, SeriesStyle, Table, Verdict,
     html, markdown,
 };
+use barrelstack_selection::{Candidate, SelectionTarget};
 
 use super::set::Set;
 use crate::commands::heights;

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use barrelstack_campaign::study::StudyTable;
-use barrelstack_motion::{Chosen, Selection, SelectionTarget};
+use barrelstack_selection::{Chosen, Selection, SelectionTarget};
 
 use super::SelectArgs;
 use crate::store::store;

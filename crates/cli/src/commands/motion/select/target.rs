@@ -4,17 +4,12 @@ use std::path::Path;
 
 use anyhow::{anyhow, bail};
 use barrelstack::scenario::Dimension;
-use barrelstack_motion::{AccelerationUnit, Condition, SelectionTarget};
+use barrelstack_motion::AccelerationUnit;
+use barrelstack_selection::{Condition, PERIODS, SelectionTarget};
 
 use super::SelectArgs;
 use crate::commands::motion::input::{self, quantity};
 use crate::commands::motion::target as code;
-
-/// Periods (s) at which a code's spectrum is followed.
-const PERIODS: [f64; 22] = [
-    0.05, 0.075, 0.1, 0.13, 0.16, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.75, 0.9, 1.0, 1.25, 1.5, 2.0,
-    2.5, 3.0, 4.0, 5.0, 7.5,
-];
 
 /// The target within the periods that count.
 pub(super) fn target(args: &SelectArgs) -> anyhow::Result<SelectionTarget> {

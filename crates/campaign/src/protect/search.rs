@@ -1,0 +1,146 @@
+//! What is tried: a protected stack in every direction, and the rounds of studies that it goes through.
+
+use std::num::NonZero;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use barrelstack::check;
+use barrelstack::variants::planes;
+
+use super::rank::{Quantity, Runs};
+use super::{ProtectError, Protection, Ranked, Reached, Request, middle, plan};
+use crate::decision::Cases;
+use crate::pool;
+use crate::scenario::{Scenario, View};
+use crate::study::{RunOptions, Study};
+
+/// A protection while it is tried.
+pub(super) struct Trial {
+    pub(super) protection: Protection,
+    /// The stack in each direction.
+    pub(super) stacks: Vec<(View, Scenario)>,
+    pub(super) runs: Vec<Runs>,
+    pub(super) round: u32,
+}
+
+impl Trial {
+    pub(super) fn new(base: &Scenario, protection: Protection) -> Result<Self, ProtectError> {
+        let changed = protection.on(base)?;
+        let stacks: Vec<(View, Scenario)> = planes(&changed)?
+            .into_iter()
+            .filter_map(|plane| Some((plane.view()?, plane.scenario)))
+            .collect();
+        // Whether it can be built, and stands by itself, in every direction.
+        stacks.iter().try_for_each(|(_, stack)| check(stack).map(drop))?;
+        let runs = stacks.iter().map(|_| Runs::default()).collect();
+        Ok(Self { protection, stacks, runs, round: 0 })
+    }
+
+    /// The direction in which more barrels fall.
+    pub(super) fn worse(&self, weights: &[f64]) -> usize {
+        let fallen = |at: usize| self.runs[at].estimate(Quantity::Fallen, weights, 1.0).mean;
+        (0..self.runs.len()).max_by(|a, b| fallen(*a).total_cmp(&fallen(*b))).unwrap_or(0)
+    }
+}
+
+/// What all trials of a search share.
+pub(super) struct Search<'a> {
+    pub(super) request: &'a Request,
+    pub(super) base: &'a Scenario,
+    pub(super) folder: &'a Path,
+    pub(super) options: &'a RunOptions,
+    pub(super) tell: &'a (dyn Fn(Reached) -> ControlFlow<()> + Sync),
+    pub(super) levels: &'a [f64],
+    pub(super) not_tried: Vec<(String, String)>,
+}
+
+impl Search<'_> {
+    /// Those that can be built and paid for; why not of the others is kept.
+    pub(super) fn trials(&mut self, protections: Vec<Protection>) -> Vec<Trial> {
+        let mut trials = Vec::new();
+        for protection in protections {
+            let name = protection.name.clone();
+            let cost = middle(&protection);
+            if let Some(budget) = self.request.budget.filter(|budget| cost > *budget) {
+                let reason = format!("costs US${cost:.0}, above the budget of US${budget:.0}");
+                self.not_tried.push((name, reason));
+                continue;
+            }
+            match Trial::new(self.base, protection) {
+                Ok(trial) => trials.push(trial),
+                // Where a field stands in the text that was made here tells nobody anything.
+                Err(error) => {
+                    let reason = error.to_string();
+                    self.not_tried
+                        .push((name, reason.lines().next().unwrap_or_default().to_owned()));
+                }
+            }
+        }
+        trials
+    }
+
+    /// Runs a round of some trials.
+    pub(super) fn round(
+        &self,
+        trials: &mut [Trial],
+        open: &[usize],
+        round: u32,
+    ) -> Result<(), ProtectError> {
+        let mut studies = Vec::new();
+        for at in open {
+            for (direction, (view, stack)) in trials[*at].stacks.iter().enumerate() {
+                let study = plan::study(self.request, stack, self.levels, round)?;
+                let folder = self
+                    .folder
+                    .join(&trials[*at].protection.key)
+                    .join(plan::name(view.name(), round));
+                studies.push((*at, direction, folder, study));
+            }
+        }
+        let of: u64 = studies.iter().map(|(.., study)| study.cases()).sum();
+        let done = AtomicU64::new(0);
+        // Each on one thread, and as many at once as there are cores.
+        let options = RunOptions { threads: Some(NonZero::<usize>::MIN), ..*self.options };
+        let work = |(.., folder, study): &(usize, usize, PathBuf, Study)| {
+            let before = AtomicU64::new(0);
+            let collected = study.run(folder, &options, &|progress| {
+                let now = progress.tally.cases;
+                let news = now.saturating_sub(before.fetch_max(now, Ordering::Relaxed));
+                let done = done.fetch_add(news, Ordering::Relaxed) + news;
+                (self.tell)(Reached { round: round + 1, done, of })
+            })?;
+            Ok::<Cases, ProtectError>(Cases::read(&collected)?)
+        };
+        let found = pool::map(&studies, work, &|_| ());
+        for ((at, direction, ..), cases) in studies.iter().zip(found) {
+            trials[*at].runs[*direction].add(&cases?, self.levels);
+            trials[*at].round = round + 1;
+        }
+        Ok(())
+    }
+
+    /// What is left of those on the front when they are worn, under the motions of the first round.
+    pub(super) fn worn(
+        &mut self,
+        trials: &[Trial],
+        all: &mut [Ranked],
+        weights: &[f64],
+    ) -> Result<(), ProtectError> {
+        for (trial, found) in trials.iter().zip(all).filter(|(_, found)| found.on_front) {
+            for (words, worn) in trial.protection.worn() {
+                let mut one = self.trials(vec![worn]);
+                let open: Vec<usize> = (0..one.len()).collect();
+                self.round(&mut one, &open, 0)?;
+                let Some(one) = one.first() else { continue };
+                let most = one.stacks[0].1.stack().map_or(0, |stack| stack.levels * stack.columns);
+                let runs = &one.runs[one.worse(weights)];
+                let fallen = runs.estimate(Quantity::Fallen, weights, f64::from(most));
+                if found.worn.as_ref().is_none_or(|(_, worst)| worst.mean < fallen.mean) {
+                    found.worn = Some((words.to_owned(), fallen));
+                }
+            }
+        }
+        Ok(())
+    }
+}

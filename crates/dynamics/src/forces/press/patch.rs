@@ -1,0 +1,188 @@
+//! The forces of a patch: normal ones, which remember nothing, and sticks about the center of pressure.
+
+use super::{Contact, Press, Pressed};
+use crate::contact::NormalForce;
+use crate::real::{Mask, Real};
+use crate::shape::{Patch, Spread, Touch};
+use crate::space::{Linear, Space, Wrench};
+
+impl<S: Space> Press<'_, S> {
+    /// A patch whose sticks are numbered from `first` in the list of elements.
+    #[inline(always)]
+    pub(super) fn patch(&mut self, first: usize, patch: &Patch<S>) {
+        let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
+        let Touch { node, gap } = patch.deepest;
+        self.look_ahead(node, gap);
+        if !gap.distance.lt(zero).any() {
+            return;
+        }
+        match &patch.spread {
+            Some(spread) if spread.bears(gap.distance).any() => {
+                self.spread(first, patch.deepest, spread);
+            }
+            Some(Spread { shares, .. }) => {
+                self.node(first, node, gap, shares.deepest);
+            }
+            None => {
+                self.node(first, node, gap, one);
+            }
+        }
+    }
+
+    /// A patch of more than one point.
+    #[inline(always)]
+    fn spread(&mut self, first: usize, mut deepest: Touch<S>, spread: &Spread<S>) {
+        let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
+        if let Some(face) = self.counted {
+            let counts = face.counts(deepest.gap.normal);
+            deepest.gap.distance = S::Real::select(counts, deepest.gap.distance, one);
+        }
+        let meeting = self.meeting();
+        let seen = |touch: &Touch<S>| {
+            let rate = -meeting.velocity(touch.companion()).dot(touch.gap.normal);
+            (-touch.gap.distance, rate)
+        };
+        let ((depth, rate), (middle, middle_rate)) = (seen(&deepest), seen(&spread.middle));
+        let touching = zero.lt(depth);
+        let (shares, between) = (spread.shares, S::Real::splat(spread.axes.in_the_middle()));
+        // Depth, rate and number of springs at the deepest point, at its mirror image and in the middle.
+        let springs = [
+            (depth, rate, shares.deepest),
+            (middle + middle - depth, middle_rate + middle_rate - rate, shares.others),
+            (middle, middle_rate, shares.others * between),
+        ];
+        let weight = S::Real::select(touching, self.elements.weights[first], zero);
+        let (mut forces, mut stiffness) = ([(zero, zero); 3], zero);
+        for ((depth, rate, count), (total, damped)) in springs.into_iter().zip(&mut forces) {
+            let pressed = zero.lt(depth);
+            let depth = S::Real::select(pressed, depth, zero);
+            let weight = S::Real::select(pressed, weight * count, zero);
+            let normal = self.law(depth, rate);
+            *total = normal.total * weight;
+            *damped = *total - normal.elastic * weight;
+            self.totals.elastic += normal.energy * weight;
+            stiffness += depth * weight;
+        }
+        // As many springs as bear, by what they bear.
+        let stiffness = stiffness / S::Real::select(touching, depth, one);
+        let [deep, mirrored, between] = forces;
+        let at_deepest = (deep.0 - mirrored.0, deep.1 - mirrored.1);
+        let in_middle = (mirrored.0 + mirrored.0 + between.0, mirrored.1 + mirrored.1 + between.1);
+        let mut resultant = S::Vector::default();
+        for (touch, (total, damped)) in [(&deepest, at_deepest), (&spread.middle, in_middle)] {
+            let normal = touch.gap.normal;
+            let lever = S::moment(touch.companion() - self.frame.contactor, normal);
+            self.sum.normal += Wrench { force: normal * total, moment: lever * total };
+            self.sum.damped += Wrench { force: normal * damped, moment: lever * damped };
+            resultant += normal * total;
+        }
+        let normal_force = resultant.dot(resultant).sqrt();
+        let presses = zero.lt(normal_force);
+        let safe = S::Real::select(presses, normal_force, one);
+        let normal = resultant * (one / safe);
+        // Nothing presses where a damper draws as much as the spring pushes.
+        let normal = normal + deepest.gap.normal * S::Real::select(presses, zero, one);
+        let lean = S::Real::select(presses, at_deepest.0 / safe, one).clamp_magnitude(one);
+        let (from, to) = (spread.middle.companion(), deepest.companion());
+        let pressure = Pressure {
+            touching,
+            center: from + (to - from) * lean,
+            normal,
+            normal_force,
+            stiffness,
+            depth,
+            rate,
+        };
+        // In a point nothing but the first stick is left.
+        let aside = (one - lean * lean) * shares.aside;
+        self.stick(first, &pressure, S::Vector::default(), one - aside);
+        let axes = spread.axes.all();
+        let part = aside * S::Real::splat(0.5 / axes.len() as f64);
+        for (index, axis) in axes.iter().enumerate() {
+            let aside = *axis * spread.radius;
+            self.stick(first + 1 + 2 * index, &pressure, aside, part);
+            self.stick(first + 2 + 2 * index, &pressure, -aside, part);
+        }
+        self.resist_rolling(normal_force);
+    }
+
+    /// The normal force of a spring, with the stop that it may have.
+    #[inline(always)]
+    pub(super) fn law(&self, depth: S::Real, rate: S::Real) -> NormalForce<S::Real> {
+        let normal = self.normal.force_of_step(depth, rate, self.step);
+        match self.stop {
+            Some(stop) => stop.add(normal, depth, rate, self.step),
+            None => normal,
+        }
+    }
+
+    /// A share of the friction of a patch, `aside` (m) of its center of pressure.
+    #[inline(always)]
+    fn stick(&mut self, element: usize, at: &Pressure<S>, aside: S::Vector, share: S::Real) {
+        let meeting = self.meeting();
+        let point = at.center + aside;
+        let counted = S::Real::select(at.touching, S::Real::splat(1.0), S::Real::zero());
+        let slip_rate = S::tangential(meeting.velocity(point), at.normal) * counted;
+        let (normal_force, weight) = (at.normal_force * share, at.stiffness * share);
+        let tangent_plane = S::tangent_plane(at.normal);
+        let stick = self.elements.sticks[element].carried(tangent_plane);
+        let friction = self.friction.force::<S>(stick, slip_rate, normal_force, weight);
+        self.totals.stick += friction.energy;
+        let force = -S::along(friction.force, at.normal);
+        let moment = S::moment(point - self.frame.contactor, force);
+        self.sum.friction += Wrench { force, moment };
+        self.slip_rates[element] = slip_rate;
+        let node = self.elements.nodes[element];
+        self.pressed.push(Pressed {
+            element,
+            pair: self.pair,
+            node,
+            touching: at.touching,
+            point,
+            tangent_plane,
+            normal_force,
+            weight,
+        });
+        if let Some(contacts) = &mut self.contacts {
+            contacts.push(Contact {
+                element,
+                pair: self.pair,
+                node,
+                touching: at.touching,
+                point,
+                normal: at.normal,
+                penetration: S::Real::select(at.touching, at.depth, S::Real::zero()),
+                penetration_rate: at.rate,
+                normal_force,
+                slip_rate,
+                friction_force: friction.force,
+            });
+        }
+    }
+}
+
+impl<S: Space> Spread<S> {
+    /// Whether more than the deepest point bears, at its distance (m).
+    #[inline(always)]
+    fn bears(&self, deepest: S::Real) -> <S::Real as Real>::Mask {
+        let (zero, middle) = (S::Real::zero(), self.middle.gap.distance);
+        let bears = match self.axes.in_the_middle() {
+            0.0 => (middle + middle).lt(deepest),
+            _ => middle.lt(zero),
+        };
+        bears & zero.lt(self.shares.others)
+    }
+}
+
+/// How a patch presses as a whole.
+struct Pressure<S: Space> {
+    touching: <S::Real as Real>::Mask,
+    /// The center of pressure (m).
+    center: S::Vector,
+    normal: S::Vector,
+    normal_force: S::Real,
+    /// What the constants of its sticks are multiplied by.
+    stiffness: S::Real,
+    depth: S::Real,
+    rate: S::Real,
+}

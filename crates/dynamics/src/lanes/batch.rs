@@ -1,0 +1,277 @@
+//! The run loop of many cases in lockstep.
+
+use crate::contact::Stick;
+use crate::energy::{EnergyLedger, EnergySummary};
+use crate::forces::Scratch;
+use crate::integrate::{Drive, Integrator, Method};
+use crate::model::Model;
+use crate::real::{Mask, Real};
+use crate::simulate::{Finish, RunError, StepTimes, lost_body};
+use crate::space::{Planar, Twist, Vec2};
+use crate::state::State;
+
+use super::{Lanewise, MOST_LANES};
+
+/// A case that is ready to run: its model, the state it starts from, its ground, and how long.
+pub struct Case<'a, D> {
+    /// What stands there.
+    pub model: &'a Model<Planar>,
+    /// Where it starts.
+    pub state: State<Planar>,
+    /// What moves the ground.
+    pub drive: D,
+    /// Time step (s).
+    pub time_step: f64,
+    /// When it ends (s) unless it is stopped.
+    pub end_time: f64,
+}
+
+/// What a case leaves behind.
+#[derive(Clone, Debug)]
+pub struct End {
+    /// How it came to its end, or why it broke down.
+    pub finish: Result<Finish, RunError>,
+    /// When (s).
+    pub time: f64,
+    /// Accepted steps.
+    pub steps: u64,
+    /// The energy books.
+    pub energy: EnergySummary,
+}
+
+/// Who brings cases, watches them, and takes what they leave behind.
+pub trait Batch<'a, R: Real> {
+    /// The ground of a case.
+    type Drive: Drive<Planar>;
+
+    /// The next case, for a lane; all cases of a batch have one [`Topology`](super::Topology).
+    fn next(&mut self, lane: usize) -> Option<Case<'a, Self::Drive>>;
+
+    /// The state a case starts from, placed on its ground, with the forces at it.
+    fn start(&mut self, lane: usize, state: &State<Planar>, scratch: &Scratch<Planar>);
+
+    /// Looks at an accepted step of all lanes; the lanes in which it is enough.
+    ///
+    /// Lanes that have no case any more are in it, too, and stand still.
+    fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) -> R::Mask;
+
+    /// A case has ended.
+    fn end(&mut self, lane: usize, end: End);
+}
+
+/// Runs all cases of a batch, as many side by side as a bundle has lanes.
+///
+/// A lane gets the next case as soon as its own has ended.
+/// Every case takes the same steps to the same bits as [`simulate`](crate::simulate()) takes alone:
+/// lanes share nothing but the list of contact elements, which is a matter of speed, and the order
+/// of work.
+/// Only methods of a fixed step run so.
+pub fn run_batch<'a, R: Real, C: Batch<'a, R>>(method: Method, batch: &mut C) {
+    let Some(first) = batch.next(0) else { return };
+    let mut lanes = Lanes::<R, C::Drive>::of(&first);
+    lanes.load(0, first, batch);
+    for lane in 1..R::LANES {
+        if let Some(case) = batch.next(lane) {
+            lanes.load(lane, case, batch);
+        }
+    }
+    let mut integrator = Integrator::new(method);
+    while lanes.busy.any() {
+        let ended = R::scope(
+            #[inline(always)]
+            || lanes.step(&mut integrator, batch),
+        );
+        if ended.any() {
+            for lane in (0..R::LANES).filter(|lane| ended.lane(*lane)) {
+                batch.end(lane, lanes.end(lane));
+                match batch.next(lane) {
+                    Some(case) => lanes.load(lane, case, batch),
+                    None => lanes.retire(lane),
+                }
+            }
+        }
+    }
+}
+
+/// The cases that run.
+struct Lanes<R: Real, D> {
+    model: Model<Planar<R>>,
+    state: State<Planar<R>>,
+    scratch: Scratch<Planar<R>>,
+    energy: EnergyLedger<Planar<R>>,
+    drives: Drives<D>,
+    /// The lanes that have a case.
+    busy: R::Mask,
+    /// Which of them the batch stopped in the last step.
+    stopped: R::Mask,
+    start: R,
+    steps: R,
+    times: StepTimes<R>,
+    time_step: R,
+    end_time: R,
+}
+
+/// The ground of every lane; still where it has no case.
+struct Drives<D>(Vec<Option<D>>);
+
+impl<R: Real, D: Drive<Planar>> Drive<Planar<R>> for Drives<D> {
+    fn at(&self, time: R) -> (Vec2<R>, Vec2<R>) {
+        let mut moved = [(Vec2::default(), Vec2::default()); MOST_LANES];
+        for (lane, drive) in self.0.iter().enumerate() {
+            if let Some(drive) = drive {
+                moved[lane] = drive.at(time.lane(lane));
+            }
+        }
+        let gather = |pick: fn(&(Vec2, Vec2)) -> f64| {
+            R::from_lanes(
+                #[inline(always)]
+                |lane| pick(&moved[lane]),
+            )
+        };
+        (
+            Vec2::new(gather(|m| m.0.x), gather(|m| m.0.z)),
+            Vec2::new(gather(|m| m.1.x), gather(|m| m.1.z)),
+        )
+    }
+}
+
+impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
+    /// All lanes as one case stands, none of them busy.
+    fn of(case: &Case<'_, D>) -> Self {
+        let model = Model::<Planar<R>>::in_all(case.model);
+        let mut state = State::initial(&model);
+        state.poses = Lanewise::in_all(&case.state.poses);
+        state.contact_elements.rebuild(&model, &state.poses, &state.twists);
+        let mut scratch = Scratch::new(&model);
+        scratch.keeps_contacts = false;
+        crate::forces::evaluate(&model, &state, &mut scratch);
+        let energy = EnergyLedger::new(&model, &state, &scratch);
+        let time_step = R::splat(case.time_step);
+        Self {
+            times: StepTimes::new(&model, time_step),
+            model,
+            state,
+            scratch,
+            energy,
+            drives: Drives((0..R::LANES).map(|_| None).collect()),
+            busy: R::Mask::default(),
+            stopped: R::Mask::default(),
+            start: R::zero(),
+            steps: R::zero(),
+            time_step,
+            end_time: R::splat(case.end_time),
+        }
+    }
+
+    /// Puts a case into a lane.
+    fn load<'a>(
+        &mut self,
+        lane: usize,
+        case: Case<'a, D>,
+        batch: &mut impl Batch<'a, R, Drive = D>,
+    ) {
+        let Case { model, mut state, drive, time_step, end_time } = case;
+        let mut scratch = Scratch::new(model);
+        let times = StepTimes::new(model, time_step);
+        scratch.lookahead = times.lookahead();
+        Integrator::start(model, &drive, &mut state, &mut scratch);
+        batch.start(lane, &state, &scratch);
+        self.put(lane, model, &state, &scratch);
+        self.drives.0[lane] = Some(drive);
+        self.start.put(lane, &state.time);
+        self.steps.put(lane, &0.0);
+        self.times.put(lane, &times);
+        self.time_step.put(lane, &time_step);
+        self.end_time.put(lane, &end_time);
+        self.busy = R::Mask::from_lanes(|l| l == lane || self.busy.lane(l));
+    }
+
+    /// Lets a lane stand still, in the state of a lane that goes on: so it asks for no contact element
+    /// that the others do not need.
+    fn retire(&mut self, lane: usize) {
+        self.busy = R::Mask::from_lanes(|l| l != lane && self.busy.lane(l));
+        self.drives.0[lane] = None;
+        self.time_step.put(lane, &0.0);
+        let Some(other) = (0..R::LANES).find(|l| self.busy.lane(*l)) else { return };
+        let poses = self.state.poses.of_lane(other);
+        self.state.poses.put(lane, &poses);
+        for twist in &mut self.state.twists {
+            twist.put(lane, &Twist::default());
+        }
+        for stick in &mut self.state.contact_elements.sticks {
+            stick.put(lane, &Stick::default());
+        }
+        for acceleration in &mut self.scratch.accelerations {
+            acceleration.put(lane, &Twist::default());
+        }
+        for rate in &mut self.scratch.slip_rates {
+            rate.put(lane, &0.0);
+        }
+    }
+
+    fn put(
+        &mut self,
+        lane: usize,
+        model: &Model<Planar>,
+        state: &State<Planar>,
+        scratch: &Scratch<Planar>,
+    ) {
+        self.model.put(lane, model);
+        self.state.time.put(lane, &state.time);
+        self.state.poses.put(lane, &state.poses);
+        self.state.twists.put(lane, &state.twists);
+        self.state.memory.put(lane, &state.memory);
+        self.scratch.accelerations.put(lane, &scratch.accelerations);
+        self.scratch.lookahead.put(lane, &scratch.lookahead);
+        let needs_substeps = self.scratch.needs_substeps;
+        self.scratch.needs_substeps = R::Mask::from_lanes(|l| {
+            if l == lane { scratch.needs_substeps } else { needs_substeps.lane(l) }
+        });
+        let origins =
+            self.state.contact_elements.rebuild(&self.model, &self.state.poses, &self.state.twists);
+        self.scratch.renumber(&origins);
+        let slip_rates = &mut self.scratch.slip_rates;
+        self.state.contact_elements.put_memory(
+            lane,
+            slip_rates,
+            &state.contact_elements,
+            &scratch.slip_rates,
+        );
+        self.energy.put(lane, &EnergyLedger::new(model, state, scratch));
+    }
+
+    /// One step of all lanes; the lanes whose case has ended.
+    #[inline(always)]
+    fn step<'a>(
+        &mut self,
+        integrator: &mut Integrator<Planar<R>>,
+        batch: &mut impl Batch<'a, R, Drive = D>,
+    ) -> R::Mask {
+        // As `simulate` counts: whole multiples of the step, the last one cut short.
+        let sliver = R::splat(1e-9) * self.time_step;
+        let target = self.start + self.times.next(self.scratch.needs_substeps);
+        let early = target.lt(self.end_time - sliver);
+        let until = R::select(early, target, self.end_time);
+        let until = R::select(self.busy, until, self.state.time);
+        integrator.step(&self.model, &self.drives, &mut self.state, &mut self.scratch, until);
+        self.steps += R::splat(1.0);
+        self.energy.enter(&self.model, &self.state, &self.scratch);
+        self.stopped = batch.observe(&self.state, &self.scratch);
+        let on = self.state.time.lt(self.end_time - sliver) & self.energy.finite();
+        self.busy & (self.stopped | !on)
+    }
+
+    fn end(&self, lane: usize) -> End {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
+        let steps = self.steps.lane(lane) as u64;
+        let finish = if !self.energy.finite().lane(lane) {
+            let time_step = self.time_step.lane(lane);
+            Err(lost_body(&self.model, &self.state, lane, time_step, steps - 1))
+        } else if self.stopped.lane(lane) {
+            Ok(Finish::Stopped)
+        } else {
+            Ok(Finish::EndTime)
+        };
+        End { finish, time: self.state.time.lane(lane), steps, energy: self.energy.summary(lane) }
+    }
+}

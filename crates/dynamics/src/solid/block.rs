@@ -1,0 +1,155 @@
+//! A block with rounded edges, and where another convex solid is closest to it.
+
+use super::closest::{Closest, along_axis};
+use super::rounded::Hull;
+use crate::real::Real;
+use crate::shape::Gap;
+use crate::space::{Linear, Rotation3, Spatial, Vec3};
+
+/// A block about the origin, with its edges along the axes of its frame, as its core: the same block drawn
+/// in by the rounding of its edges.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block<R = f64> {
+    /// Half the sides (m) of the core.
+    pub half: Vec3<R>,
+    /// How far (m) the block reaches beyond its core.
+    pub rounding: R,
+}
+
+impl<R: Real> Block<R> {
+    /// Radius (m) of a ball that holds it.
+    pub(super) fn reach(&self) -> R {
+        self.half.length() + self.rounding
+    }
+
+    /// Distance and normal at a point (m); inside of the core the nearest face counts.
+    #[inline(always)]
+    pub(super) fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
+        let (zero, one) = (R::zero(), R::splat(1.0));
+        let sign = |x: R| R::select(x.lt(zero), -one, one);
+        let side = Vec3::new(sign(point.x), sign(point.y), sign(point.z));
+        let past = point.times(side) - self.half;
+        let outside = Vec3::new(past.x.max(zero), past.y.max(zero), past.z.max(zero));
+        let length = outside.length();
+        let away = zero.lt(length);
+        let most = past.x.max(past.y).max(past.z);
+        let first = most.le(past.x);
+        let second = !first & most.le(past.y);
+        let of_face = Vec3::select(
+            first,
+            Vec3::new(one, zero, zero),
+            Vec3::select(second, Vec3::new(zero, one, zero), Vec3::new(zero, zero, one)),
+        );
+        let past_edges = outside * (one / R::select(away, length, one));
+        Gap {
+            distance: R::select(away, length, most) - self.rounding,
+            normal: Vec3::select(away, past_edges, of_face).times(side),
+        }
+    }
+
+    /// The corners (m) of the core, in the order of their signs.
+    #[inline(always)]
+    pub(super) fn corners(&self) -> [Vec3<R>; 8] {
+        std::array::from_fn(|corner| {
+            let side = |bit: usize, half: R| if corner & bit == 0 { -half } else { half };
+            Vec3::new(side(1, self.half.x), side(2, self.half.y), side(4, self.half.z))
+        })
+    }
+
+    /// The point of the core (m) that lies furthest in a direction.
+    #[inline(always)]
+    pub(super) fn furthest(&self, direction: Vec3<R>) -> Vec3<R> {
+        let side = |x: R, half: R| R::select(x.lt(R::zero()), -half, half);
+        Vec3::new(
+            side(direction.x, self.half.x),
+            side(direction.y, self.half.y),
+            side(direction.z, self.half.z),
+        )
+    }
+
+    /// In one lane.
+    pub(super) fn lane(&self, lane: usize) -> Block {
+        Block { half: self.half.lane(lane), rounding: self.rounding.lane(lane) }
+    }
+}
+
+/// The edges of a block, as the numbers of their corners.
+const EDGES: [(usize, usize); 12] = [
+    (0, 1),
+    (2, 3),
+    (4, 5),
+    (6, 7),
+    (0, 2),
+    (1, 3),
+    (4, 6),
+    (5, 7),
+    (0, 4),
+    (1, 5),
+    (2, 6),
+    (3, 7),
+];
+
+/// Where another solid, with its origin at `at` (m) in the frame of the block, to which `frame` leads from
+/// its own, is closest to a block: in the frame of the block, the other one being the contactor.
+///
+/// Cores that are apart are closest on an edge of the block, or inside of a face, and there is the point of
+/// the other that lies furthest toward it. Of cores that are not, the face counts that is left soonest.
+pub(super) fn from_block(block: &Block, other: &Hull, at: Vec3, frame: Rotation3) -> Closest {
+    let (grown, radius) = (block.rounding, other.rounding());
+    let mut best = Closest {
+        distance: f64::INFINITY,
+        normal: Vec3::new(0.0, 0.0, 1.0),
+        point: at,
+        evaluations: 0,
+        converged: true,
+    };
+    let toward = |normal: Vec3| at + frame.apply(other.furthest(frame.unapply(-normal)));
+    let mut shallowest = Closest { distance: f64::NEG_INFINITY, ..best };
+    for face in faces() {
+        let support = toward(face);
+        best.evaluations += 1;
+        let half = block.half.times(face);
+        let height = support.dot(face) - half.dot(face);
+        let distance = height - grown - radius;
+        if distance > shallowest.distance {
+            shallowest.distance = distance;
+            shallowest.normal = face;
+            shallowest.point = support - face * radius;
+        }
+        let within = support.x.abs() <= block.half.x || face.x != 0.0;
+        let within = within && (support.y.abs() <= block.half.y || face.y != 0.0);
+        let within = within && (support.z.abs() <= block.half.z || face.z != 0.0);
+        if height >= 0.0 && within {
+            // No other feature is nearer than a face that bears.
+            return Closest { evaluations: best.evaluations, ..shallowest };
+        }
+    }
+    let corners = block.corners().map(|corner| frame.unapply(corner - at));
+    for (from, to) in EDGES {
+        let (from, to) = (corners[from], corners[to]);
+        let (share, gap, evaluations, found) = along_axis(|point| other.gap(point), from, to);
+        best.evaluations += evaluations;
+        best.converged &= found;
+        let distance = gap.distance - grown;
+        if distance < best.distance {
+            let on_edge = from + (to - from) * share;
+            best.distance = distance;
+            best.normal = -frame.apply(gap.normal);
+            best.point = at + frame.apply(on_edge - gap.normal * gap.distance);
+        }
+    }
+    // What is no nearer along the normal than at the edge is apart; else the other is in the block.
+    let separated = (toward(best.normal) - block.furthest(best.normal)).dot(best.normal);
+    let apart = best.distance + grown + radius;
+    if separated < apart - 1e-9 {
+        Closest { evaluations: best.evaluations, ..shallowest }
+    } else {
+        best
+    }
+}
+
+/// Unit normals of the faces.
+fn faces() -> [Vec3; 6] {
+    let [x, y, z] = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
+    [x, -x, y, -y, z, -z]
+}

@@ -1,0 +1,296 @@
+//! Lines and faces that two bounded solids share: tubes side by side, a tube or a head on a head or on the
+//! face of a block.
+//!
+//! As [`closest`](super::closest), all is single numbers.
+
+use super::barrel::Barrel;
+use super::block::Block;
+use super::{Capsule, Hull};
+use crate::shape::{Gap, Shares};
+use crate::space::{Linear, Rotation3, Spatial, Vec3};
+
+/// The middle of what two bodies share, in the frame of the target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Flat {
+    /// The point (m) of the contactor's surface.
+    pub(super) point: Vec3,
+    pub(super) gap: Gap<Spatial>,
+    /// As those of [`Spread`](crate::shape::Spread).
+    pub(super) shares: Shares<f64>,
+    pub(super) radius: f64,
+    /// Unit vectors along it; a line has but the first.
+    pub(super) axes: [Vec3; 2],
+}
+
+/// Sine of the angle between two bodies from which on they share nothing.
+const WIDEST: f64 = 0.1;
+/// How far (m) from its middle a line or a face extends that counts in full.
+const LONG: f64 = 0.05;
+
+/// `3 u² − 2 u³` between 0 and 1.
+fn smooth(u: f64) -> f64 {
+    let u = u.clamp(0.0, 1.0);
+    u * u * (3.0 - u - u)
+}
+
+/// How much counts of what bears like a number of springs and extends `length` (m) from its middle, of two
+/// bodies turned out of it by an angle with a sine.
+fn shares(springs: f64, sine_squared: f64, length: f64) -> Shares<f64> {
+    let flat = smooth(1.0 - sine_squared / (WIDEST * WIDEST));
+    let long = smooth(length / LONG);
+    let each = (1.0 + (springs - 1.0) * long) / springs;
+    Shares { deepest: 1.0 - flat * (1.0 - each), others: flat * each, aside: long }
+}
+
+/// What a contactor with its origin at `at` (m) shares with a target, in the frame of the target, from
+/// that of the contactor to which `frame` leads, where `normal` points out of the target; none where they
+/// touch in a point.
+pub(super) fn shared(
+    contactor: &Hull,
+    target: &Hull,
+    at: Vec3,
+    frame: Rotation3,
+    normal: Vec3,
+) -> Option<Flat> {
+    let axis = Vec3::new(1.0, 0.0, 0.0);
+    match (contactor, target) {
+        (Hull::Capsule(tube), Hull::Capsule(target)) => {
+            side_by_side(target, tube, at, frame.apply(axis))
+        }
+        (Hull::Capsule(tube), target) => {
+            let direction = frame.apply(axis);
+            let line = along(target, tube, at, direction, normal)?;
+            Some(Flat {
+                point: line.center - line.normal * tube.radius,
+                gap: Gap { distance: line.distance, normal: line.normal },
+                shares: line.shares,
+                radius: line.length,
+                axes: [direction; 2],
+            })
+        }
+        // The contactor tells, in its own frame.
+        (hull, Hull::Capsule(tube)) => {
+            let own = [at, axis, normal].map(|vector| frame.unapply(vector));
+            let line = along(hull, tube, -own[0], own[1], own[2])?;
+            let on_hull = line.center - line.normal * (line.distance + tube.radius);
+            Some(Flat {
+                point: at + frame.apply(on_hull),
+                gap: Gap { distance: line.distance, normal: -frame.apply(line.normal) },
+                shares: line.shares,
+                radius: line.length,
+                axes: [axis; 2],
+            })
+        }
+        (Hull::Barrel(barrel), Hull::Barrel(target)) => {
+            let lens = |aside: Vec3| {
+                // Two circles overlap in a lens, whose middle lies on the line of their centers.
+                let (least, most, half) =
+                    overlap(target.head_radius, aside.length(), barrel.head_radius);
+                let toward = aside.unit_or(Vec3::new(0.0, 0.0, 1.0));
+                (toward * (0.5 * (least + most)), half)
+            };
+            head_on(axis, (target.half_length, target.rounding), lens, barrel, at, frame)
+        }
+        (Hull::Barrel(barrel), Hull::Block(block)) => {
+            head_on_block(block, barrel, at, frame, normal)
+        }
+        // The block tells, in its own frame.
+        (Hull::Block(block), Hull::Barrel(barrel)) => {
+            let flat = head_on_block(
+                block,
+                barrel,
+                frame.unapply(-at),
+                frame.back(),
+                frame.unapply(normal),
+            )?;
+            let on_block = flat.point - flat.gap.normal * flat.gap.distance;
+            Some(Flat {
+                point: at + frame.apply(on_block),
+                gap: Gap { normal: -frame.apply(flat.gap.normal), ..flat.gap },
+                axes: flat.axes.map(|axis| frame.apply(axis)),
+                ..flat
+            })
+        }
+        // A face of one may lie on an edge of the other, which no middle of a face tells.
+        (Hull::Block(_), Hull::Block(_)) => None,
+    }
+}
+
+/// Two tubes, the target along `x`.
+fn side_by_side(target: &Capsule, tube: &Capsule, at: Vec3, direction: Vec3) -> Option<Flat> {
+    let sine_squared = 1.0 - direction.x * direction.x;
+    if sine_squared >= WIDEST * WIDEST {
+        return None;
+    }
+    // Along the tube, where what is closest lies: as the overlap ends there is nothing beside its middle.
+    let (least, most, radius) =
+        overlap(tube.half_length, -at.dot(direction), target.half_length * direction.x.abs());
+    if radius <= 0.0 {
+        return None;
+    }
+    let center = at + direction * (0.5 * (least + most));
+    let gap = target.gap(center);
+    Some(Flat {
+        point: center - gap.normal * tube.radius,
+        gap: Gap { distance: gap.distance - tube.radius, normal: gap.normal },
+        shares: shares(2.0, sine_squared, radius),
+        radius,
+        axes: [Vec3::new(1.0, 0.0, 0.0); 2],
+    })
+}
+
+/// From where to where an interval about zero and one about `center` overlap, and half of how long.
+fn overlap(half: f64, center: f64, other: f64) -> (f64, f64, f64) {
+    let (least, most) = ((center - other).max(-half), (center + other).min(half));
+    (least, most, 0.5 * (most - least))
+}
+
+/// A line on a head or a face.
+struct Line {
+    /// The middle of what of the tube's axis lies before it (m).
+    center: Vec3,
+    /// Distance (m) of the surfaces there.
+    distance: f64,
+    /// Unit normal out of the head or face.
+    normal: Vec3,
+    shares: Shares<f64>,
+    /// How far (m) it extends from its middle.
+    length: f64,
+}
+
+/// A tube on a head or a face, in the frame of the solid that has it.
+fn along(hull: &Hull, tube: &Capsule, at: Vec3, direction: Vec3, normal: Vec3) -> Option<Line> {
+    match hull {
+        Hull::Capsule(_) => None,
+        Hull::Barrel(barrel) => {
+            // From where to where along the tube its axis lies before the circle of the head.
+            let across = Vec3::new(0.0, direction.y, direction.z);
+            let (a, b) = (across.dot(across), across.dot(at));
+            let beyond = at.y * at.y + at.z * at.z - barrel.head_radius * barrel.head_radius;
+            let root = (b * b - a * beyond).max(0.0).sqrt();
+            let chord = (-b / a, root / a);
+            let axis = Vec3::new(1.0, 0.0, 0.0);
+            on_plane(axis, (barrel.half_length, barrel.rounding), chord, tube, at, direction)
+        }
+        Hull::Block(block) => {
+            let axis = facing(normal);
+            // From where to where along the tube its axis lies before the face.
+            let (mut least, mut most) = (f64::NEG_INFINITY, f64::INFINITY);
+            for other in AXES {
+                if other.dot(axis) == 0.0 {
+                    let (half, slope, place) =
+                        (block.half.dot(other), direction.dot(other), at.dot(other));
+                    let ends = [(-half - place) / slope, (half - place) / slope];
+                    if slope == 0.0 && place.abs() > half {
+                        return None;
+                    }
+                    if slope != 0.0 {
+                        least = least.max(ends[0].min(ends[1]));
+                        most = most.min(ends[0].max(ends[1]));
+                    }
+                }
+            }
+            let chord = (0.5 * (least + most), 0.5 * (most - least));
+            let plane = (block.half.dot(axis), block.rounding);
+            on_plane(axis, plane, chord, tube, at, direction)
+        }
+    }
+}
+
+/// A tube on a plane across an axis, at a height and with a rounding (m), that bears it along a chord: its
+/// middle and half its length (m) along the tube.
+fn on_plane(
+    axis: Vec3,
+    (height, rounding): (f64, f64),
+    (middle, half): (f64, f64),
+    tube: &Capsule,
+    at: Vec3,
+    direction: Vec3,
+) -> Option<Line> {
+    let sine = direction.dot(axis);
+    if sine.abs() >= WIDEST {
+        return None;
+    }
+    let (least, most, length) = overlap(tube.half_length, middle, half);
+    if length <= 0.0 {
+        return None;
+    }
+    let center = at + direction * (0.5 * (least + most));
+    let normal = axis * center.dot(axis).signum();
+    let distance = center.dot(normal) - height - rounding - tube.radius;
+    Some(Line { center, distance, normal, shares: shares(2.0, sine * sine, length), length })
+}
+
+const AXES: [Vec3; 3] =
+    [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
+
+/// The axis of the face of a block that a normal leaves, either way.
+fn facing(normal: Vec3) -> Vec3 {
+    let steep = |axis: &Vec3| normal.dot(*axis).abs();
+    let [x, y, z] = AXES;
+    let steeper = if steep(&y) > steep(&x) { y } else { x };
+    if steep(&z) > steep(&steeper) { z } else { steeper }
+}
+
+/// A head on the face of a block, in the frame of the block.
+fn head_on_block(
+    block: &Block,
+    barrel: &Barrel,
+    at: Vec3,
+    frame: Rotation3,
+    normal: Vec3,
+) -> Option<Flat> {
+    let axis = facing(normal);
+    let middle = |aside: Vec3| {
+        let (mut middle, mut radius) = (Vec3::default(), f64::INFINITY);
+        for other in AXES {
+            if other.dot(axis) == 0.0 {
+                let (half, center) = (block.half.dot(other), aside.dot(other));
+                let (least, most, length) = overlap(half, center, barrel.head_radius);
+                middle += other * (0.5 * (least + most));
+                radius = radius.min(length);
+            }
+        }
+        // Before a corner the middle of what overlaps along both sides may lie beside the head.
+        (middle, radius.min(barrel.head_radius - (middle - aside).length()))
+    };
+    head_on(axis, (block.half.dot(axis), block.rounding), middle, barrel, at, frame)
+}
+
+/// The head of a barrel on a plane across an axis, at a height and with a rounding (m); `middle` tells from
+/// where the center of the head is aside of that axis the middle of what is shared, and how far (m) that
+/// extends from there.
+fn head_on(
+    axis: Vec3,
+    (height, rounding): (f64, f64),
+    middle: impl Fn(Vec3) -> (Vec3, f64),
+    barrel: &Barrel,
+    center: Vec3,
+    frame: Rotation3,
+) -> Option<Flat> {
+    let along = frame.apply(Vec3::new(1.0, 0.0, 0.0));
+    let cosine = along.dot(axis);
+    let sine_squared = 1.0 - cosine * cosine;
+    if sine_squared >= WIDEST * WIDEST {
+        return None;
+    }
+    let normal = axis * center.dot(axis).signum();
+    let outward = along * -along.dot(normal).signum();
+    let head = center + outward * barrel.half_length;
+    let aside = head - axis * head.dot(axis);
+    let (middle, radius) = middle(aside);
+    if radius <= 0.0 {
+        return None;
+    }
+    // The point of the head's plane before that.
+    let reach = (middle - aside).dot(outward) / outward.dot(normal);
+    let facing = middle + normal * (head.dot(normal) - reach);
+    let distance = facing.dot(normal) - height - rounding - barrel.rounding;
+    Some(Flat {
+        point: facing - normal * barrel.rounding,
+        gap: Gap { distance, normal },
+        shares: shares(4.0, sine_squared, radius),
+        radius,
+        axes: [Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)].map(|axis| frame.apply(axis)),
+    })
+}

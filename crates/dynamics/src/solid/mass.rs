@@ -1,0 +1,341 @@
+//! Mass, center and moments of inertia: of solids, of bodies of several parts, of barrels by their fill.
+
+use super::{Ball, Barrel, Capsule};
+use crate::math;
+use crate::space::{Quaternion, Rotation3, Vec3};
+
+/// How the matter of a body is distributed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bulk {
+    /// Mass (kg).
+    pub mass: f64,
+    /// Center of mass (m).
+    pub center: Vec3,
+    /// Second moments `∫ r r dm` (kg·m²) about the center of mass, row by row.
+    pub second: [Vec3; 3],
+}
+
+impl Bulk {
+    /// Matter about the origin, alike on both sides of every plane of the frame, by its mass (kg) and
+    /// `∫ x² dm`, `∫ y² dm`, `∫ z² dm` (kg·m²).
+    fn symmetric(mass: f64, second: Vec3) -> Self {
+        let Vec3 { x, y, z } = second;
+        let rows = [Vec3::new(x, 0.0, 0.0), Vec3::new(0.0, y, 0.0), Vec3::new(0.0, 0.0, z)];
+        Self { mass, center: Vec3::default(), second: rows }
+    }
+
+    /// A homogeneous ball of a mass (kg).
+    pub fn of_ball(ball: &Ball, mass: f64) -> Self {
+        let second = 0.2 * mass * ball.radius * ball.radius;
+        Self::symmetric(mass, Vec3::new(second, second, second))
+    }
+
+    /// A homogeneous capsule of a mass (kg).
+    pub fn of_capsule(capsule: &Capsule, mass: f64) -> Self {
+        let Capsule { half_length: l, radius: r } = *capsule;
+        // Shares of the tube and of the ball that both of its ends make.
+        let ball = 2.0 * r / (2.0 * r + 3.0 * l);
+        let tube = 1.0 - ball;
+        let along = tube * l * l / 3.0 + ball * (l * l + 0.75 * l * r + 0.2 * r * r);
+        let across = r * r * (0.25 * tube + 0.2 * ball);
+        Self::symmetric(mass, Vec3::new(along, across, across) * mass)
+    }
+
+    /// A homogeneous tube of a mass (kg) with a thin wall, open at its ends, of which a capsule is the
+    /// outside: as the tubes of racks are.
+    pub fn of_hollow(capsule: &Capsule, mass: f64) -> Self {
+        let Capsule { half_length: l, radius: r } = *capsule;
+        let across = 0.5 * r * r;
+        Self::symmetric(mass, Vec3::new(l * l / 3.0, across, across) * mass)
+    }
+
+    /// A homogeneous block of a mass (kg) with sharp edges, by half its sides (m).
+    pub fn of_block(half: Vec3, mass: f64) -> Self {
+        Self::symmetric(mass, half.times(half) * (mass / 3.0))
+    }
+
+    /// A homogeneous barrel of a mass (kg).
+    pub fn of_barrel(barrel: &Barrel, mass: f64) -> Self {
+        let outside = revolved(barrel);
+        outside.of_density(mass / outside.volume)
+    }
+
+    /// The same matter at another place (m), turned.
+    #[must_use]
+    pub fn placed(&self, offset: Vec3, rotation: Rotation3) -> Self {
+        // R S Rᵀ: first its rows, then its columns.
+        let half = Rotation3 { rows: self.second.map(|row| rotation.apply(row)) }.back();
+        let second = half.rows.map(|row| rotation.apply(row));
+        Self { mass: self.mass, center: offset + rotation.apply(self.center), second }
+    }
+
+    /// Several of them as one.
+    pub fn sum(parts: impl IntoIterator<Item = Self> + Clone) -> Self {
+        let (mut mass, mut first) = (0.0, Vec3::default());
+        for part in parts.clone() {
+            mass += part.mass;
+            first += part.center * part.mass;
+        }
+        let center = first * (1.0 / mass);
+        let mut second = [Vec3::default(); 3];
+        for part in parts {
+            let arm = part.center - center;
+            for ((row, own), far) in second.iter_mut().zip(part.second).zip([arm.x, arm.y, arm.z]) {
+                *row += own + arm * (far * part.mass);
+            }
+        }
+        Self { mass, center, second }
+    }
+
+    /// The principal moments of inertia (kg·m²) about the center of mass, and how their axes are turned.
+    ///
+    /// Jacobi's method: plane after plane is turned until nothing is left beside the diagonal. What is
+    /// symmetric about the planes of its frame keeps its axes.
+    pub fn principal(&self) -> (Vec3, Quaternion) {
+        let mut turned = Quaternion::identity();
+        let mut second = self.second;
+        for _ in 0..50 {
+            let [x, y, z] = second;
+            let aside = [(x.y, x.x, y.y), (y.z, y.y, z.z), (z.x, z.z, x.x)];
+            let (plane, (off, first, last)) = match aside {
+                [a, b, c] if a.0.abs() >= b.0.abs() && a.0.abs() >= c.0.abs() => (2, a),
+                [_, b, c] if b.0.abs() >= c.0.abs() => (0, b),
+                [_, _, c] => (1, c),
+            };
+            if off.abs() <= 1e-17 * (x.x + y.y + z.z) {
+                break;
+            }
+            let angle = 0.5 * math::atan2(2.0 * off, first - last);
+            let mut axis = Vec3::default();
+            match plane {
+                0 => axis.x = angle,
+                1 => axis.y = angle,
+                _ => axis.z = angle,
+            }
+            turned = turned.after(Quaternion::turn(axis)).normalized();
+            let upright = Self { mass: self.mass, center: Vec3::default(), second: self.second };
+            second = upright.placed(Vec3::default(), turned.matrix().back()).second;
+        }
+        let [x, y, z] = [second[0].x, second[1].y, second[2].z];
+        (Vec3::new(y + z, z + x, x + y), turned)
+    }
+}
+
+/// What is in a barrel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Fill {
+    /// Nothing.
+    Empty,
+    /// It is full of what turns with the wood.
+    Frozen,
+    /// It is full of wine, which does not turn with the wood about the axis, and partly about others.
+    Fluid,
+}
+
+/// A barrel of wood about a room for wine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cask {
+    /// Its outside.
+    pub barrel: Barrel,
+    /// Thickness (m) of staves and heads.
+    pub wall: f64,
+    /// How far (m) the heads lie within the ends of the staves.
+    pub chime: f64,
+    /// Mass (kg) of the wood.
+    pub wood: f64,
+    /// Density (kg/m³) of what fills it.
+    pub density: f64,
+}
+
+/// Integrals over a body of revolution about `x`, alike on both sides.
+#[derive(Clone, Copy, Debug)]
+struct Revolved {
+    /// Volume (m³).
+    volume: f64,
+    /// `∫ x² dV` (m⁵).
+    along: f64,
+    /// `∫ y² dV` (m⁵).
+    across: f64,
+}
+
+impl Revolved {
+    fn less(self, other: Self) -> Self {
+        Self {
+            volume: self.volume - other.volume,
+            along: self.along - other.along,
+            across: self.across - other.across,
+        }
+    }
+
+    fn of_density(self, density: f64) -> Bulk {
+        let second = Vec3::new(self.along, self.across, self.across) * density;
+        Bulk::symmetric(self.volume * density, second)
+    }
+}
+
+impl Cask {
+    /// The room for wine, and all that the staves enclose.
+    fn rooms(&self) -> [Revolved; 2] {
+        let end = self.barrel.half_length + self.barrel.rounding;
+        [end - self.chime - self.wall, end].map(|end| within(&self.barrel, self.wall, end))
+    }
+
+    /// Volume (m³) of the room for wine.
+    pub fn capacity(&self) -> f64 {
+        self.rooms()[0].volume
+    }
+
+    /// The wood: staves, and two heads between them.
+    fn staves_and_heads(&self) -> Revolved {
+        let [room, open] = self.rooms();
+        let outer_face = self.barrel.half_length + self.barrel.rounding - self.chime;
+        let heads = within(&self.barrel, self.wall, outer_face).less(room);
+        let staves = revolved(&self.barrel).less(open);
+        Revolved {
+            volume: staves.volume + heads.volume,
+            along: staves.along + heads.along,
+            across: staves.across + heads.across,
+        }
+    }
+
+    /// Wood and contents.
+    ///
+    /// Wine does not turn about the axis of a barrel that rolls, where its skin on the wood is thin, and
+    /// about an axis across like that in a spheroid of the same moments, with
+    /// `(∫ x² − ∫ y²)² / (∫ x² + ∫ y²)` (Lamb, Hydrodynamics, on the ellipsoidal shell filled with
+    /// liquid). Its mass is where it is: the returned second moments are those with which a rigid body
+    /// turns alike.
+    pub fn bulk(&self, fill: Fill) -> Bulk {
+        let wood = self.staves_and_heads();
+        let wood = wood.of_density(self.wood / wood.volume);
+        let room = self.rooms()[0];
+        match fill {
+            Fill::Empty => wood,
+            Fill::Frozen => Bulk::sum([wood, room.of_density(self.density)]),
+            Fill::Fluid => {
+                // No moment about the axis: nothing across; and about others what a spheroid has.
+                let (across, along) = (room.across, room.along);
+                let turning = (along - across) * (along - across) / (along + across);
+                let wine = Revolved { volume: room.volume, along: turning, across: 0.0 };
+                Bulk::sum([wood, wine.of_density(self.density)])
+            }
+        }
+    }
+
+    /// Wine at rest in a barrel that lies, `filled` (0 to 1) of its room: its mass and place, as it lies at
+    /// the bottom with a level surface, `z` being up.
+    ///
+    /// It stays there while the barrel rolls.
+    pub fn wine_at_rest(&self, filled: f64) -> Bulk {
+        let room = self.rooms()[0];
+        let end = self.barrel.half_length + self.barrel.rounding - self.chime - self.wall;
+        let radius = |x: f64| stave(&self.barrel, x) - self.wall;
+        // The level (m above the axis) below which there is so much.
+        let (mut low, mut high) = (-radius(0.0), radius(0.0));
+        for _ in 0..60 {
+            let level = 0.5 * (low + high);
+            if below(level, end, &radius)[0] < filled * room.volume {
+                low = level;
+            } else {
+                high = level;
+            }
+        }
+        let [volume, first, along, across, upward] = below(0.5 * (low + high), end, &radius);
+        let height = first / volume;
+        let upward = upward - volume * height * height;
+        let second = Vec3::new(along, across, upward) * self.density;
+        let at_bottom = Bulk::symmetric(volume * self.density, second);
+        Bulk { center: Vec3::new(0.0, 0.0, height), ..at_bottom }
+    }
+}
+
+/// The radius (m) of the full stave at a place (m) along the barrel.
+fn stave(barrel: &Barrel, x: f64) -> f64 {
+    let arc = barrel.stave_radius + barrel.rounding;
+    (arc * arc - x * x).sqrt() - barrel.stave_offset
+}
+
+/// The integral over an interval, by five points of Gauss in each of many parts.
+fn integral<const N: usize>((from, to): (f64, f64), of: impl Fn(f64) -> [f64; N]) -> [f64; N] {
+    const PARTS: u32 = 16;
+    let inner = (5.0 - 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0;
+    let outer = (5.0 + 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0;
+    let root = 13.0 * 70.0_f64.sqrt();
+    let weights = [(322.0 - root) / 900.0, (322.0 + root) / 900.0, 128.0 / 225.0];
+    let points = [
+        (-outer, weights[0]),
+        (-inner, weights[1]),
+        (0.0, weights[2]),
+        (inner, weights[1]),
+        (outer, weights[0]),
+    ];
+    let half = 0.5 * (to - from) / f64::from(PARTS);
+    let mut sum = [0.0; N];
+    for part in 0..PARTS {
+        let middle = from + (2.0 * f64::from(part) + 1.0) * half;
+        for (point, weight) in points {
+            for (sum, value) in sum.iter_mut().zip(of(middle + point * half)) {
+                *sum += weight * half * value;
+            }
+        }
+    }
+    sum
+}
+
+/// What a disc of a radius (m) adds at a place (m) along the axis.
+fn disc(x: f64, r: f64) -> [f64; 3] {
+    let area = std::f64::consts::PI * r * r;
+    [area, area * x * x, 0.25 * area * r * r]
+}
+
+/// Both halves.
+fn doubled([volume, along, across]: [f64; 3]) -> Revolved {
+    Revolved { volume: 2.0 * volume, along: 2.0 * along, across: 2.0 * across }
+}
+
+/// All of a barrel.
+fn revolved(barrel: &Barrel) -> Revolved {
+    let grown = barrel.rounding;
+    let arc = barrel.stave_radius + grown;
+    let turn = math::asin(barrel.half_length / barrel.stave_radius);
+    // By the direction of the normal, so that the round of the chime is smooth to its end.
+    let of_stave = integral((0.0, turn), |angle| {
+        let (sin, cos) = (math::sin(angle), math::cos(angle));
+        disc(arc * sin, arc * cos - barrel.stave_offset).map(|part| part * arc * cos)
+    });
+    let of_chime = integral((turn, std::f64::consts::FRAC_PI_2), |angle| {
+        let (sin, cos) = (math::sin(angle), math::cos(angle));
+        let (x, r) = (barrel.half_length + grown * sin, barrel.head_radius + grown * cos);
+        disc(x, r).map(|part| part * grown * cos)
+    });
+    doubled(std::array::from_fn(|i| of_stave[i] + of_chime[i]))
+}
+
+/// What lies within the staves of a barrel, of a thickness (m), up to an end (m from its middle).
+fn within(barrel: &Barrel, wall: f64, end: f64) -> Revolved {
+    doubled(integral((0.0, end), |x| disc(x, stave(barrel, x) - wall)))
+}
+
+/// Volume, first moment upward, and second moments along, across and upward about the axis, of what lies
+/// below a level (m above the axis) within a radius up to an end (m).
+fn below(level: f64, end: f64, radius: &impl Fn(f64) -> f64) -> [f64; 5] {
+    let section = |x: f64| {
+        let r = radius(x);
+        let h = level.clamp(-r, r);
+        let half_chord = (r * r - h * h).sqrt();
+        let angle = math::acos(-h / r);
+        let area = r * r * angle + h * half_chord;
+        let cube = half_chord * half_chord * half_chord;
+        let upward = 0.25 * r * r * area - 0.5 * h * cube;
+        let across = 0.25 * r * r * area + h * cube / 6.0;
+        [area, -2.0 / 3.0 * cube, area * x * x, across, upward]
+    };
+    // Where the level meets the staves the section changes its law.
+    let (mut inside, mut outside) = (0.0, end);
+    for _ in 0..60 {
+        let x = 0.5 * (inside + outside);
+        if radius(x) > level.abs() { inside = x } else { outside = x }
+    }
+    let (first, last) = (integral((0.0, inside), section), integral((inside, end), section));
+    std::array::from_fn(|i| 2.0 * (first[i] + last[i]))
+}

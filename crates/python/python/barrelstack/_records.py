@@ -1,0 +1,260 @@
+"""Many records at once: whole folders, their measures, sets for a target."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _native
+from ._errors import BarrelstackWarning, RecordError
+from ._quantity import plain
+from ._record import USUAL, Record
+from ._table import Table
+
+__all__ = ["Selection", "intensities", "read_folder", "select"]
+
+#: Periods (s) at which a code's spectrum is followed: those that the command counts unless told otherwise.
+PERIODS = tuple(period for period in _native.PERIODS if period <= 5.0)
+
+
+def read_folder(
+    folder: str | os.PathLike[str],
+    *,
+    unit: str | None = None,
+    time_step: float | None = None,
+    sensitivity: float | None = None,
+) -> dict[str, Record]:
+    """All records of a folder and of those below it.
+
+    Parameters
+    ----------
+    folder
+        Where they lie; hidden files are left alone.
+    unit, time_step, sensitivity
+        As for :meth:`Record.read`.
+
+    Returns
+    -------
+    dict
+        Records by name, sorted; files whose names say that they are components of one record are one.
+
+    Raises
+    ------
+    OSError
+        When a folder is not there or cannot be read.
+
+    Warns
+    -----
+    BarrelstackWarning
+        For each file that is no record, with the reason.
+    """
+
+    def unreadable(reason: OSError) -> None:
+        raise reason
+
+    root = os.fspath(folder)
+    files: list[str] = []
+    for place, folders, names in os.walk(root, onerror=unreadable):
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        below = os.path.relpath(place, root).replace(os.sep, "/")
+        start = "" if below == "." else f"{below}/"
+        files += [start + name for name in sorted(names) if not name.startswith(".")]
+    found: dict[str, Record] = {}
+    for name, parts in _native.group_files(files):
+        read: list[Record] = []
+        for part in parts:
+            path = os.path.join(root, *part.split("/"))
+            try:
+                read.append(Record.read(path, unit=unit, time_step=time_step, sensitivity=sensitivity))
+            except (RecordError, OSError) as refused:
+                warnings.warn(f"left out: {refused}", BarrelstackWarning, stacklevel=2)
+        try:
+            if read:
+                whole = read[0]._native if len(read) == 1 else _native.Record.gather([one._native for one in read])
+                found[name] = Record(whole)
+        except RecordError as refused:
+            warnings.warn(f"left out: {name}: {refused}", BarrelstackWarning, stacklevel=2)
+    return dict(sorted(found.items()))
+
+
+def intensities(records: Mapping[str, Record], *measures: str) -> Table:
+    """Intensity measures of many records.
+
+    Parameters
+    ----------
+    records
+        Records by name, such as those of :func:`read_folder`.
+    *measures
+        As for :meth:`Record.intensity`.
+
+    Returns
+    -------
+    Table
+        A row for every component of every record: ``record``, ``component``, and a column for every measure (SI), None
+        where the component is too short for it.
+
+    Raises
+    ------
+    RecordError
+        When there is no such measure.
+    """
+    columns: dict[str, list[object]] = {"record": [], "component": []}
+    for name, record in records.items():
+        measured = record.intensity(*(measures or USUAL))
+        components = list(measured[0].values)
+        columns["record"] += [name] * len(components)
+        columns["component"] += components
+        for one in measured:
+            head = f"{one.measure} ({one.unit})" if one.unit else one.measure
+            values = (one.values[component] for component in components)
+            columns.setdefault(head, []).extend(value if np.isfinite(value) else None for value in values)
+    return Table(_native.Table.from_columns(list(columns.items())))
+
+
+class Selection(NamedTuple):
+    """Records whose spectra have a target's mean and spread, made by :func:`select`."""
+
+    #: The chosen records by name, each times its factor.
+    records: dict[str, Record]
+    #: By what each was multiplied.
+    factors: dict[str, float]
+    #: Periods (s).
+    periods: NDArray[np.float64]
+    #: Of the target: its medians (m/s², damping 5 %) in the first row, its standard deviations of ln Sa (1) in the
+    #: second; shape (2, periods).
+    target: NDArray[np.float64]
+    #: The same of the set.
+    found: NDArray[np.float64]
+    #: How many records reach the target within the factors.
+    eligible: int
+
+
+def select(
+    records: Mapping[str, Record],
+    target: str | tuple[ArrayLike, ArrayLike, ArrayLike],
+    *,
+    at: float | None = None,
+    level: object = None,
+    epsilon: float | None = None,
+    count: int = 30,
+    spectrum: str = "rotd50",
+    scale: tuple[float, float] = (0.25, 4.0),
+    events: Mapping[str, str] | None = None,
+    most_of_event: int | None = None,
+    seed: int = 1,
+) -> Selection:
+    """Chooses records whose spectra together have the mean and the spread of a target.
+
+    Parameters
+    ----------
+    records
+        What may be chosen, such as :func:`read_folder` gives them.
+    target
+        A code's spectrum as for :meth:`Record.match`, which all shall follow from 0.05 to 5 s; or of a ground-motion
+        model the periods (s, ascending), medians of the pseudo-acceleration (m/s², damping 5 %) and standard
+        deviations of ln Sa (1); all periods that are given count.
+    at
+        Period (s), one of the model's, at which Sa is given: then the conditional spectrum (Baker 2011).
+    level
+        Sa there, in m/s² or as a text or quantity such as ``"0.6 g"``.
+    epsilon
+        Or Sa there, as standard deviations of ln Sa above the median.
+    count
+        How many are chosen.
+    spectrum
+        Which spectrum of a record counts: ``"rotd50"``, or a component such as ``"h1"``.
+    scale
+        Smallest and largest factor.
+    events
+        The earthquake of each record, where it is not that of its header.
+    most_of_event
+        Most records of one earthquake.
+    seed
+        Of the spectra that are simulated.
+
+    Returns
+    -------
+    Selection
+
+    Raises
+    ------
+    RecordError
+        When too few records reach the target, or it makes no sense.
+    ValueError
+        When a condition is none: a period without level or epsilon, one that is none of the target's, or of a code.
+
+    Warns
+    -----
+    BarrelstackWarning
+        For each record that has no such spectrum, such as RotD50 of one component; it is left out.
+
+    Notes
+    -----
+    The choice is that of ``barrelstack motion select`` for the same spectra and periods: Jayaram, Lin and Baker (2011), Earthquake
+    Spectra 27:797-815.
+    """
+    wanted: str | tuple[list[float], list[float]]
+    given: tuple[float, float] | None = None
+    if isinstance(target, str):
+        if at is not None:
+            raise ValueError("a code's spectrum has no spread that could be conditional: leave out at")
+        periods, wanted = np.array(PERIODS), target
+    else:
+        periods, median, deviation = (np.ascontiguousarray(one, dtype=np.float64) for one in target)
+        wanted = (median.tolist(), deviation.tolist())
+        if (at is None) == (level is not None or epsilon is not None) or (level is not None and epsilon is not None):
+            raise ValueError("a condition is a period, at, with level or with epsilon")
+        if at is not None:
+            given = (float(at), _given(periods, median, deviation, at, level, epsilon))
+    candidates: list[tuple[str, list[float], str]] = []
+    for name, record in records.items():
+        try:
+            _, acceleration = record.spectrum(periods, of=spectrum)
+        except RecordError as refused:
+            warnings.warn(f"left out: {name} has no {spectrum} spectrum: {refused}", BarrelstackWarning, stacklevel=2)
+            continue
+        if not (acceleration > 0.0).all():
+            warnings.warn(f"left out: {name} has a spectrum that is zero", BarrelstackWarning, stacklevel=2)
+            continue
+        event = (events or {}).get(name, record.event) or name
+        candidates.append((name, acceleration.tolist(), event))
+    chosen, found, eligible = _native.select(
+        periods.tolist(), wanted, given, candidates, count, scale, most_of_event, seed
+    )
+    factors = {candidates[place][0]: factor for place, factor in chosen}
+    mean, spread, ours, width = (np.array(one) for one in found)
+    return Selection(
+        {name: records[name].scale(factor) for name, factor in factors.items()},
+        factors,
+        periods,
+        np.stack([np.exp(mean), spread]),
+        np.stack([np.exp(ours), width]),
+        eligible,
+    )
+
+
+def _given(
+    periods: NDArray[np.float64],
+    median: NDArray[np.float64],
+    deviation: NDArray[np.float64],
+    at: float,
+    level: object,
+    epsilon: float | None,
+) -> float:
+    """Sa (m/s²) that is given at a period."""
+    if epsilon is None:
+        said = plain(level)
+        try:
+            return _native.measured("pga", said) if isinstance(said, str) else float(said)
+        except ValueError as refused:
+            raise ValueError(f"level {str(refused).removeprefix('pga')}") from None
+    places = np.flatnonzero(periods == at)
+    if len(places) != 1:
+        raise ValueError(f"{at} s is none of the target's periods: {', '.join(f'{one:g}' for one in periods)} s")
+    place = places[0]
+    return float(median[place] * np.exp(deviation[place] * epsilon))

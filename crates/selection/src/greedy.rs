@@ -1,0 +1,407 @@
+//! The choice: one record to each simulated spectrum, then exchanges while they help.
+
+use barrelstack_motion::{MotionError, Random};
+
+use crate::target::SelectionTarget;
+
+/// Sets of simulated spectra, from each of which a set of records is made; the best is taken.
+const TRIALS: usize = 5;
+/// Weight of the error of the standard deviation beside that of the mean, which has 1.
+const SPREAD_WEIGHT: f64 = 2.0;
+/// The same for a target without spread, which nearness to its mean alone can not bring about.
+const NO_SPREAD_WEIGHT: f64 = 0.1;
+/// Most rounds of exchanges; they end when no exchange helps.
+const ROUNDS: usize = 20;
+
+/// A record that may be chosen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// Its name, for messages.
+    pub name: String,
+    /// Pseudo-accelerations (m/s²) at the target's periods.
+    pub spectrum: Vec<f64>,
+    /// Candidates of one group are alternatives: at most [`Choosing::most_of_group`] of them are
+    /// chosen, as of the records of one earthquake.
+    pub group: String,
+}
+
+/// How many are chosen, and within which limits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choosing {
+    /// Size of the set, at least 2.
+    pub count: usize,
+    /// Smallest and largest factor on a record.
+    pub scale: [f64; 2],
+    /// Most candidates of one group; none for no limit.
+    pub most_of_group: Option<usize>,
+    /// Seed of the simulated spectra.
+    pub seed: u64,
+}
+
+/// One record of the set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chosen {
+    /// Its place among the candidates.
+    pub candidate: usize,
+    /// Its factor.
+    pub scale: f64,
+}
+
+/// The set, and how near it comes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Selection {
+    /// The records, in the order of the candidates.
+    pub chosen: Vec<Chosen>,
+    /// Mean of ln Sa of the set at each period.
+    pub mean: Vec<f64>,
+    /// Standard deviation of ln Sa of the set, with `n − 1`.
+    pub deviation: Vec<f64>,
+    /// Candidates that were left within the limits of scale.
+    pub eligible: usize,
+    /// Rounds of exchanges.
+    pub rounds: usize,
+}
+
+impl Selection {
+    /// Largest relative error of the median over the periods.
+    pub fn median_error(&self, target: &SelectionTarget) -> f64 {
+        let errors = self.mean.iter().zip(target.mean());
+        errors.fold(0.0, |worst, (ours, wanted)| worst.max((libm::exp(ours - wanted) - 1.0).abs()))
+    }
+
+    /// Largest relative error of the standard deviation over the periods that have one; absolute,
+    /// where the target has none anywhere.
+    pub fn deviation_error(&self, target: &SelectionTarget) -> f64 {
+        let spread = target.deviation().iter().any(|s| *s > 0.0);
+        let pairs = self.deviation.iter().zip(target.deviation());
+        pairs.fold(0.0, |worst, (ours, wanted)| match (spread, *wanted > SMALLEST) {
+            (true, true) => worst.max((ours / wanted - 1.0).abs()),
+            (true, false) => worst,
+            (false, _) => worst.max(ours.abs()),
+        })
+    }
+
+    /// What sets are compared by: an error of the median counts as one of the standard deviation twice
+    /// as large.
+    fn worst(&self, target: &SelectionTarget) -> f64 {
+        let spread = target.deviation().iter().any(|s| *s > 0.0);
+        let deviation = if spread { 0.5 * self.deviation_error(target) } else { 0.0 };
+        self.median_error(target).max(deviation)
+    }
+}
+
+/// Standard deviation of ln Sa below which an error relative to it says nothing.
+const SMALLEST: f64 = 0.01;
+
+/// Chooses records whose spectra have the target's mean and spread (Jayaram, Lin and Baker 2011,
+/// Earthquake Spectra 27:797-815).
+///
+/// Where the target is conditional, every record is scaled to it at the given period; else to the
+/// mean of ln Sa of the simulated spectrum that it stands for.
+/// A set is a function of target, candidates and settings; of equal choices the first is taken.
+///
+/// # Errors
+/// If the settings are out of range, a candidate has another number of periods, or too few
+/// candidates lie within the limits.
+pub fn select(
+    target: &SelectionTarget,
+    candidates: &[Candidate],
+    choosing: &Choosing,
+) -> Result<Selection, MotionError> {
+    check(target, candidates, choosing)?;
+    let pool = Pool::of(target, candidates, choosing);
+    let mut random = Random::new(choosing.seed);
+    let mut best: Option<Selection> = None;
+    for _ in 0..TRIALS {
+        let mut set = Set::new(target);
+        for spectrum in &target.draw(choosing.count, &mut random) {
+            let level = pool.level(spectrum);
+            let nearest = pool
+                .nearest(spectrum, level, &set)
+                .ok_or_else(|| too_few(&pool, candidates.len(), set.members.len(), choosing))?;
+            set.add(&pool, nearest, level);
+        }
+        let mut rounds = set.improve(&pool);
+        if set.weight == SPREAD_WEIGHT {
+            set.largest = true;
+            rounds += set.improve(&pool);
+        }
+        let found = set.selection(&pool, rounds);
+        if best.as_ref().is_none_or(|best| found.worst(target) < best.worst(target)) {
+            best = Some(found);
+        }
+    }
+    // There is one trial or more, and each gives a set.
+    best.ok_or_else(|| too_few(&pool, candidates.len(), 0, choosing))
+}
+
+fn too_few(pool: &Pool, given: usize, found: usize, choosing: &Choosing) -> MotionError {
+    let [least, largest] = choosing.scale;
+    let groups = choosing.most_of_group.map_or_else(String::new, |most| {
+        format!(" and at most {most} of one event, of which there are {}", pool.groups)
+    });
+    MotionError::Mismatch {
+        what: format!(
+            "of {given} records {found} reach the target with factors from {least} to {largest}\
+             {groups}, and {} are asked for",
+            choosing.count
+        ),
+        remedy: "widen the limits, ask for fewer, or give more records".to_owned(),
+    }
+}
+
+fn check(
+    target: &SelectionTarget,
+    candidates: &[Candidate],
+    choosing: &Choosing,
+) -> Result<(), MotionError> {
+    if choosing.count < 2 {
+        return Err(MotionError::parameter("size of the set", "at least 2", choosing.count));
+    }
+    let [least, largest] = choosing.scale;
+    if !(least > 0.0 && largest >= least && largest.is_finite()) {
+        let found = format!("{least} to {largest}");
+        return Err(MotionError::parameter("factors", "0 < smallest <= largest", found));
+    }
+    let periods = target.periods().len();
+    for candidate in candidates {
+        let (name, values) = (&candidate.name, &candidate.spectrum);
+        if values.len() != periods {
+            return Err(MotionError::parameter(
+                format!("spectrum of {name}"),
+                format!("{periods} accelerations, one to a period of the target"),
+                values.len(),
+            ));
+        }
+        if let Some(k) = values.iter().position(|sa| sa.is_nan() || *sa <= 0.0) {
+            return Err(MotionError::parameter(
+                format!("spectrum of {name} at {} s", target.periods()[k]),
+                "an acceleration above 0 (m/s2)",
+                values[k],
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// A candidate before scaling.
+struct Row {
+    candidate: usize,
+    /// ln Sa.
+    spectrum: Vec<f64>,
+    /// What is brought to the level of a spectrum by scaling: ln Sa at the given period, or the mean.
+    level: f64,
+    group: usize,
+}
+
+/// All candidates.
+struct Pool {
+    rows: Vec<Row>,
+    groups: usize,
+    /// Place of the given period.
+    given: Option<usize>,
+    /// Smallest and largest logarithm of a factor.
+    limits: [f64; 2],
+    most: usize,
+}
+
+impl Pool {
+    fn of(target: &SelectionTarget, candidates: &[Candidate], choosing: &Choosing) -> Self {
+        let mut names: Vec<&str> = candidates.iter().map(|c| c.group.as_str()).collect();
+        names.sort_unstable();
+        names.dedup();
+        let mut pool = Self {
+            rows: Vec::new(),
+            groups: names.len(),
+            given: target.condition().map(|(at, _)| at),
+            // A factor at the limit is within it.
+            limits: [libm::log(choosing.scale[0]) - 1e-12, libm::log(choosing.scale[1]) + 1e-12],
+            most: choosing.most_of_group.unwrap_or(usize::MAX),
+        };
+        for (candidate, given) in candidates.iter().enumerate() {
+            let spectrum: Vec<f64> = given.spectrum.iter().map(|sa| libm::log(*sa)).collect();
+            let level = pool.level(&spectrum);
+            let group = names.partition_point(|name| *name < given.group.as_str());
+            pool.rows.push(Row { candidate, spectrum, level, group });
+        }
+        pool
+    }
+
+    fn level(&self, spectrum: &[f64]) -> f64 {
+        self.given
+            .map_or_else(|| spectrum.iter().sum::<f64>() / spectrum.len() as f64, |at| spectrum[at])
+    }
+
+    fn reaches(&self, row: usize, level: f64) -> bool {
+        (self.limits[0]..=self.limits[1]).contains(&(level - self.rows[row].level))
+    }
+
+    /// How many candidates reach the target's mean.
+    fn eligible(&self, target: &SelectionTarget) -> usize {
+        let level = self.level(target.mean());
+        (0..self.rows.len()).filter(|row| self.reaches(*row, level)).count()
+    }
+
+    /// The free candidate of the least squared distance from a spectrum.
+    fn nearest(&self, spectrum: &[f64], level: f64, set: &Set<'_>) -> Option<usize> {
+        let mut best = (f64::INFINITY, None);
+        for (k, row) in self.rows.iter().enumerate() {
+            if !self.reaches(k, level) || !set.takes(self, k, None) {
+                continue;
+            }
+            let shift = level - row.level;
+            let apart = row.spectrum.iter().zip(spectrum).map(|(a, b)| a + shift - b);
+            let distance: f64 = apart.map(|d| d * d).sum();
+            if distance < best.0 {
+                best = (distance, Some(k));
+            }
+        }
+        best.1
+    }
+}
+
+/// The set so far, with the sums that its moments follow from.
+struct Set<'a> {
+    target: &'a SelectionTarget,
+    /// Rows of the pool, each with the level that it is scaled to.
+    members: Vec<(usize, f64)>,
+    /// Sums of ln Sa less the target's mean, which keeps their digits.
+    sums: Vec<f64>,
+    squares: Vec<f64>,
+    /// Weight of the error of the standard deviation.
+    weight: f64,
+    /// Whether the largest error counts rather than the sum of all squares.
+    largest: bool,
+}
+
+impl<'a> Set<'a> {
+    fn new(target: &'a SelectionTarget) -> Self {
+        let n = target.periods().len();
+        let spread = target.deviation().iter().any(|s| *s > 0.0);
+        let weight = if spread { SPREAD_WEIGHT } else { NO_SPREAD_WEIGHT };
+        let (sums, squares) = (vec![0.0; n], vec![0.0; n]);
+        Self { target, members: Vec::new(), sums, squares, weight, largest: false }
+    }
+
+    fn add(&mut self, pool: &Pool, row: usize, level: f64) {
+        self.members.push((row, level));
+        self.count(&pool.rows[row].spectrum, level - pool.rows[row].level, 1.0);
+    }
+
+    fn count(&mut self, spectrum: &[f64], shift: f64, sign: f64) {
+        for (k, (value, mean)) in spectrum.iter().zip(self.target.mean()).enumerate() {
+            let x = value + shift - mean;
+            self.sums[k] += sign * x;
+            self.squares[k] += sign * x * x;
+        }
+    }
+
+    /// Whether a row may join when the one at `leaving` goes.
+    fn takes(&self, pool: &Pool, row: usize, leaving: Option<usize>) -> bool {
+        let group = pool.rows[row].group;
+        let mut same = 0;
+        for (place, (member, _)) in self.members.iter().enumerate() {
+            if Some(place) == leaving {
+                continue;
+            }
+            if *member == row {
+                return false;
+            }
+            same += usize::from(pool.rows[*member].group == group);
+        }
+        same < pool.most
+    }
+
+    /// Weighted sum of the squared errors of mean and standard deviation; where the largest counts, of
+    /// their eighth powers, those of the standard deviation relative to it.
+    fn error(&self) -> f64 {
+        (0..self.sums.len()).map(|k| self.error_at(k, self.sums[k], self.squares[k])).sum()
+    }
+
+    fn error_at(&self, k: usize, sum: f64, squares: f64) -> f64 {
+        let (mean, deviation) = self.moments_of(sum, squares);
+        let wanted = self.target.deviation()[k];
+        let apart = deviation - wanted;
+        if !self.largest {
+            return mean * mean + self.weight * apart * apart;
+        }
+        // As in [`Selection::worst`]; in hundredths, lest the powers vanish.
+        let spread = if wanted > SMALLEST { 50.0 * apart / wanted } else { 0.0 };
+        eighth_power(100.0 * mean) + eighth_power(spread)
+    }
+
+    /// Exchanges each member for the candidate that lowers the error most; gives the rounds made.
+    fn improve(&mut self, pool: &Pool) -> usize {
+        for round in 1..=ROUNDS {
+            let mut changed = false;
+            for place in 0..self.members.len() {
+                let (leaving, level) = self.members[place];
+                let shift = |row: usize| level - pool.rows[row].level;
+                let now = self.error();
+                self.count(&pool.rows[leaving].spectrum, shift(leaving), -1.0);
+                let mut best = (now * (1.0 - 1e-9), leaving);
+                for row in 0..pool.rows.len() {
+                    if !pool.reaches(row, level) {
+                        continue;
+                    }
+                    let error = self.error_with(&pool.rows[row].spectrum, shift(row), best.0);
+                    if error < best.0 && self.takes(pool, row, Some(place)) {
+                        best = (error, row);
+                    }
+                }
+                self.count(&pool.rows[best.1].spectrum, shift(best.1), 1.0);
+                self.members[place].0 = best.1;
+                changed |= best.1 != leaving;
+            }
+            if !changed {
+                return round;
+            }
+        }
+        ROUNDS
+    }
+
+    /// The error with one more spectrum, given up once it exceeds `limit`.
+    fn error_with(&self, spectrum: &[f64], shift: f64, limit: f64) -> f64 {
+        let mut error = 0.0;
+        for (k, (value, mean)) in spectrum.iter().zip(self.target.mean()).enumerate() {
+            let x = value + shift - mean;
+            error += self.error_at(k, self.sums[k] + x, self.squares[k] + x * x);
+            if error >= limit {
+                break;
+            }
+        }
+        error
+    }
+
+    fn selection(&self, pool: &Pool, rounds: usize) -> Selection {
+        let one = |&(row, level): &(usize, f64)| {
+            let row = &pool.rows[row];
+            Chosen { candidate: row.candidate, scale: libm::exp(level - row.level) }
+        };
+        let mut chosen: Vec<Chosen> = self.members.iter().map(one).collect();
+        chosen.sort_by_key(|chosen| chosen.candidate);
+        let (mean, deviation) = self.moments();
+        Selection { chosen, mean, deviation, eligible: pool.eligible(self.target), rounds }
+    }
+
+    /// Mean and standard deviation of ln Sa at each period.
+    fn moments(&self) -> (Vec<f64>, Vec<f64>) {
+        let of = |(sum, squares): (&f64, &f64)| self.moments_of(*sum, *squares);
+        let (mut mean, spread): (Vec<f64>, _) = self.sums.iter().zip(&self.squares).map(of).unzip();
+        for (mean, target) in mean.iter_mut().zip(self.target.mean()) {
+            *mean += target;
+        }
+        (mean, spread)
+    }
+
+    /// Mean and standard deviation, with `n − 1`, that sums over the whole set have.
+    fn moments_of(&self, sum: f64, squares: f64) -> (f64, f64) {
+        let n = self.members.len() as f64;
+        let mean = sum / n;
+        (mean, ((squares - n * mean * mean) / (n - 1.0)).max(0.0).sqrt())
+    }
+}
+
+fn eighth_power(x: f64) -> f64 {
+    (0..8).fold(1.0, |product, _| product * x)
+}

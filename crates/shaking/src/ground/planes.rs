@@ -1,0 +1,60 @@
+//! The two horizontal components of a record, one for each plane of a stack.
+
+use super::record::read;
+use super::{GroundError, component_of, of_spec};
+use crate::motion::{MotionSource, MotionSpec, RecordMotion, Scale};
+
+/// A motion by the other horizontal component of its record, times the same factor; none where there is no
+/// other.
+///
+/// # Errors
+/// When the record cannot be read, or cannot be scaled as the motion says.
+pub fn other_component(spec: &MotionSpec) -> Result<Option<MotionSpec>, GroundError> {
+    let MotionSource::Record(record) = &spec.source else { return Ok(None) };
+    let Some(component) = other(record)? else { return Ok(None) };
+    let factor = match spec.scale {
+        Scale::Factor(factor) => factor,
+        Scale::Pga(_) | Scale::Pgv(_) | Scale::Measure { .. } => {
+            let plain = MotionSpec { scale: Scale::Factor(1.0), ..spec.clone() };
+            let peak = |spec| -> Result<f64, GroundError> {
+                Ok(of_spec(spec, 1.0)?.motion.map_or(0.0, |motion| motion.pga()))
+            };
+            peak(spec)? / peak(&plain)?
+        }
+    };
+    let record = RecordMotion { component: Some(component), ..record.clone() };
+    let (source, scale) = (MotionSource::Record(record), Scale::Factor(factor));
+    Ok(Some(MotionSpec { source, scale, ..spec.clone() }))
+}
+
+/// How far (degrees, 0 to 360) the other horizontal component of a motion is turned with the clock from its own, seen
+/// from above; none where no file says.
+///
+/// # Errors
+/// When the record cannot be read, or lacks the component asked for.
+pub fn turn_to_other(spec: &MotionSpec) -> Result<Option<f64>, GroundError> {
+    let MotionSource::Record(record) = &spec.source else { return Ok(None) };
+    let Some(other) = other(record)? else { return Ok(None) };
+    let channels = read(record)?;
+    let azimuth = |name| -> Result<Option<f64>, GroundError> {
+        Ok(channels.component(&component_of(&channels, name)?)?.direction.azimuth)
+    };
+    let (own, other) = (azimuth(record.component.as_deref())?, azimuth(Some(&other))?);
+    // Azimuths grow with the clock.
+    Ok(own.zip(other).map(|(own, other)| (other - own).rem_euclid(360.0)))
+}
+
+/// The name of the other horizontal: of another channel that is not vertical, or of the direction across
+/// where a motion is turned out of two channels.
+fn other(spec: &RecordMotion) -> Result<Option<String>, GroundError> {
+    let record = read(spec)?;
+    let own = record.component(&component_of(&record, spec.component.as_deref())?)?;
+    let Some(at) = record.channels.iter().position(|channel| *channel == own) else {
+        let across = own.direction.azimuth.map(|azimuth| (azimuth + 90.0).rem_euclid(360.0));
+        return Ok(across.map(|azimuth| format!("az:{azimuth}")));
+    };
+    // By number, since names may repeat.
+    let mut others = record.channels.iter().enumerate().filter(|(other, _)| *other != at);
+    let other = others.find(|(_, channel)| !channel.is_vertical());
+    Ok(other.filter(|_| !own.is_vertical()).map(|(other, _)| format!("#{}", other + 1)))
+}

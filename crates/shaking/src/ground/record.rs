@@ -1,0 +1,149 @@
+//! The record of a scenario: fetched, at hand, read.
+
+use std::path::{Path, PathBuf};
+
+use barrelstack_input::{FileRef, system};
+use barrelstack_motion::{
+    AccelerationUnit, Given, MotionError, ReadFailure, ReadOptions, Record, Refusal,
+};
+
+use super::GroundError;
+use crate::motion::{MotionSource, MotionSpec, RecordMotion, RecordSource, Vertical};
+
+/// Largest record (bytes) that is read; the longest strong-motion files have a tenth of it.
+pub const RECORD_LIMIT: usize = 256 << 20;
+
+/// A record as a file that is at hand.
+///
+/// # Errors
+/// When the record has no channel, or channels of different steps.
+pub fn held(record: &Record) -> Result<FileRef, MotionError> {
+    let mut file = FileRef::new(&record.file, PathBuf::new());
+    file.hold(barrelstack_motion::write::npz(record)?);
+    Ok(file)
+}
+
+/// The bytes of a file of the system, as [`MotionSpec::with_files`] takes them.
+///
+/// # Errors
+/// In words, when it cannot be read, or has more than any record.
+pub fn from_disk(path: &Path) -> Result<Vec<u8>, String> {
+    system::read(path, RECORD_LIMIT)
+}
+
+impl MotionSpec {
+    /// The motion with its files at hand, which `fetch` has given by their paths; what is at hand already is not
+    /// fetched.
+    ///
+    /// What `fetch` says where it has nothing is what the system would say, such as "there is no such file".
+    ///
+    /// # Errors
+    /// When `fetch` has none.
+    pub fn with_files(
+        mut self,
+        fetch: &mut dyn FnMut(&Path) -> Result<Vec<u8>, String>,
+    ) -> Result<Self, GroundError> {
+        if let MotionSource::Record(record) = &mut self.source {
+            let obtain = how_to_obtain(record);
+            if let RecordSource::File(file) = &mut record.source {
+                hold(file, &obtain, fetch)?;
+            }
+            if let Vertical::File(file) = &mut record.vertical {
+                hold(file, OTHER_VERTICAL, fetch)?;
+            }
+        }
+        Ok(self)
+    }
+}
+
+/// Has a file at hand from now on.
+fn hold(
+    file: &mut FileRef,
+    obtain: &str,
+    fetch: &mut dyn FnMut(&Path) -> Result<Vec<u8>, String>,
+) -> Result<(), GroundError> {
+    if !file.is_held() {
+        let path = file.resolve();
+        file.hold(fetch(&path).map_err(|reason| unreadable(path, reason, obtain))?);
+    }
+    Ok(())
+}
+
+fn unreadable(path: PathBuf, reason: String, obtain: &str) -> GroundError {
+    GroundError::Unreadable { path, reason, obtain: obtain.to_owned() }
+}
+
+/// How to come by the file of a record, as a sentence that goes on from why it cannot be read.
+fn how_to_obtain(record: &RecordMotion) -> String {
+    record.obtain.as_ref().map_or_else(|| "; correct the path".to_owned(), |how| format!("; {how}"))
+}
+
+/// The same for the file of a vertical component.
+pub(super) const OTHER_VERTICAL: &str = "; correct motion.vertical";
+
+/// What the readers of files should know that a scenario states.
+pub(super) fn read_options(spec: &RecordMotion) -> Result<ReadOptions, GroundError> {
+    Ok(ReadOptions {
+        unit: spec.unit.map(unit).transpose()?,
+        time_step: spec.time_step,
+        sensitivity: spec.sensitivity,
+        ..ReadOptions::default()
+    })
+}
+
+pub(super) fn read(spec: &RecordMotion) -> Result<Record, GroundError> {
+    let options = read_options(spec)?;
+    match &spec.source {
+        RecordSource::Bundled(name) => {
+            barrelstack_motion::bundled(name).ok_or_else(|| GroundError::UnknownBundled {
+                name: name.clone(),
+                known: barrelstack_motion::BUNDLED.join(", "),
+            })
+        }
+        RecordSource::File(file) => read_file(file, &options, &how_to_obtain(spec)),
+    }
+}
+
+pub(super) fn read_file(
+    file: &FileRef,
+    options: &ReadOptions,
+    obtain: &str,
+) -> Result<Record, GroundError> {
+    let path = file.resolve();
+    let bytes =
+        file.read(RECORD_LIMIT).map_err(|reason| unreadable(path.clone(), reason, obtain))?;
+    let record = barrelstack_motion::read(&bytes, &path.display().to_string(), options);
+    // A page says which file it was, and not where it lies.
+    let named = |record: Record| {
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+        Record { file: name.unwrap_or_else(|| record.file.clone()), ..record }
+    };
+    record.map(named).map_err(|error| {
+        let mut failure: ReadFailure = (*error).clone();
+        // The reader knows what is missing, the scenario where to state it.
+        if let Refusal::Missing(given) = failure.refusal {
+            failure.remedy += match given {
+                Given::UnitOrSensitivity => {
+                    " in the scenario, as motion.unit = \"1 g\" or motion.sensitivity = 427819"
+                }
+                Given::Unit => " in the scenario, for example motion.unit = \"1 g\"",
+                Given::Step => " in the scenario, for example motion.time_step = \"0.01 s\"",
+                Given::Sensitivity => " in the scenario, for example motion.sensitivity = 427819",
+            };
+        }
+        GroundError::Read(failure.into())
+    })
+}
+
+fn unit(meters_per_second_squared: f64) -> Result<AccelerationUnit, GroundError> {
+    [
+        AccelerationUnit::G,
+        AccelerationUnit::TenthG,
+        AccelerationUnit::MetersPerSecondSquared,
+        AccelerationUnit::Gal,
+        AccelerationUnit::MillimetersPerSecondSquared,
+    ]
+    .into_iter()
+    .find(|unit| (unit.factor() / meters_per_second_squared - 1.0).abs() < 1e-6)
+    .ok_or(GroundError::Unit { unit: meters_per_second_squared })
+}

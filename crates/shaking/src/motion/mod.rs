@@ -1,0 +1,252 @@
+//! The ground motion: where it comes from and how it is scaled.
+
+use barrelstack_input::FileRef;
+use barrelstack_motion::IntensityMeasure;
+
+mod fields;
+mod text;
+
+pub use fields::{MOTION, PULSE, SCALE, SINE, record_names};
+pub use text::{read, rest, write};
+
+/// Where the samples of a record are.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RecordSource {
+    /// A file.
+    File(FileRef),
+    /// A record shipped with the program, by name.
+    Bundled(String),
+}
+
+/// The vertical component.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Vertical {
+    /// Horizontal motion only.
+    None,
+    /// Another component of the same record, by name or azimuth.
+    Component(String),
+    /// A file of its own.
+    File(FileRef),
+}
+
+/// Signal processing of a record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Processing {
+    /// Samples as they are.
+    None,
+    /// The default processing of the motion library.
+    Default,
+}
+
+/// A recorded motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordMotion {
+    /// Where the samples are.
+    pub source: RecordSource,
+    /// Horizontal component: a name, an azimuth, `horizontal-1` or `horizontal-2`; `None` for the
+    /// first.
+    pub component: Option<String>,
+    /// Vertical component.
+    pub vertical: Vertical,
+    /// Time step for files that state none (s).
+    pub time_step: Option<f64>,
+    /// Acceleration of one file unit for files that state none (m/s²).
+    pub unit: Option<f64>,
+    /// Counts to one m/s² for files that hold counts (s²/m).
+    pub sensitivity: Option<f64>,
+    /// Processing.
+    pub processing: Processing,
+    /// Where to get the file, in words, for those who do not have it.
+    pub obtain: Option<String>,
+}
+
+impl RecordMotion {
+    /// The first horizontal component of a record, with the default processing.
+    pub fn of(source: RecordSource) -> Self {
+        Self {
+            source,
+            component: None,
+            vertical: Vertical::None,
+            time_step: None,
+            unit: None,
+            sensitivity: None,
+            processing: Processing::Default,
+            obtain: None,
+        }
+    }
+}
+
+/// What an amplitude measures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Amplitude {
+    /// Peak displacement (m).
+    Displacement(f64),
+    /// Peak velocity (m/s).
+    Velocity(f64),
+    /// Peak acceleration (m/s²).
+    Acceleration(f64),
+}
+
+/// Direction of an analytic motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// Along `x`.
+    Horizontal,
+    /// Along `z`.
+    Vertical,
+}
+
+/// A harmonic motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sine {
+    /// Amplitude.
+    pub amplitude: Amplitude,
+    /// Period (s).
+    pub period: f64,
+    /// Number of cycles, ramps included.
+    pub cycles: f64,
+    /// Cycles over which the amplitude grows from zero, and again falls to zero.
+    pub ramp_cycles: f64,
+    /// Direction.
+    pub direction: Direction,
+}
+
+/// Form of a pulse.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PulseKind {
+    /// Second derivative of a Gaussian in acceleration.
+    Ricker,
+    /// Half a sine of acceleration.
+    HalfSine,
+    /// One sine of acceleration.
+    OneSine,
+    /// One cosine of acceleration.
+    OneCosine,
+    /// Constant acceleration.
+    Rectangular,
+    /// Harmonic under a Gaussian envelope.
+    Gabor {
+        /// Width of the envelope in cycles.
+        gamma: f64,
+        /// Phase (rad).
+        phase: f64,
+    },
+    /// Cycloid A of Jacobsen and Ayre: one forward displacement.
+    CycloidA,
+    /// Cycloid B: forward and back.
+    CycloidB,
+    /// Cycloid C with a number of cycles.
+    CycloidC {
+        /// Number of cycles.
+        cycles: u32,
+    },
+    /// Velocity pulse of Mavroeidis and Papageorgiou (2003).
+    MavroeidisPapageorgiou {
+        /// Oscillatory character, greater than 1.
+        gamma: f64,
+        /// Phase (rad).
+        phase: f64,
+    },
+}
+
+/// A pulse.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pulse {
+    /// Form.
+    pub kind: PulseKind,
+    /// Amplitude; never a displacement.
+    pub amplitude: Amplitude,
+    /// Period (s).
+    pub period: f64,
+    /// Time at which the pulse starts (s).
+    pub start: f64,
+    /// Direction.
+    pub direction: Direction,
+}
+
+/// Where a motion comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MotionSource {
+    /// The ground stays at rest.
+    None,
+    /// A recorded motion.
+    Record(RecordMotion),
+    /// A harmonic motion.
+    Sine(Sine),
+    /// A pulse.
+    Pulse(Pulse),
+}
+
+/// Scaling of the motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Scale {
+    /// Multiplied by a factor; 1 leaves the motion as it is.
+    Factor(f64),
+    /// To this peak horizontal acceleration (m/s²).
+    Pga(f64),
+    /// To this peak horizontal velocity (m/s).
+    Pgv(f64),
+    /// To a value of any measure that grows with the motion.
+    Measure {
+        /// The measure.
+        measure: IntensityMeasure,
+        /// Its value to reach (SI).
+        value: f64,
+        /// What it is measured on.
+        of: MeasuredOn,
+    },
+}
+
+/// What the measure of a scaling is taken of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MeasuredOn {
+    /// The horizontal component that drives the stack.
+    Component,
+    /// Both horizontals of the record: median over all directions.
+    RotD50,
+    /// Both horizontals of the record: largest over all directions.
+    RotD100,
+    /// Both horizontals of the record: their geometric mean.
+    GeometricMean,
+}
+
+/// The ground motion of a scenario.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionSpec {
+    /// Where the motion comes from.
+    pub source: MotionSource,
+    /// Scaling, of all components by the same factor.
+    pub scale: Scale,
+    /// Length scale `λ` of Froude similitude applied to the motion alone: time by `√λ`,
+    /// accelerations unchanged.
+    pub similitude: f64,
+}
+
+impl MotionSpec {
+    /// The files that it is read from: the record, then a vertical component of its own.
+    pub fn files_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
+        let (source, vertical) = match &mut self.source {
+            MotionSource::Record(record) => (Some(&mut record.source), Some(&mut record.vertical)),
+            MotionSource::None | MotionSource::Sine(_) | MotionSource::Pulse(_) => (None, None),
+        };
+        let source = source.and_then(|source| match source {
+            RecordSource::File(file) => Some(file),
+            RecordSource::Bundled(_) => None,
+        });
+        let vertical = vertical.and_then(|vertical| match vertical {
+            Vertical::File(file) => Some(file),
+            Vertical::None | Vertical::Component(_) => None,
+        });
+        source.into_iter().chain(vertical)
+    }
+
+    /// The same motion, whose files are called by what is in them, where that is at hand.
+    #[must_use]
+    pub fn by_content(&self) -> Self {
+        let mut same = self.clone();
+        for file in same.files_mut() {
+            *file = file.by_content();
+        }
+        same
+    }
+}

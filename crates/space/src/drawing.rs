@@ -1,0 +1,351 @@
+//! A run in space as scenes of planes: across the barrels, along them, and from above.
+//!
+//! A scene holds bodies of fixed outlines that move in its plane.
+//! What is seen of a solid body changes only with the direction in the body from which it is looked at, so a body
+//! becomes one drawing for every direction that occurs, in steps of a few degrees, of which each frame shows one.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use barrelstack::assemble::PartKind;
+use barrelstack::outcome::Outcome;
+use barrelstack_dynamics::solid::Hull;
+use barrelstack_dynamics::{Body, Linear as _, Nodes, Quaternion, Rotation3, Spatial, Vec3, math};
+use barrelstack_report::{
+    Event, EventKind, Frames, History, Moment, Point, Polyline, Role, Scene, SceneBody,
+};
+
+use crate::fate::Heading;
+use crate::run::Run;
+use crate::words::leaves;
+
+/// A direction from which a stack is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sight {
+    /// At the heads of the barrels: `x` to the right, `z` up.
+    Across,
+    /// At their sides: `y` to the right, `z` up.
+    Along,
+    /// From above: `x` to the right, `y` up the page.
+    Above,
+}
+
+impl Sight {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Across, Self::Along, Self::Above];
+
+    /// For people.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Across => "across the barrels",
+            Self::Along => "along the barrels",
+            Self::Above => "from above",
+        }
+    }
+
+    /// Whether it is told of what goes in a direction, so that all is told once.
+    fn shows(self, heading: Heading) -> bool {
+        match self {
+            Self::Across => heading.is_across(),
+            Self::Along => !heading.is_across(),
+            Self::Above => false,
+        }
+    }
+
+    /// What is right and up on the page; both with what points at the reader are right-handed.
+    fn page(self) -> [Vec3; 2] {
+        let [x, y, z] =
+            [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
+        match self {
+            Self::Across => [x, z],
+            Self::Along => [y, z],
+            Self::Above => [x, y],
+        }
+    }
+}
+
+/// Most frames per second of a picture.
+const RATE: f64 = 20.0;
+
+/// How many steps of direction there are to a right angle.
+const STEPS: f64 = 10.0;
+
+/// The scene of a run from a direction.
+pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
+    let [right, up] = sight.page();
+    let toward = right.cross(up);
+    let frames = shown(run);
+    let bodies = run.stack.model.bodies();
+    // What is far is drawn first.
+    let mut order: Vec<usize> = (1..bodies.len()).collect();
+    let depth = |body: usize| run.fates[body].rest.dot(toward);
+    order.sort_by(|a, b| depth(*a).total_cmp(&depth(*b)));
+    let mut drawn = vec![ground(sight), yard(sight, run.stack.height)];
+    let mut poses: Vec<Vec<[f64; 3]>> = frames
+        .iter()
+        .map(|frame| {
+            let [x, y, z, ..] = run.frames.poses[*frame][0];
+            let at = Vec3::new(x, y, z);
+            vec![[at.dot(right), at.dot(up), 0.0]; 2]
+        })
+        .collect();
+    let mut first = vec![0; bodies.len()];
+    for body in order {
+        first[body] = drawn.len();
+        let part = &run.stack.parts[body];
+        let mut known: BTreeMap<[i32; 3], usize> = BTreeMap::new();
+        for (at, frame) in frames.iter().enumerate() {
+            let (place, rotation) = placed(run.frames.poses[*frame][body]);
+            let page = [right, up].map(|axis| rotation.unapply(axis));
+            let seen = Seen::of(part.kind, page);
+            let slot = *known.entry(seen.key()).or_insert_with(|| {
+                drawn.push(seen.draw(&part.name, &bodies[body]));
+                drawn.len() - 1
+            });
+            let row = &mut poses[at];
+            row.resize(drawn.len(), [f64::NAN; 3]);
+            row[slot] = [place.dot(right), place.dot(up), seen.angle];
+        }
+    }
+    for row in &mut poses {
+        row.resize(drawn.len(), [f64::NAN; 3]);
+    }
+    Arc::new(Scene {
+        bodies: drawn,
+        frames: Frames {
+            times: frames.iter().map(|frame| run.frames.times[*frame]).collect(),
+            poses,
+            forces: Vec::new(),
+        },
+        events: events(run, &first, sight),
+        moment: moment(run, &first).filter(|_| run.heading.is_some_and(|way| sight.shows(way))),
+        ..Scene::default()
+    })
+}
+
+/// The frames of a run that a picture shows.
+fn shown(run: &Run) -> Vec<usize> {
+    let mut next = 0.0;
+    let mut shown = Vec::new();
+    for (at, time) in run.frames.times.iter().enumerate() {
+        if *time >= next {
+            shown.push(at);
+            next = time + 1.0 / RATE - 1e-9;
+        }
+    }
+    shown
+}
+
+fn placed([x, y, z, w, a, b, c]: [f64; 7]) -> (Vec3, Rotation3) {
+    (Vec3::new(x, y, z), Quaternion { w, v: Vec3::new(a, b, c) }.matrix())
+}
+
+/// The floor: a line longer than any picture is wide; from above nothing.
+fn ground(sight: Sight) -> SceneBody {
+    let line = Polyline::open(vec![[-100.0, 0.0], [100.0, 0.0]]);
+    let outlines = if sight == Sight::Above { Vec::new() } else { vec![line] };
+    SceneBody::new("ground", Role::Ground, outlines)
+}
+
+/// What keeps room around a stack from above, where nothing below it bounds the picture: two points that show nothing.
+fn yard(sight: Sight, height: f64) -> SceneBody {
+    let far = if sight == Sight::Above { 0.7 * height } else { 0.0 };
+    let corners = [-far, far].map(|at| Polyline::open(vec![[at, at]]));
+    SceneBody::new("", Role::Block, corners.into())
+}
+
+/// How a body is seen.
+struct Seen {
+    /// What in the body is right and up on its drawing.
+    axes: [Vec3; 2],
+    /// How the drawing is turned on the page (rad).
+    angle: f64,
+    kind: PartKind,
+}
+
+impl Seen {
+    /// Of what in the body is right and up on the page.
+    fn of(kind: PartKind, page: [Vec3; 2]) -> Self {
+        let toward = page[0].cross(page[1]);
+        let axis = Vec3::new(1.0, 0.0, 0.0);
+        let stepped = |value: f64| (value * STEPS).round() / STEPS;
+        let (from, mut right) = if kind == PartKind::Barrel {
+            // A body of revolution looks alike whatever it has turned about its axis.
+            let tilt =
+                stepped(math::asin(toward.dot(axis).clamp(-1.0, 1.0)) / (0.25 * TAU)) * 0.25 * TAU;
+            let side = toward - axis * toward.dot(axis);
+            let around = side.unit_or(Vec3::new(0.0, 0.0, 1.0));
+            let (sin, cos) = math::sin_cos(tilt);
+            let from = axis * sin + around * cos;
+            // Seen at its head, what shows is how far it has rolled.
+            let head = sin.abs() > 0.999;
+            let from = if head { axis * tilt.signum() } else { from };
+            (from, if head { Vec3::new(0.0, 1.0, 0.0) } else { axis })
+        } else {
+            let from = Vec3::new(stepped(toward.x), stepped(toward.y), stepped(toward.z));
+            let from = from.unit_or(Vec3::new(0.0, 0.0, 1.0));
+            let right = if from.x.abs() < 0.9 { axis } else { Vec3::new(0.0, 1.0, 0.0) };
+            (from, right)
+        };
+        right = (right - from * right.dot(from)).unit_or(axis);
+        let up = from.cross(right);
+        let angle = math::atan2(right.dot(page[1]), right.dot(page[0]));
+        Self { axes: [right, up], angle, kind }
+    }
+
+    /// What tells two drawings of one body apart.
+    #[expect(clippy::cast_possible_truncation, reason = "small whole numbers")]
+    fn key(&self) -> [i32; 3] {
+        let from = self.axes[0].cross(self.axes[1]);
+        let fine = |value: f64| (1e3 * value).round() as i32;
+        if self.kind == PartKind::Barrel {
+            [fine(from.x), 0, 0]
+        } else {
+            [fine(from.x), fine(from.y), fine(from.z)]
+        }
+    }
+
+    /// The body as it is seen so.
+    fn draw(&self, name: &str, body: &Body<Spatial>) -> SceneBody {
+        let [right, up] = self.axes;
+        let from = right.cross(up);
+        let flat = |point: Vec3| [point.dot(right), point.dot(up)];
+        let mut outlines = Vec::new();
+        let mut marks = Vec::new();
+        for nodes in &body.nodes {
+            let Nodes::Whole(whole) = nodes else { continue };
+            let place = |point: Vec3| whole.center + whole.rotation.apply(point);
+            match whole.hull {
+                Hull::Capsule(tube) => {
+                    let ends = [-tube.half_length, tube.half_length]
+                        .map(|x| flat(place(Vec3::new(x, 0.0, 0.0))));
+                    let rim = (0..8).map(|at| TAU * f64::from(at) / 8.0);
+                    let points = rim.flat_map(|angle| {
+                        ends.map(|[x, z]| {
+                            [x + tube.radius * math::cos(angle), z + tube.radius * math::sin(angle)]
+                        })
+                    });
+                    outlines.push(Polyline::closed(hull(points.collect())));
+                }
+                Hull::Barrel(barrel) => {
+                    let half = barrel.half_length + barrel.rounding;
+                    let arc = barrel.stave_radius + barrel.rounding;
+                    let radius = |x: f64| (arc * arc - x * x).sqrt() - barrel.stave_offset;
+                    let ring = |x: f64| {
+                        (0..24).map(move |at| {
+                            let angle = TAU * f64::from(at) / 24.0;
+                            let (y, z) =
+                                (radius(x) * math::cos(angle), radius(x) * math::sin(angle));
+                            Vec3::new(x, y, z)
+                        })
+                    };
+                    let rings = (-6..=6).map(|at| half * f64::from(at) / 6.0);
+                    outlines.push(Polyline::closed(hull(rings.flat_map(ring).map(flat).collect())));
+                    if from.x.abs() > 0.999 {
+                        // As the plane draws it.
+                        marks = SceneBody::barrel(name, radius(0.0)).marks;
+                    } else {
+                        // Hoops, as far as they are on this side.
+                        for x in [0.28, 0.6, -0.6, -0.28, 0.94, -0.94].map(|share| share * half) {
+                            let near = |point: &Vec3| point.y * from.y + point.z * from.z >= -1e-9;
+                            let mut hoop: Vec<Point> = ring(x).filter(near).map(flat).collect();
+                            hoop.sort_by(|a, b| a[1].total_cmp(&b[1]));
+                            marks.push(Polyline::open(hoop));
+                        }
+                    }
+                }
+                Hull::Block(_) => {}
+            }
+        }
+        let role = if self.kind == PartKind::Barrel { Role::Barrel } else { Role::Rack };
+        SceneBody { name: name.to_owned(), role, outlines, marks }
+    }
+}
+
+/// The convex outline of points, against the clock.
+fn hull(mut points: Vec<Point>) -> Vec<Point> {
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    let left = |a: Point, b: Point, c: Point| {
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 1e-12
+    };
+    let chain = |points: &mut dyn Iterator<Item = Point>| {
+        let mut chain: Vec<Point> = Vec::new();
+        for point in points {
+            while let [.., a, b] = chain[..]
+                && !left(a, b, point)
+            {
+                chain.pop();
+            }
+            chain.push(point);
+        }
+        chain.pop();
+        chain
+    };
+    let mut whole = chain(&mut points.iter().copied());
+    whole.extend(chain(&mut points.iter().rev().copied()));
+    whole
+}
+
+fn events(run: &Run, first: &[usize], sight: Sight) -> Vec<Event> {
+    let mut events = Vec::new();
+    for (body, (part, fate)) in run.stack.parts.iter().zip(&run.fates).enumerate() {
+        let barrel = part.kind == PartKind::Barrel;
+        // A barrel that leaves its seat by falling is one thing that happens, not two.
+        let falls_with_it = |time: f64| barrel && fate.fell_at.is_some_and(|fell| fell <= time);
+        let left = fate.left_seat.filter(|(at, ..)| !falls_with_it(*at));
+        if let Some((time, loss, heading)) = left.filter(|(.., way)| sight.shows(*way)) {
+            // Its pane shows whether it is along the barrels or across them.
+            let text = format!("{}, {}", leaves(&part.name, loss), heading.name());
+            events.push(Event { time, body: Some(first[body]), kind: EventKind::LossOfSeat, text });
+        }
+        let seen = fate.left_seat.is_none_or(|(.., way)| sight.shows(way));
+        if let (Some(time), true) = (fate.fell_at.filter(|_| seen), barrel) {
+            let text = format!("{} falls", part.name);
+            events.push(Event { time, body: Some(first[body]), kind: EventKind::Fall, text });
+        }
+    }
+    events.sort_by(|a, b| a.time.total_cmp(&b.time));
+    events
+}
+
+fn moment(run: &Run, first: &[usize]) -> Option<Moment> {
+    let Outcome::Collapse { time, first: name, .. } = &run.outcome else { return None };
+    let body = run.stack.parts.iter().position(|part| part.name == *name)?;
+    let (_, loss, _) = run.fates[body].left_seat?;
+    let text = format!("here {}", leaves(name, loss));
+    Some(Moment { time: *time, body: first[body], text, falls: true })
+}
+
+/// The acceleration of the ground along each axis of the stack over gravity.
+pub fn ground_histories(run: &Run) -> Vec<History> {
+    use barrelstack_dynamics::Drive as _;
+    /// Time (s) between two values.
+    const STEP: f64 = 0.02;
+    if run.ground.first.motion.is_none() {
+        return Vec::new();
+    }
+    let gravity = run.scenario.run.gravity;
+    let mut times = Vec::new();
+    while times.len() as f64 * STEP <= run.end_time {
+        times.push(times.len() as f64 * STEP);
+    }
+    let speed = |time: f64| run.ground.at(time).1;
+    let history = |words: &str, of: &dyn Fn(Vec3) -> f64| History {
+        label: format!("ground acceleration, {words}"),
+        unit: "g".to_owned(),
+        values: times
+            .iter()
+            .map(|time| {
+                let (from, to) = ((time - 0.5 * STEP).max(0.0), time + 0.5 * STEP);
+                (of(speed(to)) - of(speed(from))) / (to - from) / gravity
+            })
+            .collect(),
+        times: times.clone(),
+    };
+    vec![
+        history("across the barrels", &|v| v.x),
+        history("along the barrels", &|v| v.y),
+        history("upward", &|v| v.z),
+    ]
+}

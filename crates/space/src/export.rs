@@ -1,0 +1,80 @@
+//! The files of an answer in space.
+
+use std::fmt::Write as _;
+
+use barrelstack_report::{csv_field, html, shortest};
+
+use crate::fate::Heading;
+use crate::report::document;
+use crate::run::Run;
+use crate::variants::Answer;
+
+/// The files of an answer by their names, the report last.
+pub fn files(answer: &Answer, resolved: &str) -> Vec<(String, Vec<u8>)> {
+    let files = [
+        ("summary.json", answer.summary.to_json() + "\n"),
+        ("scenario.toml", resolved.to_owned()),
+        ("variants.csv", variants_csv(answer)),
+        ("frames.csv", frames_csv(&answer.run)),
+        ("report.html", html(&document(answer))),
+    ];
+    files.map(|(name, text)| (name.to_owned(), text.into_bytes())).into()
+}
+
+/// Where all bodies were: time (s), and of every body its place (m) and the quaternion by which it is turned.
+fn frames_csv(run: &Run) -> String {
+    let mut text = String::from("time (s)");
+    for part in &run.stack.parts {
+        for column in ["x (m)", "y (m)", "z (m)", "qw", "qx", "qy", "qz"] {
+            let _ = write!(text, ",{}", csv_field(&format!("{} {column}", part.name)));
+        }
+    }
+    text.push('\n');
+    for (time, poses) in run.frames.times.iter().zip(&run.frames.poses) {
+        text.push_str(&shortest(*time));
+        for value in poses.iter().flatten() {
+            text.push(',');
+            text.push_str(&shortest(*value));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// The case as it is stated, number 0, and its variants, a row each.
+fn variants_csv(answer: &Answer) -> String {
+    let mut text = String::from(
+        "variant,outcome,mode,collapse time (s),first body,heading,first fall (s),barrels fallen,debris right,debris \
+         left,debris away,debris near,energy residual ratio,reason\n",
+    );
+    for (number, case) in answer.cases.iter().enumerate() {
+        use barrelstack::outcome::Outcome;
+        let result = &case.result;
+        let (kind, mode, time, first, reason) = match &result.outcome {
+            Ok(Outcome::Collapse { mode, time, first, .. }) => {
+                ("collapse", mode.name(), Some(*time), first.as_str(), "")
+            }
+            Ok(Outcome::Invalid { reason }) => ("invalid", "", None, "", reason.as_str()),
+            Ok(Outcome::Stable | Outcome::NotJudged) => ("stable", "", None, "", ""),
+            Err(reason) => ("cannot-stand", "", None, "", reason.as_str()),
+        };
+        let number_or_none = |value: Option<f64>| value.map(shortest).unwrap_or_default();
+        let debris = |way: Heading| case.debris.iter().filter(|one| **one == way).count();
+        let _ = writeln!(
+            text,
+            "{number},{kind},{mode},{},{},{},{},{},{},{},{},{},{},{}",
+            number_or_none(time),
+            csv_field(first),
+            case.first.map_or("", Heading::name),
+            number_or_none(result.first_fall),
+            result.falls.iter().filter(|(_, at)| at.is_some()).count(),
+            debris(Heading::Right),
+            debris(Heading::Left),
+            debris(Heading::Away),
+            debris(Heading::Near),
+            number_or_none(result.energy_residual_ratio),
+            csv_field(reason)
+        );
+    }
+    text
+}

@@ -1,0 +1,120 @@
+//! The ground in space: both horizontal components of a motion and the vertical one, turned to the stack.
+
+use barrelstack::ground::{GroundError, of_spec, other_component, turn_to_other};
+use barrelstack::scenario::{MotionSource, Scenario};
+use barrelstack_dynamics::{Drive, Spatial, Vec3, math};
+
+/// How far (degrees) from a right angle two horizontal components may be and count as one.
+const SQUARE: f64 = 5.0;
+
+/// What moves the ground of a stack in space.
+#[derive(Clone, Debug)]
+pub struct Ground {
+    /// The component of the scenario, with the vertical one if there is one.
+    pub first: barrelstack::Ground,
+    /// The other horizontal component; none where the motion has one alone.
+    pub second: Option<barrelstack::Ground>,
+    /// Cosine and sine of the angle by which the stack is turned against the clock.
+    turn: [f64; 2],
+    /// 1 where the second component points a quarter turn against the clock from the first, -1 where with it.
+    hand: f64,
+    /// What should be known of it, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+impl Ground {
+    /// That of a scenario: turned by its azimuth (rad), its component shakes the stack across its barrels and the other
+    /// one along them.
+    ///
+    /// # Errors
+    /// When the motion cannot be read, or cannot be scaled as the scenario says.
+    pub fn of(scenario: &Scenario) -> Result<Self, GroundError> {
+        let first = scenario.ground()?;
+        let other = other_component(&scenario.motion)?;
+        let second = other.map(|spec| of_spec(&spec, scenario.run.similitude)).transpose()?;
+        let azimuth = scenario.stack().and_then(|stack| stack.space).map_or(0.0, |s| s.azimuth);
+        let mut warnings = first.warnings.clone();
+        let recorded = matches!(scenario.motion.source, MotionSource::Record(_));
+        if recorded && second.is_none() {
+            warnings.push(
+                "the record has one horizontal component: nothing shakes the ground at a right angle to it"
+                    .to_owned(),
+            );
+        }
+        let (sin, cos) = math::sin_cos(azimuth);
+        let turned = turn_to_other(&scenario.motion)?.filter(|_| second.is_some());
+        match turned {
+            None if second.is_some() => warnings.push(
+                "the record does not say how its horizontal components lie to each other: the second one is taken to \
+                 point a quarter turn against the clock from the first"
+                    .to_owned(),
+            ),
+            Some(turn) if (turn % 180.0 - 90.0).abs() > SQUARE => warnings.push(format!(
+                "the horizontal components of the record are {turn:.0} degrees apart, and are taken for a quarter turn"
+            )),
+            Some(_) | None => {}
+        }
+        let hand = if turned.is_some_and(|turn| turn < 180.0) { -1.0 } else { 1.0 };
+        Ok(Self { first, second, turn: [cos, sin], hand, warnings })
+    }
+
+    /// When (s) its motion ends; none where there is none.
+    pub fn motion_end(&self) -> Option<f64> {
+        self.first.motion_end().map(|_| self.end())
+    }
+
+    /// When (s) it is still: the end of its motion, or from the start.
+    pub fn end(&self) -> f64 {
+        self.each(barrelstack::Ground::end)
+    }
+
+    /// From when on (s) none of its accelerations exceeds a limit (m/s²).
+    pub fn calm_from(&self, limit: f64) -> f64 {
+        self.each(|ground| ground.calm_from(limit))
+    }
+
+    /// Where its components came from and what was done to them, one sentence each.
+    pub fn provenance(&self) -> Vec<String> {
+        let grounds = [Some(&self.first), self.second.as_ref()];
+        let motions = grounds.into_iter().flatten().filter_map(|ground| ground.motion.as_ref());
+        let mut told: Vec<String> = Vec::new();
+        for step in motions.flat_map(|motion| &motion.provenance) {
+            // Both are of one record, and the vertical component goes with the first.
+            if !told.contains(step) {
+                told.push(step.clone());
+            }
+        }
+        told
+    }
+
+    fn each(&self, of: impl Fn(&barrelstack::Ground) -> f64) -> f64 {
+        self.second.as_ref().map_or(0.0, &of).max(of(&self.first))
+    }
+}
+
+/// Ground that shakes a stack across its barrels, and up and down.
+impl From<barrelstack::Ground> for Ground {
+    fn from(first: barrelstack::Ground) -> Self {
+        let warnings = first.warnings.clone();
+        Self { first, second: None, turn: [1.0, 0.0], hand: 1.0, warnings }
+    }
+}
+
+impl Drive<Spatial> for Ground {
+    fn at(&self, time: f64) -> (Vec3, Vec3) {
+        let Some(motion) = &self.first.motion else { return Default::default() };
+        let first = motion.horizontal.at(time);
+        let second = self.second.as_ref().and_then(|ground| ground.motion.as_ref());
+        let second = second.map(|motion| motion.horizontal.at(time)).unwrap_or_default();
+        let up = motion.vertical.as_ref().map(|motion| motion.at(time)).unwrap_or_default();
+        let ([cos, sin], hand) = (self.turn, self.hand);
+        let turned = |a: f64, other: f64, up: f64| {
+            let b = hand * other;
+            Vec3::new(cos * a + sin * b, cos * b - sin * a, up)
+        };
+        (
+            turned(first.displacement, second.displacement, up.displacement),
+            turned(first.velocity, second.velocity, up.velocity),
+        )
+    }
+}

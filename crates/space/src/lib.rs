@@ -1,0 +1,34 @@
+//! Stacks of barrels in space: what a scenario states, as it stands, under all three components of a motion.
+//!
+//! ```text
+//! Scenario ─ stack::assemble ─▶ Stack { Model, parts }
+//! record ─ Ground ─────────────────────┐
+//!                                      ▼
+//!               settle ─▶ simulate, watched ─▶ Run ─▶ Summary (JSON), files, page
+//! ```
+//!
+//! Across the barrels is `x`, along them `y`, and `z` is up; columns count along `x`, rows along `y`.
+//! A run is that of the plane in all but its geometry: the same laws, steps, thresholds and words.
+
+// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+pub mod drawing;
+pub mod export;
+pub mod fate;
+pub mod ground;
+mod rack;
+pub mod report;
+mod rest;
+pub mod run;
+pub mod stack;
+pub mod summary;
+pub mod variants;
+pub mod words;
+
+pub use fate::{Fate, Heading};
+pub use ground::Ground;
+pub use run::Run;
+pub use stack::Stack;
+pub use summary::Summary;
+pub use variants::{Answer, answer};

@@ -1,0 +1,132 @@
+//! A rack as a frame of tubes, from the middle of its underside.
+//!
+//! ```text
+//!   along the barrels (y)                          across them (x)
+//!
+//!        (  barrel  )                                 ( B )    ( B )
+//!          ║      ║      posts of the cradles         ║ ║      ║ ║
+//!          o──────o      two beams, joined        ════╩═╩══════╩═╩════
+//! ```
+//!
+//! The plane across the barrels gives beams, cradles and their heights, that along them the places of the beams;
+//! tubes are as round as high.
+//! What joins the beams is an assumption: two tubes on top of their ends, so that the beams alone lie on what is below.
+
+use barrelstack::assemble::{BAR_RADIUS, TUBE_CORNER};
+use barrelstack::scenario::{Cradle, Rack};
+use barrelstack_dynamics::solid::{Barrel, Bulk, Capsule, Hull, Part};
+use barrelstack_dynamics::{Quaternion, Rotation3, Vec3, math};
+
+use std::f64::consts::FRAC_PI_2;
+
+/// Which tubes of a rack bear what.
+#[derive(Clone, Debug)]
+pub(crate) struct Tubes {
+    /// The tubes, with masses (kg) that make that of the rack.
+    pub(crate) parts: Vec<Part>,
+    /// The numbers of the beams, which lie on what is below, by the place along the rack of the barrels that they
+    /// carry and lie on.
+    pub(crate) beams: Vec<(u32, usize)>,
+    /// The numbers of the posts, by the column and the place along the rack of the barrel that they carry.
+    pub(crate) posts: Vec<((u32, u32), usize)>,
+}
+
+/// Heights (m) that rack and barrel make together.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Heights {
+    /// Of the axis of a carried barrel above the underside of its rack.
+    pub(crate) axis: f64,
+    /// Of the underside of a rack above the axis of a barrel on which it lies.
+    pub(crate) underside: f64,
+}
+
+/// Radius (m) of the surface that keeps a distance (m) from the stave of a barrel, at a place (m) along its axis.
+fn around(barrel: &Barrel, distance: f64, along: f64) -> f64 {
+    let arc = barrel.stave_radius + barrel.rounding + distance;
+    (arc * arc - along * along).sqrt() - barrel.stave_offset
+}
+
+impl Heights {
+    pub(crate) fn of(rack: &Rack, barrel: &Barrel) -> Self {
+        let tube = 0.5 * rack.beam_height;
+        Self {
+            axis: rack.clearance + around(barrel, 0.0, rack.rail_half_spacing),
+            underside: around(barrel, tube, rack.rail_half_spacing) - tube,
+        }
+    }
+}
+
+/// The tubes of a rack whose barrels lie `apart` (m) one behind the other; none where its cradle is no pair of
+/// supports.
+pub(crate) fn tubes(rack: &Rack, barrel: &Barrel, apart: f64) -> Option<Tubes> {
+    let Cradle::Supports { angle } = rack.cradle else { return None };
+    let beam = 0.5 * rack.beam_height;
+    // The line on which a beam bears ends where the corner of its plane begins.
+    let half = 0.5 * rack.width - TUBE_CORNER;
+    let heights = Heights::of(rack, barrel);
+    let middle = |at: u32, count: u32| f64::from(at) - 0.5 * f64::from(count - 1);
+    let (mut beams, mut posts, mut list) = (Vec::new(), Vec::new(), Vec::new());
+    let (sin, cos) = math::sin_cos(angle);
+    let away = around(barrel, BAR_RADIUS, rack.rail_half_spacing);
+    for deep in 0..rack.barrels_deep {
+        for side in [-1.0, 1.0] {
+            let y = middle(deep, rack.barrels_deep) * apart + side * rack.rail_half_spacing;
+            beams.push((deep, list.len()));
+            list.push(Tube::along_x(half, beam, Vec3::new(0.0, y, beam)));
+            for column in 0..rack.barrels {
+                let place = middle(column, rack.barrels) * rack.pitch;
+                for support in [-1.0, 1.0] {
+                    let top = heights.axis - cos * away;
+                    let foot = rack.beam_height.min(top);
+                    posts.push(((column, deep), list.len()));
+                    let at = Vec3::new(place + support * sin * away, y, 0.5 * (top + foot));
+                    list.push(Tube::upright(0.5 * (top - foot), BAR_RADIUS, at));
+                }
+            }
+        }
+    }
+    let reach = middle(rack.barrels_deep - 1, rack.barrels_deep) * apart + rack.rail_half_spacing;
+    for side in [-1.0, 1.0] {
+        let at = Vec3::new(side * half, 0.0, rack.beam_height);
+        list.push(Tube::along_y(reach, BAR_RADIUS, at));
+    }
+    // Tubes of one wall: mass goes with length and girth.
+    let weight = |tube: &Tube| (2.0 * tube.half_length + tube.radius) * tube.radius;
+    let whole: f64 = list.iter().map(weight).sum();
+    let parts = list.iter().map(|tube| tube.part(rack.mass * weight(tube) / whole)).collect();
+    Some(Tubes { parts, beams, posts })
+}
+
+/// A tube at its place.
+struct Tube {
+    half_length: f64,
+    radius: f64,
+    center: Vec3,
+    rotation: Rotation3,
+}
+
+impl Tube {
+    fn along_x(half_length: f64, radius: f64, center: Vec3) -> Self {
+        Self { half_length, radius, center, rotation: Rotation3::identity() }
+    }
+
+    fn along_y(half_length: f64, radius: f64, center: Vec3) -> Self {
+        Self { half_length, radius, center, rotation: along_barrels().matrix() }
+    }
+
+    fn upright(half_length: f64, radius: f64, center: Vec3) -> Self {
+        let rotation = Quaternion::turn(Vec3::new(0.0, -FRAC_PI_2, 0.0)).matrix();
+        Self { half_length, radius, center, rotation }
+    }
+
+    fn part(&self, mass: f64) -> Part {
+        let tube = Capsule { half_length: self.half_length, radius: self.radius };
+        let bulk = Bulk::of_hollow(&tube, mass);
+        Part { hull: Hull::Capsule(tube), center: self.center, rotation: self.rotation, bulk }
+    }
+}
+
+/// The turn of what lies along the barrels.
+pub(crate) fn along_barrels() -> Quaternion {
+    Quaternion::turn(Vec3::new(0.0, 0.0, FRAC_PI_2))
+}

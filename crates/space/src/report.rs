@@ -1,0 +1,186 @@
+//! The page of a run in space: its verdict, three views that move together, moments, numbers.
+
+use barrelstack::outcome::Outcome;
+use barrelstack::report::WORDS;
+use barrelstack::variants::Range;
+use barrelstack_report::{
+    Block, Cell, Document, Figure, FigureKind, Pane, Players, Strip, Table, Verdict, capital,
+};
+
+use crate::drawing::{Sight, ground_histories, scene};
+use crate::fate::Heading;
+use crate::run::Run;
+use crate::summary::Summary;
+use crate::variants::Answer;
+use crate::words::{headline, rows, sentences, tone};
+
+/// The whole report of an answer as a document, free of any output format.
+pub fn document(answer: &Answer) -> Document {
+    let Answer { run, summary, .. } = answer;
+    let scenes = Sight::ALL.map(|sight| (sight, scene(run, sight)));
+    let pane = |(sight, scene): &(Sight, _)| Pane {
+        mark: match sight {
+            Sight::Across => "X",
+            Sight::Along => "Y",
+            Sight::Above => "Z",
+        }
+        .to_owned(),
+        name: capital(sight.words()),
+        verdict: String::new(),
+        tone: tone(run, summary),
+        scene: std::sync::Arc::clone(scene),
+        traces: Vec::new(),
+    };
+    let mut blocks = vec![Block::Players(Players {
+        id: "players".into(),
+        caption: "One run from three sides, on one clock and to one scale. What is nearer covers what is behind it as \
+                  they stood at rest."
+            .into(),
+        panes: scenes.iter().map(pane).collect(),
+        overlay: None,
+        ground: ground_histories(run),
+    })];
+    let heading = |text: &str| Block::Heading { level: 2, text: text.to_owned() };
+    if let Some(table) = variants(summary) {
+        blocks.extend([heading("In all variants"), Block::Table(table)]);
+    }
+    blocks.push(heading("Collapse sequence"));
+    for (sight, scene) in &scenes {
+        blocks.push(Block::Figure(Figure {
+            id: format!("sequence-{}", sight.words().replace(' ', "-")),
+            caption: format!("The stack {} at the moments that matter.", sight.words()),
+            kind: FigureKind::Strip(Strip::of_run(std::sync::Arc::clone(scene), 6)),
+        }));
+    }
+    blocks.push(heading("In numbers"));
+    let mut numbers = Table::new("The run that is shown.", &[("", ""), ("", "")]);
+    numbers
+        .rows
+        .extend(rows(run, summary).into_iter().map(|(a, b)| vec![Cell::text(a), Cell::text(b)]));
+    blocks.push(Block::Table(numbers));
+    // Numbers of a run that broke down look like results and are none.
+    if !matches!(run.outcome, Outcome::Invalid { .. }) {
+        blocks.push(heading("What became of every body"));
+        blocks.push(Block::Table(fates(run)));
+    }
+    Document {
+        title: summary.title.clone(),
+        verdict: Verdict {
+            headline: headline(run, summary),
+            advice: String::new(),
+            command: String::new(),
+            sentences: sentences(run, summary),
+            fine: Vec::new(),
+            tone: tone(run, summary),
+        },
+        blocks,
+        provenance: provenance(run, summary),
+        words: WORDS.to_vec(),
+        warnings: run.warnings.clone(),
+    }
+}
+
+/// What all variants say, as a table.
+fn variants(summary: &Summary) -> Option<Table> {
+    let (spread, directions) = (summary.ensemble.as_ref()?, summary.directions.as_ref()?);
+    let mut table = Table::new(
+        "Ranges are those of 5 to 95 % of the variants. Directions are those of the first body that leaves its seat, \
+         and of the barrels that fell, from where they stood to where they lie.",
+        &[("", ""), ("in space", "")],
+    );
+    let mut row = |name: &str, value: String| {
+        table.rows.push(vec![Cell::text(name), Cell::text(value)]);
+    };
+    row("variants with a verdict", spread.variants.to_string());
+    row("collapse", spread.collapsed.to_string());
+    if let Some(share) = spread.share {
+        let percent = barrelstack::variants::words::percent;
+        let [low, high] = spread.interval.map(percent);
+        row("share, with its 95 % interval", format!("{} ({low} to {high})", percent(share)));
+    }
+    let range = |Range { p05, p95, .. }: Range, decimals: usize| {
+        format!("{p05:.decimals$} to {p95:.decimals$}")
+    };
+    if let Some(fall) = spread.first_fall {
+        row("first fall", format!("{} s", range(fall, 1)));
+    }
+    if let Some(fallen) = spread.barrels_fallen {
+        row(
+            "barrels fallen where it collapses",
+            format!("{} of {}", range(fallen, 0), spread.barrels),
+        );
+    }
+    let modes: Vec<String> = spread.modes.iter().map(|(mode, n)| format!("{mode} {n}")).collect();
+    if !modes.is_empty() {
+        row("by mode", modes.join(", "));
+    }
+    let d = directions;
+    if spread.collapsed > 0 {
+        let four = |[right, left, away, near]: [u32; 4]| {
+            format!(
+                "across {} ({right} right, {left} left), along {} ({away} away, {near} near)",
+                right + left,
+                away + near
+            )
+        };
+        row("first body", four([d.first_right, d.first_left, d.first_away, d.first_near]));
+        row("fallen barrels", four([d.debris_right, d.debris_left, d.debris_away, d.debris_near]));
+    }
+    if spread.cannot_stand > 0 {
+        row("do not stand before they are shaken", spread.cannot_stand.to_string());
+    }
+    if spread.broken > 0 {
+        row("broke down", spread.broken.to_string());
+    }
+    Some(table)
+}
+
+fn fates(run: &Run) -> Table {
+    let columns = [
+        ("body", ""),
+        ("leaves its seat", "s"),
+        ("toward", ""),
+        ("falls", "s"),
+        ("moved across", "cm"),
+        ("along", "cm"),
+        ("up", "cm"),
+        ("largest slip across", "cm"),
+        ("along", "cm"),
+    ];
+    let mut table = Table::new(
+        "Slips are those against what a body stands on, while the stack stood; ways are those at the end.",
+        &columns,
+    );
+    let time = |at: Option<f64>| at.map_or(Cell::Missing, |at| Cell::Measured(at, 2));
+    let length = |value: f64| Cell::Measured(100.0 * value, 1);
+    for (part, fate) in run.stack.parts.iter().zip(&run.fates).skip(1) {
+        let toward = fate.left_seat.map(|(.., heading): (_, _, Heading)| heading.name());
+        table.rows.push(vec![
+            Cell::text(&part.name),
+            time(fate.left_seat.map(|(at, ..)| at)),
+            toward.map_or(Cell::Missing, Cell::text),
+            time(fate.fell_at),
+            length(fate.moved.x),
+            length(fate.moved.y),
+            length(fate.moved.z),
+            length(fate.peak_slip[0]),
+            length(fate.peak_slip[1]),
+        ]);
+    }
+    table
+}
+
+fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> {
+    let made = &summary.provenance;
+    let mut rows = vec![
+        ("program".to_owned(), format!("{} {}", made.program, made.version)),
+        ("scenario".to_owned(), made.scenario_hash.clone()),
+        ("view".to_owned(), "spatial".to_owned()),
+        (
+            "method".to_owned(),
+            format!("{}, steps of {:.3} ms", summary.run.method, 1e3 * run.stack.step),
+        ),
+    ];
+    rows.extend(made.motion.iter().map(|step| ("motion".to_owned(), step.clone())));
+    rows
+}

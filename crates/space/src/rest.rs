@@ -1,0 +1,79 @@
+//! Rest in space, as in the plane: the ground is still, or calm where the stack has collapsed, and nothing moves fast
+//! enough to change what became of the stack.
+
+use barrelstack::assemble::PartKind;
+use barrelstack::scenario::{Scenario, Until};
+use barrelstack::watch::rest::{CLIMB, HOLD, ON_FLOOR, calm};
+use barrelstack_dynamics::{BodyId, Linear as _, Space as _, Spatial, State, Vec3};
+
+use crate::ground::Ground;
+use crate::stack::Stack;
+
+/// Follows all bodies until they rest.
+pub(crate) struct Rest<'a> {
+    stack: &'a Stack,
+    /// From when on (s) the ground is still, and calm; infinite where the run does not end by rest.
+    still_from: f64,
+    calm_from: f64,
+    /// Largest kinetic energy of a body at rest over its mass (m²/s²).
+    slow: f64,
+    /// When (s) something moved last.
+    moved: f64,
+}
+
+impl<'a> Rest<'a> {
+    pub(crate) fn new(scenario: &Scenario, stack: &'a Stack, ground: &Ground) -> Self {
+        let gravity = scenario.run.gravity;
+        let by_rest = |time: f64| match scenario.run.until {
+            Until::Rest => time,
+            Until::Duration => f64::INFINITY,
+        };
+        Self {
+            stack,
+            still_from: by_rest(ground.end()),
+            calm_from: by_rest(ground.calm_from(gravity * calm(stack.model.interfaces()))),
+            slow: gravity * CLIMB,
+            moved: 0.0,
+        }
+    }
+
+    /// Looks at an accepted state, and whether the stack has collapsed; whether all have come to rest.
+    pub(crate) fn observe(&mut self, state: &State<Spatial>, collapsed: bool) -> bool {
+        let from = if collapsed { self.calm_from } else { self.still_from };
+        let moves = state.time < from
+            || (1..self.stack.parts.len())
+                .any(|body| self.is_fast(state, body) && !self.rolls_away(state, body));
+        if moves {
+            self.moved = state.time;
+        }
+        self.moved + HOLD <= state.time
+    }
+
+    fn is_fast(&self, state: &State<Spatial>, body: BodyId) -> bool {
+        let of = &self.stack.model.bodies()[body];
+        let velocity = state.twists[body].linear - state.twists[Stack::GROUND].linear;
+        let rotation = state.poses[body].orientation.matrix();
+        let turning = Spatial::spin_energy(of.inertia, rotation, state.twists[body].angular);
+        self.slow < 0.5 * velocity.dot(velocity) + turning / of.mass
+    }
+
+    /// Whether a body is a barrel on the floor that reaches nothing any more.
+    fn rolls_away(&self, state: &State<Spatial>, own: BodyId) -> bool {
+        let part = &self.stack.parts[own];
+        if part.kind != PartKind::Barrel {
+            return false;
+        }
+        let ground = Stack::GROUND;
+        let (here, velocity) = (state.poses[own].position, state.twists[own].linear);
+        let rise = velocity.z - state.twists[ground].linear.z;
+        let height = here.z - state.poses[ground].position.z;
+        height <= ON_FLOOR * self.stack.bilge_radius
+            && 0.5 * rise * rise <= self.slow
+            && (1..self.stack.parts.len()).filter(|other| *other != own).all(|other| {
+                let apart = state.poses[other].position - here;
+                let parting = state.twists[other].linear - velocity;
+                let level = |v: Vec3| Vec3::new(v.x, v.y, 0.0);
+                level(apart).dot(level(parting)) >= 0.0
+            })
+    }
+}

@@ -1,0 +1,303 @@
+//! One run in space: scenario in, what was seen out.
+
+use std::ops::ControlFlow;
+
+use barrelstack::assemble::{AssembleError, PartKind};
+use barrelstack::outcome::{Outcome, collapse};
+use barrelstack::overlap::ALLOWED;
+use barrelstack::run::{
+    Ended, Progress, UNBALANCED, Verdict, Work, check_kept, check_length, end_time, method,
+    thresholds,
+};
+use barrelstack::scenario::Scenario;
+use barrelstack::watch::{Ending, Loss, PROGRESS};
+use barrelstack::{Restless, RunFailure};
+use barrelstack_dynamics::{
+    BodyId, Contact, EnergyLedger, EnergySummary, Model, Observer, Scratch, Settled, Simulation,
+    Spatial, State, evaluate, settle, simulate,
+};
+
+use crate::fate::{Fate, Fates, Heading};
+use crate::ground::Ground;
+use crate::rest::Rest;
+use crate::stack::Stack;
+
+/// A stack at rest, ready to be shaken.
+#[derive(Clone, Debug)]
+pub struct Standing {
+    /// The stack.
+    pub stack: Stack,
+    /// Where it came to rest.
+    pub state: State<Spatial>,
+    /// The forces there.
+    pub scratch: Scratch<Spatial>,
+    /// How equilibrium was found; none where the scenario starts without.
+    pub settled: Option<Settled>,
+}
+
+/// Where all bodies were, at moments of a run.
+#[derive(Clone, Debug, Default)]
+pub struct Frames {
+    /// The moments (s).
+    pub times: Vec<f64>,
+    /// For each of them and every body, position (m) and quaternion `w`, `x`, `y`, `z`.
+    pub poses: Vec<Vec<[f64; 7]>>,
+}
+
+/// Everything that was seen of a run.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// What was run.
+    pub scenario: Scenario,
+    /// What stood there.
+    pub stack: Stack,
+    /// What shook it.
+    pub ground: Ground,
+    /// What happened.
+    pub outcome: Outcome,
+    /// The direction in which the first body left its seat.
+    pub heading: Option<Heading>,
+    /// What became of every body, in the order of the parts.
+    pub fates: Vec<Fate>,
+    /// When (s) the first barrel had fallen.
+    pub first_fall: Option<f64>,
+    /// Where all bodies were.
+    pub frames: Frames,
+    /// The energy books at the end; none where numbers were lost.
+    pub energy: Option<EnergySummary>,
+    /// How equilibrium was found; none where the scenario starts without.
+    pub settled: Option<Settled>,
+    /// How it was integrated.
+    pub simulation: Simulation,
+    /// What was done.
+    pub work: Work,
+    /// Time (s) that the run reached.
+    pub end_time: f64,
+    /// Why it ended.
+    pub ending: Ending,
+    /// What the reader of the result should know, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Builds the stack of a scenario and lets it come to rest.
+///
+/// ```
+/// use barrelstack::Scenario;
+/// use barrelstack_space::run::stand;
+///
+/// let changes = ["stack.view=spatial", "stack.levels=2"].map(str::to_owned);
+/// let standing = stand(&Scenario::builtin("demo-napa", &changes)?)?;
+/// assert!(standing.settled.is_some_and(|settled| settled.unbalanced < 1e-9));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When it cannot be built, or does not stand.
+pub fn stand(scenario: &Scenario) -> Result<Standing, RunFailure> {
+    at_rest(scenario, Stack::of(scenario)?)
+}
+
+fn at_rest(scenario: &Scenario, stack: Stack) -> Result<Standing, RunFailure> {
+    let mut state = State::initial(&stack.model);
+    let mut scratch = Scratch::new(&stack.model);
+    evaluate(&stack.model, &state, &mut scratch);
+    check_overlap(&stack, &scratch)?;
+    let settled = if scenario.run.settle {
+        let found = settle(&stack.model, &mut state, &mut scratch, UNBALANCED);
+        Some(found.map_err(|error| Restless { error })?)
+    } else {
+        None
+    };
+    Ok(Standing { stack, state, scratch, settled })
+}
+
+/// Refuses bodies that stand in each other before anything has moved.
+fn check_overlap(stack: &Stack, scratch: &Scratch<Spatial>) -> Result<(), AssembleError> {
+    let depth = |contact: &&Contact<Spatial>| contact.penetration;
+    let deepest = scratch.contacts.iter().max_by(|a, b| depth(a).total_cmp(&depth(b)));
+    let Some(contact) = deepest.filter(|contact| contact.penetration > ALLOWED) else {
+        return Ok(());
+    };
+    let pair = stack.model.pair(contact.pair);
+    let [first, second] = [pair.contactor, pair.target].map(|body| stack.parts[body].name.clone());
+    Err(AssembleError::Overlap { first, second, depth: contact.penetration })
+}
+
+/// Runs a scenario in space under its own motion.
+///
+/// ```
+/// use barrelstack::Scenario;
+///
+/// let changes = ["stack.view=spatial", "stack.levels=2", "run.duration=2 s"].map(str::to_owned);
+/// let run = barrelstack_space::run::run(&Scenario::builtin("demo-napa", &changes)?)?;
+/// assert_eq!(run.outcome.kind(), "stable");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When the motion cannot be read, the stack cannot be built in space, or it does not stand.
+pub fn run(scenario: &Scenario) -> Result<Run, RunFailure> {
+    let ground = Ground::of(scenario)?;
+    run_on(scenario, ground, &mut |_| ControlFlow::Continue(()))
+}
+
+/// When (s) a run ends at the latest; refuses one that would not end in a day, or not fit into memory.
+pub(crate) fn affordable(
+    scenario: &Scenario,
+    stack: &Stack,
+    ground: &Ground,
+) -> Result<f64, RunFailure> {
+    let end_time = end_time(scenario, ground.motion_end(), 1.0)?;
+    check_length(end_time, stack.step)?;
+    // A frame holds the place and the quaternion of every body.
+    let frames = end_time * scenario.record.frame_rate + 1.0;
+    check_kept((frames, stack.parts.len(), 7), (0.0, 0))?;
+    Ok(end_time)
+}
+
+/// Runs a scenario in space on a given ground before an observer, who is told how far the run is every 0.05 s of
+/// simulated time and may stop it; what was seen until then is returned.
+///
+/// # Errors
+/// When the stack cannot be built in space, or does not stand.
+pub fn run_on(
+    scenario: &Scenario,
+    ground: Ground,
+    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<Run, RunFailure> {
+    let stack = Stack::of(scenario)?;
+    let end_time = affordable(scenario, &stack, &ground)?;
+    let Standing { stack, mut state, mut scratch, settled } = at_rest(scenario, stack)?;
+    let simulation = Simulation { method: method(scenario), time_step: stack.step, end_time };
+    let (evaluations, tested) = (scratch.evaluations, scratch.contact_evaluations);
+    scratch.keeps_contacts = false;
+    let mut watch = Watch {
+        fates: Fates::new(&stack, &state, thresholds(scenario)),
+        rest: Rest::new(scenario, &stack, &ground),
+        frames: Frames::default(),
+        every: 1.0 / scenario.record.frame_rate,
+        after_collapse: scenario.run.stop_after_collapse.unwrap_or(f64::INFINITY),
+        next_look: 0.0,
+        observer,
+        end_time,
+        ending: None,
+    };
+    let result = simulate(&stack.model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
+    let Watch { fates, frames, ending, .. } = watch;
+    let ending = ending.unwrap_or(Ending::of_time(scenario));
+    let ended = result.map(|totals| Ended::of(&totals));
+    let judge = || judge(&stack, &fates);
+    let Verdict { outcome, energy, steps, warnings: told, ending } =
+        Verdict::of(ended, judge, state.time, ground.end(), ending);
+    let warnings = ground.warnings.iter().cloned().chain(told).collect();
+    let heading = fates.collapse().and_then(|(_, body)| fates.all()[body].left_seat);
+    let (first_fall, all) = (fates.first_fall(), fates.all().to_vec());
+    Ok(Run {
+        scenario: scenario.clone(),
+        outcome,
+        heading: heading.map(|(.., heading)| heading),
+        fates: all,
+        first_fall,
+        frames,
+        energy,
+        settled,
+        simulation,
+        work: Work {
+            steps,
+            evaluations: scratch.evaluations - evaluations,
+            contact_evaluations: scratch.contact_evaluations - tested,
+        },
+        end_time: state.time,
+        ending,
+        warnings,
+        ground,
+        stack,
+    })
+}
+
+impl Run {
+    /// Barrels that fell, in order.
+    pub fn fallen(&self) -> impl Iterator<Item = BodyId> + '_ {
+        let fell = |body: &BodyId| self.fates[*body].fell_at.is_some();
+        self.stack.of_kind(PartKind::Barrel).filter(fell)
+    }
+
+    /// Where a fallen barrel came to lie, seen from where it stood.
+    pub fn debris(&self) -> impl Iterator<Item = Heading> + '_ {
+        self.fallen().map(|body| Heading::of(self.fates[body].moved))
+    }
+}
+
+/// Share of its reach along the barrels that a rack has walked before it tilts, from which on it has slid: a convention.
+const SLID_BEFORE_IT_TILTED: f64 = 0.5;
+
+/// Judges as in the plane, by the first body that left its seat, but for what slides.
+///
+/// A rack slides off along the barrels where its beam has passed their ends, or tilts that way after more than half of
+/// its reach: a round beam comes down over the chime before its middle has passed it.
+fn judge(stack: &Stack, fates: &Fates<'_>) -> Outcome {
+    let Some((time, first)) = fates.collapse() else { return Outcome::Stable };
+    let part = &stack.parts[first];
+    let fate = &fates.all()[first];
+    let slid = match fate.left_seat {
+        Some((_, Loss::Slid, heading)) => !heading.is_across(),
+        Some((_, Loss::Tilted | Loss::Dropped, heading)) => {
+            !heading.is_across() && fate.peak_slip[1] > SLID_BEFORE_IT_TILTED * stack.reach[1]
+        }
+        Some((_, Loss::Displaced, _)) | None => false,
+    };
+    collapse(time, (&part.name, part.kind, part.level), slid, stack.levels)
+}
+
+/// Everything that watches a run.
+struct Watch<'a> {
+    fates: Fates<'a>,
+    rest: Rest<'a>,
+    frames: Frames,
+    /// Time (s) between two frames.
+    every: f64,
+    /// How long (s) it goes on after a collapse.
+    after_collapse: f64,
+    next_look: f64,
+    observer: &'a mut dyn FnMut(Progress) -> ControlFlow<()>,
+    end_time: f64,
+    ending: Option<Ending>,
+}
+
+impl Observer<Spatial> for Watch<'_> {
+    fn observe(
+        &mut self,
+        _: &Model<Spatial>,
+        state: &State<Spatial>,
+        _: &Scratch<Spatial>,
+        _: &EnergyLedger<Spatial>,
+    ) -> ControlFlow<()> {
+        self.fates.observe(state);
+        let time = state.time;
+        if time >= self.frames.times.len() as f64 * self.every {
+            self.frames.times.push(time);
+            let pose = |pose: &barrelstack_dynamics::Pose<Spatial>| {
+                let (p, q) = (pose.position, pose.orientation);
+                [p.x, p.y, p.z, q.w, q.v.x, q.v.y, q.v.z]
+            };
+            self.frames.poses.push(state.poses.iter().map(pose).collect());
+        }
+        if time >= self.next_look {
+            self.next_look = time + PROGRESS;
+            if (self.observer)(Progress { time, end_time: self.end_time }).is_break() {
+                self.ending = Some(Ending::Interrupted);
+            }
+        }
+        let collapse = self.fates.collapse();
+        if self.ending.is_none() {
+            self.ending = if self.rest.observe(state, collapse.is_some()) {
+                Some(Ending::Rest)
+            } else if collapse.is_some_and(|(at, _)| at + self.after_collapse <= time) {
+                Some(Ending::AfterCollapse)
+            } else {
+                None
+            };
+        }
+        if self.ending.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}

@@ -1,0 +1,288 @@
+//! The summary of a run in space: one JSON document, the same numbers in print.
+
+use barrelstack::assemble::PartKind;
+use barrelstack::demand::Demands;
+use barrelstack::ground::MotionSummary;
+use barrelstack::outcome::Outcome;
+use barrelstack::scenario::Scenario;
+use barrelstack::summary::{EnergyBooks, Provenance};
+use barrelstack::variants::Spread;
+use barrelstack::watch::Ending;
+use barrelstack_report::described;
+
+use crate::fate::Heading;
+use crate::run::Run;
+use crate::variants::{Case, demands};
+
+described! {
+    /// The summary of a run in space. Lengths in m, times in s, angles in rad; `x` is across the barrels, `y` along
+    /// them, `z` up; null where it did not happen or does not apply.
+    #[derive(Clone, Debug)]
+    pub struct Summary {
+        /// Name and version of this layout.
+        pub schema: &'static str ["space/1"],
+        /// The scenario's title.
+        pub title: String,
+        /// Which variant of the stack this is; 0 as it is stated.
+        pub variant: u32,
+        /// What all variants say together; null where none were run.
+        pub ensemble: Option<Spread>,
+        /// In which directions they fall; null where none were run.
+        pub directions: Option<Directions>,
+        /// What happened.
+        pub outcome: OutcomeInSpace,
+        /// Every body but the ground; none where the run is invalid.
+        pub bodies: Vec<BodyInSpace>,
+        /// Demands on the stack, those that space knows.
+        pub demands: Demands,
+        /// The energy books; null where numbers were lost.
+        pub energy: Option<EnergyBooks>,
+        /// The component of the scenario, and the vertical one.
+        pub motion: Option<MotionSummary>,
+        /// The other horizontal component; null where the motion has none.
+        pub other_component: Option<MotionSummary>,
+        /// How it was computed.
+        pub run: RunInSpace,
+        /// What the reader should know.
+        pub warnings: Vec<String>,
+        /// What made the result.
+        pub provenance: Provenance,
+    }
+
+    /// In which directions variants fall.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Directions {
+        /// Variants whose first body leaves its seat to the right, x positive.
+        pub first_right: u32,
+        /// To the left.
+        pub first_left: u32,
+        /// Away along the barrels, y positive.
+        pub first_away: u32,
+        /// The other way along the barrels.
+        pub first_near: u32,
+        /// Fallen barrels of all variants that came to lie to the right of where they stood, more than along.
+        pub debris_right: u32,
+        /// To the left.
+        pub debris_left: u32,
+        /// Away along the barrels, more than across.
+        pub debris_away: u32,
+        /// The other way along the barrels.
+        pub debris_near: u32,
+    }
+
+    /// What happened in space.
+    #[derive(Clone, Debug)]
+    pub struct OutcomeInSpace {
+        /// What it was.
+        pub kind: &'static str ["stable", "collapse", "interrupted", "invalid"],
+        /// How it collapsed.
+        pub mode: Option<&'static str> ["ejection", "rocking", "rack-sliding", "overturning"],
+        /// When the first body left its seat.
+        pub time: Option<f64> as "s",
+        /// That body.
+        pub first: Option<String>,
+        /// In which direction it left.
+        pub heading: Option<&'static str> ["right", "left", "away", "near"],
+        /// The lowest level that gave way.
+        pub from_level: Option<u32>,
+        /// The highest level that went.
+        pub to_level: Option<u32>,
+        /// When the first barrel had fallen.
+        pub first_fall: Option<f64> as "s",
+        /// Barrels that had fallen at the end; null where the run is invalid.
+        pub barrels_fallen: Option<usize>,
+        /// Barrels in all.
+        pub barrels: usize,
+        /// Why the run is invalid.
+        pub reason: Option<String>,
+    }
+
+    /// One body in space.
+    #[derive(Clone, Debug)]
+    pub struct BodyInSpace {
+        /// Its name.
+        pub name: String,
+        /// What it is.
+        pub kind: &'static str ["barrel", "rack"],
+        /// Level, 1 at the bottom.
+        pub level: u32,
+        /// Column, 1 at the left.
+        pub column: u32,
+        /// Row along the barrels, 1 nearest.
+        pub row: u32,
+        /// When it left its seat.
+        pub left_seat_at: Option<f64> as "s",
+        /// In which direction.
+        pub left_seat_to: Option<&'static str> ["right", "left", "away", "near"],
+        /// When it had fallen.
+        pub fell_at: Option<f64> as "s",
+        /// Largest drop below its place at rest.
+        pub drop: f64 as "m",
+        /// Displacement x, y, z against the ground and its place at rest, at the end.
+        pub moved: [f64; 3] as "m",
+        /// Largest horizontal displacement against the ground while the stack stood.
+        pub peak_displacement: f64 as "m",
+        /// Largest displacement across the barrels against what it stands on, while the stack stood.
+        pub peak_slip_across: f64 as "m",
+        /// The same along the barrels.
+        pub peak_slip_along: f64 as "m",
+        /// Largest rise above its place at rest while the stack stood.
+        pub peak_uplift: f64 as "m",
+        /// Largest tilt while the stack stood; racks only.
+        pub peak_tilt: Option<f64> as "rad",
+    }
+
+    /// How it was computed.
+    #[derive(Clone, Debug)]
+    pub struct RunInSpace {
+        /// Integration method.
+        pub method: &'static str,
+        /// Time step.
+        pub time_step: f64 as "s",
+        /// Accepted steps.
+        pub steps: u64,
+        /// Evaluations of all forces.
+        pub evaluations: u64,
+        /// Contact elements tested.
+        pub contact_evaluations: u64,
+        /// Simulated time reached.
+        pub end_time: f64 as "s",
+        /// Why it ended.
+        pub ending: &'static str ["rest", "after-collapse", "duration", "patience", "interrupted", "broken"],
+        /// Steps taken to find equilibrium.
+        pub settle_steps: Option<u64>,
+        /// Time on the clock, all variants included.
+        pub wall_seconds: Option<f64> as "s",
+    }
+}
+
+impl Directions {
+    /// Of cases.
+    pub fn of(cases: &[Case]) -> Self {
+        let count = |of: &dyn Fn(&Case) -> usize| {
+            u32::try_from(cases.iter().map(of).sum::<usize>()).unwrap_or(u32::MAX)
+        };
+        let first = |to: Heading| count(&|case| usize::from(case.first == Some(to)));
+        let debris =
+            |to: Heading| count(&|case| case.debris.iter().filter(|way| **way == to).count());
+        Self {
+            first_right: first(Heading::Right),
+            first_left: first(Heading::Left),
+            first_away: first(Heading::Away),
+            first_near: first(Heading::Near),
+            debris_right: debris(Heading::Right),
+            debris_left: debris(Heading::Left),
+            debris_away: debris(Heading::Away),
+            debris_near: debris(Heading::Near),
+        }
+    }
+
+    /// Variants whose first body leaves its seat across the barrels, and along them.
+    pub fn first(&self) -> [u32; 2] {
+        [self.first_right + self.first_left, self.first_away + self.first_near]
+    }
+
+    /// Fallen barrels across the barrels, and along them.
+    pub fn debris(&self) -> [u32; 2] {
+        [self.debris_right + self.debris_left, self.debris_away + self.debris_near]
+    }
+}
+
+impl Summary {
+    /// Sums up a run, of a scenario as it is stated.
+    pub fn of(run: &Run, stated: &Scenario) -> Self {
+        let sound = !matches!(run.outcome, Outcome::Invalid { .. });
+        let motion = |ground: &barrelstack::Ground| ground.motion.as_ref().map(MotionSummary::of);
+        let first = &run.ground.first;
+        Self {
+            schema: "space/1",
+            title: stated.title.clone(),
+            variant: 0,
+            ensemble: None,
+            directions: None,
+            outcome: outcome(run, sound),
+            // Numbers of a run that broke down look like results and are none.
+            bodies: if sound { bodies(run) } else { Vec::new() },
+            demands: if sound { demands(run) } else { Demands::default() },
+            energy: run.energy.as_ref().map(EnergyBooks::of),
+            motion: motion(first),
+            other_component: run.ground.second.as_ref().and_then(motion),
+            run: RunInSpace {
+                method: run.simulation.method.name(),
+                time_step: run.simulation.time_step,
+                steps: run.work.steps,
+                evaluations: run.work.evaluations,
+                contact_evaluations: run.work.contact_evaluations,
+                end_time: run.end_time,
+                ending: run.ending.name(),
+                settle_steps: run.settled.map(|settled| settled.steps),
+                wall_seconds: None,
+            },
+            warnings: run.warnings.clone(),
+            provenance: Provenance {
+                program: "barrelstack",
+                version: env!("CARGO_PKG_VERSION"),
+                scenario_hash: format!("{:016x}", stated.fingerprint()),
+                motion: run.ground.provenance(),
+            },
+        }
+    }
+
+    /// The summary as JSON text, indented.
+    pub fn to_json(&self) -> String {
+        // Only maps with keys that are not text could fail, and there is none.
+        serde_json::to_string_pretty(self).unwrap_or_default()
+    }
+}
+
+fn outcome(run: &Run, sound: bool) -> OutcomeInSpace {
+    let interrupted = run.ending == Ending::Interrupted && sound;
+    let mut summary = OutcomeInSpace {
+        kind: if interrupted { "interrupted" } else { run.outcome.kind() },
+        mode: None,
+        time: None,
+        first: None,
+        heading: run.heading.map(Heading::name).filter(|_| sound),
+        from_level: None,
+        to_level: None,
+        first_fall: run.first_fall.filter(|_| sound),
+        barrels_fallen: sound.then(|| run.fallen().count()),
+        barrels: run.stack.of_kind(PartKind::Barrel).count(),
+        reason: None,
+    };
+    match &run.outcome {
+        Outcome::Collapse { mode, time, first, from_level, to_level } => {
+            summary.mode = Some(mode.name());
+            summary.time = Some(*time);
+            summary.first = Some(first.clone());
+            summary.from_level = Some(*from_level);
+            summary.to_level = Some(*to_level);
+        }
+        Outcome::Invalid { reason } => summary.reason = Some(reason.clone()),
+        Outcome::Stable | Outcome::NotJudged => {}
+    }
+    summary
+}
+
+fn bodies(run: &Run) -> Vec<BodyInSpace> {
+    let parts = run.stack.parts.iter().zip(&run.fates).skip(1);
+    parts
+        .map(|(part, fate)| BodyInSpace {
+            name: part.name.clone(),
+            kind: part.kind.name(),
+            level: part.level,
+            column: part.column,
+            row: part.row,
+            left_seat_at: fate.left_seat.map(|(time, ..)| time),
+            left_seat_to: fate.left_seat.map(|(.., heading)| heading.name()),
+            fell_at: fate.fell_at,
+            drop: fate.drop,
+            moved: [fate.moved.x, fate.moved.y, fate.moved.z],
+            peak_displacement: fate.peak_displacement,
+            peak_slip_across: fate.peak_slip[0],
+            peak_slip_along: fate.peak_slip[1],
+            peak_uplift: fate.peak_uplift,
+            peak_tilt: (part.kind == PartKind::Rack).then_some(fate.peak_tilt),
+        })
+        .collect()
+}

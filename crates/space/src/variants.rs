@@ -1,0 +1,203 @@
+//! A stack in space and its variants: the same draws, shares and words as in a plane, and directions besides.
+
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use barrelstack::assemble::PartKind;
+use barrelstack::demand::Demands;
+use barrelstack::ensemble::CaseResult;
+use barrelstack::outcome::Outcome;
+use barrelstack::run::CUT;
+use barrelstack::variants::{Asked, Plane, Spread, Told, planes};
+use barrelstack::watch::Ending;
+use barrelstack::{RunFailure, Scenario, pool};
+
+use crate::fate::Heading;
+use crate::ground::Ground;
+use crate::run::{Run, affordable, run_on};
+use crate::stack::Stack;
+use crate::summary::{Directions, Summary};
+
+/// What became of one variant in space.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// What a case of a plane tells, too; without stresses, forces and trails.
+    pub result: CaseResult,
+    /// In which direction the first body left its seat.
+    pub first: Option<Heading>,
+    /// Where its fallen barrels came to lie, each seen from where it stood.
+    pub debris: Vec<Heading>,
+}
+
+/// What became of a scenario in space.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// The run that is shown.
+    pub run: Run,
+    /// Its summary, with what all variants say.
+    pub summary: Summary,
+    /// The case as it is stated, and its variants; empty where none were run, or they were stopped.
+    pub cases: Vec<Case>,
+}
+
+impl Case {
+    /// Of a run.
+    pub fn of(run: &Run) -> Self {
+        let sound = !matches!(run.outcome, Outcome::Invalid { .. });
+        let barrels: Vec<usize> = run.stack.of_kind(PartKind::Barrel).collect();
+        let fall = |body: &usize| (run.stack.parts[*body].name.clone(), run.fates[*body].fell_at);
+        let left = run.ground.end() - run.end_time;
+        let residual = barrels.iter().map(|body| run.fates[*body].moved.x);
+        let largest = |most: f64, value: f64| if value.abs() > most.abs() { value } else { most };
+        let result = CaseResult {
+            first_fall: run.first_fall.filter(|_| sound),
+            barrels: barrels.len(),
+            falls: if sound { barrels.iter().map(fall).collect() } else { Vec::new() },
+            fall_heights: if sound {
+                run.fallen().map(|body| run.fates[body].drop).collect()
+            } else {
+                Vec::new()
+            },
+            demands: if sound { demands(run) } else { Demands::default() },
+            residual_displacement: sound.then(|| residual.fold(0.0, largest)),
+            ending: Some(run.ending),
+            cut: Some(if run.ending == Ending::Rest || left <= CUT { 0.0 } else { left }),
+            end_time: Some(run.end_time),
+            steps: Some(run.work.steps),
+            energy_residual_ratio: run.energy.map(|energy| energy.residual_ratio()),
+            warnings: run.warnings.clone(),
+            ..CaseResult::failed(String::new())
+        };
+        Self {
+            result: CaseResult { outcome: Ok(run.outcome.clone()), ..result },
+            first: run.heading.filter(|_| sound),
+            debris: if sound { run.debris().collect() } else { Vec::new() },
+        }
+    }
+}
+
+/// The demands that space knows: displacements are horizontal, whatever their direction.
+pub(crate) fn demands(run: &Run) -> Demands {
+    let of = |kind: PartKind, on: &dyn Fn(u32) -> bool, value: &dyn Fn(usize) -> f64| {
+        let bodies = run.stack.of_kind(kind).filter(|body| on(run.stack.parts[*body].level));
+        bodies.map(value).reduce(f64::max)
+    };
+    let slip = |body: usize| {
+        let [x, y] = run.fates[body].peak_slip;
+        (x * x + y * y).sqrt()
+    };
+    let drift = |body: usize| run.fates[body].peak_displacement / run.stack.height;
+    Demands {
+        top_drift_ratio: of(PartKind::Barrel, &|level| level == run.stack.levels, &drift),
+        base_slip_peak: of(PartKind::Rack, &|level| level == 1, &slip),
+        rack_walk_peak: of(PartKind::Rack, &|level| level > 1, &slip),
+        ..Demands::default()
+    }
+}
+
+/// Runs the case as it is stated and all its variants on all cores, before an observer, who hears how many of how many
+/// are done, and may stop them; then there is nothing.
+///
+/// The first is the case as it is stated, those after it the variants by their numbers.
+/// All stand as the scenario turns the stack: in space no component has to be taken for another.
+///
+/// # Errors
+/// When the motion cannot be read, or the stack as it is stated cannot be built or does not stand.
+pub fn run_all(
+    scenario: &Scenario,
+    observer: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
+) -> Result<Option<Vec<Case>>, RunFailure> {
+    let plane = plane(scenario)?;
+    // What cannot be run is told before the work.
+    let ground = Ground::of(&plane.scenario)?;
+    affordable(&plane.scenario, &Stack::of(&plane.scenario)?, &ground)?;
+    let numbers = plane.numbers();
+    let (done, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let hear = |done: usize| {
+        if observer(done, numbers.len()).is_break() {
+            stopped.store(true, Ordering::Relaxed);
+        }
+    };
+    let work = |number: &u32| {
+        let mut going = |_| {
+            hear(done.load(Ordering::Relaxed));
+            let over = stopped.load(Ordering::Relaxed);
+            if over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let run = run_on(&plane.variant(*number), ground.clone(), &mut going);
+        done.fetch_add(1, Ordering::Relaxed);
+        hear(done.load(Ordering::Relaxed));
+        match run {
+            Ok(run) => Case::of(&run),
+            Err(error) => Case {
+                result: CaseResult::failed(error.to_string()),
+                first: None,
+                debris: Vec::new(),
+            },
+        }
+    };
+    let cases = pool::map(&numbers, work, &|_| ());
+    Ok((!stopped.load(Ordering::Relaxed)).then_some(cases))
+}
+
+/// The scenario with its records at hand, whose variants are those of space.
+fn plane(scenario: &Scenario) -> Result<Plane, RunFailure> {
+    let mut all = planes(scenario)?;
+    Ok(all.swap_remove(0))
+}
+
+/// Runs all variants of a scenario in space and then, with everything that can be seen, the run to be shown, before
+/// an observer, who may stop it: what was seen until then is returned.
+///
+/// # Errors
+/// As [`run_all`], and when the run that is shown cannot be built or does not stand.
+pub fn answer(
+    scenario: &Scenario,
+    asked: Asked,
+    observer: &mut (dyn FnMut(Told) -> ControlFlow<()> + Send),
+) -> Result<Answer, RunFailure> {
+    let scenario = &scenario.with_event()?;
+    let plane = plane(scenario)?;
+    let observer = Mutex::new(observer);
+    let told = |told: Told| match observer.lock() {
+        Ok(mut observer) => observer(told),
+        // Another thread has panicked; this work is of no use any more.
+        Err(_) => ControlFlow::Break(()),
+    };
+    let varied = !matches!(asked, Asked::Alone(_)) && plane.count() > 0;
+    let cases = if varied {
+        run_all(&plane.scenario, &|done, of| told(Told::Variants { done, of }))?
+    } else {
+        None
+    };
+    let stopped = varied && cases.is_none();
+    let cases = cases.unwrap_or_default();
+    let results: Vec<CaseResult> = cases.iter().map(|case| case.result.clone()).collect();
+    let imperfections = plane.scenario.imperfections().filter(|_| !cases.is_empty());
+    let spread = imperfections.map(|imperfections| Spread::of(imperfections, &results));
+    let number = match (asked, &spread) {
+        (Asked::Number(number) | Asked::Alone(number), _) => number,
+        (Asked::Typical, Some(spread))
+            if results.first().is_some_and(|one| one.outcome.is_ok()) =>
+        {
+            spread.typical
+        }
+        (Asked::Typical, _) => 0,
+    };
+    let variant = plane.variant(number);
+    let ground = Ground::of(&plane.scenario)?;
+    let mut run = run_on(&variant, ground, &mut |now| told(Told::Run(now)))?;
+    if stopped {
+        run.warnings.push(
+            "the variants were stopped before all were done, so nothing is said of the share that collapses"
+                .to_owned(),
+        );
+    }
+    let mut summary = Summary::of(&run, &plane.scenario);
+    summary.variant = number;
+    summary.directions =
+        spread.as_ref().map(|_| Directions::of(cases.get(1..).unwrap_or_default()));
+    summary.ensemble = spread;
+    Ok(Answer { run, summary, cases })
+}

@@ -1,0 +1,141 @@
+//! What is said of a stack in space, in sentences: those of a plane, and directions besides.
+
+use barrelstack::outcome::Outcome;
+use barrelstack::scenario::View;
+use barrelstack::variants::words::{headline as of_variants, percent, tone as of_spread};
+use barrelstack::watch::{Ending, Loss};
+use barrelstack_report::{Tone, capital};
+
+use crate::fate::Heading;
+use crate::run::Run;
+use crate::summary::Summary;
+
+/// The answer in one sentence.
+pub fn headline(run: &Run, summary: &Summary) -> String {
+    if let Some(spread) = &summary.ensemble {
+        // A single spread is told without its plane.
+        return of_variants(&[(View::Transverse, spread)]);
+    }
+    let barrels = summary.outcome.barrels;
+    match &run.outcome {
+        Outcome::Stable if run.ending == Ending::Interrupted => {
+            format!("This stack stood until the run was stopped at {:.1} s.", run.end_time)
+        }
+        Outcome::Stable => "This stack stands.".to_owned(),
+        Outcome::Collapse { time, .. } => format!(
+            "This stack falls: it gives way after {time:.1} s, and {} of {barrels} barrels fall.",
+            run.fallen().count()
+        ),
+        Outcome::NotJudged => "Nothing is judged.".to_owned(),
+        Outcome::Invalid { reason } => format!("This run has no verdict: {reason}."),
+    }
+}
+
+/// The kind of the verdict.
+pub fn tone(run: &Run, summary: &Summary) -> Tone {
+    if let Some(spread) = &summary.ensemble {
+        return of_spread(&[(View::Transverse, spread)]);
+    }
+    match run.outcome {
+        Outcome::Stable if run.ending == Ending::Interrupted => Tone::Neutral,
+        Outcome::Stable => Tone::Stands,
+        Outcome::Collapse { .. } => Tone::Falls,
+        Outcome::NotJudged => Tone::Neutral,
+        Outcome::Invalid { .. } => Tone::Invalid,
+    }
+}
+
+/// What a direction is, behind a verb.
+pub fn toward(heading: Heading) -> &'static str {
+    match heading {
+        Heading::Right => "across the barrels, to the right",
+        Heading::Left => "across the barrels, to the left",
+        Heading::Away => "along the barrels, away",
+        Heading::Near => "along the barrels, toward the near side",
+    }
+}
+
+/// How a body leaves its seat.
+pub(crate) fn leaves(name: &str, loss: Loss) -> String {
+    match loss {
+        Loss::Displaced => format!("{name} leaves its cradle"),
+        Loss::Slid => format!("{name} slides off the barrels below"),
+        Loss::Tilted => format!("{name} tilts off its seat"),
+        Loss::Dropped => format!("{name} loses its support"),
+    }
+}
+
+/// The sentences that back the headline.
+pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
+    let mut sentences = Vec::new();
+    if let Some(directions) = &summary.directions {
+        let [across, along] = directions.first();
+        if across + along > 0 {
+            sentences.push(format!(
+                "The first body leaves its seat across the barrels in {across} of {} variants that fall, along them \
+                 in {along}.",
+                across + along
+            ));
+        }
+        let [across, along] = directions.debris().map(f64::from);
+        if across + along > 0.0 {
+            sentences.push(format!(
+                "Of the barrels that fall {} come to lie across from where they stood, {} along.",
+                percent(across / (across + along)),
+                percent(along / (across + along))
+            ));
+        }
+    }
+    if let Outcome::Collapse { time, first, .. } = &run.outcome {
+        let part = run.stack.parts.iter().position(|part| part.name == *first);
+        if let Some((_, loss, heading)) = part.and_then(|body| run.fates[body].left_seat) {
+            let shown = if summary.ensemble.is_some() { "In the run that is shown " } else { "" };
+            let kind = run.stack.parts[part.unwrap_or(0)].kind.name();
+            let told = format!("{} {}", leaves(&format!("{kind} {first}"), loss), toward(heading));
+            sentences.push(format!("{} after {time:.1} s.", capital(&format!("{shown}{told}"))));
+        }
+    }
+    sentences
+}
+
+/// The rows of the summary for people: name and value.
+pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
+    let mut rows = Vec::new();
+    let mut row = |name: &str, value: String| rows.push((name.to_owned(), value));
+    row("outcome", summary.outcome.mode.unwrap_or(summary.outcome.kind).to_owned());
+    if let (Some(first), Some(time)) = (&summary.outcome.first, summary.outcome.time) {
+        let way = run.heading.map_or("", toward);
+        row("first", format!("{first} at {time:.2} s, {way}"));
+    }
+    if let Some(fallen) = summary.outcome.barrels_fallen.filter(|fallen| *fallen > 0) {
+        let side = |wanted: Heading| run.debris().filter(|way| *way == wanted).count();
+        let ways = Heading::ALL.map(|way| (side(way), way.name()));
+        let told: Vec<String> = ways
+            .iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, name)| format!("{count} {name}"))
+            .collect();
+        row(
+            "barrels fallen",
+            format!("{fallen} of {}: {}", summary.outcome.barrels, told.join(", ")),
+        );
+    }
+    if let Some(drift) = summary.demands.top_drift_ratio {
+        row("drift of the top", format!("{:.1} % of the height", 100.0 * drift));
+    }
+    if let Some(slip) = summary.demands.base_slip_peak {
+        row("slip on the ground", format!("{:.1} cm", 100.0 * slip));
+    }
+    if let Some(walk) = summary.demands.rack_walk_peak {
+        row("walk of a rack", format!("{:.1} cm", 100.0 * walk));
+    }
+    if let Some(energy) = &summary.energy {
+        row(
+            "energy books",
+            format!("{:.0e} of what went through is missing", energy.residual_ratio),
+        );
+    }
+    let Summary { run: done, .. } = summary;
+    row("time", format!("{:.1} s in {} steps", done.end_time, done.steps));
+    rows
+}

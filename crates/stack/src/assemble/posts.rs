@@ -1,0 +1,64 @@
+//! Posts on which the next rack stands, and the cups that keep it there.
+
+use barrelstack_dynamics::Shape;
+use barrelstack_dynamics::Vec2;
+use barrelstack_dynamics::shape::{Polygon, PolygonError};
+
+use super::solid::{Seat, Solid};
+use super::transverse::TUBE_CORNER;
+use crate::scenario::{Posts, Rack};
+
+/// Play (m) between the cup of a foot and the post in it: an assumption.
+const SPIGOT_PLAY: f64 = 0.005;
+
+/// Half the thickness (m) of the lips of a cup: an assumption.
+const LIP_RADIUS: f64 = 0.004;
+
+/// How far (m) from the middle of a post the outside of the cup over it is.
+pub(super) fn cup(rack: &Rack) -> f64 {
+    0.5 * rack.rail_width + SPIGOT_PLAY + 2.0 * LIP_RADIUS
+}
+
+/// How far (m) the foot of a rack may move, in the frame of the rack below, on posts at `spacing` (m) from its middle
+/// before nothing holds it there.
+pub(super) fn reach(rack: &Rack, spacing: f64) -> f64 {
+    // A post stands on a post: once it has moved by its width it is off.
+    rack.rail_width.min(spacing)
+}
+
+/// The two posts at `spacing` (m) from the middle of a rack, and above the first level the cups over the posts
+/// below: lips beside them hold the rack in place until it is lifted off. On the floor there is nothing to hold.
+pub(super) fn posts_and_cups(
+    rack: &Rack,
+    posts: &Posts,
+    spacing: f64,
+    level: u32,
+) -> Result<Vec<Solid>, PolygonError> {
+    let mut solids = Vec::new();
+    let height = posts.height - rack.beam_height;
+    let half = 0.5 * rack.rail_width;
+    for side in [-1.0, 1.0] {
+        let post = side * spacing;
+        solids.push(Solid::exact(
+            Shape::Polygon(Polygon::rectangle(rack.rail_width, height, TUBE_CORNER.min(half))?),
+            Vec2::new(post, rack.beam_height + 0.5 * height),
+            Seat::Rack,
+        ));
+        if level > 1 && posts.spigot > 0.0 {
+            for beside in [-1.0, 1.0] {
+                let x = post + beside * (half + SPIGOT_PLAY + LIP_RADIUS);
+                let hang = (posts.spigot - LIP_RADIUS).max(LIP_RADIUS);
+                solids.push(Solid::exact(
+                    Shape::Polygon(Polygon::bar(
+                        Vec2::new(0.0, 0.5 * hang),
+                        Vec2::new(0.0, -0.5 * hang),
+                        LIP_RADIUS,
+                    )?),
+                    Vec2::new(x, -0.5 * hang),
+                    Seat::None,
+                ));
+            }
+        }
+    }
+    Ok(solids)
+}

@@ -1,0 +1,195 @@
+//! Runs in lanes: who loads them, watches them, and writes down what became of them.
+
+use barrelstack_dynamics::lanes::{self, Case, End, Lanewise as _, Task, Width, run_batch};
+use barrelstack_dynamics::real::{Mask, Real};
+use barrelstack_dynamics::{Finish, Method, Planar, Scratch, State};
+
+use super::case::Seen;
+use super::trail::Trail;
+use super::{Audience, CaseResult, Run};
+use crate::ground::Ground;
+use crate::run::{Ended, conclude, thresholds};
+use crate::stand::{Stack, Standing};
+use crate::watch::{self, Ending, Fates, Joints, StressWatch};
+
+/// Steps between two questions whether to stop.
+const PATIENCE: u32 = 1024;
+
+/// Runs a group of one topology and method in lanes; none when asked to stop.
+pub(super) fn run(
+    width: Width,
+    method: Method,
+    group: &[Run<'_>],
+    stacks: &[Stack<'_>],
+    audience: &mut Audience<'_>,
+) -> Option<Vec<(usize, CaseResult)>> {
+    let width = if width.is_here() { width } else { Width::Scalar };
+    width.run(InLanes { method, group, stacks, audience })?
+}
+
+struct InLanes<'a, 'b> {
+    method: Method,
+    group: &'a [Run<'a>],
+    stacks: &'a [Stack<'a>],
+    audience: &'a mut Audience<'b>,
+}
+
+impl Task for InLanes<'_, '_> {
+    type Output = Option<Vec<(usize, CaseResult)>>;
+
+    fn run<R: Real>(self) -> Self::Output {
+        let Self { method, group, stacks, audience } = self;
+        let mut batch = Batch::<R> {
+            group,
+            stacks,
+            audience,
+            next: 0,
+            runs: vec![0; R::LANES],
+            fates: None,
+            stresses: StressWatch::nothing(),
+            joints: None,
+            end: None,
+            trails: vec![Trail::default(); R::LANES],
+            due: R::splat(f64::INFINITY),
+            rested: R::Mask::default(),
+            steps: 0,
+            interrupted: false,
+            results: Vec::with_capacity(group.len()),
+        };
+        run_batch(method, &mut batch);
+        (!batch.interrupted).then_some(batch.results)
+    }
+}
+
+struct Batch<'a, 'b, R: Real> {
+    group: &'a [Run<'a>],
+    stacks: &'a [Stack<'a>],
+    audience: &'a mut Audience<'b>,
+    /// The next run of the group.
+    next: usize,
+    /// Which run every lane has.
+    runs: Vec<usize>,
+    /// What becomes of the bodies of every lane; none before the first run is loaded.
+    fates: Option<Fates<R>>,
+    /// How hard nodes press in every lane.
+    stresses: StressWatch<R>,
+    /// What bodies of every lane bear; none before the first run is loaded.
+    joints: Option<Joints<R>>,
+    /// What ends every lane before its time is over; none before the first run is loaded.
+    end: Option<watch::End<R>>,
+    /// Where the barrels of every lane were, and when (s) they are looked at next.
+    trails: Vec<Trail>,
+    due: R,
+    /// The lanes that had come to rest in the last step.
+    rested: R::Mask,
+    /// Steps since the audience was asked.
+    steps: u32,
+    interrupted: bool,
+    results: Vec<(usize, CaseResult)>,
+}
+
+impl<R: Real> Batch<'_, '_, R> {
+    fn standing(&self, lane: usize) -> Option<(&Run<'_>, &Standing)> {
+        let run = &self.group[self.runs[lane]];
+        self.stacks[run.stack].standing.as_ref().ok().map(|standing| (run, standing))
+    }
+}
+
+impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
+    type Drive = &'a Ground;
+
+    fn next(&mut self, lane: usize) -> Option<Case<'a, &'a Ground>> {
+        let run = self.group.get(self.next).filter(|_| !self.interrupted)?;
+        self.runs[lane] = self.next;
+        self.next += 1;
+        let standing = self.stacks[run.stack].standing.as_ref().ok()?;
+        Some(Case {
+            model: &standing.assembly.model,
+            state: standing.state.clone(),
+            drive: &*run.case.ground,
+            time_step: standing.step,
+            end_time: run.end_time,
+        })
+    }
+
+    fn start(&mut self, lane: usize, state: &State<Planar>, scratch: &Scratch<Planar>) {
+        let Some((run, standing)) = self.standing(lane) else { return };
+        let end = run.end(standing);
+        let rest = &standing.state;
+        let mut fates = Fates::new(&standing.assembly, rest, thresholds(&run.case.scenario));
+        fates.observe(state, scratch);
+        let mut stresses = StressWatch::new(&standing.assembly, &standing.scratch);
+        stresses.observe(fates.collapse_time().is_none(), scratch);
+        let mut joints = Joints::new(&standing.assembly);
+        joints.start(state.time, scratch);
+        let mut trail = Trail::new(&standing.assembly);
+        trail.see_state(state);
+        self.due.put(lane, &trail.due());
+        self.trails[lane] = trail;
+        self.stresses.begin(lane, stresses);
+        self.joints.get_or_insert_with(|| Joints::in_all(&joints)).put(lane, &joints);
+        self.fates.get_or_insert_with(|| Fates::in_all(&fates)).put(lane, &fates);
+        self.end.get_or_insert_with(|| watch::End::in_all(&end)).put(lane, &end);
+    }
+
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) -> R::Mask {
+        self.steps += 1;
+        if self.steps == PATIENCE {
+            self.steps = 0;
+            if (self.audience.stop)() {
+                self.interrupted = true;
+                return !R::Mask::default();
+            }
+        }
+        let (Some(fates), Some(joints), Some(end)) =
+            (&mut self.fates, &mut self.joints, &mut self.end)
+        else {
+            return R::Mask::default();
+        };
+        fates.observe(state, scratch);
+        joints.observe(state.time, scratch);
+        self.stresses.observe(fates.stands(), scratch);
+        let (collapsed, rested) = end.observe(state, fates);
+        self.rested = rested;
+        let ended = collapsed | rested;
+        // Lanes without a case have ended, too.
+        let seen = self.due.le(state.time) | (ended & self.due.lt(R::splat(f64::INFINITY)));
+        if seen.any() {
+            for lane in (0..R::LANES).filter(|lane| seen.lane(*lane)) {
+                let trail = &mut self.trails[lane];
+                trail.see(state.time.lane(lane), |body| state.poses[body].of_lane(lane));
+                self.due.put(lane, &trail.due());
+            }
+        }
+        ended
+    }
+
+    fn end(&mut self, lane: usize, end: End) {
+        let (Some(fates), Some(joints), false) = (&self.fates, &self.joints, self.interrupted)
+        else {
+            return;
+        };
+        let (fates, joints) = (fates.of_lane(lane), joints.of_lane(lane));
+        let stresses = self.stresses.finish(lane);
+        // A lane without a case stands still and is not looked at.
+        self.due.put(lane, &f64::INFINITY);
+        let trail = std::mem::take(&mut self.trails[lane]);
+        let Some((run, standing)) = self.standing(lane) else { return };
+        let ending = match &end.finish {
+            Ok(Finish::Stopped) if self.rested.lane(lane) => Ending::Rest,
+            Ok(Finish::Stopped) => Ending::AfterCollapse,
+            Ok(Finish::EndTime) => Ending::of_time(&run.case.scenario),
+            Err(_) => Ending::Broken,
+        };
+        let ended = end.finish.map(|_| Ended { energy: end.energy, steps: end.steps });
+        let (assembly, ground) = (&standing.assembly, &*run.case.ground);
+        let verdict = conclude(assembly, ground, &fates, ended, end.time, ending);
+        let seen = Seen { fates: &fates, stresses: &stresses, joints: &joints, trail };
+        let result = CaseResult::of(assembly, ground, seen, verdict, end.time);
+        let index = run.index;
+        (self.audience.tell)(&result);
+        self.results.push((index, result));
+    }
+}

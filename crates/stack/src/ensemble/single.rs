@@ -1,0 +1,106 @@
+//! Runs that choose their own steps, one after the other: they have no common one.
+
+use std::ops::ControlFlow;
+
+use barrelstack_dynamics::{
+    EnergyLedger, Model, Observer, Planar, Scratch, Simulation, State, simulate,
+};
+
+use super::case::Seen;
+use super::trail::Trail;
+use super::{Audience, CaseResult, Run};
+use crate::run::{Ended, conclude, method, thresholds};
+use crate::stand::Stack;
+use crate::watch::{End, Ending, Fates, Joints, StressWatch};
+
+/// Runs a group; none when asked to stop.
+pub(super) fn run(
+    group: &[Run<'_>],
+    stacks: &[Stack<'_>],
+    audience: &mut Audience<'_>,
+) -> Option<Vec<(usize, CaseResult)>> {
+    let mut results = Vec::with_capacity(group.len());
+    for run in group {
+        let Ok(standing) = &stacks[run.stack].standing else { continue };
+        let scenario = &*run.case.scenario;
+        let (mut state, mut scratch) = (standing.state.clone(), standing.scratch.clone());
+        let simulation = Simulation {
+            method: method(scenario),
+            time_step: standing.step,
+            end_time: run.end_time,
+        };
+        let mut watch = Watch {
+            fates: Fates::new(&standing.assembly, &state, thresholds(scenario)),
+            stresses: StressWatch::new(&standing.assembly, &scratch),
+            joints: Joints::new(&standing.assembly),
+            trail: Trail::new(&standing.assembly),
+            started: false,
+            end: run.end(standing),
+            stop: audience.stop,
+            next_ask: 0.0,
+            ending: None,
+        };
+        let ground = &*run.case.ground;
+        let model = &standing.assembly.model;
+        let ended = simulate(model, ground, &mut state, &mut scratch, &simulation, &mut watch);
+        if watch.ending == Some(Ending::Interrupted) {
+            return None;
+        }
+        let ending = watch.ending.unwrap_or(Ending::of_time(scenario));
+        let ended = ended.map(|totals| Ended::of(&totals));
+        let verdict = conclude(&standing.assembly, ground, &watch.fates, ended, state.time, ending);
+        let stresses = watch.stresses.finish(0);
+        watch.trail.see_state(&state);
+        let Watch { fates, joints, trail, .. } = watch;
+        let seen = Seen { fates: &fates, stresses: &stresses, joints: &joints, trail };
+        let result = CaseResult::of(&standing.assembly, ground, seen, verdict, state.time);
+        (audience.tell)(&result);
+        results.push((run.index, result));
+    }
+    Some(results)
+}
+
+/// Watches what becomes of every body and what it bears, and nothing else.
+struct Watch<'a> {
+    fates: Fates,
+    stresses: StressWatch,
+    joints: Joints,
+    trail: Trail,
+    started: bool,
+    end: End,
+    stop: &'a dyn Fn() -> bool,
+    /// When to ask next whether to stop (s).
+    next_ask: f64,
+    ending: Option<Ending>,
+}
+
+impl Observer<Planar> for Watch<'_> {
+    fn observe(
+        &mut self,
+        _: &Model<Planar>,
+        state: &State<Planar>,
+        scratch: &Scratch<Planar>,
+        _: &EnergyLedger<Planar>,
+    ) -> ControlFlow<()> {
+        self.fates.observe(state, scratch);
+        self.stresses.observe(self.fates.collapse_time().is_none(), scratch);
+        if self.started {
+            self.joints.observe(state.time, scratch);
+        } else {
+            self.joints.start(state.time, scratch);
+            self.started = true;
+        }
+        if state.time >= self.trail.due() {
+            self.trail.see_state(state);
+        }
+        if state.time >= self.next_ask {
+            self.next_ask = state.time + 0.05;
+            if (self.stop)() {
+                self.ending = Some(Ending::Interrupted);
+                return ControlFlow::Break(());
+            }
+        }
+        self.ending = self.end.why(state, &self.fates);
+        if self.ending.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}

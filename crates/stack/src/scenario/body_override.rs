@@ -1,0 +1,182 @@
+//! A body of a stack that differs from the others.
+
+use super::barrel::Fill;
+use super::dimension::Dimension;
+use super::error::ScenarioError;
+use super::field::{Default, Field, Kind, Named, Range, Section, names};
+use super::reader::Reader;
+use super::stack::{COLUMNS, LEVELS, StackSpec};
+use super::tree::Table;
+use super::writer::Writer;
+
+/// The kind of body that an override changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StackBody {
+    /// A barrel; columns count barrels.
+    Barrel,
+    /// A rack; columns count racks.
+    Rack,
+}
+
+/// What differs at one body of a stack.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyOverride {
+    /// Kind of body.
+    pub body: StackBody,
+    /// Level, 1 at the bottom.
+    pub level: u32,
+    /// Column, 1 at the left before any mirroring: of barrels, or of racks when `body` is a rack;
+    /// `None` for the whole level.
+    pub column: Option<u32>,
+    /// Row in space, 1 nearest: of barrels along the barrels, or of racks when `body` is a rack; `None` for all.
+    pub row: Option<u32>,
+    /// Mass in place of the regular one (kg).
+    pub mass: Option<f64>,
+    /// Contents in place of the regular ones; barrels only.
+    pub fill: Option<Fill>,
+    /// Displacement from the regular place, positive to the right before any mirroring (m).
+    pub offset_x: f64,
+    /// The same along the barrels, positive away, in space (m).
+    pub offset_y: f64,
+}
+
+impl Named for StackBody {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("barrel", Self::Barrel), ("rack", Self::Rack)];
+}
+
+/// A body that differs.
+pub static OVERRIDE: Section = Section {
+    name: "override",
+    help: "A body of the stack that differs from the others.",
+    fields: &[
+        Field::new(
+            "kind",
+            Kind::Choice(names::<StackBody>),
+            Default::Value("\"barrel\""),
+            "Kind of body.",
+        ),
+        Field::new("level", LEVELS, Default::Required, "Level, 1 at the bottom."),
+        Field::new(
+            "column",
+            COLUMNS,
+            Default::Derived("every column of the level"),
+            "Column, 1 at the left before mirroring: of barrels, or of racks for a rack; across the barrels where \
+             the stack is looked at in both planes or in space.",
+        ),
+        Field::new(
+            "row",
+            COLUMNS,
+            Default::Derived("every row"),
+            "Row in space, 1 nearest: of barrels along the barrels, or of racks for a rack.",
+        ),
+        Field::new(
+            "mass",
+            Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)),
+            Default::Nothing,
+            "Mass in place of the regular one.",
+        ),
+        Field::new(
+            "fill",
+            Kind::Choice(names::<Fill>),
+            Default::Nothing,
+            "Contents in place of the regular ones; barrels only.",
+        ),
+        Field::new(
+            "offset_x",
+            Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)),
+            Default::Value("\"0 m\""),
+            "Displacement from the regular place, positive to the right before mirroring.",
+        ),
+        Field::new(
+            "offset_y",
+            Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)),
+            Default::Value("\"0 m\""),
+            "Displacement from the regular place along the barrels, positive away, in space.",
+        ),
+    ],
+    variants: None,
+    exclusive: &[],
+};
+
+/// Reads what differs of a body of a stack.
+pub(super) fn read(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride, ScenarioError> {
+    let body: StackBody = reader.choice("kind")?;
+    let level = reader.integer("level")?;
+    let column = reader.optional_integer("column")?;
+    let mass = reader.optional_quantity("mass")?;
+    let fill: Option<Fill> = reader.optional_choice("fill")?;
+    let offset_x = reader.quantity("offset_x")?;
+    let row = reader.optional_integer("row")?;
+    let offset_y = reader.quantity("offset_y")?;
+    let only_in_space = [("row", row.is_some()), ("offset_y", offset_y != 0.0)];
+    if let Some((name, _)) = only_in_space.iter().find(|(_, given)| *given && stack.space.is_none())
+    {
+        let message = format!(
+            "`{}` is for `stack.view = \"spatial\"`; a plane has one row, and moves nothing out of it",
+            reader.path_of(name)
+        );
+        return Err(reader.inconsistent(name, message));
+    }
+    let rows = match body {
+        StackBody::Barrel => stack.space.map_or(1, |space| space.columns_along),
+        StackBody::Rack => stack.racks_along(),
+    };
+    let columns = match body {
+        StackBody::Barrel => stack.columns,
+        StackBody::Rack => stack.racks_per_level(),
+    };
+    for (name, given, most) in
+        [("level", Some(level), stack.levels), ("column", column, columns), ("row", row, rows)]
+    {
+        if let Some(given) = given
+            && given > most
+        {
+            let message = format!(
+                "`{}` is {given}, but the stack has {most} {name}{} of {}s",
+                reader.path_of(name),
+                if most == 1 { "" } else { "s" },
+                body.name()
+            );
+            return Err(reader.inconsistent(name, message));
+        }
+    }
+    if body == StackBody::Rack && fill.is_some() {
+        let message = format!("`{}` is for barrels; a rack holds no wine", reader.path_of("fill"));
+        return Err(reader.inconsistent("fill", message));
+    }
+    if let Some(mass) = mass
+        && body == StackBody::Barrel
+        && mass < stack.barrel.empty_mass
+    {
+        let message = format!(
+            "`{}` is {mass} kg, less than the wood of {} kg",
+            reader.path_of("mass"),
+            stack.barrel.empty_mass
+        );
+        return Err(reader.inconsistent("mass", message));
+    }
+    reader.finish();
+    Ok(BodyOverride { body, level, column, row, mass, fill, offset_x, offset_y })
+}
+
+/// Writes what differs of a body.
+pub(super) fn write(body: &BodyOverride) -> Table {
+    let mut writer = Writer::new(&OVERRIDE);
+    writer.choice("kind", body.body);
+    writer.integer("level", body.level);
+    match body.column {
+        Some(column) => writer.integer("column", column),
+        None => writer.omit(&["column"]),
+    }
+    match body.row {
+        Some(row) => writer.integer("row", row),
+        None => writer.omit(&["row"]),
+    }
+    writer.optional_quantity("mass", body.mass);
+    writer.optional_text("fill", body.fill.map(Named::name));
+    writer.quantity("offset_x", body.offset_x);
+    // A scenario of a plane is written, and so hashed, as before.
+    writer.optional_quantity("offset_y", Some(body.offset_y).filter(|y| *y != 0.0));
+    writer.finish()
+}

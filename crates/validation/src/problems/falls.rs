@@ -1,0 +1,77 @@
+//! How hard what falls is stopped, as a run tells it.
+
+use std::ops::ControlFlow;
+
+use barrelstack::Scenario;
+use barrelstack::assemble::assemble;
+use barrelstack::watch::{Fates, Thresholds};
+use barrelstack_dynamics::Still;
+use barrelstack_dynamics::math::pow;
+
+use crate::scene::Scene;
+use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance};
+
+/// The problems of this theory.
+pub(super) fn problems() -> Vec<Problem> {
+    [1.0, 5.0].map(stopped).into()
+}
+
+/// Mass (kg) and radius (m) of a full barrel, and how hard (N/m^1.5) the ground is.
+const BARREL: [f64; 3] = [268.75, 0.345, 1.2e9];
+
+/// The largest force (N) of a ground `F = k δ^1.5` on a body that has fallen freely: `m g (h + δ) = ⅖ k δ^2.5`.
+fn largest_force(height: f64) -> f64 {
+    let [mass, _, hardness] = BARREL;
+    let mut depth = 0.0_f64;
+    for _ in 0..60 {
+        depth = pow(2.5 * mass * GRAVITY * (height + depth) / hardness, 0.4);
+    }
+    hardness * pow(depth, 1.5)
+}
+
+fn stopped(height: f64) -> Problem {
+    let [mass, radius, hardness] = BARREL;
+    let exact = largest_force(height);
+    Problem {
+        id: format!("falls/force-{height}"),
+        title: format!(
+            "a barrel that falls {height} m on ground as hard as that of the default law of impacts"
+        ),
+        source: "energy: m g (h + δ) = ⅖ k δ^2.5".into(),
+        quantity: "largest force on it",
+        unit: "N",
+        exact,
+        tolerance: Tolerance::Relative(1e-4),
+        fast: Some(Tolerance::Relative(1e-4)),
+        run: Box::new(move |_: Effort| {
+            let text = format!(
+                "schema = 1\nkind = \"free\"\n[[body]]\nname = \"barrel\"\n\
+                 shape = {{ type = \"circle\", radius = \"{radius} m\" }}\nmass = \"{mass} kg\"\n\
+                 position = [\"0 m\", \"{} m\"]\nnodes = \"rolling\"\n[[interface]]\n\
+                 between = [\"barrel\", \"ground\"]\nlaw = \"hertz\"\nstiffness = \"{hardness} N/m^1.5\"\n\
+                 friction = {{ law = \"none\" }}\n[run]\nduration = \"1 s\"\nsettle = false\n",
+                radius + height
+            );
+            let assembly = assemble(&Scenario::parse("fall.toml", &text, &[])?)
+                .map_err(|error| Failure::Absent(error.to_string()))?;
+            let mut scene = Scene::of(assembly.model.clone());
+            let mut fates = Fates::new(&assembly, &scene.state, THRESHOLDS);
+            scene.watch(&Still, 1e-5, 1.3, |state, scratch, _| {
+                fates.observe(state, scratch);
+                ControlFlow::Continue(())
+            })?;
+            let body = assembly.model.body_named("barrel");
+            let force = body.and_then(|body| fates.fate(body).fall_force);
+            force.map(Outcome::of).ok_or_else(|| Failure::Absent("nothing fell".into()))
+        }),
+    }
+}
+
+/// A body that is 20 cm down has fallen; it has no seat to lose.
+const THRESHOLDS: Thresholds = Thresholds {
+    seat_loss_ratio: f64::INFINITY,
+    fall_drop: 0.2,
+    rack_slide_ratio: f64::INFINITY,
+    rocking_angle: f64::INFINITY,
+    overturning_angle: f64::INFINITY,
+};

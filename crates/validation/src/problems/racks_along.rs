@@ -1,0 +1,178 @@
+//! Racks along their barrels: posts that bear a stack, and rails that raise one end of every barrel.
+
+use std::ops::ControlFlow;
+
+use barrelstack::assemble::{Assembly, assemble};
+use barrelstack::{Ground, Run, Scenario};
+use barrelstack_dynamics::Vec2;
+use barrelstack_dynamics::math::{cos, sin};
+use barrelstack_motion::GroundMotion;
+
+use crate::problem::border;
+use crate::{Effort, Failure, GRAVITY, Outcome, Problem};
+
+use super::devices::{problem, push};
+use super::housner::halvings;
+
+/// The problems of this theory.
+pub(super) fn problems() -> Vec<Problem> {
+    let mut list = vec![posts()];
+    list.extend([(0.0, 1.0), (3.5, 1.0), (3.5, -1.0)].map(|(degrees, side)| slides(degrees, side)));
+    list
+}
+
+/// A stack along its barrels, on contacts so stiff that next to nothing gives, under a push (g) that grows for two
+/// seconds and stays for another one.
+fn pushed(settings: &[String], push: f64) -> Result<Run, Failure> {
+    let grown =
+        |at: u32| 0.5 * (1.0 - cos(std::f64::consts::PI * f64::from(at.min(2000)) / 2000.0));
+    let samples = (0..3000).map(|at| push * GRAVITY * grown(at)).collect();
+    let motion = GroundMotion::from_acceleration("push", 0.001, samples);
+    let motion = motion.map_err(|error| Failure::Absent(error.to_string()))?;
+    Ok(scenario(settings)?.run_on(Ground::from(motion), &mut |_| ControlFlow::Continue(()))?)
+}
+
+fn scenario(settings: &[String]) -> Result<Scenario, Failure> {
+    let text = format!(
+        "schema = 1\n[stack]\nview = \"longitudinal\"\ncolumns = 1\nlevels = 1\n\
+         [interface.rack-ground]\nstiffness = \"50 MN/m\"\ndamping = \"20 kN s/m\"\n\
+         [interface.rack-ground.friction]\ncoefficient = 5.0\n\
+         [interface.rack-rack]\nstiffness = \"50 MN/m\"\ndamping = \"20 kN s/m\"\n\
+         [interface.rack-rack.friction]\ncoefficient = 5.0\n\
+         [interface.barrel-rack]\nstiffness = \"50 MN/m\"\ndamping = \"20 kN s/m\"\n{}\n\
+         [run]\nduration = \"2.99 s\"\nuntil = \"duration\"\n",
+        push(0.1, 1.0)
+    );
+    Ok(Scenario::parse("racks.toml", &text, settings)?)
+}
+
+/// Distance (m) of the outer end of the flat top of a post from the middle of its rack: 44 cm to its axis, half of
+/// its 5 cm, less the 12 mm by which its corners are rounded.
+const EDGE: f64 = 0.44 + 0.025 - 0.012;
+
+/// Height (m) from one level of racks on posts to the next.
+const PITCH: f64 = 0.89;
+
+fn towers() -> Vec<String> {
+    // The bottom rack is so heavy that the stack opens above it, at the first posts.
+    [
+        "stack.rack=rack-on-rack",
+        "stack.levels=3",
+        "interface.rack-ground.stiffness=\"5000 MN/m\"",
+        // Softer ones let the stack turn on the two corners of a post.
+        "interface.rack-rack.stiffness=\"500 MN/m\"",
+        "stack.override=[{ kind = \"rack\", level = 1, mass = \"50000 kg\" }]",
+        "interface.barrel-rack.friction.coefficient=5.0",
+    ]
+    .map(str::to_owned)
+    .into()
+}
+
+fn posts() -> Problem {
+    // A rack is uniform over its tubes and posts: its center is taken from the drawing, as are those of its barrels.
+    let exact = EDGE / height_of_upper_levels().unwrap_or(f64::NAN);
+    problem(
+        "posts-along",
+        "two levels on the posts of a heavy rack, pushed along the barrels".into(),
+        "statics: uplift at a/g = c/h",
+        ("push from which they rise from their posts", "g"),
+        (exact, 5e-3, 1e-2),
+        Box::new(move |effort| {
+            height_of_upper_levels()?;
+            let found =
+                border((0.97 * exact, 1.03 * exact), halvings(effort).min(6), |amplitude| {
+                    let run = pushed(&towers(), amplitude)?;
+                    let rack = named(&run.assembly, "R2")?;
+                    Ok(run.fates.fate(rack).peak_tilt > 5e-3)
+                })?;
+            Ok(Outcome::of(found))
+        }),
+    )
+}
+
+/// Height (m) of the center of mass of the upper levels over the posts that bear them.
+fn height_of_upper_levels() -> Result<f64, Failure> {
+    let assembly =
+        assemble(&scenario(&towers())?).map_err(|error| Failure::Absent(error.to_string()))?;
+    let (mut mass, mut moment) = (0.0, 0.0);
+    for name in ["R2", "B2.1", "R3", "B3.1"] {
+        let body = &assembly.model.bodies()[named(&assembly, name)?];
+        mass += body.mass;
+        moment += body.mass * (body.pose.position.z - PITCH);
+    }
+    Ok(moment / mass)
+}
+
+fn named(assembly: &Assembly, name: &str) -> Result<usize, Failure> {
+    assembly.model.body_named(name).ok_or_else(|| Failure::Absent(format!("no {name}")))
+}
+
+/// Length, diameter at the heads and at the bilge of the barrel (m).
+const BARREL: [f64; 3] = [0.945, 0.555, 0.690];
+
+/// Friction of the barrel on its rails.
+const FRICTION: f64 = 0.2;
+
+/// The push (g) from which a barrel slides on two rails that raise its right end by an angle (rad), towards that end
+/// or, with `side = -1`, from it.
+///
+/// Its staves are an arc about a point C high above it, so it slides by turning about C: at the two contacts
+/// `N₁ n₁ + N₂ n₂ + μ (N₁ t₁ + N₂ t₂) + m (A, −g) = 0` and about C `m d × (A, −g) = μ (N₁ + N₂) R`.
+fn sliding(angle: f64, side: f64) -> f64 {
+    let [length, head, bilge] = BARREL;
+    let rise = 0.5 * (bilge - head);
+    let arc = (0.25 * length * length + rise * rise) / (2.0 * rise);
+    // Rails at ±27 cm, 5 cm wide, their corners rounded by 12 mm: the barrel touches the inner ones.
+    let (corner, rail) = (0.012, 0.27 - 0.025 + 0.012);
+    let down = arc - 0.5 * bilge;
+    // Of the center of the barrel, from C; the mirror image where it slides from its raised end.
+    let center = Vec2::new(side * down * sin(angle), -down * cos(angle));
+    let contact = |at: f64| {
+        let x = (at + center.x) / (arc + corner);
+        Vec2::new(x, -(1.0 - x * x).sqrt())
+    };
+    let [left, right] = [-rail, rail].map(contact);
+    // The forces at a contact for a normal force of 1: towards C, and against the slip, which is to the right.
+    let force = |e: Vec2| Vec2::new(-e.x + FRICTION * e.z, -e.z - FRICTION * e.x);
+    let (a, b) = (force(left), force(right));
+    // In weights: N₁ a + N₂ b = (−A, 1).
+    let whole = a.x * b.z - b.x * a.z;
+    let normal = |push: f64| {
+        let (x, z) = (-push, 1.0);
+        [(x * b.z - b.x * z) / whole, (a.x * z - x * a.z) / whole]
+    };
+    let excess = |push: f64| {
+        let [one, other] = normal(push);
+        (-center.z * push - center.x) - FRICTION * (one + other) * arc
+    };
+    let (zero, slope) = (excess(0.0), excess(1.0) - excess(0.0));
+    -zero / slope
+}
+
+fn slides(degrees: f64, side: f64) -> Problem {
+    let exact = sliding(degrees.to_radians(), side);
+    let (name, words) = match (degrees > 0.0, side > 0.0) {
+        (false, _) => ("level", "on level rails"),
+        (true, true) => ("up", "towards the end that its rails raise by 3.5°"),
+        (true, false) => ("down", "from the end that its rails raise by 3.5°"),
+    };
+    problem(
+        &format!("incline-{name}"),
+        format!("a barrel pushed {words}, μ = {FRICTION}"),
+        "statics: two contacts under Coulomb friction on an arc",
+        ("push from which the barrel slides", "g"),
+        (exact, 1e-2, 2e-2),
+        Box::new(move |effort: Effort| {
+            let found = border((0.95 * exact, 1.05 * exact), halvings(effort), |amplitude| {
+                let settings = [
+                    format!("interface.barrel-rack.friction.coefficient={FRICTION}"),
+                    format!("stack.rack.incline=\"{degrees} deg\""),
+                ];
+                // What the ground does to the left pushes the barrel to the right.
+                let run = pushed(&settings, -side * amplitude)?;
+                Ok(run.fates.fate(named(&run.assembly, "B1.1")?).peak_slip > 1e-3)
+            })?;
+            Ok(Outcome::of(found))
+        }),
+    )
+}

@@ -1,0 +1,271 @@
+//! What stands on its head or lies on its side: rest, rocking and rolling on a face or along a line.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::ops::ControlFlow;
+
+use barrelstack_dynamics::math::{asin, atan, cos, sin};
+use barrelstack_dynamics::solid::{Barrel, Capsule, Hull};
+use barrelstack_dynamics::space::Linear;
+use barrelstack_dynamics::{
+    Body, FrictionLaw, Motion, NormalLaw, Quaternion, Spatial, Still, Vec3,
+};
+
+use super::{G, STEP, firm, problem, rough, scene};
+use crate::scene::Scene;
+use crate::spatial::{floor, gravity_on_slope, solid, yaw};
+use crate::{Failure, Outcome, Problem, Tolerance, theory};
+
+/// Mass (kg) of the bodies.
+const MASS: f64 = 269.0;
+/// Moments of inertia (kg·m²) of the barrel about its axis and across.
+const ABOUT: f64 = 14.1;
+const ACROSS: f64 = 22.6;
+/// Half the length (m) of the barrel and the radius (m) of the flat of its head.
+const HALF: f64 = 0.4725;
+const HEAD: f64 = 0.269_982_558_045_203;
+/// A stiffness (N/m) at which springs are seen to give.
+const SOFT: f64 = 1e6;
+
+pub(super) fn problems() -> Vec<Problem> {
+    vec![
+        stands(1),
+        stands(2),
+        springs("barrel", "barrel on its head that rocks on its springs", barrel_on_springs),
+        springs("tube", "tube on the floor that pitches on its ends", tube_on_springs),
+        rocks("time"),
+        rocks("rate"),
+        groove(),
+        rolls(0.0),
+        rolls(30.0),
+    ]
+}
+
+fn barrel(name: &str, height: f64, rounding: f64) -> Result<Body<Spatial>, Failure> {
+    let shape = Barrel::new(2.0 * HALF, 0.2775, 0.345, rounding)
+        .map_err(|e| Failure::Absent(e.to_string()))?;
+    let inertia = Vec3::new(ABOUT, ACROSS, ACROSS);
+    let place = Vec3::new(0.0, 0.0, height);
+    let mut body = solid(name, Hull::Barrel(shape), MASS, inertia, place);
+    body.pose.orientation = upright(0.0);
+    Ok(body)
+}
+
+/// The orientation of a body whose axis `x` points up, but for a lean (rad) toward the outer `x`.
+fn upright(lean: f64) -> Quaternion {
+    Quaternion::turn(Vec3::new(0.0, lean - FRAC_PI_2, 0.0))
+}
+
+fn down() -> Vec3 {
+    Vec3::new(0.0, 0.0, -G)
+}
+
+fn spring() -> NormalLaw {
+    NormalLaw::KelvinVoigt { stiffness: SOFT, damping: 0.0 }
+}
+
+/// Barrels on their heads, one on the other.
+fn stands(count: u32) -> Problem {
+    let exact: f64 = (1..=count).map(|above| f64::from(above) * MASS * G / (4.0 * SOFT)).sum();
+    problem(
+        format!("space-flat/stands-{count}"),
+        format!("{count} barrels on their heads, one on the other"),
+        "a disc on four springs",
+        ("how far the top one sinks", "m"),
+        (exact, Tolerance::Relative(1e-6)),
+        Box::new(move |_| {
+            let mut bodies = vec![floor()];
+            for level in 0..count {
+                let height = HALF * (1.0 + 2.0 * f64::from(level));
+                bodies.push(barrel(&format!("barrel {level}"), height - 1e-4, 0.01)?);
+            }
+            let law = firm(SOFT, MASS);
+            let friction = rough(0.5, SOFT, MASS);
+            let scene = scene(bodies, law, friction, down())?.settled(1e-10)?;
+            let top = HALF * (2.0 * f64::from(count) - 1.0);
+            Ok(Outcome::of(top - scene.state.poses[count as usize].position.z))
+        }),
+    )
+}
+
+/// The period (s) with which a component of the axis of body 1 swings.
+fn period(mut scene: Scene<Spatial>, of: fn(Vec3) -> f64, guess: f64) -> Result<f64, Failure> {
+    let (mut crossings, mut before) = (vec![], (0.0, 0.0));
+    scene.watch(&Still, 1e-5, 5.3 * guess, |state, _, _| {
+        let now = of(state.poses[1].orientation.matrix().apply(Vec3::new(1.0, 0.0, 0.0)));
+        if now * before.1 < 0.0 {
+            let part = before.1 / (before.1 - now);
+            crossings.push(before.0 + part * (state.time - before.0));
+        }
+        before = (state.time, now);
+        ControlFlow::Continue(())
+    })?;
+    match crossings[..] {
+        [first, .., last] => Ok(2.0 * (last - first) / (crossings.len() - 1) as f64),
+        _ => Err(Failure::Absent("it does not rock".into())),
+    }
+}
+
+/// Without friction a body turns about its center of mass, while its weight goes through the flat of its head,
+/// which lies behind the round of the chime.
+fn barrel_on_springs() -> Swing {
+    let sunk = MASS * G / (4.0 * SOFT);
+    let square = (2.0 * SOFT * HEAD * HEAD - MASS * G * (HALF - 0.01)) / ACROSS;
+    let start = || {
+        let mut body = barrel("barrel", HALF - sunk, 0.01)?;
+        // All of the head bears.
+        body.pose.orientation = upright(0.3 * sunk / HEAD);
+        scene(vec![floor(), body], spring(), FrictionLaw::Frictionless, down())
+    };
+    (TAU / square.sqrt(), start())
+}
+
+fn tube_on_springs() -> Swing {
+    let half = 0.7;
+    let sunk = MASS * G / (2.0 * SOFT);
+    let shape = Hull::Capsule(Capsule { half_length: half, radius: 0.1 });
+    let inertia = Vec3::new(1.3, 50.0, 50.0);
+    let mut body = solid("tube", shape, MASS, inertia, Vec3::new(0.0, 0.0, 0.1 - sunk));
+    body.pose.orientation = Quaternion::turn(Vec3::new(0.0, 0.3 * sunk / half, 0.0));
+    // Its round ends roll, so no weight pulls it over.
+    let square = 2.0 * SOFT * half * half / inertia.y;
+    let scene = scene(vec![floor(), body], spring(), FrictionLaw::Frictionless, down());
+    (TAU / square.sqrt(), scene)
+}
+
+/// The exact period (s), and a scene to see it.
+type Swing = (f64, Result<Scene<Spatial>, Failure>);
+
+fn springs(name: &str, title: &str, start: fn() -> Swing) -> Problem {
+    let of: fn(Vec3) -> f64 = if name == "barrel" { |axis| axis.x } else { |axis| axis.z };
+    let (exact, _) = start();
+    problem(
+        format!("space-flat/springs-{name}"),
+        title,
+        "a rigid body on equal springs, less the pull of its weight",
+        ("period", "s"),
+        (exact, Tolerance::Relative(1e-4)),
+        Box::new(move |_| Ok(Outcome::of(period(start().1?, of, exact)?))),
+    )
+}
+
+/// A barrel let go on the rim of its head, at half the angle at which it would stay.
+fn rocks(asked: &'static str) -> Problem {
+    // A sharp rim, but for a hair.
+    let rounding = 1e-6;
+    let (half, head) = (HALF - rounding, 0.2775 - 0.43 * rounding);
+    let alpha = atan(head / half);
+    let square = half * half + head * head;
+    let rate = (MASS * G * square.sqrt() / (ACROSS + MASS * square)).sqrt();
+    let (quantity, exact) = if asked == "time" {
+        (("time until it stands", "s"), theory::quarter_period(alpha, 0.5) / rate)
+    } else {
+        let fall = 2.0 * (cos(0.5 * alpha) - cos(alpha));
+        (("rate when it stands", "rad/s"), rate * fall.sqrt())
+    };
+    problem(
+        format!("space-flat/rocks-{asked}"),
+        "barrel that is let go on the rim of its head at half its slenderness angle",
+        "Housner 1963, exact equation, for a block as wide as the head",
+        quantity,
+        (exact, Tolerance::Relative(1e-3)),
+        Box::new(move |_| {
+            let stiffness = 1e9;
+            let lean = 0.5 * alpha;
+            let height = half * cos(lean) + head * sin(lean) + rounding;
+            let mut body = barrel("barrel", height - MASS * G / stiffness, rounding)?;
+            body.pose.orientation = upright(lean);
+            let (law, friction) = (firm(stiffness, MASS), rough(20.0, stiffness, MASS));
+            let mut scene = scene(vec![floor(), body], law, friction, down())?;
+            let (mut found, mut before) = (None, (0.0, lean, 0.0));
+            scene.watch(&Still, 1e-5, 2.0, |state, _, _| {
+                let axis = state.poses[1].orientation.matrix().apply(Vec3::new(1.0, 0.0, 0.0));
+                let (lean, rate) = (asin(axis.x), state.twists[1].angular.y);
+                // A little before, where the middle of the head does not bear yet.
+                let level = 2e-4;
+                if lean < level {
+                    let part = (before.1 - level) / (before.1 - lean);
+                    let now = before.0 + part * (state.time - before.0);
+                    let rate = before.2 + part * (rate - before.2);
+                    found = Some((now - level / rate, -rate));
+                    return ControlFlow::Break(());
+                }
+                before = (state.time, lean, rate);
+                ControlFlow::Continue(())
+            })?;
+            let (time, rate) = found.ok_or_else(|| Failure::Absent("it does not fall".into()))?;
+            Ok(Outcome::of(if asked == "time" { time } else { rate }))
+        }),
+    )
+}
+
+/// A tube in the groove between two others, along lines.
+fn groove() -> Problem {
+    let (radius, aside) = (0.05, 0.06);
+    let slope = asin(aside / (2.0 * radius));
+    let exact = 2.0 * radius * cos(slope) - {
+        // Each line is two springs; the tube sinks by what they give, across the slope of the normals.
+        let pressed = |sunk: f64| {
+            let height = 2.0 * radius * cos(slope) - sunk;
+            let apart = (height * height + aside * aside).sqrt();
+            4.0 * SOFT * (2.0 * radius - apart) * height / apart
+        };
+        let (mut low, mut high) = (0.0, 0.01);
+        for _ in 0..60 {
+            let sunk = 0.5 * (low + high);
+            if pressed(sunk) < MASS * G { low = sunk } else { high = sunk }
+        }
+        low
+    };
+    problem(
+        "space-flat/groove",
+        "tube between two shorter ones side by side",
+        "equilibrium of springs at the ends of both lines",
+        ("height of its axis above theirs", "m"),
+        (exact, Tolerance::Relative(1e-6)),
+        Box::new(move |_| {
+            let shape = |half_length| Hull::Capsule(Capsule { half_length, radius });
+            let side = |name: &str, y: f64| Body {
+                motion: Motion::Prescribed,
+                ..solid(name, shape(0.4), 1.0, Vec3::new(1.0, 1.0, 1.0), Vec3::new(0.0, y, 0.0))
+            };
+            let place = Vec3::new(0.0, 0.0, 2.0 * radius * cos(slope));
+            let tube = solid("tube", shape(0.6), MASS, Vec3::new(0.4, 40.0, 40.0), place);
+            let bodies = vec![tube, side("left", -aside), side("right", aside)];
+            // Friction would bear a part of it.
+            let law = firm(SOFT, MASS);
+            let scene = scene(bodies, law, FrictionLaw::Frictionless, down())?.settled(1e-10)?;
+            Ok(Outcome::of(scene.state.poses[0].position.z))
+        }),
+    )
+}
+
+/// A tube that lies on a slope and rolls down, whichever way it points at first.
+fn rolls(degrees: f64) -> Problem {
+    let (radius, half_length) = (0.1, 0.7);
+    let slope = 5.0_f64.to_radians();
+    let inertia = Vec3::new(0.5 * MASS * radius * radius, 45.0, 45.0);
+    let exact = G * sin(slope) / (1.0 + inertia.x / (MASS * radius * radius));
+    problem(
+        format!("space-flat/rolls-{degrees}"),
+        format!("tube that lies on a slope of 5° and rolls, all turned by {degrees}°"),
+        "g sin θ / (1 + I / (m r²))",
+        ("acceleration", "m/s2"),
+        (exact, Tolerance::Relative(1e-4)),
+        Box::new(move |_| {
+            let heading = degrees.to_radians();
+            let gravity = gravity_on_slope(G, slope, heading);
+            let stiffness = 1e8;
+            let height = radius + MASS * gravity.z / (2.0 * stiffness);
+            let shape = Hull::Capsule(Capsule { half_length, radius });
+            let mut body = solid("tube", shape, MASS, inertia, Vec3::new(0.0, 0.0, height));
+            body.pose.orientation = yaw(heading + FRAC_PI_2);
+            let laws = (firm(stiffness, MASS), rough(0.5, stiffness, MASS));
+            let mut scene = scene(vec![floor(), body], laws.0, laws.1, gravity)?;
+            let toward = Vec3::new(cos(heading), sin(heading), 0.0);
+            scene.run(&Still, STEP, 0.3)?;
+            let before = scene.state.twists[1].linear.dot(toward);
+            scene.run(&Still, STEP, 0.8)?;
+            Ok(Outcome::of((scene.state.twists[1].linear.dot(toward) - before) / 0.5))
+        }),
+    )
+}
