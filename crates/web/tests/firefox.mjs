@@ -47,8 +47,19 @@ export async function drive(path) {
       }
     }
   });
-  await greeting;
+  // Who ends before the last answer gives none.
+  let gone = null;
+  const left = new Promise((_, fail) => {
+    socket.on("close", () => {
+      gone = new Error(`Firefox has ended (${child.exitCode ?? child.signalCode ?? "it still runs, without its socket"})`);
+      fail(gone);
+      for (const { fail } of waiting.values()) fail(gone);
+    });
+  });
+  left.catch(() => {});
+  await Promise.race([greeting, left]);
   const command = (name, parameters = {}) => new Promise((done, fail) => {
+    if (gone) return fail(gone);
     waiting.set((next += 1), { done, fail });
     const text = JSON.stringify([0, next, name, parameters]);
     socket.write(`${Buffer.byteLength(text)}:${text}`);

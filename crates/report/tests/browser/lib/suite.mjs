@@ -4,7 +4,7 @@ export class Suite {
   constructor() {
     this.passed = 0;
     this.failed = 0;
-    this.notes = [];
+    this.faults = [];
   }
 
   /** Runs a check; it fails by throwing, and may return a note such as a measured value. */
@@ -17,12 +17,14 @@ export class Suite {
       console.log(`ok    ${name}${note ? `: ${note}` : ""} (${seconds} s)`);
     } catch (error) {
       this.failed += 1;
-      console.log(`FAIL  ${name}`);
-      for (const line of String(error.message).split("\n")) console.log(`      ${line}`);
+      this.faults.push([`FAIL  ${name}`, ...String(error.message).split("\n").map((line) => `      ${line}`)].join("\n"));
+      console.log(this.faults.at(-1));
     }
   }
 
+  /** Says how many passed, and once more what failed, since a long log may be cut to its end. */
   close() {
+    for (const fault of this.faults) console.log(fault);
     console.log(`${this.passed} passed, ${this.failed} failed`);
     return this.failed === 0;
   }
