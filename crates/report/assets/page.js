@@ -11,6 +11,7 @@ root.classList.add("js");
 
 const players = [...document.querySelectorAll("[data-player]")].map((figure) =>
   makePlayer(page.players[Number(figure.dataset.player)], figure, page.dashes));
+for (const player of players) player.refresh();
 const board = { player: players[0] || null, plots: [] };
 for (const figure of document.querySelectorAll("[data-plot]")) {
   board.plots.push(makePlot(page.plots[Number(figure.dataset.plot)], columns, figure, board));

@@ -9,7 +9,8 @@ function readPane(raw, dashes) {
   return { ...raw, dashes, forces, tint, ghosts, times, count: times.length, poses: unpack(raw.poses) };
 }
 
-// `earlier` holds the panes of an earlier run, to be drawn over these under the name of `raw.overlay`.
+// `earlier` holds the panes of an earlier run, to be drawn over these under the name of `raw.overlay`. Nothing is drawn
+// until the player is first refreshed.
 function makePlayer(raw, figure, dashes, earlier) {
   const find = (selector) => figure.querySelector(selector);
   const act = (name) => find(`[data-act="${name}"]`);
@@ -88,10 +89,16 @@ function makePlayer(raw, figure, dashes, earlier) {
 
   const settled = () => { if (!playing && !opens) for (const listener of rests) listener(times[frame] ?? 0); };
 
-  function seek(time) {
+  // Puts it at a time, without drawing.
+  function stand(time) {
     take();
     head = Math.min(Math.max(Number(time) || 0, start), end);
-    show(nearest(times, head));
+    frame = nearest(times, head);
+  }
+
+  function seek(time) {
+    stand(time);
+    show(frame);
     settled();
     return frame;
   }
@@ -242,10 +249,9 @@ function makePlayer(raw, figure, dashes, earlier) {
 
   fitStages(panes, figure);
   ready();
-  refresh();
   if (loop && !window.matchMedia("(prefers-reduced-motion: reduce)").matches) loop.run();
   return {
-    seek, play, pause, toggle, refresh, screen, take,
+    seek, stand, play, pause, toggle, refresh, screen, take,
     onRest: (listener) => rests.push(listener),
     isLooping: () => Boolean(loop && loop.isLooping()),
     moment, begins, lens: lens.lens,

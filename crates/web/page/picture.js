@@ -11,43 +11,51 @@ function makePicture(box, players) {
     // A worker has read it, or it came with the page.
     const { players: [read], dashes } = typeof data === "string" ? JSON.parse(data) : data;
     const raw = { ...read };
-    if (player) await frame();
-    if (own !== turn) return;
+    // What comes is made in pieces, a frame apart, under what is shown, which goes on meanwhile.
+    const shot = make("div", { class: still ? "still" : "" });
+    const isLate = async () => {
+      if (player) await frame();
+      if (own !== turn) shot.remove();
+      return own !== turn;
+    };
+    if (await isLate()) return;
+    // The opening of a run is no ghost of it.
+    const last = goesOn ? ghostly : moved;
+    const before = ghost && !still && last && last.length === raw.panes.length ? last : null;
+    if (before) {
+      raw.overlay = "as before";
+      // A ghost has none of its own.
+      for (const { data: pane } of before) pane.overlay = null;
+    }
+    shot.innerHTML = markup;
+    shot.classList.toggle("coming", Boolean(player));
+    box.append(shot);
+    const figure = shot.querySelector("figure");
+    figure.querySelector("figcaption b").remove();
+    if (await isLate()) return;
+    const next = makePlayer(raw, figure, dashes, before);
+    if (!still) next.take();
+    if (before) {
+      for (const { stage } of next.panes) stage.ghosts = true;
+      figure.querySelector('[data-act="ghosts"]').checked = true;
+    }
+    if (await isLate()) return;
     const time = goesOn && player ? player.time() : null, playing = Boolean(player && player.isPlaying());
     const ended = time !== null && !playing && time >= player.times().at(-1);
     if (player) {
       player.take();
       player.pause();
     }
-    // The opening of a run is no ghost of it.
-    if (goesOn) moved = ghostly;
-    const before = ghost && !still && moved && moved.length === raw.panes.length ? moved : null;
-    if (before) {
-      raw.overlay = "as before";
-      // A ghost has none of its own.
-      for (const { data: pane } of before) pane.overlay = null;
-    }
-    box.classList.toggle("still", still);
-    box.innerHTML = markup;
-    const figure = box.querySelector("figure");
-    figure.querySelector("figcaption b").remove();
-    player = makePlayer(raw, figure, dashes, before);
+    if (!still) next.stand(time ?? next.begins);
+    next.refresh();
+    shot.classList.remove("coming");
+    box.replaceChildren(shot);
+    player = next;
     players.splice(0, players.length, player);
     // What is shown as a ghost later are numbers alone, since panes hold on to their player.
-    if (!still) [ghostly, moved] = [moved, player.panes.map((pane) => ({ data: pane.data }))];
-    if (before) {
-      for (const { stage } of player.panes) stage.ghosts = true;
-      const check = figure.querySelector('[data-act="ghosts"]');
-      check.checked = true;
-    }
-    if (time !== null) {
-      player.seek(time);
-      if (playing || ended) player.play();
-    } else if (!still && !window.matchMedia("(prefers-reduced-motion: reduce)").matches) {
-      player.take();
-      player.seek(player.begins);
-      player.play();
-    }
+    if (!still) [ghostly, moved] = [last, player.panes.map((pane) => ({ data: pane.data }))];
+    const plays = time === null ? !window.matchMedia("(prefers-reduced-motion: reduce)").matches : playing || ended;
+    if (!still && plays) player.play();
   }
 
   // After the next frame; a page that is not in sight has none.

@@ -46,7 +46,7 @@ export async function checkPage(browser, suite, { file, program, native }) {
     return note;
   });
   await suite.check("it opens from disk with a stack that stands, which is what the engine says", async () => {
-    demand(await page.evaluate(() => document.getElementById("stage").classList.contains("still")), "it moves");
+    demand(await page.evaluate(() => document.querySelector("#stage > .still") !== null), "it moves");
     const ink = await page.evaluate(() => {
       const canvas = document.querySelector("#stage canvas.scene"), { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
       return new Set(Array.from({ length: data.length / 4 }, (_, at) => data[4 * at] * 65536 + data[4 * at + 1] * 256 + data[4 * at + 2])).size;
