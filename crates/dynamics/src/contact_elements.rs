@@ -392,8 +392,14 @@ impl<S: Space> ContactElements<S> {
             }
             Nodes::Whole(whole) => {
                 let (center, radius) = whole.ball();
-                if let Some(gap) = self.near(surface, frame.to_surface(center), radius, margin) {
-                    least = least.min(gap);
+                if self.near(surface, frame.to_surface(center), radius, margin).is_none() {
+                    return least;
+                }
+                // Slender bodies are far from others that are within their ball.
+                whole.meet(surface, frame.contactor, frame.relative, |patch| {
+                    least = least.min(patch.deepest.gap.distance);
+                });
+                if self.exhaustive || !S::Real::splat(margin).lt(least).all() {
                     for index in 0..whole.most_sticks() {
                         self.nodes.push(u32::try_from(index).unwrap_or(u32::MAX));
                         self.positions.push(center);

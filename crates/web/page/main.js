@@ -122,7 +122,7 @@ async function start() {
     cellar = tried;
     missing = [];
     showAll();
-    await picture.put(look.stage, { still: true });
+    picture.put(look.stage, { still: true }).catch(refuse);
     return look;
   }
 
