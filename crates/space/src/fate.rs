@@ -83,6 +83,10 @@ pub struct Fates<'a> {
     thresholds: Thresholds,
     /// How every body was turned at rest.
     upright: Vec<Rotation3>,
+    /// What was up in every body at rest, in its own frame.
+    upward: Vec<Vec3>,
+    /// How every body is turned in the state that is looked at.
+    turned: Vec<Rotation3>,
     all: Vec<Fate>,
     /// When (s) the first body left its seat, and which.
     collapse: Option<(f64, BodyId)>,
@@ -105,10 +109,13 @@ impl<'a> Fates<'a> {
             peak_tilt: 0.0,
             peak_uplift: 0.0,
         };
+        let upright: Vec<_> = state.poses.iter().map(|pose| pose.orientation.matrix()).collect();
         Self {
             stack,
             thresholds,
-            upright: state.poses.iter().map(|pose| pose.orientation.matrix()).collect(),
+            upward: upright.iter().map(|turned| turned.unapply(UP)).collect(),
+            turned: upright.clone(),
+            upright,
             all: state.poses.iter().map(fate).collect(),
             collapse: None,
             first_fall: None,
@@ -134,6 +141,10 @@ impl<'a> Fates<'a> {
     pub fn observe(&mut self, state: &State<Spatial>) {
         let ground = state.poses[Stack::GROUND].position;
         let standing = self.collapse.is_none();
+        for (turned, pose) in self.turned.iter_mut().zip(&state.poses) {
+            *turned = pose.orientation.matrix();
+        }
+        let mut slips = Vec::with_capacity(4);
         for i in 1..self.all.len() {
             let kind = self.stack.parts[i].kind;
             let moved = state.poses[i].position - ground - self.all[i].rest;
@@ -149,11 +160,11 @@ impl<'a> Fates<'a> {
             if self.all[i].left_seat.is_some() && !standing {
                 continue;
             }
-            let slips = self.slips(state, i);
+            self.slips(state, i, &mut slips);
             let mean = mean(&slips);
             if standing {
                 // A barrel turns about its axis without end.
-                let lean = if kind == PartKind::Rack { lean(self.up(state, i)) } else { 0.0 };
+                let lean = if kind == PartKind::Rack { lean(self.up(i)) } else { 0.0 };
                 let fate = &mut self.all[i];
                 fate.peak_displacement = fate.peak_displacement.max(level(moved).length());
                 fate.peak_uplift = fate.peak_uplift.max(moved.z);
@@ -162,7 +173,7 @@ impl<'a> Fates<'a> {
                 fate.peak_slip[1] = fate.peak_slip[1].max(mean.y.abs());
             }
             if self.all[i].left_seat.is_none()
-                && let Some((loss, heading)) = self.lost(state, i, &slips)
+                && let Some((loss, heading)) = self.lost(i, &slips)
             {
                 self.all[i].left_seat = Some((state.time, loss, heading));
                 self.collapse.get_or_insert((state.time, i));
@@ -171,7 +182,7 @@ impl<'a> Fates<'a> {
     }
 
     /// Whether a body has left its seat now, how, and whereto.
-    fn lost(&self, state: &State<Spatial>, i: BodyId, slips: &[Vec3]) -> Option<(Loss, Heading)> {
+    fn lost(&self, i: BodyId, slips: &[Vec3]) -> Option<(Loss, Heading)> {
         let part = &self.stack.parts[i];
         let fate = &self.all[i];
         let slip = mean(slips);
@@ -199,8 +210,8 @@ impl<'a> Fates<'a> {
                 Some(_) => self.thresholds.rocking_angle,
                 None => self.thresholds.overturning_angle,
             };
-            let own = self.up(state, i);
-            let under = below.map_or(Vec3::new(0.0, 0.0, 1.0), |rack| self.up(state, rack));
+            let own = self.up(i);
+            let under = below.map_or(UP, |rack| self.up(rack));
             let between = math::acos(own.dot(under).clamp(-1.0, 1.0));
             if between > most {
                 return Some((Loss::Tilted, Heading::of(own - under)));
@@ -210,31 +221,32 @@ impl<'a> Fates<'a> {
     }
 
     /// What was up in a body at rest.
-    fn up(&self, state: &State<Spatial>, i: BodyId) -> Vec3 {
-        let body = self.upright[i].unapply(Vec3::new(0.0, 0.0, 1.0));
-        state.poses[i].orientation.matrix().apply(body)
+    fn up(&self, i: BodyId) -> Vec3 {
+        self.turned[i].apply(self.upward[i])
     }
 
     /// Displacements (m) of a body relative to what it stands on: of a barrel in the frame of its rack, of a rack on
     /// each of the barrels below in its own frame, of others against the ground; as at rest turned.
-    fn slips(&self, state: &State<Spatial>, i: BodyId) -> Vec<Vec3> {
+    fn slips(&self, state: &State<Spatial>, i: BodyId, slips: &mut Vec<Vec3>) {
+        slips.clear();
         let part = &self.stack.parts[i];
-        let here = state.poses[i].position;
         let seen_from = |frame: BodyId, body: BodyId| {
             let arm = state.poses[body].position - state.poses[frame].position;
-            let turned = state.poses[frame].orientation.matrix().unapply(arm);
-            let place = self.upright[frame].apply(turned);
+            let place = self.upright[frame].apply(self.turned[frame].unapply(arm));
             place - (self.all[body].rest - self.all[frame].rest)
         };
         if let Some(rack) = part.carrier {
-            return vec![seen_from(rack, i)];
+            slips.push(seen_from(rack, i));
+        } else if part.supports.is_empty() {
+            let ground = state.poses[Stack::GROUND].position;
+            slips.push(state.poses[i].position - ground - self.all[i].rest);
+        } else {
+            slips.extend(part.supports.iter().map(|barrel| -seen_from(i, *barrel)));
         }
-        if part.supports.is_empty() {
-            return vec![here - state.poses[Stack::GROUND].position - self.all[i].rest];
-        }
-        part.supports.iter().map(|barrel| -seen_from(i, *barrel)).collect()
     }
 }
+
+const UP: Vec3 = Vec3::new(0.0, 0.0, 1.0);
 
 fn mean(slips: &[Vec3]) -> Vec3 {
     slips.iter().fold(Vec3::default(), |sum, slip| sum + *slip) * (1.0 / slips.len() as f64)

@@ -1,6 +1,6 @@
 //! A barrel of revolution about `x`: stave, heads, and a rounded chime between them.
 
-use crate::real::Real;
+use crate::real::{Mask, Real};
 use crate::shape::Gap;
 use crate::space::{Spatial, Vec3};
 
@@ -102,22 +102,26 @@ impl<R: Real> Barrel<R> {
         let stave = length - self.stave_radius;
         let head = along - self.half_length;
         let corner = self.head_radius + self.stave_offset;
-        let (beyond, outward) = (head, from_axis - self.head_radius);
-        let chime = (beyond * beyond + outward * outward).sqrt();
 
         let inside = stave.le(zero) & head.le(zero);
         let on_head =
             (inside & stave.lt(head)) | (!inside & zero.le(head) & from_axis.le(self.head_radius));
         let before_stave = (along * corner).le(self.half_length * from_center);
-        let on_stave = (inside & !on_head) | (!inside & !on_head & before_stave);
+        let on_stave = !on_head & (inside | before_stave);
 
+        // The center of the arc lies outside of every barrel, so no length is zero near one.
+        let of_stave = plane(along, from_center) * (one / R::select(length.le(zero), one, length));
+        // Nearly all that is asked for.
+        if on_stave.all() {
+            return Gap { distance: stave - self.rounding, normal: of_stave };
+        }
+        let (beyond, outward) = (head, from_axis - self.head_radius);
+        let chime = (beyond * beyond + outward * outward).sqrt();
         let at_corner = chime.le(zero);
         let inverse = one / R::select(at_corner, one, chime);
         let past = plane(beyond, outward) * inverse;
         let end = plane(self.half_length, corner) * (one / self.stave_radius);
         let of_chime = Vec3::select(at_corner, end, past);
-        // The center of the arc lies outside of every barrel, so no length is zero near one.
-        let of_stave = plane(along, from_center) * (one / R::select(length.le(zero), one, length));
         let of_head = plane(one, zero);
         let distance = R::select(on_head, head, R::select(on_stave, stave, chime));
         let normal = Vec3::select(on_head, of_head, Vec3::select(on_stave, of_stave, of_chime));

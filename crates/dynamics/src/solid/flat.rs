@@ -167,7 +167,11 @@ fn along(hull: &Hull, tube: &Capsule, at: Vec3, direction: Vec3, normal: Vec3) -
             let across = Vec3::new(0.0, direction.y, direction.z);
             let (a, b) = (across.dot(across), across.dot(at));
             let beyond = at.y * at.y + at.z * at.z - barrel.head_radius * barrel.head_radius;
-            let root = (b * b - a * beyond).max(0.0).sqrt();
+            // It lies on the stave.
+            if b * b <= a * beyond {
+                return None;
+            }
+            let root = (b * b - a * beyond).sqrt();
             let chord = (-b / a, root / a);
             let axis = Vec3::new(1.0, 0.0, 0.0);
             on_plane(axis, (barrel.half_length, barrel.rounding), chord, tube, at, direction)

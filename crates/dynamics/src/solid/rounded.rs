@@ -156,7 +156,7 @@ fn meeting<R: Real>(
     let mut shares = Shares { deepest: one, others: R::zero(), aside: R::zero() };
     for lane in 0..R::LANES {
         let Some(target) = bounded(surface, lane) else { continue };
-        let turned = Rotation3 { rows: frame.rows.map(|row| row.lane(lane)) };
+        let turned = frame.lane(lane);
         let (contactor, at) = (hull.lane(lane), origin.lane(lane));
         let found = closest(&contactor, &target, at, turned);
         put_gap(&mut gap, lane, Gap { distance: found.distance, normal: found.normal });

@@ -244,6 +244,13 @@ impl<R: Real> Rotation3<R> {
     #[inline(always)]
     #[must_use]
     pub fn after(self, inner: Self) -> Self {
-        Self { rows: self.rows.map(|row| inner.unapply(row)) }
+        // Not by `map`, which becomes calls.
+        let [x, y, z] = self.rows;
+        Self { rows: [inner.unapply(x), inner.unapply(y), inner.unapply(z)] }
+    }
+    /// In one lane.
+    pub fn lane(self, lane: usize) -> Rotation3 {
+        let [x, y, z] = self.rows;
+        Rotation3 { rows: [x.lane(lane), y.lane(lane), z.lane(lane)] }
     }
 }
