@@ -9,6 +9,8 @@
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign};
 
+use crate::lanes::units;
+
 /// A number, or a bundle of numbers that advance in lockstep.
 pub trait Real:
     Copy
@@ -169,6 +171,10 @@ impl Real for f64 {
     #[inline(always)]
     fn from_lanes(mut value: impl FnMut(usize) -> f64) -> Self {
         value(0)
+    }
+    #[inline(always)]
+    fn scope<T>(work: impl FnOnce() -> T) -> T {
+        units::single(work)
     }
 }
 

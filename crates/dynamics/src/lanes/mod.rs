@@ -96,8 +96,10 @@ impl Width {
 /// the machine first.
 #[cfg(target_arch = "x86_64")]
 #[expect(unsafe_code, reason = "tokens as constants; every way to them asks the machine first")]
-mod units {
-    use fearless_simd::{Avx2, Avx512, Level};
+pub(crate) mod units {
+    use std::sync::LazyLock;
+
+    use fearless_simd::{Avx2, Avx512, Level, Simd as _};
 
     use super::bundle::{Bundle, Unit};
     use super::{Task, Width};
@@ -119,6 +121,16 @@ mod units {
         Level::new().as_avx512().is_some()
     }
 
+    /// Single numbers need fewer instructions where registers are not overwritten by what is computed from them.
+    #[inline(always)]
+    pub(crate) fn single<T>(work: impl FnOnce() -> T) -> T {
+        static AVX2: LazyLock<Option<Avx2>> = LazyLock::new(|| Level::new().as_avx2());
+        match *AVX2 {
+            Some(unit) => unit.vectorize(work),
+            None => work(),
+        }
+    }
+
     pub(super) fn run<T: Task>(width: Width, task: T) -> Option<T::Output> {
         match width {
             Width::Scalar => Some(task.run::<f64>()),
@@ -130,7 +142,7 @@ mod units {
 
 /// Elsewhere one number goes after the other.
 #[cfg(not(target_arch = "x86_64"))]
-mod units {
+pub(crate) mod units {
     use super::{Task, Width};
 
     pub(super) fn has_avx2() -> bool {
@@ -139,6 +151,11 @@ mod units {
 
     pub(super) fn has_avx512() -> bool {
         false
+    }
+
+    #[inline(always)]
+    pub(crate) fn single<T>(work: impl FnOnce() -> T) -> T {
+        work()
     }
 
     pub(super) fn run<T: Task>(_width: Width, _task: T) -> Option<T::Output> {

@@ -30,21 +30,18 @@ const MOST_ALONG: u32 = 180;
 ///
 /// The distance is convex along the segment, so its slope `n · (to − from)` never falls and has one
 /// zero: found between the ends by false position, guarded by bisection.
+#[inline(always)]
 pub(super) fn along_axis(
     gap: impl Fn(Vec3) -> Gap<Spatial>,
     from: Vec3,
     to: Vec3,
 ) -> (f64, Gap<Spatial>, u32, bool) {
     let way = to - from;
-    let at = |share: f64| {
-        let gap = gap(from + way * share);
-        (gap, gap.normal.dot(way))
-    };
-    let (first, falling) = at(0.0);
+    let (first, falling) = slope(&gap, from, way, 0.0);
     if falling >= 0.0 {
         return (0.0, first, 1, true);
     }
-    let (last, rising) = at(1.0);
+    let (last, rising) = slope(&gap, from, way, 1.0);
     if rising <= 0.0 {
         return (1.0, last, 2, true);
     }
@@ -62,10 +59,10 @@ pub(super) fn along_axis(
         }
         let inside = secant > low.0 && secant < high.0;
         let share = if inside && !slow { secant } else { 0.5 * (low.0 + high.0) };
-        let (gap, slope) = at(share);
-        best = (share, gap);
+        let (here, slope) = slope(&gap, from, way, share);
+        best = (share, here);
         if slope.abs() <= flat || narrowed <= 4.0 * f64::EPSILON {
-            return (share, gap, evaluation, true);
+            return (share, here, evaluation, true);
         }
         // The end that stays a second time counts half (the Illinois rule), so that both come nearer.
         if slope < 0.0 {
@@ -83,6 +80,17 @@ pub(super) fn along_axis(
         }
     }
     (best.0, best.1, MOST_ALONG, false)
+}
+
+#[inline(always)]
+fn slope(
+    gap: &impl Fn(Vec3) -> Gap<Spatial>,
+    from: Vec3,
+    way: Vec3,
+    share: f64,
+) -> (Gap<Spatial>, f64) {
+    let gap = gap(from + way * share);
+    (gap, gap.normal.dot(way))
 }
 
 /// A barrel at its place, in the frame of another.

@@ -184,11 +184,13 @@ fn meeting<R: Real>(
     Patch { first: 0, deepest: midway(point, gap), spread: Some(spread) }
 }
 
+#[inline(always)]
 fn put_gap<R: Real>(gap: &mut Gap<Spatial<R>>, lane: usize, single: Gap<Spatial>) {
     gap.distance = gap.distance.with_lane(lane, single.distance);
     put(&mut gap.normal, lane, single.normal);
 }
 
+#[inline(always)]
 fn put<R: Real>(vector: &mut Vec3<R>, lane: usize, single: Vec3) {
     vector.x = vector.x.with_lane(lane, single.x);
     vector.y = vector.y.with_lane(lane, single.y);
@@ -263,12 +265,19 @@ fn bounded<R: Real>(surface: &Solid<R>, lane: usize) -> Option<Hull> {
 /// Where a contactor with its origin at `at` (m) is closest to a target, in the frame of the target, from
 /// that of the contactor to which `frame` leads.
 fn closest(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Closest {
+    f64::scope(
+        #[inline(always)]
+        || closest_of(contactor, target, at, frame),
+    )
+}
+
+#[inline(always)]
+fn closest_of(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Closest {
     match (contactor, target) {
         (Hull::Barrel(barrel), Hull::Barrel(target)) => barrels(target, barrel, at, frame),
         (Hull::Capsule(capsule), _) => {
             let end = frame.apply(Vec3::new(capsule.half_length, 0.0, 0.0));
-            let gap = |point| target.gap(point);
-            let (share, gap, evaluations, converged) = along_axis(gap, at - end, at + end);
+            let (share, gap, evaluations, converged) = along_axis(#[inline(always)] |point| target.gap(point), at - end, at + end);
             let center = at + end * (2.0 * share - 1.0);
             Closest {
                 distance: gap.distance - capsule.radius,
@@ -283,7 +292,7 @@ fn closest(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Close
             let end = frame.unapply(Vec3::new(target.half_length, 0.0, 0.0));
             let middle = frame.unapply(-at);
             let (share, gap, evaluations, converged) =
-                along_axis(|point| hull.gap(point), middle - end, middle + end);
+                along_axis(#[inline(always)] |point| hull.gap(point), middle - end, middle + end);
             let nearest = middle + end * (2.0 * share - 1.0) - gap.normal * gap.distance;
             Closest {
                 distance: gap.distance - target.radius,

@@ -146,16 +146,20 @@ impl<R: Real> Space for Spatial<R> {
         let half = R::splat(0.5) * time * (one / inertia.z - across);
         let about_axis = time * (one / inertia.x - across);
 
-        let third = |p: Vec3<R>| Quaternion::turn(Vec3::new(zero, zero, p.z * half));
-        let first = third(body_momentum);
-        let p = first.matrix().unapply(body_momentum);
-        let axial = Quaternion::turn(Vec3::new(p.x * about_axis, zero, zero));
-        let p = axial.matrix().unapply(p);
-        let last = third(p);
-
-        let about_momentum = Quaternion::turn(momentum * (time * across));
-        let turned =
-            about_momentum.after(orientation).after(first).after(axial).after(last).normalized();
+        let axial = |p: Vec3<R>| Quaternion::turn(Vec3::new(p.x * about_axis, zero, zero));
+        let about_momentum = Quaternion::turn(momentum * (time * across)).after(orientation);
+        // A body of revolution has no remainder.
+        let turned = if half.abs().le(zero).all() {
+            about_momentum.after(axial(body_momentum))
+        } else {
+            let third = |p: Vec3<R>| Quaternion::turn(Vec3::new(zero, zero, p.z * half));
+            let first = third(body_momentum);
+            let p = first.matrix().unapply(body_momentum);
+            let axial = axial(p);
+            let last = third(axial.matrix().unapply(p));
+            about_momentum.after(first).after(axial).after(last)
+        };
+        let turned = turned.normalized();
         (turned, Self::spin_of(inertia, turned, momentum))
     }
     /// The inverse of the derivative of the exponential map, to the order that methods of fourth order
