@@ -88,6 +88,8 @@ pub struct Fates<'a> {
     /// How every body is turned in the state that is looked at.
     turned: Vec<Rotation3>,
     all: Vec<Fate>,
+    /// Cosine of the largest tilt of every rack.
+    least_up: Vec<f64>,
     /// When (s) the first body left its seat, and which.
     collapse: Option<(f64, BodyId)>,
     /// When (s) the first barrel had fallen.
@@ -117,6 +119,7 @@ impl<'a> Fates<'a> {
             turned: upright.clone(),
             upright,
             all: state.poses.iter().map(fate).collect(),
+            least_up: vec![1.0; state.poses.len()],
             collapse: None,
             first_fall: None,
         }
@@ -164,11 +167,14 @@ impl<'a> Fates<'a> {
             let mean = mean(&slips);
             if standing {
                 // A barrel turns about its axis without end.
-                let lean = if kind == PartKind::Rack { lean(self.up(i)) } else { 0.0 };
+                let up = if kind == PartKind::Rack { self.up(i).z } else { 1.0 };
                 let fate = &mut self.all[i];
                 fate.peak_displacement = fate.peak_displacement.max(level(moved).length());
                 fate.peak_uplift = fate.peak_uplift.max(moved.z);
-                fate.peak_tilt = fate.peak_tilt.max(lean);
+                if up < self.least_up[i] {
+                    self.least_up[i] = up;
+                    fate.peak_tilt = fate.peak_tilt.max(math::acos(up.max(-1.0)));
+                }
                 fate.peak_slip[0] = fate.peak_slip[0].max(mean.x.abs());
                 fate.peak_slip[1] = fate.peak_slip[1].max(mean.y.abs());
             }
@@ -255,9 +261,4 @@ fn mean(slips: &[Vec3]) -> Vec3 {
 /// The horizontal part.
 fn level(way: Vec3) -> Vec3 {
     Vec3::new(way.x, way.y, 0.0)
-}
-
-/// The angle (rad) of a direction of length one from upright.
-fn lean(up: Vec3) -> f64 {
-    math::acos(up.z.clamp(-1.0, 1.0))
 }

@@ -162,16 +162,14 @@ struct Line {
 fn along(hull: &Hull, tube: &Capsule, at: Vec3, direction: Vec3, normal: Vec3) -> Option<Line> {
     match hull {
         Hull::Capsule(_) => None,
+        // What lies on the stave is nowhere before a head.
+        Hull::Barrel(_) if normal.x.abs() < 0.5 => None,
         Hull::Barrel(barrel) => {
             // From where to where along the tube its axis lies before the circle of the head.
             let across = Vec3::new(0.0, direction.y, direction.z);
             let (a, b) = (across.dot(across), across.dot(at));
             let beyond = at.y * at.y + at.z * at.z - barrel.head_radius * barrel.head_radius;
-            // It lies on the stave.
-            if b * b <= a * beyond {
-                return None;
-            }
-            let root = (b * b - a * beyond).sqrt();
+            let root = (b * b - a * beyond).max(0.0).sqrt();
             let chord = (-b / a, root / a);
             let axis = Vec3::new(1.0, 0.0, 0.0);
             on_plane(axis, (barrel.half_length, barrel.rounding), chord, tube, at, direction)
