@@ -8,7 +8,7 @@ use barrelstack_dynamics::solid::{
     Barrel, Bulk, Capsule, Cask, Fill, Hull, Part, compound, pairs_between,
 };
 use barrelstack_dynamics::{
-    Body, ContactPair, Model, NormalLaw, Quaternion, Rotation3, Spatial, Still, Vec2, Vec3,
+    Body, ContactPair, Model, Nodes, NormalLaw, Quaternion, Rotation3, Spatial, Still, Vec2, Vec3,
 };
 use barrelstack_scenes::scene::{self, Scene, coulomb, interface};
 use barrelstack_scenes::spatial::{ball, floor, gravity_on_slope, solid, yaw};
@@ -162,6 +162,74 @@ fn a_barrel_thrown_to_the_other_side_does_the_mirrored_bit_for_bit() {
         .map(f64::to_bits)
     };
     assert_eq!(run(1.0), run(-1.0));
+}
+
+/// The reflections at the planes through the origin across `x` and across `y`.
+const REFLECTIONS: [Vec3; 2] = [Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -1.0, 1.0)];
+
+/// A turn seen in a mirror: where a vector changes its sign, an axis of turning does not.
+fn turn_mirrored(spin: Vec3, by: Vec3) -> Vec3 {
+    -spin.times(by)
+}
+
+fn rotation_mirrored(rotation: Rotation3, by: Vec3) -> Rotation3 {
+    let [x, y, z] = rotation.rows;
+    Rotation3 { rows: [x.times(by) * by.x, y.times(by) * by.y, z.times(by) * by.z] }
+}
+
+/// A body seen in a mirror, with its solids in their order.
+fn mirrored(body: &Body<Spatial>, by: Vec3) -> Body<Spatial> {
+    let mut image = body.clone();
+    image.pose.position = body.pose.position.times(by);
+    image.pose.orientation.v = turn_mirrored(body.pose.orientation.v, by);
+    image.twist.linear = body.twist.linear.times(by);
+    image.twist.angular = turn_mirrored(body.twist.angular, by);
+    for placed in &mut image.surfaces {
+        placed.offset = placed.offset.times(by);
+        placed.rotation = rotation_mirrored(placed.rotation, by);
+    }
+    for nodes in &mut image.nodes {
+        // Barrels and tubes are their own mirror images.
+        if let Nodes::Whole(whole) = nodes {
+            whole.center = whole.center.times(by);
+            whole.rotation = rotation_mirrored(whole.rotation, by);
+        }
+    }
+    image
+}
+
+#[test]
+fn a_stack_of_racks_that_is_thrown_over_does_the_mirrored_bit_for_bit() {
+    let scene = stack(2, false).settled(1e-9).unwrap();
+    let mut thrown = scene.model.bodies().to_vec();
+    for (body, pose) in thrown.iter_mut().zip(&scene.state.poses) {
+        body.pose = *pose;
+    }
+    thrown[1].twist.linear = Vec3::new(0.9, 0.6, 0.0);
+    thrown[4].twist.linear = Vec3::new(1.4, -0.8, 0.3);
+    thrown[5].twist.angular = Vec3::new(-1.0, 0.5, 2.0);
+    let end = |bodies: Vec<Body<Spatial>>| {
+        let (laws, pairs) = (scene.model.interfaces().to_vec(), scene.model.pairs().collect());
+        let model = Model::new(bodies, laws, pairs, scene.model.gravity()).unwrap();
+        let mut scene = Scene::of(model);
+        scene.run(&Still, 1e-4, 1.5).unwrap();
+        (scene.state.poses, scene.state.twists)
+    };
+    let (poses, twists) = end(thrown.clone());
+    let turned =
+        poses.iter().map(|pose| (1.0 - pose.orientation.w.abs()).max(0.0)).fold(0.0, f64::max);
+    assert!(turned > 0.1, "nothing fell: {turned}");
+    for by in REFLECTIONS {
+        let images = thrown.iter().map(|body| mirrored(body, by)).collect();
+        let (there, speeds) = end(images);
+        for (at, (pose, image)) in poses.iter().zip(&there).enumerate() {
+            assert_eq!(pose.position.times(by), image.position, "body {at} by {by:?}");
+            assert_eq!(turn_mirrored(pose.orientation.v, by), image.orientation.v);
+            assert_eq!(pose.orientation.w, image.orientation.w);
+            assert_eq!(twists[at].linear.times(by), speeds[at].linear);
+            assert_eq!(turn_mirrored(twists[at].angular, by), speeds[at].angular);
+        }
+    }
 }
 
 #[test]

@@ -126,13 +126,14 @@ pub(super) fn from_block(block: &Block, other: &Hull, at: Vec3, frame: Rotation3
     }
     let corners = block.corners().map(|corner| frame.unapply(corner - at));
     for (from, to) in EDGES {
-        let (from, to) = (corners[from], corners[to]);
-        let (share, gap, evaluations, found) = along_axis(|point| other.gap(point), from, to);
+        let middle = (corners[from] + corners[to]) * 0.5;
+        let half = (corners[to] - corners[from]) * 0.5;
+        let (place, gap, evaluations, found) = along_axis(|point| other.gap(point), middle, half);
         best.evaluations += evaluations;
         best.converged &= found;
         let distance = gap.distance - grown;
         if distance < best.distance {
-            let on_edge = from + (to - from) * share;
+            let on_edge = middle + half * place;
             best.distance = distance;
             best.normal = -frame.apply(gap.normal);
             best.point = at + frame.apply(on_edge - gap.normal * gap.distance);

@@ -25,30 +25,30 @@ pub struct Closest {
 /// evaluation bisects where false position is slower, as on a line that is flat to nine digits up to a kink.
 const MOST_ALONG: u32 = 180;
 
-/// The point of a segment that is closest to a convex body: share of the way from `from` to `to`, gap,
-/// evaluations, and whether it was found.
+/// The point of a segment that is closest to a convex body: where between `middle − half`, told as −1, and
+/// `middle + half`, told as 1, the gap there, evaluations, and whether it was found.
 ///
-/// The distance is convex along the segment, so its slope `n · (to − from)` never falls and has one
-/// zero: found between the ends by false position, guarded by bisection.
+/// The distance is convex along the segment, so its slope `n · half` never falls and has one zero: found
+/// between the ends by false position, guarded by bisection. From the other end the search is the same
+/// to the last bit.
 #[inline(always)]
 pub(super) fn along_axis(
     gap: impl Fn(Vec3) -> Gap<Spatial>,
-    from: Vec3,
-    to: Vec3,
+    middle: Vec3,
+    half: Vec3,
 ) -> (f64, Gap<Spatial>, u32, bool) {
-    let way = to - from;
-    let (first, falling) = slope(&gap, from, way, 0.0);
+    let (first, falling) = slope(&gap, middle, half, -1.0);
     if falling >= 0.0 {
-        return (0.0, first, 1, true);
+        return (-1.0, first, 1, true);
     }
-    let (last, rising) = slope(&gap, from, way, 1.0);
+    let (last, rising) = slope(&gap, middle, half, 1.0);
     if rising <= 0.0 {
         return (1.0, last, 2, true);
     }
-    // Share and slope at both ends of what holds the zero.
-    let (mut low, mut high) = ((0.0, falling), (1.0, rising));
-    let flat = 1e-15 * way.length();
-    let (mut kept, mut best, mut wide) = (0, (0.0, first), 1.0);
+    // Place and slope at both ends of what holds the zero.
+    let (mut low, mut high) = ((-1.0, falling), (1.0, rising));
+    let flat = 1e-15 * half.length();
+    let (mut kept, mut best, mut wide) = (0, (-1.0, first), 2.0);
     for evaluation in 3..MOST_ALONG {
         let secant = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
         let narrowed: f64 = high.0 - low.0;
@@ -58,21 +58,21 @@ pub(super) fn along_axis(
             wide = if slow { 0.5 * narrowed } else { narrowed };
         }
         let inside = secant > low.0 && secant < high.0;
-        let share = if inside && !slow { secant } else { 0.5 * (low.0 + high.0) };
-        let (here, slope) = slope(&gap, from, way, share);
-        best = (share, here);
-        if slope.abs() <= flat || narrowed <= 4.0 * f64::EPSILON {
-            return (share, here, evaluation, true);
+        let place = if inside && !slow { secant } else { 0.5 * (low.0 + high.0) };
+        let (here, slope) = slope(&gap, middle, half, place);
+        best = (place, here);
+        if slope.abs() <= flat || narrowed <= 8.0 * f64::EPSILON {
+            return (place, here, evaluation, true);
         }
         // The end that stays a second time counts half (the Illinois rule), so that both come nearer.
         if slope < 0.0 {
-            low = (share, slope);
+            low = (place, slope);
             if kept == 1 {
                 high.1 *= 0.5;
             }
             kept = 1;
         } else {
-            high = (share, slope);
+            high = (place, slope);
             if kept == -1 {
                 low.1 *= 0.5;
             }
@@ -82,15 +82,16 @@ pub(super) fn along_axis(
     (best.0, best.1, MOST_ALONG, false)
 }
 
+/// The gap at a place of a segment, and how it grows along it.
 #[inline(always)]
 fn slope(
     gap: &impl Fn(Vec3) -> Gap<Spatial>,
-    from: Vec3,
-    way: Vec3,
-    share: f64,
+    middle: Vec3,
+    half: Vec3,
+    place: f64,
 ) -> (Gap<Spatial>, f64) {
-    let gap = gap(from + way * share);
-    (gap, gap.normal.dot(way))
+    let gap = gap(middle + half * place);
+    (gap, gap.normal.dot(half))
 }
 
 /// A barrel at its place, in the frame of another.

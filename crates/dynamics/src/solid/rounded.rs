@@ -277,8 +277,13 @@ fn closest_of(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Cl
         (Hull::Barrel(barrel), Hull::Barrel(target)) => barrels(target, barrel, at, frame),
         (Hull::Capsule(capsule), _) => {
             let end = frame.apply(Vec3::new(capsule.half_length, 0.0, 0.0));
-            let (share, gap, evaluations, converged) = along_axis(#[inline(always)] |point| target.gap(point), at - end, at + end);
-            let center = at + end * (2.0 * share - 1.0);
+            let (place, gap, evaluations, converged) = along_axis(
+                #[inline(always)]
+                |point| target.gap(point),
+                at,
+                end,
+            );
+            let center = at + end * place;
             Closest {
                 distance: gap.distance - capsule.radius,
                 normal: gap.normal,
@@ -291,9 +296,13 @@ fn closest_of(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Cl
         (hull, Hull::Capsule(target)) => {
             let end = frame.unapply(Vec3::new(target.half_length, 0.0, 0.0));
             let middle = frame.unapply(-at);
-            let (share, gap, evaluations, converged) =
-                along_axis(#[inline(always)] |point| hull.gap(point), middle - end, middle + end);
-            let nearest = middle + end * (2.0 * share - 1.0) - gap.normal * gap.distance;
+            let (place, gap, evaluations, converged) = along_axis(
+                #[inline(always)]
+                |point| hull.gap(point),
+                middle,
+                end,
+            );
+            let nearest = middle + end * place - gap.normal * gap.distance;
             Closest {
                 distance: gap.distance - target.radius,
                 normal: -frame.apply(gap.normal),
