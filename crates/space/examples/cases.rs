@@ -8,7 +8,9 @@
 //! several are joined by `+`.
 //! The cases are the first variants of those of `evidence`, so shares can be laid beside each other.
 //! `motion.json` holds the velocity of the ground, `0001.json` and so on hold a case each: bodies at rest with their
-//! masses, solids and seats, the pairs of solids that may meet with their laws, the thresholds, and the outcome.
+//! masses, solids and seats, the pairs of solids that may meet with their laws, the thresholds, and the outcome: as it
+//! is stated (`outcome`), and with seats as MuJoCo has them (`alike`), whose friction holds without an elastic stick
+//! and whose damper acts both ways.
 //! All is in SI units; turns are quaternions `w`, `x`, `y`, `z` from the body to space.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
@@ -26,13 +28,26 @@ use barrelstack_dynamics::solid::Hull;
 use barrelstack_dynamics::{
     Drive as _, FrictionLaw, Interface, Nodes, NormalLaw, Quaternion, Rotation3, Spatial, Vec3,
 };
-use barrelstack_space::run::{Run, Standing, run_on, stand};
+use barrelstack_space::run::{Standing, run_on, stand};
 use barrelstack_space::{Ground, Heading};
 use serde_json::{Value, json};
 
 /// What every stack changes of the demo, as in `evidence`.
 const COMMON: [&str; 3] =
     ["stack.view=spatial", "run.stop_after_collapse='3 s'", "run.duration='16 s'"];
+
+/// Interfaces of seats.
+const SEATS: [&str; 2] = ["barrel-rack", "rack-ground"];
+
+/// What makes a seat like one of MuJoCo: a stick that gives a hundredth of the normal spring, and half the damping of
+/// the demo in both directions, which takes as much from a swing as all of it on approach alone.
+const ALIKE: [&str; 5] = [
+    "law='kelvin-voigt'",
+    "stiffness='9.8 kN/cm'",
+    "damping='11 N s/cm'",
+    "friction.tangential_stiffness_ratio=100",
+    "friction.tangential_damping_ratio=20",
+];
 
 /// The ground is told every this many seconds.
 const MOTION_STEP: f64 = 0.5e-3;
@@ -48,18 +63,19 @@ fn main() -> Result<(), Box<dyn Error>> {
     for own in arguments {
         changes.extend(own.split('+').map(str::to_owned));
     }
-    let scenario = Scenario::builtin("demo-napa", &changes)?;
-    let plane = planes(&scenario)?.swap_remove(0);
+    let plane = planes(&Scenario::builtin("demo-napa", &changes)?)?.swap_remove(0);
+    for seat in SEATS {
+        changes.extend(ALIKE.iter().map(|change| format!("interface.{seat}.{change}")));
+    }
+    let alike = planes(&Scenario::builtin("demo-napa", &changes)?)?.swap_remove(0);
     let ground = Ground::of(&plane.scenario)?;
     std::fs::write(folder.join("motion.json"), motion(&ground).to_string())?;
     for number in plane.numbers().into_iter().filter(|number| *number > 0) {
         let variant = plane.variant(number);
-        let standing = stand(&variant)?;
-        let start = Instant::now();
-        let run = run_on(&variant, ground.clone(), &mut |_| ControlFlow::Continue(()))?;
-        let seconds = start.elapsed().as_secs_f64();
-        let case = case(number, &variant, &standing, &run, seconds);
-        println!("{number}: {}", case["outcome"]);
+        let mut case = case(number, &variant, &stand(&variant)?);
+        case["outcome"] = outcome(&variant, &ground)?;
+        case["alike"] = outcome(&alike.variant(number), &ground)?;
+        println!("{number}: {}; alike {}", case["outcome"], case["alike"]);
         std::fs::write(folder.join(format!("{number:04}.json")), format!("{case:#}"))?;
     }
     Ok(())
@@ -67,12 +83,14 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// The velocity of the ground (m/s) at equal steps.
 fn motion(ground: &Ground) -> Value {
-    let count = (ground.end() / MOTION_STEP).ceil() as usize + 1;
-    let velocity = |at: usize| vector(ground.at(at as f64 * MOTION_STEP).1);
-    json!({ "step": MOTION_STEP, "velocity": (0..count).map(velocity).collect::<Vec<_>>() })
+    let times = (0_u32..).map(|at| f64::from(at) * MOTION_STEP);
+    let times = times.take_while(|time| *time < ground.end() + MOTION_STEP);
+    let velocity: Vec<Value> = times.map(|time| vector(ground.at(time).1)).collect();
+    json!({ "step": MOTION_STEP, "velocity": velocity })
 }
 
-fn case(number: u32, scenario: &Scenario, standing: &Standing, run: &Run, seconds: f64) -> Value {
+/// All but its outcome.
+fn case(number: u32, scenario: &Scenario, standing: &Standing) -> Value {
     let Standing { stack, state, .. } = standing;
     let limits = thresholds(scenario);
     let body = |(id, part): (usize, &barrelstack_space::stack::Part)| {
@@ -98,7 +116,7 @@ fn case(number: u32, scenario: &Scenario, standing: &Standing, run: &Run, second
     json!({
         "number": number,
         "gravity": scenario.run.gravity,
-        "end_time": run.simulation.end_time,
+        "end_time": scenario.run.duration,
         "after_collapse": scenario.run.stop_after_collapse,
         "thresholds": {
             "seat_loss_ratio": limits.seat_loss_ratio,
@@ -111,17 +129,19 @@ fn case(number: u32, scenario: &Scenario, standing: &Standing, run: &Run, second
         "interfaces": stack.model.interfaces().iter().map(interface).collect::<Vec<_>>(),
         "bodies": stack.parts.iter().enumerate().map(body).collect::<Vec<_>>(),
         "pairs": stack.model.pairs().map(pair).collect::<Vec<_>>(),
-        "outcome": outcome(run, seconds),
     })
 }
 
-/// What became of it here, and how long (s) that took.
-fn outcome(run: &Run, seconds: f64) -> Value {
+/// What becomes of it here, and how long (s) that takes.
+fn outcome(scenario: &Scenario, ground: &Ground) -> Result<Value, Box<dyn Error>> {
+    let start = Instant::now();
+    let run = run_on(scenario, ground.clone(), &mut |_| ControlFlow::Continue(()))?;
+    let seconds = start.elapsed().as_secs_f64();
     let (time, first, mode) = match &run.outcome {
         Outcome::Collapse { time, first, mode, .. } => (Some(*time), first.as_str(), mode.name()),
-        _ => (None, "", ""),
+        Outcome::Stable | Outcome::NotJudged | Outcome::Invalid { .. } => (None, "", ""),
     };
-    json!({
+    Ok(json!({
         "kind": run.outcome.kind(),
         "time": time,
         "first": first,
@@ -132,7 +152,7 @@ fn outcome(run: &Run, seconds: f64) -> Value {
         "step": run.simulation.time_step,
         "end_time": run.end_time,
         "seconds": seconds,
-    })
+    }))
 }
 
 /// A solid in the frame of its body, its axis along its own `x`.
