@@ -316,8 +316,8 @@ def run_file(task):
 
 
 def results(folder, numbers, settings, processes):
-    """What became of the cases of a folder here and in MuJoCo, by their numbers; runs those that are missing."""
-    changed = ["-".join([key, f"{value:g}"]) for key, value in settings.items() if value != SETTINGS[key]]
+    """The cases of a folder and what became of them in MuJoCo; runs those that are missing."""
+    changed = [f"{key}-{value:g}" for key, value in settings.items() if value != SETTINGS[key]]
     kept = folder / ("_".join(["mujoco", *changed]) + ".jsonl")
     done = {}
     if kept.exists():
@@ -329,11 +329,8 @@ def results(folder, numbers, settings, processes):
         for one in pool.imap_unordered(run_file, missing):
             done[one["number"]] = one
             print(json.dumps(one), file=file, flush=True)
-    ours = {}
-    for number, path in paths.items():
-        with path.open() as file:
-            ours[number] = json.load(file)["outcome"]
-    return [(number, ours[number], done[number]) for number in paths]
+    cases = {number: json.loads(path.read_text()) for number, path in paths.items()}
+    return [(number, case, done[number]) for number, case in cases.items()]
 
 
 def wilson(count, of, z=1.959964):
@@ -360,48 +357,66 @@ def two_shares(one, other, of):
     return math.erfc(abs(z) / math.sqrt(2.0))
 
 
-def report(name, found):
-    """Prints what the cases of a stack say."""
-    fell = lambda one: one["kind"] == "collapse"
-    of = len(found)
-    ours = [fell(a) for _, a, _ in found]
-    theirs = [fell(b) for _, _, b in found]
-    both = [(a, b) for _, a, b in found if fell(a) and fell(b)]
-    alone = sum(a and not b for a, b in zip(ours, theirs)), sum(b and not a for a, b in zip(ours, theirs))
-    share = lambda many: "{} of {}, {:.0f} % ({:.0f} to {:.0f})".format(
-        many, of, 100 * many / of, *(100 * limit for limit in wilson(many, of))
+def fell(one):
+    """Whether a case fell."""
+    return one["kind"] == "collapse"
+
+
+def told(many, of):
+    """A share with its interval."""
+    low, high = wilson(many, of)
+    return f"{many} of {of}, {100 * many / of:.0f} % ({100 * low:.0f} to {100 * high:.0f})"
+
+
+def middle(values, digits=1):
+    """The median, as it is printed."""
+    return f"{np.median(values):.{digits}f}" if len(values) else "-"
+
+
+def alone(of_one):
+    """What the cases of one engine say by themselves."""
+    fallen = [one for one in of_one if fell(one)]
+    firsts = [one["first"] for one in fallen]
+    counts = sorted(((firsts.count(first), first) for first in set(firsts)), reverse=True)
+    pace = sum(one["seconds"] for one in of_one) / sum(one["end_time"] for one in of_one)
+    return (
+        f"{told(len(fallen), len(of_one))}; first {', '.join(f'{first} {count}' for count, first in counts)}; "
+        f"seat lost at {middle([one['time'] for one in fallen])} s, {middle([one['fallen'] for one in fallen], 0)} "
+        f"barrels fall (medians); {1e3 * pace:.0f} ms for a second"
     )
-    print(f"{name}")
-    print(f"  ours {share(sum(ours))}; MuJoCo {share(sum(theirs))}")
-    print(
-        f"  both {len(both)}, ours alone {alone[0]}, MuJoCo alone {alone[1]}, neither {of - len(both) - sum(alone)}; "
-        f"McNemar p = {mcnemar(*alone):.2g}, two shares p = {two_shares(sum(ours), sum(theirs), of):.2g}"
-    )
-    for who, pick in (("ours", 1), ("MuJoCo", 2)):
-        firsts = [one[pick]["first"] for one in found if fell(one[pick])]
-        counts = sorted(((firsts.count(first), first) for first in set(firsts)), reverse=True)
-        times = sorted(one[pick]["time"] for one in found if fell(one[pick]))
-        fallen = sorted(one[pick]["fallen"] for one in found if fell(one[pick]))
-        simulated = sum(one[pick]["end_time"] for one in found)
-        spent = sum(one[pick]["seconds"] for one in found)
-        middle = lambda values: f"{np.median(values):.1f}" if values else "-"
-        print(
-            f"  {who}: first body {', '.join(f'{first} {count}' for count, first in counts)}; first loss, median "
-            f"{middle(times)} s; barrels fallen, median {middle(fallen)}; {1e3 * spent / simulated:.0f} ms a second"
-        )
+
+
+def beside(pairs):
+    """What the cases of two engines say beside each other."""
+    both = [(a, b) for _, a, b in pairs if fell(a) and fell(b)]
+    ours = [number for number, a, b in pairs if fell(a) and not fell(b)]
+    theirs = [number for number, a, b in pairs if fell(b) and not fell(a)]
+    many = len(both), len(ours), len(theirs), len(pairs) - len(both) - len(ours) - len(theirs)
+    print(f"    both {many[0]}, ours alone {many[1]} {ours}, MuJoCo alone {many[2]} {theirs}, neither {many[3]}")
+    shares = two_shares(many[0] + many[1], many[0] + many[2], len(pairs))
+    print(f"    chance of so uneven a split (McNemar) {mcnemar(many[1], many[2]):.2g}; of shares so far apart {shares:.2g}")
     if both:
-        apart = [b["time"] - a["time"] for a, b in both]
+        apart = np.array([b["time"] - a["time"] for a, b in both])
         same = sum(a["first"] == b["first"] for a, b in both)
         level = sum(a["first"][1] == b["first"][1] for a, b in both)
         print(
-            f"  of those that fall in both: first body the same in {same}, its level in {level}; MuJoCo later by "
-            f"{np.median(apart):+.2f} s in the median, within 0.5 s in {sum(abs(gap) <= 0.5 for gap in apart)}"
+            f"    of those of both: the same first body in {same}, its level in {level}; MuJoCo later by "
+            f"{np.median(apart):+.2f} s in the median, by less than 0.5 s in {sum(np.abs(apart) < 0.5)}; barrels fallen "
+            f"the same in {sum(a['fallen'] == b['fallen'] for a, b in both)}"
         )
-    print(f"  largest displacement before a fall, median of cases that stand: "
-          f"{np.median([b['peak_displacement'] for _, _, b in found if not fell(b)] or [math.nan]):.3f} m")
-    print(f"  by themselves: settled within {1e3 * max(b['settled_by'] for _, _, b in found):.2f} mm of our rest; "
-          f"ours alone: {[n for n, a, b in found if fell(a) and not fell(b)]}, "
-          f"MuJoCo alone: {[n for n, a, b in found if fell(b) and not fell(a)]}")
+
+
+def report(name, found):
+    """Prints what the cases of a stack say."""
+    print(name)
+    print(f"  MuJoCo: {alone([theirs for _, _, theirs in found])}")
+    for title, key in (("as stated", "outcome"), ("with seats as in MuJoCo", "alike")):
+        pairs = [(number, case[key], theirs) for number, case, theirs in found if key in case]
+        if pairs:
+            print(f"  ours {title}: {alone([ours for _, ours, _ in pairs])}")
+            beside(pairs)
+    print(f"  MuJoCo at rest: {1e3 * max(theirs['settled_by'] for _, _, theirs in found):.2f} mm from ours at most; "
+          f"median of drifts {1e3 * np.median([theirs['drift'] for _, _, theirs in found]):.3f} mm")
 
 
 def main():
