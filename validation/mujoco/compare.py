@@ -15,8 +15,11 @@ import time
 from multiprocessing import Pool
 from pathlib import Path
 
-import mujoco
-import numpy as np
+try:
+    import mujoco
+    import numpy as np
+except ImportError as missing:
+    raise SystemExit(f"{missing}; type `pip install mujoco==4.0.0 numpy`") from None
 
 SETTINGS = {
     # Time step (s).

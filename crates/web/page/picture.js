@@ -39,15 +39,18 @@ function makePicture(box, players) {
       for (const { stage } of next.panes) stage.ghosts = true;
       figure.querySelector('[data-act="ghosts"]').checked = true;
     }
+    const now = () => (goesOn && player ? player.time() : null);
     if (await isLate()) return;
-    const time = goesOn && player ? player.time() : null, playing = Boolean(player && player.isPlaying());
+    if (!still) next.stand(now() ?? next.begins);
+    next.refresh();
+    if (await isLate()) return;
+    const time = now(), playing = Boolean(player && player.isPlaying());
     const ended = time !== null && !playing && time >= player.times().at(-1);
     if (player) {
       player.take();
       player.pause();
     }
-    if (!still) next.stand(time ?? next.begins);
-    next.refresh();
+    if (time !== null) next.stand(time);
     shot.classList.remove("coming");
     box.replaceChildren(shot);
     player = next;

@@ -61,6 +61,24 @@ export async function checkPage(browser, suite, { file, program, native }) {
     const again = JSON.stringify(sorted(await look(page)));
     demand(first === again, `the page holds ${first.length} letters, the engine says ${again.length}`);
   });
+  await suite.check("the longest time between two frames is told, without a trace, which takes a core itself", async () => {
+    const other = await opened(browser, file);
+    await other.page.evaluate(() => {
+      const gaps = (window.gaps = { longest: 0, on: true });
+      const tick = (before) => (now) => {
+        gaps.longest = Math.max(gaps.longest, now - before);
+        if (gaps.on) requestAnimationFrame(tick(now));
+      };
+      requestAnimationFrame((now) => requestAnimationFrame(tick(now)));
+    });
+    await other.page.click("#go");
+    await other.page.waitForFunction(() => window.barrelstack.runs.now()?.shown && window.barrelstack.marks.variants >= 12);
+    const gap = await other.page.evaluate(() => window.gaps.longest);
+    await other.context.close();
+    // Measured on two idle cores: 17 to 33 ms in nine runs of ten, 50 in one. Other programs may have the cores.
+    demand(gap > 0 && gap < 1000, `${gap} ms`);
+    return `${gap.toFixed(0)} ms`;
+  });
   await suite.check("by keyboard alone a stack is chosen and shaken, and no frame waits for the page while engines work", async () => {
     await page.focus("#barrel");
     const path = [];
@@ -69,29 +87,16 @@ export async function checkPage(browser, suite, { file, program, native }) {
       if (path.at(-1) !== "go") await page.keyboard.press("Tab");
     }
     demand(path.at(-1) === "go", path.join(", "));
-    await page.evaluate(() => {
-      const gaps = (window.gaps = { longest: 0, last: performance.now(), on: true });
-      const tick = (now) => {
-        gaps.longest = Math.max(gaps.longest, now - gaps.last);
-        gaps.last = now;
-        if (gaps.on) requestAnimationFrame(tick);
-      };
-      requestAnimationFrame((now) => { gaps.last = now; tick(now); });
-    });
     const { tasks } = await traced(page, async () => {
       await page.keyboard.press("Enter");
       await page.waitForFunction(() => window.barrelstack.runs.now()?.shown && window.barrelstack.marks.variants >= 12);
       await page.waitForTimeout(500);
     });
-    const gap = await page.evaluate(() => {
-      window.gaps.on = false;
-      return window.gaps.longest;
-    });
     // A task of the page is what a frame may have to wait for. Its time of the processor is held: on two cores that run two
     // engines and whatever else, the time on the clock is that of who else waits.
     const longest = Math.max(...tasks);
     demand(tasks.length > 100 && longest < 50, `${longest.toFixed(0)} ms of ${tasks.length} tasks`);
-    return `${path.join(", ")}; longest task ${longest.toFixed(0)} ms, longest time between frames ${gap.toFixed(0)} ms`;
+    return `${path.join(", ")}; longest task ${longest.toFixed(0)} ms`;
   });
   await suite.check("it moves soon, and the verdict sharpens until all variants are in", async () => {
     await page.waitForFunction(() => window.barrelstack.marks.variants > 0 && window.barrelstack.marks.variants < 64);
