@@ -34,14 +34,16 @@ function makePicture(box, players) {
     figure.querySelector("figcaption b").remove();
     if (await isLate()) return;
     const next = makePlayer(raw, figure, dashes, before);
-    if (!still) next.take();
+    // Where motion is unwanted it stays on the still that it opens with.
+    const moves = !still && ((goesOn && player) || !window.matchMedia("(prefers-reduced-motion: reduce)").matches);
+    if (moves) next.take();
     if (before) {
       for (const { stage } of next.panes) stage.ghosts = true;
       figure.querySelector('[data-act="ghosts"]').checked = true;
     }
     const now = () => (goesOn && player ? player.time() : null);
     if (await isLate()) return;
-    if (!still) next.stand(now() ?? next.begins);
+    if (moves) next.stand(now() ?? next.begins);
     next.refresh();
     if (await isLate()) return;
     const time = now(), playing = Boolean(player && player.isPlaying());
@@ -57,8 +59,7 @@ function makePicture(box, players) {
     players.splice(0, players.length, player);
     // What is shown as a ghost later are numbers alone, since panes hold on to their player.
     if (!still) [ghostly, moved] = [last, player.panes.map((pane) => ({ data: pane.data }))];
-    const plays = time === null ? !window.matchMedia("(prefers-reduced-motion: reduce)").matches : playing || ended;
-    if (!still && plays) player.play();
+    if (moves && (time === null || playing || ended)) player.play();
   }
 
   // After the next frame; a page that is not in sight has none.

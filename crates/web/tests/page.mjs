@@ -414,7 +414,12 @@ export async function checkPage(browser, suite, { file, program, native }) {
     await type(calm.page, { "imperfections.variants": "0", "run.duration": '"8 s"' });
     await calm.page.click("#go");
     await idle(calm.page, 1);
-    demand(!(await calm.page.evaluate(() => window.barrelstack.players[0].isPlaying())), "it plays");
+    const { plays, time, moment } = await calm.page.evaluate(() => {
+      const [player] = window.barrelstack.players;
+      return { plays: player.isPlaying(), time: player.time(), moment: player.moment.t };
+    });
+    demand(!plays, "it plays");
+    demand(Math.abs(time - moment) < 0.05, `it stands at ${time} s and not at the moment that matters, ${moment} s`);
     await calm.context.close();
   });
   await suite.check("a panic shows its text", async () => {
