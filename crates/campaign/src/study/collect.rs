@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 
 use barrelstack_report::column::{csv_heading, csv_rows};
 
+use super::draft::{Draft, write_whole};
 use super::error::StudyError;
-use super::folder::{Draft, Provenance, manifest_of, read_shard, shards, write_whole};
+use super::folder::{Provenance, manifest_of, read_shard, shards};
 use super::shard;
 use super::stop::Tally;
 use super::table::StudyTable;
