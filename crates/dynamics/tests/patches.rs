@@ -89,6 +89,8 @@ impl Seen {
     fn jump(&self, other: &Self) -> f64 {
         let mut jump =
             (self.force - other.force).length().max((self.moment - other.moment).length());
+        // A millimeter deep, where most poses are.
+        jump = jump.max((self.energy - other.energy).abs() / 1e-3);
         for ((place, load), (other_place, other_load)) in self.sticks.iter().zip(&other.sticks) {
             jump = jump.max((load - other_load).abs());
             jump = jump.max((*place - *other_place).length() * load.min(*other_load) / 1e-3);
@@ -350,6 +352,92 @@ fn what_a_barrel_on_a_tube_by_its_head_feels_is_what_the_tube_feels() {
     }
     println!("{worst:e}");
     assert!(worst < 1e-12, "{worst:e}"); // measured 7e-16
+}
+
+/// How far what bodies feel is from what their energy falls by, as a share of their force, at a thousand poses in which
+/// one lies on another, turned by a hair or by much, up to eight millimeters deep.
+fn off_slope(lying: &Lying, seed: u64) -> f64 {
+    let Lying { target, hull, outward, base, ways } = *lying;
+    let mut dice = Dice(seed);
+    let mut couple = Couple::new(Some(target), hull, ELASTIC);
+    let (surface, contactor) = (target.surface(), Rounded::centered(hull));
+    let (mut worst, mut lying) = (0.0_f64, 0);
+    for pose in 0..1000 {
+        let scale = [1e-4, 1e-2, 0.03, 0.1, 0.3][pose % 5];
+        let turn = Quaternion::turn(ways.1.times(dice.vector()) * scale).after(base.0);
+        let mut at = ways.0.times(dice.vector()) + outward * 0.2 - turn.matrix().apply(base.1);
+        let depth = 4e-3 * (1.05 + dice.roll());
+        let mut found = contactor.closest(&surface, at, turn.matrix()).unwrap();
+        for _ in 0..6 {
+            at += outward * (-depth - found.distance);
+            found = contactor.closest(&surface, at, turn.matrix()).unwrap();
+        }
+        if found.distance > -1e-4 || found.distance < -9e-3 {
+            continue;
+        }
+        let seen = couple.at((at, turn));
+        let hair = 1e-7;
+        let mut slope = |step: &dyn Fn(f64) -> (Vec3, Quaternion)| {
+            (couple.at(step(hair)).energy - couple.at(step(-hair)).energy) / (2.0 * hair)
+        };
+        let axes = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
+        let way = axes.map(|axis| slope(&|way| (at + axis * way, turn)));
+        let turned = axes.map(|axis| slope(&|way| (at, Quaternion::turn(axis * way).after(turn))));
+        let off_force = (seen.force + Vec3::new(way[0], way[1], way[2])).length();
+        let off_moment = (seen.moment + Vec3::new(turned[0], turned[1], turned[2])).length();
+        let off = off_force.max(off_moment) / seen.force.length();
+        worst = worst.max(off);
+        lying += 1;
+    }
+    println!("{lying} poses, worst {worst:e}");
+    assert!(lying > 500, "{lying}");
+    worst
+}
+
+#[test]
+fn what_lies_flat_is_pushed_as_its_energy_falls() {
+    let x = Vec3::new(1.0, 0.0, 0.0);
+    let tube_on_tube = Lying {
+        target: tube(0.7),
+        hull: tube(0.5),
+        outward: Vec3::new(0.0, 0.0, 1.0),
+        base: (Quaternion::identity(), Vec3::default()),
+        ways: (Vec3::new(1.3, 0.005, 0.0), Vec3::new(1.0, 0.2, 0.3)),
+    };
+    let tube_on_head = Lying {
+        target: bordeaux(),
+        hull: tube(0.7),
+        outward: x,
+        base: (Quaternion::turn(Vec3::new(0.0, FRAC_PI_2, 0.0)), Vec3::default()),
+        ways: (Vec3::new(0.0, 0.29, 0.9), Vec3::new(1.0, 0.5, 1.0)),
+    };
+    let head_on_tube = Lying {
+        target: tube(0.7),
+        hull: bordeaux(),
+        outward: Vec3::new(0.0, 0.0, 1.0),
+        base: (Quaternion::turn(Vec3::new(0.0, -FRAC_PI_2, 0.0)), Vec3::new(-0.4725, 0.0, 0.0)),
+        ways: (Vec3::new(0.9, 0.29, 0.0), Vec3::new(1.0, 0.5, 1.0)),
+    };
+    let head_on_head = Lying {
+        target: bordeaux(),
+        hull: bordeaux(),
+        outward: x,
+        base: (Quaternion::identity(), Vec3::new(-0.4725, 0.0, 0.0)),
+        ways: (Vec3::new(0.0, 0.35, 0.35), Vec3::new(1.0, 0.5, 0.5)),
+    };
+    let tube_on_plate = Lying {
+        target: plate(),
+        hull: tube(0.3),
+        outward: x,
+        base: (Quaternion::turn(Vec3::new(0.0, FRAC_PI_2, 0.0)), Vec3::default()),
+        ways: (Vec3::new(0.0, 0.3, 0.6), Vec3::new(0.3, 0.5, 1.0)),
+    };
+    let all = [tube_on_tube, tube_on_head, head_on_tube, head_on_head, tube_on_plate];
+    for (lying, seed) in all.iter().zip(61..) {
+        let off = off_slope(lying, seed);
+        // Measured 1e-9 to 2e-7. Without the forces by which a patch resists that it changes, 6e-2 and more.
+        assert!(off < 1e-6, "{off:e}");
+    }
 }
 
 #[test]

@@ -21,7 +21,7 @@ pub use cradle::Cradle;
 pub use half_plane::HalfPlane;
 pub use polygon::{Polygon, PolygonError};
 pub use profile::BarrelProfile;
-pub use whole::{Axes, NoWhole, Patch, Shares, Spread, Touch, Whole};
+pub use whole::{Axes, NoWhole, Patch, Shares, Slopes, Spread, Touch, Whole};
 
 /// How far a point is from a surface, and which way is out.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::{Gap, Shape};
 use crate::real::Real;
-use crate::space::{Planar, Rotation2, Space, Vec2};
+use crate::space::{Planar, Rotation2, Space, Vec2, Wrench};
 
 /// A convex body that touches as a whole: with the point of it that lies deepest, and with all of a line or
 /// a face where it lies flat.
@@ -72,6 +72,9 @@ pub struct Patch<S: Space> {
 /// are turned. Where bodies lie flat the deepest point runs from end to end as they rock, but there its
 /// part of the force, `a U′(δ) − b U′(2 δ₀ − δ)`, is none as long as `a = b`, so neither force nor moment
 /// jumps. A patch that shrinks to a point has the stiffness of one spring, so there `a = b = 1/(2 + n)`.
+///
+/// As bodies slide and turn, `a`, `b` and where the middle lies change as well, and with them the energy: that takes
+/// forces of its own, without which the books would miss what a tube stores that slides off a head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread<S: Space> {
     /// Its middle.
@@ -82,6 +85,20 @@ pub struct Spread<S: Space> {
     pub radius: S::Real,
     /// Unit vectors along it that turn with a body: where its sticks are.
     pub axes: Axes<S>,
+    /// How it changes as the bodies move.
+    pub slopes: Slopes<S>,
+}
+
+/// How a patch changes as its contactor moves against its target: each per way (1/m) and per turn about the center of
+/// mass of the contactor (1/rad), as forces and moments are to energy.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Slopes<S: Space> {
+    /// Of δ₀ (m): what the points of the bodies that are its middle at that moment do not tell.
+    pub middle: Wrench<S>,
+    /// Of `a`.
+    pub deepest: Wrench<S>,
+    /// Of `b`.
+    pub others: Wrench<S>,
 }
 
 /// How much each part of a patch counts, each between 0 and 1.

@@ -6,8 +6,8 @@
 use super::barrel::Barrel;
 use super::block::Block;
 use super::{Capsule, Hull};
-use crate::shape::{Gap, Shares};
-use crate::space::{Linear, Rotation3, Spatial, Vec3};
+use crate::shape::{Gap, Shares, Slopes};
+use crate::space::{Linear, Quaternion, Rotation3, Spatial, Vec3, Wrench};
 
 /// The middle of what two bodies share, in the frame of the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,8 +35,12 @@ fn smooth(u: f64) -> f64 {
 
 /// How much counts of what bears like a number of springs and extends `length` (m) from its middle, of two
 /// bodies turned out of it by an angle with a sine.
+///
+/// The shorter it is the less they may be turned: what a turned tube has left before the edge of a head is not where
+/// it lies deepest, and has to be nothing before it ends.
 fn shares(springs: f64, sine_squared: f64, length: f64) -> Shares<f64> {
-    let flat = smooth(1.0 - sine_squared / (WIDEST * WIDEST));
+    let short = LONG / length;
+    let flat = smooth(1.0 - sine_squared * (1.0 + short * short) / (WIDEST * WIDEST));
     let long = smooth(length / LONG);
     let each = (1.0 + (springs - 1.0) * long) / springs;
     Shares { deepest: 1.0 - flat * (1.0 - each), others: flat * each, aside: long }
@@ -114,6 +118,44 @@ pub(super) fn shared(
         // A face of one may lie on an edge of the other, which no middle of a face tells.
         (Hull::Block(_), Hull::Block(_)) => None,
     }
+}
+
+/// Step (m, rad) by which slopes are told: both ways, so they are good to eight digits.
+const HAIR: f64 = 1e-6;
+
+/// How a patch changes as the contactor moves and turns about its origin, from as many looks at neighboring poses.
+pub(super) fn slopes(
+    flat: &Flat,
+    contactor: &Hull,
+    target: &Hull,
+    at: Vec3,
+    frame: Rotation3,
+    normal: Vec3,
+) -> Slopes<Spatial> {
+    let tell = |flat: &Flat| [-flat.gap.distance, flat.shares.deepest, flat.shares.others];
+    let here = tell(flat);
+    let slope = |along: &dyn Fn(f64) -> (Vec3, Rotation3)| {
+        let there = |way: f64| {
+            let (at, frame) = along(way);
+            shared(contactor, target, at, frame, normal).map(|flat| (way, tell(&flat)))
+        };
+        // Where it ends on one side, from there to here.
+        let from = there(-HAIR).unwrap_or((0.0, here));
+        let to = there(HAIR).unwrap_or((0.0, here));
+        let way = if to.0 > from.0 { to.0 - from.0 } else { 1.0 };
+        [0, 1, 2].map(|value: usize| (to.1[value] - from.1[value]) / way)
+    };
+    let [x, y, z] = AXES.map(|axis| slope(&|way| (at + axis * way, frame)));
+    let [yz, zx, xy] =
+        AXES.map(|axis| slope(&|turn| (at, Quaternion::turn(axis * turn).matrix().after(frame))));
+    let [mut middle, deepest, others] = [0, 1, 2].map(|value: usize| Wrench {
+        force: Vec3::new(x[value], y[value], z[value]),
+        moment: Vec3::new(yz[value], zx[value], xy[value]),
+    });
+    // What the points there tell: depth falls as the contactor leaves along the normal.
+    middle.force += flat.gap.normal;
+    middle.moment += (flat.point - at).cross(flat.gap.normal);
+    Slopes { middle, deepest, others }
 }
 
 /// Two tubes, the target along `x`.

@@ -3,11 +3,11 @@
 use super::barrel::Barrel;
 use super::block::{Block, from_block};
 use super::closest::{Closest, along_axis, barrels};
-use super::flat::shared;
+use super::flat::{shared, slopes};
 use super::{Capsule, Solid};
 use crate::real::Real;
-use crate::shape::{Axes, Gap, Patch, Shares, Spread, Touch, Whole};
-use crate::space::{Rotation3, Spatial, Vec3};
+use crate::shape::{Axes, Gap, Patch, Shares, Slopes, Spread, Touch, Whole};
+use crate::space::{Rotation3, Spatial, Vec3, Wrench};
 
 /// What touches as a whole, about the origin, along `x`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,7 +77,14 @@ impl<R: Real> Whole<Spatial<R>> for Rounded<R> {
                 }
             }
             (hull, Solid::Ball(_) | Solid::Capsule(_) | Solid::Barrel(_) | Solid::Block(_)) => {
-                visit(meeting(hull, surface, origin, frame));
+                let mut patch = meeting(hull, surface, origin, frame);
+                if let Some(Spread { slopes, .. }) = &mut patch.spread {
+                    let arm = origin - position;
+                    for slope in [&mut slopes.middle, &mut slopes.deepest, &mut slopes.others] {
+                        slope.moment += arm.cross(slope.force);
+                    }
+                }
+                visit(patch);
             }
         }
     }
@@ -137,6 +144,8 @@ fn standing<R: Real>(
         shares: Shares { deepest: one, others: one, aside: one },
         radius: barrel.head_radius,
         axes: Axes::Face([frame.apply(y), frame.apply(z)]),
+        // The middle is a point of the barrel, and all parts count in full.
+        slopes: Slopes::default(),
     };
     Patch { first: 0, deepest: place(barrel.furthest(down)), spread: Some(spread) }
 }
@@ -154,6 +163,7 @@ fn meeting<R: Real>(
     let (mut middle_gap, mut middle, mut axes) = (nothing, Vec3::default(), [Vec3::default(); 2]);
     let (one, mut radius) = (R::splat(1.0), R::zero());
     let mut shares = Shares { deepest: one, others: R::zero(), aside: R::zero() };
+    let mut changes = Slopes::default();
     for lane in 0..R::LANES {
         let Some(target) = bounded(surface, lane) else { continue };
         let turned = frame.lane(lane);
@@ -174,13 +184,18 @@ fn meeting<R: Real>(
             for (axis, single) in axes.iter_mut().zip(flat.axes) {
                 put(axis, lane, single);
             }
+            let own = slopes(&flat, &contactor, &target, at, turned, found.normal);
+            put_wrench(&mut changes.middle, lane, own.middle);
+            put_wrench(&mut changes.deepest, lane, own.deepest);
+            put_wrench(&mut changes.others, lane, own.others);
         }
     }
     let axes = match (hull, surface) {
         (Hull::Capsule(_), _) | (_, Solid::Ball(_) | Solid::Capsule(_)) => Axes::Line([axes[0]]),
         _ => Axes::Face(axes),
     };
-    let spread = Spread { middle: midway(middle, middle_gap), shares, radius, axes };
+    let middle = midway(middle, middle_gap);
+    let spread = Spread { middle, shares, radius, axes, slopes: changes };
     Patch { first: 0, deepest: midway(point, gap), spread: Some(spread) }
 }
 
@@ -188,6 +203,12 @@ fn meeting<R: Real>(
 fn put_gap<R: Real>(gap: &mut Gap<Spatial<R>>, lane: usize, single: Gap<Spatial>) {
     gap.distance = gap.distance.with_lane(lane, single.distance);
     put(&mut gap.normal, lane, single.normal);
+}
+
+#[inline(always)]
+fn put_wrench<R: Real>(wrench: &mut Wrench<Spatial<R>>, lane: usize, single: Wrench<Spatial>) {
+    put(&mut wrench.force, lane, single.force);
+    put(&mut wrench.moment, lane, single.moment);
 }
 
 #[inline(always)]

@@ -253,6 +253,13 @@ impl<S: Space> Wrench<S> {
         Self { force: self.force + other.force, moment: self.moment + other.moment }
     }
 
+    /// As many times it.
+    #[inline(always)]
+    #[must_use]
+    pub fn times(self, factor: S::Real) -> Self {
+        Self { force: self.force * factor, moment: self.moment * factor }
+    }
+
     /// Power (W) on a body that moves with a twist; work (J) on one that went a way.
     #[inline(always)]
     pub fn power(self, twist: Twist<S>) -> S::Real {

@@ -20,8 +20,9 @@ impl<S: Space> Press<'_, S> {
             Some(spread) if spread.bears(gap.distance).any() => {
                 self.spread(first, patch.deepest, spread);
             }
-            Some(Spread { shares, .. }) => {
-                self.node(first, node, gap, shares.deepest);
+            Some(Spread { shares, slopes, .. }) => {
+                let energy = self.node(first, node, gap, shares.deepest);
+                self.sum.normal += slopes.deepest.times(-energy);
             }
             None => {
                 self.node(first, node, gap, one);
@@ -53,11 +54,16 @@ impl<S: Space> Press<'_, S> {
         ];
         let weight = S::Real::select(touching, self.elements.weights[first], zero);
         let (mut forces, mut stiffness) = ([(zero, zero); 3], zero);
-        for ((depth, rate, count), (total, damped)) in springs.into_iter().zip(&mut forces) {
+        // The energies that they would store if each counted in full.
+        let mut energies = [zero; 3];
+        for (((depth, rate, count), (total, damped)), energy) in
+            springs.into_iter().zip(&mut forces).zip(&mut energies)
+        {
             let pressed = zero.lt(depth);
             let depth = S::Real::select(pressed, depth, zero);
-            let weight = S::Real::select(pressed, weight * count, zero);
             let normal = self.law(depth, rate);
+            *energy = normal.energy * S::Real::select(pressed, weight, zero);
+            let weight = S::Real::select(pressed, weight * count, zero);
             *total = normal.total * weight;
             *damped = *total - normal.elastic * weight;
             self.totals.elastic += normal.energy * weight;
@@ -68,6 +74,12 @@ impl<S: Space> Press<'_, S> {
         let [deep, mirrored, between] = forces;
         let at_deepest = (deep.0 - mirrored.0, deep.1 - mirrored.1);
         let in_middle = (mirrored.0 + mirrored.0 + between.0, mirrored.1 + mirrored.1 + between.1);
+        let slopes = &spread.slopes;
+        let [at_point, beyond, inside] = energies;
+        let others = beyond + inside * S::Real::splat(spread.axes.in_the_middle());
+        self.sum.normal += slopes.middle.times(in_middle.1 - in_middle.0);
+        self.sum.normal += slopes.deepest.times(-at_point);
+        self.sum.normal += slopes.others.times(-others);
         let mut resultant = S::Vector::default();
         for (touch, (total, damped)) in [(&deepest, at_deepest), (&spread.middle, in_middle)] {
             let normal = touch.gap.normal;
