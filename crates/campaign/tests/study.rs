@@ -324,7 +324,8 @@ fn a_damaged_shard_is_named_when_read_and_made_again_when_run() {
         let error = Collected::read(folder.path()).unwrap_err();
         assert!(matches!(&error, StudyError::Shard { path, .. } if *path == names[1]), "{error}");
         // What killed runs leave goes, what looks alike stays.
-        let left = [".000001-0.parquet.00000000000000a1.part", "000001.claim", "mine.part", "mine.claim"];
+        let left =
+            [".000001-0.parquet.00000000000000a1.part", "000001.claim", "mine.part", "mine.claim"];
         let left = left.map(|name| shards.join(name));
         for path in &left {
             std::fs::write(path, "half").unwrap();

@@ -10,14 +10,14 @@ use std::sync::Arc;
 
 use barrelstack::assemble::PartKind;
 use barrelstack::outcome::Outcome;
-use barrelstack_dynamics::solid::Hull;
-use barrelstack_dynamics::{Body, Linear as _, Nodes, Quaternion, Rotation3, Spatial, Vec3, math};
+use barrelstack_dynamics::{Body, Linear as _, Quaternion, Rotation3, Solid, Spatial, Vec3, math};
 use barrelstack_report::{
     Event, EventKind, Frames, History, Moment, Point, Polyline, Role, Scene, SceneBody,
 };
 
 use crate::fate::Heading;
 use crate::run::Run;
+use crate::stack::Stack;
 use crate::words::leaves;
 
 /// A direction from which a stack is looked at.
@@ -35,10 +35,12 @@ impl Sight {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Across, Self::Along, Self::Above];
 
-    /// For people.
-    pub fn words(self) -> &'static str {
+    /// For people, of what stands there.
+    pub fn words(self, stack: &Stack) -> &'static str {
         match self {
+            Self::Across if stack.is_free() => "from the front",
             Self::Across => "across the barrels",
+            Self::Along if stack.is_free() => "from the side",
             Self::Along => "along the barrels",
             Self::Above => "from above",
         }
@@ -213,11 +215,10 @@ impl Seen {
         let flat = |point: Vec3| [point.dot(right), point.dot(up)];
         let mut outlines = Vec::new();
         let mut marks = Vec::new();
-        for nodes in &body.nodes {
-            let Nodes::Whole(whole) = nodes else { continue };
-            let place = |point: Vec3| whole.center + whole.rotation.apply(point);
-            match whole.hull {
-                Hull::Capsule(tube) => {
+        for placed in &body.surfaces {
+            let place = |point: Vec3| placed.offset + placed.rotation.apply(point);
+            match &placed.surface {
+                Solid::Capsule(tube) => {
                     let ends = [-tube.half_length, tube.half_length]
                         .map(|x| flat(place(Vec3::new(x, 0.0, 0.0))));
                     let rim = (0..8).map(|at| TAU * f64::from(at) / 8.0);
@@ -228,7 +229,7 @@ impl Seen {
                     });
                     outlines.push(Polyline::closed(hull(points.collect())));
                 }
-                Hull::Barrel(barrel) => {
+                Solid::Barrel(barrel) => {
                     let half = barrel.half_length + barrel.rounding;
                     let arc = barrel.stave_radius + barrel.rounding;
                     let radius = |x: f64| (arc * arc - x * x).sqrt() - barrel.stave_offset;
@@ -242,7 +243,7 @@ impl Seen {
                     };
                     let rings = (-6..=6).map(|at| half * f64::from(at) / 6.0);
                     outlines.push(Polyline::closed(hull(rings.flat_map(ring).map(flat).collect())));
-                    if from.x.abs() > 0.999 {
+                    if from.x.abs() > 0.999 && self.kind == PartKind::Barrel {
                         // As the plane draws it.
                         marks = SceneBody::barrel(name, radius(0.0)).marks;
                     } else {
@@ -255,10 +256,49 @@ impl Seen {
                         }
                     }
                 }
-                Hull::Block(_) => {}
+                Solid::Ball(ball) => {
+                    let [x, z] = flat(place(Vec3::default()));
+                    let around = |at: u32| TAU * f64::from(at) / 32.0;
+                    let rim = (0..32).map(around).map(|angle| {
+                        [x + ball.radius * math::cos(angle), z + ball.radius * math::sin(angle)]
+                    });
+                    outlines.push(Polyline::closed(rim.collect()));
+                    // Great circles, as far as they are on this side, show how it turns.
+                    for [one, other] in [[0, 1], [1, 2], [2, 0]] {
+                        let axes = [
+                            Vec3::new(1.0, 0.0, 0.0),
+                            Vec3::new(0.0, 1.0, 0.0),
+                            Vec3::new(0.0, 0.0, 1.0),
+                        ];
+                        let on = |at: u32| {
+                            let (sin, cos) = math::sin_cos(around(at));
+                            (axes[one] * cos + axes[other] * sin) * ball.radius
+                        };
+                        let near = |at: &u32| placed.rotation.apply(on(*at)).dot(from) >= -1e-9;
+                        // The half in sight is one stretch: it starts where the one before is hidden.
+                        let start = (0..32).find(|at| near(at) && !near(&((at + 31) % 32)));
+                        let start = start.unwrap_or(0);
+                        let seen = (0..=32).map(|at| (start + at) % 32).take_while(near);
+                        marks.push(Polyline::open(seen.map(|at| flat(place(on(at)))).collect()));
+                    }
+                }
+                Solid::Block(block) => {
+                    let half =
+                        block.half + Vec3::new(block.rounding, block.rounding, block.rounding);
+                    let corner = |at: u32| {
+                        let side = |bit: u32| if at & bit == 0 { -1.0 } else { 1.0 };
+                        flat(place(half.times(Vec3::new(side(1), side(2), side(4)))))
+                    };
+                    outlines.push(Polyline::closed(hull((0..8).map(corner).collect())));
+                }
+                Solid::HalfSpace => {}
             }
         }
-        let role = if self.kind == PartKind::Barrel { Role::Barrel } else { Role::Rack };
+        let role = match self.kind {
+            PartKind::Barrel => Role::Barrel,
+            PartKind::Body => Role::Block,
+            PartKind::Ground | PartKind::Rack | PartKind::Device | PartKind::Wine => Role::Rack,
+        };
         SceneBody { name: name.to_owned(), role, outlines, marks }
     }
 }
@@ -343,9 +383,10 @@ pub fn ground_histories(run: &Run) -> Vec<History> {
             .collect(),
         times: times.clone(),
     };
+    let free = run.stack.is_free();
     vec![
-        history("across the barrels", &|v| v.x),
-        history("along the barrels", &|v| v.y),
+        history(if free { "along x" } else { "across the barrels" }, &|v| v.x),
+        history(if free { "along y" } else { "along the barrels" }, &|v| v.y),
         history("upward", &|v| v.z),
     ]
 }

@@ -16,12 +16,14 @@
 pub mod drawing;
 pub mod export;
 pub mod fate;
+mod free;
 pub mod ground;
 mod rack;
 pub mod report;
 mod rest;
 pub mod run;
 pub mod stack;
+mod step;
 pub mod summary;
 pub mod variants;
 pub mod words;

@@ -29,8 +29,8 @@ pub(super) fn run(
     ] {
         if given {
             bail!(
-                "{option} is known in a plane, not yet for stack.view = \"spatial\": leave it out, or set stack.view to \
-                 \"both\""
+                "{option} is known in a plane, not yet in space: leave it out{}",
+                in_a_plane(scenario)
             );
         }
     }
@@ -63,6 +63,11 @@ pub(super) fn run(
     } else {
         ExitCode::SUCCESS
     })
+}
+
+/// The way to a plane, behind what is not known in space.
+fn in_a_plane(scenario: &Scenario) -> &'static str {
+    if scenario.stack().is_some() { ", or set stack.view to \"both\"" } else { "" }
 }
 
 /// The answer for people.
