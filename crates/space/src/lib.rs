@@ -18,6 +18,7 @@ pub mod export;
 pub mod fate;
 mod free;
 pub mod ground;
+pub mod mesh;
 mod rack;
 pub mod report;
 mod rest;
