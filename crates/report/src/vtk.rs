@@ -176,7 +176,7 @@ impl Mesh {
         piece.push_str("</Points>\n");
         topology(&mut piece, "Lines", &self.lines);
         topology(&mut piece, "Polys", &self.polygons);
-        poly_data(&piece)
+        poly_data("", &piece)
     }
 }
 
@@ -196,13 +196,14 @@ fn forces(scene: &Scene, frame: usize) -> String {
     whole(&mut piece, "Int64", "connectivity", 0..count);
     whole(&mut piece, "Int64", "offsets", 1..=count);
     piece.push_str("</Verts>\n");
-    poly_data(&piece)
+    poly_data("", &piece)
 }
 
-fn poly_data(piece: &str) -> String {
+/// A file of one piece, with the attributes that tell how its arrays are packed.
+fn poly_data(packing: &str, piece: &str) -> String {
     format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" \
-         byte_order=\"LittleEndian\">\n<PolyData>\n{piece}</Piece>\n</PolyData>\n</VTKFile>\n"
+         byte_order=\"LittleEndian\"{packing}>\n<PolyData>\n{piece}</Piece>\n</PolyData>\n</VTKFile>\n"
     )
 }
 

@@ -8,9 +8,10 @@ use barrelstack_report::{Role, SolidBody, Solids};
 
 use crate::run::Run;
 
-/// Corners around a body of revolution, and along a quarter of a circle.
-const AROUND: usize = 24;
-const QUARTER: u32 = 6;
+/// Corners around a quarter of balls and barrels, and of tubes, of which racks have many: all of them are written for
+/// every time.
+const FINE: u32 = 6;
+const COARSE: u32 = 3;
 
 /// Points of a surface (m) and its triangles, against the clock as seen from outside.
 type Mesh = (Vec<Vec3>, Vec<[usize; 3]>);
@@ -60,8 +61,10 @@ fn surface(body: &Body<Spatial>, floor: f64) -> Mesh {
     for placed in &body.surfaces {
         let (own, faces) = match &placed.surface {
             Solid::HalfSpace => square(floor),
-            Solid::Ball(ball) => revolved(&rounded(0.0, ball.radius)),
-            Solid::Capsule(tube) => revolved(&rounded(tube.half_length, tube.radius)),
+            Solid::Ball(ball) => revolved(&rounded(0.0, ball.radius, FINE), FINE),
+            Solid::Capsule(tube) => {
+                revolved(&rounded(tube.half_length, tube.radius, COARSE), COARSE)
+            }
             Solid::Barrel(barrel) => {
                 let (half, head, chime) = (barrel.half_length, barrel.head_radius, barrel.rounding);
                 let arc = barrel.stave_radius + chime;
@@ -72,13 +75,13 @@ fn surface(body: &Body<Spatial>, floor: f64) -> Mesh {
                     [side * (half + chime * sin), head + chime * cos]
                 };
                 profile.extend([FRAC_PI_2, 0.5 * (FRAC_PI_2 + widest)].map(|a| corner(-1.0, a)));
-                profile.extend((-6..=6).map(|at| {
-                    let (sin, cos) = math::sin_cos(widest * f64::from(at) / 6.0);
+                profile.extend((-4..=4).map(|at| {
+                    let (sin, cos) = math::sin_cos(widest * f64::from(at) / 4.0);
                     [arc * sin, arc * cos - barrel.stave_offset]
                 }));
                 profile.extend([0.5 * (FRAC_PI_2 + widest), FRAC_PI_2].map(|a| corner(1.0, a)));
                 profile.push([half + chime, 0.0]);
-                revolved(&profile)
+                revolved(&profile, FINE)
             }
             Solid::Block(block) => {
                 let out = block.rounding;
@@ -111,37 +114,39 @@ fn cuboid(half: Vec3) -> Mesh {
     ((0..8).map(corner).collect(), triangles.collect())
 }
 
-/// Place along the axis and distance from it (m) of a tube with round ends, from pole to pole.
-fn rounded(half_length: f64, radius: f64) -> Vec<[f64; 2]> {
-    let step = FRAC_PI_2 / f64::from(QUARTER);
+/// Place along the axis and distance from it (m) of a tube with round ends, from pole to pole, in so many steps a
+/// quarter of a circle.
+fn rounded(half_length: f64, radius: f64, quarter: u32) -> Vec<[f64; 2]> {
+    let step = FRAC_PI_2 / f64::from(quarter);
     let end = |side: f64, at: u32| {
         let (sin, cos) = math::sin_cos(step * f64::from(at));
         // The cosine of a right angle is not quite nothing.
-        let away = if at == QUARTER { 0.0 } else { radius * cos };
+        let away = if at == quarter { 0.0 } else { radius * cos };
         [side * (half_length + radius * sin), away]
     };
-    let mut profile: Vec<[f64; 2]> = (0..=QUARTER).rev().map(|at| end(-1.0, at)).collect();
+    let mut profile: Vec<[f64; 2]> = (0..=quarter).rev().map(|at| end(-1.0, at)).collect();
     let second = if half_length > 0.0 { 0 } else { 1 };
-    profile.extend((second..=QUARTER).map(|at| end(1.0, at)));
+    profile.extend((second..=quarter).map(|at| end(1.0, at)));
     profile
 }
 
-/// The surface that a profile, from pole to pole, sweeps about `x`.
-fn revolved(profile: &[[f64; 2]]) -> Mesh {
-    debug_assert!(AROUND >= 3 && profile.len() >= 3, "a profile between two poles");
+/// The surface that a profile, from pole to pole, sweeps about `x` in so many steps a quarter turn.
+fn revolved(profile: &[[f64; 2]], quarter: u32) -> Mesh {
+    debug_assert!(profile.len() >= 3, "a profile between two poles");
+    let around = 4 * quarter as usize;
     let last = profile.len() - 1;
     let mut points = vec![Vec3::new(profile[0][0], 0.0, 0.0)];
     for [x, radius] in &profile[1..last] {
-        points.extend((0..AROUND).map(|at| {
-            let (sin, cos) = math::sin_cos(TAU * at as f64 / AROUND as f64);
+        points.extend((0..around).map(|at| {
+            let (sin, cos) = math::sin_cos(TAU * at as f64 / around as f64);
             Vec3::new(*x, radius * cos, radius * sin)
         }));
     }
     points.push(Vec3::new(profile[last][0], 0.0, 0.0));
     let far = points.len() - 1;
-    let on = |ring: usize, at: usize| 1 + ring * AROUND + at % AROUND;
+    let on = |ring: usize, at: usize| 1 + ring * around + at % around;
     let mut triangles = Vec::new();
-    for at in 0..AROUND {
+    for at in 0..around {
         triangles.push([0, on(0, at + 1), on(0, at)]);
         for ring in 0..last - 2 {
             let [a, b] = [on(ring, at), on(ring, at + 1)];
@@ -182,8 +187,8 @@ mod tests {
         for (mesh, exact, near) in [
             (cuboid(Vec3::new(0.5, 1.0, 1.5)), 6.0, 1e-12),
             // measured 0.023 below, as inscribed polyhedra are
-            (revolved(&rounded(0.0, 0.3)), ball, 0.03),
-            (revolved(&rounded(0.4, 0.3)), ball + PI * 0.09 * 0.8, 0.03),
+            (revolved(&rounded(0.0, 0.3, FINE), FINE), ball, 0.03),
+            (revolved(&rounded(0.4, 0.3, FINE), FINE), ball + PI * 0.09 * 0.8, 0.03),
         ] {
             assert!(is_closed(&mesh));
             assert!((volume(&mesh) / exact - 1.0).abs() < near, "{}", volume(&mesh) / exact);
