@@ -83,7 +83,7 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     let mut order: Vec<usize> = (1..bodies.len()).collect();
     let depth = |body: usize| run.fates[body].rest.dot(toward);
     order.sort_by(|a, b| depth(*a).total_cmp(&depth(*b)));
-    let mut drawn = vec![ground(sight), yard(sight, run.stack.height)];
+    let mut drawn = vec![ground(sight), yard(run, sight)];
     let mut poses: Vec<Vec<[f64; 3]>> = frames
         .iter()
         .map(|frame| {
@@ -150,11 +150,34 @@ fn ground(sight: Sight) -> SceneBody {
     SceneBody::new("ground", Role::Ground, outlines)
 }
 
-/// What keeps room around a stack from above, where nothing below it bounds the picture: two points that show nothing.
-fn yard(sight: Sight, height: f64) -> SceneBody {
-    let far = if sight == Sight::Above { 0.7 * height } else { 0.0 };
-    let corners = [-far, far].map(|at| Polyline::open(vec![[at, at]]));
+/// What keeps room around bodies, as two points that show nothing: around a stack from above, where nothing below it
+/// bounds the picture, and around all the ways of a free scene.
+fn yard(run: &Run, sight: Sight) -> SceneBody {
+    let corners = if run.stack.is_free() {
+        ways(run, sight)
+    } else {
+        let far = if sight == Sight::Above { 0.7 * run.stack.height } else { 0.0 };
+        [[-far, -far], [far, far]]
+    };
+    let corners = corners.map(|corner| Polyline::open(vec![corner]));
     SceneBody::new("", Role::Block, corners.into())
+}
+
+/// The corners of what all bodies pass through, over the ground.
+fn ways(run: &Run, sight: Sight) -> [Point; 2] {
+    let page = sight.page();
+    let (mut lower, mut upper) = ([0.0; 2], [0.0; 2]);
+    for poses in &run.frames.poses {
+        let place = |body: usize| Vec3::new(poses[body][0], poses[body][1], poses[body][2]);
+        for (body, of) in run.stack.model.bodies().iter().enumerate().skip(1) {
+            let way = place(body) - place(0);
+            for (axis, along) in page.into_iter().enumerate() {
+                lower[axis] = way.dot(along).min(lower[axis] + of.reach()) - of.reach();
+                upper[axis] = way.dot(along).max(upper[axis] - of.reach()) + of.reach();
+            }
+        }
+    }
+    [lower, upper]
 }
 
 /// How a body is seen.

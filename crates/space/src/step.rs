@@ -18,7 +18,7 @@ const REFERENCE: f64 = 0.01;
 /// Longest step (s) where nothing asks for a shorter one.
 const LONGEST: f64 = 1e-3;
 
-/// Largest turn (rad) in a step of what spins from the start: a tumbling block keeps its energy to 1e-6 by it.
+/// Largest turn (rad) in a step of what spins from the start: a tumbling block keeps its energy to 3e-9 by it.
 const TURN: f64 = 5e-3;
 
 /// The step (s) that a scenario asks for, or the one that its contacts and spins suggest.

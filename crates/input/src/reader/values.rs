@@ -344,7 +344,12 @@ impl Reader<'_> {
             return Err(self.wrong_type(name, kind, node));
         };
         if items.len() != N {
-            return Err(self.wrong_type(name, kind, node));
+            let problem = Problem::WrongType {
+                field: self.path_of(name),
+                expected: kind.to_string(),
+                found: format!("a list of {}", items.len()),
+            };
+            return Err(self.sources.error(node.origin, problem));
         }
         let mut point = [0.0; N];
         for (value, item) in point.iter_mut().zip(items) {
