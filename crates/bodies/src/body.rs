@@ -8,6 +8,20 @@ use barrelstack_input::{Dimension, InputError, section};
 use crate::solid::{SOLID, Solid};
 
 section! {
+    /// Viscous drag on a body, relative to the ground at rest.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Viscous;
+    /// Viscous drag on the motion of a body in space, alike in all directions.
+    pub static VISCOUS = "viscous-in-space";
+    /// Force per velocity of the center of mass.
+    linear: f64 =
+        Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
+    /// Moment per spin.
+    angular: f64 =
+        Kind::Quantity(&[Dimension::ANGULAR_DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N m s\"");
+}
+
+section! {
     /// One body of a free scene in space.
     #[derive(Debug, Clone, PartialEq)]
     pub struct SpatialBody;
@@ -46,6 +60,8 @@ section! {
     group: Option<String> = Kind::Text, Default::Nothing;
     /// Whether the body moves with the ground.
     fixed_to_ground: bool = Kind::Flag, Default::Value("false");
+    /// Viscous drag.
+    viscous: Option<Viscous> = Kind::Table(&VISCOUS), Default::Nothing;
 }
 
 impl SpatialBody {

@@ -35,7 +35,7 @@ impl SpatialBody {
             motion: if self.fixed_to_ground { Motion::Prescribed } else { Motion::Free },
             mass: bulk.mass,
             inertia,
-            damping: None,
+            damping: self.viscous.map(|drag| [drag.linear, drag.angular]),
             pose: Pose { position: vector(self.position) + arm, orientation: turned.after(axes) },
             twist: Twist { linear: vector(self.velocity), angular: vector(self.spin) },
             nodes: surfaces.iter().filter_map(touching).collect(),
@@ -173,6 +173,7 @@ mod tests {
             spin: [0.0; 3],
             group: None,
             fixed_to_ground: false,
+            viscous: None,
         }
     }
 

@@ -11,5 +11,5 @@ mod body;
 mod build;
 mod solid;
 
-pub use body::{BODY, SpatialBody};
+pub use body::{BODY, SpatialBody, VISCOUS, Viscous};
 pub use solid::{PART, PartSolid, SOLID, Solid};

@@ -146,6 +146,20 @@ impl Held for bool {
     }
 }
 
+/// A table that may be absent.
+impl<T: Declared> Held for Option<T> {
+    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
+        reader.optional_section(name)?.map(T::read).transpose()
+    }
+
+    fn write(&self, writer: &mut Writer, name: &'static str) {
+        match self {
+            Some(value) => writer.table(name, value.write()),
+            None => writer.omit(&[name]),
+        }
+    }
+}
+
 /// A member of a closed set.
 impl<T: Named> Held for T {
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use barrelstack::assemble::PartKind;
 use barrelstack::outcome::Outcome;
+use barrelstack::scenario;
 use barrelstack_dynamics::{Body, Linear as _, Quaternion, Rotation3, Solid, Spatial, Vec3, math};
 use barrelstack_report::{
     Event, EventKind, Frames, History, Moment, Point, Polyline, Role, Scene, SceneBody,
@@ -83,13 +84,15 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     let mut order: Vec<usize> = (1..bodies.len()).collect();
     let depth = |body: usize| run.fates[body].rest.dot(toward);
     order.sort_by(|a, b| depth(*a).total_cmp(&depth(*b)));
-    let mut drawn = vec![ground(sight), yard(run, sight)];
+    let slope = slope(run);
+    let mut drawn = vec![ground(sight, slope), yard(run, sight)];
     let mut poses: Vec<Vec<[f64; 3]>> = frames
         .iter()
         .map(|frame| {
             let [x, y, z, ..] = run.frames.poses[*frame][0];
             let at = Vec3::new(x, y, z);
-            vec![[at.dot(right), at.dot(up), 0.0]; 2]
+            let [x, z] = [at.dot(right), at.dot(up)];
+            vec![[x, z, if sight == Sight::Across { slope } else { 0.0 }], [x, z, 0.0]]
         })
         .collect();
     let mut first = vec![0; bodies.len()];
@@ -143,10 +146,19 @@ fn placed([x, y, z, w, a, b, c]: [f64; 7]) -> (Vec3, Rotation3) {
     (Vec3::new(x, y, z), Quaternion { w, v: Vec3::new(a, b, c) }.matrix())
 }
 
-/// The floor: a line longer than any picture is wide; from above nothing.
-fn ground(sight: Sight) -> SceneBody {
+/// By how much (rad) the ground rises to the right.
+fn slope(run: &Run) -> f64 {
+    match &run.scenario.scene {
+        scenario::Scene::Spatial(scene) => scene.ground.slope,
+        scenario::Scene::Stack { .. } | scenario::Scene::Free(_) => 0.0,
+    }
+}
+
+/// The floor: a line longer than any picture is wide; nothing from above, and from the side where it slopes.
+fn ground(sight: Sight, slope: f64) -> SceneBody {
     let line = Polyline::open(vec![[-100.0, 0.0], [100.0, 0.0]]);
-    let outlines = if sight == Sight::Above { Vec::new() } else { vec![line] };
+    let shown = sight == Sight::Across || (sight == Sight::Along && slope == 0.0);
+    let outlines = if shown { vec![line] } else { Vec::new() };
     SceneBody::new("ground", Role::Ground, outlines)
 }
 

@@ -7,7 +7,8 @@ use barrelstack_dynamics::{
     Body, BodyId, ContactPair, Counts, Model, Motion, Quaternion, Solid, Spatial, Vec3,
 };
 
-use crate::stack::{Part, Stack, ground};
+use crate::part::{Part, ground};
+use crate::stack::Stack;
 use crate::step::time_step;
 
 /// Builds a free scene, not yet at rest.

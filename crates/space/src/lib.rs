@@ -1,4 +1,5 @@
-//! Stacks of barrels in space: what a scenario states, as it stands, under all three components of a motion.
+//! Stacks of barrels and free scenes in space: what a scenario states, as it stands, under all three components of a
+//! motion.
 //!
 //! ```text
 //! Scenario ─ stack::assemble ─▶ Stack { Model, parts }
@@ -19,6 +20,7 @@ pub mod fate;
 mod free;
 pub mod ground;
 pub mod mesh;
+mod part;
 mod rack;
 pub mod report;
 mod rest;

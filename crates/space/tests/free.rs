@@ -79,6 +79,21 @@ fn a_block_that_tumbles_keeps_its_angular_momentum_and_turns_over() {
 }
 
 #[test]
+fn drag_stops_a_block_along_an_exponential() {
+    let drag = "body.block.viscous={ linear = '2 N s/m', angular = '0.02 N m s' }";
+    let changes = [
+        "body.block.velocity=['1 m/s', '0 m/s', '0 m/s']",
+        "body.block.spin=['0 rad/s', '0 rad/s', '3 rad/s']",
+        "run.duration=2 s",
+        drag,
+    ];
+    let end = ran("tumbling-block", &changes).last.twists[1];
+    let fading = |rate: f64| (-2.0 * rate).exp();
+    assert_near(end.linear.x, fading(2.0 / 3.6), 1e-5);
+    assert_near(end.angular.z, 3.0 * fading(0.02 / (0.13 * 3.6 / 12.0)), 1e-5);
+}
+
+#[test]
 fn a_ball_rolls_down_a_slope_of_the_ground() {
     let slope: f64 = 10_f64.to_radians();
     let place = format!("[\"{} m\", \"0 m\", \"{} m\"]", -0.3 * slope.sin(), 0.3 * slope.cos());
