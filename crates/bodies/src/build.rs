@@ -154,8 +154,6 @@ fn touching(placed: &Placed<Spatial>) -> Option<Nodes<Spatial>> {
 
 #[cfg(test)]
 mod tests {
-    use barrelstack_dynamics::Linear as _;
-
     use super::*;
 
     fn body(solid: Solid) -> SpatialBody {

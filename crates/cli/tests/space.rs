@@ -61,7 +61,8 @@ fn what_space_does_not_know_is_refused_before_any_work() {
         assert!(stderr(&output).contains(told), "{told}: {}", stderr(&output));
     }
     // And what works in a plane says so.
-    let output = barrelstack(["check", "demo-napa", "--set=stack.view=spatial"]);
+    let more = ["--set=stack.view=spatial", "--against=stack.levels=2"];
+    let output = barrelstack([&["compare", "demo-napa"], &more[..]].concat());
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("this works in a plane"), "{}", stderr(&output));
 }
@@ -97,6 +98,18 @@ fn a_free_scene_in_space_leaves_its_files() {
 }
 
 #[test]
+fn check_says_what_stands_in_space() {
+    let said = |arguments: &[&str]| {
+        let output = barrelstack([&["check"], arguments].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        stdout(&output)
+    };
+    assert!(said(&["rolling-ball"]).contains("1 free body"));
+    let stack = said(&["demo-napa", "--set=stack.view=spatial"]);
+    assert!(stack.contains("10 barrels, 5 racks") && stack.contains("at rest"), "{stack}");
+}
+
+#[test]
 fn a_run_in_space_becomes_a_series_for_paraview() {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("out").display().to_string();
@@ -126,7 +139,7 @@ fn what_a_free_scene_in_space_does_not_know_is_refused_before_any_work() {
         ),
         (&["run", "rolling-ball", "--variants=3"], "a free scene has no variants"),
         (&["render", "rolling-ball", "--only=animation", "--out", &place], "take --only paraview"),
-        (&["check", "rolling-ball"], "this works in a plane"),
+        (&["compare", "rolling-ball", "--against=run.duration=2 s"], "this works in a plane"),
     ] {
         let output = barrelstack(command);
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));

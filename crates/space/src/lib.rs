@@ -14,6 +14,7 @@
 // Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod check;
 pub mod drawing;
 pub mod export;
 pub mod fate;
@@ -31,6 +32,7 @@ pub mod summary;
 pub mod variants;
 pub mod words;
 
+pub use check::check;
 pub use fate::{Fate, Heading};
 pub use ground::Ground;
 pub use run::Run;
