@@ -94,7 +94,7 @@ fn a_free_scene_in_space_leaves_its_files() {
     for view in ["From the front", "From the side", "From above"] {
         assert!(page.contains(view), "{view}");
     }
-    assert!(!page.contains("barrels"), "there is none");
+    assert!(!page.contains("the barrels"), "there are none");
 }
 
 #[test]

@@ -31,7 +31,7 @@ fn bytes(tree: &roxmltree::Document<'_>, name: &str, kind: &str) -> Vec<u8> {
     let packed = decode(data);
     let mut unpacked = Vec::new();
     flate2::read::ZlibDecoder::new(packed.as_slice()).read_to_end(&mut unpacked).unwrap();
-    assert_eq!(header, [1, unpacked.len() as u32, 0, packed.len() as u32]);
+    assert_eq!(header, [1, unpacked.len(), 0, packed.len()]);
     unpacked
 }
 

@@ -11,7 +11,9 @@ use std::sync::Arc;
 use barrelstack::assemble::PartKind;
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario;
-use barrelstack_dynamics::{Body, Linear as _, Quaternion, Rotation3, Solid, Spatial, Vec3, math};
+use barrelstack_dynamics::{
+    Body, Linear as _, Placed, Quaternion, Rotation3, Solid, Spatial, Vec3, math,
+};
 use barrelstack_report::{
     Event, EventKind, Frames, History, Moment, Point, Polyline, Role, Scene, SceneBody,
 };
@@ -99,11 +101,12 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     for body in order {
         first[body] = drawn.len();
         let part = &run.stack.parts[body];
+        let kind = if is_barrel(&bodies[body]) { PartKind::Barrel } else { part.kind };
         let mut known: BTreeMap<[i32; 3], usize> = BTreeMap::new();
         for (at, frame) in frames.iter().enumerate() {
             let (place, rotation) = placed(run.frames.poses[*frame][body]);
             let page = [right, up].map(|axis| rotation.unapply(axis));
-            let seen = Seen::of(part.kind, page);
+            let seen = Seen::of(kind, page);
             let slot = *known.entry(seen.key()).or_insert_with(|| {
                 drawn.push(seen.draw(&part.name, &bodies[body]));
                 drawn.len() - 1
@@ -127,6 +130,14 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
         moment: moment(run, &first).filter(|_| run.heading.is_some_and(|way| sight.shows(way))),
         ..Scene::default()
     })
+}
+
+/// Whether a body is a barrel and nothing else, with its center of mass on its axis.
+fn is_barrel(body: &Body<Spatial>) -> bool {
+    let [Placed { surface: Solid::Barrel(_), offset, .. }] = body.surfaces.as_slice() else {
+        return false;
+    };
+    offset.y == 0.0 && offset.z == 0.0
 }
 
 /// The frames of a run that a picture shows.
@@ -277,15 +288,18 @@ impl Seen {
                         })
                     };
                     let rings = (-6..=6).map(|at| half * f64::from(at) / 6.0);
-                    outlines.push(Polyline::closed(hull(rings.flat_map(ring).map(flat).collect())));
+                    outlines.push(Polyline::closed(hull(
+                        rings.flat_map(ring).map(|p| flat(place(p))).collect(),
+                    )));
                     if from.x.abs() > 0.999 && self.kind == PartKind::Barrel {
                         // As the plane draws it.
                         marks = SceneBody::barrel(name, radius(0.0)).marks;
-                    } else {
+                    } else if self.kind == PartKind::Barrel {
                         // Hoops, as far as they are on this side.
                         for x in [0.28, 0.6, -0.6, -0.28, 0.94, -0.94].map(|share| share * half) {
                             let near = |point: &Vec3| point.y * from.y + point.z * from.z >= -1e-9;
-                            let mut hoop: Vec<Point> = ring(x).filter(near).map(flat).collect();
+                            let mut hoop: Vec<Point> =
+                                ring(x).filter(near).map(|p| flat(place(p))).collect();
                             hoop.sort_by(|a, b| a[1].total_cmp(&b[1]));
                             marks.push(Polyline::open(hoop));
                         }

@@ -125,7 +125,8 @@ fn rounded(half_length: f64, radius: f64, quarter: u32) -> Vec<[f64; 2]> {
         [side * (half_length + radius * sin), away]
     };
     let mut profile: Vec<[f64; 2]> = (0..=quarter).rev().map(|at| end(-1.0, at)).collect();
-    let second = if half_length > 0.0 { 0 } else { 1 };
+    // Both ends of a ball share a ring.
+    let second = u32::from(half_length <= 0.0);
     profile.extend((second..=quarter).map(|at| end(1.0, at)));
     profile
 }

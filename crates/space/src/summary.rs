@@ -124,7 +124,7 @@ described! {
         /// Its center of mass x, y, z at the end, where the ground was at the start.
         pub position: [f64; 3] as "m",
         /// How it is turned at the end: the quaternion w, x, y, z that turns its principal axes.
-        pub orientation: [f64; 4],
+        pub orientation: [f64; 4] as "1",
         /// Velocity x, y, z of its center of mass at the end, the ground's included.
         pub velocity: [f64; 3] as "m/s",
         /// Spin about x, y, z at the end.
