@@ -26,8 +26,10 @@ fn bytes(tree: &roxmltree::Document<'_>, name: &str, kind: &str) -> Vec<u8> {
     // Sixteen bytes take 24 letters.
     let (header, data) = node.text().unwrap().trim().split_at(24);
     let decode = |text: &str| base64::prelude::BASE64_STANDARD.decode(text).unwrap();
-    let header: Vec<u32> =
-        decode(header).chunks(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
+    let header: Vec<usize> = decode(header)
+        .chunks(4)
+        .map(|word| u32::from_le_bytes(word.try_into().unwrap()) as usize)
+        .collect();
     let packed = decode(data);
     let mut unpacked = Vec::new();
     flate2::read::ZlibDecoder::new(packed.as_slice()).read_to_end(&mut unpacked).unwrap();
