@@ -56,7 +56,7 @@ use verdict::Verdict;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ask {
-    /// The scenarios that come with the program: a JSON list of pairs of name and text.
+    /// The scenarios that come with the program, but those in space: a JSON list of pairs of name and text.
     Scenarios,
     /// The barrels and racks of the catalog, as JSON.
     Catalog,
