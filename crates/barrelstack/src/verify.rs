@@ -173,6 +173,7 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
             }
             stack.rack.node_spacing *= 0.5;
         }
+        Scene::Spatial(_) => return Err("no body in space carries nodes".into()),
         Scene::Free(scene) => {
             if scene.interfaces.iter().any(|interface| interface.law.basis == Basis::Node) {
                 return Err(PER_NODE.into());
@@ -215,6 +216,11 @@ fn disturbed(scenario: &Scenario, seed: u64) -> Scenario {
                 offset_x: offset(),
                 offset_y: 0.0,
             }));
+        }
+        Scene::Spatial(scene) => {
+            for body in scene.bodies.iter_mut().filter(|body| !body.fixed_to_ground) {
+                body.position[0] += offset();
+            }
         }
         Scene::Free(scene) => {
             for body in scene.bodies.iter_mut().filter(|body| !body.fixed_to_ground) {

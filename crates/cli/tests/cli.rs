@@ -348,7 +348,7 @@ fn check_says_what_stands_there() {
 #[test]
 fn every_listed_scenario_can_be_shown_checked_and_resolved() {
     let list = stdout(&barrelstack(["scenarios"]));
-    assert_eq!(list.lines().count(), 10);
+    assert_eq!(list.lines().count(), 13);
     for line in list.lines() {
         let (name, title) = line.split_once("  ").unwrap();
         let shown = stdout(&barrelstack(["scenarios", "show", name]));

@@ -61,7 +61,88 @@ fn what_space_does_not_know_is_refused_before_any_work() {
         assert!(stderr(&output).contains(told), "{told}: {}", stderr(&output));
     }
     // And what works in a plane says so.
-    let output = barrelstack(["check", "demo-napa", "--set=stack.view=spatial"]);
+    let more = ["--set=stack.view=spatial", "--against=stack.levels=2"];
+    let output = barrelstack([&["compare", "demo-napa"], &more[..]].concat());
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("this works in a plane"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_free_scene_in_space_leaves_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let place = out.display().to_string();
+    let output = barrelstack(["run", "rolling-ball", "--out", &place, "-q"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stdout(&output).contains("ends at 0.714 m/s"), "{}", stdout(&output));
+    let mut names: Vec<String> = fs::read_dir(&out)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["frames.csv", "report.html", "scenario.toml", "summary.json"]);
+    let summary: Value =
+        serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
+    assert_eq!(summary["schema"], "space/1");
+    assert_eq!(summary["outcome"]["kind"], "not-judged");
+    let body = &summary["bodies"][0];
+    assert_eq!((&body["name"], &body["kind"]), (&"ball".into(), &"body".into()));
+    let number = |value: &Value| value.as_f64().unwrap();
+    let speed = number(&body["velocity"][0]).hypot(number(&body["velocity"][1]));
+    assert!((speed - 5.0 / 7.0).abs() < 1e-4, "{speed}");
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    for view in ["From the front", "From the side", "From above"] {
+        assert!(page.contains(view), "{view}");
+    }
+    assert!(!page.contains("the barrels"), "there are none");
+}
+
+#[test]
+fn check_says_what_stands_in_space() {
+    let said = |arguments: &[&str]| {
+        let output = barrelstack([&["check"], arguments].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        stdout(&output)
+    };
+    assert!(said(&["rolling-ball"]).contains("1 free body"));
+    let stack = said(&["demo-napa", "--set=stack.view=spatial"]);
+    assert!(stack.contains("10 barrels, 5 racks") && stack.contains("at rest"), "{stack}");
+}
+
+#[test]
+fn a_run_in_space_becomes_a_series_for_paraview() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("out").display().to_string();
+    for scenario in [&["render", "rolling-ball"][..], &["render", "demo-napa", "--variants=0"]] {
+        let more = ["--set=stack.view=spatial", "--set=stack.levels=2"];
+        let more = if scenario[1] == "rolling-ball" { &[][..] } else { &more[..] };
+        let common = ["--set=run.duration=1 s", "--rate=4", "--overwrite", "-q", "--out", &place];
+        let output = barrelstack([scenario, more, &common].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        // Five times, the names and the index.
+        assert!(stdout(&output).contains("paraview: 7 files"), "{}", stdout(&output));
+        let index = folder.path().join("out/paraview/stack.pvd");
+        assert_eq!(fs::read_to_string(index).unwrap().matches("<DataSet").count(), 5);
+    }
+    let names = fs::read_to_string(folder.path().join("out/paraview/bodies.csv")).unwrap();
+    assert!(names.contains("B2.1,barrel,2"), "{names}");
+}
+
+#[test]
+fn what_a_free_scene_in_space_does_not_know_is_refused_before_any_work() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("out").display().to_string();
+    for (command, told) in [
+        (
+            &["run", "rolling-ball", "--verify"][..],
+            "--verify is known in a plane, not yet in space",
+        ),
+        (&["run", "rolling-ball", "--variants=3"], "a free scene has no variants"),
+        (&["render", "rolling-ball", "--only=animation", "--out", &place], "take --only paraview"),
+        (&["compare", "rolling-ball", "--against=run.duration=2 s"], "this works in a plane"),
+    ] {
+        let output = barrelstack(command);
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        assert!(stderr(&output).contains(told), "{told}: {}", stderr(&output));
+    }
 }

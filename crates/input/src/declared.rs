@@ -83,6 +83,49 @@ fn has_word(kind: Kind) -> bool {
     matches!(kind, Kind::WordOr(..))
 }
 
+impl Held for [f64; 3] {
+    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
+        reader.triple(name)
+    }
+
+    fn write(&self, writer: &mut Writer, name: &'static str) {
+        writer.triple(name, *self);
+    }
+}
+
+impl Held for Option<[f64; 3]> {
+    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
+        reader.optional_triple(name)
+    }
+
+    fn write(&self, writer: &mut Writer, name: &'static str) {
+        match *self {
+            Some(value) => writer.triple(name, value),
+            None => writer.omit(&[name]),
+        }
+    }
+}
+
+impl Held for String {
+    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
+        reader.text(name)
+    }
+
+    fn write(&self, writer: &mut Writer, name: &'static str) {
+        writer.text(name, self);
+    }
+}
+
+impl Held for Option<String> {
+    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
+        reader.optional_text(name)
+    }
+
+    fn write(&self, writer: &mut Writer, name: &'static str) {
+        writer.optional_text(name, self.as_deref());
+    }
+}
+
 impl Held for u32 {
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
         reader.integer(name)
@@ -100,6 +143,20 @@ impl Held for bool {
 
     fn write(&self, writer: &mut Writer, name: &'static str) {
         writer.flag(name, *self);
+    }
+}
+
+/// A table that may be absent.
+impl<T: Declared> Held for Option<T> {
+    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
+        reader.optional_section(name)?.map(T::read).transpose()
+    }
+
+    fn write(&self, writer: &mut Writer, name: &'static str) {
+        match self {
+            Some(value) => writer.table(name, value.write()),
+            None => writer.omit(&[name]),
+        }
     }
 }
 
@@ -145,7 +202,7 @@ macro_rules! section {
         $(#[$about:meta])*
         $visible:vis struct $type:ident;
         $(#[doc = $help:literal])+
-        $seen:vis static $section:ident = $name:literal;
+        $seen:vis static $section:ident = $name:literal $(, at most one of $rivals:expr)?;
         $(
             $(#[doc = $text:literal])+
             $field:ident: $held:ty = $kind:expr, $default:expr;
@@ -173,7 +230,7 @@ macro_rules! section {
                 ),
             )*],
             variants: None,
-            exclusive: &[],
+            exclusive: &[$($rivals)?],
         };
 
         impl $crate::declared::Declared for $type {

@@ -90,6 +90,8 @@ pub enum Kind {
     Unit(Dimension),
     /// Two quantities `[x, z]`.
     Point(Dimension),
+    /// Three quantities `[x, y, z]`.
+    Triple(Dimension),
     /// A list of points.
     Points(Dimension),
     /// Two texts.
@@ -216,6 +218,7 @@ impl Kind {
             | Self::WordOr(..)
             | Self::Unit(_)
             | Self::Point(_)
+            | Self::Triple(_)
             | Self::Points(_)
             | Self::Pair
             | Self::TextOrFalse
@@ -245,6 +248,7 @@ impl Kind {
             }
             Self::Unit(dimension) => format!("\"{}\"", dimension.si_unit()),
             Self::Point(d) => format!("[\"{0}\", \"{0}\"]", d.example()),
+            Self::Triple(d) => format!("[\"{0}\", \"{0}\", \"{0}\"]", d.example()),
             Self::Points(d) => format!("[[\"{0}\", \"{0}\"], …]", d.example()),
             Self::Pair => "[\"block\", \"ground\"]".to_owned(),
             Self::TextOrFalse => "\"UP\"".to_owned(),
@@ -279,6 +283,9 @@ impl fmt::Display for Kind {
             }
             Self::Unit(dimension) => write!(f, "the unit of {dimension}"),
             Self::Point(dimension) => write!(f, "a list [x, z], each {dimension} with its unit"),
+            Self::Triple(dimension) => {
+                write!(f, "a list [x, y, z], each {dimension} with its unit")
+            }
             Self::Points(dimension) => {
                 write!(f, "a list of points [x, z], each {dimension} with its unit")
             }

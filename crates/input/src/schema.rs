@@ -86,8 +86,8 @@ fn property(field: &Field) -> Value {
 fn kind(kind: Kind) -> Value {
     let quantity = || json!({ "type": "string", "pattern": QUANTITY });
     let single = || json!({ "type": ["string", "number", "boolean"] });
-    let pair =
-        |item: Value| json!({ "type": "array", "items": item, "minItems": 2, "maxItems": 2 });
+    let some = |count: u32, item: Value| json!({ "type": "array", "items": item, "minItems": count, "maxItems": count });
+    let pair = |item| some(2, item);
     match kind {
         Kind::Text | Kind::Unit(_) => json!({ "type": "string", "minLength": 1 }),
         Kind::Label => json!({ "type": ["string", "integer"] }),
@@ -99,6 +99,7 @@ fn kind(kind: Kind) -> Value {
         Kind::Quantity(..) => quantity(),
         Kind::WordOr(word, ..) => json!({ "anyOf": [{ "const": word }, quantity()] }),
         Kind::Point(_) => pair(quantity()),
+        Kind::Triple(_) => some(3, quantity()),
         Kind::Points(_) => json!({ "type": "array", "items": pair(quantity()), "minItems": 3 }),
         Kind::Pair => pair(json!({ "type": "string" })),
         Kind::TextOrFalse => json!({ "anyOf": [{ "type": "string" }, { "const": false }] }),

@@ -148,6 +148,14 @@ impl Writer {
         self.put(name, point(value, dimension));
     }
 
+    /// Three quantities.
+    pub fn triple(&mut self, name: &'static str, value: [f64; 3]) {
+        let Kind::Triple(dimension) = self.field(name).kind else {
+            panic!("field `{name}` is no list of three")
+        };
+        self.put(name, point(value, dimension));
+    }
+
     /// A list of points.
     pub fn points(&mut self, name: &'static str, values: &[[f64; 2]]) {
         let Kind::Points(dimension) = self.field(name).kind else {
@@ -178,7 +186,7 @@ fn node(value: Value) -> Node {
     Node { origin: Origin::Default, value }
 }
 
-fn point(value: [f64; 2], dimension: Dimension) -> Value {
+fn point<const N: usize>(value: [f64; N], dimension: Dimension) -> Value {
     let text = |value| node(Value::Text(Quantity { value, dimension }.to_string()));
     Value::Array(value.map(text).into())
 }

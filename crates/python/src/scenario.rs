@@ -78,7 +78,7 @@ impl Scenario {
 
     #[getter]
     fn is_free(&self) -> bool {
-        matches!(self.inner.scene, Scene::Free(_))
+        matches!(self.inner.scene, Scene::Free(_) | Scene::Spatial(_))
     }
 
     fn to_toml(&self) -> String {
@@ -206,12 +206,12 @@ pub(crate) fn with_variants(
             imperfections.variants = variants.unwrap_or(imperfections.variants);
             imperfections.variants
         }
-        Scene::Free(_) if variants.is_some_and(|count| count > 0) => {
+        Scene::Free(_) | Scene::Spatial(_) if variants.is_some_and(|count| count > 0) => {
             return Err(PyValueError::new_err(
                 "a free scene has no variants, since nothing says how it may differ",
             ));
         }
-        Scene::Free(_) => 0,
+        Scene::Free(_) | Scene::Spatial(_) => 0,
     };
     Ok((scenario, count))
 }

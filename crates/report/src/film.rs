@@ -94,7 +94,11 @@ impl Scene {
 
 /// Frames nearest to even steps of time, each once.
 pub(crate) fn sampled(scene: &Scene, rate: f64) -> Vec<usize> {
-    let times = &scene.frames.times[..scene.frames.len()];
+    sampled_times(&scene.frames.times[..scene.frames.len()], rate)
+}
+
+/// The same of times (s).
+pub(crate) fn sampled_times(times: &[f64], rate: f64) -> Vec<usize> {
     let mut frames = Vec::new();
     let mut due = f64::NEG_INFINITY;
     for (frame, &time) in times.iter().enumerate() {

@@ -101,4 +101,4 @@ pub use table::{Cell, Column, Rating, Table};
 pub use terminal::{Characters, sparkline, terminal_picture};
 pub use ticks::{Ticks, linear_ticks, log_ticks};
 pub use trial::Trial;
-pub use vtk::paraview;
+pub use vtk::{SolidBody, Solids, paraview, paraview_of_solids};

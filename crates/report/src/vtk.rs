@@ -1,6 +1,10 @@
 //! A scene as a time series for ParaView: VTK `PolyData` in XML, text throughout.
 
+mod solids;
+
 use std::fmt::Write as _;
+
+pub use solids::{SolidBody, Solids, paraview_of_solids};
 
 use crate::{
     Attachment, Polyline, Role, Scene, escape,
@@ -23,10 +27,7 @@ use crate::{
 pub fn paraview(scene: &Scene, rate: f64) -> Vec<Attachment> {
     let frames = sampled(scene, rate);
     let digits = frames.len().to_string().len().max(4);
-    let mut index = String::from(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" \
-         byte_order=\"LittleEndian\">\n<Collection>\n",
-    );
+    let mut index = opened_index();
     // The ground goes on for hundreds of meters; a viewer fits its first picture to all of it.
     let view = window(scene, &frames);
     let sight = [view.lower[0] - view.width(), view.upper[0] + view.width()];
@@ -36,22 +37,38 @@ pub fn paraview(scene: &Scene, rate: f64) -> Vec<Attachment> {
         let parts = [("bodies", bodies(scene, frame, sight)), ("forces", forces(scene, frame))];
         for (part, (name, text)) in parts.into_iter().enumerate() {
             let name = format!("{name}-{at:0digits$}.vtp");
-            // Writing to a String cannot fail, here and below.
-            let _ = writeln!(
-                index,
-                "<DataSet timestep=\"{time}\" group=\"\" part=\"{part}\" file=\"{name}\"/>"
-            );
+            index_entry(&mut index, time, part, &name);
             files.push(Attachment { name, bytes: text.into_bytes() });
         }
     }
-    index.push_str("</Collection>\n</VTKFile>\n");
     let mut names = String::from("body,name,role\n");
     for (at, body) in scene.bodies.iter().enumerate() {
         let _ = writeln!(names, "{at},{},{}", escape::csv(&body.name), body.role.class());
     }
     files.push(Attachment { name: "bodies.csv".into(), bytes: names.into_bytes() });
-    files.push(Attachment { name: "stack.pvd".into(), bytes: index.into_bytes() });
+    files.push(Attachment { name: "stack.pvd".into(), bytes: closed_index(index).into_bytes() });
     files
+}
+
+/// The start of the file that lists all others.
+fn opened_index() -> String {
+    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" \
+     byte_order=\"LittleEndian\">\n<Collection>\n"
+        .to_owned()
+}
+
+/// A file of a time (s) in it; what of one time are several parts has a file each.
+fn index_entry(index: &mut String, time: f64, part: usize, file: &str) {
+    // Writing to a String cannot fail, here and below.
+    let _ = writeln!(
+        index,
+        "<DataSet timestep=\"{time}\" group=\"\" part=\"{part}\" file=\"{file}\"/>"
+    );
+}
+
+/// All of it.
+fn closed_index(index: String) -> String {
+    index + "</Collection>\n</VTKFile>\n"
 }
 
 /// Points, cells and their data, gathered before they are written.
@@ -159,7 +176,7 @@ impl Mesh {
         piece.push_str("</Points>\n");
         topology(&mut piece, "Lines", &self.lines);
         topology(&mut piece, "Polys", &self.polygons);
-        poly_data(&piece)
+        poly_data("", &piece)
     }
 }
 
@@ -179,13 +196,14 @@ fn forces(scene: &Scene, frame: usize) -> String {
     whole(&mut piece, "Int64", "connectivity", 0..count);
     whole(&mut piece, "Int64", "offsets", 1..=count);
     piece.push_str("</Verts>\n");
-    poly_data(&piece)
+    poly_data("", &piece)
 }
 
-fn poly_data(piece: &str) -> String {
+/// A file of one piece, with the attributes that tell how its arrays are packed.
+fn poly_data(packing: &str, piece: &str) -> String {
     format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" \
-         byte_order=\"LittleEndian\">\n<PolyData>\n{piece}</Piece>\n</PolyData>\n</VTKFile>\n"
+         byte_order=\"LittleEndian\"{packing}>\n<PolyData>\n{piece}</Piece>\n</PolyData>\n</VTKFile>\n"
     )
 }
 

@@ -10,14 +10,17 @@ use std::sync::Arc;
 
 use barrelstack::assemble::PartKind;
 use barrelstack::outcome::Outcome;
-use barrelstack_dynamics::solid::Hull;
-use barrelstack_dynamics::{Body, Linear as _, Nodes, Quaternion, Rotation3, Spatial, Vec3, math};
+use barrelstack::scenario;
+use barrelstack_dynamics::{
+    Body, Linear as _, Placed, Quaternion, Rotation3, Solid, Spatial, Vec3, math,
+};
 use barrelstack_report::{
     Event, EventKind, Frames, History, Moment, Point, Polyline, Role, Scene, SceneBody,
 };
 
 use crate::fate::Heading;
 use crate::run::Run;
+use crate::stack::Stack;
 use crate::words::leaves;
 
 /// A direction from which a stack is looked at.
@@ -35,10 +38,12 @@ impl Sight {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Across, Self::Along, Self::Above];
 
-    /// For people.
-    pub fn words(self) -> &'static str {
+    /// For people, of what stands there.
+    pub fn words(self, stack: &Stack) -> &'static str {
         match self {
+            Self::Across if stack.is_free() => "from the front",
             Self::Across => "across the barrels",
+            Self::Along if stack.is_free() => "from the side",
             Self::Along => "along the barrels",
             Self::Above => "from above",
         }
@@ -81,24 +86,27 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     let mut order: Vec<usize> = (1..bodies.len()).collect();
     let depth = |body: usize| run.fates[body].rest.dot(toward);
     order.sort_by(|a, b| depth(*a).total_cmp(&depth(*b)));
-    let mut drawn = vec![ground(sight), yard(sight, run.stack.height)];
+    let slope = slope(run);
+    let mut drawn = vec![ground(sight, slope), yard(run, sight)];
     let mut poses: Vec<Vec<[f64; 3]>> = frames
         .iter()
         .map(|frame| {
             let [x, y, z, ..] = run.frames.poses[*frame][0];
             let at = Vec3::new(x, y, z);
-            vec![[at.dot(right), at.dot(up), 0.0]; 2]
+            let [x, z] = [at.dot(right), at.dot(up)];
+            vec![[x, z, if sight == Sight::Across { slope } else { 0.0 }], [x, z, 0.0]]
         })
         .collect();
     let mut first = vec![0; bodies.len()];
     for body in order {
         first[body] = drawn.len();
         let part = &run.stack.parts[body];
+        let kind = if is_barrel(&bodies[body]) { PartKind::Barrel } else { part.kind };
         let mut known: BTreeMap<[i32; 3], usize> = BTreeMap::new();
         for (at, frame) in frames.iter().enumerate() {
             let (place, rotation) = placed(run.frames.poses[*frame][body]);
             let page = [right, up].map(|axis| rotation.unapply(axis));
-            let seen = Seen::of(part.kind, page);
+            let seen = Seen::of(kind, page);
             let slot = *known.entry(seen.key()).or_insert_with(|| {
                 drawn.push(seen.draw(&part.name, &bodies[body]));
                 drawn.len() - 1
@@ -124,6 +132,14 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     })
 }
 
+/// Whether a body is a barrel and nothing else, with its center of mass on its axis.
+fn is_barrel(body: &Body<Spatial>) -> bool {
+    let [Placed { surface: Solid::Barrel(_), offset, .. }] = body.surfaces.as_slice() else {
+        return false;
+    };
+    offset.y == 0.0 && offset.z == 0.0
+}
+
 /// The frames of a run that a picture shows.
 fn shown(run: &Run) -> Vec<usize> {
     let mut next = 0.0;
@@ -141,18 +157,50 @@ fn placed([x, y, z, w, a, b, c]: [f64; 7]) -> (Vec3, Rotation3) {
     (Vec3::new(x, y, z), Quaternion { w, v: Vec3::new(a, b, c) }.matrix())
 }
 
-/// The floor: a line longer than any picture is wide; from above nothing.
-fn ground(sight: Sight) -> SceneBody {
+/// By how much (rad) the ground rises to the right.
+fn slope(run: &Run) -> f64 {
+    match &run.scenario.scene {
+        scenario::Scene::Spatial(scene) => scene.ground.slope,
+        scenario::Scene::Stack { .. } | scenario::Scene::Free(_) => 0.0,
+    }
+}
+
+/// The floor: a line longer than any picture is wide; nothing from above, and from the side where it slopes.
+fn ground(sight: Sight, slope: f64) -> SceneBody {
     let line = Polyline::open(vec![[-100.0, 0.0], [100.0, 0.0]]);
-    let outlines = if sight == Sight::Above { Vec::new() } else { vec![line] };
+    let shown = sight == Sight::Across || (sight == Sight::Along && slope == 0.0);
+    let outlines = if shown { vec![line] } else { Vec::new() };
     SceneBody::new("ground", Role::Ground, outlines)
 }
 
-/// What keeps room around a stack from above, where nothing below it bounds the picture: two points that show nothing.
-fn yard(sight: Sight, height: f64) -> SceneBody {
-    let far = if sight == Sight::Above { 0.7 * height } else { 0.0 };
-    let corners = [-far, far].map(|at| Polyline::open(vec![[at, at]]));
+/// What keeps room around bodies, as two points that show nothing: around a stack from above, where nothing below it
+/// bounds the picture, and around all the ways of a free scene.
+fn yard(run: &Run, sight: Sight) -> SceneBody {
+    let corners = if run.stack.is_free() {
+        ways(run, sight)
+    } else {
+        let far = if sight == Sight::Above { 0.7 * run.stack.height } else { 0.0 };
+        [[-far, -far], [far, far]]
+    };
+    let corners = corners.map(|corner| Polyline::open(vec![corner]));
     SceneBody::new("", Role::Block, corners.into())
+}
+
+/// The corners of what all bodies pass through, over the ground.
+fn ways(run: &Run, sight: Sight) -> [Point; 2] {
+    let page = sight.page();
+    let (mut lower, mut upper) = ([0.0; 2], [0.0; 2]);
+    for poses in &run.frames.poses {
+        let place = |body: usize| Vec3::new(poses[body][0], poses[body][1], poses[body][2]);
+        for (body, of) in run.stack.model.bodies().iter().enumerate().skip(1) {
+            let way = place(body) - place(0);
+            for (axis, along) in page.into_iter().enumerate() {
+                lower[axis] = way.dot(along).min(lower[axis] + of.reach()) - of.reach();
+                upper[axis] = way.dot(along).max(upper[axis] - of.reach()) + of.reach();
+            }
+        }
+    }
+    [lower, upper]
 }
 
 /// How a body is seen.
@@ -213,11 +261,10 @@ impl Seen {
         let flat = |point: Vec3| [point.dot(right), point.dot(up)];
         let mut outlines = Vec::new();
         let mut marks = Vec::new();
-        for nodes in &body.nodes {
-            let Nodes::Whole(whole) = nodes else { continue };
-            let place = |point: Vec3| whole.center + whole.rotation.apply(point);
-            match whole.hull {
-                Hull::Capsule(tube) => {
+        for placed in &body.surfaces {
+            let place = |point: Vec3| placed.offset + placed.rotation.apply(point);
+            match &placed.surface {
+                Solid::Capsule(tube) => {
                     let ends = [-tube.half_length, tube.half_length]
                         .map(|x| flat(place(Vec3::new(x, 0.0, 0.0))));
                     let rim = (0..8).map(|at| TAU * f64::from(at) / 8.0);
@@ -228,7 +275,7 @@ impl Seen {
                     });
                     outlines.push(Polyline::closed(hull(points.collect())));
                 }
-                Hull::Barrel(barrel) => {
+                Solid::Barrel(barrel) => {
                     let half = barrel.half_length + barrel.rounding;
                     let arc = barrel.stave_radius + barrel.rounding;
                     let radius = |x: f64| (arc * arc - x * x).sqrt() - barrel.stave_offset;
@@ -241,24 +288,66 @@ impl Seen {
                         })
                     };
                     let rings = (-6..=6).map(|at| half * f64::from(at) / 6.0);
-                    outlines.push(Polyline::closed(hull(rings.flat_map(ring).map(flat).collect())));
-                    if from.x.abs() > 0.999 {
+                    outlines.push(Polyline::closed(hull(
+                        rings.flat_map(ring).map(|p| flat(place(p))).collect(),
+                    )));
+                    if from.x.abs() > 0.999 && self.kind == PartKind::Barrel {
                         // As the plane draws it.
                         marks = SceneBody::barrel(name, radius(0.0)).marks;
-                    } else {
+                    } else if self.kind == PartKind::Barrel {
                         // Hoops, as far as they are on this side.
                         for x in [0.28, 0.6, -0.6, -0.28, 0.94, -0.94].map(|share| share * half) {
                             let near = |point: &Vec3| point.y * from.y + point.z * from.z >= -1e-9;
-                            let mut hoop: Vec<Point> = ring(x).filter(near).map(flat).collect();
+                            let mut hoop: Vec<Point> =
+                                ring(x).filter(near).map(|p| flat(place(p))).collect();
                             hoop.sort_by(|a, b| a[1].total_cmp(&b[1]));
                             marks.push(Polyline::open(hoop));
                         }
                     }
                 }
-                Hull::Block(_) => {}
+                Solid::Ball(ball) => {
+                    let [x, z] = flat(place(Vec3::default()));
+                    let around = |at: u32| TAU * f64::from(at) / 32.0;
+                    let rim = (0..32).map(around).map(|angle| {
+                        [x + ball.radius * math::cos(angle), z + ball.radius * math::sin(angle)]
+                    });
+                    outlines.push(Polyline::closed(rim.collect()));
+                    // Great circles, as far as they are on this side, show how it turns.
+                    for [one, other] in [[0, 1], [1, 2], [2, 0]] {
+                        let axes = [
+                            Vec3::new(1.0, 0.0, 0.0),
+                            Vec3::new(0.0, 1.0, 0.0),
+                            Vec3::new(0.0, 0.0, 1.0),
+                        ];
+                        let on = |at: u32| {
+                            let (sin, cos) = math::sin_cos(around(at));
+                            (axes[one] * cos + axes[other] * sin) * ball.radius
+                        };
+                        let near = |at: &u32| placed.rotation.apply(on(*at)).dot(from) >= -1e-9;
+                        // The half in sight is one stretch: it starts where the one before is hidden.
+                        let start = (0..32).find(|at| near(at) && !near(&((at + 31) % 32)));
+                        let start = start.unwrap_or(0);
+                        let seen = (0..=32).map(|at| (start + at) % 32).take_while(near);
+                        marks.push(Polyline::open(seen.map(|at| flat(place(on(at)))).collect()));
+                    }
+                }
+                Solid::Block(block) => {
+                    let half =
+                        block.half + Vec3::new(block.rounding, block.rounding, block.rounding);
+                    let corner = |at: u32| {
+                        let side = |bit: u32| if at & bit == 0 { -1.0 } else { 1.0 };
+                        flat(place(half.times(Vec3::new(side(1), side(2), side(4)))))
+                    };
+                    outlines.push(Polyline::closed(hull((0..8).map(corner).collect())));
+                }
+                Solid::HalfSpace => {}
             }
         }
-        let role = if self.kind == PartKind::Barrel { Role::Barrel } else { Role::Rack };
+        let role = match self.kind {
+            PartKind::Barrel => Role::Barrel,
+            PartKind::Body => Role::Block,
+            PartKind::Ground | PartKind::Rack | PartKind::Device | PartKind::Wine => Role::Rack,
+        };
         SceneBody { name: name.to_owned(), role, outlines, marks }
     }
 }
@@ -343,9 +432,10 @@ pub fn ground_histories(run: &Run) -> Vec<History> {
             .collect(),
         times: times.clone(),
     };
+    let free = run.stack.is_free();
     vec![
-        history("across the barrels", &|v| v.x),
-        history("along the barrels", &|v| v.y),
+        history(if free { "along x" } else { "across the barrels" }, &|v| v.x),
+        history(if free { "along y" } else { "along the barrels" }, &|v| v.y),
         history("upward", &|v| v.z),
     ]
 }

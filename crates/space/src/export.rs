@@ -11,14 +11,18 @@ use crate::variants::Answer;
 
 /// The files of an answer by their names, the report last.
 pub fn files(answer: &Answer, resolved: &str) -> Vec<(String, Vec<u8>)> {
-    let files = [
+    let mut files = vec![
         ("summary.json", answer.summary.to_json() + "\n"),
         ("scenario.toml", resolved.to_owned()),
         ("variants.csv", variants_csv(answer)),
         ("frames.csv", frames_csv(&answer.run)),
         ("report.html", html(&document(answer))),
     ];
-    files.map(|(name, text)| (name.to_owned(), text.into_bytes())).into()
+    if answer.run.stack.is_free() {
+        // It has no variants.
+        files.retain(|(name, _)| *name != "variants.csv");
+    }
+    files.into_iter().map(|(name, text)| (name.to_owned(), text.into_bytes())).collect()
 }
 
 /// Where all bodies were: time (s), and of every body its place (m) and the quaternion by which it is turned.

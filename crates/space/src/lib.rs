@@ -1,4 +1,5 @@
-//! Stacks of barrels in space: what a scenario states, as it stands, under all three components of a motion.
+//! Stacks of barrels and free scenes in space: what a scenario states, as it stands, under all three components of a
+//! motion.
 //!
 //! ```text
 //! Scenario ─ stack::assemble ─▶ Stack { Model, parts }
@@ -13,19 +14,25 @@
 // Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod check;
 pub mod drawing;
 pub mod export;
 pub mod fate;
+mod free;
 pub mod ground;
+pub mod mesh;
+mod part;
 mod rack;
 pub mod report;
 mod rest;
 pub mod run;
 pub mod stack;
+mod step;
 pub mod summary;
 pub mod variants;
 pub mod words;
 
+pub use check::check;
 pub use fate::{Fate, Heading};
 pub use ground::Ground;
 pub use run::Run;

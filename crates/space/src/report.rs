@@ -25,7 +25,7 @@ pub fn document(answer: &Answer) -> Document {
             Sight::Above => "Z",
         }
         .to_owned(),
-        name: capital(sight.words()),
+        name: capital(sight.words(&run.stack)),
         verdict: String::new(),
         tone: tone(run, summary),
         scene: std::sync::Arc::clone(scene),
@@ -44,11 +44,16 @@ pub fn document(answer: &Answer) -> Document {
     if let Some(table) = variants(summary) {
         blocks.extend([heading("In all variants"), Block::Table(table)]);
     }
-    blocks.push(heading("Collapse sequence"));
+    let free = run.stack.is_free();
+    blocks.push(heading(if free { "Sequence" } else { "Collapse sequence" }));
     for (sight, scene) in &scenes {
         blocks.push(Block::Figure(Figure {
-            id: format!("sequence-{}", sight.words().replace(' ', "-")),
-            caption: format!("The stack {} at the moments that matter.", sight.words()),
+            id: format!("sequence-{}", sight.words(&run.stack).replace(' ', "-")),
+            caption: format!(
+                "The {} {} at the moments that matter.",
+                if free { "scene" } else { "stack" },
+                sight.words(&run.stack)
+            ),
             kind: FigureKind::Strip(Strip::of_run(std::sync::Arc::clone(scene), 6)),
         }));
     }
@@ -61,7 +66,7 @@ pub fn document(answer: &Answer) -> Document {
     // Numbers of a run that broke down look like results and are none.
     if !matches!(run.outcome, Outcome::Invalid { .. }) {
         blocks.push(heading("What became of every body"));
-        blocks.push(Block::Table(fates(run)));
+        blocks.push(Block::Table(if free { ends(summary) } else { fates(run) }));
     }
     Document {
         title: summary.title.clone(),
@@ -166,6 +171,35 @@ fn fates(run: &Run) -> Table {
             length(fate.peak_slip[0]),
             length(fate.peak_slip[1]),
         ]);
+    }
+    table
+}
+
+/// What became of the bodies of a free scene.
+fn ends(summary: &Summary) -> Table {
+    let columns = [
+        ("body", ""),
+        ("moved along x", "m"),
+        ("y", "m"),
+        ("z", "m"),
+        ("largest way over the ground", "m"),
+        ("largest rise", "m"),
+        ("speed at the end", "m/s"),
+        ("spin at the end", "rad/s"),
+    ];
+    let mut table =
+        Table::new("Ways are those from where a body was at rest, over the ground.", &columns);
+    let length = |[x, y, z]: [f64; 3]| (x * x + y * y + z * z).sqrt();
+    for body in &summary.bodies {
+        let mut row = vec![Cell::text(&body.name)];
+        row.extend(body.moved.map(|way| Cell::Measured(way, 4)));
+        row.extend([
+            Cell::Measured(body.peak_displacement, 4),
+            Cell::Measured(body.peak_uplift, 4),
+            Cell::Measured(length(body.velocity), 4),
+            Cell::Measured(length(body.spin), 4),
+        ]);
+        table.rows.push(row);
     }
     table
 }

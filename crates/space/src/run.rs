@@ -14,7 +14,7 @@ use barrelstack::watch::{Ending, Loss, PROGRESS};
 use barrelstack::{Restless, RunFailure};
 use barrelstack_dynamics::{
     BodyId, Contact, EnergyLedger, EnergySummary, Model, Observer, Scratch, Settled, Simulation,
-    Spatial, State, evaluate, settle, simulate,
+    Spatial, State, Twist, evaluate, settle, simulate,
 };
 
 use crate::fate::{Fate, Fates, Heading};
@@ -35,13 +35,15 @@ pub struct Standing {
     pub settled: Option<Settled>,
 }
 
-/// Where all bodies were, at moments of a run.
+/// Where all bodies were and how they moved, at moments of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Frames {
     /// The moments (s).
     pub times: Vec<f64>,
     /// For each of them and every body, position (m) and quaternion `w`, `x`, `y`, `z`.
     pub poses: Vec<Vec<[f64; 7]>>,
+    /// For each of them and every body, velocity of its center of mass (m/s) and spin (rad/s).
+    pub twists: Vec<Vec<[f64; 6]>>,
 }
 
 /// Everything that was seen of a run.
@@ -63,6 +65,8 @@ pub struct Run {
     pub first_fall: Option<f64>,
     /// Where all bodies were.
     pub frames: Frames,
+    /// Where all bodies are at the end, and how they move.
+    pub last: State<Spatial>,
     /// The energy books at the end; none where numbers were lost.
     pub energy: Option<EnergySummary>,
     /// How equilibrium was found; none where the scenario starts without.
@@ -108,6 +112,10 @@ fn at_rest(scenario: &Scenario, stack: Stack) -> Result<Standing, RunFailure> {
     } else {
         None
     };
+    if stack.is_free() {
+        // Equilibrium is that of the places; what the scenario sets in motion starts from there.
+        state.twists = stack.model.bodies().iter().map(|body| body.twist).collect();
+    }
     Ok(Standing { stack, state, scratch, settled })
 }
 
@@ -149,9 +157,9 @@ pub(crate) fn affordable(
 ) -> Result<f64, RunFailure> {
     let end_time = end_time(scenario, ground.motion_end(), 1.0)?;
     check_length(end_time, stack.step)?;
-    // A frame holds the place and the quaternion of every body.
+    // A frame holds the place, the quaternion, the velocity and the spin of every body.
     let frames = end_time * scenario.record.frame_rate + 1.0;
-    check_kept((frames, stack.parts.len(), 7), (0.0, 0))?;
+    check_kept((frames, stack.parts.len(), 13), (0.0, 0))?;
     Ok(end_time)
 }
 
@@ -212,6 +220,7 @@ pub fn run_on(
         warnings,
         ground,
         stack,
+        last: state,
     })
 }
 
@@ -236,7 +245,9 @@ const SLID_BEFORE_IT_TILTED: f64 = 0.5;
 /// A rack slides off along the barrels where its beam has passed their ends, or tilts that way after more than half of
 /// its reach: a round beam comes down over the chime before its middle has passed it.
 fn judge(stack: &Stack, fates: &Fates<'_>) -> Outcome {
-    let Some((time, first)) = fates.collapse() else { return Outcome::Stable };
+    let Some((time, first)) = fates.collapse() else {
+        return if stack.is_free() { Outcome::NotJudged } else { Outcome::Stable };
+    };
     let part = &stack.parts[first];
     let fate = &fates.all()[first];
     let slid = match fate.left_seat {
@@ -281,6 +292,11 @@ impl Observer<Spatial> for Watch<'_> {
                 [p.x, p.y, p.z, q.w, q.v.x, q.v.y, q.v.z]
             };
             self.frames.poses.push(state.poses.iter().map(pose).collect());
+            let twist = |twist: &Twist<Spatial>| {
+                let (v, w) = (twist.linear, twist.angular);
+                [v.x, v.y, v.z, w.x, w.y, w.z]
+            };
+            self.frames.twists.push(state.twists.iter().map(twist).collect());
         }
         if time >= self.next_look {
             self.next_look = time + PROGRESS;

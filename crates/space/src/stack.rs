@@ -12,48 +12,18 @@ use barrelstack::scenario::{
 };
 use barrelstack_dynamics::solid::{Barrel, Hull, Rounded, compound};
 use barrelstack_dynamics::{
-    Body, BodyId, ContactPair, Counts, Model, Motion, Nodes, Placed, Pose, Quaternion, Rotation3,
-    Solid, Spatial, Substepping, Twist, Vec3,
+    Body, BodyId, ContactPair, Counts, Model, Motion, Nodes, Placed, Pose, Rotation3, Spatial,
+    Substepping, Twist, Vec3,
 };
 
+pub use crate::part::Part;
+use crate::part::{Seats, ground};
 use crate::rack::{Heights, Tubes, along_barrels, tubes};
 
 /// Length (m) of boundary that a contact stands for, where constants are stated for a meter of it; as in the plane.
 const TRIBUTARY: f64 = 0.01;
 
-/// What a body of a stack in space means.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Part {
-    /// The name in results, that of the body: level, column, and row where there are several.
-    pub name: String,
-    /// What it is.
-    pub kind: PartKind,
-    /// Level, 1 at the bottom; 0 for the ground.
-    pub level: u32,
-    /// Column, 1 at the left: of barrels, or of racks for a rack.
-    pub column: u32,
-    /// Row, 1 nearest: of barrels, or of racks for a rack.
-    pub row: u32,
-    /// For a barrel the rack that carries it.
-    pub carrier: Option<BodyId>,
-    /// For a rack above the first level, the barrels it lies on.
-    pub supports: Vec<BodyId>,
-    /// A length (m) that tells the size of the body: for a barrel the radius above the beams, for a rack
-    /// half its width.
-    pub size: f64,
-    /// Of a rack which of its tubes lie on which of what is below, and carry which of its barrels, by their numbers.
-    seats: Seats,
-}
-
-#[derive(Clone, Debug, Default, PartialEq)]
-struct Seats {
-    /// For every tube the barrel that it carries.
-    carries: Vec<Option<BodyId>>,
-    /// For every tube whether it lies on what is below, and on which barrels if these are some.
-    lies_on: Vec<Option<Vec<BodyId>>>,
-}
-
-/// A stack in space.
+/// A stack in space, or the bodies of a free scene there.
 #[derive(Clone, Debug)]
 pub struct Stack {
     /// What moves.
@@ -62,11 +32,11 @@ pub struct Stack {
     pub parts: Vec<Part>,
     /// The time step (s), the shorter of those of the same stack across its barrels and along them; impacts divide it.
     pub step: f64,
-    /// Height (m) from the ground to the top of the highest barrel.
+    /// Height (m) from the ground to the top of the highest barrel; zero for a free scene.
     pub height: f64,
-    /// Number of levels.
+    /// Number of levels; zero for a free scene.
     pub levels: u32,
-    /// Radius (m) of a barrel at its widest, on which it lies on the ground.
+    /// Radius (m) of a barrel at its widest, on which it lies on the ground; zero for a free scene.
     pub bilge_radius: f64,
     /// How far (m) a rack may move on the barrels below, across and along them, before nothing holds it there, as in
     /// the plane of each.
@@ -77,12 +47,17 @@ impl Stack {
     /// The body that the motion moves.
     pub const GROUND: BodyId = 0;
 
+    /// Whether it is a free scene, in which nothing has a seat.
+    pub fn is_free(&self) -> bool {
+        self.levels == 0
+    }
+
     /// Bodies of a kind, in order.
     pub fn of_kind(&self, kind: PartKind) -> impl Iterator<Item = BodyId> + '_ {
         self.parts.iter().enumerate().filter(move |(_, part)| part.kind == kind).map(|(i, _)| i)
     }
 
-    /// Builds the stack of a scenario, not yet at rest.
+    /// Builds the stack of a scenario, or its free scene, not yet at rest.
     ///
     /// ```
     /// use barrelstack::Scenario;
@@ -98,6 +73,9 @@ impl Stack {
     /// # Errors
     /// When something that the scenario asks for is not known in space, with its field, or the stack cannot be built.
     pub fn of(scenario: &Scenario) -> Result<Self, RunFailure> {
+        if let Scene::Spatial(scene) = &scenario.scene {
+            return crate::free::assemble(scenario, scene);
+        }
         let spec = stack_of(scenario)?;
         let barrel = known(scenario, spec)?;
         let Pace { step, substepping, reach } = Pace::of(scenario, spec)?;
@@ -121,7 +99,7 @@ impl Stack {
 fn stack_of(scenario: &Scenario) -> Result<&StackSpec, AssembleError> {
     match &scenario.scene {
         Scene::Stack { stack, .. } if stack.space.is_some() => Ok(stack),
-        Scene::Stack { .. } | Scene::Free(_) => Err(AssembleError::NotInSpace {
+        Scene::Stack { .. } | Scene::Free(_) | Scene::Spatial(_) => Err(AssembleError::NotInSpace {
             field: "stack.view",
             reason: "this works in space, and the scenario does not look at a stack there: set stack.view to \
                      \"spatial\""
@@ -299,35 +277,8 @@ struct Builder<'a> {
 
 impl<'a> Builder<'a> {
     fn new(spec: &'a StackSpec, barrel: Barrel) -> Self {
-        let ground = Body {
-            name: "ground".into(),
-            motion: Motion::Prescribed,
-            // No force moves it.
-            mass: 1.0,
-            inertia: Vec3::new(1.0, 1.0, 1.0),
-            damping: None,
-            pose: Pose { position: Vec3::default(), orientation: Quaternion::identity() },
-            twist: Twist::default(),
-            surfaces: vec![Placed {
-                surface: Solid::HalfSpace,
-                offset: Vec3::default(),
-                rotation: Rotation3::identity(),
-            }],
-            nodes: Vec::new(),
-            faces: Vec::new(),
-        };
-        let part = Part {
-            name: "ground".into(),
-            kind: PartKind::Ground,
-            level: 0,
-            column: 0,
-            row: 0,
-            carrier: None,
-            supports: Vec::new(),
-            size: 0.0,
-            seats: Seats::default(),
-        };
-        Self { spec, barrel, bodies: vec![ground], parts: vec![part] }
+        let part = Part::alone("ground", PartKind::Ground);
+        Self { spec, barrel, bodies: vec![ground()], parts: vec![part] }
     }
 
     /// All levels, racks and their barrels from below.

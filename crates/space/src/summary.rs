@@ -8,6 +8,7 @@ use barrelstack::scenario::Scenario;
 use barrelstack::summary::{EnergyBooks, Provenance};
 use barrelstack::variants::Spread;
 use barrelstack::watch::Ending;
+use barrelstack_dynamics::Vec3;
 use barrelstack_report::described;
 
 use crate::fate::Heading;
@@ -74,7 +75,7 @@ described! {
     #[derive(Clone, Debug)]
     pub struct OutcomeInSpace {
         /// What it was.
-        pub kind: &'static str ["stable", "collapse", "interrupted", "invalid"],
+        pub kind: &'static str ["stable", "collapse", "not-judged", "interrupted", "invalid"],
         /// How it collapsed.
         pub mode: Option<&'static str> ["ejection", "rocking", "rack-sliding", "overturning"],
         /// When the first body left its seat.
@@ -103,12 +104,12 @@ described! {
         /// Its name.
         pub name: String,
         /// What it is.
-        pub kind: &'static str ["barrel", "rack"],
-        /// Level, 1 at the bottom.
+        pub kind: &'static str ["barrel", "rack", "body"],
+        /// Level, 1 at the bottom; 0 in a free scene.
         pub level: u32,
-        /// Column, 1 at the left.
+        /// Column, 1 at the left; 0 in a free scene.
         pub column: u32,
-        /// Row along the barrels, 1 nearest.
+        /// Row along the barrels, 1 nearest; 0 in a free scene.
         pub row: u32,
         /// When it left its seat.
         pub left_seat_at: Option<f64> as "s",
@@ -120,6 +121,14 @@ described! {
         pub drop: f64 as "m",
         /// Displacement x, y, z against the ground and its place at rest, at the end.
         pub moved: [f64; 3] as "m",
+        /// Its center of mass x, y, z at the end, where the ground was at the start.
+        pub position: [f64; 3] as "m",
+        /// How it is turned at the end: the quaternion w, x, y, z that turns its principal axes.
+        pub orientation: [f64; 4] as "1",
+        /// Velocity x, y, z of its center of mass at the end, the ground's included.
+        pub velocity: [f64; 3] as "m/s",
+        /// Spin about x, y, z at the end.
+        pub spin: [f64; 3] as "rad/s",
         /// Largest horizontal displacement against the ground while the stack stood.
         pub peak_displacement: f64 as "m",
         /// Largest displacement across the barrels against what it stands on, while the stack stood.
@@ -265,9 +274,11 @@ fn outcome(run: &Run, sound: bool) -> OutcomeInSpace {
 }
 
 fn bodies(run: &Run) -> Vec<BodyInSpace> {
-    let parts = run.stack.parts.iter().zip(&run.fates).skip(1);
+    let ends = run.last.poses.iter().zip(&run.last.twists);
+    let parts = run.stack.parts.iter().zip(&run.fates).zip(ends).skip(1);
+    let three = |v: Vec3| [v.x, v.y, v.z];
     parts
-        .map(|(part, fate)| BodyInSpace {
+        .map(|((part, fate), (pose, twist))| BodyInSpace {
             name: part.name.clone(),
             kind: part.kind.name(),
             level: part.level,
@@ -277,7 +288,14 @@ fn bodies(run: &Run) -> Vec<BodyInSpace> {
             left_seat_to: fate.left_seat.map(|(.., heading)| heading.name()),
             fell_at: fate.fell_at,
             drop: fate.drop,
-            moved: [fate.moved.x, fate.moved.y, fate.moved.z],
+            moved: three(fate.moved),
+            position: three(pose.position),
+            orientation: {
+                let turned = pose.orientation;
+                [turned.w, turned.v.x, turned.v.y, turned.v.z]
+            },
+            velocity: three(twist.linear),
+            spin: three(twist.angular),
             peak_displacement: fate.peak_displacement,
             peak_slip_across: fate.peak_slip[0],
             peak_slip_along: fate.peak_slip[1],

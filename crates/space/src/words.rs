@@ -26,7 +26,12 @@ pub fn headline(run: &Run, summary: &Summary) -> String {
             "This stack falls: it gives way after {time:.1} s, and {} of {barrels} barrels fall.",
             run.fallen().count()
         ),
-        Outcome::NotJudged => "Nothing is judged.".to_owned(),
+        Outcome::NotJudged if run.ending == Ending::Interrupted => {
+            format!("A free scene, until the run was stopped at {:.1} s.", run.end_time)
+        }
+        Outcome::NotJudged => {
+            "A free scene: nothing in it has a seat to lose, so nothing is judged.".to_owned()
+        }
         Outcome::Invalid { reason } => format!("This run has no verdict: {reason}."),
     }
 }
@@ -98,6 +103,9 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     sentences
 }
 
+/// Most bodies of a free scene that are told one by one; files tell all.
+const MOST_TOLD: usize = 10;
+
 /// The rows of the summary for people: name and value.
 pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     let mut rows = Vec::new();
@@ -119,6 +127,12 @@ pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
             "barrels fallen",
             format!("{fallen} of {}: {}", summary.outcome.barrels, told.join(", ")),
         );
+    }
+    for body in summary.bodies.iter().filter(|_| run.stack.is_free()).take(MOST_TOLD) {
+        let [x, y, z] = body.moved;
+        let [u, v, w] = body.velocity;
+        let speed = (u * u + v * v + w * w).sqrt();
+        row(&body.name, format!("moved by ({x:.3}, {y:.3}, {z:.3}) m, ends at {speed:.3} m/s"));
     }
     if let Some(drift) = summary.demands.top_drift_ratio {
         row("drift of the top", format!("{:.1} % of the height", 100.0 * drift));

@@ -17,8 +17,8 @@ described! {
         pub schema: &'static str ["check/1"],
         /// The scenario's title.
         pub title: String,
-        /// The plane of the model; null for a free scene.
-        pub view: Option<&'static str> ["transverse", "longitudinal"],
+        /// The plane of the model, or that a stack is in space; null for a free scene.
+        pub view: Option<&'static str> ["transverse", "longitudinal", "spatial"],
         /// Barrels.
         pub barrels: usize,
         /// Racks.

@@ -316,7 +316,7 @@ pub fn thresholds(scenario: &Scenario) -> Thresholds {
     match &scenario.scene {
         Scene::Stack { outcome, .. } => Thresholds::of(outcome, scenario.run.similitude),
         // A free scene is not judged: nothing in it has a seat.
-        Scene::Free(_) => Thresholds {
+        Scene::Free(_) | Scene::Spatial(_) => Thresholds {
             seat_loss_ratio: f64::INFINITY,
             fall_drop: f64::INFINITY,
             rack_slide_ratio: f64::INFINITY,

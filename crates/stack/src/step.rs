@@ -301,7 +301,7 @@ fn mean_square(arms: impl ExactSizeIterator<Item = f64>) -> f64 {
 }
 
 /// The largest of these digits times a power of ten that is not above a number.
-fn round_down(value: f64) -> f64 {
+pub fn round_down(value: f64) -> f64 {
     const DIGITS: [f64; 10] = [1.2, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0];
     let power = math::pow(10.0, math::log10(value).floor());
     let digit = value / power;

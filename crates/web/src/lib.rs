@@ -56,7 +56,7 @@ use verdict::Verdict;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ask {
-    /// The scenarios that come with the program: a JSON list of pairs of name and text.
+    /// The scenarios that come with the program, but those in space: a JSON list of pairs of name and text.
     Scenarios,
     /// The barrels and racks of the catalog, as JSON.
     Catalog,
@@ -168,7 +168,11 @@ pub fn answered(
     match request.ask {
         Ask::Scenarios => {
             let text = |name| Some((name, builtin::get(name)?));
-            return json(&builtin::names().filter_map(text).collect::<Vec<_>>());
+            // The page runs planes alone.
+            let in_a_plane = |name: &&str| {
+                Scenario::builtin(name, &[]).is_ok_and(|scenario| !scenario.is_spatial())
+            };
+            return json(&builtin::names().filter(in_a_plane).filter_map(text).collect::<Vec<_>>());
         }
         Ask::Catalog => return json(&look::Catalog::new()),
         Ask::Records => {

@@ -197,12 +197,7 @@ impl RenderFolder {
         let document = report::document(run, summary);
         let mut written = Vec::new();
         for &part in &self.parts {
-            let place = self.path.join(part.place());
-            let folder = if part == Part::Report { &self.path } else { &place };
-            std::fs::create_dir_all(folder).map_err(|error| refused(folder, &error))?;
-            for file in self.earlier(part)? {
-                std::fs::remove_file(&file).map_err(|error| refused(&file, &error))?;
-            }
+            let place = self.cleared(part)?;
             let files = match part {
                 Part::Figures => {
                     let bundle = markdown(&document, part.place());
@@ -218,6 +213,37 @@ impl RenderFolder {
             written.push(Rendered { part, place, files });
         }
         Ok(written)
+    }
+
+    /// Writes the ParaView series that `make` hands over file by file: long series of bodies in space need not be in
+    /// memory as a whole.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn write_paraview(
+        &self,
+        make: impl FnOnce(
+            &mut dyn FnMut(Attachment) -> Result<(), ExportError>,
+        ) -> Result<(), ExportError>,
+    ) -> Result<Rendered, ExportError> {
+        let place = self.cleared(Part::Paraview)?;
+        let mut files = 0;
+        make(&mut |file| {
+            files += put(&place.join(&file.name), &file.bytes)?;
+            Ok(())
+        })?;
+        Ok(Rendered { part: Part::Paraview, place, files })
+    }
+
+    /// The place of a part, made, and free of what an earlier rendering wrote there.
+    fn cleared(&self, part: Part) -> Result<PathBuf, ExportError> {
+        let place = self.path.join(part.place());
+        let folder = if part == Part::Report { &self.path } else { &place };
+        std::fs::create_dir_all(folder).map_err(|error| refused(folder, &error))?;
+        for file in self.earlier(part)? {
+            std::fs::remove_file(&file).map_err(|error| refused(&file, &error))?;
+        }
+        Ok(place)
     }
 
     /// What an earlier rendering wrote in the place of a part, sorted.

@@ -66,6 +66,7 @@ impl Domain {
             | Kind::ChoiceOrTable(..) => Dimension::NONE,
             Kind::Unit(_)
             | Kind::Point(_)
+            | Kind::Triple(_)
             | Kind::Points(_)
             | Kind::Pair
             | Kind::Table(_)

@@ -13,8 +13,8 @@ pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     let scenario = super::load(&args.scenario)?;
     let placed = |error| super::placed(error, &scenario, &args.scenario);
     let planes = variants::planes(&scenario).map_err(|error| placed(error.into()))?;
-    let found: Result<Vec<_>, _> =
-        planes.iter().map(|plane| barrelstack::check(&plane.scenario)).collect();
+    let one = if scenario.is_spatial() { barrelstack_space::check } else { barrelstack::check };
+    let found: Result<Vec<_>, _> = planes.iter().map(|plane| one(&plane.scenario)).collect();
     let mut found = found.map_err(placed)?;
     if args.json {
         let other = found.split_off(1).pop();

@@ -16,13 +16,13 @@ use crate::printer;
 #[derive(Debug, clap::Args)]
 pub(crate) struct RenderArgs {
     #[command(flatten)]
-    scenario: ScenarioArgs,
+    pub(super) scenario: ScenarioArgs,
     #[command(flatten)]
     variants: VariantArgs,
     /// Where to write: figures/ with report.md beside it, report.pdf, animation/, frames/, paraview/.
     #[arg(long, value_name = "DIR")]
-    out: PathBuf,
-    /// Write only this part; may be repeated.
+    pub(super) out: PathBuf,
+    /// Write only this part; may be repeated. Of runs in space there is `paraview` alone.
     #[arg(long, value_enum, value_name = "PART")]
     only: Vec<PartName>,
     #[command(flatten)]
@@ -32,7 +32,7 @@ pub(crate) struct RenderArgs {
     paper: PaperName,
     /// Pictures, and ParaView times, for every second of the run; animations show at most 50.
     #[arg(long, value_name = "HZ", default_value = "20", value_parser = rate)]
-    rate: f64,
+    pub(super) rate: f64,
     /// Film the run from this time on (s).
     #[arg(long, value_name = "SECONDS")]
     from: Option<f64>,
@@ -44,10 +44,10 @@ pub(crate) struct RenderArgs {
     size: u32,
     /// Remove what an earlier rendering wrote in the places of these parts.
     #[arg(long)]
-    overwrite: bool,
+    pub(super) overwrite: bool,
     /// Show no progress.
     #[arg(long, short)]
-    quiet: bool,
+    pub(super) quiet: bool,
 }
 
 /// The parts, as typed.
@@ -94,7 +94,13 @@ impl RenderArgs {
         Part::ALL.into_iter().filter(asked).collect()
     }
 
-    fn between(&self) -> anyhow::Result<Option<[f64; 2]>> {
+    /// The first part that was asked for by name and that runs in space do not have.
+    pub(super) fn lacking_in_space(&self) -> Option<Part> {
+        let asked = self.only.iter().map(|name| Part::from(*name));
+        asked.into_iter().find(|part| *part != Part::Paraview)
+    }
+
+    pub(super) fn between(&self) -> anyhow::Result<Option<[f64; 2]>> {
         let (from, to) = (self.from.unwrap_or(0.0), self.to.unwrap_or(f64::INFINITY));
         if !(from >= 0.0 && to > from) {
             bail!(
@@ -109,6 +115,9 @@ impl RenderArgs {
 pub(crate) fn render(args: &RenderArgs) -> anyhow::Result<ExitCode> {
     let mut scenario = super::load(&args.scenario)?;
     let asked = super::run::asked(&mut scenario, args.variants)?;
+    if scenario.is_spatial() {
+        return super::space::render(args, &scenario, asked);
+    }
     let how = Rendering {
         formats: args.figures.formats(),
         dpi: args.figures.dpi,

@@ -24,7 +24,7 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let asked = asked(&mut scenario, args.variants)?;
     // The folder is looked at before the work is done, not after.
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
-    if scenario.stack().is_some_and(|stack| stack.space.is_some()) {
+    if scenario.is_spatial() {
         return super::space::run(args, &scenario, asked, folder.as_ref());
     }
     let engine = args.with_engine.as_deref().map(engine).transpose()?;
@@ -87,10 +87,12 @@ pub(super) fn asked(scenario: &mut Scenario, args: VariantArgs) -> anyhow::Resul
             imperfections.variants = args.variants.unwrap_or(imperfections.variants);
             imperfections.variants
         }
-        Scene::Free(_) if args.variants.is_some_and(|variants| variants > 0) => {
+        Scene::Free(_) | Scene::Spatial(_)
+            if args.variants.is_some_and(|variants| variants > 0) =>
+        {
             bail!("--variants: a free scene has no variants, since nothing says how it may differ");
         }
-        Scene::Free(_) => 0,
+        Scene::Free(_) | Scene::Spatial(_) => 0,
     };
     match args.variant {
         Some(number) if number > count => bail!(

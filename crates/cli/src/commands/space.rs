@@ -1,16 +1,20 @@
-//! A stack in space, from file to verdict: what `run` does where a scenario looks at its stack there.
+//! Bodies in space, from file to verdict: what `run` and `render` do where a scenario has a stack or a free scene there.
 
 use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::bail;
-use barrelstack::Scenario;
 use barrelstack::export::Folder;
 use barrelstack::outcome::Outcome;
+use barrelstack::render::{Part, RenderFolder};
 use barrelstack::variants::Asked;
 use barrelstack::watch::Ending;
+use barrelstack::{RunFailure, Scenario};
+use barrelstack_report::paraview_of_solids;
+use barrelstack_space::mesh::solids;
 use barrelstack_space::{Answer, export, variants, words};
 
+use super::render::RenderArgs;
 use crate::args::RunArgs;
 use crate::printer;
 use crate::progress::Progress;
@@ -29,17 +33,13 @@ pub(super) fn run(
     ] {
         if given {
             bail!(
-                "{option} is known in a plane, not yet for stack.view = \"spatial\": leave it out, or set stack.view to \
-                 \"both\""
+                "{option} is known in a plane, not yet in space: leave it out{}",
+                in_a_plane(scenario)
             );
         }
     }
-    let start = Instant::now();
-    let progress = Progress::new(!args.quiet);
-    let mut answer = variants::answer(scenario, asked, &mut |told| progress.told_of(told))
+    let answer = answered(scenario, asked, !args.quiet)
         .map_err(|error| super::placed(error, scenario, &args.scenario))?;
-    drop(progress);
-    answer.summary.run.wall_seconds = Some(start.elapsed().as_secs_f64());
     // The verdict is printed even where it cannot be written.
     let written = folder.map_or(Ok(()), |folder| {
         crate::interrupt::writes_to(folder.path());
@@ -56,13 +56,63 @@ pub(super) fn run(
         answer.run.warnings.iter().for_each(|text| printer::warning(text));
     }
     written?;
-    Ok(if matches!(answer.run.outcome, Outcome::Invalid { .. }) {
+    Ok(status(&answer))
+}
+
+/// Runs the scenario and writes it as a series for `ParaView`.
+pub(super) fn render(
+    args: &RenderArgs,
+    scenario: &Scenario,
+    asked: Asked,
+) -> anyhow::Result<ExitCode> {
+    if let Some(part) = args.lacking_in_space() {
+        bail!(
+            "--only {}: of runs in space there is the ParaView series, and `run --out` has their page; take --only \
+             paraview{}",
+            part.name(),
+            in_a_plane(scenario)
+        );
+    }
+    let between = args.between()?.unwrap_or([0.0, f64::INFINITY]);
+    let folder = RenderFolder::prepare(&args.out, &[Part::Paraview], args.overwrite)?;
+    crate::interrupt::writes_to(&args.out.join(Part::Paraview.place()));
+    crate::interrupt::writes_to(&args.out);
+    let answer = answered(scenario, asked, !args.quiet)
+        .map_err(|error| super::placed(error, scenario, &args.scenario))?;
+    let end = answer.run.end_time;
+    if between[0] > end {
+        bail!("the run ends at {end:.2} s, and there is nothing to film from {} s on", between[0]);
+    }
+    let solids = solids(&answer.run, between);
+    let written = folder.write_paraview(|put| paraview_of_solids(&solids, args.rate, put))?;
+    printer::lines([format!("{}: {} files", written.place.display(), written.files)])?;
+    answer.run.warnings.iter().for_each(|text| printer::warning(text));
+    Ok(status(&answer))
+}
+
+/// Runs a scenario and its variants with a progress bar and Ctrl-C.
+fn answered(scenario: &Scenario, asked: Asked, show: bool) -> Result<Answer, RunFailure> {
+    let start = Instant::now();
+    let progress = Progress::new(show);
+    let mut answer = variants::answer(scenario, asked, &mut |told| progress.told_of(told))?;
+    answer.summary.run.wall_seconds = Some(start.elapsed().as_secs_f64());
+    Ok(answer)
+}
+
+/// The exit status of runs, as the help of the program lists them.
+fn status(answer: &Answer) -> ExitCode {
+    if matches!(answer.run.outcome, Outcome::Invalid { .. }) {
         ExitCode::FAILURE
     } else if answer.run.ending == Ending::Interrupted {
         ExitCode::from(130)
     } else {
         ExitCode::SUCCESS
-    })
+    }
+}
+
+/// The way to a plane, behind what is not known in space.
+fn in_a_plane(scenario: &Scenario) -> &'static str {
+    if scenario.stack().is_some() { ", or set stack.view to \"both\"" } else { "" }
 }
 
 /// The answer for people.

@@ -121,6 +121,13 @@ impl Bulk {
     }
 }
 
+impl Barrel {
+    /// Its volume (m³).
+    pub fn volume(&self) -> f64 {
+        revolved(self).volume
+    }
+}
+
 /// What is in a barrel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Fill {

@@ -287,6 +287,20 @@ impl Reader<'_> {
         self.required(name, value)
     }
 
+    /// Three quantities.
+    pub fn triple(&self, name: &'static str) -> Result<[f64; 3]> {
+        let value = self.optional_triple(name)?;
+        self.required(name, value)
+    }
+
+    /// Three quantities that may be absent.
+    pub fn optional_triple(&self, name: &'static str) -> Result<Option<[f64; 3]>> {
+        self.value(name, |reader, field, node| {
+            let Kind::Triple(dimension) = field.kind else { reader.defined_otherwise(name) };
+            reader.read_point(name, node, dimension, field.kind)
+        })
+    }
+
     /// A list of points.
     pub fn points(&self, name: &'static str) -> Result<Vec<[f64; 2]>> {
         let value = self.value(name, |reader, field, node| {
@@ -319,14 +333,29 @@ impl Reader<'_> {
         Err(self.sources.error(node.origin, problem))
     }
 
-    fn read_point(&self, name: &str, node: &Node, d: Dimension, kind: Kind) -> Result<[f64; 2]> {
-        if let Value::Array(items) = &node.value
-            && let [x, z] = items.as_slice()
-        {
-            let read = |node| self.read_quantity(name, node, &[d], Range::ANY).map(|q| q.value);
-            return Ok([read(x)?, read(z)?]);
+    fn read_point<const N: usize>(
+        &self,
+        name: &str,
+        node: &Node,
+        d: Dimension,
+        kind: Kind,
+    ) -> Result<[f64; N]> {
+        let Value::Array(items) = &node.value else {
+            return Err(self.wrong_type(name, kind, node));
+        };
+        if items.len() != N {
+            let problem = Problem::WrongType {
+                field: self.path_of(name),
+                expected: kind.to_string(),
+                found: format!("a list of {}", items.len()),
+            };
+            return Err(self.sources.error(node.origin, problem));
         }
-        Err(self.wrong_type(name, kind, node))
+        let mut point = [0.0; N];
+        for (value, item) in point.iter_mut().zip(items) {
+            *value = self.read_quantity(name, item, &[d], Range::ANY)?.value;
+        }
+        Ok(point)
     }
 
     /// The value of a node that holds a quantity.

@@ -17,7 +17,7 @@ use barrelstack_dynamics::{
 };
 
 use crate::device::{Loose, Words};
-use crate::scenario::{Scenario, Scene, StackSpec, View};
+use crate::scenario::{FreeInterface, Scenario, Scene, SpatialScene, StackSpec, View};
 use crate::step::TimeStepping;
 
 pub(crate) use builder::{Builder, Draft};
@@ -192,6 +192,11 @@ pub enum AssembleError {
          the barrels, to \"longitudinal\", along them, or to \"both\""
     )]
     Space,
+    /// A free scene in space, asked for in a plane.
+    #[error(
+        "this works in a plane, and the bodies of the scenario are in space: state them in a plane, with kind = \"free\""
+    )]
+    FreeInSpace,
     /// What is not known in space yet.
     #[error("{reason}")]
     NotInSpace {
@@ -217,6 +222,7 @@ pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
     let mut assembly = match &scenario.scene {
         Scene::Stack { stack, .. } => stack::assemble(stack, scenario.run.gravity, scale),
         Scene::Free(scene) => free::assemble(scene, scenario.run.gravity, scale),
+        Scene::Spatial(_) => return Err(AssembleError::FreeInSpace),
     }?;
     let loose = assembly.loose.iter().map(|loose| &loose.element);
     let stepping = TimeStepping::of(&assembly.model, &loose, scale.time());
@@ -233,6 +239,14 @@ pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
 /// element is a contact of its own.
 pub fn laws_in_space(spec: &StackSpec, scale: Similitude) -> Vec<Interface<Spatial>> {
     stack::laws(spec, 1.0, scale)
+}
+
+/// The laws of contact of a free scene in space, in the order of its interfaces.
+pub fn laws_of_free(scene: &SpatialScene) -> Vec<Interface<Spatial>> {
+    let law = |law: &FreeInterface| {
+        interfaces::interface(&law.between.join("-"), &law.law, 1.0, Similitude::new(1.0))
+    };
+    scene.interfaces.iter().map(law).collect()
 }
 
 /// The outline of a shape that sits at an offset on a body.

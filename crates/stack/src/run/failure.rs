@@ -80,6 +80,7 @@ impl RunFailure {
             ],
             Self::Assemble(AssembleError::Shape { body, .. }) => vec![format!("body.{body}.shape")],
             Self::Assemble(AssembleError::Space) => of(&["stack.view"]),
+            Self::Assemble(AssembleError::FreeInSpace) => of(&["kind"]),
             Self::Assemble(AssembleError::NotInSpace { field, .. }) => of(&[field]),
             Self::Assemble(AssembleError::Stack(_)) => of(&["stack.override", "stack"]),
             Self::Assemble(AssembleError::Model(_)) => Vec::new(),

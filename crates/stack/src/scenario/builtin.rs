@@ -19,6 +19,9 @@ scenarios![
     "sliding-block",
     "rolling-disc",
     "bouncing-disc",
+    "rolling-ball",
+    "sliding-block-in-space",
+    "tumbling-block",
 ];
 
 /// Names of all built-in scenarios.

@@ -51,6 +51,7 @@ mod root;
 pub mod run;
 pub mod schema;
 pub mod shape;
+pub mod spatial;
 pub mod stack;
 pub mod template;
 pub mod title;
@@ -67,6 +68,7 @@ use std::sync::Arc;
 use barrelstack_input::{merge, writer};
 
 pub use barrel::{Barrel, Fill};
+pub use barrelstack_bodies::SpatialBody;
 pub use body_override::{BodyOverride, StackBody};
 pub use error::ScenarioError;
 pub use free::{
@@ -83,6 +85,7 @@ pub use rack::{Cradle, Posts, Rack, RackKind, SeatContact};
 pub use root::ROOT;
 pub use run::{Accuracy, Method, OutcomeSpec, RecordSpec, RunSpec, Until};
 pub use shape::Shape;
+pub use spatial::{SpatialGround, SpatialScene};
 pub use stack::{InSpace, StackSpec, View};
 pub use uniform::Uniform;
 
@@ -148,6 +151,8 @@ pub enum Scene {
     },
     /// Any planar bodies.
     Free(FreeScene),
+    /// Any bodies in space.
+    Spatial(SpatialScene),
 }
 
 impl Scenario {
@@ -160,7 +165,16 @@ impl Scenario {
     pub fn stack(&self) -> Option<&StackSpec> {
         match &self.scene {
             Scene::Stack { stack, .. } => Some(stack),
-            Scene::Free(_) => None,
+            Scene::Free(_) | Scene::Spatial(_) => None,
+        }
+    }
+
+    /// Whether its bodies are in space: a stack that is looked at there, or a free scene there.
+    pub fn is_spatial(&self) -> bool {
+        match &self.scene {
+            Scene::Stack { stack, .. } => stack.space.is_some(),
+            Scene::Free(_) => false,
+            Scene::Spatial(_) => true,
         }
     }
 
@@ -184,7 +198,7 @@ impl Scenario {
     pub fn imperfections(&self) -> Option<&Imperfections> {
         match &self.scene {
             Scene::Stack { imperfections, .. } => Some(imperfections),
-            Scene::Free(_) => None,
+            Scene::Free(_) | Scene::Spatial(_) => None,
         }
     }
 

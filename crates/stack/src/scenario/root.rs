@@ -10,7 +10,7 @@ use super::tree::Table;
 use super::writer::Writer;
 use super::{
     Imperfections, OutcomeSpec, RecordSpec, Scenario, Scene, Written, element, free, imperfections,
-    interface, motion, pair, run, stack,
+    interface, motion, pair, run, spatial, stack,
 };
 
 /// Version of the scenario language.
@@ -20,10 +20,12 @@ pub(super) const SCHEMA: u32 = 1;
 enum SceneKind {
     Stack,
     Free,
+    FreeSpatial,
 }
 
 impl Named for SceneKind {
-    const NAMES: &'static [(&'static str, Self)] = &[("stack", Self::Stack), ("free", Self::Free)];
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("stack", Self::Stack), ("free", Self::Free), ("free-spatial", Self::FreeSpatial)];
 }
 
 /// The top of a scenario file.
@@ -117,6 +119,30 @@ pub static ROOT: Section = Section {
                     ),
                 ],
             },
+            Variant {
+                name: "free-spatial",
+                help: "Any bodies in space on a ground.",
+                fields: &[
+                    Field::new(
+                        "ground",
+                        Kind::Table(&spatial::GROUND),
+                        Default::Nothing,
+                        "The ground.",
+                    ),
+                    Field::new(
+                        "body",
+                        Kind::Tables(&barrelstack_bodies::BODY),
+                        Default::Required,
+                        "The bodies.",
+                    ),
+                    Field::new(
+                        "interface",
+                        Kind::Tables(&interface::FREE_INTERFACE),
+                        Default::Nothing,
+                        "Laws of contact between kinds of body.",
+                    ),
+                ],
+            },
         ],
     }),
     exclusive: &[],
@@ -134,7 +160,7 @@ pub(super) fn read(reader: Reader<'_>, fallback_title: &str) -> Result<Scenario,
     let kind = reader.choice::<SceneKind>("kind")?;
     let until = match kind {
         SceneKind::Stack => Until::Rest,
-        SceneKind::Free => Until::Duration,
+        SceneKind::Free | SceneKind::FreeSpatial => Until::Duration,
     };
     let run = run::read_run(reader.section("run")?, until)?;
     let record = RecordSpec::read(reader.section("record")?)?;
@@ -147,11 +173,12 @@ pub(super) fn read(reader: Reader<'_>, fallback_title: &str) -> Result<Scenario,
             Scene::Stack { stack, outcome, imperfections }
         }
         SceneKind::Free => Scene::Free(free::read(&reader)?),
+        SceneKind::FreeSpatial => Scene::Spatial(spatial::read(&reader)?),
     };
     let motion = match reader.optional_section("motion")? {
         Some(motion) => motion::read(motion)?,
-        None if kind == SceneKind::Free => motion::rest(),
-        None => return Err(reader.missing("motion")),
+        None if kind == SceneKind::Stack => return Err(reader.missing("motion")),
+        None => motion::rest(),
     };
     reader.finish();
     Ok(Scenario { title, scene, motion, run, record, written: Written::default() })
@@ -162,6 +189,7 @@ pub(super) fn write(scenario: &Scenario) -> Table {
     let kind = match scenario.scene {
         Scene::Stack { .. } => SceneKind::Stack,
         Scene::Free(_) => SceneKind::Free,
+        Scene::Spatial(_) => SceneKind::FreeSpatial,
     };
     let mut writer = Writer::variant(&ROOT, kind);
     writer.integer("schema", SCHEMA);
@@ -177,12 +205,13 @@ pub(super) fn write(scenario: &Scenario) -> Table {
             writer.table("outcome", outcome.write());
             writer.table("imperfections", imperfections.write());
         }
-        Scene::Free(scene) => {
-            free::write(&mut writer, scene);
-            writer.table("motion", motion::write(&scenario.motion));
-            writer.table("run", run::write_run(&scenario.run));
-            writer.table("record", scenario.record.write());
-        }
+        Scene::Free(scene) => free::write(&mut writer, scene),
+        Scene::Spatial(scene) => spatial::write(&mut writer, scene),
+    }
+    if kind != SceneKind::Stack {
+        writer.table("motion", motion::write(&scenario.motion));
+        writer.table("run", run::write_run(&scenario.run));
+        writer.table("record", scenario.record.write());
     }
     writer.finish()
 }

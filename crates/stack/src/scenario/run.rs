@@ -55,7 +55,7 @@ pub enum Accuracy {
 
 impl Accuracy {
     /// Its time step in those of the standard accuracy.
-    pub(crate) fn step(self) -> f64 {
+    pub fn step(self) -> f64 {
         match self {
             Self::Screening => 1.25,
             Self::Standard => 1.0,

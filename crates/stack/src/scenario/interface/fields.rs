@@ -210,7 +210,7 @@ pub static FREE_INTERFACE: Section = Section {
             "between",
             Kind::Pair,
             Default::Required,
-            "The two kinds: the first carries the contact nodes, the second the surface.",
+            "The two kinds: the first carries the contact nodes, the second the surface; in space either comes first.",
         ),
         Field::new(
             "within_groups",

@@ -1,0 +1,117 @@
+//! A body in space as a file states it: its solid, its matter, where it is and how it moves at the start.
+
+use barrelstack_input::declared::Declared as _;
+use barrelstack_input::field::{Default, Kind, Range};
+use barrelstack_input::reader::Reader;
+use barrelstack_input::{Dimension, InputError, section};
+
+use crate::solid::{SOLID, Solid};
+
+section! {
+    /// Viscous drag on a body, relative to the ground at rest.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Viscous;
+    /// Viscous drag on the motion of a body in space, alike in all directions.
+    pub static VISCOUS = "viscous-in-space";
+    /// Force per velocity of the center of mass.
+    linear: f64 =
+        Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
+    /// Moment per spin.
+    angular: f64 =
+        Kind::Quantity(&[Dimension::ANGULAR_DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N m s\"");
+}
+
+section! {
+    /// One body of a free scene in space.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct SpatialBody;
+    /// A rigid body of a free scene in space, where x is to the right, y away and z up.
+    pub static BODY = "body-in-space", at most one of &["mass", "density"];
+    /// Unique name.
+    name: String = Kind::Text, Default::Required;
+    /// Label used by interfaces.
+    kind: Option<String> = Kind::Text, Default::Derived("the name");
+    /// What touches and can be touched.
+    solid: Solid = Kind::Table(&SOLID), Default::Required;
+    /// Mass.
+    mass: Option<f64> = Kind::Quantity(&[Dimension::MASS], Range::POSITIVE),
+        Default::Derived("that of the solid by `density`; a body that is not fixed to the ground needs one of both");
+    /// Density of the solid, in place of the mass.
+    density: Option<f64> =
+        Kind::Quantity(&[Dimension::DENSITY], Range::POSITIVE), Default::Derived("the mass over the volume");
+    /// Moments of inertia about axes along local x, y and z through the center of mass, which are principal axes then.
+    inertia: Option<[f64; 3]> =
+        Kind::Triple(Dimension::INERTIA), Default::Derived("those of a homogeneous solid");
+    /// Center of mass, from the reference point of the solid.
+    center_of_mass: Option<[f64; 3]> =
+        Kind::Triple(Dimension::LENGTH), Default::Derived("that of a homogeneous solid");
+    /// Place of the reference point of the solid at the start.
+    position: [f64; 3] = Kind::Triple(Dimension::LENGTH), Default::Required;
+    /// How it is turned at the start: about x, then y, then z, axes that stand still, each counterclockwise.
+    orientation: [f64; 3] =
+        Kind::Triple(Dimension::ANGLE), Default::Value("[\"0 deg\", \"0 deg\", \"0 deg\"]");
+    /// Velocity of the center of mass at the start.
+    velocity: [f64; 3] =
+        Kind::Triple(Dimension::VELOCITY), Default::Value("[\"0 m/s\", \"0 m/s\", \"0 m/s\"]");
+    /// Spin at the start about x, y and z, axes that stand still, each counterclockwise.
+    spin: [f64; 3] =
+        Kind::Triple(Dimension::SPIN), Default::Value("[\"0 rad/s\", \"0 rad/s\", \"0 rad/s\"]");
+    /// Bodies of one group do not meet by an interface that says `within_groups = false`.
+    group: Option<String> = Kind::Text, Default::Nothing;
+    /// Whether the body moves with the ground.
+    fixed_to_ground: bool = Kind::Flag, Default::Value("false");
+    /// Viscous drag.
+    viscous: Option<Viscous> = Kind::Table(&VISCOUS), Default::Nothing;
+}
+
+impl SpatialBody {
+    /// Label used by interfaces.
+    pub fn kind(&self) -> &str {
+        self.kind.as_deref().unwrap_or(&self.name)
+    }
+
+    /// Reads a body and checks what its fields mean together.
+    ///
+    /// # Errors
+    /// The first problem found, at its place.
+    pub fn checked(reader: Reader<'_>) -> Result<Self, InputError> {
+        let body = Self::read_fields(&reader)?;
+        let wrong = |field, message: String| Err(reader.inconsistent(field, message));
+        let free = !body.fixed_to_ground;
+        if free && body.solid == Solid::HalfSpace {
+            let message = format!(
+                "a half-space has no mass that could move; write `{} = true`, or take another solid",
+                reader.path_of("fixed_to_ground")
+            );
+            return wrong("solid", message);
+        }
+        if free && body.mass.is_none() && body.density.is_none() {
+            return Err(reader.missing("mass"));
+        }
+        if !free && (body.velocity != [0.0; 3] || body.spin != [0.0; 3]) {
+            let field = if body.velocity == [0.0; 3] { "spin" } else { "velocity" };
+            let message = format!("what is fixed to the ground moves with it; leave `{field}` out");
+            return wrong(field, message);
+        }
+        // The inertia of homogeneous matter holds about its own center only.
+        if body.center_of_mass.is_some() && body.inertia.is_none() {
+            let message = format!(
+                "a center of mass of its own means that the body is not homogeneous; give `{}` too",
+                reader.path_of("inertia")
+            );
+            return wrong("center_of_mass", message);
+        }
+        if let Some([x, y, z]) = body.inertia {
+            let most = x.max(y).max(z);
+            if x.min(y).min(z) <= 0.0 || most > (x + y + z - most) * (1.0 + 1e-9) {
+                let message = format!(
+                    "no matter has moments of inertia of {x}, {y} and {z} kg·m²: all are above zero, and none is more \
+                     than the other two together; correct them"
+                );
+                return wrong("inertia", message);
+            }
+        }
+        reader.finish();
+        Ok(body)
+    }
+}

@@ -1,0 +1,166 @@
+//! Bodies in space as a time series for ParaView.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+
+use super::{closed_index, index_entry, opened_index, poly_data, role};
+use crate::film::sampled_times;
+use crate::{Attachment, Role, base64, escape};
+
+/// The surface of a body in space, in its frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolidBody {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub role: Role,
+    /// Level, 1 at the bottom; 0 for what belongs to none.
+    pub level: u32,
+    /// Points (m).
+    pub points: Vec<[f64; 3]>,
+    /// Triangles by the places of their corners, against the clock as seen from outside.
+    pub triangles: Vec<[usize; 3]>,
+}
+
+/// Bodies in space and how they move.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solids {
+    /// The bodies.
+    pub bodies: Vec<SolidBody>,
+    /// The moments (s).
+    pub times: Vec<f64>,
+    /// For each of them and every body, position (m) and quaternion `w`, `x`, `y`, `z`.
+    pub poses: Vec<Vec<[f64; 7]>>,
+    /// For each of them and every body, velocity (m/s) and spin (rad/s).
+    pub twists: Vec<Vec<[f64; 6]>>,
+}
+
+/// The files of bodies in space for ParaView, one after the other, for a folder of their own: a `bodies-*.vtp` for
+/// each time, `bodies.csv` with the names behind the numbers of the bodies, and `stack.pvd`, which is the one to open.
+///
+/// Times are `1/rate` (s) apart, as for [`Film`](crate::Film); z is up, lengths in m.
+/// Surfaces are triangles.
+/// Cells carry `body` (its place among the bodies), `role` (as in [`paraview`](super::paraview)) and `level`; points
+/// carry `displacement` (m) from the first frame and `velocity` (m/s).
+///
+/// # Errors
+/// What `put` says.
+pub fn paraview_of_solids<E>(
+    solids: &Solids,
+    rate: f64,
+    put: &mut dyn FnMut(Attachment) -> Result<(), E>,
+) -> Result<(), E> {
+    let frames = sampled_times(&solids.times, rate);
+    let digits = frames.len().to_string().len().max(4);
+    let mut index = opened_index();
+    for (at, &frame) in frames.iter().enumerate() {
+        let name = format!("bodies-{at:0digits$}.vtp");
+        index_entry(&mut index, solids.times[frame], 0, &name);
+        put(Attachment { name, bytes: file(solids, frame).into_bytes() })?;
+    }
+    let mut names = String::from("body,name,role,level\n");
+    for (at, body) in solids.bodies.iter().enumerate() {
+        let name = escape::csv(&body.name);
+        // Writing to a String cannot fail, here and below.
+        let _ = writeln!(names, "{at},{name},{},{}", body.role.class(), body.level);
+    }
+    put(Attachment { name: "bodies.csv".into(), bytes: names.into_bytes() })?;
+    put(Attachment { name: "stack.pvd".into(), bytes: closed_index(index).into_bytes() })
+}
+
+/// The bodies at a frame.
+fn file(solids: &Solids, frame: usize) -> String {
+    let Solids { bodies, poses, twists, .. } = solids;
+    let (mut points, mut displacements, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut corners, mut of_body) = (Vec::new(), Vec::new());
+    for (at, body) in bodies.iter().enumerate() {
+        let (now, start, twist) = (poses[frame][at], poses[0][at], twists[frame][at]);
+        // What was lost to numbers that are none has no place.
+        if now.iter().chain(&twist).any(|value| !value.is_finite()) {
+            continue;
+        }
+        let first = points.len();
+        for point in &body.points {
+            let (here, there) = (placed(now, *point), placed(start, *point));
+            points.push(here);
+            displacements.push([here[0] - there[0], here[1] - there[1], here[2] - there[2]]);
+            velocities.push(velocity(now, twist, here));
+        }
+        corners.extend(body.triangles.iter().flatten().map(|corner| first + corner));
+        of_body.extend(body.triangles.iter().map(|_| at));
+    }
+    let mut piece = format!(
+        "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" \
+         NumberOfPolys=\"{}\">\n<PointData Vectors=\"displacement\">\n",
+        points.len(),
+        of_body.len()
+    );
+    vectors(&mut piece, "displacement", &displacements);
+    vectors(&mut piece, "velocity", &velocities);
+    piece.push_str("</PointData>\n<CellData Scalars=\"body\">\n");
+    whole(&mut piece, "body", of_body.iter().copied());
+    whole(&mut piece, "role", of_body.iter().map(|at| usize::from(role(bodies[*at].role))));
+    whole(&mut piece, "level", of_body.iter().map(|at| bodies[*at].level as usize));
+    piece.push_str("</CellData>\n<Points>\n");
+    vectors(&mut piece, "points", &points);
+    piece.push_str("</Points>\n<Polys>\n");
+    whole(&mut piece, "connectivity", corners.iter().copied());
+    whole(&mut piece, "offsets", (1..=of_body.len()).map(|count| 3 * count));
+    piece.push_str("</Polys>\n");
+    poly_data(" header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\"", &piece)
+}
+
+/// Where a point of a body is: `p + 2 w (v × r) + 2 v × (v × r)` for the quaternion `w, v`.
+fn placed([x, y, z, w, a, b, c]: [f64; 7], point: [f64; 3]) -> [f64; 3] {
+    let v = [a, b, c];
+    let once = cross(v, point);
+    let twice = cross(v, once);
+    let along = |axis: usize| point[axis] + 2.0 * (w * once[axis] + twice[axis]);
+    [x + along(0), y + along(1), z + along(2)]
+}
+
+/// The velocity of a point of a body that is at a place.
+fn velocity(pose: [f64; 7], [u, v, w, a, b, c]: [f64; 6], place: [f64; 3]) -> [f64; 3] {
+    let arm = [place[0] - pose[0], place[1] - pose[1], place[2] - pose[2]];
+    let turning = cross([a, b, c], arm);
+    [u + turning[0], v + turning[1], w + turning[2]]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// Vectors in single precision, which is finer than a micrometer at ten meters.
+#[expect(clippy::cast_possible_truncation, reason = "what a picture shows needs no more")]
+fn vectors(out: &mut String, name: &str, values: &[[f64; 3]]) {
+    let bytes: Vec<u8> =
+        values.iter().flatten().flat_map(|value| (*value as f32).to_le_bytes()).collect();
+    array(out, ("Float32", name, 3), &bytes);
+}
+
+/// Whole numbers, none of which comes near the limit of 32 bits.
+fn whole(out: &mut String, name: &str, values: impl Iterator<Item = usize>) {
+    let number = |value| i32::try_from(value).unwrap_or(i32::MAX);
+    let bytes: Vec<u8> = values.flat_map(|value| number(value).to_le_bytes()).collect();
+    array(out, ("Int32", name, 1), &bytes);
+}
+
+/// An array as one block, packed by zlib, behind its size before and after: as text a series of a stack that falls would
+/// take a gigabyte.
+fn array(out: &mut String, (kind, name, components): (&str, &str, u32), bytes: &[u8]) {
+    let mut packer = ZlibEncoder::new(Vec::new(), Compression::fast());
+    // Writing to memory cannot fail.
+    let packed = packer.write_all(bytes).and_then(|()| packer.finish()).unwrap_or_default();
+    let size = |bytes: &[u8]| u32::try_from(bytes.len()).unwrap_or(u32::MAX);
+    let header = [1, size(bytes), 0, size(&packed)].map(u32::to_le_bytes).concat();
+    let _ = writeln!(
+        out,
+        "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
+         format=\"binary\">\n{}{}\n</DataArray>",
+        base64(&header),
+        base64(&packed)
+    );
+}

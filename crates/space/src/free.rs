@@ -1,0 +1,80 @@
+//! From a free scene to bodies that can move in space, and which of them meet by which law.
+
+use barrelstack::RunFailure;
+use barrelstack::assemble::{AssembleError, PartKind, laws_of_free};
+use barrelstack::scenario::{FreeInterface, Scenario, SpatialBody, SpatialScene};
+use barrelstack_dynamics::{
+    Body, BodyId, ContactPair, Counts, Model, Motion, Quaternion, Solid, Spatial, Vec3,
+};
+
+use crate::part::{Part, ground};
+use crate::stack::Stack;
+use crate::step::time_step;
+
+/// Builds a free scene, not yet at rest.
+pub(crate) fn assemble(scenario: &Scenario, scene: &SpatialScene) -> Result<Stack, RunFailure> {
+    if scenario.run.similitude != 1.0 {
+        let reason =
+            "scaled scenes are known in a plane, not yet in space: set run.similitude to 1".into();
+        return Err(AssembleError::NotInSpace { field: "run.similitude", reason }.into());
+    }
+    let mut floor = ground();
+    // What rises to the right is turned about y, with the clock where y points away.
+    floor.pose.orientation = Quaternion::turn(Vec3::new(0.0, -scene.ground.slope, 0.0));
+    let mut bodies = vec![floor];
+    bodies.extend(scene.bodies.iter().map(SpatialBody::build));
+    let mut parts = vec![Part::alone("ground", PartKind::Ground)];
+    parts.extend(scene.bodies.iter().map(|body| Part::alone(&body.name, PartKind::Body)));
+    let pairs = pairs(scene, &bodies);
+    let gravity = Vec3::new(0.0, 0.0, -scenario.run.gravity);
+    let model =
+        Model::new(bodies, laws_of_free(scene), pairs, gravity).map_err(AssembleError::from)?;
+    let step = time_step(scenario, &model)?;
+    Ok(Stack { model, parts, step, height: 0.0, levels: 0, bilge_radius: 0.0, reach: [0.0; 2] })
+}
+
+/// All solids of two bodies that an interface names, each pair of them once.
+fn pairs(scene: &SpatialScene, bodies: &[Body<Spatial>]) -> Vec<ContactPair> {
+    let mut list = Vec::new();
+    for one in 0..bodies.len() {
+        for other in one + 1..bodies.len() {
+            let Some((interface, turned)) = law_of(scene, [one, other]) else { continue };
+            if [one, other].iter().all(|id| bodies[*id].motion == Motion::Prescribed) {
+                continue;
+            }
+            // A half-space touches nothing, it is touched.
+            let turned = if is_unbounded(&bodies[one]) || is_unbounded(&bodies[other]) {
+                is_unbounded(&bodies[one])
+            } else {
+                turned
+            };
+            let (contactor, target) = if turned { (other, one) } else { (one, other) };
+            for nodes in 0..bodies[contactor].nodes.len() {
+                for surface in 0..bodies[target].surfaces.len() {
+                    let counts = Counts::Everywhere;
+                    list.push(ContactPair { contactor, nodes, target, surface, interface, counts });
+                }
+            }
+        }
+    }
+    list
+}
+
+fn is_unbounded(body: &Body<Spatial>) -> bool {
+    body.surfaces.iter().any(|placed| placed.surface == Solid::HalfSpace)
+}
+
+/// The interface by which two bodies meet, and whether the second of them is the one that it names first.
+fn law_of(scene: &SpatialScene, [one, other]: [BodyId; 2]) -> Option<(usize, bool)> {
+    let label = |id: BodyId| match id.checked_sub(1) {
+        Some(at) => (scene.bodies[at].kind(), scene.bodies[at].group.as_deref()),
+        None => (scene.ground.kind.as_str(), None),
+    };
+    let ((first, group), (second, other_group)) = (label(one), label(other));
+    let together = group.is_some() && group == other_group;
+    let meets = |law: &FreeInterface, a: &str, b: &str| law.between[0] == a && law.between[1] == b;
+    let mut laws = scene.interfaces.iter().enumerate();
+    laws.find(|(_, law)| meets(law, first, second) || meets(law, second, first))
+        .filter(|(_, law)| !together || law.within_groups)
+        .map(|(at, law)| (at, !meets(law, first, second)))
+}

@@ -1,0 +1,114 @@
+//! The time step of a free scene in space: from its contacts and its spins.
+
+use barrelstack::RunFailure;
+use barrelstack::scenario::{Method, Scenario};
+use barrelstack::step::round_down;
+use barrelstack_dynamics::solid::Hull;
+use barrelstack_dynamics::{Body, ContactPair, Model, Motion, Nodes, Rotation3, Spatial, Vec3};
+
+/// Share of the critical time step that is taken, as in the plane.
+const SHARE: f64 = 0.3;
+
+/// Share of the time in which dampers stop a body, as in the plane.
+const DAMPING_SHARE: f64 = 0.33;
+
+/// Penetration (m) at which laws that stiffen with penetration are measured, as in the plane.
+const REFERENCE: f64 = 0.01;
+
+/// Longest step (s) where nothing asks for a shorter one.
+const LONGEST: f64 = 1e-3;
+
+/// Largest turn (rad) in a step of what spins from the start: a tumbling block keeps its energy to 3e-9 by it.
+const TURN: f64 = 5e-3;
+
+/// The step (s) that a scenario asks for, or the one that its contacts and spins suggest.
+pub(crate) fn time_step(scenario: &Scenario, model: &Model<Spatial>) -> Result<f64, RunFailure> {
+    let rate = fastest(model, |pair| {
+        let law = &model.interfaces()[pair.interface];
+        law.normal.tangent_stiffness(REFERENCE).max(law.friction.stick_stiffness())
+    });
+    let damping =
+        fastest(model, |pair| model.interfaces()[pair.interface].normal.tangent_damping(REFERENCE));
+    let critical = 2.0 / rate.sqrt();
+    let spins = model.bodies().iter().map(|body| body.twist.angular.length());
+    let turning = TURN / spins.fold(0.0, f64::max);
+    let sound = (SHARE * critical).min(DAMPING_SHARE / damping).min(turning).min(LONGEST);
+    let own = round_down(sound) * scenario.run.accuracy.step();
+    match scenario.run.step {
+        Some(step) if step >= critical && !adapts(scenario.run.method) => Err(RunFailure::Step {
+            asked: 1e3 * step,
+            reason: format!("the stiffest contact allows {:.2} ms at most", 1e3 * critical),
+            instead: 1e3 * own,
+        }),
+        Some(step) => Ok(step),
+        None => Ok(own),
+    }
+}
+
+fn adapts(method: Method) -> bool {
+    matches!(method, Method::BogackiShampine { .. })
+}
+
+/// The largest rate that a constant of the contacts of a pair gives a free body: it is moved, and turned by the
+/// longest lever.
+///
+/// A body is held from below and above, so each counts twice.
+fn fastest(model: &Model<Spatial>, constant: impl Fn(&ContactPair) -> f64) -> f64 {
+    let mut most = 0.0_f64;
+    for pair in model.pairs() {
+        let bodies = [pair.contactor, pair.target].map(|id| &model.bodies()[id]);
+        let bearing = 2.0 * contacts(&bodies[0].nodes[pair.nodes]) * constant(&pair);
+        for body in bodies.into_iter().filter(|body| body.motion == Motion::Free) {
+            most = most.max(bearing * (1.0 / body.mass + turned(body)));
+        }
+    }
+    most
+}
+
+/// How many contacts of a solid bear at a time.
+fn contacts(nodes: &Nodes<Spatial>) -> f64 {
+    match nodes {
+        Nodes::Whole(whole) => match whole.hull {
+            Hull::Capsule(_) => 2.0,
+            Hull::Barrel(_) | Hull::Block(_) => 4.0,
+        },
+        Nodes::Fixed(_) | Nodes::Rounds(_) | Nodes::Rolling { .. } => 1.0,
+    }
+}
+
+/// Square of the longest lever about a principal axis over the moment of inertia about it (1/kg), where that is most.
+fn turned(body: &Body<Spatial>) -> f64 {
+    let upright = Rotation3::identity();
+    let mut most: Vec3 = Vec3::default();
+    for nodes in &body.nodes {
+        let (center, rows, half) = match nodes {
+            Nodes::Rolling { center, radius, .. } => {
+                (*center, upright.rows, Vec3::new(*radius, *radius, *radius))
+            }
+            Nodes::Whole(whole) => (whole.center, whole.rotation.rows, reach(&whole.hull)),
+            Nodes::Fixed(_) | Nodes::Rounds(_) => continue,
+        };
+        let along = |row: Vec3| row.x.abs() * half.x + row.y.abs() * half.y + row.z.abs() * half.z;
+        most.x = most.x.max(center.x.abs() + along(rows[0]));
+        most.y = most.y.max(center.y.abs() + along(rows[1]));
+        most.z = most.z.max(center.z.abs() + along(rows[2]));
+    }
+    let square = most.times(most);
+    let levers = Vec3::new(square.y + square.z, square.z + square.x, square.x + square.y);
+    let Vec3 { x, y, z } = levers.over(body.inertia);
+    x.max(y).max(z)
+}
+
+/// Half the box (m) about a solid.
+fn reach(hull: &Hull) -> Vec3 {
+    match hull {
+        Hull::Capsule(tube) => Vec3::new(tube.half_length + tube.radius, tube.radius, tube.radius),
+        Hull::Block(block) => {
+            block.half + Vec3::new(block.rounding, block.rounding, block.rounding)
+        }
+        Hull::Barrel(barrel) => {
+            let bilge = barrel.stave_radius - barrel.stave_offset + barrel.rounding;
+            Vec3::new(barrel.half_length + barrel.rounding, bilge, bilge)
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! A free scene in space: any bodies on a ground, each of one solid or of several.
+
+use std::collections::BTreeSet;
+
+use barrelstack_bodies::SpatialBody;
+use barrelstack_input::declared::Declared as _;
+use barrelstack_input::reader::Reader;
+use barrelstack_input::section;
+use barrelstack_input::writer::Writer;
+
+use super::dimension::Dimension;
+use super::error::ScenarioError;
+use super::field::{Default, Kind, Range};
+use super::free::FreeInterface;
+use super::interface::{self, Basis};
+
+section! {
+    /// The ground of a free scene in space: all below a plane through the origin.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct SpatialGround;
+    /// The ground: all below a plane through the origin.
+    pub static GROUND = "ground-in-space";
+    /// Slope, positive when it rises to the right, along x.
+    slope: f64 =
+        Kind::Quantity(&[Dimension::ANGLE], Range::between(-1.5, 1.5)), Default::Value("\"0 deg\"");
+    /// Label used by interfaces.
+    kind: String = Kind::Text, Default::Value("\"ground\"");
+}
+
+/// A free scene in space.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpatialScene {
+    /// The ground.
+    pub ground: SpatialGround,
+    /// Bodies, in the order of the file.
+    pub bodies: Vec<SpatialBody>,
+    /// Interfaces, in the order of the file.
+    pub interfaces: Vec<FreeInterface>,
+}
+
+/// Most bodies of a free scene in space, whose pairs are listed one by one.
+const MOST_BODIES: usize = 500;
+
+/// Reads the fields of a free scene in space from the top of the file.
+pub(super) fn read(root: &Reader<'_>) -> Result<SpatialScene, ScenarioError> {
+    let ground = SpatialGround::read(root.section("ground")?)?;
+    let mut bodies: Vec<SpatialBody> = Vec::new();
+    for reader in root.sections("body")? {
+        if bodies.len() == MOST_BODIES {
+            let message = format!("a free scene in space has at most {MOST_BODIES} bodies");
+            return Err(reader.inconsistent("name", message));
+        }
+        let name = reader.text("name")?;
+        // The model knows the ground by this name.
+        if name == "ground" || bodies.iter().any(|body| body.name == name) {
+            let message = format!("two bodies are called \"{name}\"; give each its own name");
+            return Err(reader.inconsistent("name", message));
+        }
+        bodies.push(SpatialBody::checked(reader)?);
+    }
+    if bodies.is_empty() {
+        return Err(root.missing("body"));
+    }
+    let interfaces = read_interfaces(root, &ground, &bodies)?;
+    Ok(SpatialScene { ground, bodies, interfaces })
+}
+
+fn read_interfaces(
+    root: &Reader<'_>,
+    ground: &SpatialGround,
+    bodies: &[SpatialBody],
+) -> Result<Vec<FreeInterface>, ScenarioError> {
+    let all = bodies.iter().map(SpatialBody::kind).chain([ground.kind.as_str()]);
+    let mut known = BTreeSet::new();
+    let kinds: Vec<&str> = all.filter(|kind| known.insert(*kind)).collect();
+    let mut interfaces: Vec<FreeInterface> = Vec::new();
+    for reader in root.sections("interface")? {
+        let between = reader.pair("between")?;
+        if let Some(kind) = between.iter().find(|kind| !kinds.contains(&kind.as_str())) {
+            let message =
+                format!("no body is of the kind \"{kind}\"; the kinds are {}", kinds.join(", "));
+            return Err(reader.inconsistent("between", message));
+        }
+        // Solids meet once, whichever comes first.
+        let same = |other: &FreeInterface| {
+            other.between == between || other.between.iter().rev().eq(&between)
+        };
+        if interfaces.iter().any(same) {
+            let message = format!(
+                "a second interface between \"{}\" and \"{}\"; keep one",
+                between[0], between[1]
+            );
+            return Err(reader.inconsistent("between", message));
+        }
+        if reader.choice::<Basis>("basis")? == Basis::Length {
+            let message = "in space a contact is a point, a line or a face, and has no length of boundary; state \
+                           stiffness and damping for a contact, with basis = \"node\""
+                .to_owned();
+            return Err(reader.inconsistent("basis", message));
+        }
+        let within_groups = reader.flag("within_groups")?;
+        let law = interface::read(reader, None)?;
+        interfaces.push(FreeInterface { between, within_groups, law });
+    }
+    Ok(interfaces)
+}
+
+/// Writes a free scene in space into the top of the file.
+pub(super) fn write(writer: &mut Writer, scene: &SpatialScene) {
+    writer.table("ground", scene.ground.write());
+    writer.tables("body", scene.bodies.iter().map(SpatialBody::write).collect());
+    let interfaces = scene.interfaces.iter().map(interface::write_free).collect();
+    writer.tables("interface", interfaces);
+}
