@@ -43,6 +43,7 @@ mod prepare;
 mod rows;
 mod setting;
 mod shard;
+mod space;
 mod stop;
 mod table;
 
@@ -97,6 +98,8 @@ pub struct Study {
     factors: Vec<Factor>,
     motions: Vec<Motion>,
     intensity: Option<Intensity>,
+    /// Whether some of its cases look at their stack in space.
+    in_space: bool,
     /// The levels that are crossed with the rest.
     levels: Vec<Option<f64>>,
     /// Cases of each chunk; of an incremental dynamic analysis, hunts.
@@ -121,6 +124,8 @@ struct Factor {
     base: Option<Value>,
     /// Whether it changes what bodies and contacts there are.
     structural: bool,
+    /// Whether a value of it looks at the stack in space.
+    in_space: bool,
 }
 
 /// How a field is varied.

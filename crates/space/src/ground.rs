@@ -1,7 +1,7 @@
 //! The ground in space: both horizontal components of a motion and the vertical one, turned to the stack.
 
 use barrelstack::ground::{GroundError, of_spec, other_component, turn_to_other};
-use barrelstack::scenario::{MotionSource, Scenario};
+use barrelstack::scenario::{MotionSource, MotionSpec, Scenario};
 use barrelstack_dynamics::{Drive, Spatial, Vec3, math};
 
 /// How far (degrees) from a right angle two horizontal components may be and count as one.
@@ -29,20 +29,26 @@ impl Ground {
     /// # Errors
     /// When the motion cannot be read, or cannot be scaled as the scenario says.
     pub fn of(scenario: &Scenario) -> Result<Self, GroundError> {
-        let first = scenario.ground()?;
-        let other = other_component(&scenario.motion)?;
-        let second = other.map(|spec| of_spec(&spec, scenario.run.similitude)).transpose()?;
-        let azimuth = scenario.stack().and_then(|stack| stack.space).map_or(0.0, |s| s.azimuth);
+        Ok(Self::of_spec(&scenario.motion, scenario.run.similitude)?.under(scenario))
+    }
+
+    /// That of a motion for a stack of a length scale, not turned: its component shakes a stack across its barrels.
+    ///
+    /// # Errors
+    /// As [`Ground::of`].
+    pub fn of_spec(motion: &MotionSpec, similitude: f64) -> Result<Self, GroundError> {
+        let first = of_spec(motion, similitude)?;
+        let second = other_component(motion)?;
+        let second = second.map(|spec| of_spec(&spec, similitude)).transpose()?;
         let mut warnings = first.warnings.clone();
-        let recorded = matches!(scenario.motion.source, MotionSource::Record(_));
+        let recorded = matches!(motion.source, MotionSource::Record(_));
         if recorded && second.is_none() {
             warnings.push(
                 "the record has one horizontal component: nothing shakes the ground at a right angle to it"
                     .to_owned(),
             );
         }
-        let (sin, cos) = math::sin_cos(azimuth);
-        let turned = turn_to_other(&scenario.motion)?.filter(|_| second.is_some());
+        let turned = turn_to_other(motion)?.filter(|_| second.is_some());
         match turned {
             None if second.is_some() => warnings.push(
                 "the record does not say how its horizontal components lie to each other: the second one is taken to \
@@ -55,7 +61,25 @@ impl Ground {
             Some(_) | None => {}
         }
         let hand = if turned.is_some_and(|turn| turn < 180.0) { -1.0 } else { 1.0 };
-        Ok(Self { first, second, turn: [cos, sin], hand, warnings })
+        Ok(Self { first, second, turn: [1.0, 0.0], hand, warnings })
+    }
+
+    /// As it shakes the stack of a scenario, which is turned by its azimuth.
+    #[must_use]
+    pub fn under(self, scenario: &Scenario) -> Self {
+        let azimuth = scenario.stack().and_then(|stack| stack.space).map_or(0.0, |s| s.azimuth);
+        let (sin, cos) = math::sin_cos(azimuth);
+        Self { turn: [cos, sin], ..self }
+    }
+
+    /// With all components times one factor.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let of = |ground: &barrelstack::Ground| barrelstack::Ground {
+            motion: ground.motion.as_ref().map(|motion| motion.scaled(factor)),
+            warnings: ground.warnings.clone(),
+        };
+        Self { first: of(&self.first), second: self.second.as_ref().map(of), ..self.clone() }
     }
 
     /// When (s) its motion ends; none where there is none.

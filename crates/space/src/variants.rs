@@ -48,8 +48,10 @@ impl Case {
         let barrels: Vec<usize> = run.stack.of_kind(PartKind::Barrel).collect();
         let fall = |body: &usize| (run.stack.parts[*body].name.clone(), run.fates[*body].fell_at);
         let left = run.ground.end() - run.end_time;
-        let residual = barrels.iter().map(|body| run.fates[*body].moved.x);
-        let largest = |most: f64, value: f64| if value.abs() > most.abs() { value } else { most };
+        let way = |body: &usize| {
+            let moved = run.fates[*body].moved;
+            (moved.x * moved.x + moved.y * moved.y).sqrt()
+        };
         let result = CaseResult {
             first_fall: run.first_fall.filter(|_| sound),
             barrels: barrels.len(),
@@ -60,7 +62,7 @@ impl Case {
                 Vec::new()
             },
             demands: if sound { demands(run) } else { Demands::default() },
-            residual_displacement: sound.then(|| residual.fold(0.0, largest)),
+            residual_displacement: sound.then(|| barrels.iter().map(way).fold(0.0, f64::max)),
             ending: Some(run.ending),
             cut: Some(if run.ending == Ending::Rest || left <= CUT { 0.0 } else { left }),
             end_time: Some(run.end_time),

@@ -7,6 +7,7 @@ const ALL: &[(&str, &str)] = &[
     ("demo-isolators", include_str!("../../studies/demo-isolators.toml")),
     ("demo-racks", include_str!("../../studies/demo-racks.toml")),
     ("demo-slosh", include_str!("../../studies/demo-slosh.toml")),
+    ("demo-space", include_str!("../../studies/demo-space.toml")),
     ("tuned-mass", include_str!("../../studies/tuned-mass.toml")),
 ];
 

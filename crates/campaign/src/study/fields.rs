@@ -239,7 +239,7 @@ static DESIGN: Section = Section {
             "chunk",
             Kind::Integer(1, 100_000),
             Default::Derived(
-                "64, and twice as many after every 512 chunks; of an incremental dynamic analysis 8",
+                "64, and twice as many after every 512 chunks; in space, and of an incremental dynamic analysis, 8",
             ),
             "Cases of a chunk, the unit of work that is run and kept as a whole; of an incremental dynamic analysis, \
              hunts.",

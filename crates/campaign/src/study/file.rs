@@ -19,7 +19,7 @@ use super::fields::{DesignKind, STUDY};
 use super::ida::Hunt;
 use super::motions::{Motion, Shaking, hash_files, unreadable};
 use super::plan::{Chunks, Sizes};
-use super::prepare::one_plane;
+use super::prepare::runs;
 use super::setting::{Domain, Setting};
 use factor::{LOW, clash, read_factor, read_variation};
 
@@ -27,6 +27,9 @@ use super::{Factor, Intensity, Levels, Study, Variation, ensembles};
 
 /// Most cases that a design may have.
 const MOST_CASES: u64 = 10_000_000;
+
+/// Cases, or hunts, of a chunk where each takes long.
+const FEW: Sizes = Sizes::Given(8);
 
 impl Study {
     /// Reads a study file, the scenarios it extends, and the bytes of its records.
@@ -124,7 +127,7 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
     // How long a scenario is run was chosen for its own motion and for a film of it.
     template.forget_inherited("run", &crate::scenario::run::ENDS);
     let scenario = template.with([])?;
-    one_plane(&top, &scenario)?;
+    runs(&top, &scenario)?;
     let mut motions = Vec::new();
     for (number, set) in (1..).zip(sets) {
         motions.extend(ensembles::read(&set, opened, number, seed)?);
@@ -151,7 +154,10 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
                 .to_owned();
         return Err(top.inconsistent("intensity", message).into());
     }
+    let in_space = scenario.is_spatial() || factors.iter().any(|factor| factor.in_space);
     let (design, chunk, intensity) = read_design(top.section("design")?, intensity, &factors)?;
+    // Nothing runs side by side in space, and a case takes as long as many of a plane.
+    let usual = if in_space || matches!(design, Design::Ida(_)) { FEW } else { Sizes::Growing };
     let levels = match &intensity {
         Some(Intensity { levels: Levels::List(levels), .. }) => {
             levels.iter().copied().map(Some).collect()
@@ -170,8 +176,9 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
         factors,
         motions,
         intensity,
+        in_space,
         levels,
-        chunk,
+        chunk: chunk.map_or(usual, Sizes::Given),
         cases: Cases::Crossed,
         chunks: Chunks::Even { count: 0, sizes: Sizes::Growing },
         hash: 0,
@@ -285,12 +292,12 @@ fn read_intensity(reader: Reader<'_>) -> Result<Intensity, ScenarioError> {
     Ok(Intensity { measure, levels })
 }
 
-/// Reads `[design]`; gives it with the size of its chunks and the intensity that it works with.
+/// Reads `[design]`; gives it with the size of its chunks, if it states one, and the intensity that it works with.
 fn read_design(
     reader: Reader<'_>,
     intensity: Option<Intensity>,
     factors: &[Factor],
-) -> Result<(Design, Sizes, Option<Intensity>), ScenarioError> {
+) -> Result<(Design, Option<u32>, Option<Intensity>), ScenarioError> {
     let kind: DesignKind = reader.choice("kind")?;
     let chunk = reader.optional_integer("chunk")?;
     let refuse = |message: &str| Err(reader.inconsistent("kind", message.to_owned()));
@@ -374,8 +381,7 @@ fn read_design(
         return refuse("this design crosses levels; give [intensity] `levels` or a `range`");
     }
     reader.finish();
-    let usual = if kind == DesignKind::Ida { Sizes::Given(8) } else { Sizes::Growing };
-    Ok((design, chunk.map_or(usual, Sizes::Given), intensity))
+    Ok((design, chunk, intensity))
 }
 
 fn read_hunt(reader: &Reader<'_>, intensity: Option<&Intensity>) -> Result<Hunt, ScenarioError> {

@@ -95,6 +95,20 @@ impl Shaking {
         }
     }
 
+    /// All components of the motion for a stack of a length scale, with the scale of its own source.
+    fn in_space(
+        &self,
+        base: &MotionSpec,
+        similitude: f64,
+    ) -> Result<barrelstack_space::Ground, GroundError> {
+        match self {
+            Self::Base => barrelstack_space::Ground::of_spec(base, similitude),
+            Self::Spec(spec) => barrelstack_space::Ground::of_spec(spec, similitude),
+            // One component is made of random numbers.
+            Self::Synthetic(_) => Ok(self.ground(base, similitude)?.into()),
+        }
+    }
+
     /// Where it comes from, as people would say it; the study has the numbers.
     pub(super) fn source(&self, base: &MotionSpec) -> String {
         let spec: &MotionSpec = match self {
@@ -190,22 +204,75 @@ pub(super) struct Shaken {
 
 /// A motion as its source has it, kept for the cases that share it.
 #[derive(Debug)]
-struct Kept {
+struct Kept<T> {
     shaking: Shaking,
     /// The motion of the base, where that is what shakes.
     base: Option<MotionSpec>,
     similitude: f64,
-    shaken: Arc<Shaken>,
+    /// What was made of it.
+    made: Arc<T>,
     /// Its size (bytes).
     size: usize,
 }
 
+/// What was made of the motions that were used last.
+#[derive(Debug)]
+struct Shelf<T>(Mutex<Vec<Kept<T>>>);
+
+impl<T> Default for Shelf<T> {
+    fn default() -> Self {
+        Self(Mutex::new(Vec::new()))
+    }
+}
+
 /// The motions that were used last, so that none is read for every case.
 #[derive(Debug, Default)]
-pub(super) struct MotionCache(Mutex<Vec<Kept>>);
+pub(super) struct MotionCache {
+    in_plane: Shelf<Shaken>,
+    in_space: Shelf<barrelstack_space::Ground>,
+}
 
-/// Most memory (bytes) that the cache takes.
+/// Most memory (bytes) that a shelf takes.
 const CACHE: usize = 64 << 20;
+
+impl<T> Shelf<T> {
+    /// What is made of a motion, with its size (bytes), unless it is there.
+    fn get(
+        &self,
+        motion: &Motion,
+        base: &MotionSpec,
+        similitude: f64,
+        make: impl FnOnce() -> Result<(T, usize), GroundError>,
+    ) -> Result<Arc<T>, StudyError> {
+        let own = (motion.shaking == Shaking::Base).then(|| base.clone());
+        let same = |kept: &Kept<T>| {
+            kept.similitude == similitude && kept.base == own && kept.shaking == motion.shaking
+        };
+        if let Ok(mut cache) = self.0.lock()
+            && let Some(at) = cache.iter().position(same)
+        {
+            // What was used last stands last, and what stands first goes first.
+            let kept = cache.remove(at);
+            let made = Arc::clone(&kept.made);
+            cache.push(kept);
+            return Ok(made);
+        }
+        let (made, size) = make().map_err(|error| StudyError::Motion {
+            name: motion.name.clone(),
+            error: Box::new(error),
+        })?;
+        let made = Arc::new(made);
+        if let Ok(mut cache) = self.0.lock() {
+            let (shaking, made) = (motion.shaking.clone(), Arc::clone(&made));
+            cache.push(Kept { shaking, base: own, similitude, made, size });
+            let mut total: usize = cache.iter().map(|kept| kept.size).sum();
+            while total > CACHE && cache.len() > 1 {
+                total -= cache.remove(0).size;
+            }
+        }
+        Ok(made)
+    }
+}
 
 impl MotionCache {
     /// A motion as its source has it: from the cache, or read.
@@ -215,37 +282,26 @@ impl MotionCache {
         base: &MotionSpec,
         similitude: f64,
     ) -> Result<Arc<Shaken>, StudyError> {
-        let own = (motion.shaking == Shaking::Base).then(|| base.clone());
-        let same = |kept: &Kept| {
-            kept.similitude == similitude && kept.base == own && kept.shaking == motion.shaking
-        };
-        if let Ok(mut cache) = self.0.lock()
-            && let Some(at) = cache.iter().position(same)
-        {
-            // What was used last stands last, and what stands first goes first.
-            let kept = cache.remove(at);
-            let shaken = Arc::clone(&kept.shaken);
-            cache.push(kept);
-            return Ok(shaken);
-        }
-        let failed = |error: GroundError| StudyError::Motion {
-            name: motion.name.clone(),
-            error: Box::new(error),
-        };
-        let ground = motion.shaking.ground(base, similitude).map_err(failed)?;
-        let measures = ground.motion.as_ref().map(measure).transpose();
-        let measures = measures.map_err(|error| failed(error.into()))?;
-        let size = ground.motion.as_ref().map_or(0, size);
-        let shaken = Arc::new(Shaken { ground: Arc::new(ground), factor: 1.0, measures });
-        if let Ok(mut cache) = self.0.lock() {
-            let shaking = motion.shaking.clone();
-            cache.push(Kept { shaking, base: own, similitude, shaken: Arc::clone(&shaken), size });
-            let mut total: usize = cache.iter().map(|kept| kept.size).sum();
-            while total > CACHE && cache.len() > 1 {
-                total -= cache.remove(0).size;
-            }
-        }
-        Ok(shaken)
+        self.in_plane.get(motion, base, similitude, || {
+            let ground = motion.shaking.ground(base, similitude)?;
+            let measures = ground.motion.as_ref().map(measure).transpose()?;
+            let size = size(&ground);
+            Ok((Shaken { ground: Arc::new(ground), factor: 1.0, measures }, size))
+        })
+    }
+
+    /// All components of a motion as its source has it, not turned: from the cache, or read.
+    pub(super) fn in_space(
+        &self,
+        motion: &Motion,
+        base: &MotionSpec,
+        similitude: f64,
+    ) -> Result<Arc<barrelstack_space::Ground>, StudyError> {
+        self.in_space.get(motion, base, similitude, || {
+            let ground = motion.shaking.in_space(base, similitude)?;
+            let size = size(&ground.first) + ground.second.as_ref().map_or(0, size);
+            Ok((ground, size))
+        })
     }
 
     /// A motion scaled to a level of a measure.
@@ -294,7 +350,8 @@ fn scaled_measures(mut values: [f64; 9], factor: f64) -> [f64; 9] {
 
 /// Memory (bytes) that a motion takes: acceleration, velocity and displacement at every step.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of samples")]
-fn size(motion: &GroundMotion) -> usize {
+fn size(ground: &Ground) -> usize {
+    let Some(motion) = &ground.motion else { return 0 };
     let of = |history: &barrelstack_motion::History| {
         24 * (history.duration() / history.natural_step()).clamp(0.0, 1e8) as usize
     };

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use crate::scenario::reader::Reader;
-use crate::scenario::{Scenario, ScenarioError};
+use crate::scenario::{Scenario, ScenarioError, Scene};
 
 use super::design::{Case, Design, seed_of};
 use super::error::StudyError;
 use super::ida::{Hunt, Seen};
 use super::motions::{Motion, MotionCache, Shaken, Shaking, Synthetic};
 use super::setting::Setting;
+use super::space::Told;
 use super::table::StudyTable;
 use super::{Study, Value};
 use crate::ensemble::{Audience, CaseResult, Prepared, Width, simulate_in};
@@ -57,8 +58,8 @@ impl Study {
             let cases: Vec<Case> =
                 numbers.iter().map(|number| self.cases.case(self, *number)).collect();
             let Some(done) = self.shake(&cases, resources) else { return Ok(None) };
-            for (case, (shaken, result)) in cases.iter().zip(done) {
-                table.push(self.row(case, chunk, shaken.as_ref(), &result))?;
+            for (case, (shaken, told)) in cases.iter().zip(done) {
+                table.push(self.row(case, chunk, shaken.as_ref(), &told))?;
             }
         }
         Ok(Some(table))
@@ -90,16 +91,16 @@ impl Study {
             }
             for part in round.chunks(BATCH) {
                 let cases: Vec<Case> = part.iter().map(|(_, case)| case.clone()).collect();
-                for ((index, case), (shaken, result)) in
+                for ((index, case), (shaken, told)) in
                     part.iter().zip(self.shake(&cases, resources)?)
                 {
-                    let fell = match &result.outcome {
+                    let fell = match &told.result.outcome {
                         Ok(Outcome::Collapse { .. }) => Some(true),
                         Ok(Outcome::Stable) => Some(false),
                         Ok(Outcome::NotJudged | Outcome::Invalid { .. }) | Err(_) => None,
                     };
                     seen[*index].push((case.level.unwrap_or(0.0), fell));
-                    rows.push((case.number, self.row(case, chunk, shaken.as_ref(), &result)));
+                    rows.push((case.number, self.row(case, chunk, shaken.as_ref(), &told)));
                 }
             }
         }
@@ -107,28 +108,33 @@ impl Study {
         Some(rows.into_iter().map(|(_, row)| row).collect())
     }
 
-    /// Builds cases and runs them; what cannot be built is told as such.
+    /// Builds cases and runs them, those in a plane side by side; what cannot be built is told as such.
     fn shake(
         &self,
         cases: &[Case],
         resources: &mut Resources<'_>,
-    ) -> Option<Vec<(Option<Shaken>, CaseResult)>> {
+    ) -> Option<Vec<(Option<Shaken>, Told)>> {
         let built = self.build(cases, resources.cache);
+        let ready = built.iter().filter_map(|built| built.prepared.as_ref().ok());
         let ready: Vec<Prepared> =
-            built.iter().filter_map(|built| built.prepared.as_ref().ok()).cloned().collect();
+            ready.filter(|prepared| !prepared.scenario.is_spatial()).cloned().collect();
         let mut audience = Audience { tell: &mut *resources.tell, stop: resources.stop };
         let mut results = simulate_in(resources.lanes, &ready, &mut audience)?.into_iter();
         let mut done = Vec::with_capacity(cases.len());
-        for Built { shaken, prepared } in built {
-            let result = match prepared {
-                Ok(_) => results.next()?,
+        for (case, Built { shaken, prepared }) in cases.iter().zip(built) {
+            let told = match prepared {
+                Ok(Prepared { scenario, .. }) if scenario.is_spatial() => {
+                    let factor = shaken.as_ref().map_or(1.0, |shaken| shaken.factor);
+                    self.run_in_space(case, &scenario, factor, resources)?
+                }
+                Ok(_) => results.next()?.into(),
                 Err(reason) => {
                     let result = CaseResult::failed(reason);
                     (resources.tell)(&result);
-                    result
+                    result.into()
                 }
             };
-            done.push((shaken, result));
+            done.push((shaken, told));
         }
         Some(done)
     }
@@ -235,17 +241,25 @@ impl Study {
                 tried = Some(synthetic);
             }
             cache.unscaled(motion, &scenario.motion, scenario.run.similitude)?;
+            if self.in_space {
+                cache.in_space(motion, &scenario.motion, scenario.run.similitude)?;
+            }
         }
         Ok(())
     }
 }
 
-/// Refuses a scenario that looks at its stack in both planes.
-pub(super) fn one_plane(top: &Reader<'_>, scenario: &Scenario) -> Result<(), ScenarioError> {
-    if scenario.stack().is_none_or(|stack| stack.columns_along.is_none()) {
-        return Ok(());
-    }
-    let message = "a study looks at one plane: set `base.stack.view` to \"transverse\" or to \
-                   \"longitudinal\", in a study for each";
+/// Refuses what no study runs: a stack that is looked at in both planes, and a free scene in space.
+pub(super) fn runs(top: &Reader<'_>, scenario: &Scenario) -> Result<(), ScenarioError> {
+    let message = match (&scenario.scene, scenario.stack()) {
+        (Scene::Spatial(_), _) => {
+            "a study runs stacks, and free scenes of the plane: take a base that is no free scene in space"
+        }
+        (_, Some(stack)) if stack.columns_along.is_some() => {
+            "a study looks at one plane, or at the stack in space: set `base.stack.view` to \"transverse\" or to \
+             \"longitudinal\", in a study for each, or to \"spatial\""
+        }
+        _ => return Ok(()),
+    };
     Err(top.inconsistent("base", message.to_owned()))
 }

@@ -3,7 +3,8 @@
 use super::Study;
 use super::design::Case;
 use super::motions::{MEASURES, Shaken};
-use crate::ensemble::{CASE_COLUMNS, CaseColumn, CaseResult};
+use super::space::{self, Told};
+use crate::ensemble::{CASE_COLUMNS, CaseColumn};
 use barrelstack_report::column::{ColumnSpec, Role, Value, ValueKind};
 
 /// Columns of every table before those of the factors.
@@ -26,7 +27,7 @@ pub(super) fn meaning(spec: &ColumnSpec) -> &'static str {
         (Role::Intensity, _) => "intensity measure of the motion as shaken",
         (Role::Outcome | Role::Demand | Role::Run, name) => {
             let told = CASE_COLUMNS.iter().find(|column| column.name == name);
-            told.map_or("", |column| column.meaning)
+            told.map(|column| column.meaning).or_else(|| space::meaning(name)).unwrap_or("")
         }
     }
 }
@@ -53,7 +54,9 @@ impl Study {
         });
         let results = CASE_COLUMNS.iter().map(CaseColumn::spec);
         let factors = self.factors.iter().map(|factor| factor.column.clone());
-        KEYS.iter().map(key).chain(factors).chain(motion).chain(measures).chain(results).collect()
+        let fixed =
+            KEYS.iter().map(key).chain(factors).chain(motion).chain(measures).chain(results);
+        fixed.chain(space::columns().filter(|_| self.in_space)).collect()
     }
 
     /// The row of a case; `shaken` is none where the motion could not be had.
@@ -62,7 +65,7 @@ impl Study {
         case: &Case,
         chunk: usize,
         shaken: Option<&Shaken>,
-        result: &CaseResult,
+        told: &Told,
     ) -> Vec<Option<Value>> {
         let mut row = vec![
             Some(Value::Integer(i64::try_from(case.number).unwrap_or(i64::MAX))),
@@ -75,7 +78,8 @@ impl Study {
         row.push(shaken.map(|shaken| Value::Number(shaken.factor)));
         let measures = shaken.and_then(|shaken| shaken.measures);
         row.extend((0..MEASURES.len()).map(|at| number(measures.map(|measures| measures[at]))));
-        row.extend(CASE_COLUMNS.iter().map(|column| column.of(result)));
+        row.extend(CASE_COLUMNS.iter().map(|column| column.of(&told.result)));
+        row.extend(space::values(told).filter(|_| self.in_space));
         row
     }
 }

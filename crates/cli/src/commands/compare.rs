@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::bail;
+use barrelstack::assemble::AssembleError;
 use barrelstack::compare::{self, Comparison, Difference, differences};
 use barrelstack::export::Folder;
 use barrelstack::outcome::Outcome;
@@ -72,6 +73,12 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         scenarios.push((name.clone(), scenario));
     }
     compare::check(&scenarios)?;
+    for ((_, scenario), (_, one)) in scenarios.iter().zip(&asked) {
+        // What cannot be shown is told before the work.
+        if scenario.is_spatial() {
+            return Err(super::placed(AssembleError::Space.into(), scenario, one));
+        }
+    }
     if args.label.len() > scenarios.len() {
         bail!("--label: there are {} names for {} runs", args.label.len(), scenarios.len());
     }

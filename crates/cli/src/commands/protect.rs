@@ -75,6 +75,9 @@ pub(crate) fn run(args: &ProtectArgs) -> anyhow::Result<ExitCode> {
     drop(progress);
     let mut found = match result {
         Err(ProtectError::Study(StudyError::Stopped)) => return Err(Stopped.into()),
+        Err(ProtectError::Stack(failure)) => {
+            return Err(super::placed(failure, &request.scenario, &args.scenario));
+        }
         other => other?,
     };
     before_and_after(args, &mut found)?;

@@ -48,6 +48,9 @@ pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
     drop(progress);
     let sheet = match result {
         Err(ScoreError::Study(StudyError::Stopped)) => return Err(Stopped.into()),
+        Err(ScoreError::Stack(failure)) => {
+            return Err(super::placed(failure, &scenario, &args.scenario));
+        }
         other => other?,
     };
     // The answer is printed even where it cannot be written.

@@ -52,7 +52,8 @@ pub struct CaseResult {
     /// Forces between bodies that lean on each other, by name, at rest and at their largest; none where it could
     /// not run or broke down.
     pub joints: Vec<(String, Joint)>,
-    /// Largest displacement (m) of a barrel along x against the ground, left at the end.
+    /// Largest displacement (m) of a barrel against the ground, left at the end: in a plane that along x, in space the
+    /// horizontal one.
     pub residual_displacement: Option<f64>,
     /// Why the run ended.
     pub ending: Option<Ending>,

@@ -79,13 +79,15 @@ pub(super) fn read_factor(
             None => [LOW, 0.5, 1.0 - LOW].map(|u| distribution.quantile(u)).to_vec(),
         },
     };
+    let mut in_space = false;
     for setting in &ends {
-        template.with(fields.iter().map(|field| (field.as_str(), &setting.node)))?;
+        let changes = fields.iter().map(|field| (field.as_str(), &setting.node));
+        in_space |= template.with(changes)?.is_spatial();
     }
     let base = Template::value_in(scenario, &field).and_then(|value| domain.told(&value));
     let column = ColumnSpec::new(&name, &domain.unit(), Role::Factor, domain.column_kind());
     let structural = !domain.continuous();
-    Ok(Factor { name, fields, variation, column, base, structural })
+    Ok(Factor { name, fields, variation, column, base, structural, in_space })
 }
 
 fn domain_of(

@@ -1,0 +1,117 @@
+//! Cases of stacks that are looked at in space: each is the run of its scenario, to the last bit, and tells
+//! directions besides what a plane tells.
+
+use std::ops::ControlFlow;
+
+use barrelstack_report::column::{ColumnSpec, Role, Value, ValueKind};
+use barrelstack_space::run::run_on;
+use barrelstack_space::variants::Case as InSpace;
+use barrelstack_space::{Ground, Heading};
+
+use super::Study;
+use super::design::Case;
+use super::prepare::Resources;
+use crate::ensemble::CaseResult;
+use crate::outcome::Outcome;
+use crate::scenario::Scenario;
+use crate::watch::Ending;
+
+/// What became of a case.
+pub(super) struct Told {
+    pub(super) result: CaseResult,
+    /// Where things went; none of a case in a plane, or without a verdict.
+    ways: Option<Ways>,
+}
+
+/// Directions of a case in space.
+struct Ways {
+    /// In which the first body left its seat.
+    first: Option<Heading>,
+    /// In which each fallen barrel came to lie from where it stood.
+    debris: Vec<Heading>,
+}
+
+/// Of a case in a plane, or one that could not run.
+impl From<CaseResult> for Told {
+    fn from(result: CaseResult) -> Self {
+        Self { result, ways: None }
+    }
+}
+
+impl From<InSpace> for Told {
+    fn from(InSpace { result, first, debris }: InSpace) -> Self {
+        let judged = matches!(result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }));
+        Self { ways: judged.then_some(Ways { first, debris }), result }
+    }
+}
+
+impl Study {
+    /// Runs a case in space under all components of its motion, times one factor; none when asked to stop.
+    pub(super) fn run_in_space(
+        &self,
+        case: &Case,
+        scenario: &Scenario,
+        factor: f64,
+        resources: &mut Resources<'_>,
+    ) -> Option<Told> {
+        let motion = &self.motions[case.motion];
+        let ground = resources.cache.in_space(motion, &scenario.motion, scenario.run.similitude);
+        let told = match ground {
+            Ok(ground) => run(scenario, ground.scaled(factor).under(scenario), resources.stop)?,
+            Err(error) => CaseResult::failed(error.to_string()).into(),
+        };
+        (resources.tell)(&told.result);
+        Some(told)
+    }
+}
+
+fn run(scenario: &Scenario, ground: Ground, stop: &dyn Fn() -> bool) -> Option<Told> {
+    let mut going = |_| if stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    match run_on(scenario, ground, &mut going) {
+        Ok(run) if run.ending == Ending::Interrupted => None,
+        Ok(run) => Some(InSpace::of(&run).into()),
+        Err(failure) => Some(CaseResult::failed(failure.to_string()).into()),
+    }
+}
+
+/// The column of the way of the first body, and that of barrels that came to lie each way.
+const COLUMNS: [(&str, ValueKind, &str); 5] = [
+    (
+        "heading",
+        ValueKind::Text,
+        "in which direction the first body left its seat: right or left across the barrels, away or near along them",
+    ),
+    (
+        "debris_right",
+        ValueKind::Integer,
+        "fallen barrels that came to lie to the right of where they stood, more than along the barrels",
+    ),
+    ("debris_left", ValueKind::Integer, "the same to the left"),
+    (
+        "debris_away",
+        ValueKind::Integer,
+        "fallen barrels that came to lie away along the barrels, more than across them",
+    ),
+    ("debris_near", ValueKind::Integer, "the same the other way along the barrels"),
+];
+
+/// What tables of studies in space have besides.
+pub(super) fn columns() -> impl Iterator<Item = ColumnSpec> {
+    COLUMNS.iter().map(|(name, kind, _)| ColumnSpec::new(name, "", Role::Outcome, *kind))
+}
+
+/// What a column means; none where it is not of space.
+pub(super) fn meaning(name: &str) -> Option<&'static str> {
+    COLUMNS.iter().find(|(known, ..)| *known == name).map(|(.., meaning)| *meaning)
+}
+
+/// The values of a case in these columns.
+pub(super) fn values(told: &Told) -> impl Iterator<Item = Option<Value>> {
+    let ways = told.ways.as_ref();
+    let first = ways.and_then(|ways| ways.first).map(|way| Value::Text(way.name().to_owned()));
+    let lie = move |way: Heading| {
+        let barrels = ways?.debris.iter().filter(|one| **one == way).count();
+        i64::try_from(barrels).ok().map(Value::Integer)
+    };
+    std::iter::once(first).chain(Heading::ALL.into_iter().map(lie))
+}
