@@ -25,7 +25,8 @@ pub(crate) use drawing::legend;
 pub use glossary::WORDS;
 pub(crate) use inputs::{setting_row, shown};
 pub(crate) use sections::traces;
-pub use sections::{standing_range, stress_figure};
+pub use sections::{device as device_table, standing_range, stress_figure};
+pub use words::device as device_sentence;
 pub(crate) use words::{headline, provenance};
 
 /// What happened, in three plain sentences: the verdict, the why, and how far to trust it.

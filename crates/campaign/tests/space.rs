@@ -174,11 +174,11 @@ fn a_hunt_in_space_brackets_the_collapse() {
 
 #[test]
 fn what_space_does_not_know_is_a_row_with_its_reason() {
-    let straps = "[[factor]]\nfield = \"stack.strap.levels\"\nvalues = [1]\n";
+    let lids = "[[factor]]\nfield = \"stack.lid.levels\"\nvalues = [1]\n";
     let table =
-        study(&format!("{PULSE}{straps}[design]\nkind = \"full-factorial\"")).table().unwrap();
+        study(&format!("{PULSE}{lids}[design]\nkind = \"full-factorial\"")).table().unwrap();
     let error = table.texts("error").unwrap()[0].as_deref().unwrap();
-    assert!(error.contains("straps are known in a plane"), "{error}");
+    assert!(error.contains("lids are known in a plane"), "{error}");
     assert_eq!(table.integers("debris_near").unwrap()[0], None);
 }
 

@@ -12,10 +12,10 @@ use barrelstack::assemble::PartKind;
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario;
 use barrelstack_dynamics::{
-    Body, Linear as _, Placed, Quaternion, Rotation3, Solid, Spatial, Vec3, math,
+    Body, Linear as _, Link, Placed, Quaternion, Rotation3, Solid, Spatial, Vec3, math,
 };
 use barrelstack_report::{
-    Event, EventKind, Frames, History, Moment, Point, Polyline, Role, Scene, SceneBody,
+    Event, EventKind, Frames, History, Moment, Point, Polyline, Role, Scene, SceneBody, Tie,
 };
 
 use crate::fate::Heading;
@@ -116,9 +116,13 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
             row[slot] = [place.dot(right), place.dot(up), seen.angle];
         }
     }
-    for row in &mut poses {
+    let ties = ties(run, sight, drawn.len());
+    for (row, frame) in poses.iter_mut().zip(&frames) {
         row.resize(drawn.len(), [f64::NAN; 3]);
+        row.extend(ties.iter().flat_map(|tie| tie.ends(run, *frame, [right, up])));
     }
+    let ends = std::iter::repeat_n(SceneBody::new("", Role::Block, Vec::new()), 2 * ties.len());
+    drawn.extend(ends);
     Arc::new(Scene {
         bodies: drawn,
         frames: Frames {
@@ -126,10 +130,42 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
             poses,
             forces: Vec::new(),
         },
+        ties: ties.iter().map(|tie| tie.drawn).collect(),
         events: events(run, &first, sight),
         moment: moment(run, &first).filter(|_| run.heading.is_some_and(|way| sight.shows(way))),
         ..Scene::default()
     })
+}
+
+/// A strap, between two bodies that are its ends and show nothing: what is seen of a solid body changes with how it
+/// is turned, and a point in it has no place of its own in such a drawing.
+struct Strap<'a> {
+    link: &'a Link<Spatial>,
+    drawn: Tie,
+}
+
+impl Strap<'_> {
+    /// Where its ends are on the page.
+    fn ends(&self, run: &Run, frame: usize, page: [Vec3; 2]) -> [[f64; 3]; 2] {
+        [0, 1].map(|end| {
+            let (place, rotation) = placed(run.frames.poses[frame][self.link.bodies[end]]);
+            let at = place + rotation.apply(self.link.points[end]);
+            [at.dot(page[0]), at.dot(page[1]), 0.0]
+        })
+    }
+}
+
+/// The straps, whose ends follow so many drawings; from above they are seen end on.
+fn ties(run: &Run, sight: Sight, drawings: usize) -> Vec<Strap<'_>> {
+    if sight == Sight::Above {
+        return Vec::new();
+    }
+    let all = run.straps().zip((drawings..).step_by(2));
+    all.map(|(((element, _), fate), end)| Strap {
+        link: element.link(),
+        drawn: Tie { bodies: [end, end + 1], points: [[0.0; 2]; 2], torn_at: fate.broken_at },
+    })
+    .collect()
 }
 
 /// Whether a body is a barrel and nothing else, with its center of mass on its axis.
@@ -392,6 +428,16 @@ fn events(run: &Run, first: &[usize], sight: Sight) -> Vec<Event> {
         if let (Some(time), true) = (fate.fell_at.filter(|_| seen), barrel) {
             let text = format!("{} falls", part.name);
             events.push(Event { time, body: Some(first[body]), kind: EventKind::Fall, text });
+        }
+    }
+    if sight != Sight::Above {
+        for ((element, words), fate) in run.straps() {
+            if let Some(time) = fate.broken_at {
+                let link = element.link();
+                let text = format!("the {} {} {}", words.one, link.name, words.breaks);
+                let body = Some(first[link.bodies[0]]);
+                events.push(Event { time, body, kind: EventKind::Note, text });
+            }
         }
     }
     events.sort_by(|a, b| a.time.total_cmp(&b.time));

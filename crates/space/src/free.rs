@@ -30,7 +30,16 @@ pub(crate) fn assemble(scenario: &Scenario, scene: &SpatialScene) -> Result<Stac
     let model =
         Model::new(bodies, laws_of_free(scene), pairs, gravity).map_err(AssembleError::from)?;
     let step = time_step(scenario, &model)?;
-    Ok(Stack { model, parts, step, height: 0.0, levels: 0, bilge_radius: 0.0, reach: [0.0; 2] })
+    Ok(Stack {
+        model,
+        parts,
+        step,
+        height: 0.0,
+        levels: 0,
+        bilge_radius: 0.0,
+        reach: [0.0; 2],
+        loose: Vec::new(),
+    })
 }
 
 /// All solids of two bodies that an interface names, each pair of them once.

@@ -85,7 +85,7 @@ pub(crate) fn tubes(rack: &Rack, barrel: &Barrel, apart: f64) -> Option<Tubes> {
             }
         }
     }
-    let reach = middle(rack.barrels_deep - 1, rack.barrels_deep) * apart + rack.rail_half_spacing;
+    let reach = reach_along(rack, apart);
     for side in [-1.0, 1.0] {
         let at = Vec3::new(side * half, 0.0, rack.beam_height);
         list.push(Tube::along_y(reach, BAR_RADIUS, at));
@@ -95,6 +95,11 @@ pub(crate) fn tubes(rack: &Rack, barrel: &Barrel, apart: f64) -> Option<Tubes> {
     let whole: f64 = list.iter().map(weight).sum();
     let parts = list.iter().map(|tube| tube.part(rack.mass * weight(tube) / whole)).collect();
     Some(Tubes { parts, beams, posts })
+}
+
+/// How far (m) the outermost beams of a rack lie from its middle, along the barrels.
+pub(crate) fn reach_along(rack: &Rack, apart: f64) -> f64 {
+    0.5 * f64::from(rack.barrels_deep - 1) * apart + rack.rail_half_spacing
 }
 
 /// A tube at its place.

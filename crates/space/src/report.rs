@@ -1,7 +1,7 @@
 //! The page of a run in space: its verdict, three views that move together, moments, numbers.
 
 use barrelstack::outcome::Outcome;
-use barrelstack::report::WORDS;
+use barrelstack::report::{WORDS, device_table};
 use barrelstack::variants::Range;
 use barrelstack_report::{
     Block, Cell, Document, Figure, FigureKind, Pane, Players, Strip, Table, Verdict, capital,
@@ -33,9 +33,15 @@ pub fn document(answer: &Answer) -> Document {
     };
     let mut blocks = vec![Block::Players(Players {
         id: "players".into(),
-        caption: "One run from three sides, on one clock and to one scale. What is nearer covers what is behind it as \
-                  they stood at rest."
-            .into(),
+        caption: format!(
+            "One run from three sides, on one clock and to one scale. What is nearer covers what is behind it as they \
+             stood at rest.{}",
+            if run.elements.is_empty() {
+                ""
+            } else {
+                " Bands with a buckle are straps; one that tears is gone. From above they are not drawn."
+            }
+        ),
         panes: scenes.iter().map(pane).collect(),
         overlay: None,
         ground: ground_histories(run),
@@ -67,6 +73,13 @@ pub fn document(answer: &Answer) -> Document {
     if !matches!(run.outcome, Outcome::Invalid { .. }) {
         blocks.push(heading("What became of every body"));
         blocks.push(Block::Table(if free { ends(summary) } else { fates(run) }));
+        for device in &summary.devices.0 {
+            let table = device_table(device);
+            if !table.is_empty() {
+                blocks.push(heading(&capital(device.words.many)));
+                blocks.extend(table);
+            }
+        }
     }
     Document {
         title: summary.title.clone(),

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use barrelstack::assemble::{AssembleError, PartKind};
+use barrelstack::device::{Straps, Words};
 use barrelstack::outcome::{Outcome, collapse};
 use barrelstack::overlap::ALLOWED;
 use barrelstack::run::{
@@ -10,11 +11,11 @@ use barrelstack::run::{
     thresholds,
 };
 use barrelstack::scenario::Scenario;
-use barrelstack::watch::{Ending, Loss, PROGRESS};
+use barrelstack::watch::{ElementFate, ElementFates, Ending, Loss, PROGRESS};
 use barrelstack::{Restless, RunFailure};
 use barrelstack_dynamics::{
-    BodyId, Contact, EnergyLedger, EnergySummary, Model, Observer, Scratch, Settled, Simulation,
-    Spatial, State, Twist, evaluate, settle, simulate,
+    BodyId, Contact, Element, EnergyLedger, EnergySummary, Model, Observer, Scratch, Settled,
+    Simulation, Spatial, State, Twist, evaluate, settle, simulate,
 };
 
 use crate::fate::{Fate, Fates, Heading};
@@ -63,6 +64,8 @@ pub struct Run {
     pub fates: Vec<Fate>,
     /// When (s) the first barrel had fallen.
     pub first_fall: Option<f64>,
+    /// What became of every strap, in the order of the model.
+    pub elements: Vec<ElementFate>,
     /// Where all bodies were.
     pub frames: Frames,
     /// Where all bodies are at the end, and how they move.
@@ -101,17 +104,24 @@ pub fn stand(scenario: &Scenario) -> Result<Standing, RunFailure> {
     at_rest(scenario, Stack::of(scenario)?)
 }
 
-fn at_rest(scenario: &Scenario, stack: Stack) -> Result<Standing, RunFailure> {
+fn at_rest(scenario: &Scenario, mut stack: Stack) -> Result<Standing, RunFailure> {
     let mut state = State::initial(&stack.model);
     let mut scratch = Scratch::new(&stack.model);
     evaluate(&stack.model, &state, &mut scratch);
     check_overlap(&stack, &scratch)?;
-    let settled = if scenario.run.settle {
-        let found = settle(&stack.model, &mut state, &mut scratch, UNBALANCED);
-        Some(found.map_err(|error| Restless { error })?)
-    } else {
-        None
+    let rest = |stack: &Stack, state: &mut _, scratch: &mut _| {
+        settle(&stack.model, state, scratch, UNBALANCED).map_err(|error| Restless { error })
     };
+    let mut settled = None;
+    if scenario.run.settle {
+        settled = Some(rest(&stack, &mut state, &mut scratch)?);
+    }
+    let strained = stack.fasten(&mut state).map_err(AssembleError::from)?;
+    // Straps that bear something from the start press the stack together.
+    if let Some(before) = settled.filter(|_| strained) {
+        let found = rest(&stack, &mut state, &mut scratch)?;
+        settled = Some(Settled { steps: before.steps + found.steps, ..found });
+    }
     if stack.is_free() {
         // Equilibrium is that of the places; what the scenario sets in motion starts from there.
         state.twists = stack.model.bodies().iter().map(|body| body.twist).collect();
@@ -181,6 +191,7 @@ pub fn run_on(
     scratch.keeps_contacts = false;
     let mut watch = Watch {
         fates: Fates::new(&stack, &state, thresholds(scenario)),
+        elements: ElementFates::default(),
         rest: Rest::new(scenario, &stack, &ground),
         frames: Frames::default(),
         every: 1.0 / scenario.record.frame_rate,
@@ -191,7 +202,7 @@ pub fn run_on(
         ending: None,
     };
     let result = simulate(&stack.model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
-    let Watch { fates, frames, ending, .. } = watch;
+    let Watch { fates, elements, frames, ending, .. } = watch;
     let ending = ending.unwrap_or(Ending::of_time(scenario));
     let ended = result.map(|totals| Ended::of(&totals));
     let judge = || judge(&stack, &fates);
@@ -206,6 +217,7 @@ pub fn run_on(
         heading: heading.map(|(.., heading)| heading),
         fates: all,
         first_fall,
+        elements: elements.0,
         frames,
         energy,
         settled,
@@ -225,6 +237,14 @@ pub fn run_on(
 }
 
 impl Run {
+    /// Every strap with its words and what became of it.
+    pub(crate) fn straps(
+        &self,
+    ) -> impl Iterator<Item = ((&Element<Spatial>, &'static Words), &ElementFate)> + Clone {
+        let elements = self.stack.model.elements().iter();
+        elements.map(|element| (element, Straps::WORDS)).zip(&self.elements)
+    }
+
     /// Barrels that fell, in order.
     pub fn fallen(&self) -> impl Iterator<Item = BodyId> + '_ {
         let fell = |body: &BodyId| self.fates[*body].fell_at.is_some();
@@ -263,6 +283,7 @@ fn judge(stack: &Stack, fates: &Fates<'_>) -> Outcome {
 /// Everything that watches a run.
 struct Watch<'a> {
     fates: Fates<'a>,
+    elements: ElementFates,
     rest: Rest<'a>,
     frames: Frames,
     /// Time (s) between two frames.
@@ -280,10 +301,11 @@ impl Observer<Spatial> for Watch<'_> {
         &mut self,
         _: &Model<Spatial>,
         state: &State<Spatial>,
-        _: &Scratch<Spatial>,
+        scratch: &Scratch<Spatial>,
         _: &EnergyLedger<Spatial>,
     ) -> ControlFlow<()> {
         self.fates.observe(state);
+        self.elements.observe(state, scratch);
         let time = state.time;
         if time >= self.frames.times.len() as f64 * self.every {
             self.frames.times.push(time);

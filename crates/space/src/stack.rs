@@ -2,23 +2,20 @@
 //! by which law.
 
 use barrelstack::RunFailure;
-use barrelstack::assemble::{
-    AssembleError, CHIME_RADIUS, PartKind, Similitude, TUBE_CORNER, assemble, laws_in_space,
-};
+use barrelstack::assemble::{AssembleError, PartKind, Similitude, assemble, laws_in_space};
 use barrelstack::run::time_step;
-use barrelstack::scenario::{
-    BodyOverride, Fill, RackKind, Scenario, Scene, SeatContact, StackBody, StackPair, StackSpec,
-    View,
-};
+use barrelstack::scenario::{BodyOverride, Scenario, Scene, StackBody, StackPair, StackSpec, View};
 use barrelstack_dynamics::solid::{Barrel, Hull, Rounded, compound};
 use barrelstack_dynamics::{
     Body, BodyId, ContactPair, Counts, Model, Motion, Nodes, Placed, Pose, Rotation3, Spatial,
     Substepping, Twist, Vec3,
 };
 
+use crate::known::known;
 pub use crate::part::Part;
 use crate::part::{Seats, ground};
 use crate::rack::{Heights, Tubes, along_barrels, tubes};
+use crate::straps::{Loose, straps};
 
 /// Length (m) of boundary that a contact stands for, where constants are stated for a meter of it; as in the plane.
 const TRIBUTARY: f64 = 0.01;
@@ -41,6 +38,8 @@ pub struct Stack {
     /// How far (m) a rack may move on the barrels below, across and along them, before nothing holds it there, as in
     /// the plane of each.
     pub reach: [f64; 2],
+    /// Straps that are not tightened yet: that is done on the stack at rest.
+    pub(crate) loose: Vec<Loose>,
 }
 
 impl Stack {
@@ -83,6 +82,7 @@ impl Stack {
         builder.build()?;
         let pairs = builder.pairs();
         let Builder { bodies, parts, .. } = builder;
+        let loose = straps(spec, &parts, &bodies)?;
         let laws = laws_in_space(spec, Similitude::new(1.0));
         let gravity = Vec3::new(0.0, 0.0, -scenario.run.gravity);
         let mut model = Model::new(bodies, laws, pairs, gravity).map_err(AssembleError::from)?;
@@ -91,7 +91,8 @@ impl Stack {
         let pitch = heights.axis + heights.underside;
         let bilge_radius = barrel.stave_radius + barrel.rounding - barrel.stave_offset;
         let height = f64::from(spec.levels - 1) * pitch + heights.axis + bilge_radius;
-        Ok(Self { model, parts, step, height, levels: spec.levels, bilge_radius, reach })
+        let levels = spec.levels;
+        Ok(Self { model, parts, step, height, levels, bilge_radius, reach, loose })
     }
 }
 
@@ -187,84 +188,6 @@ fn cuts(scenario: &Scenario, spec: &StackSpec, view: View) -> Vec<Scenario> {
         plane
     };
     (1..=if differ { count } else { 1 }).map(cut).collect()
-}
-
-/// Refuses what is not known in space; the barrel of what is.
-fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, AssembleError> {
-    let refuse = |field, reason: String| Err(AssembleError::NotInSpace { field, reason });
-    let rack = &spec.rack;
-    if let Some(words) = spec.devices.present().first() {
-        return refuse(
-            "stack",
-            format!(
-                "{} are known in a plane, not yet in space: leave them out, or set stack.view to \"both\"",
-                words.many
-            ),
-        );
-    }
-    if rack.kind != RackKind::OnBarrels || rack.foot_height > 0.0 {
-        return refuse(
-            "stack.rack",
-            format!(
-                "stack.rack = \"{}\" has {}; known in space are racks that lie on the barrels below with straight \
-                 tubes: take \"two-barrel\" or \"four-barrel\", or set stack.view to \"both\"",
-                rack.base,
-                if rack.kind == RackKind::OnBarrels { "feet" } else { "posts" }
-            ),
-        );
-    }
-    if rack.incline != 0.0 {
-        return refuse(
-            "stack.rack.incline",
-            "rails that raise one end of every barrel are known in a plane, not yet in space: set \
-             stack.rack.incline to 0, or stack.view to \"both\""
-                .into(),
-        );
-    }
-    if rack.contact != SeatContact::Rails {
-        return refuse(
-            "stack.rack.contact",
-            "in space a rack has two beams, each a contact element of its own wherever it touches: set \
-             stack.rack.contact to \"rails\", or stack.view to \"both\""
-                .into(),
-        );
-    }
-    let fills = spec.overrides.iter().filter_map(|change| change.fill).chain([spec.barrel.fill]);
-    if fills.into_iter().any(|fill| fill == Fill::Part) {
-        return refuse(
-            "stack.barrel.fill",
-            "wine that sloshes is known in a plane, not yet in space: set stack.barrel.fill to \"full-fluid\", \
-             \"full-frozen\" or \"empty\", or stack.view to \"both\""
-                .into(),
-        );
-    }
-    if scenario.run.similitude != 1.0 {
-        return refuse(
-            "run.similitude",
-            "scaled stacks are known in a plane, not yet in space: set run.similitude to 1".into(),
-        );
-    }
-    let tube = (0.5 * rack.beam_height - TUBE_CORNER).max(0.0);
-    if spec.racks_per_level() > 1 && spec.gap < 2.0 * tube {
-        return refuse(
-            "stack.gap",
-            format!(
-                "the round ends of beams of {} m reach {:.3} m beyond the line on which they bear, so racks side by \
-                 side overlap: set stack.gap to {:.3} m or more",
-                rack.beam_height,
-                tube,
-                2.0 * tube
-            ),
-        );
-    }
-    let barrel = &spec.barrel;
-    Barrel::new(
-        barrel.length,
-        0.5 * barrel.head_diameter,
-        0.5 * barrel.bilge_diameter,
-        CHIME_RADIUS,
-    )
-    .map_err(|error| AssembleError::NotInSpace { field: "stack.barrel", reason: error.to_string() })
 }
 
 /// A stack while it is built up.

@@ -5,7 +5,7 @@ use barrelstack::demand::Demands;
 use barrelstack::ground::MotionSummary;
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario::Scenario;
-use barrelstack::summary::{EnergyBooks, Provenance};
+use barrelstack::summary::{Devices, EnergyBooks, Provenance};
 use barrelstack::variants::Spread;
 use barrelstack::watch::Ending;
 use barrelstack_dynamics::Vec3;
@@ -36,6 +36,9 @@ described! {
         pub bodies: Vec<BodyInSpace>,
         /// Demands on the stack, those that space knows.
         pub demands: Demands,
+        /// What every strap bore, where there are any; other devices are not known in space yet.
+        #[serde(flatten)]
+        pub devices: Devices,
         /// The energy books; null where numbers were lost.
         pub energy: Option<EnergyBooks>,
         /// The component of the scenario, and the vertical one.
@@ -213,6 +216,7 @@ impl Summary {
             // Numbers of a run that broke down look like results and are none.
             bodies: if sound { bodies(run) } else { Vec::new() },
             demands: if sound { demands(run) } else { Demands::default() },
+            devices: Devices::borne(&run.straps()),
             energy: run.energy.as_ref().map(EnergyBooks::of),
             motion: motion(first),
             other_component: run.ground.second.as_ref().and_then(motion),

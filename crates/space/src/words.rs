@@ -1,6 +1,7 @@
 //! What is said of a stack in space, in sentences: those of a plane, and directions besides.
 
 use barrelstack::outcome::Outcome;
+use barrelstack::report::device_sentence;
 use barrelstack::scenario::View;
 use barrelstack::variants::words::{headline as of_variants, percent, tone as of_spread};
 use barrelstack::watch::{Ending, Loss};
@@ -100,6 +101,7 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
             sentences.push(format!("{} after {time:.1} s.", capital(&format!("{shown}{told}"))));
         }
     }
+    sentences.extend(summary.devices.0.iter().filter_map(device_sentence));
     sentences
 }
 

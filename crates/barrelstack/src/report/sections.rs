@@ -348,7 +348,8 @@ pub fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
     }
 }
 
-fn device(Device { words, elements }: &Device) -> Vec<Block> {
+/// What the elements of a device bore, as a table; none where it is not there.
+pub fn device(Device { words, elements }: &Device) -> Vec<Block> {
     let largest = format!("{}, largest", words.force);
     let mut table = Table::new(
         format!(

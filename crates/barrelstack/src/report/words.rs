@@ -82,7 +82,7 @@ fn course(run: &Run, mode: CollapseMode, first: &str, part: &str) -> String {
 }
 
 /// What a device bore; none where it is not there.
-fn device(Device { words, elements }: &Device) -> Option<String> {
+pub fn device(Device { words, elements }: &Device) -> Option<String> {
     let strained = elements.iter().max_by(|a, b| a.peak.abs().total_cmp(&b.peak.abs()))?;
     let kilonewtons = significant(1e-3 * strained.peak.abs(), 2);
     let broken = elements.iter().filter_map(|element| element.broken_at);

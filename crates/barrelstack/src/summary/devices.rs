@@ -1,5 +1,6 @@
 //! What every device bore, told in its own words.
 
+use barrelstack_dynamics::{Element, Space};
 use barrelstack_report::described::{Described, Objects};
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
@@ -7,6 +8,7 @@ use serde_json::{Map, Value, json};
 
 use crate::device::{DEVICES, FREE, Words};
 use crate::run::Run;
+use crate::watch::ElementFate;
 
 /// Every device with its force elements, and those of a free scene; a device that is not there has none.
 #[derive(Clone, Debug)]
@@ -39,11 +41,18 @@ impl Devices {
     /// The devices of a run.
     pub(super) fn of(run: &Run) -> Self {
         let assembly = &run.assembly;
-        let all = || assembly.model.elements().iter().zip(&assembly.devices).zip(&run.elements);
+        let devices = assembly.devices.iter().copied();
+        Self::borne(&assembly.model.elements().iter().zip(devices).zip(&run.elements))
+    }
+
+    /// What the elements of a run bore, each with the words of its device.
+    pub fn borne<'a, S: Space + 'a>(
+        elements: &(impl Iterator<Item = ((&'a Element<S>, &'static Words), &'a ElementFate)> + Clone),
+    ) -> Self {
         let device = |words: &'static Words| {
-            let own = all().filter(|((_, device), _)| ***device == *words);
-            let element = |((element, _), fate): ((&barrelstack_dynamics::Element<_>, _), &_)| {
-                let crate::watch::ElementFate { peak, broken_at } = *fate;
+            let own = elements.clone().filter(|((_, device), _)| **device == *words);
+            let element = |((element, _), fate): ((&Element<S>, _), &ElementFate)| {
+                let ElementFate { peak, broken_at } = *fate;
                 let name = element.link().name.clone();
                 ElementSummary { words, name, peak: peak.0, peak_at: peak.1, broken_at }
             };

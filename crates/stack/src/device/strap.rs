@@ -4,14 +4,14 @@
 //! barrel, at the ends of its horizontal diameter, and from there runs straight down to the rack.
 //! Along the barrels both of its ends are seen in one line, through the middle of the barrel.
 
-use barrelstack_dynamics::{BodyId, Link, Strap, Vec2};
+use barrelstack_dynamics::{BodyId, Link, Space, Strap, Vec2};
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::field::{Default, Kind, Named, Range, names};
 use barrelstack_input::reader::Reader;
 use barrelstack_input::{Dimension, InputError, section};
 
 use super::{Cost, Each, LEVELS, Loose, Setting, Words, check_levels};
-use crate::assemble::{Builder, PartKind};
+use crate::assemble::{Builder, PartKind, Similitude};
 use crate::scenario::View;
 
 pub(super) static WORDS: Words = Words {
@@ -132,38 +132,64 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError
 }
 
 impl Straps {
+    /// What is said of straps.
+    pub const WORDS: &'static Words = &WORDS;
+
+    /// The lowest level that is strapped, of a stack of so many.
+    pub fn lowest(&self, levels: u32) -> u32 {
+        levels.saturating_sub(self.levels) + 1
+    }
+
+    /// One strap over a way (m) that is plumb on the stack as drawn, and how much longer (m) than its way it will be
+    /// once it is tightened on the stack at rest; negative under pretension.
+    ///
+    /// # Errors
+    /// When the pretension would stretch it over more than its whole way.
+    pub fn strap<S: Space<Real = f64>>(
+        &self,
+        link: Link<S>,
+        way: f64,
+        scale: Similitude,
+    ) -> Result<(Strap<S>, f64), String> {
+        let Self { stiffness, damping, slack, pretension, strength, .. } = *self;
+        let give = (slack - pretension / stiffness) * scale.length;
+        if way + give <= 0.0 {
+            return Err(format!(
+                "the pretension of {pretension} N stretches a strap of {stiffness} N/m by {:.3} m, but the strap \
+                 {} is only {:.3} m long: take a stiffer strap, or less pretension",
+                pretension / stiffness,
+                link.name,
+                way / scale.length
+            ));
+        }
+        let strap = Strap {
+            link,
+            length: way + give,
+            stiffness: stiffness * scale.stiffness(1.0, false),
+            damping: damping * scale.damping(false),
+            yields_at: f64::INFINITY,
+            strength: strength.map_or(f64::INFINITY, |force| force * scale.force()),
+        };
+        Ok((strap, give))
+    }
+
     /// Puts on the straps: from the ground up, those on the left first.
     ///
     /// # Errors
     /// When the pretension would stretch a strap over more than its whole way.
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
-        let Self { levels, ties, stiffness, damping, slack, pretension, strength } = *self;
         let Builder { spec, parts, bodies, scale, .. } = builder;
         let (scale, view) = (*scale, spec.view);
-        let lowest = spec.levels.saturating_sub(levels) + 1;
-        let give = (slack - pretension / stiffness) * scale.length;
+        let Self { ties, .. } = *self;
+        let lowest = self.lowest(spec.levels);
         // Every strap is plumb on the stack as drawn.
         let strap = |upper: BodyId, lower: BodyId, side: &str, from: f64| {
             let apart = bodies[upper].pose.position - bodies[lower].pose.position;
             let name = format!("{}-{} {side}", parts[upper].name, parts[lower].name);
-            if apart.z + give <= 0.0 {
-                return Err(format!(
-                    "the pretension of {pretension} N stretches a strap of {stiffness} N/m by {:.3} m, but the strap \
-                     {name} is only {:.3} m long: take a stiffer strap, or less pretension",
-                    pretension / stiffness,
-                    apart.z / scale.length
-                ));
-            }
             let points = [Vec2::new(from, 0.0), Vec2::new(from + apart.x, 0.0)];
-            let strap = Strap {
-                link: Link { name, bodies: [upper, lower], points },
-                length: apart.z + give,
-                stiffness: stiffness * scale.stiffness(1.0, false),
-                damping: damping * scale.damping(false),
-                yields_at: f64::INFINITY,
-                strength: strength.map_or(f64::INFINITY, |force| force * scale.force()),
-            };
-            Ok(Loose { element: strap.into(), give, words: &WORDS })
+            let link = Link { name, bodies: [upper, lower], points };
+            let (strap, give) = self.strap(link, apart.z, scale)?;
+            Ok::<_, String>(Loose { element: strap.into(), give, words: &WORDS })
         };
         // In the mirror left and right change places, in the order of sums, too.
         let mut sides = [("left", -1.0), ("right", 1.0)];

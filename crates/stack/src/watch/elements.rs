@@ -1,6 +1,6 @@
 //! What force elements bore, and when they broke.
 
-use barrelstack_dynamics::{Planar, Scratch, State};
+use barrelstack_dynamics::{Scratch, Space, State};
 
 /// What became of one force element.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,7 +17,7 @@ pub struct ElementFates(pub Vec<ElementFate>);
 
 impl ElementFates {
     /// Looks at an accepted step.
-    pub(super) fn observe(&mut self, state: &State<Planar>, scratch: &Scratch<Planar>) {
+    pub fn observe<S: Space<Real = f64>>(&mut self, state: &State<S>, scratch: &Scratch<S>) {
         self.0.resize(scratch.loads.len(), ElementFate::default());
         for ((fate, load), memory) in self.0.iter_mut().zip(&scratch.loads).zip(&state.memory) {
             if load.force.abs() > fate.peak.0.abs() {

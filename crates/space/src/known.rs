@@ -1,0 +1,87 @@
+//! What of a stack is known in space, and what is refused at its field.
+
+use barrelstack::assemble::{AssembleError, CHIME_RADIUS, TUBE_CORNER};
+use barrelstack::scenario::{Fill, RackKind, Scenario, SeatContact, StackSpec};
+use barrelstack_dynamics::solid::Barrel;
+
+/// The one device that goes on stacks in space, by its word.
+const STRAPS: &str = "straps";
+
+/// Refuses what is not known in space; the barrel of what is.
+pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, AssembleError> {
+    let refuse = |field, reason: String| Err(AssembleError::NotInSpace { field, reason });
+    let rack = &spec.rack;
+    if let Some(words) = spec.devices.present().iter().find(|words| words.many != STRAPS) {
+        return refuse(
+            "stack",
+            format!(
+                "{} are known in a plane, not yet in space, where only straps are: leave them out, or set stack.view to \
+                 \"both\"",
+                words.many
+            ),
+        );
+    }
+    if rack.kind != RackKind::OnBarrels || rack.foot_height > 0.0 {
+        return refuse(
+            "stack.rack",
+            format!(
+                "stack.rack = \"{}\" has {}; known in space are racks that lie on the barrels below with straight \
+                 tubes: take \"two-barrel\" or \"four-barrel\", or set stack.view to \"both\"",
+                rack.base,
+                if rack.kind == RackKind::OnBarrels { "feet" } else { "posts" }
+            ),
+        );
+    }
+    if rack.incline != 0.0 {
+        return refuse(
+            "stack.rack.incline",
+            "rails that raise one end of every barrel are known in a plane, not yet in space: set \
+             stack.rack.incline to 0, or stack.view to \"both\""
+                .into(),
+        );
+    }
+    if rack.contact != SeatContact::Rails {
+        return refuse(
+            "stack.rack.contact",
+            "in space a rack has two beams, each a contact element of its own wherever it touches: set \
+             stack.rack.contact to \"rails\", or stack.view to \"both\""
+                .into(),
+        );
+    }
+    let fills = spec.overrides.iter().filter_map(|change| change.fill).chain([spec.barrel.fill]);
+    if fills.into_iter().any(|fill| fill == Fill::Part) {
+        return refuse(
+            "stack.barrel.fill",
+            "wine that sloshes is known in a plane, not yet in space: set stack.barrel.fill to \"full-fluid\", \
+             \"full-frozen\" or \"empty\", or stack.view to \"both\""
+                .into(),
+        );
+    }
+    if scenario.run.similitude != 1.0 {
+        return refuse(
+            "run.similitude",
+            "scaled stacks are known in a plane, not yet in space: set run.similitude to 1".into(),
+        );
+    }
+    let tube = (0.5 * rack.beam_height - TUBE_CORNER).max(0.0);
+    if spec.racks_per_level() > 1 && spec.gap < 2.0 * tube {
+        return refuse(
+            "stack.gap",
+            format!(
+                "the round ends of beams of {} m reach {:.3} m beyond the line on which they bear, so racks side by \
+                 side overlap: set stack.gap to {:.3} m or more",
+                rack.beam_height,
+                tube,
+                2.0 * tube
+            ),
+        );
+    }
+    let barrel = &spec.barrel;
+    Barrel::new(
+        barrel.length,
+        0.5 * barrel.head_diameter,
+        0.5 * barrel.bilge_diameter,
+        CHIME_RADIUS,
+    )
+    .map_err(|error| AssembleError::NotInSpace { field: "stack.barrel", reason: error.to_string() })
+}
