@@ -1,17 +1,15 @@
 //! What of a stack is known in space, and what is refused at its field.
 
 use barrelstack::assemble::{AssembleError, CHIME_RADIUS, TUBE_CORNER};
+use barrelstack::device::Straps;
 use barrelstack::scenario::{Fill, RackKind, Scenario, SeatContact, StackSpec};
 use barrelstack_dynamics::solid::Barrel;
-
-/// The one device that goes on stacks in space, by its word.
-const STRAPS: &str = "straps";
 
 /// Refuses what is not known in space; the barrel of what is.
 pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, AssembleError> {
     let refuse = |field, reason: String| Err(AssembleError::NotInSpace { field, reason });
     let rack = &spec.rack;
-    if let Some(words) = spec.devices.present().iter().find(|words| words.many != STRAPS) {
+    if let Some(words) = spec.devices.present().iter().find(|words| **words != Straps::WORDS) {
         return refuse(
             "stack",
             format!(

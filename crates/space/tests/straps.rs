@@ -60,7 +60,7 @@ fn seats_bear_the_weight_and_what_the_straps_pull() {
             println!("{}: seat {seat:.1} N, straps {pull:.1} N, weight {weight:.1} N", part.name);
             worst = worst.max((seat / (weight + pull) - 1.0).abs());
             // The stack gives under the straps, which keep most of what they were put on with.
-            assert!(pull > 2.0 * 1000.0 && pull < 2.0 * 2000.0, "{pull}");
+            assert!(pull > 2.0 * 1500.0 && pull < 2.0 * 2000.0, "{pull}"); // measured 3772
         }
     }
     println!("{worst:e}");
@@ -104,15 +104,15 @@ fn straps_hold_what_would_fall_and_tear_where_they_are_weak() {
     let peak = with.elements.iter().map(|fate| fate.peak.0).fold(0.0, f64::max);
     let missing = with.energy.unwrap().residual_ratio();
     println!("{peak:.0} N, books {missing:e}");
-    assert!(peak > 5e3, "{peak}");
-    assert!(missing < 1e-6, "{missing:e}"); // measured 2e-8
+    assert!(peak > 5e3, "{peak}"); // measured 5416
+    assert!(missing < 1e-8, "{missing:e}"); // measured 2e-10
     // Straps that tear a little above the tension in which they stand do so, the books told of it.
     let weak = of(&[&strapped[..], &["stack.strap.strength='5.1 kN'"]].concat());
     let torn = weak.elements.iter().filter(|fate| fate.broken_at.is_some()).count();
     let missing = weak.energy.unwrap().residual_ratio();
     println!("{torn} of {} torn, {:?}, books {missing:e}", weak.elements.len(), weak.outcome);
-    assert!(torn > 0);
-    assert!(missing < 1e-4, "{missing:e}"); // measured 3e-5
+    assert!(torn > 0); // measured 5 of 28
+    assert!(missing < 5e-5, "{missing:e}"); // measured 1.1e-5
     assert!(weak.elements.iter().all(|fate| fate.broken_at.is_some() || fate.peak.0 <= 5.1e3));
 }
 
@@ -146,5 +146,5 @@ fn a_mirrored_stack_has_its_straps_on_the_other_side() {
         worst = worst.max(nearest);
     }
     println!("{worst:e}");
-    assert!(worst < 1e-9, "{worst:e}");
+    assert!(worst < 1e-12, "{worst:e}"); // measured 2e-15
 }

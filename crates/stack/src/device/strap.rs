@@ -180,7 +180,6 @@ impl Straps {
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let Builder { spec, parts, bodies, scale, .. } = builder;
         let (scale, view) = (*scale, spec.view);
-        let Self { ties, .. } = *self;
         let lowest = self.lowest(spec.levels);
         // Every strap is plumb on the stack as drawn.
         let strap = |upper: BodyId, lower: BodyId, side: &str, from: f64| {
@@ -213,7 +212,7 @@ impl Straps {
                 }
                 PartKind::Rack => {
                     // The lowest of the strapped levels is tied to nothing below it.
-                    let tied = ties == Ties::LevelsTogether && part.level > Some(lowest);
+                    let tied = self.ties == Ties::LevelsTogether && part.level > Some(lowest);
                     let below = parts.iter().position(|other| {
                         other.kind == PartKind::Rack
                             && other.column == part.column
