@@ -5,11 +5,10 @@
 function makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf }) {
   const rows = new Map();
 
-  function field({ path, value, help, source }) {
-    const input = make("input", { type: "text", "aria-label": path, spellcheck: "false" });
-    input.value = value;
+  function field({ path, help }) {
+    const input = make("input", { type: "text", "aria-label": path, spellcheck: "false" }), from = make("td");
     const wrong = make("span", { class: "wrong", role: "alert" });
-    const row = make("tr", {}, make("td", {}, path), make("td", {}, input, wrong), make("td", {}, help), make("td", {}, source));
+    const row = make("tr", {}, make("td", {}, path), make("td", {}, input, wrong), make("td", {}, help), from);
     let waiting = 0;
     input.addEventListener("input", () => {
       clearTimeout(waiting);
@@ -32,7 +31,7 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf }
         }
       }, 250);
     });
-    rows.set(path, { row, input, wrong, words: `${path} ${help}`.toLowerCase() });
+    rows.set(path, { row, input, wrong, from, words: `${path} ${help}`.toLowerCase() });
     return row;
   }
 
@@ -41,19 +40,32 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf }
     for (const { row, words } of rows.values()) row.hidden = !words.includes(wanted);
   }
 
+  // Fields come and go, and take other places, with what others say. Rows that are here stay where they are: somebody
+  // may be typing into one of them.
+  function listFields(settings) {
+    const paths = new Set(settings.map(({ path }) => path));
+    for (const [path, { row }] of rows) {
+      if (paths.has(path)) continue;
+      row.remove();
+      rows.delete(path);
+    }
+    let before = null;
+    for (const setting of settings) {
+      const known = rows.get(setting.path)?.row, row = known || field(setting);
+      if (!known) find("field-rows").insertBefore(row, before ? before.nextSibling : find("field-rows").firstChild);
+      before = row;
+    }
+    filter();
+  }
+
   // Shows what a scenario says, once somebody looks; what is being typed stays.
   function show() {
     if (!find("engineer-fold").open) return;
     const { cellar, look } = state();
-    const paths = look.settings.map(({ path }) => path).join();
-    if (paths !== [...rows.keys()].join()) {
-      rows.clear();
-      const heads = ["field", "value", "meaning", "from"].map((name) => make("th", { scope: "col" }, name));
-      find("fields").replaceChildren(make("thead", {}, make("tr", {}, ...heads)), make("tbody", {}, ...look.settings.map(field)));
-      filter();
-    }
-    for (const { path, value } of look.settings) {
-      const { input, wrong, row } = rows.get(path);
+    listFields(look.settings);
+    for (const { path, value, source } of look.settings) {
+      const { input, wrong, from, row } = rows.get(path);
+      from.textContent = source;
       if (document.activeElement !== input) {
         input.value = value;
         wrong.textContent = "";

@@ -229,6 +229,29 @@ export async function checkPage(browser, suite, { file, program, native }) {
     demand((await look(page)).devices.length === 0, "it is still on");
     return `${offered.length - 1} settings of ${known.length} devices`;
   });
+  await suite.check("whoever types goes on typing while fields take other places", async () => {
+    const other = await opened(browser, file);
+    await type(other.page, { "stack.levels": "2" });
+    const input = (path) => `#fields input[aria-label="${path}"]`;
+    const given = () => other.page.evaluate(() => window.barrelstack.state().look.settings.map(({ path }) => path));
+    const before = await given();
+    await other.page.focus(input("imperfections.seed"));
+    await other.page.evaluate((selector) => {
+      const field = document.querySelector(selector);
+      field.value = '"1 s"';
+      field.dispatchEvent(new Event("input"));
+    }, input("run.duration"));
+    await other.page.waitForFunction(() => document.getElementById("command").textContent.includes("run.duration"));
+    const after = await given();
+    demand(after.join() !== before.join(), "nothing took another place, so this check sees nothing");
+    const typing = await other.page.evaluate(() => document.activeElement?.getAttribute("aria-label"));
+    demand(typing === "imperfections.seed", `what is typed goes to ${typing}`);
+    const shown = await other.page.locator("#fields input").evaluateAll((all) => all.map((one) => one.getAttribute("aria-label")));
+    demand(shown.sort().join() === after.sort().join(), `the fields are ${shown}`);
+    demand(other.faults.length === 0, other.faults.join("\n"));
+    await other.context.close();
+    return `${shown.length} fields`;
+  });
   await suite.check("stopping ends all work within 0.3 s", async () => {
     await type(page, { "imperfections.variants": "64" });
     await page.click("#go");
