@@ -1,7 +1,7 @@
 //! A run in space has the bits that are kept of it, and is as much work.
 //!
-//! Nothing is stored of runs in space that would have to be made anew, so there is no version to raise: who changes
-//! bits on purpose writes the new ones here and says so in CHANGELOG.md under *Results change*.
+//! Who changes bits on purpose writes the new ones here and says so in CHANGELOG.md under *Results change*; once a
+//! release holds studies in space, whose cases are kept, `ensemble::VERSION` is raised as well.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -26,8 +26,8 @@ fn a_collapse_in_space_has_the_bits_that_are_kept_and_is_as_much_work() {
     let work = (run.work.steps, run.work.evaluations, run.work.contact_evaluations);
     println!("{fallen:?} {work:?} {:016x}", hash(&run.frames.poses));
     // A pair that sleeps is no evaluation: before pairs slept by their true distances there were twice as many.
-    assert_eq!(work, (38_848, 38_849, 5_636_109));
+    assert_eq!(work, (38_848, 38_849, 5_636_124));
     if cfg!(target_arch = "x86_64") {
-        assert_eq!(hash(&run.frames.poses), 0xdcc6_26fd_30ab_c68b, "other bits: see above");
+        assert_eq!(hash(&run.frames.poses), 0x65df_20b5_b931_23a3, "other bits: see above");
     }
 }

@@ -154,3 +154,23 @@ impl<R: Real> Barrel<R> {
         }
     }
 }
+
+impl Barrel {
+    /// Three derivatives along `way` (m) of half the square of the distance (m) from the center of the stave's arc,
+    /// `½ (x² + (r + a)²)` at a point (m) that is `r` from the axis.
+    #[inline(always)]
+    pub(super) fn pull(&self, point: Vec3, way: Vec3) -> [f64; 3] {
+        let inverse = 1.0 / (point.y * point.y + point.z * point.z).sqrt();
+        let (across, square) = (point.y * way.y + point.z * way.z, way.y * way.y + way.z * way.z);
+        // Of r.
+        let first = across * inverse;
+        let second = (square - first * first) * inverse;
+        let third = -3.0 * first * second * inverse;
+        let offset = self.stave_offset;
+        [
+            point.x * way.x + across + offset * first,
+            way.x * way.x + square + offset * second,
+            offset * third,
+        ]
+    }
+}

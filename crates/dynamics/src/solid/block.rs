@@ -1,6 +1,6 @@
 //! A block with rounded edges, and where another convex solid is closest to it.
 
-use super::closest::{Closest, along_axis};
+use super::closest::{Closest, along};
 use super::rounded::Hull;
 use crate::real::Real;
 use crate::shape::Gap;
@@ -128,7 +128,7 @@ pub(super) fn from_block(block: &Block, other: &Hull, at: Vec3, frame: Rotation3
     for (from, to) in EDGES {
         let middle = (corners[from] + corners[to]) * 0.5;
         let half = (corners[to] - corners[from]) * 0.5;
-        let (place, gap, evaluations, found) = along_axis(|point| other.gap(point), middle, half);
+        let (place, gap, evaluations, found) = along(other, middle, half);
         best.evaluations += evaluations;
         best.converged &= found;
         let distance = gap.distance - grown;

@@ -64,6 +64,27 @@ impl<R: Real> Capsule<R> {
     }
 }
 
+impl Capsule {
+    /// Where the line from `middle` (m), told as 0, to `middle + half`, told as 1, is closest to the axis: beside it
+    /// the distance grows with what is across, beyond an end with what is along as well. Not a number where the line
+    /// is parallel.
+    #[inline(always)]
+    fn beside(&self, middle: Vec3, half: Vec3) -> f64 {
+        let across = half.y * half.y + half.z * half.z;
+        let pull = middle.y * half.y + middle.z * half.z;
+        if across == 0.0 {
+            return f64::NAN;
+        }
+        let place = -pull / across;
+        let along = middle.x + half.x * place;
+        if along.abs() <= self.half_length {
+            return place;
+        }
+        let end = self.half_length.copysign(along);
+        -(pull + (middle.x - end) * half.x) / (across + half.x * half.x)
+    }
+}
+
 /// Every solid that can be a target.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Solid<R = f64> {

@@ -2,7 +2,7 @@
 
 use super::barrel::Barrel;
 use super::block::{Block, from_block};
-use super::closest::{Closest, along_axis, barrels};
+use super::closest::{Closest, along, barrels};
 use super::flat::{shared, slopes};
 use super::{Capsule, Solid};
 use crate::real::Real;
@@ -298,12 +298,7 @@ fn closest_of(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Cl
         (Hull::Barrel(barrel), Hull::Barrel(target)) => barrels(target, barrel, at, frame),
         (Hull::Capsule(capsule), _) => {
             let end = frame.apply(Vec3::new(capsule.half_length, 0.0, 0.0));
-            let (place, gap, evaluations, converged) = along_axis(
-                #[inline(always)]
-                |point| target.gap(point),
-                at,
-                end,
-            );
+            let (place, gap, evaluations, converged) = along(target, at, end);
             let center = at + end * place;
             Closest {
                 distance: gap.distance - capsule.radius,
@@ -317,12 +312,7 @@ fn closest_of(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Cl
         (hull, Hull::Capsule(target)) => {
             let end = frame.unapply(Vec3::new(target.half_length, 0.0, 0.0));
             let middle = frame.unapply(-at);
-            let (place, gap, evaluations, converged) = along_axis(
-                #[inline(always)]
-                |point| hull.gap(point),
-                middle,
-                end,
-            );
+            let (place, gap, evaluations, converged) = along(hull, middle, end);
             let nearest = middle + end * place - gap.normal * gap.distance;
             Closest {
                 distance: gap.distance - target.radius,

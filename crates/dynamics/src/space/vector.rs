@@ -145,11 +145,9 @@ impl<R: Real> Quaternion<R> {
     /// The turn about an axis by its length (rad), right-handed.
     #[inline(always)]
     pub fn turn(turn: Vec3<R>) -> Self {
-        let half = turn.length() * R::splat(0.5);
-        let (sin, cos) = math::sin_cos(half);
-        let still = half.le(R::zero());
-        let share = sin / R::select(still, R::splat(1.0), half + half);
-        Self { w: cos, v: turn * R::select(still, R::splat(0.5), share) }
+        let square = turn.dot(turn) * R::splat(0.25);
+        let (share, cos) = math::sinc_cos(square);
+        Self { w: cos, v: turn * (share * R::splat(0.5)) }
     }
 
     /// First `inner`, then this one.
