@@ -14,6 +14,7 @@ mod page;
 mod record;
 mod run;
 mod scenario;
+mod space;
 mod study;
 mod table;
 mod value;
@@ -37,6 +38,8 @@ mod _native {
     use crate::run::{Glance, Run};
     #[pymodule_export]
     use crate::scenario::{Scenario, fields, reference, scenarios, schema};
+    #[pymodule_export]
+    use crate::space::SpatialRun;
     #[pymodule_export]
     use crate::study::{Study, decision, export, provenance, read_table, studies};
     #[pymodule_export]

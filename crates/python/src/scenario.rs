@@ -19,6 +19,7 @@ use crate::errors;
 use crate::listen::{Hear, listening};
 use crate::record::{Record, of_motion};
 use crate::run::{Glance, Run};
+use crate::space::SpatialRun;
 use crate::value;
 
 /// A scenario of the library.
@@ -121,16 +122,7 @@ impl Scenario {
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Run> {
         let (scenario, count) = with_variants(&self.inner, variants)?;
-        let asked = match variant {
-            Some(number) if number > count => {
-                return Err(PyValueError::new_err(format!(
-                    "there is no variant {number}: there are variants 1 to {count}, and 0 is the stack as it is \
-                     stated"
-                )));
-            }
-            Some(number) => Asked::Number(number),
-            None => Asked::Typical,
-        };
+        let asked = asked(variant, count)?;
         let answer = listening(py, progress, |hear| {
             let mut answer = variants::answer(&scenario, asked, &mut |now| told(hear, now))?;
             if remedy && !hear.stopped() {
@@ -152,6 +144,27 @@ impl Scenario {
         let (answer, repeated) =
             answer.map_err(|error: RunFailure| errors::run(&error, &scenario))?;
         Ok(Run::of(answer, repeated))
+    }
+
+    #[getter]
+    fn is_spatial(&self) -> bool {
+        self.inner.is_spatial()
+    }
+
+    #[pyo3(signature = (variants, variant, progress))]
+    fn run_in_space(
+        &self,
+        py: Python<'_>,
+        variants: Option<u32>,
+        variant: Option<u32>,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<SpatialRun> {
+        let (scenario, count) = with_variants(&self.inner, variants)?;
+        let asked = asked(variant, count)?;
+        let answer = listening(py, progress, |hear| {
+            barrelstack_space::answer(&scenario, asked, &mut |now| told(hear, now))
+        })?;
+        answer.map(SpatialRun::of).map_err(|error| errors::run(&error, &scenario))
     }
 
     /// Runs it as it is stated in one plane, before a function that sees every so many steps and stops the run by
@@ -192,6 +205,17 @@ impl Scenario {
             (None, Ok(answer)) => Ok(Run::of(answer, None)),
             (None, Err(error)) => Err(errors::run(&error, &self.inner)),
         }
+    }
+}
+
+/// The variant that is shown, of so many.
+fn asked(variant: Option<u32>, count: u32) -> PyResult<Asked> {
+    match variant {
+        Some(number) if number > count => Err(PyValueError::new_err(format!(
+            "there is no variant {number}: there are variants 1 to {count}, and 0 is the stack as it is stated"
+        ))),
+        Some(number) => Ok(Asked::Number(number)),
+        None => Ok(Asked::Typical),
     }
 }
 

@@ -15,6 +15,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod check;
+pub mod columns;
 pub mod drawing;
 pub mod export;
 pub mod fate;

@@ -77,6 +77,12 @@ impl Case {
             debris: if sound { run.debris().collect() } else { Vec::new() },
         }
     }
+
+    /// The way of the first body and those of fallen barrels; none without a verdict.
+    pub fn ways(&self) -> Option<(Option<Heading>, &[Heading])> {
+        let judged = matches!(self.result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }));
+        judged.then_some((self.first, self.debris.as_slice()))
+    }
 }
 
 /// The demands that space knows: displacements are horizontal, whatever their direction.

@@ -6,6 +6,7 @@ use super::motions::{MEASURES, Shaken};
 use super::space::{self, Told};
 use crate::ensemble::{CASE_COLUMNS, CaseColumn};
 use barrelstack_report::column::{ColumnSpec, Role, Value, ValueKind};
+use barrelstack_space::columns;
 
 /// Columns of every table before those of the factors.
 const KEYS: [(&str, ValueKind); 3] =
@@ -27,7 +28,7 @@ pub(super) fn meaning(spec: &ColumnSpec) -> &'static str {
         (Role::Intensity, _) => "intensity measure of the motion as shaken",
         (Role::Outcome | Role::Demand | Role::Run, name) => {
             let told = CASE_COLUMNS.iter().find(|column| column.name == name);
-            told.map(|column| column.meaning).or_else(|| space::meaning(name)).unwrap_or("")
+            told.map(|column| column.meaning).or_else(|| columns::meaning(name)).unwrap_or("")
         }
     }
 }
@@ -56,7 +57,7 @@ impl Study {
         let factors = self.factors.iter().map(|factor| factor.column.clone());
         let fixed =
             KEYS.iter().map(key).chain(factors).chain(motion).chain(measures).chain(results);
-        fixed.chain(space::columns().filter(|_| self.in_space)).collect()
+        fixed.chain(columns::specs().filter(|_| self.in_space)).collect()
     }
 
     /// The row of a case; `shaken` is none where the motion could not be had.

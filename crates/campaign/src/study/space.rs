@@ -3,10 +3,10 @@
 
 use std::ops::ControlFlow;
 
-use barrelstack_report::column::{ColumnSpec, Role, Value, ValueKind};
+use barrelstack_report::column::Value;
 use barrelstack_space::run::run_on;
 use barrelstack_space::variants::Case as InSpace;
-use barrelstack_space::{Ground, Heading};
+use barrelstack_space::{Ground, Heading, columns};
 
 use super::Study;
 use super::design::Case;
@@ -74,44 +74,7 @@ fn run(scenario: &Scenario, ground: Ground, stop: &dyn Fn() -> bool) -> Option<T
     }
 }
 
-/// The column of the way of the first body, and that of barrels that came to lie each way.
-const COLUMNS: [(&str, ValueKind, &str); 5] = [
-    (
-        "heading",
-        ValueKind::Text,
-        "in which direction the first body left its seat: right or left across the barrels, away or near along them",
-    ),
-    (
-        "debris_right",
-        ValueKind::Integer,
-        "fallen barrels that came to lie to the right of where they stood, more than along the barrels",
-    ),
-    ("debris_left", ValueKind::Integer, "the same to the left"),
-    (
-        "debris_away",
-        ValueKind::Integer,
-        "fallen barrels that came to lie away along the barrels, more than across them",
-    ),
-    ("debris_near", ValueKind::Integer, "the same the other way along the barrels"),
-];
-
-/// What tables of studies in space have besides.
-pub(super) fn columns() -> impl Iterator<Item = ColumnSpec> {
-    COLUMNS.iter().map(|(name, kind, _)| ColumnSpec::new(name, "", Role::Outcome, *kind))
-}
-
-/// What a column means; none where it is not of space.
-pub(super) fn meaning(name: &str) -> Option<&'static str> {
-    COLUMNS.iter().find(|(known, ..)| *known == name).map(|(.., meaning)| *meaning)
-}
-
-/// The values of a case in these columns.
+/// The values of a case in the columns of space.
 pub(super) fn values(told: &Told) -> impl Iterator<Item = Option<Value>> {
-    let ways = told.ways.as_ref();
-    let first = ways.and_then(|ways| ways.first).map(|way| Value::Text(way.name().to_owned()));
-    let lie = move |way: Heading| {
-        let barrels = ways?.debris.iter().filter(|one| **one == way).count();
-        i64::try_from(barrels).ok().map(Value::Integer)
-    };
-    std::iter::once(first).chain(Heading::ALL.into_iter().map(lie))
+    columns::values(told.ways.as_ref().map(|ways| (ways.first, ways.debris.as_slice())))
 }

@@ -4,6 +4,7 @@
 
     Scenario ── run ──▶ Run          what stands and what shakes it ─▶ outcome, histories, report
     Record   ──────────┘             strong ground motion: read, made of arrays, processed, scaled, measured
+    Scenario ── run_in_space ─▶ SpatialRun   the same as it stands, under all three components
     ensemble ──────────▶ Table       many cases at once
     Study    ── run ──▶ Fragility    hundreds of cases in a folder, on one machine or on many
     Scene    ── run ──▶ Run          any planar bodies
@@ -42,6 +43,7 @@ from ._records import Selection, intensities, read_folder, select
 from ._run import Demands, Envelope, Force, Frames, Glance, Histories, Outcome, Run
 from ._scenario import Scenario, Section
 from ._scene import Scene
+from ._space import OutcomeInSpace, Poses, SpatialRun
 from ._study import Chunk, Curve, Fragility, Hunts, Study
 from ._table import Column, Table
 
@@ -69,7 +71,9 @@ __all__ = [
     "Hunts",
     "Intensity",
     "Outcome",
+    "OutcomeInSpace",
     "Page",
+    "Poses",
     "Protections",
     "Record",
     "RecordError",
@@ -82,6 +86,7 @@ __all__ = [
     "Scene",
     "Section",
     "Selection",
+    "SpatialRun",
     "Study",
     "StudyError",
     "Table",

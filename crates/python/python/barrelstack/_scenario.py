@@ -13,6 +13,7 @@ from ._progress import Progress, told
 from ._quantity import literal, plain
 from ._record import Record
 from ._run import Glance, Run, warn
+from ._space import SpatialRun
 
 __all__ = ["Scenario", "Section"]
 
@@ -345,6 +346,8 @@ class Scenario:
             When the stack cannot be built or does not stand.
         RecordError
             When the motion cannot be read.
+        ValueError
+            When it is a scenario in space, which :meth:`run_in_space` runs.
         KeyboardInterrupt
             Within a second of Ctrl-C.
 
@@ -357,6 +360,8 @@ class Scenario:
         -----
         The numbers are those of ``barrelstack run``, bit for bit. The interpreter's lock is free meanwhile.
         """
+        if self._native.is_spatial:
+            raise ValueError(f"{self.title!r} stands in space: run it with run_in_space()")
         if record is not None:
             record = record if isinstance(record, Record) else Record.read(record)
             return self.with_record(record).run(
@@ -364,6 +369,64 @@ class Scenario:
             )
         with told(progress, f"run of {self.title!r}") as hear:
             run = Run(self._shaken.run(variants, variant, remedy, verify, hear))
+        warn(run.warnings)
+        return run
+
+    def run_in_space(
+        self,
+        record: Record | str | os.PathLike[str] | None = None,
+        variants: int | None = None,
+        progress: Progress = None,
+        *,
+        variant: int | None = None,
+    ) -> SpatialRun:
+        """Runs a scenario in space (``stack.view = "spatial"``) under all three components, with its variants.
+
+        Parameters
+        ----------
+        record
+            What shakes it in place of its own motion: a record, or a path.
+        variants
+            How many variants are run beside the stack as it is stated; as the scenario says without (64). 0 for none.
+        progress
+            True for a bar, or a function that is called with (done, of, what) some twenty times a second.
+        variant
+            The variant that is shown, 0 for the stack as it is stated; without, the most typical.
+
+        Returns
+        -------
+        SpatialRun
+            What became of it.
+
+        Raises
+        ------
+        RunError
+            When the stack cannot be built in space or does not stand.
+        RecordError
+            When the motion cannot be read.
+        ValueError
+            When it is a scenario in a plane, which :meth:`run` runs.
+        KeyboardInterrupt
+            Within a second of Ctrl-C.
+
+        Warns
+        -----
+        BarrelstackWarning
+            One warning for each thing that the reader of the result should know.
+
+        Notes
+        -----
+        The numbers are those of ``barrelstack run``, bit for bit. The interpreter's lock is free meanwhile.
+        """
+        if not self._native.is_spatial:
+            raise ValueError(
+                f"{self.title!r} stands in a plane: run it with run(), or set {{'stack.view': 'spatial'}}"
+            )
+        if record is not None:
+            record = record if isinstance(record, Record) else Record.read(record)
+            return self.with_record(record).run_in_space(None, variants, progress, variant=variant)
+        with told(progress, f"run of {self.title!r} in space") as hear:
+            run = SpatialRun(self._shaken.run_in_space(variants, variant, hear), self.to_toml())
         warn(run.warnings)
         return run
 

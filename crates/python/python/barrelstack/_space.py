@@ -1,0 +1,138 @@
+"""What became of a scenario in space."""
+
+from __future__ import annotations
+
+import json
+import os
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _native
+from ._page import frame
+from ._table import Table
+
+__all__ = ["OutcomeInSpace", "Poses", "SpatialRun"]
+
+
+class OutcomeInSpace(NamedTuple):
+    """What happened in space."""
+
+    #: ``stable``, ``collapse``, ``not-judged`` or ``invalid``.
+    kind: str
+    #: ``ejection``, ``rocking``, ``rack-sliding`` or ``overturning``.
+    mode: str | None
+    #: When the first body left its seat (s).
+    time: float | None
+    #: That body.
+    first: str | None
+    #: In which direction it left: ``right`` or ``left`` across the barrels, ``away`` or ``near`` along them.
+    heading: str | None
+    #: When the first barrel had fallen (s).
+    first_fall: float | None
+    barrels_fallen: int | None
+    barrels: int
+    #: Why the run is invalid.
+    reason: str | None
+
+
+class Poses(NamedTuple):
+    """Where all bodies were in space, at the rate of frames."""
+
+    #: Times (s), shape (frames,): a view without a copy.
+    time: NDArray[np.float64]
+    #: Names of the bodies, the ground first.
+    bodies: list[str]
+    #: x, y, z (m) and quaternion w, x, y, z in the inertial frame, shape (frames, bodies, 7).
+    poses: NDArray[np.float64]
+    #: Velocity x, y, z (m/s) and spin about x, y, z (rad/s), shape (frames, bodies, 6).
+    twists: NDArray[np.float64]
+
+
+class SpatialRun:
+    """What became of a scenario in space: ``x`` across the barrels, ``y`` along them, ``z`` up.
+
+    Made by :meth:`Scenario.run_in_space`.
+    """
+
+    def __init__(self, native: _native.SpatialRun, stated: str) -> None:
+        self._native = native
+        self._stated = stated
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """All numbers of the run, as ``barrelstack run --json`` prints them (``space/1``); SI units."""
+        summary: dict[str, Any] = json.loads(self._native.summary())
+        return summary
+
+    @property
+    def headline(self) -> str:
+        """The answer in one sentence."""
+        return self._native.headline
+
+    @property
+    def outcome(self) -> OutcomeInSpace:
+        """What happened in the run that is shown."""
+        outcome = self.summary["outcome"]
+        return OutcomeInSpace(**{name: outcome[name] for name in OutcomeInSpace._fields})
+
+    @property
+    def ensemble(self) -> dict[str, Any] | None:
+        """What all variants say together: ``share`` that collapses, its 95 % ``interval``, modes; None without any."""
+        return self.summary["ensemble"]  # type: ignore[no-any-return]
+
+    @property
+    def directions(self) -> dict[str, int] | None:
+        """Into which directions variants fall: first bodies and debris; None without any."""
+        return self.summary["directions"]  # type: ignore[no-any-return]
+
+    @property
+    def variants(self) -> Table | None:
+        """The stack as it is stated (number 0) and its variants, a row each; None where none were run."""
+        table = self._native.variants()
+        return None if table is None else Table(table)
+
+    @cached_property
+    def frames(self) -> Poses:
+        """Poses and velocities of all bodies over time."""
+        bodies = [name for name, _ in self._native.bodies()]
+        return Poses(self._native.frame_times(), bodies, self._native.poses(), self._native.twists())
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the reader should know, one sentence each."""
+        return self._native.warnings
+
+    @property
+    def scenario(self) -> str:
+        """The scenario of the run that is shown, every default written out (TOML)."""
+        return self._native.toml
+
+    def html(self) -> str:
+        """The report as one page that asks the network for nothing, with the motion seen from three sides.
+
+        Returns
+        -------
+        str
+        """
+        return self._native.html()
+
+    def write(self, folder: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Writes the files of ``barrelstack run --out``: report, summary, frames, variants.
+
+        Parameters
+        ----------
+        folder
+            A folder that is new or empty.
+        overwrite
+            Whether to write into one that holds something.
+        """
+        self._native.write(os.fspath(folder), self._stated, overwrite)
+
+    def _repr_html_(self) -> str:
+        return frame(self.html())
+
+    def __repr__(self) -> str:
+        return f"<SpatialRun: {self.headline}>"

@@ -1,0 +1,121 @@
+//! A run in space: its document, where its bodies were, its page.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use barrelstack::ensemble;
+use barrelstack::export::Folder;
+use barrelstack_report::column::{Column, ColumnSpec, Role, ValueKind, Values};
+use barrelstack_report::html;
+use barrelstack_space::report::document;
+use barrelstack_space::run::Frames;
+use barrelstack_space::{Answer, columns, export, words};
+use numpy::{PyArray1, PyArray3, PyArrayMethods as _};
+use pyo3::prelude::*;
+
+use crate::errors;
+use crate::table::Table;
+use crate::view::view;
+
+/// What became of a scenario in space.
+#[pyclass(frozen, module = "barrelstack._native")]
+pub(crate) struct SpatialRun {
+    answer: Arc<Answer>,
+}
+
+impl SpatialRun {
+    pub(crate) fn of(answer: Answer) -> Self {
+        Self { answer: Arc::new(answer) }
+    }
+
+    fn frames(&self) -> &Frames {
+        &self.answer.run.frames
+    }
+
+    /// Numbers of every frame and body as one array.
+    fn stacked<'py, const N: usize>(
+        &self,
+        py: Python<'py>,
+        frames: &[Vec<[f64; N]>],
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let flat = PyArray1::from_iter(py, frames.iter().flatten().flatten().copied());
+        flat.reshape([frames.len(), self.answer.run.stack.parts.len(), N])
+    }
+}
+
+#[pymethods]
+impl SpatialRun {
+    #[getter]
+    fn headline(&self) -> String {
+        words::headline(&self.answer.run, &self.answer.summary)
+    }
+
+    fn summary(&self) -> String {
+        self.answer.summary.to_json()
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.answer.run.warnings.clone()
+    }
+
+    #[getter]
+    fn toml(&self) -> String {
+        self.answer.run.scenario.to_resolved_toml()
+    }
+
+    /// Name and kind of every body, in the order of the poses.
+    fn bodies(&self) -> Vec<(String, &'static str)> {
+        let parts = self.answer.run.stack.parts.iter();
+        parts.map(|part| (part.name.clone(), part.kind.name())).collect()
+    }
+
+    fn frame_times<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        view(slf.as_any(), &slf.get().frames().times)
+    }
+
+    /// For every frame and body place (m) and quaternion `w`, `x`, `y`, `z`.
+    fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        self.stacked(py, &self.frames().poses)
+    }
+
+    /// For every frame and body velocity (m/s) and spin (rad/s).
+    fn twists<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        self.stacked(py, &self.frames().twists)
+    }
+
+    /// The case as it is stated and its variants, a row each; none where none were run.
+    fn variants(&self) -> Option<Table> {
+        let cases = &self.answer.cases;
+        if cases.is_empty() {
+            return None;
+        }
+        let numbers = Values::Integer((0..cases.len()).map(|n| i64::try_from(n).ok()).collect());
+        let spec = ColumnSpec::new("variant", "", Role::Key, ValueKind::Integer);
+        let results: Vec<_> = cases.iter().map(|case| case.result.clone()).collect();
+        let mut all = vec![Column { spec, values: numbers }];
+        all.extend(ensemble::table(&results));
+        all.extend(columns::table(cases));
+        Some(Table { columns: all })
+    }
+
+    fn html(&self, py: Python<'_>) -> String {
+        py.detach(|| html(&document(&self.answer)))
+    }
+
+    /// Writes the files that the command writes, beside a scenario as it is stated.
+    fn write(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        stated: &str,
+        overwrite: bool,
+    ) -> PyResult<()> {
+        let written = py.detach(|| {
+            let folder = Folder::prepare(&folder, overwrite)?;
+            let files = export::files(&self.answer, stated);
+            folder.put(&files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())))
+        });
+        written.map_err(errors::general)
+    }
+}

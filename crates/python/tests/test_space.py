@@ -1,0 +1,94 @@
+"""Runs in space: the numbers of the command, arrays with their shapes, a page, files."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from barrelstack import Scenario, ScenarioError, SpatialRun
+
+CHANGES = {
+    "stack.view": "spatial",
+    "stack.levels": 3,
+    "imperfections.variants": 4,
+    "run.duration": "12 s",
+}
+
+
+@pytest.fixture(scope="module")
+def run() -> SpatialRun:
+    return Scenario.load("demo-napa").set(CHANGES).run_in_space(variant=0)
+
+
+@pytest.mark.parametrize(
+    ("name", "changes"), [("demo-napa", CHANGES), ("rolling-ball", {}), ("tumbling-block", {})]
+)
+def test_every_number_has_the_bits_of_the_command(
+    command: str, name: str, changes: dict[str, str | int]
+) -> None:
+    sets = [word for path, value in changes.items() for word in ("--set", f"{path}={value}")]
+    done = subprocess.run(
+        [command, "run", name, *sets, "--json", "--quiet"], capture_output=True, text=True, check=False
+    )
+    assert done.stdout, done.stderr
+    told = json.loads(done.stdout)
+    scenario = Scenario.load(name)
+    found = (scenario.set(changes) if changes else scenario).run_in_space().summary
+    # The clock is no result.
+    told["run"].pop("wall_seconds"), found["run"].pop("wall_seconds")
+    assert found == told
+    assert found["schema"] == "space/1"
+
+
+def test_frames_end_where_the_summary_says(run: SpatialRun) -> None:
+    frames = run.frames
+    assert frames.bodies[0] == "ground"
+    assert frames.poses.shape == (len(frames.time), len(frames.bodies), 7)
+    assert frames.twists.shape == (len(frames.time), len(frames.bodies), 6)
+    lengths = np.linalg.norm(frames.poses[:, :, 3:], axis=2)
+    assert np.abs(lengths - 1).max() < 1e-12  # measured 2e-16
+    told = {body["name"]: body["position"] for body in run.summary["bodies"]}
+    last = dict(zip(frames.bodies, frames.poses[-1, :, :3], strict=True))
+    # A frame lies at most a frame before the end.
+    rate = np.diff(frames.time).max()
+    for name, place in told.items():
+        speed = np.linalg.norm(frames.twists[-1, frames.bodies.index(name), :3])
+        assert np.linalg.norm(last[name] - place) <= 2 * rate * speed + 1e-3, name
+
+
+def test_variants_tell_directions(run: SpatialRun) -> None:
+    table = run.variants
+    assert table is not None
+    assert table["variant"] == [0, 1, 2, 3, 4]
+    assert {"outcome", "heading", "debris_right", "debris_left", "debris_away", "debris_near"} <= set(table)
+    assert run.ensemble is not None
+    assert run.directions is not None
+    fell = [way for way in table["heading"][1:] if way is not None]
+    first = [run.directions[f"first_{way}"] for way in ("right", "left", "away", "near")]
+    assert sum(first) == len(fell)
+    assert run.outcome.heading == table["heading"][0]
+
+
+def test_its_files_are_those_of_the_command(run: SpatialRun, tmp_path: Path) -> None:
+    run.write(tmp_path / "out")
+    names = sorted(path.name for path in (tmp_path / "out").iterdir())
+    assert names == ["frames.csv", "report.html", "scenario.toml", "summary.json", "variants.csv"]
+    assert (tmp_path / "out" / "report.html").read_text() == run.html()
+    with pytest.raises(Exception, match="not empty"):
+        run.write(tmp_path / "out")
+    assert "<iframe" in run._repr_html_()
+
+
+def test_plane_and_space_name_each_other() -> None:
+    with pytest.raises(ValueError, match=r"run_in_space\(\)"):
+        Scenario.load("demo-napa").set("stack.view", "spatial").run()
+    with pytest.raises(ValueError, match=r"run\(\), or set .*spatial"):
+        Scenario.load("demo-napa").run_in_space()
+    with pytest.raises(ValueError, match="there is no variant 9"):
+        Scenario.load("demo-napa").set(CHANGES).run_in_space(variant=9)
+    with pytest.raises(ScenarioError, match="view"):
+        Scenario.load("demo-napa").set("stack.view", "spacial")
