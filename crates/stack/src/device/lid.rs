@@ -1,7 +1,8 @@
 //! Lids over the barrels of the highest levels: a cap rack or a bar that closes on them from above.
 //!
 //! A lid is fixed to the rack that carries the barrel, bears on the barrel without friction, and weighs nothing.
-//! A barrel that rolls out of its cradle has to rise first, which a lid does not let it.
+//! A barrel that rolls out of its cradle has to rise first, which a lid does not let it; one that is out from under its
+//! lid is held by it no more.
 
 use barrelstack_dynamics::{Guide, Link, Vec2};
 use barrelstack_input::declared::Declared as _;
@@ -53,6 +54,9 @@ section! {
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
 }
 
+/// How far a lid reaches to either side of its barrel, as a share of the barrel's radius: an assumption.
+const HALF_WIDTH: f64 = 0.6;
+
 /// Reads lids.
 pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Lids, InputError> {
     let lids = Lids::read_fields(&reader)?;
@@ -80,19 +84,20 @@ impl Lids {
                 continue;
             }
             let (name, size) = (part.name.clone(), part.size);
-            let gap = self.gap * scale.length;
+            let (gap, half_width) = (self.gap * scale.length, HALF_WIDTH * size);
             let link = Link { name, bodies: [rack, barrel], points: [Vec2::default(); 2] };
             let guide = Guide {
                 gap,
                 stop_stiffness: self.stiffness * scale.stiffness(1.0, false),
                 stop_damping: self.damping * scale.damping(false),
                 strength: self.strength.map_or(f64::INFINITY, |force| force * scale.force()),
+                reach: half_width,
                 ..Guide::spring(link, Vec2::new(0.0, 1.0), 0.0, 0.0)
             };
             builder.loose.push(Loose { element: guide.into(), give: 0.0, words: &WORDS });
             let top = builder.bodies[barrel].pose.position - builder.bodies[rack].pose.position
                 + Vec2::new(0.0, size + gap);
-            let half = Vec2::new(0.6 * size, 0.0);
+            let half = Vec2::new(half_width, 0.0);
             let points = vec![top - half, top + half];
             builder.parts[rack].outlines.push(Outline { points, closed: false });
         }
