@@ -74,6 +74,25 @@ fn every_device_as_it_is_worth_trying_changes_the_bits_of_a_stack() {
 }
 
 #[test]
+fn a_lid_lets_go_of_a_barrel_that_is_out_from_under_it() {
+    // Lids that pressed on barrels wherever these lay broke both runs down.
+    for (levels, velocity) in [(1, 60), (3, 100)] {
+        let run = run(
+            "demo-napa",
+            &[
+                "stack.view=longitudinal",
+                &format!("stack.lid.levels={levels}"),
+                &format!("motion.scale.pgv=\"{velocity} cm/s\""),
+            ],
+        );
+        let books = run.energy.map(|energy| energy.residual_ratio());
+        println!("{levels} levels, {velocity} cm/s: {:?}, books {books:?}", run.outcome);
+        assert_eq!(run.outcome.kind(), "collapse", "{:?}", run.outcome);
+        assert!(books.unwrap() < 1e-4); // measured 5.1e-6
+    }
+}
+
+#[test]
 fn a_tuned_mass_that_weighs_nothing_and_an_isolator_that_is_seized_change_next_to_nothing() {
     let top = |run: &Run| {
         let at = run.assembly.of_kind(PartKind::Barrel).last().unwrap();

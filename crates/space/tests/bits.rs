@@ -1,7 +1,7 @@
 //! A run in space has the bits that are kept of it, and is as much work.
 //!
-//! Who changes bits on purpose writes the new ones here and says so in CHANGELOG.md under *Results change*; once a
-//! release holds studies in space, whose cases are kept, `ensemble::VERSION` is raised as well.
+//! Who changes bits on purpose raises `ensemble::VERSION`, since studies keep cases in space, writes the new bits here
+//! and says so in CHANGELOG.md under *Results change*.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 

@@ -12,7 +12,6 @@ use super::Study;
 use super::design::Case;
 use super::prepare::Resources;
 use crate::ensemble::CaseResult;
-use crate::outcome::Outcome;
 use crate::scenario::Scenario;
 use crate::watch::Ending;
 
@@ -39,9 +38,9 @@ impl From<CaseResult> for Told {
 }
 
 impl From<InSpace> for Told {
-    fn from(InSpace { result, first, debris }: InSpace) -> Self {
-        let judged = matches!(result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }));
-        Self { ways: judged.then_some(Ways { first, debris }), result }
+    fn from(case: InSpace) -> Self {
+        let ways = case.ways().map(|(first, debris)| Ways { first, debris: debris.to_vec() });
+        Self { ways, result: case.result }
     }
 }
 

@@ -159,7 +159,7 @@ impl Barrel {
     /// Three derivatives along `way` (m) of half the square of the distance (m) from the center of the stave's arc,
     /// `½ (x² + (r + a)²)` at a point (m) that is `r` from the axis.
     #[inline(always)]
-    pub(super) fn pull(&self, point: Vec3, way: Vec3) -> [f64; 3] {
+    pub(super) fn derivatives(&self, point: Vec3, way: Vec3) -> [f64; 3] {
         let inverse = 1.0 / (point.y * point.y + point.z * point.z).sqrt();
         let (across, square) = (point.y * way.y + point.z * way.z, way.y * way.y + way.z * way.z);
         // Of r.

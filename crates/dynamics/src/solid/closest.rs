@@ -33,9 +33,9 @@ type Along = (f64, Gap<Spatial>, u32, bool);
 /// How much shorter or longer (1) than its parts the slope of a gap along a segment may be where it is least.
 const FLAT: f64 = 1e-14;
 /// Steps along a segment before the search takes over.
-const MOST_NEARER: u32 = 6;
+const MOST_HALLEY: u32 = 6;
 /// What is left after a step is some cube of it; below this it is lost in rounding.
-const LAST_NEARER: f64 = 1e-5;
+const LAST_HALLEY: f64 = 1e-5;
 
 /// The point of a segment that is closest to a hull.
 ///
@@ -46,13 +46,13 @@ const LAST_NEARER: f64 = 1e-5;
 pub(super) fn along(hull: &Hull, middle: Vec3, half: Vec3) -> Along {
     // Closures are told to be inlined, or they are compiled outside of the scope of the vector unit.
     let found = match hull {
-        Hull::Barrel(barrel) => led_along(
+        Hull::Barrel(barrel) => halley(
             middle,
             half,
             #[inline(always)]
-            |point| barrel.pull(point, half),
+            |point| barrel.derivatives(point, half),
         ),
-        Hull::Capsule(capsule) => Some(capsule.beside(middle, half).clamp(-1.0, 1.0)),
+        Hull::Capsule(capsule) => Some(capsule.nearest_on_line(middle, half).clamp(-1.0, 1.0)),
         Hull::Block(_) => None,
     };
     if let Some(place) = found {
@@ -70,18 +70,18 @@ pub(super) fn along(hull: &Hull, middle: Vec3, half: Vec3) -> Along {
     )
 }
 
-/// Where along a segment a quantity is least of which `pull` gives three derivatives, by Halley's method. From the other
-/// end it is the same place to the last bit.
+/// Where along a segment a quantity is least of which three derivatives are given, by Halley's method. From the other end
+/// it is the same place to the last bit.
 #[inline(always)]
-fn led_along(middle: Vec3, half: Vec3, pull: impl Fn(Vec3) -> [f64; 3]) -> Option<f64> {
+fn halley(middle: Vec3, half: Vec3, derivatives: impl Fn(Vec3) -> [f64; 3]) -> Option<f64> {
     let mut place = (-middle.dot(half) / half.dot(half)).clamp(-1.0, 1.0);
-    for _ in 0..MOST_NEARER {
-        let [first, second, third] = pull(middle + half * place);
+    for _ in 0..MOST_HALLEY {
+        let [first, second, third] = derivatives(middle + half * place);
         let step = first * second / (second * second - 0.5 * first * third);
         let next = (place - step).clamp(-1.0, 1.0);
         let moved = (next - place).abs();
         place = next;
-        if moved < LAST_NEARER {
+        if moved < LAST_HALLEY {
             return Some(place);
         }
     }

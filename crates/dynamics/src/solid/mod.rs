@@ -69,7 +69,7 @@ impl Capsule {
     /// the distance grows with what is across, beyond an end with what is along as well. Not a number where the line
     /// is parallel.
     #[inline(always)]
-    fn beside(&self, middle: Vec3, half: Vec3) -> f64 {
+    fn nearest_on_line(&self, middle: Vec3, half: Vec3) -> f64 {
         let across = half.y * half.y + half.z * half.z;
         let pull = middle.y * half.y + middle.z * half.z;
         if across == 0.0 {

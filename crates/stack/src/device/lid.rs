@@ -17,9 +17,9 @@ pub(super) static WORDS: Words = Words {
     one: "lid",
     many: "lids",
     force: "force",
-    breaks: "breaks",
-    break_all: "break",
-    broken: "broken",
+    breaks: "gives way",
+    break_all: "give way",
+    broken: "off",
     candidates: &[
         Setting { name: "a cap rack on the top level", overrides: &["stack.lid.levels=1"] },
         Setting { name: "lids on the top three levels", overrides: &["stack.lid.levels=3"] },
@@ -37,7 +37,7 @@ section! {
     /// Lids over barrels.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Lids;
-    /// Lids over the barrels of the highest levels, such as a cap rack clamped to the rack below: they bound how far a barrel rises in its cradle.
+    /// Lids over the barrels of the highest levels, such as a cap rack clamped to the rack below: they bound how far a barrel rises in its cradle, until it is out from under them by more than 0.6 of its radius to a side.
     pub static SECTION = "lid";
     /// How many of the highest levels have lids; 0 for none.
     levels: u32 = LEVELS, Default::Value("0");
